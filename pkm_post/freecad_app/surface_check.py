@@ -111,6 +111,6 @@ def _samples(face: Any, flipped: bool, spacing: float) -> tuple[Array, Array]:
         for low, (span, count), share in zip(within, spans, _SPREAD, strict=True)
     ]
     u, v = (np.append(each.ravel(), more) for each, more in zip(grid, inner, strict=True))
-    held = surface.holds(u, v)
+    held = surface.contains(u, v)
     patch = surface.at(u[held], v[held])
     return patch.point, patch.normal

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool path: symmetry, work offset, compensation and surface passes, from a program to a trajectory."""
+"""Tool path: compensation, symmetry, surface passes, work offset and spindle speeds, from a program to a trajectory."""
 
 from pkm_post.toolpath.chords import CHORD_ERROR, with_chords
 from pkm_post.toolpath.compensation.compensate import compensate

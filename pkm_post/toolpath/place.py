@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Place: a program on the machine, from cutter locations in {C} to trajectory segments in {M}.
+"""Work offset: from cutter locations in {C} to trajectory segments in {M}.
 
 q_M = D q, k_M = R_D k with the work offset D, the pose of {C} in {M} [paper eq. 1, 2]. The path starts at the machine's
 home pose; rows without motion are dropped, and their events kept. The spin stays at zero: the platform has the spin of
-the program, and zero torsion where the program gives none.
+the program, and zero torsion where the program gives none. Segments that continue into the next one without a corner
+are marked smooth; both tip and tool axis count.
 """
 
 from __future__ import annotations
@@ -32,73 +33,12 @@ from pkm_post.toolpath.spindle_dwells import with_spindle_waits
 from pkm_post.toolpath.symmetry.transform import mirrors, transform
 from pkm_post.toolpath.tool_change import with_tool_changes
 
-_STILL = 1e-9
-"""mm: a tip that moves less stands still."""
+_NO_MOVE = 1e-9
+"""mm and rad: a row that moves less is dropped."""
 _NO_CORNER = 1e-6
 """rad, and rad/mm of the tool axis: smaller changes count as none."""
 _TANGENT = np.radians(0.1)
 """rad: rounding of tangents by the decimals of a program; an exact path does not stop for it."""
-
-
-def smooth(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Array:
-    """Segments after which the tip keeps its direction, and the axis its rate by path length, (N,).
-
-    Args:
-        columns: kind, tip, axis, arc_centre, arc_axis, sweep, length and angle of N segments.
-        tip_before: (N, 3) tips at their starts.
-        axis_before: (N, 3) unit tool axes at their starts.
-    """
-    at_start, at_end = _tangents(columns, tip_before)
-    corner = norm(at_start[1:] - at_end[:-1]) + _jump_of_rate(columns, axis_before)
-    moves = columns["length"] > _STILL
-    return np.append((corner < _NO_CORNER) & moves[1:] & moves[:-1], False)
-
-
-def corners(columns: dict[str, Any], tip_before: Array) -> Array:
-    """Segments with a corner of the tip path at their end, (N,); never the last.
-
-    A tip that stands still while the tool turns has a corner at both ends. The tool axis does not count.
-
-    Args:
-        columns: kind, tip, arc_centre, arc_axis, sweep of N segments.
-        tip_before: (N, 3) tips at their starts.
-    """
-    at_start, at_end = _tangents(columns, tip_before)
-    return np.append(norm(at_start[1:] - at_end[:-1]) > _TANGENT, False)
-
-
-def _jump_of_rate(columns: dict[str, Any], axis_before: Array) -> Array:
-    """Jump of the rate of the tool axis by path length after each segment but the last, (N - 1,) in rad/mm."""
-    turns = np.flatnonzero(columns["angle"] > 0)
-    before, after = axis_before[turns], columns["axis"][turns]
-    length = np.maximum(columns["length"][turns], _STILL)[:, None]
-    at_start, at_end = np.zeros_like(axis_before), np.zeros_like(axis_before)
-    at_start[turns] = towards(before, after) / length
-    at_end[turns] = -towards(after, before) / length
-    return norm(at_start[1:] - at_end[:-1])
-
-
-def _tangents(columns: dict[str, Any], tip_before: Array) -> tuple[Array, Array]:
-    """Unit tangents of the tip path at start and end of the segments, (N, 3) each; zero where the tip stands still."""
-    way = columns["tip"] - tip_before
-    at_start = _directions(way)
-    at_end = at_start.copy()
-    arc = np.flatnonzero(columns["kind"] == Kind.ARC)
-    turn, centre = columns["arc_axis"][arc], columns["arc_centre"][arc]
-    rise = (dot(way[arc], turn) / columns["sweep"][arc])[:, None] * turn
-    for tangent, tip in ((at_start, tip_before), (at_end, columns["tip"])):
-        tangent[arc] = _directions(cross(turn, tip[arc] - centre) + rise)
-    return at_start, at_end
-
-
-def _directions(vectors: Array) -> Array:
-    """(N, 3) unit vectors; zero where the vectors are too short to have a direction."""
-    length = norm(vectors)
-    return vectors / np.where(length > _STILL, length, np.inf)[:, None]
-
-
-_NO_MOVE = 1e-9
-"""mm and rad: a row that moves less is dropped."""
 _HALF_TURN = np.pi - 1e-6
 _BEYOND_REACH = 10
 """Multiple of the longest strut: positions farther from the base are out of reach and need no closer check."""
@@ -128,7 +68,7 @@ def place(
         return None, (Diagnostic("K109", Place(machine.name), "the work offset is a mirror"),)
     placed, added = with_tool_changes(placed, machine)
     placed, waits = with_spindle_waits(placed, machine)
-    way = _way(placed, machine)
+    way = _path_columns(placed, machine)
     keep = (way["length"] > _NO_MOVE) | (way["angle"] > _NO_MOVE)
     faults = (*_faults(placed, machine, way, keep), *added, *waits)
     if errors(faults):
@@ -151,7 +91,7 @@ def place(
     return trajectory, faults
 
 
-def _way(placed: Program, machine: Machine) -> dict[str, Any]:
+def _path_columns(placed: Program, machine: Machine) -> dict[str, Any]:
     """Path columns by row of the program: start, end and length of each row."""
     tip, axis, centre, turn = placed.position, placed.tool_axis, placed.arc_centre, placed.arc_axis
     tool = _tool_by_row(placed)
@@ -187,28 +127,6 @@ def _way(placed: Program, machine: Machine) -> dict[str, Any]:
     }
 
 
-def _columns(placed: Program, way: dict[str, Any], keep: Array, events: tuple[Event, ...]) -> dict[str, Any]:
-    """Columns of the trajectory: the path without rows that stand still, and the transition from each row to the next.
-
-    Args:
-        placed: the program in {M}.
-        way: its path columns from ``_way``.
-        keep: rows that move.
-        events: events of the program, at the kept rows.
-    """
-    rows = slice(None) if keep.all() else keep
-    columns = {name: column[rows] for name, column in way.items()}
-    tip_before, axis_before = columns.pop("tip_before"), columns.pop("axis_before")
-    del columns["longer"]
-    stops = placed.exact_stop[keep] | _stops(events, int(keep.sum()))
-    stops |= _exact_corners(placed.exact_path[keep], columns, tip_before)
-    return columns | {
-        "exact_stop": stops,
-        "tip_tolerance": placed.tip_tolerance[keep],
-        "smooth": ~stops & smooth(columns, tip_before, axis_before),
-    }
-
-
 def _tool_by_row(program: Program) -> Array:
     """The number of the tool in use on each row, (N,); before the first change the first tool counts as loaded."""
     changes = [event for event in program.events if event.kind is EventKind.TOOL_CHANGE]
@@ -240,17 +158,17 @@ def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterat
     angle, arc = way["angle"], way["kind"] == Kind.ARC
     away = norm(way["tip"] - machine.base_joints.mean(axis=0))
     longest = _BEYOND_REACH * machine.strut_stroke[1]
-    seconds, asked = way["length"] / way["feed"], program.tip_tolerance
-    for code, wrong, values, told in (
+    seconds, tolerance = way["length"] / way["feed"], program.tip_tolerance
+    for code, wrong, values, text in (
         ("K106", angle > _HALF_TURN, np.degrees(angle), "{:.3f} degrees"),
         ("K102", ~(away < longest), away, "{:.6g} mm from the middle of the base"),
         ("K126", arc & (np.abs(way["longer"]) > _NO_MOVE), way["longer"], "{:.6g} mm longer"),
-        ("K146", (asked > 0) & (asked < MIN_TOLERANCE), asked, "{:.3g} mm"),
+        ("K146", (tolerance > 0) & (tolerance < MIN_TOLERANCE), tolerance, "{:.3g} mm"),
         ("K147", np.abs(way["spin"]) > MAX_SPIN, way["spin"], "{:.6g} rad"),
         ("K127", (seconds > _DAY) & (away < longest), seconds / 3600, "{:.6g} hours"),
     ):
         for row in _first_of_each(program.operation, wrong):
-            yield Diagnostic(code, program.place(row), told.format(values[row]))
+            yield Diagnostic(code, program.place(row), text.format(values[row]))
 
 
 def _of_tools(program: Program, machine: Machine, number: Array) -> Iterator[Diagnostic]:
@@ -273,9 +191,39 @@ def _first_of_each(operation: Array, wrong: Array) -> list[int]:
     return rows[np.unique(operation[rows], return_index=True)[1]].tolist()
 
 
+def _columns(placed: Program, way: dict[str, Any], keep: Array, events: tuple[Event, ...]) -> dict[str, Any]:
+    """Columns of the trajectory: the path without rows that stand still, and the transition from each row to the next.
+
+    Args:
+        placed: the program in {M}.
+        way: its path columns from ``_path_columns``.
+        keep: rows that move.
+        events: events of the program, at the kept rows.
+    """
+    rows = slice(None) if keep.all() else keep
+    columns = {name: column[rows] for name, column in way.items()}
+    tip_before, axis_before = columns.pop("tip_before"), columns.pop("axis_before")
+    del columns["longer"]
+    stops = placed.exact_stop[keep] | _stops(events, int(keep.sum()))
+    stops |= _exact_corners(placed.exact_path[keep], columns, tip_before)
+    return columns | {
+        "exact_stop": stops,
+        "tip_tolerance": placed.tip_tolerance[keep],
+        "smooth": ~stops & smooth(columns, tip_before, axis_before),
+    }
+
+
 def _events_on_kept_rows(events: tuple[Event, ...], keep: Array) -> tuple[Event, ...]:
     kept_before = np.concatenate([[0], np.cumsum(keep)])
     return tuple(Event(int(kept_before[event.row]), event.kind, event.value) for event in events)
+
+
+def _stops(events: tuple[Event, ...], segments: int) -> Array:
+    """Segments that end at standstill, (N,): before an event, and at the end of the program."""
+    stops = np.zeros(segments, dtype=bool)
+    stops[[event.row - 1 for event in events if event.row > 0]] = True
+    stops[-1:] = True
+    return stops
 
 
 def _exact_corners(exact_path: Array, columns: dict[str, Any], tip_before: Array) -> Array:
@@ -285,9 +233,58 @@ def _exact_corners(exact_path: Array, columns: dict[str, Any], tip_before: Array
     return corners(columns, tip_before) & (exact_path | np.append(exact_path[1:], False))
 
 
-def _stops(events: tuple[Event, ...], segments: int) -> Array:
-    """Segments that end at standstill, (N,): before an event, and at the end of the program."""
-    stops = np.zeros(segments, dtype=bool)
-    stops[[event.row - 1 for event in events if event.row > 0]] = True
-    stops[-1:] = True
-    return stops
+def corners(columns: dict[str, Any], tip_before: Array) -> Array:
+    """Segments with a corner of the tip path at their end, (N,); never the last.
+
+    A tip that stands still while the tool turns has a corner at both ends. The tool axis does not count.
+
+    Args:
+        columns: kind, tip, arc_centre, arc_axis, sweep of N segments.
+        tip_before: (N, 3) tips at their starts.
+    """
+    at_start, at_end = _tangents(columns, tip_before)
+    return np.append(norm(at_start[1:] - at_end[:-1]) > _TANGENT, False)
+
+
+def smooth(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Array:
+    """Segments after which the tip keeps its direction, and the axis its rate by path length, (N,).
+
+    Args:
+        columns: kind, tip, axis, arc_centre, arc_axis, sweep, length and angle of N segments.
+        tip_before: (N, 3) tips at their starts.
+        axis_before: (N, 3) unit tool axes at their starts.
+    """
+    at_start, at_end = _tangents(columns, tip_before)
+    corner = norm(at_start[1:] - at_end[:-1]) + _jump_of_rate(columns, axis_before)
+    moves = columns["length"] > _NO_MOVE
+    return np.append((corner < _NO_CORNER) & moves[1:] & moves[:-1], False)
+
+
+def _jump_of_rate(columns: dict[str, Any], axis_before: Array) -> Array:
+    """Jump of the rate of the tool axis by path length after each segment but the last, (N - 1,) in rad/mm."""
+    turns = np.flatnonzero(columns["angle"] > 0)
+    before, after = axis_before[turns], columns["axis"][turns]
+    length = np.maximum(columns["length"][turns], _NO_MOVE)[:, None]
+    at_start, at_end = np.zeros_like(axis_before), np.zeros_like(axis_before)
+    at_start[turns] = towards(before, after) / length
+    at_end[turns] = -towards(after, before) / length
+    return norm(at_start[1:] - at_end[:-1])
+
+
+def _tangents(columns: dict[str, Any], tip_before: Array) -> tuple[Array, Array]:
+    """Unit tangents of the tip path at start and end of the segments, (N, 3) each; zero where the tip stands still."""
+    way = columns["tip"] - tip_before
+    at_start = _directions(way)
+    at_end = at_start.copy()
+    arc = np.flatnonzero(columns["kind"] == Kind.ARC)
+    turn, centre = columns["arc_axis"][arc], columns["arc_centre"][arc]
+    rise = (dot(way[arc], turn) / columns["sweep"][arc])[:, None] * turn
+    for tangent, tip in ((at_start, tip_before), (at_end, columns["tip"])):
+        tangent[arc] = _directions(cross(turn, tip[arc] - centre) + rise)
+    return at_start, at_end
+
+
+def _directions(vectors: Array) -> Array:
+    """(N, 3) unit vectors; zero where the vectors are too short to have a direction."""
+    length = norm(vectors)
+    return vectors / np.where(length > _NO_MOVE, length, np.inf)[:, None]

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Spindle waits: dwells in which the spindle reaches its speed before the motion continues.
+"""Spindle dwells: the spindle reaches its speed before the motion continues.
 
 Takes a program; returns it with a dwell after each change of the spindle speed, and with the spindle stopped before
 each tool change, which leaves it stopped [NGC 3.6.3]. The speed changes at a constant rate, as in drives set by their
-acceleration and deceleration times [VFD-B 01-09].
-
-Where the machine file states no time, no dwell is added.
+acceleration and deceleration times [VFD-B 01-09]. Where the machine file states no time, no dwell is added.
 """
 
 from __future__ import annotations

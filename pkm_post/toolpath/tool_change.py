@@ -7,6 +7,9 @@ old tool up to the spindle nose of the pose, and that of the new tool from there
 that is a rapid move, else back to the start of the next row, which stays as programmed. A program that begins without a
 tool change also crosses to its first point above the safe height: "approach". Where the machine file states no
 tool-change pose, tools change in place, and nothing is added.
+
+On its clearance path the tool leaves along its axis, crosses above a height at and above which the tip is free, and
+arrives along its axis. Units: mm.
 """
 
 from __future__ import annotations
@@ -34,9 +37,11 @@ from pkm_post.model import (
 
 FLATTEST = 0.1
 """Smallest z of a tool axis for a retract along it: 84 degrees from upright, where the path is ten times the height."""
-
 _NO_MOVE = 1e-8
 """mm, rad, and difference of unit axes."""
+Findings = tuple[Diagnostic, ...]
+_Tools = tuple[int, Tool, Tool]
+"""A row with a tool change before it, the old tool and the new tool."""
 
 
 @dataclass(frozen=True)
@@ -86,11 +91,6 @@ def pose_columns(poses: list[ToolPose]) -> tuple[Array, Array, Array]:
     """Tips (N, 3), axes (N, 3) and spins (N,) of poses."""
     tips, axes = (np.array([getattr(pose, name) for pose in poses]).reshape(-1, 3) for name in ("tip", "axis"))
     return tips, axes, np.array([pose.spin for pose in poses])
-
-
-Findings = tuple[Diagnostic, ...]
-_Tools = tuple[int, Tool, Tool]
-"""A row with a tool change before it, the old tool and the new tool."""
 
 
 @dataclass(frozen=True)

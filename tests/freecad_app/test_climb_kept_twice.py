@@ -10,7 +10,7 @@ from surface_finishes import finish, valid
 
 from pkm_post.freecad_app.commands import read_commands
 from pkm_post.freecad_app.symmetry import create_mirror
-from pkm_post.toolpath.symmetry.passes import moving, pass_rows
+from pkm_post.toolpath.symmetry.passes import moving_rows, pass_rows
 
 SIX_DECIMALS = 1e-6
 PLUNGE = 5.0
@@ -31,7 +31,7 @@ def moves_of(operation):
     """The program of an operation, and its columns without the rows that move nothing."""
     program, faults = read_commands(operation.Path.Commands, "part", operation.Label)
     assert not faults
-    moves = moving(program)
+    moves = moving_rows(program)
     moves[0] = True
     return program, {name: getattr(program, name)[moves] for name in ("kind", "position", "tool_axis", "feed")}
 

@@ -22,7 +22,7 @@ def test_closed_and_trimmed_faces_are_known_as_such():
     assert not half.u.closed
     top = face_surface(plate_with_hole().Faces[[is_top(face) for face in plate_with_hole().Faces].index(True)])
     u, v = (np.linspace(span.first, span.last, 41) for span in (top.u, top.v))
-    held = top.holds(*(each.ravel() for each in np.meshgrid(u, v)))
+    held = top.contains(*(each.ravel() for each in np.meshgrid(u, v)))
     assert 0.9 < held.mean() < 0.97
 
 
@@ -44,7 +44,7 @@ def test_poles_give_what_opencascade_gives(number):
     u, v = (np.linspace(span.first, span.last, 9) for span in (surface.u, surface.v))
     u, v = (each.ravel() for each in np.meshgrid(u, v))
     patch = surface.at(u, v)
-    pairs = [(surface.u.within(a[None])[0], surface.v.within(b[None])[0]) for a, b in zip(u, v, strict=True)]
+    pairs = [(surface.u.normalise(a[None])[0], surface.v.normalise(b[None])[0]) for a, b in zip(u, v, strict=True)]
     vectors = [[face.valueAt(*pair), face.normalAt(*pair), *face.derivative1At(*pair)] for pair in pairs]
     expected = np.array([[tuple(vector) for vector in row] for row in vectors])
     for column, found in enumerate((patch.point, patch.normal, patch.along_u, patch.along_v)):

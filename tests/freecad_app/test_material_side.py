@@ -9,7 +9,7 @@ import pytest
 from pkm_post.freecad_app.document_object import program_of
 from pkm_post.freecad_app.symmetry import create_mirror
 from pkm_post.freecad_app.symmetry_report import material_side_of
-from pkm_post.toolpath.symmetry.passes import chords
+from pkm_post.toolpath.symmetry.passes import cut_chords
 
 MIDDLE = [10, 10, 0]
 COUNTERCLOCKWISE, CLOCKWISE = 1, -1
@@ -28,7 +28,7 @@ def made(job, module, name, **properties):
 
 def winding(operation, middle=MIDDLE):
     """+1 for a way that goes round the middle counterclockwise, by twice the area that it goes round."""
-    start, end = (points - middle for points in chords(program_of(operation)))
+    start, end = (points - middle for points in cut_chords(program_of(operation)))
     return np.sign((start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0]).sum())
 
 

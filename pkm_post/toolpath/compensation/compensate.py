@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Apply: all compensation that a program asks for, with the cutters that are in the spindle.
+"""Compensation of a program: contours in 2D, and tips along surface normals in 3D for the cutters in the spindle.
 
-Takes a program as read; returns one whose tips are where the tool has to go. Compensation precedes symmetry and
-placement: a mirror would swap left and right.
+Takes a program as read; returns one whose tips are where the tool has to go. Compensation precedes symmetry and the
+work offset: a mirror would swap left and right.
 """
 
 from __future__ import annotations
@@ -15,13 +15,51 @@ import numpy as np
 
 from pkm_post.geometry import norm
 from pkm_post.model import Diagnostic, EventKind, Kind, Place, Program, Tool
-from pkm_post.toolpath.compensation.contact import Array, Flags, corner_shift, size_changes
+from pkm_post.toolpath.compensation.contact import Array, Flags, size_changes, tip_offsets
 from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
 from pkm_post.toolpath.compensation.contour_offset import offset_contours
 from pkm_post.toolpath.compensation.cutter import Cutter, known_cutter
 
 _SAME = 1e-9
 """mm within which two shifts count as equal."""
+
+
+def compensate(
+    program: Program, contours: OffsetOptions, actual: Mapping[int, Tool]
+) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """Offset contours in 2D and move tips along their surface normals in 3D.
+
+    Args:
+        program: with side offsets, normals, or neither.
+        contours: how contours are offset.
+        actual: by number, the tools whose cutters differ from those the program was made for.
+    """
+    diagnostics: tuple[Diagnostic, ...] = ()
+    moved, faults = offset_contours(program, contours)
+    diagnostics += faults
+    for number, tool in sorted(actual.items()):
+        if moved is None:
+            break
+        moved, faults = _for_cutter(moved, number, tool)
+        diagnostics += faults
+    return moved, diagnostics
+
+
+def _for_cutter(program: Program, number: int, actual: Tool) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    place = Place(program.source)
+    if number not in program.tools:
+        known = ", ".join(f"T{known}" for known in sorted(program.tools))
+        return None, (Diagnostic("N118", place, f"T{number}, the program has {known}"),)
+    tool = program.tools[number]
+    nominal, faults = known_cutter(tool, place)
+    ground, more = known_cutter(actual, place)
+    if nominal is None or ground is None:
+        return None, (*faults, *more)
+    moved, diagnostics = compensate_tips(program, nominal, ground, number if len(program.tools) > 1 else None)
+    if moved is None:
+        return None, diagnostics
+    ground_tool = replace(actual, number=number, name=tool.name, length=tool.length)
+    return replace(moved, tools=program.tools | {number: ground_tool}), diagnostics
 
 
 def compensate_tips(
@@ -51,7 +89,7 @@ def compensate_tips(
     rows = np.flatnonzero(given)
     columns = (program.position[rows], program.normal[rows], program.tool_axis[rows])
     sizes = size_changes(nominal, actual)
-    found, diagnostics = corner_shift(*columns, sizes, (nominal, actual), lambda row: program.place(int(rows[row])))
+    found, diagnostics = tip_offsets(*columns, sizes, (nominal, actual), lambda row: program.place(int(rows[row])))
     if found is None:
         return None, diagnostics
     shift = np.where(in_use[:, None], found[_neighbours(given, program.kind == Kind.RAPID)], 0.0)
@@ -88,41 +126,3 @@ def _neighbours(given: Flags, rapid: Flags) -> Array:
     leaving = (before >= 0) & ((since == 0) | (rapid & (since == 1)))
     neighbours: Array = np.where(given | leaving | (after == count[-1]), before, after)
     return neighbours
-
-
-def compensate(
-    program: Program, contours: OffsetOptions, actual: Mapping[int, Tool]
-) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """Offset contours in 2D and move tips along their surface normals in 3D.
-
-    Args:
-        program: with side offsets, normals, or neither.
-        contours: how contours are offset.
-        actual: by number, the tools whose cutters differ from those the program was made for.
-    """
-    told: tuple[Diagnostic, ...] = ()
-    moved, faults = offset_contours(program, contours)
-    told += faults
-    for number, tool in sorted(actual.items()):
-        if moved is None:
-            break
-        moved, faults = _for_cutter(moved, number, tool)
-        told += faults
-    return moved, told
-
-
-def _for_cutter(program: Program, number: int, actual: Tool) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    place = Place(program.source)
-    if number not in program.tools:
-        known = ", ".join(f"T{known}" for known in sorted(program.tools))
-        return None, (Diagnostic("N118", place, f"T{number}, the program has {known}"),)
-    tool = program.tools[number]
-    nominal, faults = known_cutter(tool, place)
-    ground, more = known_cutter(actual, place)
-    if nominal is None or ground is None:
-        return None, (*faults, *more)
-    moved, told = compensate_tips(program, nominal, ground, number if len(program.tools) > 1 else None)
-    if moved is None:
-        return None, told
-    ground_tool = replace(actual, number=number, name=tool.name, length=tool.length)
-    return replace(moved, tools=program.tools | {number: ground_tool}), told

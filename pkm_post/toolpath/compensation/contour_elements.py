@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contour: the rows of a program that 2D compensation moves, as elements in the plane of compensation.
+"""Contour elements: the rows of a program that 2D compensation moves, in the plane of compensation. mm and rad.
 
-Takes a program; returns its elements: the start-up row, the cutting rows and the cancel row of each contour, with the
-data that joints need. A contour is a run of rows that move in the plane while compensation is on, and the first such
-row after it is off. Rows that do not move in the plane (plunges, dwells) belong to no element: they keep the offset of
-the element before. mm and rad.
+A contour is a run of rows that move in the plane while compensation is on, and the first such row after it is off: the
+start-up row, the cutting rows and the cancel row. Rows that do not move in the plane (plunges, dwells) belong to no
+element: they keep the offset of the element before.
+
+The plane is the selected one where the tool axis is normal to it, or lies in it (a ball in G18, as controls allow).
+Where the axis is tilted, as in side milling, the plane is normal to the axis; left and right are those of the selected
+plane.
 """
 
 from __future__ import annotations
@@ -20,29 +23,36 @@ from pkm_post.model import Diagnostic, Kind, Program
 
 PARALLEL = 1e-5
 """rad below which two directions count as parallel: axes are written with six decimals, so they may be 1e-6 off."""
-
 _LEAST_COSINE = 0.5
 """An axis tilted by more than 60 degrees that does not lie in the plane is ambiguous."""
-
-
-def plane_normals(plane: Array, tool_axis: Array) -> Array:
-    """Unit normals of the compensation planes, (N, 3); NaN where the axis is tilted too far.
-
-    Args:
-        plane: (N,) the coordinate that the selected plane is normal to.
-        tool_axis: (N, 3) unit tool axes.
-    """
-    named = np.eye(3)[plane]
-    cosine = dot(named, tool_axis)
-    sine = np.sqrt(np.maximum(1.0 - cosine**2, 0.0))
-    keeps = (sine < PARALLEL) | (np.abs(cosine) < PARALLEL)
-    leans = np.abs(cosine) >= _LEAST_COSINE
-    normal = np.where(leans[:, None], tool_axis * np.sign(cosine)[:, None], np.nan)
-    return np.where(keeps[:, None], named, normal)
-
-
 _STANDS = 1e-6
 """mm in the plane below which a row counts as standing still: shorter moves have no reliable direction."""
+CHOICES = {"corners": ("chord", "arc"), "leads": ("A", "B"), "swallowed": ("refuse", "remove")}
+
+
+@dataclass(frozen=True)
+class OffsetOptions:
+    """How contours are offset.
+
+    Attributes:
+        corners: how outer corners are rounded. "chord": the offset lines are extended until they meet, and beyond a
+            right angle are cut off by a chord, as in the paper; "arc": an arc around the corner, as in LinuxCNC.
+        leads: "A" leads straight to and from the offset point at the end of the contour; "B" goes around outer corners.
+        swallowed: treatment of rows that the tool is too large for: "refuse" the program, or "remove" them.
+        tolerance: mm by which the tool may come closer to the contour than its radius.
+    """
+
+    corners: str = "chord"
+    leads: str = "A"
+    swallowed: str = "refuse"
+    tolerance: float = 1e-3
+
+    def __post_init__(self) -> None:
+        for name, choices in CHOICES.items():
+            if getattr(self, name) not in choices:
+                raise ValueError(f"OffsetOptions.{name}: expected one of {choices}, got {getattr(self, name)!r}")
+        if not (math.isfinite(self.tolerance) and self.tolerance > 0.0):
+            raise ValueError(f"OffsetOptions.tolerance: expected a length above 0 mm, got {self.tolerance}")
 
 
 class Role(enum.IntEnum):
@@ -66,7 +76,7 @@ class Elements:
         normal: (M, 2, 3) unit normal of the plane at both ends.
         tangent: (M, 2, 3) unit direction of travel in that plane at both ends.
         offset: (M,) signed distance to the left of the path; a cancel row has that of the row before it.
-        spoke: (M, 2, 3) from the centre to both ends, across the normal; NaN for lines.
+        from_centre: (M, 2, 3) from the centre to both ends, across the normal; NaN for lines.
         turn: (M,) 1 for arcs that turn to the left, -1 to the right, 0 for lines.
         sweep: (M,) angle of the arc, 0 for lines.
         length: (M,) mm in the plane.
@@ -81,7 +91,7 @@ class Elements:
     normal: Array
     tangent: Array
     offset: Array
-    spoke: Array
+    from_centre: Array
     turn: Array
     sweep: Array
     length: Array
@@ -91,9 +101,9 @@ class Elements:
         return len(self.row)
 
     @property
-    def radius_left(self) -> Array:
+    def offset_radius(self) -> Array:
         """Radius of the offset arcs at both ends, (M, 2), mm: negative where the tool is too large; NaN for lines."""
-        return norm(self.spoke) - (self.turn * self.offset)[:, None]
+        return norm(self.from_centre) - (self.turn * self.offset)[:, None]
 
 
 def elements_of(program: Program) -> tuple[Elements, tuple[Diagnostic, ...]]:
@@ -106,12 +116,12 @@ def elements_of(program: Program) -> tuple[Elements, tuple[Diagnostic, ...]]:
     start, end = program.position[rows - 1], program.position[rows]
     arc = program.kind[rows] == Kind.ARC
     axis, centre = program.arc_axis[rows], program.arc_centre[rows]
-    spoke = np.stack([across(start - centre, normal[:, 0]), across(end - centre, normal[:, 1])], axis=1)
+    from_centre = np.stack([across(start - centre, normal[:, 0]), across(end - centre, normal[:, 1])], axis=1)
     turn = np.where(arc, np.where(dot(axis, normal[:, 0]) < 0, -1.0, 1.0), 0.0)
     sweep = np.zeros(len(rows))
     sweep[arc] = arc_sweep(start[arc], end[arc], centre[arc], axis[arc])
     way = np.stack([across(end - start, normal[:, i]) for i in (0, 1)], axis=1)
-    way = np.where(arc[:, None, None], turn[:, None, None] * cross(normal, spoke), way)
+    way = np.where(arc[:, None, None], turn[:, None, None] * cross(normal, from_centre), way)
     distance = norm(way)
     elements = Elements(
         row=rows,
@@ -122,7 +132,7 @@ def elements_of(program: Program) -> tuple[Elements, tuple[Diagnostic, ...]]:
         normal=normal,
         tangent=way / np.maximum(distance, _STANDS * 1e-3)[..., None],
         offset=program.side_offset[on_row],
-        spoke=spoke,
+        from_centre=from_centre,
         turn=turn,
         sweep=sweep,
         length=np.where(arc, sweep * np.mean(distance, axis=1), distance[:, 1]),
@@ -153,6 +163,22 @@ def _rows(program: Program) -> tuple[Array, Array]:
     return moving[belongs], roles[belongs]
 
 
+def plane_normals(plane: Array, tool_axis: Array) -> Array:
+    """Unit normals of the compensation planes, (N, 3); NaN where the axis is tilted too far.
+
+    Args:
+        plane: (N,) the coordinate that the selected plane is normal to.
+        tool_axis: (N, 3) unit tool axes.
+    """
+    named = np.eye(3)[plane]
+    cosine = dot(named, tool_axis)
+    sine = np.sqrt(np.maximum(1.0 - cosine**2, 0.0))
+    keeps = (sine < PARALLEL) | (np.abs(cosine) < PARALLEL)
+    leans = np.abs(cosine) >= _LEAST_COSINE
+    normal = np.where(leans[:, None], tool_axis * np.sign(cosine)[:, None], np.nan)
+    return np.where(keeps[:, None], named, normal)
+
+
 def _normals(program: Program, rows: Array, plane: Array) -> Array:
     """Normals of the planes at both ends of rows, (M, 2, 3)."""
     ends = [plane_normals(plane, program.tool_axis[rows - 1 + i]) for i in (0, 1)]
@@ -169,9 +195,9 @@ def _faults(program: Program, elements: Elements, on_row: Array) -> tuple[Diagno
     # A lead is not offset along its length: its plane matters only where it meets the contour.
     counts = np.stack([elements.role != Role.START, elements.role != Role.CANCEL], axis=1)
     leaning = (np.isnan(elements.normal[..., 0]) & counts).any(axis=1)
-    turned = follows & _apart(elements.normal[:, 0], np.roll(elements.normal[:, 1], 1, axis=0))
+    turned = follows & _not_parallel(elements.normal[:, 0], np.roll(elements.normal[:, 1], 1, axis=0))
     axis = program.arc_axis[elements.row]
-    oblique = arc & (_apart(axis, elements.normal[:, 0]) | _apart(axis, elements.normal[:, 1]))
+    oblique = arc & (_not_parallel(axis, elements.normal[:, 0]) | _not_parallel(axis, elements.normal[:, 1]))
     table = (
         ("N201", arc & lead, "an arc"),
         ("N206", replaned, "another plane is chosen"),
@@ -187,34 +213,6 @@ def _faults(program: Program, elements: Elements, on_row: Array) -> tuple[Diagno
     return tuple(sorted(found, key=lambda item: item.place.line))
 
 
-def _apart(left: Array, right: Array) -> Array:
+def _not_parallel(left: Array, right: Array) -> Array:
     """Flags of unit vectors that are not parallel, (M,); False where one is NaN."""
     return norm(cross(left, right)) > PARALLEL
-
-
-CHOICES = {"corners": ("chord", "arc"), "leads": ("A", "B"), "swallowed": ("refuse", "remove")}
-
-
-@dataclass(frozen=True)
-class OffsetOptions:
-    """How contours are offset.
-
-    Attributes:
-        corners: how outer corners are rounded. "chord": the offset lines are extended until they meet, and beyond a
-            right angle are cut off by a chord, as in the paper; "arc": an arc around the corner, as in LinuxCNC.
-        leads: "A" leads straight to and from the point beside the contour's end; "B" goes around outer corners there.
-        swallowed: treatment of rows that the tool is too large for: "refuse" the program, or "remove" them.
-        tolerance: mm by which the tool may come closer to the contour than its radius.
-    """
-
-    corners: str = "chord"
-    leads: str = "A"
-    swallowed: str = "refuse"
-    tolerance: float = 1e-3
-
-    def __post_init__(self) -> None:
-        for name, choices in CHOICES.items():
-            if getattr(self, name) not in choices:
-                raise ValueError(f"OffsetOptions.{name}: expected one of {choices}, got {getattr(self, name)!r}")
-        if not (math.isfinite(self.tolerance) and self.tolerance > 0.0):
-            raise ValueError(f"OffsetOptions.tolerance: expected a length above 0 mm, got {self.tolerance}")

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contour gouge: places where the tool on the offset path cuts into the programmed contour.
+"""Contour gouge: places where the tool on the offset path cuts into the programmed contour. mm.
 
 Takes the program, the compensated program and its source rows; returns diagnostics. Every row of a contour is checked
-against every cutting row of the same contour, not only its neighbours. Rows below the tip are not touched, and the path
-of a larger tool bounds no part. Where the path closes, rows before and after the closed part are leads, not walls. mm.
+against every element of the same contour that bounds the workpiece, not only its neighbours. These are the cutting rows
+or, of a path that closes, those of the closed part: elements before and after it, such as lead-in arcs, lie on the side
+of the tool, which passes over them. Rows below the tip are not touched, and the path of a larger tool bounds no part.
 """
 
 from __future__ import annotations
@@ -12,96 +13,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, across, arc_points, arc_sweep, cross, dot, norm
+from pkm_post.geometry import Array, across, arc_points, arc_sweep, cross, dot, expand_counts, norm
 from pkm_post.model import Diagnostic, Kind, Program
 from pkm_post.toolpath.compensation.contour_elements import PARALLEL, Elements, Role
-from pkm_post.toolpath.compensation.proximity import Segments, too_near
+from pkm_post.toolpath.compensation.proximity import Chords, close_pairs
 
 _ON = 2e-3
 """mm within which a point lies on an element: programs have three decimals."""
-
 _MOST_BEFORE = 200
 """Most elements that lead onto the closed part."""
-
-
-def cutting(elements: Elements) -> Array:
-    """Numbers of the elements that may bound the workpiece, (W,)."""
-    return np.flatnonzero((elements.role == Role.CUT) & ~elements.rapid)
-
-
-def walls_of(elements: Elements, segments: Segments, owner: Array, contours: Array) -> Array:
-    """Flags of the elements of some contours that bound the workpiece, (M,).
-
-    A closed part begins at a point to which the path later returns, in a corner or along an element. Of the closed
-    parts longer than half of the path the shortest counts: the path may start where it ends.
-
-    Args:
-        elements: the elements of all contours.
-        segments: the cutting ones as straight segments in the planes of their contours.
-        owner: (S,) the element of each segment.
-        contours: numbers of the requested contours.
-    """
-    cut = cutting(elements)
-    way = np.append(0.0, np.cumsum(elements.length[cut]))
-    begin, end = (np.searchsorted(elements.contour[cut], elements.contour[cut], side) for side in ("left", "right"))
-    half = (way[end] - way[begin]) / 2
-    index = np.arange(len(cut))
-    early = (way[:-1] - way[begin] < half) & (index - begin < _MOST_BEFORE)
-    asked = np.flatnonzero(early & np.isin(elements.contour[cut], contours))
-    first, back = _come_back(elements, segments, owner, cut[asked])
-    first, back = np.searchsorted(cut, first), np.searchsorted(cut, back)
-    length = way[back + 1] - way[first]
-    closes = np.flatnonzero((back >= first) & (length > half[first]))
-    closes = closes[np.lexsort((length[closes], elements.contour[cut[first[closes]]]))]
-    _, shortest = np.unique(elements.contour[cut[first[closes]]], return_index=True)
-    walls = np.zeros(len(elements), dtype=np.bool_)
-    walls[cut] = True
-    for number in closes[shortest].tolist():
-        walls[cut[begin[first[number]] : first[number]]] = False
-        walls[cut[back[number] + 1 : end[first[number]]]] = False
-    return walls
-
-
-def _come_back(elements: Elements, segments: Segments, owner: Array, first: Array) -> tuple[Array, Array]:
-    """Pairs of elements, (P,) each: the second passes over the start point of the first, seen in the plane."""
-    begins = segments.rows(np.searchsorted(owner, first))
-    count = len(first)
-    points = Segments(
-        start=begins.start,
-        end=begins.start,
-        low=np.full(count, -np.inf),
-        high=np.full(count, np.inf),
-        clearance=np.full(count, 2 * _ON),
-        first=begins.first,
-        last=begins.last,
-        within=np.zeros(count),
-    )
-    point, segment, _ = too_near(points, segments, _ON)
-    first, second = first[point], owner[segment]
-    normal = elements.normal[second, 0]
-    from_start, from_end = (
-        norm(across(elements.start[first] - ends[second], normal)) for ends in (elements.start, elements.end)
-    )
-    # An element that begins there does not return there, unless it is a full circle.
-    comes = (from_end < _ON) | (from_start >= _ON)
-    return first[comes], second[comes]
-
-
 _CHORD_SHARE = 0.2
 """Chord error of arcs as a share of the tolerance, for path and wall each."""
-
-
-@dataclass(frozen=True)
-class _View:
-    """View direction of each contour, by number of the contour.
-
-    Attributes:
-        normal: (C, 3) normal of the projection plane; zero where the axis turns along the contour.
-        upward: (C,) 1 where the tool is on the side of the normal, -1 on the other, 0 where neither.
-    """
-
-    normal: Array
-    upward: Array
 
 
 def gouges(
@@ -121,15 +43,15 @@ def gouges(
     contour, clearance = _by_row(program, elements)
     rows = np.flatnonzero(contour[source] >= 0)
     rows = rows[rows > 0]
-    # Where two offsets differ, points added by a joint lie between them.
+    # Where two offsets differ, points added at a corner lie between them.
     added = np.append(source[1:] == source[:-1], False)
     smaller = np.where(added, np.minimum(clearance[source], clearance[source - 1]), clearance[source])
     paths, path_row = _segments(moved, rows, contour[source], smaller, view, tolerance)
-    walls, wall_row = _segments(program, elements.row[cutting(elements)], contour, clearance, view, tolerance)
-    path, wall, lacking = too_near(paths, walls, tolerance)
+    walls, wall_row = _segments(program, elements.row[_cutting_elements(elements)], contour, clearance, view, tolerance)
+    path, wall, lacking = close_pairs(paths, walls, tolerance)
     # Walls are computed only for contours with a pair that is too close, which is rare.
     owner = np.searchsorted(elements.row, wall_row)
-    bounds = walls_of(elements, walls, owner, np.unique(walls.first[wall]))[owner[wall]]
+    bounds = bounding_elements(elements, walls, owner, np.unique(walls.first[wall]))[owner[wall]]
     bounds &= ~program.smaller_tool[wall_row[wall]]
     path, wall, lacking = path_row[path[bounds]], wall_row[wall[bounds]], lacking[bounds]
     found = []
@@ -150,6 +72,19 @@ def _worst(code: str, program: Program, contour: Array, path: Array, wall: Array
         text = f"by {lacking[worst]:.4g} mm at the block of line {program.line[wall[worst]]}{more}"
         found.append(Diagnostic(code, program.place(int(path[worst])), text))
     return found
+
+
+@dataclass(frozen=True)
+class _View:
+    """View direction of each contour, by number of the contour.
+
+    Attributes:
+        normal: (C, 3) normal of the projection plane; zero where the axis turns along the contour.
+        upward: (C,) 1 where the tool is on the side of the normal, -1 on the other, 0 where neither.
+    """
+
+    normal: Array
+    upward: Array
 
 
 def _view(program: Program, elements: Elements) -> _View:
@@ -183,13 +118,13 @@ def _by_row(program: Program, elements: Elements) -> tuple[Array, Array]:
 
 def _segments(
     program: Program, rows: Array, contour: Array, clearance: Array, view: _View, tolerance: float
-) -> tuple[Segments, Array]:
+) -> tuple[Chords, Array]:
     """Straight segments of rows in the planes of their contours, and the row of each segment."""
     start, end, row = _chords(program, rows, _CHORD_SHARE * tolerance)
     number = contour[row]
     normal, upward = view.normal[number], view.upward[number]
     heights = np.stack([dot(start, normal), dot(end, normal)]) * upward
-    segments = Segments(
+    segments = Chords(
         start=across(start, normal),
         end=across(end, normal),
         low=np.min(heights, axis=0, initial=np.inf),
@@ -197,7 +132,7 @@ def _segments(
         clearance=clearance[row],
         first=number,
         last=number,
-        within=np.zeros(len(row)),
+        deviation=np.zeros(len(row)),
     )
     return segments, row
 
@@ -214,8 +149,7 @@ def _chords(program: Program, rows: Array, error: float) -> tuple[Array, Array, 
     radius = norm(across(start[arc] - centre[arc], axis[arc]))
     span = 2 * np.arccos(np.clip(1 - error / np.maximum(radius, error), 0.0, 1.0))
     count[arc] = np.ceil(sweep[arc] / span).astype(np.int64)
-    of = np.repeat(np.arange(len(rows)), count)
-    part = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    of, part = expand_counts(count)
     # Where the radii at both ends differ slightly, the arc radius changes linearly between them.
     drift = np.zeros((len(rows), 3))
     drift[arc] = end[arc] - arc_points(start[arc], centre[arc], axis[arc], sweep[arc], rise[arc])
@@ -228,3 +162,66 @@ def _chords(program: Program, rows: Array, error: float) -> tuple[Array, Array, 
         point[bent] = turned + share[bent, None] * drift[i]
         points.append(point)
     return points[0], points[1], rows[of]
+
+
+def bounding_elements(elements: Elements, segments: Chords, owner: Array, contours: Array) -> Array:
+    """Flags of the elements of some contours that bound the workpiece, (M,).
+
+    A closed part begins at a point to which the path later returns, in a corner or along an element. Of the closed
+    parts longer than half of the path the shortest counts: the path may start where it ends.
+
+    Args:
+        elements: the elements of all contours.
+        segments: the cutting ones as straight segments in the planes of their contours.
+        owner: (S,) the element of each segment.
+        contours: numbers of the requested contours.
+    """
+    cut = _cutting_elements(elements)
+    way = np.append(0.0, np.cumsum(elements.length[cut]))
+    begin, end = (np.searchsorted(elements.contour[cut], elements.contour[cut], side) for side in ("left", "right"))
+    half = (way[end] - way[begin]) / 2
+    index = np.arange(len(cut))
+    early = (way[:-1] - way[begin] < half) & (index - begin < _MOST_BEFORE)
+    candidates = np.flatnonzero(early & np.isin(elements.contour[cut], contours))
+    first, back = _returns(elements, segments, owner, cut[candidates])
+    first, back = np.searchsorted(cut, first), np.searchsorted(cut, back)
+    length = way[back + 1] - way[first]
+    closes = np.flatnonzero((back >= first) & (length > half[first]))
+    closes = closes[np.lexsort((length[closes], elements.contour[cut[first[closes]]]))]
+    _, shortest = np.unique(elements.contour[cut[first[closes]]], return_index=True)
+    walls = np.zeros(len(elements), dtype=np.bool_)
+    walls[cut] = True
+    for number in closes[shortest].tolist():
+        walls[cut[begin[first[number]] : first[number]]] = False
+        walls[cut[back[number] + 1 : end[first[number]]]] = False
+    return walls
+
+
+def _cutting_elements(elements: Elements) -> Array:
+    """Numbers of the elements that may bound the workpiece, (W,)."""
+    return np.flatnonzero((elements.role == Role.CUT) & ~elements.rapid)
+
+
+def _returns(elements: Elements, segments: Chords, owner: Array, first: Array) -> tuple[Array, Array]:
+    """Pairs of elements, (P,) each: the second passes over the start point of the first, seen in the plane."""
+    begins = segments.rows(np.searchsorted(owner, first))
+    count = len(first)
+    points = Chords(
+        start=begins.start,
+        end=begins.start,
+        low=np.full(count, -np.inf),
+        high=np.full(count, np.inf),
+        clearance=np.full(count, 2 * _ON),
+        first=begins.first,
+        last=begins.last,
+        deviation=np.zeros(count),
+    )
+    point, segment, _ = close_pairs(points, segments, _ON)
+    first, second = first[point], owner[segment]
+    normal = elements.normal[second, 0]
+    from_start, from_end = (
+        norm(across(elements.start[first] - ends[second], normal)) for ends in (elements.start, elements.end)
+    )
+    # An element that begins there does not return there, unless it is a full circle.
+    comes = (from_end < _ON) | (from_start >= _ON)
+    return first[comes], second[comes]

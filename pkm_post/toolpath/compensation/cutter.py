@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cutter: the shape of a rotating tool, by the APT parameters d, r, e, f, a, b, h.
+"""Cutter: the shape of a rotating tool, by the APT parameters d, r, e, f, a, b, h, and distances from its solid.
 
-Takes a tool, or the seven APT parameters; returns a cutter. Its profile runs from the tip along the bottom, which rises
-by a, around the corner arc, and up the side, which leans outwards by b. Ball, bull nose, flat and tapered end mills and
-drills are such cutters. Revolved about the tool axis, the centre of the corner arc describes a circle, and the corner
-is the torus around it. Lengths in mm, angles in rad.
+The profile runs from the tip along the bottom, which rises by a, around the corner arc, and up the side, which leans
+outwards by b. Ball, bull nose, flat and tapered end mills and drills are such cutters. Revolved about the tool axis,
+the centre of the corner arc describes a circle, and the corner is the torus around it. The solid is convex: bottom
+cone, corner torus and side cone, capped by a plane at its height. Lengths in mm, angles in rad.
 """
 
 from __future__ import annotations

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Nearness: pairs from two sets of segments that are closer than their clearance.
+"""Proximity: pairs of segments of two paths that are closer than their clearance. mm.
 
-Takes two tables of segments, each in the order of its path; returns the pairs that are too close. Each table has a
-binary tree: a node bounds the segments of its two children by the chord from the first to the last point and their
-largest distance from it. All pairs of nodes of one level are tested together, from the roots down, and a pair is
-refined only while segments in it may be too close. mm.
+Each path has a binary tree: a node bounds the segments of its two children by the chord from the first to the last
+point and their largest distance from it. All pairs of nodes of one level are tested together, from the roots down, and
+a pair is refined only while segments in it may be too close.
 """
 
 from __future__ import annotations
@@ -13,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, dot, norm
+from pkm_post.geometry import Array, segment_to_segment
 
 
 @dataclass(frozen=True)
-class Segments:
+class Chords:
     """Columns of S straight segments, or of nodes above them.
 
     Attributes:
@@ -28,7 +27,7 @@ class Segments:
         clearance: (S,) largest required distance.
         first: (S,) lowest contour number in it.
         last: (S,) highest one.
-        within: (S,) bound of the distance from the chord of everything in it.
+        deviation: (S,) bound of the distance from the chord of everything in it.
     """
 
     start: Array
@@ -38,17 +37,17 @@ class Segments:
     clearance: Array
     first: Array
     last: Array
-    within: Array
+    deviation: Array
 
     def __len__(self) -> int:
         return len(self.low)
 
-    def rows(self, chosen: Array | slice) -> Segments:
+    def rows(self, chosen: Array | slice) -> Chords:
         """The chosen rows."""
-        return Segments(**{name: column[chosen] for name, column in vars(self).items()})
+        return Chords(**{name: column[chosen] for name, column in vars(self).items()})
 
 
-def too_near(paths: Segments, walls: Segments, tolerance: float) -> tuple[Array, Array, Array]:
+def close_pairs(paths: Chords, walls: Chords, tolerance: float) -> tuple[Array, Array, Array]:
     """Pairs of segments closer than the smaller clearance of both, less the tolerance.
 
     Pairs belong to one contour, and a wall counts where it is not below the path.
@@ -65,15 +64,15 @@ def too_near(paths: Segments, walls: Segments, tolerance: float) -> tuple[Array,
         possible = (above.first[here] <= below.last[there]) & (below.first[there] <= above.last[here])
         possible &= below.high[there] >= above.low[here] - tolerance
         here, there = here[possible], there[possible]
-        distance = segment_distances(above.start[here], above.end[here], below.start[there], below.end[there])
-        within = above.within[here] + below.within[there]
-        lacking = np.minimum(above.clearance[here], below.clearance[there]) - distance + within
+        distance = segment_to_segment(above.start[here], above.end[here], below.start[there], below.end[there])
+        deviation = above.deviation[here] + below.deviation[there]
+        lacking = np.minimum(above.clearance[here], below.clearance[there]) - distance + deviation
         close = lacking > tolerance
         here, there, lacking = here[close], there[close], lacking[close]
     return here, there, lacking
 
 
-def _tree(segments: Segments, others: int) -> list[Segments]:
+def _tree(segments: Chords, others: int) -> list[Chords]:
     """The levels of a tree from the segments up to the root, as many as the longer of both tables needs."""
     levels = [segments]
     for _ in range(max(len(segments) - 1, others - 1, 0).bit_length()):
@@ -81,14 +80,14 @@ def _tree(segments: Segments, others: int) -> list[Segments]:
     return levels
 
 
-def _parents(nodes: Segments) -> Segments:
+def _parents(nodes: Chords) -> Chords:
     """Parents of two nodes each; the last one may have one."""
     left = nodes.rows(slice(0, None, 2))
     right = nodes.rows(np.minimum(np.arange(len(left)) * 2 + 1, len(nodes) - 1))
     start, end = left.start, right.end
     corners = np.stack([left.start, left.end, right.start, right.end])
-    bow = np.max(segment_distances(corners, corners, start, end), axis=0) if len(nodes) else left.within
-    return Segments(
+    bow = np.max(segment_to_segment(corners, corners, start, end), axis=0) if len(nodes) else left.deviation
+    return Chords(
         start=start,
         end=end,
         low=np.minimum(left.low, right.low),
@@ -96,7 +95,7 @@ def _parents(nodes: Segments) -> Segments:
         clearance=np.maximum(left.clearance, right.clearance),
         first=np.minimum(left.first, right.first),
         last=np.maximum(left.last, right.last),
-        within=bow + np.maximum(left.within, right.within),
+        deviation=bow + np.maximum(left.deviation, right.deviation),
     )
 
 
@@ -106,25 +105,3 @@ def _children(here: Array, there: Array, count_here: int, count_there: int) -> t
     left, right = (np.concatenate(side) for side in zip(*pairs, strict=True))
     exists = (left < count_here) & (right < count_there)
     return left[exists], right[exists]
-
-
-def segment_distances(start: Array, end: Array, other_start: Array, other_end: Array) -> Array:
-    """Distances between segments, (...), mm; a segment may be a point.
-
-    The closest points are at parameter x of the one segment and y of the other, each linear in the other. x is clamped
-    to its segment, then y, then x again for that y.
-    """
-    u, v, w = end - start, other_end - other_start, start - other_start
-    uu, vv, uv, uw, vw = dot(u, u), dot(v, v), dot(u, v), dot(u, w), dot(v, w)
-    across = uu * vv - uv * uv
-    x = np.clip(_ratio(uv * vw - vv * uw, across), 0.0, 1.0)
-    y = np.clip(_ratio(uv * x + vw, vv), 0.0, 1.0)
-    x = np.clip(_ratio(uv * y - uw, uu), 0.0, 1.0)
-    return norm(w + x[..., None] * u - y[..., None] * v)
-
-
-def _ratio(top: Array, bottom: Array) -> Array:
-    """Quotients, 0 where the divisor is."""
-    top, bottom = np.broadcast_arrays(top, bottom)
-    quotient: Array = np.divide(top, bottom, out=np.zeros(top.shape), where=bottom > 0)
-    return quotient

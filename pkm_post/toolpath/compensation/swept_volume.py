@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Sweep: distances of points from the volume that a cutter sweeps along its path.
+"""Swept volume: distances of points from the volume that a cutter sweeps along its path, and the stock it leaves.
 
-Tips and axes of the path, and a cutter, become poses in short steps. Takes points; returns their signed distances to
-the swept volume, in mm, negative inside. Between two poses the tip moves along a straight line and the axis turns
-evenly. Each step is searched by bisection: the distance that any point of the cutter moves within a step is bounded,
-and for a cutter that does not turn, the distance to it is a convex function of the distance travelled.
+Between two rows the tip moves along a straight line and the axis turns evenly. The path is divided into short steps,
+each searched by bisection: the distance that any point of the cutter moves within a step is bounded, and for a cutter
+that does not turn, the distance to it is a convex function of the distance travelled. The cutter has its true profile.
+Distances in mm, negative inside.
 """
 
 from __future__ import annotations
@@ -16,23 +16,117 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pkm_post.geometry import Array, angle_between, dot, grid_cells, norm, unit
+from pkm_post.geometry import Array, angle_between, dot, expand_counts, grid_cells, norm, unit
 from pkm_post.toolpath.compensation.cutter import Cutter, Profile
 
 _BLOCK = 16
 """Steps of the path that are skipped together when they are far away."""
-
 _STEP = 0.25
 """Longest step between two poses, in radii of the cutter."""
-
 _POINTS_PER_CELL = 100
 """Approximate number of points for which far blocks are skipped together."""
-
 _POINTS_TOGETHER = 6
 """Approximate number of points of a cell whose near steps are searched together."""
-
 _AT_ONCE = 1 << 16
 """Distances computed at a time: their data stay in the cache."""
+
+
+@dataclass(frozen=True)
+class StockLeft:
+    """Material that a path leaves on a surface.
+
+    Attributes:
+        left: (N,) material left at the points along their normals, negative for gouges, mm; infinite where the cutter
+            does not come within ``reach``.
+        row: (N,) the row of the path whose motion from the row before comes nearest; -1 where ``left`` is infinite.
+    """
+
+    left: Array
+    row: Array
+
+    @property
+    def deepest(self) -> int:
+        """Index of the point with the deepest gouge, or the least material left."""
+        return int(np.argmin(self.left))
+
+    @property
+    def highest(self) -> int:
+        """Index of the point with the most material left within reach of the cutter; -1 if there is none."""
+        near = np.isfinite(self.left)
+        return int(np.argmax(np.where(near, self.left, -np.inf))) if near.any() else -1
+
+
+def stock_left(
+    tips: ArrayLike,
+    axes: ArrayLike,
+    cutter: Cutter,
+    points: ArrayLike,
+    normals: ArrayLike,
+    *,
+    tolerance: float = 1e-3,
+    reach: float = 1.0,
+    progress: Callable[[float], Any] | None = None,
+) -> StockLeft:
+    """Material that a path leaves at points of a surface, and gouges.
+
+    Between two rows the tip moves along a straight line and the axis turns evenly. A line through the point along its
+    normal enters the swept volume at the value; it is found by sphere tracing: steps of the distance to that volume
+    cannot skip it.
+
+    Args:
+        tips: (M, 3) tool tips, mm.
+        axes: (M, 3) tool axes, from the tip towards the spindle, of any length.
+        cutter: the cutter; one of unknown height reaches as far as the points do.
+        points: (N, 3) points of the surface, mm.
+        normals: (N, 3) normals there, out of the material, of any length.
+        tolerance: distance of the line from the boundary of the swept volume at the value, mm; the error of the value
+            is larger where the line enters at a slant.
+        reach: material left of more than this is not measured, mm.
+        progress: called repeatedly with the completed share, from 0 to 1 for each round of steps; an exception it
+            raises aborts.
+
+    Raises:
+        ValueError: tips and axes, or points and normals, are not of one shape (M, 3); a vector has no direction;
+            there is no tip; or tolerance and reach are not above 0.
+    """
+    tip, axis = _pair("tips and axes", tips, axes)
+    start, normal = _pair("points and normals", points, normals)
+    if not (len(tip) and tolerance > 0.0 and reach > 0.0):
+        raise ValueError(f"stock_left: expected tips, tolerance and reach, got {len(tip)}, {tolerance}, {reach}")
+    if not len(start):
+        return StockLeft(np.zeros(0), np.zeros(0, dtype=np.int64))
+    everything = np.vstack([tip, start])
+    sweep = SweptVolume.of(tip, axis, cutter, reach, float(norm(np.ptp(everything, axis=0))) + reach)
+    return _entries(sweep, start, normal, tolerance / 2.0, progress)
+
+
+def _pair(names: str, positions: ArrayLike, directions: ArrayLike) -> tuple[Array, Array]:
+    position, direction = np.asarray(positions, dtype=np.float64), np.asarray(directions, dtype=np.float64)
+    if position.ndim != 2 or position.shape[1] != 3 or position.shape != direction.shape:
+        raise ValueError(f"stock_left: expected {names} (N, 3), got {position.shape} and {direction.shape}")
+    if not (np.isfinite(position).all() and np.isfinite(direction).all()):
+        raise ValueError(f"stock_left: expected finite {names}")
+    return position, unit(direction)
+
+
+def _entries(
+    sweep: SweptVolume, start: Array, normal: Array, enough: float, progress: Callable[[float], Any] | None
+) -> StockLeft:
+    """Where the lines through the points along their normals enter the swept volume.
+
+    The steps terminate: all but the last are longer than ``enough``, and those of one point have the same sign. None
+    leaves the volume again, and none is too long by more than ``enough``.
+    """
+    left, row = np.zeros(len(start)), np.full(len(start), -1, dtype=np.int64)
+    open_rows = np.arange(len(start))
+    while len(open_rows):
+        reached = start[open_rows] + left[open_rows, None] * normal[open_rows]
+        step, row[open_rows] = sweep.distances(reached, enough, progress)
+        left[open_rows] += step
+        beyond = left[open_rows] > sweep.within
+        left[open_rows[beyond]], row[open_rows[beyond]] = np.inf, -1
+        open_rows = open_rows[~beyond & (np.abs(step) > enough)]
+    return StockLeft(left, row)
 
 
 @dataclass(frozen=True)
@@ -75,8 +169,8 @@ class SweptVolume:
         reach = profile.reach + within
         way = norm(np.diff(tips, axis=0)) + reach * angle_between(axes[:-1], axes[1:])
         count = np.maximum(1, np.ceil(way / (_STEP * cutter.radius)).astype(np.int64))
-        before = np.repeat(np.arange(len(count)), count)
-        share = (np.arange(len(before)) - np.repeat(np.cumsum(count) - count, count)) / count[before]
+        before, number = expand_counts(count)
+        share = number / count[before]
         tip = np.vstack([_between(tips[before], tips[before + 1], share), tips[-1:]])
         axis = unit(np.vstack([_between(axes[before], axes[before + 1], share), axes[-1:]]))
         moved, turned = norm(np.diff(tip, axis=0)), angle_between(axis[:-1], axis[1:])
@@ -188,101 +282,3 @@ class SweptVolume:
 def _between(start: Array, end: Array, share: Array) -> Array:
     moved: Array = start + share[:, None] * (end - start)
     return moved
-
-
-@dataclass(frozen=True)
-class StockLeft:
-    """Material that a path leaves on a surface.
-
-    Attributes:
-        left: (N,) material left at the points along their normals, negative for gouges, mm; infinite where the cutter
-            does not come within ``reach``.
-        row: (N,) the row of the path whose motion from the row before comes nearest; -1 where ``left`` is infinite.
-    """
-
-    left: Array
-    row: Array
-
-    @property
-    def deepest(self) -> int:
-        """Index of the point with the deepest gouge, or the least material left."""
-        return int(np.argmin(self.left))
-
-    @property
-    def highest(self) -> int:
-        """Index of the point with the most material left within reach of the cutter; -1 if there is none."""
-        near = np.isfinite(self.left)
-        return int(np.argmax(np.where(near, self.left, -np.inf))) if near.any() else -1
-
-
-def stock_left(
-    tips: ArrayLike,
-    axes: ArrayLike,
-    cutter: Cutter,
-    points: ArrayLike,
-    normals: ArrayLike,
-    *,
-    tolerance: float = 1e-3,
-    reach: float = 1.0,
-    progress: Callable[[float], Any] | None = None,
-) -> StockLeft:
-    """Material that a path leaves at points of a surface, and gouges.
-
-    Between two rows the tip moves along a straight line and the axis turns evenly. A line through the point along its
-    normal enters the swept volume at the value; it is found by sphere tracing: steps of the distance to that volume
-    cannot skip it.
-
-    Args:
-        tips: (M, 3) tool tips, mm.
-        axes: (M, 3) tool axes, from the tip towards the spindle, of any length.
-        cutter: the cutter; one of unknown height reaches as far as the points do.
-        points: (N, 3) points of the surface, mm.
-        normals: (N, 3) normals there, out of the material, of any length.
-        tolerance: distance of the line from the boundary of the swept volume at the value, mm; the error of the value
-            is larger where the line enters at a slant.
-        reach: material left of more than this is not measured, mm.
-        progress: called repeatedly with the completed share, from 0 to 1 for each round of steps; an exception it
-            raises aborts.
-
-    Raises:
-        ValueError: tips and axes, or points and normals, are not of one shape (M, 3); a vector has no direction;
-            there is no tip; or tolerance and reach are not above 0.
-    """
-    tip, axis = _pair("tips and axes", tips, axes)
-    start, normal = _pair("points and normals", points, normals)
-    if not (len(tip) and tolerance > 0.0 and reach > 0.0):
-        raise ValueError(f"stock_left: expected tips, tolerance and reach, got {len(tip)}, {tolerance}, {reach}")
-    if not len(start):
-        return StockLeft(np.zeros(0), np.zeros(0, dtype=np.int64))
-    everything = np.vstack([tip, start])
-    sweep = SweptVolume.of(tip, axis, cutter, reach, float(norm(np.ptp(everything, axis=0))) + reach)
-    return _entries(sweep, start, normal, tolerance / 2.0, progress)
-
-
-def _entries(
-    sweep: SweptVolume, start: Array, normal: Array, enough: float, progress: Callable[[float], Any] | None
-) -> StockLeft:
-    """Where the lines through the points along their normals enter the swept volume.
-
-    The steps terminate: all but the last are longer than ``enough``, and those of one point have the same sign. None
-    leaves the volume again, and none is too long by more than ``enough``.
-    """
-    left, row = np.zeros(len(start)), np.full(len(start), -1, dtype=np.int64)
-    open_rows = np.arange(len(start))
-    while len(open_rows):
-        reached = start[open_rows] + left[open_rows, None] * normal[open_rows]
-        step, row[open_rows] = sweep.distances(reached, enough, progress)
-        left[open_rows] += step
-        beyond = left[open_rows] > sweep.within
-        left[open_rows[beyond]], row[open_rows[beyond]] = np.inf, -1
-        open_rows = open_rows[~beyond & (np.abs(step) > enough)]
-    return StockLeft(left, row)
-
-
-def _pair(names: str, positions: ArrayLike, directions: ArrayLike) -> tuple[Array, Array]:
-    position, direction = np.asarray(positions, dtype=np.float64), np.asarray(directions, dtype=np.float64)
-    if position.ndim != 2 or position.shape[1] != 3 or position.shape != direction.shape:
-        raise ValueError(f"stock_left: expected {names} (N, 3), got {position.shape} and {direction.shape}")
-    if not (np.isfinite(position).all() and np.isfinite(direction).all()):
-        raise ValueError(f"stock_left: expected finite {names}")
-    return position, unit(direction)

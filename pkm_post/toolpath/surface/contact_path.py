@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Course: points of passes in surface parameters, as columns.
+"""Contact path: cutter contact points of passes in surface parameters, as columns, and their trimming to the face.
 
-Patterns create it, trimming cuts it, ordering reverses and joins it, stepping refines it. The tool travels the rows of
-one run consecutively on the surface; between runs it is lifted. Rows of a link join two passes of a run.
+The tool travels the rows of one run consecutively on the surface; between runs it is lifted. Rows of a link join two
+passes of a run. The border between a point inside the face and its neighbour outside is found by bisection; features
+narrower than the point spacing are missed.
 """
 
 from __future__ import annotations
@@ -19,10 +20,11 @@ _ROUNDS = 8
 _ON_PLANE = 1e-9
 _STEEP = 1e-6
 """Relative slope of the surface against a plane below which it counts as parallel to it."""
+_HALVINGS = 40
 
 
 @dataclass(frozen=True)
-class Course:
+class ContactPath:
     """Columns of N points, in the order of travel within each pass.
 
     Attributes:
@@ -42,7 +44,7 @@ class Course:
     link: Array
 
     @classmethod
-    def of(cls, u: Array, v: Array, number: Array, run: Array | None = None) -> Course:
+    def of(cls, u: Array, v: Array, number: Array, run: Array | None = None) -> ContactPath:
         """A course in the direction of the pattern; each pass is a run unless runs are given."""
         rows = len(u)
         return cls(u, v, number, number if run is None else run, np.ones(rows), np.full(rows, np.nan))
@@ -50,28 +52,30 @@ class Course:
     def __len__(self) -> int:
         return len(self.u)
 
-    def taken(self, rows: Array) -> Course:
+    def take(self, rows: Array) -> ContactPath:
         """The rows selected by indices or a mask."""
-        return Course(*(getattr(self, column.name)[rows] for column in fields(self)))
+        return ContactPath(*(getattr(self, column.name)[rows] for column in fields(self)))
 
     @staticmethod
-    def joined(parts: list[Course]) -> Course:
+    def concatenate(parts: list[ContactPath]) -> ContactPath:
         """Concatenated courses; their runs keep their numbers."""
-        return Course(*(np.concatenate([getattr(part, item.name) for part in parts]) for item in fields(Course)))
+        return ContactPath(
+            *(np.concatenate([getattr(part, item.name) for part in parts]) for item in fields(ContactPath))
+        )
 
-    def with_rows(self, behind: Array, rows: Course) -> Course:
+    def with_rows(self, behind: Array, rows: ContactPath) -> ContactPath:
         """The course with additional rows, each directly after the row with the given index, in order."""
-        return Course(
+        return ContactPath(
             *(np.insert(getattr(self, item.name), behind + 1, getattr(rows, item.name)) for item in fields(self))
         )
 
-    def numbered(self, run: Array) -> Course:
+    def with_runs(self, run: Array) -> ContactPath:
         """The course with the given runs."""
         return replace(self, run=run)
 
 
 @dataclass(frozen=True)
-class Pattern:
+class PassPattern:
     """The lines of the passes: constant v, or sections by parallel planes.
 
     Attributes:
@@ -86,7 +90,7 @@ class Pattern:
         """Tangents along the lines, (N, 3), of any length: with rising u, or n x plane, its normal to the right."""
         return patch.along_u if self.plane is None else cross(patch.normal, self.plane)
 
-    def settled(self, surface: Surface, u: Array, v: Array, number: Array) -> tuple[Array, Array]:
+    def snap(self, surface: Surface, u: Array, v: Array, number: Array) -> tuple[Array, Array]:
         """The nearest points on the lines of the passes with the given numbers, (N,) each.
 
         On a border of the surface a point stays on that border.
@@ -99,7 +103,7 @@ class Pattern:
             if not np.any(np.abs(off) > _ON_PLANE):
                 break
             step_u, step_v = _to_plane(patch, self.plane, off, _free(surface.u, u), _free(surface.v, v))
-            u, v = surface.u.kept(u + step_u), surface.v.kept(v + step_v)
+            u, v = surface.u.clamp(u + step_u), surface.v.clamp(v + step_v)
         return u, v
 
 
@@ -120,10 +124,7 @@ def _to_plane(patch: Patch, plane: Array, off: Array, free_u: Array, free_v: Arr
     return factor * slope_u / scale_u, factor * slope_v / scale_v
 
 
-_HALVINGS = 40
-
-
-def trimmed(surface: Surface, pattern: Pattern, course: Course) -> Course:
+def trimmed(surface: Surface, pattern: PassPattern, course: ContactPath) -> ContactPath:
     """The pieces of a course on the face, each a run with its ends on the border.
 
     Args:
@@ -133,33 +134,33 @@ def trimmed(surface: Surface, pattern: Pattern, course: Course) -> Course:
     """
     if not len(course):
         return course
-    inside = surface.holds(course.u, course.v)
+    inside = surface.contains(course.u, course.v)
     crossing = np.flatnonzero((inside[:-1] != inside[1:]) & (course.run[:-1] == course.run[1:]))
     whole = course.with_rows(crossing, _border(surface, pattern, course, crossing, inside))
     kept = np.insert(inside, crossing + 1, True)
     cut = (whole.run[:-1] != whole.run[1:]) | ~kept[:-1] | ~kept[1:]
-    return whole.numbered(np.concatenate([[0], np.cumsum(cut)])).taken(kept)
+    return whole.with_runs(np.concatenate([[0], np.cumsum(cut)])).take(kept)
 
 
-def thinned(course: Course, every: int) -> Course:
+def _border(surface: Surface, pattern: PassPattern, course: ContactPath, crossing: Array, inside: Array) -> ContactPath:
+    """The last points inside between the rows at the crossings and the next rows."""
+    before, after = course.take(crossing), course.take(crossing + 1)
+    within = inside[crossing]
+    near_u, near_v = np.where(within, before.u, after.u), np.where(within, before.v, after.v)
+    far_u, far_v = np.where(within, after.u, before.u), np.where(within, after.v, before.v)
+    for _ in range(_HALVINGS):
+        u, v = pattern.snap(surface, (near_u + far_u) / 2, (near_v + far_v) / 2, before.number)
+        held = surface.contains(u, v)
+        near_u, near_v = np.where(held, u, near_u), np.where(held, v, near_v)
+        far_u, far_v = np.where(held, far_u, u), np.where(held, far_v, v)
+    return replace(before, u=near_u, v=near_v)
+
+
+def thinned(course: ContactPath, every: int) -> ContactPath:
     """The first and last row of each run and every n-th between: trimming needs more points than stepping."""
     if not len(course):
         return course
     rows = np.arange(len(course))
     begins = np.concatenate([[True], course.run[1:] != course.run[:-1]])
     since = rows - np.maximum.accumulate(np.where(begins, rows, 0))
-    return course.taken(begins | np.concatenate([begins[1:], [True]]) | (since % every == 0))
-
-
-def _border(surface: Surface, pattern: Pattern, course: Course, crossing: Array, inside: Array) -> Course:
-    """The last points inside between the rows at the crossings and the next rows."""
-    before, after = course.taken(crossing), course.taken(crossing + 1)
-    within = inside[crossing]
-    near_u, near_v = np.where(within, before.u, after.u), np.where(within, before.v, after.v)
-    far_u, far_v = np.where(within, after.u, before.u), np.where(within, after.v, before.v)
-    for _ in range(_HALVINGS):
-        u, v = pattern.settled(surface, (near_u + far_u) / 2, (near_v + far_v) / 2, before.number)
-        held = surface.holds(u, v)
-        near_u, near_v = np.where(held, u, near_u), np.where(held, v, near_v)
-        far_u, far_v = np.where(held, far_u, u), np.where(held, far_v, v)
-    return replace(before, u=near_u, v=near_v)
+    return course.take(begins | np.concatenate([begins[1:], [True]]) | (since % every == 0))

@@ -16,7 +16,7 @@ from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Kind, Place, Program
 from pkm_post.toolpath.surface.options import LeadMove, SurfaceOptions
 from pkm_post.toolpath.surface.poses import Poses
-from pkm_post.toolpath.surface.tool_axis import clamped
+from pkm_post.toolpath.surface.tool_axis import clamp_to_cone
 
 _UP = np.array([0.0, 0.0, 1.0])
 _FLATTEST = math.sin(math.radians(5.0))
@@ -143,7 +143,7 @@ def _ascent(end: Array, axis: Array, height: float, settings: SurfaceOptions) ->
 def _resting(settings: SurfaceOptions) -> Array:
     """The tool axis between runs: upright, or as close to it as the cone allows."""
     rule = settings.rule
-    return clamped(_UP[None], np.asarray(rule.cone_axis, dtype=np.float64), rule.cone)[0]
+    return clamp_to_cone(_UP[None], np.asarray(rule.cone_axis, dtype=np.float64), rule.cone)[0]
 
 
 def _lift_faults(axis: Array, tip: Array, height: float, place: Place) -> list[Diagnostic]:

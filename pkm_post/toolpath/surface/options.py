@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Settings: user options of a surface path, apart from the faces and the cutter.
+"""Options of surface finishing, apart from the faces and the cutter.
 
 The values of the choices are shown to users and stored in documents.
 """

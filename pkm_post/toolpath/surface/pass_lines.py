@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Iso-parametric passes: lines of constant v, or one spiral that runs through all of them.
+"""Pass lines: isoparametric lines, a spiral, or sections by parallel planes, as a contact path in (u, v).
 
-Takes the values of v; returns a course in (u, v).
+For sections the height of the surface above a plane is sampled on a grid; where it changes sign along a cell edge, the
+line crosses that edge. The crossings of each cell are joined in pairs, then chained to lines. Features smaller than a
+grid cell are missed.
 """
 
 from __future__ import annotations
@@ -9,11 +11,11 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.geometry import Array, cross, dot
-from pkm_post.toolpath.surface.contact_path import Course
+from pkm_post.toolpath.surface.contact_path import ContactPath
 from pkm_post.toolpath.surface.surface import Grid, ParameterRange, Surface
 
 
-def lines(u: ParameterRange, v: Array, nodes: int) -> Course:
+def iso_lines(u: ParameterRange, v: Array, nodes: int) -> ContactPath:
     """Passes along the whole range of u, each at a constant v.
 
     Args:
@@ -22,10 +24,10 @@ def lines(u: ParameterRange, v: Array, nodes: int) -> Course:
         nodes: number of points of each pass.
     """
     number = np.repeat(np.arange(len(v)), nodes)
-    return Course.of(np.tile(np.linspace(u.first, u.last, nodes), len(v)), v[number], number)
+    return ContactPath.of(np.tile(np.linspace(u.first, u.last, nodes), len(v)), v[number], number)
 
 
-def spiral(u: ParameterRange, v: Array, nodes: int) -> Course:
+def spiral(u: ParameterRange, v: Array, nodes: int) -> ContactPath:
     """One pass: a full turn at the first v, a spiral from each v to the next, and a full turn at the last v.
 
     Args:
@@ -35,13 +37,13 @@ def spiral(u: ParameterRange, v: Array, nodes: int) -> Course:
     """
     turn = np.arange((len(v) + 1) * (nodes - 1) + 1) / (nodes - 1)
     place = np.interp(np.clip(turn - 1.0, 0.0, None), np.arange(len(v)), v)
-    return Course.of(u.first + turn * u.width, place, np.zeros(len(turn), dtype=np.int64))
+    return ContactPath.of(u.first + turn * u.width, place, np.zeros(len(turn), dtype=np.int64))
 
 
 _GRID = (129, 129)
 
 
-def sections(surface: Surface, plane: Array, level: Array) -> Course:
+def plane_sections(surface: Surface, plane: Array, level: Array) -> ContactPath:
     """The lines of all planes, each its own run; closed lines end where they begin.
 
     Args:
@@ -55,20 +57,20 @@ def sections(surface: Surface, plane: Array, level: Array) -> Course:
         height[-1] = height[0]
     if surface.v.closed:
         height[:, -1] = height[:, 0]
-    parts: list[Course] = []
+    parts: list[ContactPath] = []
     run = 0
     for number, place in enumerate(level.tolist()):
         crossing_u, crossing_v, pairs = _crossings(grid, height - place)
         for chain in _chains(_same_seams(surface, pairs), crossing_u, crossing_v):
             u, v = _unrolled(surface, crossing_u[chain], crossing_v[chain])
-            parts.append(Course.of(u, v, np.full(len(u), number), np.full(len(u), run)))
+            parts.append(ContactPath.of(u, v, np.full(len(u), number), np.full(len(u), run)))
             run += 1
     if not parts:
-        return Course.of(np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.int64))
-    return _in_direction(surface, plane, Course.joined(parts))
+        return ContactPath.of(np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.int64))
+    return _in_direction(surface, plane, ContactPath.concatenate(parts))
 
 
-def _in_direction(surface: Surface, plane: Array, course: Course) -> Course:
+def _in_direction(surface: Surface, plane: Array, course: ContactPath) -> ContactPath:
     """The lines, each in the direction of the pattern: the plane normal is on its right, seen from outside."""
     patch = surface.at(course.u, course.v)
     step = np.diff(patch.point, axis=0)
@@ -77,7 +79,7 @@ def _in_direction(surface: Surface, plane: Array, course: Course) -> Course:
     np.add.at(along, course.run[:-1][same], dot(step, cross(patch.normal[:-1], plane))[same])
     rows = np.arange(len(course))
     order = np.lexsort((np.where(along[course.run] < 0.0, -rows, rows), course.run))
-    return course.taken(order)
+    return course.take(order)
 
 
 def _crossings(grid: Grid, height: Array) -> tuple[Array, Array, Array]:
@@ -139,19 +141,19 @@ def _chains(pairs: Array, u: Array, v: Array) -> list[Array]:
     Closed lines begin at their smallest u, so neighbours begin side by side. A line is a linked list, so it is followed
     step by step.
     """
-    beside: dict[int, list[int]] = {}
+    neighbours: dict[int, list[int]] = {}
     for first, second in pairs.tolist():
-        beside.setdefault(first, []).append(second)
-        beside.setdefault(second, []).append(first)
+        neighbours.setdefault(first, []).append(second)
+        neighbours.setdefault(second, []).append(first)
     chains = []
-    ends = [edge for edge, neighbours in beside.items() if len(neighbours) == 1]
-    for start in [*ends, *sorted(beside, key=lambda edge: (u[edge], v[edge]))]:
-        if not beside[start]:
+    ends = [edge for edge, others in neighbours.items() if len(others) == 1]
+    for start in [*ends, *sorted(neighbours, key=lambda edge: (u[edge], v[edge]))]:
+        if not neighbours[start]:
             continue
         chain = [start]
-        while beside[chain[-1]]:
-            following = beside[chain[-1]].pop()
-            beside[following].remove(chain[-1])
+        while neighbours[chain[-1]]:
+            following = neighbours[chain[-1]].pop()
+            neighbours[following].remove(chain[-1])
             chain.append(following)
         chains.append(np.array(chain))
     return chains

@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cover: poses of a cutter along all passes over a surface."""
+"""Surface passes: tool poses along all passes over a surface, in order and direction of travel.
+
+Passes are trimmed to the face, reversed for climb or conventional milling and for zigzag, and linked along the surface
+where the tool need not be lifted. A cutter that turns clockwise, seen from the spindle, climbs where the material is on
+its right.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +16,10 @@ import numpy as np
 from pkm_post.geometry import Array, cross, dot, norm, unit
 from pkm_post.model import Diagnostic, Place
 from pkm_post.toolpath.compensation.cutter import Cutter
-from pkm_post.toolpath.surface.contact_path import Course, Pattern, thinned, trimmed
+from pkm_post.toolpath.surface.contact_path import ContactPath, PassPattern, thinned, trimmed
 from pkm_post.toolpath.surface.options import CutMode, PassLines, PassOrder, SurfaceOptions
-from pkm_post.toolpath.surface.pass_lines import lines, sections, spiral
-from pkm_post.toolpath.surface.poses import Poses, Progress, Stepping
+from pkm_post.toolpath.surface.pass_lines import iso_lines, plane_sections, spiral
+from pkm_post.toolpath.surface.poses import PoseRefinement, Poses, Progress
 from pkm_post.toolpath.surface.stepover import levels_of_planes, passes_along_u
 from pkm_post.toolpath.surface.surface import Surface, unit_or_nan
 from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
@@ -23,89 +28,6 @@ _LOOKS = 17
 """Points of a link checked to be on the face."""
 _SAME = 1e-3
 """mm between the ends of a line within which it is closed."""
-
-
-def turned(course: Course, backwards: Array) -> Course:
-    """The course with some passes reversed, their pieces in order of travel.
-
-    Args:
-        course: pieces in the order of the pattern.
-        backwards: (N,) for each row whether its pass is reversed; equal for all rows of a pass.
-    """
-    rows = np.arange(len(course))
-    along = np.where(backwards, -rows, rows)
-    order = np.lexsort((along, course.number))
-    changed = course.taken(order)
-    changed = replace(changed, sense=np.where(backwards[order], -changed.sense, changed.sense))
-    return changed.numbered(np.concatenate([[0], np.cumsum(changed.run[:-1] != changed.run[1:])]))
-
-
-def climbs(surface: Surface, pattern: Pattern, course: Course, rule: AxisRule, into_rising: float) -> bool:
-    """Whether a course mostly climbs, with a cutter that turns clockwise.
-
-    Material is below the surface, towards -n, and on the side of the next passes, towards s. With the right of the feed
-    t x k, the passes climb where the mean of (s - n) . (t x k) > 0: beside a wall -n decides, on a floor s.
-
-    Args:
-        surface: the surface.
-        pattern: the lines.
-        course: passes, all in one direction.
-        rule: rule of the tool axis.
-        into_rising: 1 when passes follow each other with rising v or level, -1 when falling.
-    """
-    patch = surface.at(course.u, course.v)
-    feed = np.nan_to_num(unit_or_nan(pattern.direction(patch)) * course.sense[:, None])
-    next_passes = patch.along_v if pattern.plane is None else np.broadcast_to(pattern.plane, feed.shape)
-    sideways = next_passes - dot(next_passes, feed)[:, None] * feed
-    s = into_rising * np.nan_to_num(unit_or_nan(sideways - dot(sideways, patch.normal)[:, None] * patch.normal))
-    side = cross(patch.normal, feed) * course.sense[:, None]
-    k = np.nan_to_num(tool_axes(patch.normal, feed, rule, side)[0])
-    return bool(np.mean(dot(s - patch.normal, cross(feed, k))) > 0.0)
-
-
-def linked(surface: Surface, course: Course, longest: float, zigzag: bool) -> Course:
-    """The course with neighbouring passes linked along the surface where the link is short and stays on the face.
-
-    Passes in one direction are linked only at the seam of closed lines: a link back along the surface would cut in the
-    opposite direction.
-
-    Args:
-        surface: the surface.
-        course: pieces in order of travel.
-        longest: longest link along the surface, mm; otherwise the tool is lifted.
-        zigzag: whether passes alternate.
-    """
-    course = _seams_passed(surface, course)
-    last = np.flatnonzero(course.run[:-1] != course.run[1:])
-    first = last + 1
-    begin = np.concatenate([[0], first])[:-1]
-    share = np.linspace(0.0, 1.0, _LOOKS)
-    u, v = ((column[last, None] + share * (column[first] - column[last])[:, None]) for column in (course.u, course.v))
-    points = surface.at(u.ravel(), v.ravel()).point.reshape(len(last), _LOOKS, 3)
-    length = np.sum(norm(np.diff(points, axis=1)), axis=1)
-    held = surface.holds(u.ravel(), v.ravel()).reshape(len(last), _LOOKS).all(axis=1)
-    joins = (np.abs(course.number[first] - course.number[last]) == 1) & held & (length <= longest)
-    if not zigzag:
-        loop = norm(surface.at(course.u[begin], course.v[begin]).point - points[:, 0]) < _SAME
-        joins &= loop
-    lifts = np.zeros(max(len(course) - 1, 0), dtype=bool)
-    lifts[last[~joins]] = True
-    return course.numbered(np.concatenate([[0], np.cumsum(lifts)]))
-
-
-def _seams_passed(surface: Surface, course: Course) -> Course:
-    """The course with each run shifted by whole turns, to begin as close as possible to the end of the one before."""
-    jump = np.concatenate([[False], course.run[:-1] != course.run[1:]])
-    columns = {}
-    for name, span in (("u", surface.u), ("v", surface.v)):
-        column = getattr(course, name)
-        if span.closed:
-            turns = np.round(np.diff(column, prepend=column[:1]) / span.width) * jump
-            column = column - np.cumsum(turns) * span.width
-        columns[name] = column
-    return replace(course, **columns)
-
-
 _NODES = (17, 513)
 """Least and most initial points of a pass."""
 _EVERY = 4
@@ -114,12 +36,8 @@ _LINK = 3.0
 """Links along the surface are at most this many stepovers long."""
 
 
-def quiet(share: float) -> None:
-    """Ignore progress."""
-
-
 def surface_poses(
-    surface: Surface, cutter: Cutter, settings: SurfaceOptions, place: Place, progress: Progress = quiet
+    surface: Surface, cutter: Cutter, settings: SurfaceOptions, place: Place, progress: Progress = lambda share: None
 ) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
     """The poses of a cutter along its path over a surface.
 
@@ -139,10 +57,10 @@ def surface_poses(
     if cutter.bottom_angle or cutter.side_angle or cutter.radial_offset < 0.0:
         raise ValueError(f"surface_poses: expected a ball, bull nose or flat end mill, got {cutter}")
     if settings.lines is PassLines.ALONG_V:
-        surface = surface.exchanged()
+        surface = surface.swapped()
     if settings.order is PassOrder.SPIRAL and (settings.lines is PassLines.PLANES or not surface.u.closed):
-        told = "planes" if settings.lines is PassLines.PLANES else "an open surface"
-        return None, (Diagnostic("N301", place, told),)
+        text = "planes" if settings.lines is PassLines.PLANES else "an open surface"
+        return None, (Diagnostic("N301", place, text),)
     pattern, widest = _pattern(surface, cutter, settings)
     if math.isnan(widest):
         return None, (Diagnostic("N303", place, f"radius of the corner {cutter.corner_radius:g} mm"),)
@@ -151,31 +69,31 @@ def surface_poses(
     if not len(course):
         return None, (Diagnostic("N302", place, "no pass lies on it"),)
     course = _in_order(surface, pattern, course, settings)
-    course = linked(surface, course, _LINK * widest, settings.order is PassOrder.ZIGZAG)
-    stepping = Stepping(surface, pattern, cutter, settings.rule, settings.tolerances, place)
+    course = link_passes(surface, course, _LINK * widest, settings.order is PassOrder.ZIGZAG)
+    stepping = PoseRefinement(surface, pattern, cutter, settings.rule, settings.tolerances, place)
     return stepping.poses(course, progress)
 
 
-def _pattern(surface: Surface, cutter: Cutter, settings: SurfaceOptions) -> tuple[Pattern, float]:
+def _pattern(surface: Surface, cutter: Cutter, settings: SurfaceOptions) -> tuple[PassPattern, float]:
     """The lines in the order of cutting, and the largest distance of neighbours; NaN if there is none."""
     chosen = settings.stepover, cutter, settings.rule
     if settings.lines is PassLines.PLANES:
         plane = unit(np.asarray(settings.plane, dtype=np.float64))
         level, widest = levels_of_planes(surface, plane, *chosen)
-        return Pattern(plane, level[::-1] if settings.reversed else level), widest
+        return PassPattern(plane, level[::-1] if settings.reversed else level), widest
     level, widest = passes_along_u(surface, *chosen)
-    return Pattern(None, level[::-1] if settings.reversed else level), widest
+    return PassPattern(None, level[::-1] if settings.reversed else level), widest
 
 
-def _passes(surface: Surface, pattern: Pattern, cutter: Cutter, settings: SurfaceOptions) -> Course:
+def _passes(surface: Surface, pattern: PassPattern, cutter: Cutter, settings: SurfaceOptions) -> ContactPath:
     """The untrimmed passes."""
     if pattern.plane is not None:
-        course = sections(surface, pattern.plane, pattern.level)
-        u, v = pattern.settled(surface, course.u, course.v, course.number)
+        course = plane_sections(surface, pattern.plane, pattern.level)
+        u, v = pattern.snap(surface, course.u, course.v, course.number)
         return replace(course, u=u, v=v)
     if not len(pattern.level):
-        return Course.of(np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.int64))
-    make = spiral if settings.order is PassOrder.SPIRAL else lines
+        return ContactPath.of(np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.int64))
+    make = spiral if settings.order is PassOrder.SPIRAL else iso_lines
     return make(surface.u, pattern.level, _nodes(surface, pattern.level, cutter))
 
 
@@ -189,14 +107,95 @@ def _nodes(surface: Surface, v: Array, cutter: Cutter) -> int:
     return int(np.clip(wanted, *_NODES))
 
 
-def _in_order(surface: Surface, pattern: Pattern, course: Course, settings: SurfaceOptions) -> Course:
+def _in_order(surface: Surface, pattern: PassPattern, course: ContactPath, settings: SurfaceOptions) -> ContactPath:
     """The pieces in the order and direction of travel."""
     backwards = np.zeros(len(course), dtype=bool)
     if settings.cut_mode is not CutMode.AS_IT_COMES:
-        first = course.taken(course.number == course.number[0]) if settings.order is PassOrder.ZIGZAG else course
+        first = course.take(course.number == course.number[0]) if settings.order is PassOrder.ZIGZAG else course
         rising = -1.0 if settings.reversed else 1.0
         climbing = climbs(surface, pattern, first, settings.rule, rising) == settings.clockwise
         backwards ^= climbing != (settings.cut_mode is CutMode.CLIMB)
     if settings.order is PassOrder.ZIGZAG:
         backwards = backwards ^ (course.number % 2 == 1)
-    return turned(course, backwards)
+    return with_reversed(course, backwards)
+
+
+def with_reversed(course: ContactPath, backwards: Array) -> ContactPath:
+    """The course with some passes reversed, their pieces in order of travel.
+
+    Args:
+        course: pieces in the order of the pattern.
+        backwards: (N,) for each row whether its pass is reversed; equal for all rows of a pass.
+    """
+    rows = np.arange(len(course))
+    along = np.where(backwards, -rows, rows)
+    order = np.lexsort((along, course.number))
+    changed = course.take(order)
+    changed = replace(changed, sense=np.where(backwards[order], -changed.sense, changed.sense))
+    return changed.with_runs(np.concatenate([[0], np.cumsum(changed.run[:-1] != changed.run[1:])]))
+
+
+def climbs(surface: Surface, pattern: PassPattern, course: ContactPath, rule: AxisRule, into_rising: float) -> bool:
+    """Whether a course mostly climbs, with a cutter that turns clockwise.
+
+    Material is below the surface, towards -n, and on the side of the next passes, towards s. With the right of the feed
+    t x k, the passes climb where the mean of (s - n) . (t x k) > 0: at a wall -n decides, on a floor s.
+
+    Args:
+        surface: the surface.
+        pattern: the lines.
+        course: passes, all in one direction.
+        rule: rule of the tool axis.
+        into_rising: 1 when passes follow each other with rising v or level, -1 when falling.
+    """
+    patch = surface.at(course.u, course.v)
+    feed = np.nan_to_num(unit_or_nan(pattern.direction(patch)) * course.sense[:, None])
+    next_passes = patch.along_v if pattern.plane is None else np.broadcast_to(pattern.plane, feed.shape)
+    sideways = next_passes - dot(next_passes, feed)[:, None] * feed
+    s = into_rising * np.nan_to_num(unit_or_nan(sideways - dot(sideways, patch.normal)[:, None] * patch.normal))
+    side = cross(patch.normal, feed) * course.sense[:, None]
+    k = np.nan_to_num(tool_axes(patch.normal, feed, rule, side)[0])
+    return bool(np.mean(dot(s - patch.normal, cross(feed, k))) > 0.0)
+
+
+def link_passes(surface: Surface, course: ContactPath, longest: float, zigzag: bool) -> ContactPath:
+    """The course with neighbouring passes linked along the surface where the link is short and stays on the face.
+
+    Passes in one direction are linked only at the seam of closed lines: a link back along the surface would cut in the
+    opposite direction.
+
+    Args:
+        surface: the surface.
+        course: pieces in order of travel.
+        longest: longest link along the surface, mm; otherwise the tool is lifted.
+        zigzag: whether passes alternate.
+    """
+    course = _seams_passed(surface, course)
+    last = np.flatnonzero(course.run[:-1] != course.run[1:])
+    first = last + 1
+    begin = np.concatenate([[0], first])[:-1]
+    share = np.linspace(0.0, 1.0, _LOOKS)
+    u, v = ((column[last, None] + share * (column[first] - column[last])[:, None]) for column in (course.u, course.v))
+    points = surface.at(u.ravel(), v.ravel()).point.reshape(len(last), _LOOKS, 3)
+    length = np.sum(norm(np.diff(points, axis=1)), axis=1)
+    held = surface.contains(u.ravel(), v.ravel()).reshape(len(last), _LOOKS).all(axis=1)
+    joins = (np.abs(course.number[first] - course.number[last]) == 1) & held & (length <= longest)
+    if not zigzag:
+        loop = norm(surface.at(course.u[begin], course.v[begin]).point - points[:, 0]) < _SAME
+        joins &= loop
+    lifts = np.zeros(max(len(course) - 1, 0), dtype=bool)
+    lifts[last[~joins]] = True
+    return course.with_runs(np.concatenate([[0], np.cumsum(lifts)]))
+
+
+def _seams_passed(surface: Surface, course: ContactPath) -> ContactPath:
+    """The course with each run shifted by whole turns, to begin as close as possible to the end of the one before."""
+    jump = np.concatenate([[False], course.run[:-1] != course.run[1:]])
+    columns = {}
+    for name, span in (("u", surface.u), ("v", surface.v)):
+        column = getattr(course, name)
+        if span.closed:
+            turns = np.round(np.diff(column, prepend=column[:1]) / span.width) * jump
+            column = column - np.cumsum(turns) * span.width
+        columns[name] = column
+    return replace(course, **columns)

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Poses: tool poses along a course, and tolerances of the straight moves between them. Units: mm, rad."""
+"""Poses: tool poses along a contact path, refined until straight moves keep both tolerances. Units: mm, rad.
+
+Between two rows the machine moves the tip on a line and turns the axis on a great circle. At places between, the cutter
+in that pose is compared with the tangent plane of the surface, and its axis with the required one.
+"""
 
 from __future__ import annotations
 
@@ -13,10 +17,10 @@ from pkm_post.geometry import Array, along, angle_between, dot, norm, towards
 from pkm_post.model import Diagnostic, Place
 from pkm_post.toolpath.compensation.contact import tip_from_contact
 from pkm_post.toolpath.compensation.cutter import Cutter
-from pkm_post.toolpath.surface.contact_path import Course, Pattern
-from pkm_post.toolpath.surface.stepover import gap
+from pkm_post.toolpath.surface.contact_path import ContactPath, PassPattern
+from pkm_post.toolpath.surface.stepover import cutter_gap
 from pkm_post.toolpath.surface.surface import Patch, Surface
-from pkm_post.toolpath.surface.tool_axis import AxisRule, Frame, Links, frame_of, tool_axes
+from pkm_post.toolpath.surface.tool_axis import AxisRule, FeedFrame, LinkEnds, feed_frame, tool_axes
 
 
 @dataclass(frozen=True)
@@ -51,10 +55,10 @@ class Poses:
         clamped: (N,) whether the axis was clamped to its cone.
     """
 
-    course: Course
+    course: ContactPath
     point: Array
     normal: Array
-    frame: Frame
+    frame: FeedFrame
     axis: Array
     tip: Array
     clamped: Array
@@ -71,7 +75,7 @@ Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True)
-class Stepping:
+class PoseRefinement:
     """Everything that determines the pose at a point of the surface.
 
     Attributes:
@@ -84,14 +88,14 @@ class Stepping:
     """
 
     surface: Surface
-    pattern: Pattern
+    pattern: PassPattern
     cutter: Cutter
     rule: AxisRule
     tolerances: Tolerances
     place: Place
 
     def poses(
-        self, course: Course, progress: Progress = lambda share: None
+        self, course: ContactPath, progress: Progress = lambda share: None
     ) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
         """Refine the course to the tolerances and compute the pose at each row.
 
@@ -113,7 +117,7 @@ class Stepping:
             if not len(behind):
                 break
             middle, middle_patch, fails = self._looked_at(found, behind)
-            behind, middle = behind[fails], middle.taken(fails)
+            behind, middle = behind[fails], middle.take(fails)
             rows = Patch(*(np.insert(old, behind + 1, new[fails], axis=0) for old, new in _pairs(patch, middle_patch)))
             course, patch, open_ = course.with_rows(behind, middle), rows, _open_again(open_, behind)
             done = max(done, 1.0 - len(behind) / max(len(course) - 1, 1))
@@ -124,12 +128,12 @@ class Stepping:
             )
         return found, (*faults, *self._edges(found))
 
-    def _at(self, course: Course, patch: Patch) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
+    def _at(self, course: ContactPath, patch: Patch) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
         """Poses at rows of known patch."""
         travel = np.gradient(patch.point, axis=0) if len(course) > 1 else patch.along_u
-        frame = frame_of(self.pattern, course, patch, travel)
+        frame = feed_frame(self.pattern, course, patch, travel)
         before, after = _passes_beside(course)
-        links = Links(frame.taken(before), frame.taken(after), patch.point[after] - patch.point[before])
+        links = LinkEnds(frame.take(before), frame.take(after), patch.point[after] - patch.point[before])
         frame = frame.with_links(links, patch.normal, course.link)
         axis, clamped = tool_axes(patch.normal, frame.feed, self.rule, frame.side)
         tip, faults = tip_from_contact(patch.point, patch.normal, axis, self.cutter, self.place)
@@ -143,17 +147,17 @@ class Stepping:
         moves: Array = (norm(np.diff(found.point, axis=0)) > _SHORTEST) | (_links(found.course) & turns)
         return moves
 
-    def _looked_at(self, found: Poses, behind: Array) -> tuple[Course, Patch, Array]:
+    def _looked_at(self, found: Poses, behind: Array) -> tuple[ContactPath, Patch, Array]:
         """The rows in the middle of moves, the surface there, and the moves that exceed the tolerances."""
         course = found.course
-        left, right = course.taken(behind), course.taken(behind + 1)
+        left, right = course.take(behind), course.take(behind + 1)
         is_link = _links(course)[behind]
         before, after = (rows[at] for rows, at in zip(_passes_beside(course), (behind, behind + 1), strict=True))
-        links = Links(found.frame.taken(before), found.frame.taken(after), found.point[after] - found.point[before])
+        links = LinkEnds(found.frame.take(before), found.frame.take(after), found.point[after] - found.point[before])
         fails = np.zeros(len(behind), dtype=bool)
         for share in _SHARES:
             u, v = (before + share * (after - before) for before, after in ((left.u, right.u), (left.v, right.v)))
-            settled = self.pattern.settled(self.surface, u, v, right.number)
+            settled = self.pattern.snap(self.surface, u, v, right.number)
             u, v = (np.where(is_link, raw, on_line) for raw, on_line in zip((u, v), settled, strict=True))
             link = np.where(is_link, _link_share(left.link, right.link, share), np.nan)
             between = replace(right, u=u, v=v, link=link)
@@ -163,7 +167,9 @@ class Stepping:
                 middle, middle_patch = between, patch
         return middle, middle_patch, fails
 
-    def _fails(self, found: Poses, behind: Array, between: Course, patch: Patch, links: Links, share: float) -> Array:
+    def _fails(
+        self, found: Poses, behind: Array, between: ContactPath, patch: Patch, links: LinkEnds, share: float
+    ) -> Array:
         """Moves that exceed the tolerances at a place between their ends, (n,)."""
         chord = found.point[behind + 1] - found.point[behind]
         way = patch.point - found.point[behind]
@@ -173,12 +179,12 @@ class Stepping:
         passed = np.clip(passed, 0.0, 1.0)[:, None]
         tip = found.tip[behind] + passed * (found.tip[behind + 1] - found.tip[behind])
         axis = along(found.axis[behind], passed * towards(found.axis[behind], found.axis[behind + 1]))
-        frame = frame_of(self.pattern, between, patch, chord).with_links(links, patch.normal, between.link)
+        frame = feed_frame(self.pattern, between, patch, chord).with_links(links, patch.normal, between.link)
         wanted, _ = tool_axes(patch.normal, frame.feed, self.rule, frame.side)
-        off = gap(tip, axis, patch.point, patch.normal, self.cutter)
+        off = cutter_gap(tip, axis, patch.point, patch.normal, self.cutter)
         twisted = angle_between(axis, wanted) > self.tolerances.axis
-        beside = norm(way - passed * chord)
-        fails: Array = (np.maximum(np.abs(off), beside) > self.tolerances.chord) | twisted
+        sideways = norm(way - passed * chord)
+        fails: Array = (np.maximum(np.abs(off), sideways) > self.tolerances.chord) | twisted
         return fails
 
     def _edges(self, found: Poses) -> tuple[Diagnostic, ...]:
@@ -189,8 +195,8 @@ class Stepping:
         if not len(edges):
             return ()
         x, y, z = found.point[edges[0]]
-        told = f"{len(edges)} times, first at ({x:.3f}, {y:.3f}, {z:.3f}) by {np.degrees(angle[edges[0]]):.1f} degrees"
-        return (Diagnostic("N306", self.place, told),)
+        text = f"{len(edges)} times, first at ({x:.3f}, {y:.3f}, {z:.3f}) by {np.degrees(angle[edges[0]]):.1f} degrees"
+        return (Diagnostic("N306", self.place, text),)
 
 
 def _first_of_each(faults: tuple[Diagnostic, ...], point: Array) -> tuple[Diagnostic, ...]:
@@ -206,7 +212,7 @@ def _told(point: Array, found: str) -> str:
     return "at ({:.3f}, {:.3f}, {:.3f}): ".format(*point) + found
 
 
-def _links(course: Course) -> Array:
+def _links(course: ContactPath) -> Array:
     """Moves of links, from the end of a pass to the start of the next, (N - 1,)."""
     in_link = ~np.isnan(course.link)
     links: Array = (course.number[1:] != course.number[:-1]) | in_link[1:] | in_link[:-1]
@@ -220,7 +226,7 @@ def _link_share(before: Array, after: Array, share: float) -> Array:
     return part
 
 
-def _passes_beside(course: Course) -> tuple[Array, Array]:
+def _passes_beside(course: ContactPath) -> tuple[Array, Array]:
     """For each row the last pass row not after it, and the first pass row not before it, (N,) each."""
     rows = np.arange(len(course))
     in_pass = np.isnan(course.link)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Spacing: positions of the passes, nowhere farther apart than allowed.
+"""Stepover: positions of the passes, nowhere farther apart than the distance or the scallop height allows.
 
-Takes the surface on a grid; returns the values of v of the passes, or the levels of their planes. At each v the worst
-place along the line determines the pass density per unit of v; the passes divide its integral evenly. So every grid
-point keeps its allowed distance, and all distances shrink alike to fit a whole number of passes.
+The width of a pass follows from contact normals, tool axes, feed directions and the curvature of the surface across the
+feed. At each v, or level of the planes, the worst place along the line determines the density of passes; the passes
+divide its integral evenly. So every grid point keeps its allowed distance, and all distances shrink alike to fit a
+whole number of passes. All in mm and 1/mm.
 """
 
 from __future__ import annotations
@@ -16,12 +17,134 @@ import numpy as np
 
 from pkm_post.geometry import Array, cross, dot, norm
 from pkm_post.toolpath.compensation.cutter import Cutter
-from pkm_post.toolpath.surface.contact_path import Pattern
+from pkm_post.toolpath.surface.contact_path import PassPattern
 from pkm_post.toolpath.surface.surface import Grid, ParameterRange, Surface, normal_curvatures, unit_or_nan
 from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
 
 _FLAT_ON_IT = 1e-9
 """Sine of the angle between axis and normal below which the bottom of the cutter lies on the surface."""
+_GRID = (49, 97)
+_LEVELS = 128
+_FLATTEST = 0.05
+"""Sine of the angle between surface and planes below which planes get no closer: a parallel area has no section."""
+_LOOKS = (65, 129)
+_HALVINGS = 30
+_POINT = 1e-6
+"""mm: a shorter line is a pole, or the tip of a face."""
+
+
+@dataclass(frozen=True)
+class Stepover:
+    """Distance of passes: at most ``distance``, or for scallops at most ``scallop`` high, mm.
+
+    Attributes:
+        distance: largest distance of neighbouring passes along the surface; None where the scallops decide.
+        scallop: largest scallop height between passes; None where the distance decides.
+    """
+
+    distance: float | None = None
+    scallop: float | None = None
+
+    def __post_init__(self) -> None:
+        given = [value for value in (self.distance, self.scallop) if value is not None]
+        if len(given) != 1 or not 0.0 < given[0] < math.inf:
+            raise ValueError(f"Stepover: expected one of distance and scallop above 0, got {self}")
+
+
+def passes_along_u(surface: Surface, stepover: Stepover, cutter: Cutter, rule: AxisRule) -> tuple[Array, float]:
+    """Values of v of passes along u, (P,), and the largest distance, NaN if one is undefined.
+
+    The borders are passes; where a border is a single point, the first pass is half a step away from it.
+    """
+    surface = _face_alone(surface)
+    grid = Grid.over(surface, *_GRID)
+    allowed = pass_widths(surface, grid, PassPattern(None, np.zeros(0)), stepover, cutter, rule)
+    widest = _widest(allowed, grid)
+    if math.isnan(widest):
+        return np.zeros(0), widest
+    feed = np.nan_to_num(unit_or_nan(grid.patch.along_u))
+    across = norm(grid.patch.along_v - dot(grid.patch.along_v, feed)[:, None] * feed)
+    need = np.max(grid.shaped(np.where(grid.inside, across / allowed, 0.0)), axis=0)
+    first, last = (0.0 if length > _POINT else 0.5 for length in _lengths_on_borders(grid))
+    need[[0, -1]] = np.where([first, last], need[[1, -2]], need[[0, -1]])  # a line has no direction at a pole
+    return _shares(grid.v, need, first, last, surface.v.closed), widest
+
+
+def levels_of_planes(
+    surface: Surface, plane: Array, stepover: Stepover, cutter: Cutter, rule: AxisRule
+) -> tuple[Array, float]:
+    """Levels of parallel planes, (P,) in mm along their normal; and the largest distance, NaN if one is undefined.
+
+    The first and last plane are half a pass inside the surface. Planes barely intersect an area nearly parallel to
+    them: there they are closer by a factor of 20 at most.
+    """
+    grid = Grid.over(surface, *_GRID)
+    allowed = pass_widths(surface, grid, PassPattern(plane, np.zeros(1)), stepover, cutter, rule)
+    height, widest = dot(grid.patch.point, plane)[grid.inside], _widest(allowed, grid)
+    if math.isnan(widest) or not len(height) or np.ptp(height) < _POINT:
+        return np.zeros(0), widest
+    slope = np.sqrt(np.maximum(1.0 - np.square(dot(grid.patch.normal, plane)), _FLATTEST**2))
+    need = np.nan_to_num(1.0 / (allowed * slope))[grid.inside]
+    edges = np.linspace(height.min(), height.max(), _LEVELS + 1)
+    band = np.minimum(np.searchsorted(edges, height, side="right") - 1, _LEVELS - 1)
+    worst = np.zeros(_LEVELS)
+    np.maximum.at(worst, band, need)
+    filled = np.flatnonzero(worst)
+    middle = (edges[:-1] + edges[1:]) / 2
+    at_edges = np.interp(edges, middle[filled], _widened(worst[filled]))
+    return _shares(edges, at_edges, 0.5, 0.5, closed=False), widest
+
+
+def pass_widths(
+    surface: Surface, grid: Grid, pattern: PassPattern, stepover: Stepover, cutter: Cutter, rule: AxisRule
+) -> Array:
+    """Allowed distances of passes at grid points, (M * N,); NaN where the cutter does not fit into a concave area.
+
+    The cutter may travel in either direction: the smaller width counts.
+    """
+    if stepover.distance is not None:
+        return np.full(len(grid.inside), stepover.distance)
+    assert stepover.scallop is not None
+    patch = grid.patch
+    feed = unit_or_nan(pattern.direction(patch))
+    u, v = (each.ravel() for each in np.meshgrid(grid.u, grid.v, indexing="ij"))
+    curvature = normal_curvatures(surface, u, v, patch, cross(patch.normal, feed))
+    both = []
+    for direction in (feed, -feed):
+        axis, _ = tool_axes(patch.normal, direction, rule, cross(patch.normal, feed))
+        both.append(pass_width(patch.normal, axis, direction, curvature, cutter, stepover.scallop))
+    pole = np.isnan(feed).any(axis=1) | np.isnan(curvature)
+    return np.where(pole, np.inf, np.minimum(*both))
+
+
+def pass_width(normal: Array, axis: Array, feed: Array, curvature: Array, cutter: Cutter, height: float) -> Array:
+    """Distances of neighbouring passes for a scallop height with a tilted cutter, (N,).
+
+    The profile of a tilted cutter is round near the contact and rises no steeper than its flat bottom. The larger of
+    both widths applies, limited to the width of the bottom with the corner up to that height.
+
+    Args:
+        normal: (N, 3) unit normals.
+        axis: (N, 3) unit tool axes.
+        feed: (N, 3) unit tangents.
+        curvature: (N,) curvature of the surface across the feed, positive where it is convex.
+        cutter: the corner of the cutter.
+        height: scallop height.
+
+    Returns:
+        The distances; NaN where the cutter does not fit into a concave area.
+    """
+    r, e = cutter.corner_radius, cutter.radial_offset
+    low = min(height, r)
+    widest = 2.0 * e + 2.0 * np.sqrt(2.0 * r * low - low * low)
+    radius = np.minimum(effective_radius(normal, axis, feed, cutter), 1e6 * (r + e))
+    width = np.minimum(scallop_width(radius, curvature, height), widest)
+    if e == 0.0:
+        return width
+    sine = norm(axis - dot(axis, normal)[:, None] * normal)
+    bottom = np.minimum(height * dot(axis, normal) / np.maximum(sine, _FLAT_ON_IT), 2.0 * e)
+    wider: Array = np.where((curvature >= 0.0) & (bottom > width), bottom, width)
+    return wider
 
 
 def effective_radius(normal: Array, axis: Array, feed: Array, cutter: Cutter) -> Array:
@@ -79,37 +202,7 @@ def scallop_width(radius: Array, curvature: Array, height: float) -> Array:
     return width
 
 
-def pass_width(normal: Array, axis: Array, feed: Array, curvature: Array, cutter: Cutter, height: float) -> Array:
-    """Distances of neighbouring passes for a scallop height with a tilted cutter, (N,).
-
-    The profile of a tilted cutter is round near the contact and rises no steeper than its flat bottom. The larger of
-    both widths applies, limited to the width of the bottom with the corner up to that height.
-
-    Args:
-        normal: (N, 3) unit normals.
-        axis: (N, 3) unit tool axes.
-        feed: (N, 3) unit tangents.
-        curvature: (N,) curvature of the surface across the feed, positive where it is convex.
-        cutter: the corner of the cutter.
-        height: scallop height.
-
-    Returns:
-        The distances; NaN where the cutter does not fit into a concave area.
-    """
-    r, e = cutter.corner_radius, cutter.radial_offset
-    low = min(height, r)
-    widest = 2.0 * e + 2.0 * np.sqrt(2.0 * r * low - low * low)
-    radius = np.minimum(effective_radius(normal, axis, feed, cutter), 1e6 * (r + e))
-    width = np.minimum(scallop_width(radius, curvature, height), widest)
-    if e == 0.0:
-        return width
-    sine = norm(axis - dot(axis, normal)[:, None] * normal)
-    bottom = np.minimum(height * dot(axis, normal) / np.maximum(sine, _FLAT_ON_IT), 2.0 * e)
-    wider: Array = np.where((curvature >= 0.0) & (bottom > width), bottom, width)
-    return wider
-
-
-def gap(tip: Array, axis: Array, point: Array, normal: Array, cutter: Cutter) -> Array:
+def cutter_gap(tip: Array, axis: Array, point: Array, normal: Array, cutter: Cutter) -> Array:
     """Distances from the tangent planes of the surface to the lowest point of the cutter above them, (N,).
 
     Negative where the cutter goes below the plane and gouges the surface.
@@ -127,98 +220,6 @@ def gap(tip: Array, axis: Array, point: Array, normal: Array, cutter: Cutter) ->
     return distance
 
 
-_GRID = (49, 97)
-_LEVELS = 128
-_FLATTEST = 0.05
-"""Sine of the angle between surface and planes below which planes get no closer: a parallel area has no section."""
-_LOOKS = (65, 129)
-_HALVINGS = 30
-_POINT = 1e-6
-"""mm: a shorter line is a pole, or the tip of a face."""
-
-
-@dataclass(frozen=True)
-class Stepover:
-    """Distance of passes: at most ``distance``, or for scallops at most ``scallop`` high, mm.
-
-    Attributes:
-        distance: largest distance of neighbouring passes along the surface; None where the scallops decide.
-        scallop: largest scallop height between passes; None where the distance decides.
-    """
-
-    distance: float | None = None
-    scallop: float | None = None
-
-    def __post_init__(self) -> None:
-        given = [value for value in (self.distance, self.scallop) if value is not None]
-        if len(given) != 1 or not 0.0 < given[0] < math.inf:
-            raise ValueError(f"Stepover: expected one of distance and scallop above 0, got {self}")
-
-
-def widths(surface: Surface, grid: Grid, pattern: Pattern, stepover: Stepover, cutter: Cutter, rule: AxisRule) -> Array:
-    """Allowed distances of passes at grid points, (M * N,); NaN where the cutter does not fit into a concave area.
-
-    The cutter may travel in either direction: the smaller width counts.
-    """
-    if stepover.distance is not None:
-        return np.full(len(grid.inside), stepover.distance)
-    assert stepover.scallop is not None
-    patch = grid.patch
-    feed = unit_or_nan(pattern.direction(patch))
-    u, v = (each.ravel() for each in np.meshgrid(grid.u, grid.v, indexing="ij"))
-    curvature = normal_curvatures(surface, u, v, patch, cross(patch.normal, feed))
-    both = []
-    for direction in (feed, -feed):
-        axis, _ = tool_axes(patch.normal, direction, rule, cross(patch.normal, feed))
-        both.append(pass_width(patch.normal, axis, direction, curvature, cutter, stepover.scallop))
-    pole = np.isnan(feed).any(axis=1) | np.isnan(curvature)
-    return np.where(pole, np.inf, np.minimum(*both))
-
-
-def passes_along_u(surface: Surface, stepover: Stepover, cutter: Cutter, rule: AxisRule) -> tuple[Array, float]:
-    """Values of v of passes along u, (P,), and the largest distance, NaN if one is undefined.
-
-    The borders are passes; where a border is a single point, the first pass is half a step away from it.
-    """
-    surface = _face_alone(surface)
-    grid = Grid.over(surface, *_GRID)
-    allowed = widths(surface, grid, Pattern(None, np.zeros(0)), stepover, cutter, rule)
-    widest = _widest(allowed, grid)
-    if math.isnan(widest):
-        return np.zeros(0), widest
-    feed = np.nan_to_num(unit_or_nan(grid.patch.along_u))
-    across = norm(grid.patch.along_v - dot(grid.patch.along_v, feed)[:, None] * feed)
-    need = np.max(grid.shaped(np.where(grid.inside, across / allowed, 0.0)), axis=0)
-    first, last = (0.0 if length > _POINT else 0.5 for length in _lengths_on_borders(grid))
-    need[[0, -1]] = np.where([first, last], need[[1, -2]], need[[0, -1]])  # a line has no direction at a pole
-    return _shares(grid.v, need, first, last, surface.v.closed), widest
-
-
-def levels_of_planes(
-    surface: Surface, plane: Array, stepover: Stepover, cutter: Cutter, rule: AxisRule
-) -> tuple[Array, float]:
-    """Levels of parallel planes, (P,) in mm along their normal; and the largest distance, NaN if one is undefined.
-
-    The first and last plane are half a pass inside the surface. Planes barely intersect an area nearly parallel to
-    them: there they are closer by a factor of 20 at most.
-    """
-    grid = Grid.over(surface, *_GRID)
-    allowed = widths(surface, grid, Pattern(plane, np.zeros(1)), stepover, cutter, rule)
-    height, widest = dot(grid.patch.point, plane)[grid.inside], _widest(allowed, grid)
-    if math.isnan(widest) or not len(height) or np.ptp(height) < _POINT:
-        return np.zeros(0), widest
-    slope = np.sqrt(np.maximum(1.0 - np.square(dot(grid.patch.normal, plane)), _FLATTEST**2))
-    need = np.nan_to_num(1.0 / (allowed * slope))[grid.inside]
-    edges = np.linspace(height.min(), height.max(), _LEVELS + 1)
-    band = np.minimum(np.searchsorted(edges, height, side="right") - 1, _LEVELS - 1)
-    worst = np.zeros(_LEVELS)
-    np.maximum.at(worst, band, need)
-    filled = np.flatnonzero(worst)
-    middle = (edges[:-1] + edges[1:]) / 2
-    at_edges = np.interp(edges, middle[filled], _widened(worst[filled]))
-    return _shares(edges, at_edges, 0.5, 0.5, closed=False), widest
-
-
 def _lengths_on_borders(grid: Grid) -> tuple[float, float]:
     """Lengths of the face along the first and the last line of a grid, mm; 0 at a pole or a tip."""
     inside = grid.shaped(grid.inside)
@@ -234,7 +235,7 @@ def _face_alone(surface: Surface) -> Surface:
     )
 
     def reached(place: float) -> bool:
-        return bool(surface.holds(u, np.full(len(u), place)).any())
+        return bool(surface.contains(u, np.full(len(u), place)).any())
 
     rising = next((row for row in range(len(v)) if reached(v[row])), None)
     if rising is None:

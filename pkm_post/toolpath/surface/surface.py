@@ -38,13 +38,13 @@ class ParameterRange:
         """Difference of the last and the first value."""
         return self.last - self.first
 
-    def within(self, values: Array) -> Array:
+    def normalise(self, values: Array) -> Array:
         """The values brought into the range: wrapped if it is closed, else clamped."""
         if self.closed:
             return self.first + np.mod(values - self.first, self.width)
         return np.clip(values, self.first, self.last)
 
-    def kept(self, values: Array) -> Array:
+    def clamp(self, values: Array) -> Array:
         """The values, clamped to an open range; in a closed range they may make many turns."""
         return values if self.closed else np.clip(values, self.first, self.last)
 
@@ -84,14 +84,14 @@ class Surface:
 
     def at(self, u: Array, v: Array) -> Patch:
         """The surface at columns of parameters; closed ones may exceed their range."""
-        return Patch(*self.evaluate(self.u.within(u), self.v.within(v)))
+        return Patch(*self.evaluate(self.u.normalise(u), self.v.normalise(v)))
 
-    def holds(self, u: Array, v: Array) -> Array:
+    def contains(self, u: Array, v: Array) -> Array:
         """Pairs that belong to the face, (N,)."""
-        found: Array = np.asarray(self.inside(self.u.within(u), self.v.within(v)), dtype=bool)
+        found: Array = np.asarray(self.inside(self.u.normalise(u), self.v.normalise(v)), dtype=bool)
         return found
 
-    def exchanged(self) -> Surface:
+    def swapped(self) -> Surface:
         """The same surface with u and v exchanged; the normals stay."""
 
         def evaluate(u: Array, v: Array) -> tuple[Array, Array, Array, Array]:
@@ -123,7 +123,7 @@ class Grid:
         u = np.linspace(surface.u.first, surface.u.last, rows)
         v = np.linspace(surface.v.first, surface.v.last, columns)
         all_u, all_v = (each.ravel() for each in np.meshgrid(u, v, indexing="ij"))
-        return cls(u, v, surface.at(all_u, all_v), surface.holds(all_u, all_v))
+        return cls(u, v, surface.at(all_u, all_v), surface.contains(all_u, all_v))
 
     def shaped(self, column: Array) -> Array:
         """A column of values as an (M, N, ...) array."""
@@ -162,7 +162,7 @@ def _change_of_normal(span: ParameterRange, values: Array, normal_at: Callable[[
     step = _DIFFERENCE * span.width
     before, after = values - step, values + step
     if not span.closed:
-        before, after = span.within(before), span.within(after)
+        before, after = span.normalise(before), span.normalise(after)
     change: Array = (normal_at(after) - normal_at(before)) / (after - before)[:, None]
     return change
 

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tool axis: from the surface normal by lead and tilt, then clamped to the cone that the machine allows.
 
-Takes normals and feed directions; returns unit tool axes. Angles in rad. Lead tilts the tool forward in the feed
-direction, tilt tilts it sideways.
+Lead tilts the tool forward in the feed direction, tilt tilts it sideways. Along a pass both directions follow the
+pattern. In a link the feed turns about the normal, at the end of a zigzag through the direction of the link, so a tool
+with lead swivels around its contact. Through the normal it would tip from one side of its bottom to the other at once.
+The side does not change. Angles in rad.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, along, angle_between, cross, dot, norm, towards, unit
-from pkm_post.toolpath.surface.contact_path import Course, Pattern
+from pkm_post.toolpath.surface.contact_path import ContactPath, PassPattern
 from pkm_post.toolpath.surface.surface import Patch, unit_or_nan
 
 
@@ -64,10 +66,10 @@ def tool_axes(normal: Array, feed: Array, rule: AxisRule, side: Array | None = N
         t = unit_or_nan(feed - dot(feed, normal)[:, None] * normal)
         sideways = math.cos(rule.tilt) * normal + math.sin(rule.tilt) * (cross(normal, t) if side is None else side)
         wanted = unit_or_nan(math.sin(rule.lead) * t + math.cos(rule.lead) * sideways)
-    return clamped(wanted, np.asarray(rule.cone_axis, dtype=np.float64), rule.cone)
+    return clamp_to_cone(wanted, np.asarray(rule.cone_axis, dtype=np.float64), rule.cone)
 
 
-def clamped(wanted: Array, cone_axis: Array, cone: float) -> tuple[Array, Array]:
+def clamp_to_cone(wanted: Array, cone_axis: Array, cone: float) -> tuple[Array, Array]:
     """The nearest axes inside a cone, (N, 3), and flags of the clamped ones, (N,)."""
     middle = np.broadcast_to(unit(cone_axis), wanted.shape)
     away = angle_between(middle, wanted)
@@ -82,7 +84,7 @@ _NO_DIRECTION = 1e-9
 
 
 @dataclass(frozen=True)
-class Frame:
+class FeedFrame:
     """Unit tangents at N contacts.
 
     Attributes:
@@ -93,23 +95,23 @@ class Frame:
     feed: Array
     side: Array
 
-    def taken(self, rows: Array) -> Frame:
+    def take(self, rows: Array) -> FeedFrame:
         """Some of the rows."""
-        return Frame(self.feed[rows], self.side[rows])
+        return FeedFrame(self.feed[rows], self.side[rows])
 
-    def with_links(self, links: Links, normal: Array, share: Array) -> Frame:
+    def with_links(self, links: LinkEnds, normal: Array, share: Array) -> FeedFrame:
         """The frame, turned where the share of a link is not NaN."""
         linking = ~np.isnan(share)
         if not linking.any():
             return self
-        turned = links.taken(linking).at(normal[linking], share[linking])
+        turned = links.take(linking).at(normal[linking], share[linking])
         feed, side = self.feed.copy(), self.side.copy()
         feed[linking], side[linking] = turned.feed, turned.side
-        return Frame(feed, side)
+        return FeedFrame(feed, side)
 
 
 @dataclass(frozen=True)
-class Links:
+class LinkEnds:
     """Ends of N links.
 
     Attributes:
@@ -118,15 +120,15 @@ class Links:
         way: (N, 3) vector from one contact to the other.
     """
 
-    leaving: Frame
-    coming: Frame
+    leaving: FeedFrame
+    coming: FeedFrame
     way: Array
 
-    def taken(self, rows: Array) -> Links:
+    def take(self, rows: Array) -> LinkEnds:
         """Some of the rows."""
-        return Links(self.leaving.taken(rows), self.coming.taken(rows), self.way[rows])
+        return LinkEnds(self.leaving.take(rows), self.coming.take(rows), self.way[rows])
 
-    def at(self, normal: Array, share: Array) -> Frame:
+    def at(self, normal: Array, share: Array) -> FeedFrame:
         """The frame at a completed share of the link."""
         first, last = (_across(frame.feed, normal) for frame in (self.leaving, self.coming))
         angle = np.arctan2(dot(cross(first, last), normal), dot(first, last))
@@ -134,13 +136,13 @@ class Links:
         wrong_way = (np.abs(angle) > _REVERSAL) & (np.sign(angle) != round_by)
         angle = (np.where(wrong_way, angle + round_by * 2.0 * np.pi, angle) * share)[:, None]
         left = (1.0 - share)[:, None]
-        return Frame(
+        return FeedFrame(
             np.cos(angle) * first + np.sin(angle) * cross(normal, first),
             _across(left * self.leaving.side + (1.0 - left) * self.coming.side, normal),
         )
 
 
-def frame_of(pattern: Pattern, course: Course, patch: Patch, travel: Array) -> Frame:
+def feed_frame(pattern: PassPattern, course: ContactPath, patch: Patch, travel: Array) -> FeedFrame:
     """The frame along passes: that of the pattern, or of travel where the pattern has no direction, as on a flat top.
 
     Args:
@@ -152,7 +154,7 @@ def frame_of(pattern: Pattern, course: Course, patch: Patch, travel: Array) -> F
     line = pattern.direction(patch)
     sense = course.sense[:, None]
     line = _across(np.where(norm(line)[:, None] > _NO_DIRECTION, line, travel * sense), patch.normal)
-    return Frame(sense * line, cross(patch.normal, line))
+    return FeedFrame(sense * line, cross(patch.normal, line))
 
 
 def _across(vectors: Array, normal: Array) -> Array:

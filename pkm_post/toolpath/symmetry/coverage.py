@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Coverage: whether copies of a program surround an axis, and where two overlap.
+"""Coverage: whether copies of a program surround an axis, where two overlap, and how well they meet at seams.
 
 Takes programs, with an axis or a plane; returns angles in rad and distances in mm. Only cuts count. The sector of a
 program is the smallest one that contains its cuts; the space between two separate cuts counts as cut as well.
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from pkm_post.geometry import Array, cross, dot, norm, unit
 from pkm_post.model import Program
-from pkm_post.toolpath.symmetry.passes import chords, pass_rows
+from pkm_post.toolpath.symmetry.passes import cut_chords, pass_rows
 
 ROUND = 2 * np.pi
 _ON_AXIS = 1e-6
@@ -64,6 +64,14 @@ class Coverage:
         return self.gap <= self.spacing + MEET and self.overlap <= MEET
 
 
+@dataclass(frozen=True)
+class Seam:
+    """Where two copies meet: distance of the tips in mm and angle of the tool axes in rad, the worst of all passes."""
+
+    distance: float
+    turn: float
+
+
 def sector(program: Program, point: ArrayLike, axis: ArrayLike) -> Sector | None:
     """The sector in which a program cuts; None where it cuts nothing, or only on the axis.
 
@@ -100,7 +108,7 @@ def _spans(program: Program, point: Array, axis: Array) -> tuple[Array, Array]:
     """Start, 0 to 2 pi, and extent of each straight piece of the cut, (n,) each."""
     first = unit(cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
     second = cross(axis, first)
-    ends = [each - point for each in chords(program)]
+    ends = [each - point for each in cut_chords(program)]
     radius = [norm(each - dot(each, axis)[:, None] * axis) for each in ends]
     angle = [np.arctan2(each @ second, each @ first) for each in ends]
     on_axis = [each < _ON_AXIS for each in radius]
@@ -154,21 +162,13 @@ def mirror_gap(program: Program, point: ArrayLike, normal: ArrayLike) -> tuple[f
     Raises:
         ValueError: the normal has no direction.
     """
-    starts, ends = chords(program)
+    starts, ends = cut_chords(program)
     away = (np.concatenate([starts, ends]) - np.asarray(point, dtype=np.float64)) @ unit(np.asarray(normal, float))
     if not len(away):
         return 0.0, 0.0
     least, most = float(away.min()), float(away.max())
     apart, both = 2 * max(least, -most), 2 * min(most, -least)
     return apart if apart > _ON_PLANE else 0.0, both if both > _ON_PLANE else 0.0
-
-
-@dataclass(frozen=True)
-class Seam:
-    """Where two copies meet: distance of the tips in mm and angle of the tool axes in rad, the worst of all passes."""
-
-    distance: float
-    turn: float
 
 
 def seams(programs: Sequence[Program], sectors: Sequence[Sector]) -> tuple[Seam, ...]:

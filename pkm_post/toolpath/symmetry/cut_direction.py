@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Climb: climb or conventional milling by row, where the program defines it.
+"""Cut direction: climb or conventional milling by row, where the program defines it.
 
 Takes a program; returns a sign by row: +1 climb, -1 conventional, 0 unknown. A cutter that turns clockwise as seen from
 the spindle (M3) climbs where the material is to the right of its path: there its teeth move backwards. The side follows
-from cutter compensation, surface normals, or the caller; the sense from the spindle events or the caller. Without any
-of these the direction is unknown.
+from cutter compensation, surface normals, or the caller; the sense from the spindle events or the caller.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, arc_length, cross, dot, norm
 from pkm_post.model import EventKind, Kind, Program
-from pkm_post.toolpath.symmetry.passes import cutting, steps
+from pkm_post.toolpath.symmetry.passes import cutting_rows, displacements
 
 _TELLING = 0.05
 """Sine of the angle between normal and tool axis below which the cutter stands on the surface and has no side."""
@@ -59,7 +58,7 @@ def material_side(program: Program, given: int = 0) -> Array:
         program: compensated or not: 2D compensation to the left (G41) has the material to its right.
         given: the side where neither compensation nor normals of the program define it.
     """
-    along = steps(program)
+    along = displacements(program)
     arc = program.kind == Kind.ARC
     along[arc] = cross(program.arc_axis[arc], program.position[arc] - program.arc_centre[arc])
     length = norm(along)
@@ -70,7 +69,7 @@ def material_side(program: Program, given: int = 0) -> Array:
     by_compensation = np.sign(program.side_offset) * seen_from
     known_normal = np.all(np.isfinite(program.normal), axis=1)
     side = np.where(program.side_offset != 0, by_compensation, np.where(known_normal, by_normal, given))
-    return np.where(cutting(program) & (length > _NO_MOVE), side, 0).astype(np.int8)
+    return np.where(cutting_rows(program) & (length > _NO_MOVE), side, 0).astype(np.int8)
 
 
 def spindle_sense(program: Program, before: int = 0) -> Array:
@@ -102,8 +101,8 @@ def cut_directions(program: Program, given_side: int = 0, spindle_before: int = 
 def cut_lengths(program: Program, given_side: int = 0, spindle_before: int = 0) -> CutLengths:
     """Distances cut by climb milling, by conventional milling, and in unknown direction."""
     directions = cut_directions(program, given_side, spindle_before)
-    length, rows = norm(steps(program)), np.flatnonzero(program.kind == Kind.ARC)
+    length, rows = norm(displacements(program)), np.flatnonzero(program.kind == Kind.ARC)
     centre, axis = program.arc_centre[rows], program.arc_axis[rows]
     length[rows] = arc_length(program.position[rows - 1], program.position[rows], centre, axis)
-    cuts = cutting(program)
+    cuts = cutting_rows(program)
     return CutLengths(*(float(length[cuts & (directions == sign)].sum()) for sign in (1, -1, 0)))

@@ -5,6 +5,9 @@ A lead is the path between a pass and the travel moves, by its distance from the
 are exchanged: downward moves take feeds and stations of the plunge, upward moves those of the lift, at either end of
 the pass. So a plunge keeps its feed, and a second reversal restores both. A rapid move never reaches the start of a
 pass, and goes no deeper than before.
+
+If the tool axis is the same at both ends of a pass, heights are measured along it, so a clearance plane stays a plane;
+otherwise, or where a program keeps one distance to all its passes, heights are distances from either end.
 """
 
 from __future__ import annotations
@@ -16,12 +19,16 @@ import numpy as np
 
 from pkm_post.geometry import Array, along, cross, dot, norm, towards
 from pkm_post.model import Program
-from pkm_post.toolpath.symmetry.passes import Link, lifts
+from pkm_post.toolpath.symmetry.passes import Link, axial_moves
 
 LEVEL = 1e-6
 """mm within which two heights are equal, with six decimals."""
 _ON_LINE = 1e-5
 """mm and rad: largest distance of a station from the motion that it divides, with six decimals."""
+_ONE_AXIS = 1e-3
+"""rad within which tool axes count as equal."""
+_ONE_HEIGHT = 1e-5
+"""mm within which heights count as equal, with six decimals."""
 
 
 @dataclass(frozen=True)
@@ -46,9 +53,72 @@ class Rows:
         return given[0] if tip is None else tip, given[1] if axis is None else axis
 
 
-def as_is(program: Program, rows: Array) -> Rows:
+def unchanged_rows(program: Program, rows: Array) -> Rows:
     """Rows of the old program, unchanged."""
     return Rows(rows, rows, program.feed[rows])
+
+
+@dataclass(frozen=True)
+class LeadPair:
+    """The leads of an open pass.
+
+    Attributes:
+        plunge: the approach.
+        lift: the departure.
+        feed: feed of the first row of the pass, mm/s: that of the plunge where the pass was reached only by rapid
+            moves.
+    """
+
+    plunge: Lead
+    lift: Lead
+    feed: float
+
+    def is_high(self) -> bool:
+        """Whether the lift ends at or above the height that rapid moves came down to, or there is no lift."""
+        return not len(self.lift.way) or bool(self.lift.height[-1] >= self.plunge.rapid_to - LEVEL)
+
+    def ways(self) -> tuple[Rows, Rows, int, int]:
+        """The rows to the pass and from it, and the old rows that end where the former begin and the latter end."""
+        slow = self.plunge.feed[0] if np.isfinite(self.plunge.feed[:1]).any() else self.feed
+        enter, leave = lift_as_plunge(self.lift, self.plunge, slow), plunge_as_lift(self.plunge, self.lift, slow)
+        return enter, leave, int(self.lift.point[-1]), int(self.plunge.point[-1])
+
+
+def lead_pairs(program: Program, runs: Array, between: list[Link], whole: Array) -> Mapping[int, LeadPair]:
+    """The leads of the open passes by their number.
+
+    Args:
+        program: the old one.
+        runs: (P, 2) its passes.
+        between: the P + 1 links.
+        whole: (P,) closed passes.
+    """
+    made = {}
+    for number in np.flatnonzero(~whole).tolist():
+        first, behind = runs[number].tolist()
+        plunge = _approach_lead(program, between[number].approach, first)
+        lift = _departure_lead(program, between[number + 1].departure, behind)
+        made[number] = LeadPair(plunge, lift, float(program.feed[first]))
+    by_distance = _by_distance(list(made.values()))
+    return {number: each if by_distance else _on_planes(each) for number, each in made.items()}
+
+
+def _by_distance(leads: list[LeadPair]) -> bool:
+    """Whether rapid moves come down to one distance from all passes rather than to one plane."""
+    distance = np.array([each.plunge.rapid_to for each in leads])
+    start, axis = (np.array([getattr(each.plunge, name)[0] for each in leads]) for name in ("position", "tool_axis"))
+    if len(leads) < 2 or np.ptp(distance) > _ONE_HEIGHT:
+        return False
+    steady = bool((norm(axis - axis[0]) < _ONE_AXIS).all())
+    return not steady or float(np.ptp(dot(start, axis[:1]))) > _ONE_HEIGHT
+
+
+def _on_planes(pair: LeadPair) -> LeadPair:
+    """The leads with heights from one plane, if it is normal to both tool axes, and rapid moves end above the pass."""
+    if norm(pair.plunge.tool_axis[0] - pair.lift.tool_axis[0]) > _ONE_AXIS:
+        return pair
+    plunge, lift = (above_plane(lead, pair.plunge.position[0]) for lead in (pair.plunge, pair.lift))
+    return LeadPair(plunge, lift, pair.feed) if plunge.rapid_to > lift.height[0] + _ONE_HEIGHT else pair
 
 
 @dataclass(frozen=True)
@@ -90,12 +160,12 @@ class Lead:
         return float(self.height[rapid[0] if len(rapid) else -1])
 
 
-def approach(program: Program, rows: Array, first: int) -> Lead:
+def _approach_lead(program: Program, rows: Array, first: int) -> Lead:
     """The lead of the approach to the pass that begins with the row ``first``."""
     return _lead(program, np.append(first - 1, rows[::-1] - 1), rows[::-1])
 
 
-def departure(program: Program, rows: Array, behind: int) -> Lead:
+def _departure_lead(program: Program, rows: Array, behind: int) -> Lead:
     """The lead of the departure from the pass that ends before the row ``behind``."""
     return _lead(program, np.append(behind - 1, rows), rows)
 
@@ -103,7 +173,7 @@ def departure(program: Program, rows: Array, behind: int) -> Lead:
 def _lead(program: Program, point: Array, way: Array) -> Lead:
     position, axis, feed = program.position[point], program.tool_axis[point], program.feed[way]
     height = np.append(0.0, np.cumsum(norm(np.diff(position, axis=0))))
-    made = Lead(position, axis, point, way, feed, np.isfinite(feed) & (lifts(program)[way] == 0), height)
+    made = Lead(position, axis, point, way, feed, np.isfinite(feed) & (axial_moves(program)[way] == 0), height)
     # A move that turns the tool and changes from rapid to feed is a divided rapid lift.
     turning = norm(np.diff(axis, axis=0)[:-1]) > _ON_LINE
     divided = turning & _straight_on(made) & np.isnan(feed[1:])
@@ -116,7 +186,7 @@ def above_plane(lead: Lead, origin: Array) -> Lead:
     return replace(lead, height=np.maximum.accumulate(height))
 
 
-def gone_down(lead: Lead, plunge: Lead, slow: float) -> Rows:
+def lift_as_plunge(lead: Lead, plunge: Lead, slow: float) -> Rows:
     """A lead run towards the pass with feeds and stations of a plunge.
 
     Args:
@@ -133,7 +203,7 @@ def gone_down(lead: Lead, plunge: Lead, slow: float) -> Rows:
     return Rows(made.point[ends], made.way[::-1], feed[::-1], True, made.position[ends], made.tool_axis[ends])
 
 
-def gone_up(lead: Lead, lift: Lead, slow: float) -> Rows:
+def plunge_as_lift(lead: Lead, lift: Lead, slow: float) -> Rows:
     """A lead run away from the pass with feeds and stations of a lift.
 
     A plunge not along the tool axis is never reversed as a rapid move: where the lift is rapid, it keeps its feed. A
@@ -212,72 +282,3 @@ def _between(values: Array, row: Array, share: Array) -> Array:
     shares = share.reshape(-1, *[1] * (values.ndim - 1))
     between: Array = (1.0 - shares) * values[row] + shares * values[row + 1]
     return between
-
-
-_ONE_AXIS = 1e-3
-"""rad within which tool axes count as equal."""
-_ONE_HEIGHT = 1e-5
-"""mm within which heights count as equal, with six decimals."""
-
-
-@dataclass(frozen=True)
-class Exchange:
-    """The leads of an open pass.
-
-    Attributes:
-        plunge: the approach.
-        lift: the departure.
-        feed: feed of the first row of the pass, mm/s: that of the plunge where the pass was reached only by rapid
-            moves.
-    """
-
-    plunge: Lead
-    lift: Lead
-    feed: float
-
-    def is_high(self) -> bool:
-        """Whether the lift ends at or above the height that rapid moves came down to, or there is no lift."""
-        return not len(self.lift.way) or bool(self.lift.height[-1] >= self.plunge.rapid_to - LEVEL)
-
-    def ways(self) -> tuple[Rows, Rows, int, int]:
-        """The rows to the pass and from it, and the old rows that end where the former begin and the latter end."""
-        slow = self.plunge.feed[0] if np.isfinite(self.plunge.feed[:1]).any() else self.feed
-        enter, leave = gone_down(self.lift, self.plunge, slow), gone_up(self.plunge, self.lift, slow)
-        return enter, leave, int(self.lift.point[-1]), int(self.plunge.point[-1])
-
-
-def exchanges(program: Program, runs: Array, between: list[Link], whole: Array) -> Mapping[int, Exchange]:
-    """The leads of the open passes by their number.
-
-    Args:
-        program: the old one.
-        runs: (P, 2) its passes.
-        between: the P + 1 links.
-        whole: (P,) closed passes.
-    """
-    made = {}
-    for number in np.flatnonzero(~whole).tolist():
-        first, behind = runs[number].tolist()
-        plunge = approach(program, between[number].approach, first)
-        lift = departure(program, between[number + 1].departure, behind)
-        made[number] = Exchange(plunge, lift, float(program.feed[first]))
-    by_distance = _by_distance(list(made.values()))
-    return {number: each if by_distance else _on_planes(each) for number, each in made.items()}
-
-
-def _by_distance(leads: list[Exchange]) -> bool:
-    """Whether rapid moves come down to one distance from all passes rather than to one plane."""
-    distance = np.array([each.plunge.rapid_to for each in leads])
-    start, axis = (np.array([getattr(each.plunge, name)[0] for each in leads]) for name in ("position", "tool_axis"))
-    if len(leads) < 2 or np.ptp(distance) > _ONE_HEIGHT:
-        return False
-    steady = bool((norm(axis - axis[0]) < _ONE_AXIS).all())
-    return not steady or float(np.ptp(dot(start, axis[:1]))) > _ONE_HEIGHT
-
-
-def _on_planes(pair: Exchange) -> Exchange:
-    """The leads with heights from one plane, if it is normal to both tool axes, and rapid moves end above the pass."""
-    if norm(pair.plunge.tool_axis[0] - pair.lift.tool_axis[0]) > _ONE_AXIS:
-        return pair
-    plunge, lift = (above_plane(lead, pair.plunge.position[0]) for lead in (pair.plunge, pair.lift))
-    return Exchange(plunge, lift, pair.feed) if plunge.rapid_to > lift.height[0] + _ONE_HEIGHT else pair

@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Passes: the runs of rows in which the cutter cuts, and the moves between them.
+"""Passes: the runs of rows in which the cutter cuts, and the links between them.
 
 Takes a program; returns flags by row, and first and last rows of the passes. A pass is a run of feed moves between
 rapid moves and plunges. Moves straight along the tool axis belong to no pass: downwards they approach one, upwards they
 leave one.
+
+A link is departure from a pass, travel, and approach to the next one. Departure and approach run along the tool axis,
+and include oblique plunges and lifts next to the pass and rapid moves that turn the tool on the path; without such
+moves they are the rapid move next to the pass. Before the first pass all but the approach is travel, and after the last
+one all but the departure.
 """
 
 from __future__ import annotations
@@ -23,23 +28,45 @@ _SLANTED = 0.5
 """Sine of the angle to the plane across the tool axis above which a move is a plunge or lift."""
 _ARC_STEPS = 24
 """Points per arc: 15 degrees apart for a full circle."""
+_SAME = 1e-6
+"""mm, and difference of unit vectors: saved documents have six decimals."""
+_STEEP = 0.7
+"""Cosine of the angle between a rapid move that turns the tool and the tool axis, above which it goes up or down."""
+_STRAIGHT = 1.0 - 1e-6
+"""Cosine of the angle between two moves in line."""
 
 
-def steps(program: Program) -> Array:
+def pass_rows(program: Program) -> Array:
+    """The passes, (P, 2): the first row, and the one after the last row."""
+    edge = np.diff(np.concatenate([[0], cutting_rows(program).astype(np.int8), [0]]))
+    return np.column_stack([np.flatnonzero(edge > 0), np.flatnonzero(edge < 0)])
+
+
+def cutting_rows(program: Program) -> Array:
+    """Rows that belong to a pass, (N,). A row without motion belongs with the row before."""
+    cuts = (program.kind != Kind.RAPID) & (axial_moves(program) == 0)
+    known = moving_rows(program)
+    known[:1], cuts[:1] = True, False
+    latest = np.maximum.accumulate(np.where(known, np.arange(len(program)), 0))
+    found: Array = cuts[latest] & (program.kind != Kind.RAPID)
+    return found
+
+
+def moving_rows(program: Program) -> Array:
+    """Rows on which tip or tool axis move, (N,); not row 0."""
+    turn = np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1])
+    flags: Array = (norm(displacements(program)) > _NO_MOVE) | (norm(turn) > _NO_MOVE) | (program.kind == Kind.ARC)
+    return flags
+
+
+def displacements(program: Program) -> Array:
     """Displacement of the tip on each row, (N, 3) in mm; zero on row 0, whose start is unknown."""
     return np.diff(program.position, axis=0, prepend=program.position[:1])
 
 
-def moving(program: Program) -> Array:
-    """Rows on which tip or tool axis move, (N,); not row 0."""
-    turn = np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1])
-    flags: Array = (norm(steps(program)) > _NO_MOVE) | (norm(turn) > _NO_MOVE) | (program.kind == Kind.ARC)
-    return flags
-
-
-def lifts(program: Program) -> Array:
+def axial_moves(program: Program) -> Array:
     """+1 on straight rows up along a steady tool axis, -1 down along it, 0 on all others, (N,)."""
-    way = steps(program)
+    way = displacements(program)
     length = norm(way)
     direction = way / np.maximum(length, _NO_MOVE)[:, None]
     turn = norm(np.diff(program.tool_axis, axis=0, prepend=program.tool_axis[:1]))
@@ -49,9 +76,9 @@ def lifts(program: Program) -> Array:
     return up.astype(np.int8) - down.astype(np.int8)
 
 
-def rises(program: Program) -> Array:
+def axial_rise(program: Program) -> Array:
     """Rise of straight rows along the tool axis as a share of their length, (N,): 1 along it, 0 on other rows."""
-    way = steps(program)
+    way = displacements(program)
     axis = program.tool_axis + np.concatenate([program.tool_axis[:1], program.tool_axis[:-1]])
     size = norm(way) * norm(axis)
     share: Array = np.where(
@@ -65,7 +92,7 @@ def without_plunges(program: Program, runs: Array) -> Array:
 
     These are straight rows, down at the start and up at the end, whose feed differs from that of the adjacent cut.
     """
-    rise = rises(program)
+    rise = axial_rise(program)
     inner = np.array(runs)
     for number, (first, behind) in enumerate(runs.tolist()):
         rows = np.arange(first, behind)
@@ -83,25 +110,9 @@ def _plunging(down: Array, feed: Array) -> int:
     return int(np.argmax(np.append(feed[:count] == feed[count], True)))
 
 
-def cutting(program: Program) -> Array:
-    """Rows that belong to a pass, (N,). A row without motion belongs with the row before."""
-    cuts = (program.kind != Kind.RAPID) & (lifts(program) == 0)
-    known = moving(program)
-    known[:1], cuts[:1] = True, False
-    latest = np.maximum.accumulate(np.where(known, np.arange(len(program)), 0))
-    found: Array = cuts[latest] & (program.kind != Kind.RAPID)
-    return found
-
-
-def pass_rows(program: Program) -> Array:
-    """The passes, (P, 2): the first row, and the one after the last row."""
-    edge = np.diff(np.concatenate([[0], cutting(program).astype(np.int8), [0]]))
-    return np.column_stack([np.flatnonzero(edge > 0), np.flatnonzero(edge < 0)])
-
-
-def chords(program: Program) -> tuple[Array, Array]:
+def cut_chords(program: Program) -> tuple[Array, Array]:
     """Starts and ends of the cuts, (n, 3) each in mm: straight rows as they are, arcs as short chords."""
-    rows = np.flatnonzero(cutting(program))
+    rows = np.flatnonzero(cutting_rows(program))
     arc = program.kind[rows] == Kind.ARC
     start, end = program.position[rows - 1], program.position[rows]
     centre, axis = program.arc_centre[rows[arc]], program.arc_axis[rows[arc]]
@@ -113,14 +124,6 @@ def chords(program: Program) -> tuple[Array, Array]:
         np.concatenate([start[~arc], points[:, :-1].reshape(-1, 3)]),
         np.concatenate([end[~arc], points[:, 1:].reshape(-1, 3)]),
     )
-
-
-_SAME = 1e-6
-"""mm, and difference of unit vectors: saved documents have six decimals."""
-_STEEP = 0.7
-"""Cosine of the angle between a rapid move that turns the tool and the tool axis, above which it goes up or down."""
-_STRAIGHT = 1.0 - 1e-6
-"""Cosine of the angle between two moves in line."""
 
 
 @dataclass(frozen=True)
@@ -147,7 +150,7 @@ def links(program: Program, runs: Array) -> list[Link]:
         program: of N rows.
         runs: (P, 2) its passes.
     """
-    swings, moves, rapid = _swings(program), moving(program), program.kind == Kind.RAPID
+    swings, moves, rapid = _swings(program), moving_rows(program), program.kind == Kind.RAPID
     up, down = _leading_ways(program, runs, swings)
     moves[:1] = True
     firsts, lasts = np.append(0, runs[:, 1]), np.append(runs[:, 0], len(program))
@@ -178,16 +181,16 @@ def _turns(program: Program) -> Array:
 
 def _swings(program: Program) -> Array:
     """Rapid moves that turn the tool while going up or down, (N,)."""
-    flags: Array = _turns(program) & (norm(steps(program)) >= _SAME) & (np.abs(rises(program)) > _STEEP)
+    flags: Array = _turns(program) & (norm(displacements(program)) >= _SAME) & (np.abs(axial_rise(program)) > _STEEP)
     return flags
 
 
 def _leading_ways(program: Program, runs: Array, swings: Array) -> tuple[Array, Array]:
     """Rows that may lead up from a pass, and down to one, (N,) each."""
-    rise, lift = rises(program), lifts(program)
-    plunges = cutting(program) & ~_within(runs, len(program))
+    rise, lift = axial_rise(program), axial_moves(program)
+    plunges = cutting_rows(program) & ~_within(runs, len(program))
     leads = plunges | swings | _in_line(program, plunges)
-    here = _turns(program) & (norm(steps(program)) < _SAME)
+    here = _turns(program) & (norm(displacements(program)) < _SAME)
     return (lift > 0) | (leads & (rise > 0)) | here, (lift < 0) | (leads & (rise < 0)) | here
 
 
@@ -200,7 +203,7 @@ def _within(runs: Array, rows: int) -> Array:
 
 def _in_line(program: Program, plunges: Array) -> Array:
     """Rapid moves in line with an adjacent plunge or lift, (N,)."""
-    way = steps(program)
+    way = displacements(program)
     direction = way / np.maximum(norm(way), _SAME)[:, None]
     ahead = np.append(dot(direction[:-1], direction[1:]) > _STRAIGHT, False)
     behind = np.append(False, ahead[:-1])
@@ -209,7 +212,13 @@ def _in_line(program: Program, plunges: Array) -> Array:
     return flags
 
 
-def closed(program: Program, runs: Array) -> Array:
+def _leading(along: Array, rapid: Array) -> int:
+    """Number of rows from the pass outwards along the tool axis; if none, 1 where the first one is rapid."""
+    run = int(np.argmin(np.append(along, False)))
+    return run or int(np.any(rapid[:1]))
+
+
+def closed_passes(program: Program, runs: Array) -> Array:
     """Passes that end at the pose they begin with, (P,)."""
     begin, end = runs[:, 0] - 1, runs[:, 1] - 1
     off = norm(program.position[begin] - program.position[end])
@@ -222,9 +231,3 @@ def same_pose(program: Program, row: int, other: int) -> bool:
     """Whether tip and tool axis are the same at the ends of two rows."""
     off = norm(program.position[row] - program.position[other])
     return bool(off < _SAME and norm(program.tool_axis[row] - program.tool_axis[other]) < _SAME)
-
-
-def _leading(along: Array, rapid: Array) -> int:
-    """Number of rows from the pass outwards along the tool axis; if none, 1 where the first one is rapid."""
-    run = int(np.argmin(np.append(along, False)))
-    return run or int(np.any(rapid[:1]))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Symmetry: the other quarters of a symmetric workpiece, from the cutter locations of the first one.
+"""Transformation: a program mirrored, rotated or shifted, and copies of a program concatenated.
 
-Takes a program and a matrix T_C, both in the work frame {C}; returns the program of the mirrored, rotated or translated
-workpiece. q' = T_C q, k' = R k [paper eq. 12, 13]. The axis of an arc is an axial vector: it becomes det(R) R axis, so
-a mirror reverses the sense of arcs while each stays right-handed about its axis.
+Takes a program and a matrix T_C, both in the work frame {C}: q' = T_C q, k' = R k [paper eq. 12, 13]. The axis of an
+arc is an axial vector: it becomes det(R) R axis, so a mirror reverses the sense of arcs while each stays right-handed
+about its axis.
 
 The order of the rows, and so the order of cuts, is kept. Spindle events keep their sense, because the mirror image of a
 right-hand cutter would be a left-hand one: a mirror turns climb milling into conventional milling.
@@ -23,6 +23,48 @@ from pkm_post.model import MOTION_COLUMNS, OPTIONAL_COLUMNS, Diagnostic, Place, 
 
 _RIGID = 1e-6
 """Largest deviation of R^T R from identity, and of the last row from 0 0 0 1: matrices are typed with six decimals."""
+
+
+def mirror(point: ArrayLike, normal: ArrayLike) -> Array:
+    """The reflection at a plane, (4, 4): q' = q - 2 n n.(q - p).
+
+    Args:
+        point: (3,) a point p of the plane, mm.
+        normal: (3,) direction of its normal n, of any length above zero.
+
+    Raises:
+        ValueError: the normal has no direction.
+    """
+    n = unit(np.asarray(normal, dtype=np.float64))
+    return _about(point, np.eye(3) - 2 * np.outer(n, n))
+
+
+def rotation(point: ArrayLike, axis: ArrayLike, angle: float) -> Array:
+    """The right-handed rotation about a line, (4, 4).
+
+    Args:
+        point: (3,) a point of the line, mm.
+        axis: (3,) direction of the line, of any length above zero.
+        angle: rad.
+
+    Raises:
+        ValueError: the axis has no direction.
+    """
+    x, y, z = unit(np.asarray(axis, dtype=np.float64))
+    across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return _about(point, np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * (across @ across))
+
+
+def mirrors(matrix: ArrayLike) -> bool:
+    """Whether the matrix changes handedness: climb milling becomes conventional milling, and vice versa.
+
+    Args:
+        matrix: (4, 4) homogeneous matrix.
+
+    Raises:
+        ValueError: the matrix is not (4, 4).
+    """
+    return bool(np.linalg.det(_matrix(matrix)[:3, :3]) < 0)
 
 
 def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, tuple[Diagnostic, ...]]:
@@ -83,48 +125,6 @@ def _compensation(program: Program, turn: Array, hand: float) -> tuple[Array | N
     if np.any((np.abs(along) < 1 - _RIGID)[program.plane] & (program.side_offset != 0)):
         return None, program.side_offset
     return plane, program.side_offset * (np.sign(along) * hand)[program.plane]
-
-
-def mirror(point: ArrayLike, normal: ArrayLike) -> Array:
-    """The reflection at a plane, (4, 4): q' = q - 2 n n.(q - p).
-
-    Args:
-        point: (3,) a point p of the plane, mm.
-        normal: (3,) direction of its normal n, of any length above zero.
-
-    Raises:
-        ValueError: the normal has no direction.
-    """
-    n = unit(np.asarray(normal, dtype=np.float64))
-    return _about(point, np.eye(3) - 2 * np.outer(n, n))
-
-
-def rotation(point: ArrayLike, axis: ArrayLike, angle: float) -> Array:
-    """The right-handed rotation about a line, (4, 4).
-
-    Args:
-        point: (3,) a point of the line, mm.
-        axis: (3,) direction of the line, of any length above zero.
-        angle: rad.
-
-    Raises:
-        ValueError: the axis has no direction.
-    """
-    x, y, z = unit(np.asarray(axis, dtype=np.float64))
-    across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return _about(point, np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * (across @ across))
-
-
-def mirrors(matrix: ArrayLike) -> bool:
-    """Whether the matrix changes handedness: climb milling becomes conventional milling, and vice versa.
-
-    Args:
-        matrix: (4, 4) homogeneous matrix.
-
-    Raises:
-        ValueError: the matrix is not (4, 4).
-    """
-    return bool(np.linalg.det(_matrix(matrix)[:3, :3]) < 0)
 
 
 def _about(point: ArrayLike, turn: Array) -> Array:

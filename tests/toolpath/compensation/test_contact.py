@@ -10,7 +10,7 @@ from programs import program
 
 from pkm_post.model import Event, EventKind, Kind, Place
 from pkm_post.toolpath.compensation.compensate import compensate_tips
-from pkm_post.toolpath.compensation.contact import sideways, tip_from_contact, tip_shift
+from pkm_post.toolpath.compensation.contact import radial_directions, tip_from_contact, tip_shift
 from pkm_post.toolpath.compensation.cutter import Cutter
 
 MICRON = 1e-3
@@ -384,7 +384,7 @@ def upright(count):
 
 def test_direction_is_where_the_normal_leans():
     azimuth = np.linspace(0.0, 6.0, 50)
-    m, near = sideways(np.zeros((50, 3)), leaning(0.5, azimuth), upright(50), E)
+    m, near = radial_directions(np.zeros((50, 3)), leaning(0.5, azimuth), upright(50), E)
     assert np.allclose(m, leaning(1.0, azimuth), rtol=0, atol=1e-12)
     assert not near.any()
 
@@ -394,7 +394,9 @@ def test_noise_of_rounded_normals_is_averaged_out():
     count, sine = 400, 1e-3
     true = leaning(1.0, np.linspace(0.0, 0.5, count))
     rounded = leaning(sine, np.linspace(0.0, 0.5, count)) + np.random.default_rng(2).normal(0.0, 3e-5, (count, 3))
-    m, near = sideways(np.zeros((count, 3)), rounded / np.linalg.norm(rounded, axis=1)[:, None], upright(count), E)
+    m, near = radial_directions(
+        np.zeros((count, 3)), rounded / np.linalg.norm(rounded, axis=1)[:, None], upright(count), E
+    )
     raw = rounded[:, :2] / np.linalg.norm(rounded[:, :2], axis=1)[:, None]
     assert near.all()
     error, raw_error = np.linalg.norm(m - true, axis=1), np.linalg.norm(raw - true[:, :2], axis=1)
@@ -404,7 +406,7 @@ def test_noise_of_rounded_normals_is_averaged_out():
 def test_averaging_never_lets_the_cutter_into_the_surface_by_more_than_a_tenth_of_a_micron():
     rng = np.random.default_rng(1)
     normals = leaning(10 ** rng.uniform(-5.5, -1.0, 3000), rng.uniform(0.0, 2 * np.pi, 3000))
-    m, near = sideways(np.zeros((3000, 3)), normals, upright(3000), E)
+    m, near = radial_directions(np.zeros((3000, 3)), normals, upright(3000), E)
     exact = normals - normals[:, 2:] * Z
     exact /= np.linalg.norm(exact, axis=1)[:, None]
     into_surface = E * np.einsum("nj,nj->n", exact - m, normals)
@@ -415,7 +417,7 @@ def test_averaging_never_lets_the_cutter_into_the_surface_by_more_than_a_tenth_o
 
 def test_only_parallel_rows_are_carried():
     normals = leaning(np.array([0.5, 0.0, 1e-7, 0.5]), np.array([0.0, 0.0, 2.0, 1.0]))
-    m, near = sideways(np.outer(np.arange(4.0), Y), normals, upright(4), E)
+    m, near = radial_directions(np.outer(np.arange(4.0), Y), normals, upright(4), E)
     assert np.allclose(m[:3], X, rtol=0, atol=1e-12)
     assert np.allclose(m[3], [np.cos(1.0), np.sin(1.0), 0.0], rtol=0, atol=1e-12)
     assert not near.any()

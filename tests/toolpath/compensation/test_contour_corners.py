@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from contour_programs import contour
 
-from pkm_post.toolpath.compensation.contour_corners import Curves, Joint, joints, meetings
+from pkm_post.toolpath.compensation.contour_corners import OffsetCurves, Transition, intersections, transitions
 from pkm_post.toolpath.compensation.contour_elements import OffsetOptions, elements_of
 
 PRINTED = 5.1e-5
@@ -26,9 +26,9 @@ def joint(pieces, offset, options=CHORDS, start=(-80.0, 0.0)):
     """The joint at the origin, between the second and the third piece: kind, and the points of the path there."""
     elements, faults = elements_of(contour(start, pieces, offset))
     assert faults == ()
-    found = joints(elements, np.array([1]), np.array([2]), options, np.array([options.corners == "arc"]))
-    between = found.between[0][~np.isnan(found.between[0, :, 0])]
-    return Joint(found.kind[0]), np.vstack([found.first, between, found.last])[:, :2]
+    found = transitions(elements, np.array([1]), np.array([2]), options, np.array([options.corners == "arc"]))
+    between = found.added[0][~np.isnan(found.between[0, :, 0])]
+    return Transition(found.kind[0]), np.vstack([found.first, between, found.last])[:, :2]
 
 
 def corner(turn_deg, offset, options=CHORDS):
@@ -39,16 +39,16 @@ def corner(turn_deg, offset, options=CHORDS):
 @pytest.mark.parametrize(
     ("turn", "offset", "kind", "points"),
     [
-        (90, 5, Joint.SHORTENED, [(-5, 5), (-5, 5)]),
-        (135, 5, Joint.SHORTENED, [(-12.0711, 5), (-12.0711, 5)]),
-        (30, 5, Joint.SHORTENED, [(-1.3397, 5), (-1.3397, 5)]),
-        (-90, -5, Joint.SHORTENED, [(-5, -5), (-5, -5)]),
-        (-30, 5, Joint.EXTENDED, [(1.3397, 5), (1.3397, 5)]),
-        (-90, 5, Joint.EXTENDED, [(5, 5), (5, 5)]),
-        (90, -5, Joint.EXTENDED, [(5, -5), (5, -5)]),
-        (-120, 5, Joint.CHORD, [(0, 5), (5, 5), (6.8301, 1.8301), (4.3301, -2.5), (4.3301, -2.5)]),
-        (-150, 5, Joint.CHORD, [(0, 5), (5, 5), (6.8301, -1.8301), (2.5, -4.3301), (2.5, -4.3301)]),
-        (135, -5, Joint.CHORD, [(0, -5), (5, -5), (7.0711, 0), (3.5355, 3.5355), (3.5355, 3.5355)]),
+        (90, 5, Transition.SHORTENED, [(-5, 5), (-5, 5)]),
+        (135, 5, Transition.SHORTENED, [(-12.0711, 5), (-12.0711, 5)]),
+        (30, 5, Transition.SHORTENED, [(-1.3397, 5), (-1.3397, 5)]),
+        (-90, -5, Transition.SHORTENED, [(-5, -5), (-5, -5)]),
+        (-30, 5, Transition.EXTENDED, [(1.3397, 5), (1.3397, 5)]),
+        (-90, 5, Transition.EXTENDED, [(5, 5), (5, 5)]),
+        (90, -5, Transition.EXTENDED, [(5, -5), (5, -5)]),
+        (-120, 5, Transition.CHORD, [(0, 5), (5, 5), (6.8301, 1.8301), (4.3301, -2.5), (4.3301, -2.5)]),
+        (-150, 5, Transition.CHORD, [(0, 5), (5, 5), (6.8301, -1.8301), (2.5, -4.3301), (2.5, -4.3301)]),
+        (135, -5, Transition.CHORD, [(0, -5), (5, -5), (7.0711, 0), (3.5355, 3.5355), (3.5355, 3.5355)]),
     ],
 )
 def test_worked_numbers_of_two_lines(turn, offset, kind, points):
@@ -60,14 +60,14 @@ def test_worked_numbers_of_two_lines(turn, offset, kind, points):
 def test_worked_numbers_of_a_line_and_an_arc():
     # The line y = 4 meets the circle of radius 6 about (-6, 8) at x = -1.5279 and at -10.4721, which is passed before.
     kind, path = joint([(-40.0, 0.0), (0.0, 0.0), (-6.0, 18.0, -6.0, 8.0, 1), (-46.0, 18.0)], 4.0)
-    assert kind is Joint.SHORTENED
+    assert kind is Transition.SHORTENED
     np.testing.assert_allclose(path, [(-1.5279, 4), (-1.5279, 4)], atol=PRINTED)
 
 
 def test_an_arc_and_a_line_meet_where_the_line_and_the_arc_do_the_other_way_round():
     pieces = [(-6.0, 18.0), (0.0, 0.0, -6.0, 8.0, -1), (-40.0, 0.0), (-80.0, 0.0)]
     kind, path = joint(pieces, -4.0, start=(-46.0, 18.0))
-    assert kind is Joint.SHORTENED
+    assert kind is Transition.SHORTENED
     np.testing.assert_allclose(path, [(-1.5279, 4), (-1.5279, 4)], atol=PRINTED)
 
 
@@ -75,7 +75,7 @@ def test_two_arcs_meet_at_the_distance_of_the_tool_from_both():
     # Two bulges of radius 10 side by side, with a notch at the origin: the tool of 3 sits in it at equal distances.
     pieces = [(-16.0, 0.0), (0.0, 0.0, -8.0, -6.0, -1), (16.0, 0.0, 8.0, -6.0, -1), (16.0, -20.0)]
     kind, path = joint(pieces, 3.0, start=(-16.0, -20.0))
-    assert kind is Joint.SHORTENED
+    assert kind is Transition.SHORTENED
     np.testing.assert_allclose(path[0], [0.0, np.sqrt(13.0**2 - 8.0**2) - 6.0], atol=ROUNDING)
 
 
@@ -93,7 +93,7 @@ def test_arcs_are_extended_by_their_tangents(pieces, count):
     radius = 3.0
     elements, _ = elements_of(contour((-40.0, -40.0), pieces, radius))
     kind, path = joint(pieces, radius, start=(-40.0, -40.0))
-    assert (kind, len(path)) == (Joint.EXTENDED, count)
+    assert (kind, len(path)) == (Transition.EXTENDED, count)
     tangents = elements.tangent[1, 1, :2], elements.tangent[2, 0, :2]
     sides = [radius * np.array([-t[1], t[0]]) for t in tangents]
     off = [np.abs((path - side) @ [-t[1], t[0]]) for t, side in zip(tangents, sides, strict=True)]
@@ -110,7 +110,7 @@ def test_arcs_are_extended_by_their_tangents(pieces, count):
 @pytest.mark.parametrize("offset", [5.0, -5.0])
 def test_straight_on_is_neither_shortened_nor_extended(turn, offset):
     kind, path = corner(np.degrees(turn), offset)
-    assert kind is Joint.STRAIGHT_ON
+    assert kind is Transition.STRAIGHT_ON
     np.testing.assert_allclose(path, [(0, offset), (0, offset)], atol=1e-8)
 
 
@@ -118,7 +118,7 @@ def test_straight_on_is_neither_shortened_nor_extended(turn, offset):
 @pytest.mark.parametrize("offset", [5.0, -5.0])
 def test_a_reversal_goes_round_the_end(offset, options):
     kind, path = corner(180.0, offset, options)
-    assert kind in (Joint.CHORD, Joint.ARC)
+    assert kind in (Transition.CHORD, Transition.ARC)
     np.testing.assert_allclose(path[[0, -1]], [(0, offset), (0, -offset)], atol=ROUNDING)
     if options is CHORDS:
         np.testing.assert_allclose(path[1:3], [(5, offset), (5, -offset)], atol=ROUNDING)
@@ -129,21 +129,21 @@ def test_the_kind_follows_from_the_turn(offset):
     for turn in np.random.default_rng(1).uniform(-179, 179, 200):
         kind, path = corner(turn, offset)
         outward = -np.sign(offset) * turn
-        expected = Joint.SHORTENED if outward < 0 else Joint.EXTENDED if outward <= 90 else Joint.CHORD
+        expected = Transition.SHORTENED if outward < 0 else Transition.EXTENDED if outward <= 90 else Transition.CHORD
         assert kind is expected
         # The chord S3 S4 passes the corner at R sqrt2 cos(|turn| / 2 - 45 deg).
-        if kind is Joint.CHORD:
+        if kind is Transition.CHORD:
             chord = path[2] - path[1]
             passes = abs(chord[0] * path[1][1] - chord[1] * path[1][0]) / np.hypot(*chord)
             assert passes == pytest.approx(abs(offset) * np.sqrt(2) * np.cos(np.radians(abs(turn) / 2 - 45)), abs=1e-9)
 
 
 def test_arcs_go_round_outer_corners_but_for_the_smallest():
-    assert corner(-60.0, 5.0, ARCS)[0] is Joint.ARC
-    assert corner(-120.0, 5.0, ARCS)[0] is Joint.ARC
-    assert corner(60.0, 5.0, ARCS)[0] is Joint.SHORTENED
+    assert corner(-60.0, 5.0, ARCS)[0] is Transition.ARC
+    assert corner(-120.0, 5.0, ARCS)[0] is Transition.ARC
+    assert corner(60.0, 5.0, ARCS)[0] is Transition.SHORTENED
     kind, path = corner(-2.0, 5.0, ARCS)
-    assert kind is Joint.EXTENDED
+    assert kind is Transition.EXTENDED
     assert 0 <= np.hypot(*path[0]) - 5.0 < 0.0003 * 5.0
 
 
@@ -172,12 +172,12 @@ def plane(*points):
 def line(point, angle):
     nowhere = np.full((1, 3), np.nan)
     tangent = plane((np.cos(angle), np.sin(angle)))
-    return Curves(plane(point), tangent, nowhere, np.array([np.nan]), np.array([False]))
+    return OffsetCurves(plane(point), tangent, nowhere, np.array([np.nan]), np.array([False]))
 
 
 def circle(centre, radius, at):
     point = plane(np.add(centre, [radius * np.cos(at), radius * np.sin(at)]))
-    return Curves(point, plane((-np.sin(at), np.cos(at))), plane(centre), np.array([radius]), np.array([True]))
+    return OffsetCurves(point, plane((-np.sin(at), np.cos(at))), plane(centre), np.array([radius]), np.array([True]))
 
 
 def off(curve, point):
@@ -197,7 +197,7 @@ def test_meetings_are_on_both_curves():
             else circle(rng.uniform(-6, 6, 2), rng.uniform(0.5, 8), rng.uniform(-3, 3))
             for _ in range(2)
         ]
-        point = meetings(*curves, UP)[0]
+        point = intersections(*curves, UP)[0]
         if np.isnan(point).any():
             assert curves[0].arc[0] or curves[1].arc[0]
             continue
@@ -208,22 +208,22 @@ def test_meetings_are_on_both_curves():
 
 def test_the_nearer_of_two_points_is_taken():
     # The line y = 1 and the circle of radius 2 about (3, 1) meet at x = 1 and x = 5; the joint is the origin.
-    near = meetings(line((0.0, 1.0), 0.0), circle((3.0, 1.0), 2.0, np.pi), UP)
+    near = intersections(line((0.0, 1.0), 0.0), circle((3.0, 1.0), 2.0, np.pi), UP)
     np.testing.assert_allclose(near, plane((1.0, 1.0)), atol=ROUNDING)
-    back = meetings(circle((3.0, 1.0), 2.0, np.pi), line((0.0, 1.0), 0.0), UP)
+    back = intersections(circle((3.0, 1.0), 2.0, np.pi), line((0.0, 1.0), 0.0), UP)
     np.testing.assert_allclose(back, near, atol=ROUNDING)
     # Circles of radius 5 about (-3, 1) and (3, 1) meet at (0, 5) and (0, -3).
-    both = meetings(circle((-3.0, 1.0), 5.0, 0.0), circle((3.0, 1.0), 5.0, 0.0), UP)
+    both = intersections(circle((-3.0, 1.0), 5.0, 0.0), circle((3.0, 1.0), 5.0, 0.0), UP)
     np.testing.assert_allclose(both, plane((0.0, -3.0)), atol=ROUNDING)
 
 
 def test_what_does_not_meet_says_so():
-    assert np.isnan(meetings(line((0, 0), 0.0), line((0, 1), 0.0), UP)).all()
-    assert np.isnan(meetings(line((0, 0), 0.0), line((0, 0), np.pi), UP)).all()
-    assert np.isnan(meetings(line((0, 3), 0.0), circle((0, 0), 2.0, 0.0), UP)).all()
-    assert np.isnan(meetings(circle((5, 0), 2.0, 0.0), circle((0, 0), 2.0, 0.0), UP)).all()
-    assert np.isnan(meetings(circle((0, 0), 1.0, 0.0), circle((0, 0), 2.0, 0.0), UP)).all()
+    assert np.isnan(intersections(line((0, 0), 0.0), line((0, 1), 0.0), UP)).all()
+    assert np.isnan(intersections(line((0, 0), 0.0), line((0, 0), np.pi), UP)).all()
+    assert np.isnan(intersections(line((0, 3), 0.0), circle((0, 0), 2.0, 0.0), UP)).all()
+    assert np.isnan(intersections(circle((5, 0), 2.0, 0.0), circle((0, 0), 2.0, 0.0), UP)).all()
+    assert np.isnan(intersections(circle((0, 0), 1.0, 0.0), circle((0, 0), 2.0, 0.0), UP)).all()
 
 
 def test_a_line_goes_on_in_itself():
-    np.testing.assert_allclose(meetings(line((1, 2), 0.3), line((1, 2), 0.3), UP), plane((1, 2)), atol=ROUNDING)
+    np.testing.assert_allclose(intersections(line((1, 2), 0.3), line((1, 2), 0.3), UP), plane((1, 2)), atol=ROUNDING)

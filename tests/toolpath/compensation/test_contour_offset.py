@@ -10,7 +10,7 @@ from contour_programs import beside, clearance, contour, cutting_rows, distance,
 from pkm_post.model import Event, EventKind, Kind
 from pkm_post.model.diagnostics import errors
 from pkm_post.toolpath.compensation.contour_elements import OffsetOptions, elements_of
-from pkm_post.toolpath.compensation.contour_offset import compensated, offset_contours, offsets_of
+from pkm_post.toolpath.compensation.contour_offset import _with_offsets, element_offsets, offset_contours
 from pkm_post.toolpath.symmetry.transform import mirror, transform
 
 MICRON = 1e-3
@@ -46,7 +46,7 @@ def reversed_contour(given):
 def moved_and_source(given, options):
     elements, faults = elements_of(given)
     assert faults == ()
-    return compensated(given, elements, offsets_of(elements, options))
+    return _with_offsets(given, elements, element_offsets(elements, options))
 
 
 @EVERY_OPTION

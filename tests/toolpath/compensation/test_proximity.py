@@ -4,7 +4,8 @@
 import numpy as np
 import pytest
 
-from pkm_post.toolpath.compensation.proximity import Segments, segment_distances, too_near
+from pkm_post.geometry import segment_to_segment
+from pkm_post.toolpath.compensation.proximity import Chords, close_pairs
 
 ROUNDING = 1e-9
 
@@ -14,13 +15,11 @@ def table(points, contour=0, clearance=1.0, height=None):
     count = len(points) - 1
     height = np.zeros(count) if height is None else height
     numbers = np.full(count, contour)
-    return Segments(
-        points[:-1], points[1:], height, height, np.full(count, clearance), numbers, numbers, np.zeros(count)
-    )
+    return Chords(points[:-1], points[1:], height, height, np.full(count, clearance), numbers, numbers, np.zeros(count))
 
 
 def joined(*tables):
-    return Segments(**{name: np.concatenate([getattr(t, name) for t in tables]) for name in vars(tables[0])})
+    return Chords(**{name: np.concatenate([getattr(t, name) for t in tables]) for name in vars(tables[0])})
 
 
 def test_distances_are_the_least_of_a_search():
@@ -32,7 +31,7 @@ def test_distances_are_the_least_of_a_search():
     way = (d - c)[:, None]
     foot = np.clip(np.sum((left - c[:, None]) * way, axis=2) / np.sum(way * way, axis=2), 0, 1)
     searched = np.linalg.norm(left - c[:, None] - foot[..., None] * way, axis=2).min(axis=1)
-    found = segment_distances(a, b, c, d)
+    found = segment_to_segment(a, b, c, d)
     assert np.all(found < searched + ROUNDING)
     np.testing.assert_allclose(found, searched, atol=0.02)
 
@@ -50,8 +49,8 @@ def test_distances_are_the_least_of_a_search():
 )
 def test_worked_distances(segment, other, expected):
     (a, b), (c, d) = np.array(segment, float), np.array(other, float)
-    assert segment_distances(a, b, c, d) == pytest.approx(expected, abs=ROUNDING)
-    assert segment_distances(c, d, a, b) == pytest.approx(expected, abs=ROUNDING)
+    assert segment_to_segment(a, b, c, d) == pytest.approx(expected, abs=ROUNDING)
+    assert segment_to_segment(c, d, a, b) == pytest.approx(expected, abs=ROUNDING)
 
 
 @pytest.mark.parametrize("counts", [(1, 1), (2, 7), (33, 64), (200, 1), (90, 301)])
@@ -64,9 +63,9 @@ def test_the_tree_finds_what_all_pairs_have(counts):
         ))
         for count in counts
     )  # fmt: skip
-    here, there, lacking = too_near(paths, walls, 0.25)
+    here, there, lacking = close_pairs(paths, walls, 0.25)
     i, j = (index.ravel() for index in np.indices(counts))
-    distance = segment_distances(paths.start[i], paths.end[i], walls.start[j], walls.end[j])
+    distance = segment_to_segment(paths.start[i], paths.end[i], walls.start[j], walls.end[j])
     lacks = np.minimum(paths.clearance[i], walls.clearance[j]) - distance
     near = (lacks > 0.25) & (paths.first[i] == walls.first[j]) & (walls.high[j] >= paths.low[i] - 0.25)
     assert sorted(zip(here, there, strict=True)) == sorted(zip(i[near], j[near], strict=True))
@@ -82,9 +81,9 @@ def test_few_pairs_are_looked_at(monkeypatch):
 
     def counted(*points):
         looked_at.append(points[0].size // 3)
-        return segment_distances(*points)
+        return segment_to_segment(*points)
 
-    monkeypatch.setattr("pkm_post.toolpath.compensation.proximity.segment_distances", counted)
-    here, _, _ = too_near(table(45 * circle, clearance=5.0), table(40 * circle, clearance=5.0), 1e-3)
+    monkeypatch.setattr("pkm_post.toolpath.compensation.proximity.segment_to_segment", counted)
+    here, _, _ = close_pairs(table(45 * circle, clearance=5.0), table(40 * circle, clearance=5.0), 1e-3)
     assert len(here) == 0
     assert sum(looked_at) < 100 * 20000

@@ -10,7 +10,7 @@ from shapes import BALL, PLACE, covered, cylinder, plate, settings
 from pkm_post.model import Kind
 from pkm_post.toolpath.surface.moves import program_from_poses
 from pkm_post.toolpath.surface.options import LeadMove, PassOrder
-from pkm_post.toolpath.surface.tool_axis import AxisRule, clamped
+from pkm_post.toolpath.surface.tool_axis import AxisRule, clamp_to_cone
 
 LEAN = AxisRule(lead=math.radians(10.0), tilt=math.radians(15.0))
 UP = np.array([0.0, 0.0, 1.0])
@@ -92,7 +92,7 @@ def test_arc_leads_leave_the_surface_on_a_quarter_circle():
 def test_cone_that_excludes_upright_rests_as_near_to_it_as_it_can():
     rule = AxisRule(cone_axis=(1.0, 0.0, 1.0), cone=math.radians(20.0), tilt=0.5)
     program, _ = made(plate(), rule=rule)
-    expected, _ = clamped(UP[None], np.array([1.0, 0.0, 1.0]), rule.cone)
+    expected, _ = clamp_to_cone(UP[None], np.array([1.0, 0.0, 1.0]), rule.cone)
     assert program.tool_axis[0] == pytest.approx(expected[0])
     assert math.degrees(math.acos(program.tool_axis[0, 2])) == pytest.approx(25.0)
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from shapes import BALL, BULL, FLAT, distance_to_cutter
 
-from pkm_post.toolpath.surface.stepover import effective_radius, gap, pass_width, scallop_width
+from pkm_post.toolpath.surface.stepover import cutter_gap, effective_radius, pass_width, scallop_width
 
 ROUNDING = 1e-9
 
@@ -85,7 +85,7 @@ def test_gap_is_the_distance_to_a_plane(cutter):
     tip = rng.uniform(-1.0, 1.0, (50, 3))
     up, origin = np.tile([0.0, 0.0, 1.0], (50, 1)), np.zeros((50, 3))
     for row in range(50):
-        lowest = gap(tip[row : row + 1], axis[row : row + 1], origin[:1], up[:1], cutter)[0]
+        lowest = cutter_gap(tip[row : row + 1], axis[row : row + 1], origin[:1], up[:1], cutter)[0]
         grid = np.linspace(-8.0, 8.0, 161)
         plane = np.column_stack([*(each.ravel() for each in np.meshgrid(grid, grid)), np.full(161**2, lowest)])
         near = distance_to_cutter(plane, tip[row], np.tile(axis[row], (len(plane), 1)), cutter)

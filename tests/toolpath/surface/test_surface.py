@@ -47,11 +47,11 @@ def test_plane_is_flat():
 def test_exchange_swaps_parameters_and_keeps_normals():
     ring = torus()
     u, v = np.array([0.3, 2.0]), np.array([0.5, 1.5])
-    one, other = ring.at(u, v), ring.exchanged().at(v, u)
+    one, other = ring.at(u, v), ring.swapped().at(v, u)
     assert np.array_equal(one.point, other.point)
     assert np.array_equal(one.normal, other.normal)
     assert np.array_equal(one.along_u, other.along_v)
-    assert (ring.exchanged().u, ring.exchanged().v) == (ring.v, ring.u)
+    assert (ring.swapped().u, ring.swapped().v) == (ring.v, ring.u)
 
 
 def test_closed_parameters_run_on_and_open_ones_end():

@@ -18,7 +18,7 @@ from pkm_post.toolpath.symmetry.cut_direction import (
     material_side,
     spindle_sense,
 )
-from pkm_post.toolpath.symmetry.passes import steps
+from pkm_post.toolpath.symmetry.passes import displacements
 from pkm_post.toolpath.symmetry.reverse import reversed_passes
 from pkm_post.toolpath.symmetry.transform import mirror, transform
 
@@ -53,7 +53,7 @@ def test_a_cutter_climbs_where_its_teeth_move_against_the_feed(sense, seed):
     moved, _ = transform(made, turn)
     # The tooth at the contact goes round with the angular velocity -sense k, at -n from the axis.
     tooth = cross(-sense * moved.tool_axis, -moved.normal)
-    along = dot(tooth, steps(moved))[1:]
+    along = dot(tooth, displacements(moved))[1:]
     np.testing.assert_array_equal(cut_directions(moved, spindle_before=sense)[1:], -np.sign(along))
 
 

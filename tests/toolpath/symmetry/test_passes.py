@@ -7,7 +7,7 @@ from programs import program, square_with_arc
 
 from pkm_post.geometry import norm
 from pkm_post.model import Kind
-from pkm_post.toolpath.symmetry.passes import chords, closed, lifts, links, pass_rows
+from pkm_post.toolpath.symmetry.passes import axial_moves, closed_passes, cut_chords, links, pass_rows
 
 LEANING = np.array([0.6, 0, 0.8])
 R, L = Kind.RAPID, Kind.LINE
@@ -27,7 +27,7 @@ TWO = leaning(
 
 
 def test_moves_along_the_tool_axis_lead_to_passes_and_away():
-    assert lifts(TWO).tolist() == [0, 0, -1, -1, 0, 0, 0, 1, 0, -1, 0, 1, 1]
+    assert axial_moves(TWO).tolist() == [0, 0, -1, -1, 0, 0, 0, 1, 0, -1, 0, 1, 1]
     assert pass_rows(TWO).tolist() == [[4, 7], [10, 11]]
 
 
@@ -57,14 +57,14 @@ def test_a_turn_of_the_tool_axis_on_the_way_down_is_no_plunge():
 def test_a_closed_pass_has_its_axis_back_as_well():
     square = [[0, 0, 5], [9, 0, 5], [9, 9, 5], [0, 0, 5]]
     upright = program(square)
-    assert closed(upright, pass_rows(upright)).tolist() == [True]
+    assert closed_passes(upright, pass_rows(upright)).tolist() == [True]
     turned = program(square, np.array([[0, 0, 1], [0, 0, 1], [0, 0, 1], LEANING]))
-    assert closed(turned, pass_rows(turned)).tolist() == [False]
+    assert closed_passes(turned, pass_rows(turned)).tolist() == [False]
 
 
 def test_chords_join_the_ends_of_what_is_cut_and_keep_to_the_arcs():
     made = square_with_arc()
-    starts, ends = chords(made)
+    starts, ends = cut_chords(made)
     first = len(starts) - 2 * 24  # the straight rows come first, then 24 chords for each of two arcs
     assert first == 3
     on_circle = ends[first : first + 24]
@@ -75,7 +75,7 @@ def test_chords_join_the_ends_of_what_is_cut_and_keep_to_the_arcs():
 
 def test_a_program_without_a_cut_has_no_passes():
     assert pass_rows(program([[0, 0, 9], [0, 0, 5]])).shape == (0, 2)
-    assert chords(program([[0, 0, 9]]))[0].shape == (0, 3)
+    assert cut_chords(program([[0, 0, 9]]))[0].shape == (0, 3)
 
 
 @pytest.mark.parametrize("count", [1, 2, 5])

@@ -11,7 +11,7 @@ from pkm_post.geometry import norm
 from pkm_post.model import Event, EventKind, Kind
 from pkm_post.toolpath.compensation.compensate import compensate
 from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
-from pkm_post.toolpath.symmetry.passes import lifts, pass_rows, steps
+from pkm_post.toolpath.symmetry.passes import axial_moves, displacements, pass_rows
 from pkm_post.toolpath.symmetry.reverse import reversed_passes
 from pkm_post.toolpath.symmetry.transform import mirror, transform
 
@@ -85,7 +85,7 @@ def cut_points(made):
 
 def off_the_ways(made, before):
     """How far points are off the straight ways of another program, at most."""
-    start, way = before.position[:-1], steps(before)[1:]
+    start, way = before.position[:-1], displacements(before)[1:]
     share = np.einsum("abc,bc->ab", made.position[:, None] - start, way) / np.maximum(np.sum(way**2, axis=1), 1e-12)
     foot = start + np.clip(share, 0, 1)[..., None] * way
     return norm(made.position[:, None] - foot).min(axis=1).max()
@@ -94,8 +94,8 @@ def off_the_ways(made, before):
 def ways_of(made):
     """Feed, middle, length and centre of each row that cuts, in no order."""
     rows = np.concatenate([np.arange(first, behind) for first, behind in pass_rows(made)])
-    middle = made.position[rows] - steps(made)[rows] / 2
-    length, centre = norm(steps(made))[rows], np.nan_to_num(made.arc_centre[rows])
+    middle = made.position[rows] - displacements(made)[rows] / 2
+    length, centre = norm(displacements(made))[rows], np.nan_to_num(made.arc_centre[rows])
     table = np.column_stack([made.feed[rows], middle, length, centre, made.line[rows]])
     return sorted(map(tuple, np.round(table, 9).tolist()))
 
@@ -139,7 +139,7 @@ def test_no_rapid_move_comes_to_where_a_pass_begins(make):
     after = turned(make())
     starts = pass_rows(after)[:, 0] - 1
     assert np.all(after.kind[starts] == Kind.LINE)
-    assert np.all(lifts(after)[starts] == -1)
+    assert np.all(axial_moves(after)[starts] == -1)
 
 
 def test_leads_change_places_with_the_feed_of_the_plunge():
@@ -315,7 +315,7 @@ def test_laws_hold_for_random_jobs(seed):
     for name in ("kind", "position", "tool_axis", "feed"):
         np.testing.assert_allclose(getattr(twice, name), getattr(before, name), atol=1e-9, err_msg=name)
     rapid = once.kind == Kind.RAPID
-    straight_up = lifts(once) == 1
+    straight_up = axial_moves(once) == 1
     assert np.all(once.position[rapid & ~straight_up, 2] >= SAFE - ROUNDING)
     starts_high = once.position[np.flatnonzero(rapid & ~straight_up)[1:] - 1, 2]
     assert np.all(starts_high >= SAFE - ROUNDING)

@@ -8,7 +8,7 @@ from programs import program
 from pkm_post.geometry import norm
 from pkm_post.geometry.vectors import dot, unit
 from pkm_post.model import Kind
-from pkm_post.toolpath.symmetry.passes import pass_rows, steps
+from pkm_post.toolpath.symmetry.passes import displacements, pass_rows
 from pkm_post.toolpath.symmetry.reverse import reversed_passes
 from pkm_post.toolpath.symmetry.transform import mirror, transform
 
@@ -185,7 +185,7 @@ def test_no_rapid_move_comes_nearer_to_a_pass_than_one_did(kind, seed):
 
     def nearest(each):
         rapid = np.isnan(each.feed)
-        down = np.flatnonzero(rapid[:-1] & ~rapid[1:] & (dot(steps(each), each.tool_axis)[:-1] < -ROUNDING))
+        down = np.flatnonzero(rapid[:-1] & ~rapid[1:] & (dot(displacements(each), each.tool_axis)[:-1] < -ROUNDING))
         begins = [row + 1 + int(np.argmax(np.isin(each.feed[row + 1 :], (LEAD, CUT)))) - 1 for row in down]
         return norm(each.position[down] - each.position[begins])
 
