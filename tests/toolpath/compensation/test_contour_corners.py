@@ -27,7 +27,7 @@ def joint(pieces, offset, options=CHORDS, start=(-80.0, 0.0)):
     elements, faults = elements_of(contour(start, pieces, offset))
     assert faults == ()
     found = transitions(elements, np.array([1]), np.array([2]), options, np.array([options.corners == "arc"]))
-    between = found.added[0][~np.isnan(found.between[0, :, 0])]
+    between = found.added[0][~np.isnan(found.added[0, :, 0])]
     return Transition(found.kind[0]), np.vstack([found.first, between, found.last])[:, :2]
 
 
