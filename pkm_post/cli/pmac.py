@@ -39,37 +39,39 @@ def add_own(parser: argparse.ArgumentParser, name: str) -> None:
 
 
 def _add_home(parser: argparse.ArgumentParser) -> None:
-    told = "line that starts the homing of this machine, as its builder says, such as 'ENABLE PLC 3'"
-    parser.add_argument("--trigger", type=_trigger, metavar="LINE", help=f"{told} (only tell which struts have homes)")
+    help_text = "line that starts the homing of this machine, as its builder says, such as 'ENABLE PLC 3'"
+    parser.add_argument(
+        "--trigger", type=_trigger, metavar="LINE", help=f"{help_text} (only print which struts are homed)"
+    )
 
 
 def _add_jog(parser: argparse.ArgumentParser) -> None:
     for name in ("x", "y", "z"):
         parser.add_argument(f"--{name}", type=_way, default=0.0, metavar="MM", help=f"the tip along {name.upper()}")
     for name in ("x", "y"):
-        told = f"the tool axis about {name.upper()}, the tip stands"
-        parser.add_argument(f"--tilt-{name}", type=_turn, default=0.0, metavar="DEG", help=told)
+        help_text = f"the tool axis about {name.upper()}, the tip stands"
+        parser.add_argument(f"--tilt-{name}", type=_turn, default=0.0, metavar="DEG", help=help_text)
     parser.add_argument("--spin", type=_turn, default=0.0, metavar="DEG", help="the platform about the tool axis")
     parser.add_argument("--strut", type=int, choices=range(1, 7), help="one strut instead of the tool")
     parser.add_argument("--by", type=_way, default=0.0, metavar="MM", help="how much longer that strut becomes")
-    told = "of the tip; of a turn in place in degrees per minute (%(default)s)"
-    parser.add_argument("--feed", type=positive, default=300.0, metavar="MM/MIN", help=told)
+    help_text = "of the tip; of a turn in place in degrees per minute (%(default)s)"
+    parser.add_argument("--feed", type=positive, default=300.0, metavar="MM/MIN", help=help_text)
     _add_by_hand(parser)
 
 
 def _add_mdi(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("line", metavar="LINE", help="a line of G-code; it stands by itself")
     parser.add_argument("--work-offset", default="G54", metavar="NAME", help="frame of the line (%(default)s)")
-    told = "how the line says the tool axis; none leaves it as it is (%(default)s)"
-    parser.add_argument("--axis-words", type=axis_words, default=NO_AXIS_WORDS, metavar="WORDS", help=told)
+    help_text = "how the line says the tool axis; none leaves it as it is (%(default)s)"
+    parser.add_argument("--axis-words", type=axis_words, default=NO_AXIS_WORDS, metavar="WORDS", help=help_text)
     _add_by_hand(parser)
 
 
 def _add_approach(parser: argparse.ArgumentParser) -> None:
     from pkm_post.options import APPROACH_MM_S
 
-    told = "of the tip; of a turn in place in degrees per minute (%(default)s)"
-    parser.add_argument("--feed", type=positive, default=60 * APPROACH_MM_S, metavar="MM/MIN", help=told)
+    help_text = "of the tip; of a turn in place in degrees per minute (%(default)s)"
+    parser.add_argument("--feed", type=positive, default=60 * APPROACH_MM_S, metavar="MM/MIN", help=help_text)
     _add_by_hand(parser)
 
 
@@ -92,8 +94,8 @@ def _add_step(parser: argparse.ArgumentParser) -> None:
 def _add_continue(parser: argparse.ArgumentParser) -> None:
     from pkm_post.options import START_TOLERANCE_MM
 
-    told = "which stop of the program it stands at, from 1"
-    parser.add_argument("--stop", type=count, required=True, metavar="N", help=told)
+    help_text = "which stop of the program it stands at, from 1"
+    parser.add_argument("--stop", type=count, required=True, metavar="N", help=help_text)
     near = "how far each strut may be from where it stopped (%(default)s)"
     parser.add_argument("--near", type=positive, default=START_TOLERANCE_MM, metavar="MM", help=near)
 
@@ -101,9 +103,9 @@ def _add_continue(parser: argparse.ArgumentParser) -> None:
 def _add_number(parser: argparse.ArgumentParser) -> None:
     from pkm_post.options import MANUAL_MOVE_PROGRAM
 
-    told = "number of the program in the controller that is used for it (%(default)s)"
+    help_text = "number of the program in the controller that is used for it (%(default)s)"
     parser.add_argument(
-        "--number", type=whole(1, _HIGHEST_PROGRAM), default=MANUAL_MOVE_PROGRAM, metavar="PROG", help=told
+        "--number", type=whole(1, _HIGHEST_PROGRAM), default=MANUAL_MOVE_PROGRAM, metavar="PROG", help=help_text
     )
 
 
@@ -148,8 +150,8 @@ def add_commands(commands: Any) -> None:
         parser.add_argument("--machine", required="machine" in needs, metavar="NAME_OR_FILE", help="the machine")
         if "program" in needs:
             parser.add_argument("program", type=Path, metavar="PROGRAM.pmc")
-            told = "take the program though nothing shows that it is certified for this machine; that is logged"
-            parser.add_argument("--uncertified", action="store_true", help=told)
+            help_text = "take the program though nothing shows that it is certified for this machine; that is logged"
+            parser.add_argument("--uncertified", action="store_true", help=help_text)
         _add_own(parser, name)
         add_own(parser, name)
         parser.set_defaults(run=_run, action=action, name=name, needs=needs)

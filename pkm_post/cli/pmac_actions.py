@@ -31,7 +31,7 @@ _QUESTION = (
     r"#\d+[?PVF]|&\d+(?:\?\??|PR|%)|\?{1,3}|[PVF%]|PR|SIZE|TYPE|VER(?:SION)?|CID|[IPQ]\d+(?:\.\.\d+)?|(?:&\d+)?#\d+->"
 )
 _STOP = r"(?:&\d+)?[HA]|#\d+K|P8187\.\.8191=0"
-_NEEDS_NO_RIGHT = re.compile(
+_NEEDS_NO_OWNERSHIP = re.compile(
     rf"(?:{_QUESTION}|{_STOP})(?: (?:{_QUESTION}|{_STOP}))*|LIST .*|[\w.]+\[[\w.\[\]]+", re.IGNORECASE
 )
 """Terminal lines that only query, stop, or clear the variables that hold the machine's owner."""
@@ -73,7 +73,7 @@ def probe(session: Session, target: Target | None, namespace: argparse.Namespace
             print(f"{query}: {refused}")
     _print_motion(session, target, is_power)
     if target is not None and is_power:
-        print("the set-up of a Power PMAC is not compared: how it tells its axis definitions is not known")
+        print("the set-up of a Power PMAC is not compared: how it reports its axis definitions is unknown")
     elif target is not None:
         check_setup(session, target.settings, target.machine.strut_stroke)
         print(f"set up for {target.machine.name}")
@@ -110,31 +110,31 @@ def _no_progress(done: int, lines: int) -> None:
 
 def start(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Start the program from its beginning."""
-    from pkm_post.control import check_setup, operate
+    from pkm_post.control import check_setup, start_program
 
     check_setup(session, target.settings, target.machine.strut_stroke)
     job = target.job
     with held_at_the_end(session, target.settings):
-        return _tell(
-            operate.start_program(session, target.settings, job.program, job.first, namespace.near, target.machine)
+        return _print_state(
+            start_program(session, target.settings, job.program, job.first, namespace.near, target.machine)
         )
 
 
 def resume(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Resume after a hold."""
-    from pkm_post.control import operate
+    from pkm_post.control import resume_program
 
-    return _tell(operate.resume_program(session, target.settings))
+    return _print_state(resume_program(session, target.settings))
 
 
 def status(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Print the state once."""
     from pkm_post.control import read_status
 
-    return _tell(read_status(session, target.settings))
+    return _print_state(read_status(session, target.settings))
 
 
-def _tell(status: Status) -> int:
+def _print_state(status: Status) -> int:
     from pkm_post.control import state_text
 
     print(state_text(status))
@@ -169,7 +169,7 @@ def terminal(session: Session, target: Target | None, namespace: argparse.Namesp
         if not line.strip():
             continue
         try:
-            if session.keeper is None and not _NEEDS_NO_RIGHT.fullmatch(line.strip()):
+            if session.keeper is None and not _NEEDS_NO_OWNERSHIP.fullmatch(line.strip()):
                 claim(session, "terminal")
             print("\n".join(session.command(line.strip())) or "done", flush=True)
         except (PmacError, ValueError) as fault:

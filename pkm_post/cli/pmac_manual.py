@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""PMAC manual control: the actions home, jog, mdi, step, continue, override of the command ``pmac``.
+"""Manual control: the actions home, jog, mdi, approach, step, continue and override of the command ``pmac``.
 
-Each prints its plan first; a plan that fails the checks is not sent. If the command ends while the machine moves, it
-holds the machine.
+A plan is printed, executed and awaited, and the position reached is printed; a plan that fails its checks is not sent.
+If the command ends while the machine moves, it holds the machine.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _SLOWEST_OVERRIDE = 0.05
 """A move may take as long as at this override, which an operator may set meanwhile."""
 _START_S = 30.0
 """Added to that: the approach, and the machine's own codes."""
-_HELD = "it is held, by somebody or, a jog, because this computer came too late to renew it; resume or abort it"
+_HELD = "it is held, by an operator or, a jog, because this computer came too late to renew it; resume or abort it"
 
 
 def control_of(session: Session, target: Target, namespace: argparse.Namespace) -> NumericalControl:
@@ -44,20 +44,20 @@ def control_of(session: Session, target: Target, namespace: argparse.Namespace) 
     return NumericalControl(session, target.machine, target.settings, length, namespace.number)
 
 
-def carry_out(
+def execute_plan(
     session: Session,
     target: Target,
     namespace: argparse.Namespace,
     control: NumericalControl,
     plan: Plan | None,
-    told: tuple[Diagnostic, ...],
+    diagnostics: tuple[Diagnostic, ...],
     near: float | None = None,
 ) -> int:
     """Print a plan, execute it, and print the position reached; ``near`` is as for ``execute``."""
     from pkm_post.control import pose_text, target_deviation
     from pkm_post.options import START_TOLERANCE_MM
 
-    for diagnostic in told:
+    for diagnostic in diagnostics:
         print(diagnostic, file=sys.stderr)
     if plan is None:
         return 1
@@ -121,8 +121,8 @@ def home(session: Session, target: Target, namespace: argparse.Namespace) -> int
 def jog(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Jog the tool or one strut."""
     control = control_of(session, target, namespace)
-    plan, told = control.plan_jog(_jog_of(namespace), namespace.feed / 60)
-    return carry_out(session, target, namespace, control, plan, told)
+    plan, diagnostics = control.plan_jog(_jog_of(namespace), namespace.feed / 60)
+    return execute_plan(session, target, namespace, control, plan, diagnostics)
 
 
 def _jog_of(namespace: argparse.Namespace) -> Jog:
@@ -139,8 +139,8 @@ def mdi(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     from pkm_post.control import MdiSettings
 
     control = control_of(session, target, namespace)
-    plan, told = control.plan_line(namespace.line, MdiSettings(namespace.work_offset, namespace.axis_words))
-    return carry_out(session, target, namespace, control, plan, told)
+    plan, diagnostics = control.plan_line(namespace.line, MdiSettings(namespace.work_offset, namespace.axis_words))
+    return execute_plan(session, target, namespace, control, plan, diagnostics)
 
 
 def approach(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
@@ -151,8 +151,8 @@ def approach(session: Session, target: JobTarget, namespace: argparse.Namespace)
         print("the tool is at the start of the program")
         return 0
     control = control_of(session, target, namespace)
-    plan, told = control.plan_approach(target.job, namespace.feed / 60)
-    return carry_out(session, target, namespace, control, plan, told)
+    plan, diagnostics = control.plan_approach(target.job, namespace.feed / 60)
+    return execute_plan(session, target, namespace, control, plan, diagnostics)
 
 
 def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
@@ -160,8 +160,8 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
     from pkm_post.control import NotReadyError, read_blocks
 
     control = control_of(session, target, namespace)
-    blocks, told = read_blocks(namespace.program, target.machine)
-    for diagnostic in told:
+    blocks, diagnostics = read_blocks(namespace.program, target.machine)
+    for diagnostic in diagnostics:
         print(diagnostic, file=sys.stderr)
     if blocks is None:
         return 1
@@ -174,7 +174,7 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
             return 0
         # Only the first line is approached by hand; the others begin where the previous one ended.
         near = namespace.near if number == namespace.block else None
-        if carry_out(session, target, namespace, control, *control.plan_step(), near):
+        if execute_plan(session, target, namespace, control, *control.plan_step(), near):
             return 1
     print("the program has ended")
     return 0
@@ -194,9 +194,9 @@ def continue_after_stop(session: Session, target: JobTarget, namespace: argparse
 
 def override(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Set the time base of programs."""
-    from pkm_post.control import operate
+    from pkm_post.control import set_feed_override
 
-    print(f"override {operate.set_feed_override(session, target.settings, namespace.percent).override:g} %")
+    print(f"override {set_feed_override(session, target.settings, namespace.percent).override:g} %")
     return 0
 
 

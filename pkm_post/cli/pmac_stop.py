@@ -27,19 +27,19 @@ _SIGNALS = ("SIGTERM", "SIGHUP", "SIGBREAK")
 
 def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Decelerate the program to rest on its path."""
-    from pkm_post.control import stopping
+    from pkm_post.control import hold
 
     with advised():
-        status = stopping.hold(session, target.settings)
+        status = hold(session, target.settings)
     return _print(session, status)
 
 
 def abort(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Abort the program."""
-    from pkm_post.control import stopping
+    from pkm_post.control import abort
 
     with advised():
-        status = stopping.abort(session, target.settings, namespace.at_once)
+        status = abort(session, target.settings, namespace.at_once)
     return _print(session, status)
 
 
@@ -87,17 +87,17 @@ def held_at_the_end(session: Session, settings: PmacSettings) -> Iterator[None]:
         except PmacError:
             raise
         except BaseException as fault:
-            _hold(session, settings)
+            _hold_machine(session, settings)
             if isinstance(fault, KeyboardInterrupt):
                 raise CancelledError("interrupted and held: resume or abort it") from None
             raise
 
 
-def _hold(session: Session, settings: PmacSettings) -> None:
-    from pkm_post.control import stopping
+def _hold_machine(session: Session, settings: PmacSettings) -> None:
+    from pkm_post.control import hold
 
     with advised():
-        stopping.hold(session, settings)
+        hold(session, settings)
 
 
 @contextmanager

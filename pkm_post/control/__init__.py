@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Control: the link to a controller, its simulator, and numerical control."""
 
-from pkm_post.control.link import run as operate
-from pkm_post.control.link import stopping
 from pkm_post.control.link.channel import OpenBufferPolicy
 from pkm_post.control.link.download import download
 from pkm_post.control.link.errors import (
@@ -16,10 +14,10 @@ from pkm_post.control.link.errors import (
 from pkm_post.control.link.ownership import claim, owned
 from pkm_post.control.link.ports import Port, port_named
 from pkm_post.control.link.program import Job
-from pkm_post.control.link.run import check_setup
+from pkm_post.control.link.run import check_setup, resume_program, set_feed_override, start_program
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import Array, Bits, Status, is_busy, read_status, settled_status
-from pkm_post.control.link.stopping import EMERGENCY_STEPS, NOT_AT_REST, REST_DEADLINE_S
+from pkm_post.control.link.stopping import EMERGENCY_STEPS, NOT_AT_REST, REST_DEADLINE_S, abort, hold
 from pkm_post.control.link.stream import stream
 from pkm_post.control.link.tool_pose import ToolPoseReadout, activity_text, pose_text, state_text
 from pkm_post.control.loading import job_to_load
@@ -103,7 +101,11 @@ __all__ = [
     "may_move",
     "missing_homes",
     "target_deviation",
-    "operate",
+    "abort",
+    "hold",
+    "resume_program",
+    "set_feed_override",
+    "start_program",
     "owned",
     "port_named",
     "pose_text",
@@ -112,7 +114,6 @@ __all__ = [
     "settled_status",
     "start_homing",
     "state_text",
-    "stopping",
     "program_stops",
     "stream",
     "claim",

@@ -22,7 +22,7 @@ from pkm_post.control.simulator.motors import Motors
 from pkm_post.control.simulator.online import PortSession, execute
 from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SYSTEMS, Variables
 
-_EFFECTS = {
+_M_CODE_STATEMENTS = {
     0: "STOP", 1: "STOP", 3: "P7001=1", 4: "P7001=-1", 5: "P7001=0", 7: "P7002=2", 8: "P7002=1", 9: "P7002=0",
 }  # fmt: skip
 _M_CODES = (*range(10), 30)
@@ -31,12 +31,14 @@ _TOOLS = 100
 MACHINE_CODES: tuple[str, ...] = (
     "CLOSE",
     "OPEN PROG 1001 CLEAR",
-    *(f"N{1000 * code} {_EFFECTS.get(code, '')} RETURN" for code in _M_CODES),
+    *(f"N{1000 * code} {_M_CODE_STATEMENTS.get(code, '')} RETURN" for code in _M_CODES),
     "CLOSE",
     "OPEN PROG 1002 CLEAR",
     *(f"N{1000 * tool}" for tool in range(_TOOLS)),
     "CLOSE",
 )
+"""Programs behind M and T codes, for a machine without hardware: M3, M4 and M5 write 1, -1 and 0 to P7001, M8, M7 and
+M9 write 1, 2 and 0 to P7002; M0 and M1 stop until R; T accepts any tool from 0 to 99, and M6 changes it instantly."""
 
 
 LEAST_MEMORY = 1000
@@ -176,23 +178,23 @@ class Controller:
         self.variables, self.memory, self.unlocked = variables, memory, False
         self.motors = Motors(variables, self.settings.lag_ms, self.settings.home_flag)
         self.systems = [
-            CoordinateSystem(number, memory, variables, self.motors, self._said_by(number))
+            CoordinateSystem(number, memory, variables, self.motors, self._output_of(number))
             for number in range(1, SYSTEMS + 1)
         ]
         self._full = [False] * SYSTEMS
 
-    def _said_by(self, number: int) -> Callable[[str, str], None]:
+    def _output_of(self, number: int) -> Callable[[str, str], None]:
         """A callback for what a program of this coordinate system sends to ports, or commands as if by a port."""
         return partial(
-            self._say, PortSession(self, system=number)
+            self._send_output, PortSession(self, system=number)
         )  # no closure: it is copied along with the controller
 
-    def _say(self, session: PortSession, kind: str, text: str) -> None:
+    def _send_output(self, session: PortSession, kind: str, text: str) -> None:
         try:
-            said: list[str | CommandError] = [text] if kind == "SEND" else [*execute(session, text)]
+            output: list[str | CommandError] = [text] if kind == "SEND" else [*execute(session, text)]
         except CommandError as error:
-            said = [error]
-        for item in said:
+            output = [error]
+        for item in output:
             for listen in self.listeners:
                 listen(item)
 

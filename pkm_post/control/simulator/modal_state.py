@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Modes: the modal state of a program, and the moves that follow from it.
+"""Modal state: axis definitions, the modes of a program, and the moves that follow from them.
 
-Enters: statements that set a mode, and axis words. Leaves: moves. Positions are in axis units, speeds in axis units per
-Isx90 ms, times in ms.
+An axis definition assigns one motor to one axis of a coordinate system, counts = scale * axis position + offset:
+``#1->10000A-5000000``. Definitions that combine several axes are refused.
+
+Enters: axis definitions, statements that set a mode, and axis words. Leaves: moves. Positions are in axis units, speeds
+in axis units per Isx90 ms, times in ms.
 """
 
 from __future__ import annotations

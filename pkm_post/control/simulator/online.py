@@ -109,10 +109,10 @@ def execute(session: PortSession, line: str) -> list[str]:
     Raises:
         CommandError: one of its commands is refused.
     """
-    scanner, told = Scanner(line), []
+    scanner, answer = Scanner(line), []
     while not scanner.at_end():
-        told += _one(session, scanner)
-    return told
+        answer += _one(session, scanner)
+    return answer
 
 
 def _one(session: PortSession, scanner: Scanner) -> list[str]:

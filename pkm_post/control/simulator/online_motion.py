@@ -30,7 +30,7 @@ def position_text(controller: Controller, what: str, motor: int) -> str:
     return printed(float(np.round(column[motor - 1], DECIMALS)) + 0.0)
 
 
-def _tell(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _report(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     return [position_text(session.controller, match["what"].upper(), session.motor)]
 
 
@@ -161,7 +161,7 @@ def _override(session: PortSession, match: re.Match[str], scanner: Scanner) -> l
 _ALONE = r"(?![-+A-Z0-9.$(:])"
 
 COMMANDS: tuple[tuple[str, Handler], ...] = (
-    (rf"(?P<what>[PVF]){_ALONE}", _tell),
+    (rf"(?P<what>[PVF]){_ALONE}", _report),
     (r"J(?P<how>[-+/=:^])", _jog),
     (r"(?:HOME|HM)(?P<here>Z)?(?![A-Z0-9])", _home),
     (rf"K{_ALONE}", _kill),

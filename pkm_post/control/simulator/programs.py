@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Programs: the contents of the controller's buffers, fixed or rotary.
+"""Programs: statements of a line, and the contents of the controller's buffers, fixed or rotary.
+
+The keywords are those of the Turbo PMAC, in long and short spelling. What the simulator cannot execute (CIRCLE, SPLINE,
+HOME, PLC words, cutter compensation) does not parse as a statement.
 
 Enters: lines in order. Leaves: statements by number, the labels and jumps of a fixed program, its listing.
 """
@@ -250,13 +253,13 @@ class Program:
             words: how many words to list; None for all.
         """
         ends = [*self.line_starts, len(self.statements)][1:]
-        told, place = [], 0
+        lines, place = [], 0
         for start, end in zip(self.line_starts, ends, strict=True):
             line = self.statements[start:end]
             if place >= first and (words is None or place < first + words):
-                told.append(listed(line, long))
+                lines.append(listed(line, long))
             place += sum(statement.words for statement in line)
-        return told
+        return lines
 
 
 def listed(line: list[Statement], long: bool) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Line: bytes of a serial port to commands, and answers to bytes.
+"""Serial port: bytes to commands and control characters, and answers to bytes.
 
 Enters and leaves: bytes, in pieces of any size. I3 selects the framing of answers, I4 enables checksums, I6 selects the
 error format [TurboPMAC, I3, I4, I6]. Control characters act at once, even inside a line.
@@ -142,7 +142,7 @@ class SerialPort:
         self.session = PortSession(controller)
         self._text = bytearray()
         self._error = 0
-        self._unasked = bytearray()
+        self._unsolicited = bytearray()
 
     def attend(self) -> None:
         """Also receive the output of programs (SEND), for ``receive`` to return."""
@@ -150,15 +150,15 @@ class SerialPort:
 
     def receive(self, data: bytes) -> bytes:
         """Take received bytes; return the output of programs since the last call, then the answers."""
-        answer = self.said()
+        answer = self.output()
         for code in data:
             answer += self._take(code)
-        return answer + self.said()
+        return answer + self.output()
 
-    def said(self) -> bytes:
+    def output(self) -> bytes:
         """The output of programs since the last call."""
-        said, self._unasked = bytes(self._unasked), bytearray()
-        return said
+        output, self._unsolicited = bytes(self._unsolicited), bytearray()
+        return output
 
     def command(self, text: str) -> bytes:
         """Execute a line and frame its answer."""
@@ -185,10 +185,10 @@ class SerialPort:
         if act is None:
             return b""
         try:
-            told = act(self.session)
+            lines = act(self.session)
         except CommandError as error:
             return self.refused(error.number)
-        return b"" if told is None else self._framed(told, "")
+        return b"" if lines is None else self._framed(lines, "")
 
     def _carry_out(self, text: str) -> list[str]:
         if len(text) > self.controller.settings.line_limit:
@@ -224,10 +224,10 @@ class SerialPort:
         self._text, self._error = bytearray(), 0
         return bytes([CANCEL]) if self.controller.variables.setting(63) else b""
 
-    def _framed(self, told: list[str], command: str) -> bytes:
+    def _framed(self, lines: list[str], command: str) -> bytes:
         handshake, sums = self.controller.variables.setting(3), self.controller.variables.setting(4)
         answer = bytearray()
-        for text in told:
+        for text in lines:
             data = (LF if handshake in (1, 3) else b"") + text.encode("ascii") + CR
             answer += data + (_sum(data) if sums else b"")
         mark = (b"", LF, ACK, ACK)[handshake]
@@ -240,15 +240,15 @@ class SerialPort:
         feed = LF if handshake in (1, 3) else b""
         return bell + (CR if form == 3 else b"") + feed + f"ERR{number:03d}".encode("ascii") + CR
 
-    def _listen(self, said: str | CommandError) -> None:
+    def _listen(self, output: str | CommandError) -> None:
         """Queue unsolicited output: I64 marks it; I6 = 2 suppresses errors of programs."""
         variables = self.controller.variables
-        if isinstance(said, CommandError):
+        if isinstance(output, CommandError):
             if variables.setting(6) != 2:
-                self._unasked += self._error_text(said.number, MARK if variables.setting(64) else BEL)
+                self._unsolicited += self._error_text(output.number, MARK if variables.setting(64) else BEL)
             return
         feed = LF if variables.setting(3) in (1, 3) else b""
-        self._unasked += (MARK if variables.setting(64) else b"") + feed + said.encode("ascii", "replace") + CR
+        self._unsolicited += (MARK if variables.setting(64) else b"") + feed + output.encode("ascii", "replace") + CR
 
 
 def _sum(data: bytes) -> bytes:

@@ -136,8 +136,8 @@ class Server:
             for key, _ in ready:
                 key.data()
             for line, channel in self._serial:
-                said = line.said()
-                channel.unsent += said if channel.is_heard else b""
+                output = line.output()
+                channel.unsent += output if channel.is_heard else b""
             for source, channel in list(self._channels.items()):
                 channel.take()
                 self._send(source, channel)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Variables: I, P, Q and M with their values after a reset.
+"""Variables: I, P, Q and M with their values after a reset, and numbers as the controller stores and prints them.
+
+A value is a 48-bit word with a mantissa of 36 bits, of which one is the sign: about 10.5 significant digits.
 
 I-variables of motor xx are Ixx00 to Ixx99, those of coordinate system x are I(50+x)00 to I(50+x)99. Defaults and units
 follow the manual [TurboPMAC]; those that the simulator does not use start at 0. An M-variable has no address behind it:

@@ -139,7 +139,7 @@ class WiredLink:
         until = wire.now + max(timeout, 1e-3)
         if not self._coming or self._coming[0][0] > until:
             wire.sleep(until - wire.now)
-            return wire.line.said() if wire.kind == "serial" else b""
+            return wire.line.output() if wire.kind == "serial" else b""
         due, data = self._coming.pop(0)
         if due > wire.now:
             wire.sleep(due - wire.now)

@@ -76,8 +76,8 @@ def test_cancelling_is_echoed_when_i63_asks_for_it(pmac):
 def test_what_a_program_said_is_handed_out_once(machine):
     machine.lines('OPEN PROG 1\nCLEAR\nSEND"hello"\nCLOSE\nB1R')
     machine.wait(2)
-    assert machine.line.said() == b"hello\r"
-    assert machine.line.said() == b""
+    assert machine.line.output() == b"hello\r"
+    assert machine.line.output() == b""
 
 
 def test_backspace_takes_a_character_back(pmac):
