@@ -54,7 +54,7 @@ def add_commands(commands: Any) -> None:
         default="",
         type=_freedoms,
         metavar="FREEDOMS",
-        help="look for a better work offset: x, y, z shift and a, b, c turn the part (xyzc if nothing is said)",
+        help="look for a better work offset: x, y, z shift and a, b, c turn the part (xyzc without a value)",
     )
     reaching.add_argument("--json", action="store_true", help="write JSON instead of text")
     add_options(reaching)

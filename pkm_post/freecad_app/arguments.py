@@ -30,7 +30,7 @@ from pkm_post.writing import Form
 PMAC, TRAJECTORY, LINUXCNC, GCODE = "hexapod_pmac", "hexapod_trajectory", "hexapod_linuxcnc", "hexapod_gcode"
 
 POST_PROCESSORS: dict[str, str] = {
-    PMAC: "Writes the motion program, with set-up file, trajectory and report beside it.",
+    PMAC: "Writes the motion program, with set-up file, trajectory and report in the same folder.",
     TRAJECTORY: "Writes the trajectory as NAME.pkmt; the text that CAM saves names it. Reach is checked, speed is not:"
     " nothing is certified. --also has no meaning here.",
     LINUXCNC: "Writes X Y Z A B C for LinuxCNC's hexapod, in the machine frame. Reach is checked, speed is left to the"
@@ -40,12 +40,12 @@ POST_PROCESSORS: dict[str, str] = {
 }
 """Output of each post-processor, by name, for the help text."""
 
-_MORE: dict[str, dict[str, dict[str, Any]]] = {
+_EXTRA_ARGUMENTS: dict[str, dict[str, dict[str, Any]]] = {
     GCODE: {
         "--form": {
             "choices": tuple(form.value for form in Form),
             "default": Form.VECTOR.value,
-            "help": "how the tool axis is said: I J K after G43.5, rotary words of a head after G43.4, A B C of"
+            "help": "how the tool axis is written: I J K after G43.5, rotary words of a head after G43.4, A B C of"
             " LinuxCNC's hexapod, or not at all (default: %(default)s)",
         },
         "--inch": {"action": "store_true", "help": "write inches (G20)"},
@@ -76,9 +76,9 @@ def job_arguments(job: Any, text: str, post_processor: str = PMAC) -> argparse.N
     """
     place = Place(document_name(job.Document), job.Label)
     chosen = parse_arguments(text, place, post_processor)
-    strangers = inapplicable_options(explicit_values(chosen), {InputKind.JOB})
-    if strangers:
-        raise Refused([Diagnostic("J117", place, each) for each in strangers])
+    misplaced = inapplicable_options(explicit_values(chosen), {InputKind.JOB})
+    if misplaced:
+        raise Refused([Diagnostic("J117", place, each) for each in misplaced])
     return chosen
 
 
@@ -118,7 +118,7 @@ def own_text(job: Any) -> str:
     if job.PostProcessor not in POST_PROCESSORS:
         return ""
     try:
-        return replace_arguments(job.PostProcessorArgs, dict.fromkeys(_MORE.get(job.PostProcessor, {})))
+        return replace_arguments(job.PostProcessorArgs, dict.fromkeys(_EXTRA_ARGUMENTS.get(job.PostProcessor, {})))
     except ValueError:  # the parser reports the error
         return str(job.PostProcessorArgs)
 
@@ -169,6 +169,6 @@ def arguments_help(post_processor: str = PMAC) -> str:
 
 def _parser(post_processor: str) -> TextParser:
     parser = text_parser(post_processor, POST_PROCESSORS[post_processor])
-    for flag, words in _MORE.get(post_processor, {}).items():
+    for flag, words in _EXTRA_ARGUMENTS.get(post_processor, {}).items():
         parser.add_argument(flag, **words)
     return parser

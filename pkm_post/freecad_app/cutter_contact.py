@@ -192,7 +192,7 @@ def _chord_faults(
         return []
     first, more = int(np.argmax(far)), int(far.sum()) - 1
     turns = [np.degrees(angle_between(units[first], units[first + 1])) for units in (normals, axes)]
-    text = "the normal by {:.3g}, the axis by {:.3g} degrees; half way the tool would be {:.3g} mm off the surface"
+    text = "the normal by {:.3g}, the axis by {:.3g} degrees; halfway the tool would be {:.3g} mm off the surface"
     found = text.format(*turns, off[first]) + (f", and {more} more like it" if more else "")
     return [Diagnostic("N113", program.place(int(rows[first + 1])), found)]
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Document: the name of a document, the types of its objects, and changes of it as one undo step.
 
-Types are told apart by properties. Nothing of CAM is imported here: commands ask for types in every workbench.
+Types are distinguished by properties. Nothing of CAM is imported here: commands check types in every workbench.
 """
 
 from __future__ import annotations

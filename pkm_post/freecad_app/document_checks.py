@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Document damage: detects differences between a document in FreeCAD and the saved one.
+"""Document checks: faults of a document and its operations that FreeCAD does not report.
 
-Takes a file or a document; returns its faults. FreeCAD opens a truncated or modified file without an error and replaces
-unreadable paths with empty ones. The file is therefore checked before it is opened, and again when a job of an open
-document is read: until it is saved, the file is still the one that was opened.
+Takes a file, a document or an operation; returns its faults. FreeCAD opens a truncated or modified file without an
+error and replaces unreadable paths with empty ones. The file is therefore checked before it is opened, and again when a
+job of an open document is read: until it is saved, the file is still the one that was opened. Operations that FreeCAD
+could not read or compute it only marks.
+
+Dress-ups, arrays and copies stand on an operation, linked by their ``Base``. Those of FreeCAD rebuild moves from X Y Z,
+and arrays rotate only these: I J K words below them are dropped or left unchanged.
 """
 
 from __future__ import annotations
@@ -16,6 +20,10 @@ from typing import Any
 from pkm_post.freecad_app.commands.words import Words, undecodable_command
 from pkm_post.model import Diagnostic, Place, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
+
+_PACKAGE = "pkm_post."
+_NOT_READ, _NOT_COMPUTED = "Restore", "Touched"
+"""Entries of ``State``. The first remains until the document is closed, whatever is computed."""
 
 
 def read_content(file: FilePath) -> DocumentContent:
@@ -40,12 +48,12 @@ def check_operations(document: Any, content: DocumentContent) -> None:
     """
     place, faults = Place(document.FileName), []
     for job in content.jobs:
-        found = document.getObject(job.name)
-        read = [each.Name for each in found.Operations.Group] if hasattr(found, "Operations") else []
+        item = document.getObject(job.name)
+        read = [each.Name for each in item.Operations.Group] if hasattr(item, "Operations") else []
         if read != list(job.operations):
-            missing = ", ".join(sorted(set(job.operations) - set(read))) or "none is missing, the order is another"
-            told = f"{len(read)} of {len(job.operations)} operations of {job.label}: {missing}"
-            faults.append(Diagnostic("J131", place, told))
+            missing = ", ".join(sorted(set(job.operations) - set(read))) or "none is missing, the order differs"
+            found = f"{len(read)} of {len(job.operations)} operations of {job.label}: {missing}"
+            faults.append(Diagnostic("J131", place, found))
     if faults:
         raise Refused(faults)
 
@@ -61,7 +69,7 @@ def file_faults(document: Any) -> tuple[Diagnostic, ...]:
 
 @lru_cache(maxsize=16)
 def _faults_of(file: FilePath, changed: int, size: int) -> tuple[Diagnostic, ...]:
-    """The same, cached by file state: document objects ask at every recompute."""
+    """The same, cached by file state: document objects check at every recompute."""
     try:
         read_content(file)
     except Refused as refused:
@@ -69,47 +77,20 @@ def _faults_of(file: FilePath, changed: int, size: int) -> tuple[Diagnostic, ...
     return ()
 
 
-_OURS = "pkm_post."
-
-
-def is_pkm_object(operation: Any) -> bool:
-    """Whether the object belongs to this add-on, whose objects transform tool axes together with points."""
-    return type(getattr(operation, "Proxy", None)).__module__.startswith(_OURS)
-
-
-def base_operations(operation: Any) -> list[Any]:
-    """The operations directly below; faces and edges from which an operation is made are excluded."""
-    base = getattr(operation, "Base", None)
-    linked = base if isinstance(base, list | tuple) else [base]
-    return [below for below in linked if hasattr(below, "isDerivedFrom") and below.isDerivedFrom("Path::Feature")]
-
-
-def incompatible_dressups(operation: Any) -> Iterator[Any]:
-    """Yield third-party layers, the object itself or below it, on top of moves with tool-axis words."""
-    for below in base_operations(operation):
-        if not is_pkm_object(operation) and Words.of(below.Path.Commands).axis_words().any():
-            yield operation
-        yield from incompatible_dressups(below)
-
-
-_NOT_READ, _NOT_COMPUTED = "Restore", "Touched"
-"""Entries of ``State``. The first remains until the document is closed, whatever is computed."""
-
-
 def state_faults(operation: Any, source: str) -> list[Diagnostic]:
-    """The faults of an operation before its commands are read: the first fault, or all layers in the way.
+    """The faults of an operation before its commands are read: the first fault, or all incompatible dress-ups.
 
     Args:
         operation: of a job, active.
         source: name of the document.
     """
     place = Place(source, operation.Label)
-    for code, found in _FAULTS:
-        told = found(operation)
-        if told:
-            return [Diagnostic(code, place, told)]
+    for code, check in _FAULTS:
+        found = check(operation)
+        if found:
+            return [Diagnostic(code, place, found)]
     try:
-        return [Diagnostic("J108", place, layer.Label) for layer in incompatible_dressups(operation)]
+        return [Diagnostic("J108", place, dressup.Label) for dressup in incompatible_dressups(operation)]
     except UnicodeDecodeError as fault:
         return [undecodable_command(fault, source, operation.Label)]
 
@@ -151,3 +132,23 @@ _FAULTS: tuple[tuple[str, Callable[[Any], str]], ...] = (
     ("J132", _empty),
 )
 """Finding by code, empty if there is none, in this order: each test relies on those before it."""
+
+
+def is_pkm_object(operation: Any) -> bool:
+    """Whether the object belongs to this add-on, whose objects transform tool axes together with points."""
+    return type(getattr(operation, "Proxy", None)).__module__.startswith(_PACKAGE)
+
+
+def base_operations(operation: Any) -> list[Any]:
+    """The operations directly below; faces and edges from which an operation is made are excluded."""
+    base = getattr(operation, "Base", None)
+    linked = base if isinstance(base, list | tuple) else [base]
+    return [below for below in linked if hasattr(below, "isDerivedFrom") and below.isDerivedFrom("Path::Feature")]
+
+
+def incompatible_dressups(operation: Any) -> Iterator[Any]:
+    """Yield foreign dress-ups, the object itself or below it, on top of moves with tool-axis words."""
+    for below in base_operations(operation):
+        if not is_pkm_object(operation) and Words.of(below.Path.Commands).axis_words().any():
+            yield operation
+        yield from incompatible_dressups(below)

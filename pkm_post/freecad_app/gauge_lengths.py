@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Gauge lengths: the gauge length of each tool of a job, and where it is stored.
+"""Gauge lengths: the gauge length of each tool of a job, where it is stored, and how it is typed.
 
 Takes a job; returns a row for each of its tool controllers, in mm. Lengths that the user sets are stored in the
 document. A gauge length is never guessed: the row gives the length of the tool bit for comparison, but part of the bit
 is inside its holder, and the holder counts.
+
+Typed lengths are text with or without a unit. Inputs that FreeCAD's own fields accept and misread are refused here,
+since a wrong length does harm: their ``12,5 cm`` is 1250 mm, their ``4 1/2 in`` 4 mm, and for ``abc`` they keep the
+previous value. FreeCAD drops letters beyond ASCII.
 """
 
 from __future__ import annotations
@@ -14,11 +18,19 @@ from dataclasses import dataclass
 from typing import Any
 
 import FreeCAD as App
-from Path.Base.Util import opProperty, toolControllerForOp
+from Path.Base.Util import toolControllerForOp
 
 from pkm_post.freecad_app.document import document_name
+from pkm_post.freecad_app.job import is_active
 from pkm_post.freecad_app.tools import bit_length, gauge_length, set_gauge_length
 from pkm_post.model import Diagnostic, Place
+
+_DIGITS = 9
+"""Significant digits shown: nanometres of a metre."""
+_MICRO = "µ"
+"""The only non-ASCII letter in FreeCAD's units of length."""
+_USUAL = "100 mm"
+"""A length typical of a tool; a number without a unit is in the unit in which this one is displayed."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +64,7 @@ def tool_rows(job: Any) -> tuple[ToolRow, ...]:
     used = {
         controller.Name
         for operation in job.Operations.Group
-        if opProperty(operation, "Active") is not False and (controller := toolControllerForOp(operation))
+        if is_active(operation) and (controller := toolControllerForOp(operation))
     }
     source = document_name(job.Document)
     return tuple(
@@ -85,14 +97,6 @@ def store_gauge_lengths(job: Any, lengths: Mapping[str, float]) -> None:
     for controller in job.Tools.Group:
         if lengths.get(controller.Name, gauge_length(controller)) != gauge_length(controller):
             set_gauge_length(controller, lengths[controller.Name])
-
-
-_DIGITS = 9
-"""Significant digits shown: nanometres of a metre."""
-_MICRO = "µ"
-"""The only non-ASCII letter in FreeCAD's units of length."""
-_USUAL = "100 mm"
-"""A length typical of a tool; a number without a unit is in the unit in which this one is displayed."""
 
 
 def parse_length(text: str, point: str = ".") -> float | None:

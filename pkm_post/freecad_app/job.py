@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Job: combines the active operations of a CAM job, in tree order, into one program.
 
-Takes a job of FreeCAD's CAM workbench; returns a program in mm, rad and mm/s, or all faults of the job. The list of
-operations is built here: the one FreeCAD 1.0 builds may lose operations. What CAM stores outside the paths becomes
-events: tool, spindle and coolant, each where it changes, and off at the end and at tool changes.
+Takes a job of FreeCAD's CAM workbench, or a selection of its operations and fixtures; returns a program in mm, rad and
+mm/s, or all faults of the job. The list of operations is built here: the one FreeCAD 1.0 builds may lose operations.
+What CAM stores outside the paths becomes events: tool, spindle and coolant, each where it changes, and off at the end
+and at tool changes. FreeCAD newer than 1.1 offers selections in CAM's Post Process dialog.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from pkm_post.freecad_app.commands import read_commands
 from pkm_post.freecad_app.document import document_name
 from pkm_post.freecad_app.document_checks import file_faults, state_faults
 from pkm_post.freecad_app.frames import matrix_of
-from pkm_post.freecad_app.tools import read_tools
+from pkm_post.freecad_app.tools import SPINDLE_SENSES, read_tools
 from pkm_post.model import MOTION_COLUMNS, OPTIONAL_COLUMNS, Diagnostic, Event, EventKind, Place, Program, Tool, errors
 from pkm_post.toolpath import transform
 
@@ -43,7 +44,7 @@ class Selection:
         own = list(job.Operations.Group)
         return own if self.operations is None else [each for each in own if each in self.operations]
 
-    def strangers(self, job: Any) -> list[Any]:
+    def foreign_operations(self, job: Any) -> list[Any]:
         """Selected operations that do not belong to the job."""
         return [each for each in self.operations or () if each not in job.Operations.Group]
 
@@ -55,12 +56,10 @@ class Selection:
 
 EVERYTHING = Selection()
 """The whole job."""
-
-
 NO_LENGTHS: Mapping[int, float] = MappingProxyType({})
+"""No gauge lengths: those of the tool controllers apply."""
 
 _COOLANT = {"None": 0.0, "Flood": 1.0, "Mist": 2.0}
-_SPINDLE_SENSE = {"Forward": 1.0, "Reverse": -1.0, "None": 0.0}
 _OFF = {EventKind.SPINDLE: 0.0, EventKind.COOLANT: 0.0}
 
 
@@ -77,26 +76,32 @@ def read_job(
     Returns:
         The program, or None if there are errors; and all diagnostics.
     """
-    way = _ProgramBuilder(job)
-    faults = [*file_faults(job.Document), *_selection_faults(job, selection, Place(way.source, job.Label))]
-    active = [each for each in selection.operations_of(job) if opProperty(each, "Active") is not False]
+    builder = _ProgramBuilder(job)
+    faults = [*file_faults(job.Document), *_selection_faults(job, selection, Place(builder.source, job.Label))]
+    active = [each for each in selection.operations_of(job) if is_active(each)]
     for operation in active:
-        faults += state_faults(operation, way.source) or way.add(operation)
-    way.switch(_OFF)
-    tools, tool_faults = read_tools(way.controllers.values(), tool_lengths, way.source)
+        faults += state_faults(operation, builder.source) or builder.add(operation)
+    builder.switch(_OFF)
+    tools, tool_faults = read_tools(builder.controllers.values(), tool_lengths, builder.source)
     faults += tool_faults
-    if not way.rows and not errors(faults):
-        faults.append(Diagnostic("J103", Place(way.source, job.Label), "nothing to post"))
+    if not builder.rows and not errors(faults):
+        faults.append(Diagnostic("J103", Place(builder.source, job.Label), "nothing to post"))
     if errors(faults):
         return None, tuple(faults)
-    return dataclasses.replace(way.program(tools), reading=(way.counted(job, active),)), tuple(faults)
+    summary = builder.summary(job, active)
+    return dataclasses.replace(builder.program(tools), reading=(summary,)), tuple(faults)
+
+
+def is_active(operation: Any) -> bool:
+    """Whether an operation is part of the program."""
+    return opProperty(operation, "Active") is not False
 
 
 def _selection_faults(job: Any, selection: Selection, place: Place) -> list[Diagnostic]:
     """Selected items that are missing or cannot be posted together."""
-    fixtures, strangers = selection.fixtures_of(job), selection.strangers(job)
+    fixtures, foreign = selection.fixtures_of(job), selection.foreign_operations(job)
     faults = [Diagnostic("J111", place, ", ".join(fixtures))] if len(fixtures) > 1 else []
-    return faults + [Diagnostic("J127", place, each.Label) for each in strangers]
+    return faults + [Diagnostic("J127", place, each.Label) for each in foreign]
 
 
 class _ProgramBuilder:
@@ -133,25 +138,25 @@ class _ProgramBuilder:
             controller = toolControllerForOp(operation)
             if controller is None:
                 return [*faults, Diagnostic("J112", Place(self.source, operation.Label), "none is set")]
-            self._prepare(controller, _COOLANT[opProperty(operation, "CoolantMode") or "None"])
+            self._switch_tool(controller, _COOLANT[opProperty(operation, "CoolantMode") or "None"])
             self._tip = program.position[-1]
         return faults + self._append(program)
 
-    def _prepare(self, controller: Any, coolant: float) -> None:
+    def _switch_tool(self, controller: Any, coolant: float) -> None:
         self.controllers[controller.Name] = controller
         if self._state.get(EventKind.TOOL_CHANGE) != controller.ToolNumber:
             self.switch(_OFF)
             self.switch({EventKind.TOOL_CHANGE: float(controller.ToolNumber)})
-        speed = _SPINDLE_SENSE[controller.SpindleDir] * controller.SpindleSpeed
+        speed = SPINDLE_SENSES[controller.SpindleDir] * controller.SpindleSpeed
         self.switch({EventKind.SPINDLE: speed, EventKind.COOLANT: coolant})
 
     def switch(self, wanted: Mapping[EventKind, float]) -> None:
         """Append events that bring the machine to the requested state."""
         for kind, value in wanted.items():
             if self._state.get(kind) != value:
-                self._happens(Event(self.rows, kind, value))
+                self._append_event(Event(self.rows, kind, value))
 
-    def _happens(self, event: Event) -> None:
+    def _append_event(self, event: Event) -> None:
         self._events.append(event)
         self._state[event.kind] = event.value
 
@@ -159,7 +164,7 @@ class _ProgramBuilder:
         """Append rows and events; an M6 among them may call a tool that the job does not have."""
         faults = []
         for event in program.events:
-            self._happens(dataclasses.replace(event, row=self.rows + event.row))
+            self._append_event(dataclasses.replace(event, row=self.rows + event.row))
             if event.kind is EventKind.TOOL_CHANGE:
                 called = [controller for controller in self._in_job if controller.ToolNumber == event.value]
                 self.controllers |= {controller.Name: controller for controller in called}
@@ -170,7 +175,7 @@ class _ProgramBuilder:
         self.rows += len(program)
         return faults
 
-    def counted(self, job: Any, active: Sequence[Any]) -> str:
+    def summary(self, job: Any, active: Sequence[Any]) -> str:
         """Number of operations read and number listed in the job."""
         meant = f"{len(active)} meant and active"
         return f"operations of the job: {len(job.Operations.Group)} listed, {meant}, {len(self._programs)} read"

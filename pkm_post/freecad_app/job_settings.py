@@ -37,7 +37,8 @@ from pkm_post.options import (
     tool_lengths_from,
 )
 
-Findings = tuple[Diagnostic, ...]
+_FILES = ("machine", "part", "stock", "fixture")
+"""Options with file names; a machine may also be one included in PKM Post."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,7 @@ class JobSettings:
     tool_lengths: Mapping[int, float]
     arguments: argparse.Namespace
     selection: Selection
-    found: Findings
+    found: tuple[Diagnostic, ...]
 
 
 def settings_of(
@@ -83,12 +84,12 @@ def settings_of(
         Refused: the arguments of the job are invalid, J117.
     """
     own = own_arguments(job, post_processor)
-    chosen = overridden(_placed(job, own), given)
+    chosen = overridden(_with_document_paths(job, own), given)
     lengths = tool_lengths_from(chosen)
-    found = (
-        *_without_meaning(job, given),
-        *_replaced(job, explicit_values(own), given, options, selection),
-        *_replaced_lengths(job, lengths),
+    diagnostics = (
+        *_inapplicable(job, given),
+        *_overridden_options(job, explicit_values(own), given, options, selection),
+        *_overridden_lengths(job, lengths),
         *_unknown_tools(job, explicit_values(own), ()),
         *_unknown_tools(job, given, other_jobs),
     )
@@ -98,7 +99,7 @@ def settings_of(
         lengths,
         chosen,
         selection,
-        found,
+        diagnostics,
     )
 
 
@@ -113,7 +114,7 @@ def _fixture(job: Any, selection: Selection) -> str:
     return next(iter(selection.fixtures_of(job)), "G54")
 
 
-def _placed(job: Any, own: argparse.Namespace) -> argparse.Namespace:
+def _with_document_paths(job: Any, own: argparse.Namespace) -> argparse.Namespace:
     """The arguments of a job, with file names relative to its document, whatever the working directory."""
     folder = FilePath(job.Document.FileName).parent if job.Document.FileName else None
 
@@ -126,26 +127,22 @@ def _placed(job: Any, own: argparse.Namespace) -> argparse.Namespace:
     return argparse.Namespace(**(vars(own) | files | {"given": {**explicit_values(own), **files}}))
 
 
-_FILES = ("machine", "part", "stock", "fixture")
-"""Options with file names; a machine may also be one included in PKM Post."""
-
-
-def _without_meaning(job: Any, given: ArgumentValues) -> Iterator[Diagnostic]:
+def _inapplicable(job: Any, given: ArgumentValues) -> Iterator[Diagnostic]:
     """Yield L442 for each option that applies only to part programs."""
     for each in inapplicable_options(given, {InputKind.JOB}):
         yield Diagnostic("L442", Place(document_name(job.Document), job.Label), each)
 
 
-def _replaced(
+def _overridden_options(
     job: Any, own: ArgumentValues, given: ArgumentValues, options: Options | None, selection: Selection
 ) -> Iterator[Diagnostic]:
     """Yield J125 for each option that changes a setting of the job; a job always states a work offset."""
     place, fixture = Place(document_name(job.Document), job.Label), _fixture(job, selection)
-    said = _with_fixture({"work_offset": FIXTURE_OF_THE_JOB} | dict(own), fixture)
+    stated = _with_fixture({"work_offset": FIXTURE_OF_THE_JOB} | dict(own), fixture)
     whole = {} if options is None else argument_values(options)
     for each in (
-        *overrides(said, _with_fixture(given, fixture)),
-        *overrides(said, _with_fixture(whole, fixture), whole=True),
+        *overrides(stated, _with_fixture(given, fixture)),
+        *overrides(stated, _with_fixture(whole, fixture), whole=True),
     ):
         yield Diagnostic("J125", place, str(each))
 
@@ -155,30 +152,30 @@ def _with_fixture(layer: ArgumentValues, fixture: str) -> ArgumentValues:
     return {**layer, "work_offset": fixture} if at_fixture else layer
 
 
-def _replaced_lengths(job: Any, lengths: Mapping[int, float]) -> Iterator[Diagnostic]:
+def _overridden_lengths(job: Any, lengths: Mapping[int, float]) -> Iterator[Diagnostic]:
     """Yield J125 for each tool controller whose gauge length an option replaces."""
     source = document_name(job.Document)
     for controller in job.Tools.Group:
-        kept, number = gauge_length(controller), int(controller.ToolNumber)
-        if kept > 0.0 and lengths.get(number, kept) != kept:
-            told = Override(
+        stored, number = gauge_length(controller), int(controller.ToolNumber)
+        if stored > 0.0 and lengths.get(number, stored) != stored:
+            override = Override(
                 flag_of("tool_length"),
-                f"GaugeLength {kept:.12g}",
+                f"GaugeLength {stored:.12g}",
                 format_value("tool_length", (number, lengths[number])),
             )
-            yield Diagnostic("J125", Place(source, controller.Label), str(told))
+            yield Diagnostic("J125", Place(source, controller.Label), str(override))
 
 
 def _unknown_tools(job: Any, given: ArgumentValues, other_jobs: Sequence[Any]) -> Iterator[Diagnostic]:
     """Yield J126 for each gauge length whose number no tool controller has."""
-    here = {int(controller.ToolNumber) for controller in job.Tools.Group}
-    known = here.union(int(controller.ToolNumber) for other in other_jobs for controller in other.Tools.Group)
+    own = {int(controller.ToolNumber) for controller in job.Tools.Group}
+    known = own.union(int(controller.ToolNumber) for other in other_jobs for controller in other.Tools.Group)
     for number, mm in given.get("tool_length", ()):
         if number not in known:
-            told = f"{flag_of('tool_length')} {format_value('tool_length', (number, mm))}, {_tools(here)}"
-            yield Diagnostic("J126", Place(document_name(job.Document), job.Label), told)
+            found = f"{flag_of('tool_length')} {format_value('tool_length', (number, mm))}, {_tools_text(own)}"
+            yield Diagnostic("J126", Place(document_name(job.Document), job.Label), found)
 
 
-def _tools(numbers: set[int]) -> str:
+def _tools_text(numbers: set[int]) -> str:
     listed = ", ".join(f"T{number}" for number in sorted(numbers))
     return f"the job has {listed or 'no tools'}"

@@ -46,7 +46,7 @@ def read_step(path: Path, name: str) -> Any:
     try:
         shape.read(str(path))
     except UnicodeEncodeError:
-        return None, (Diagnostic("F103", Place(name), "FreeCAD reads files alone whose names are Unicode"),)
+        return None, (Diagnostic("F103", Place(name), "FreeCAD reads only files with Unicode names"),)
     except (OSError, RuntimeError, Part.OCCError):
         return None, (Diagnostic("K138", Place(name), "OpenCASCADE cannot read it as STEP"),)
     return mesh_of_triangles(mesh_of(shape), name)

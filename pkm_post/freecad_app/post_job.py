@@ -138,12 +138,12 @@ def find_job(document: Any, name: str | None = None) -> Any:
         Refused: there is none, or more than one, J102.
     """
     jobs = find_jobs(document)
-    meant = [job for job in jobs if name in (None, job.Name, job.Label)]
-    if len(meant) != 1:
+    matching = [job for job in jobs if name in (None, job.Name, job.Label)]
+    if len(matching) != 1:
         known = ", ".join(job.Label for job in jobs)
         found = f"{name or 'no name'} given, the document has {known}"
         raise Refused([Diagnostic("J102", Place(document_name(document)), found)])
-    return meant[0]
+    return matching[0]
 
 
 def post_to(
@@ -185,7 +185,7 @@ def _opened(file: FilePath) -> Iterator[Any]:
     try:
         document = App.openDocument(str(file))
     except UnicodeEncodeError as fault:
-        found = "FreeCAD opens files alone whose names are Unicode"
+        found = "FreeCAD opens only files with Unicode names"
         raise Refused([Diagnostic("J101", Place(str(file)), found)]) from fault
     except OSError as fault:
         raise Refused([Diagnostic("J101", Place(str(file)), str(fault))]) from fault

@@ -2,7 +2,7 @@
 """Post outputs: what the post-processors write for a CAM job.
 
 Takes a job, its settings and the path to which CAM will write; returns the text for that path, and the diagnostics.
-Binary files are written beside that path. All faults are reported together, and then nothing is written.
+Binary files are written to the same folder. All faults are reported together, and then nothing is written.
 """
 
 from __future__ import annotations
@@ -30,17 +30,19 @@ T = TypeVar("T")
 Findings = tuple[Diagnostic, ...]
 Written = tuple[str, Findings]
 """The text for CAM, and warnings."""
-_MORE_STEPS = 2
+_EXTRA_STEPS = 2
 """Reading precedes the steps of the pipeline, and its end is reported as well."""
+_NO_PARENTHESES = str.maketrans("()", "[]")
+"""G-code comments cannot be nested."""
 
 
 def _motion_program(job: Any, settings: JobSettings, path: FilePath) -> Written:
-    """The motion program, or the first of its parts; all other files are written beside it.
+    """The motion program, or the first of its parts; all other files are written to the same folder.
 
     CAM accepts several texts, but inserts its own number into every name after the first: a part would get a name that
     no reader of the program expects. The other parts are therefore not passed to CAM.
     """
-    steps = len(step_names(settings.options)) + _MORE_STEPS
+    steps = len(step_names(settings.options)) + _EXTRA_STEPS
     with Progress(App.Qt.translate("Progress", "Post"), steps) as bar:
         posted = post_to(path, job, settings, print, lambda step, share: bar.step())
     if len(posted.parts) > 1:
@@ -50,7 +52,7 @@ def _motion_program(job: Any, settings: JobSettings, path: FilePath) -> Written:
 
 
 def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
-    """A short text about the trajectory, which is written beside it: CAM cannot write bytes."""
+    """A short text about the trajectory, which is written to the same folder: CAM cannot write bytes."""
     trajectory, found = _reachable(job, settings)
     target = path.with_suffix(".pkmt")
     earlier = manifest.listed(target.parent, target.stem)
@@ -62,8 +64,8 @@ def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
             manifest.write(folder, target.stem)
     except OSError as fault:
         raise Refused([*found, write_fault(target, fault)]) from fault
-    made = (path.name, target.name, manifest.manifest_name(target.stem))
-    found = (*found, *outputs.left_over(path, made, earlier))
+    written = (path.name, target.name, manifest.manifest_name(target.stem))
+    found = (*found, *outputs.left_over(path, written, earlier))
     lines = (
         f"trajectory: {target.name}",
         f"machine: {FilePath(settings.machine).name}",
@@ -71,10 +73,6 @@ def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
         "reach checked, motion not planned, not certified",
     )
     return "".join(f"({ascii(line)[1:-1].translate(_NO_PARENTHESES)})\n" for line in lines), found
-
-
-_NO_PARENTHESES = str.maketrans("()", "[]")
-"""G-code comments cannot be nested."""
 
 
 def _linuxcnc(job: Any, settings: JobSettings, path: FilePath) -> Written:
@@ -86,8 +84,8 @@ def _linuxcnc(job: Any, settings: JobSettings, path: FilePath) -> Written:
 def _gcode(job: Any, settings: JobSettings, path: FilePath) -> Written:
     """The program of the job as G-code."""
     job.Document.recompute()
-    program, told = read_job(job, settings.tool_lengths, settings.selection)
-    program, found = _require((program, (*settings.found, *told)))
+    program, diagnostics = read_job(job, settings.tool_lengths, settings.selection)
+    program, found = _require((program, (*settings.found, *diagnostics)))
     return _require(write(program, Form(settings.arguments.form), inch=settings.arguments.inch), found)
 
 
@@ -103,12 +101,12 @@ OUTPUTS: dict[str, Callable[[Any, JobSettings, FilePath], Written]] = {
 def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:
     """The trajectory of a job, verified to be reachable for its machine, and the warnings."""
     job.Document.recompute()
-    read = prepared_job(job, settings)
-    trajectory, found = _require(read.placed())
-    program, machine = read.sound
-    setup, told = _require(effective_setup(read.options, program), found)
-    collisions = find_collisions(trajectory, machine, setup, read.options.tolerances)
-    return _require((trajectory, (*check_reach(trajectory, machine).faults(), *collisions.faults)), told)
+    prepared = prepared_job(job, settings)
+    trajectory, found = _require(prepared.placed())
+    program, machine = prepared.sound
+    setup, found = _require(effective_setup(prepared.options, program), found)
+    collisions = find_collisions(trajectory, machine, setup, prepared.options.tolerances)
+    return _require((trajectory, (*check_reach(trajectory, machine).faults(), *collisions.faults)), found)
 
 
 def _require(result: tuple[T | None, Findings], found: Findings = ()) -> tuple[T, Findings]:
@@ -117,7 +115,7 @@ def _require(result: tuple[T | None, Findings], found: Findings = ()) -> tuple[T
     Raises:
         Refused: there is no value, or an error.
     """
-    value, told = result
-    if value is None or errors(told):
-        raise Refused((*found, *told))
-    return value, (*found, *told)
+    value, diagnostics = result
+    if value is None or errors(diagnostics):
+        raise Refused((*found, *diagnostics))
+    return value, (*found, *diagnostics)

@@ -2,7 +2,8 @@
 """Post-processor: the class that CAM calls to post a job with one of PKM Post's post-processors.
 
 CAM creates one for a job, for an incomplete job during its creation, and for no job at all to show a tooltip: all work
-happens in ``export``. CAM writes the text that ``export`` returns; the other files are already written beside it.
+happens in ``export``. CAM writes the text that ``export`` returns; the other files are
+already written to the same folder.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ class HexapodPost(PostProcessor):
         return arguments_help(self.name)
 
     def export(self) -> list[tuple[str, str]]:
-        """The text for CAM to write; binary files are written beside its path. Empty if the user cancelled.
+        """The text for CAM to write; binary files are written to its folder. Empty if the user cancelled.
 
         Raises:
             Refused: the job cannot be posted; CAM writes nothing then.

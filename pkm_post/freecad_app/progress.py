@@ -63,6 +63,6 @@ class Progress:
             self._bar.next(True)
         except RuntimeError as stop:  # FreeCAD reports by this that its own bar was cancelled
             raise Stopped(stopped) from stop
-        told = translate("Progress", "{}: {} done. Escape stops it.").format(self._text, share)
-        if self._watch and self._watch.pressed(told):
+        message = translate("Progress", "{}: {} done. Escape stops it.").format(self._text, share)
+        if self._watch and self._watch.pressed(message):
             raise Stopped(stopped)

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Simulation: the planned motion of a CAM job, for display at any time.
+"""Simulation: the planned motion of a CAM job, for display at any time, and where the machine cannot follow it.
 
-Takes a job and its machine; returns a ``Simulation``. Nothing is written or certified: infeasible stretches are
-played as well, and reported as problems, each with its start and its worst point.
+Takes a job and its machine; returns a ``Simulation``, which gives poses, strut lengths and speeds, block and tool at
+times in s. These times exclude dwells. Nothing is written or certified: infeasible stretches are played as well, and
+reported as problems, each with its start and its worst point.
+
+Between two knots the struts follow the cubics that a controller executes, and so do spindle nose and tool axis here.
+All queries search sorted times: a motion of a million knots costs little more than a short one.
 """
 
 from __future__ import annotations
@@ -21,8 +25,14 @@ from pkm_post.machine import ReachFinding, ReachReport, ToolPoses, check_reach
 from pkm_post.model import RULES, EventKind, Machine, Motion, Place, Refused, Severity, StrutMotion, Tool, Trajectory
 from pkm_post.planning import interpolate, plan_feed
 
+translate = App.Qt.translate
+
 _BATCH = 16384
 """Cubics per pass: the working arrays of one pass stay in the processor's cache."""
+_SAMPLES = 200
+"""Samples per block, to find the time of a tip position."""
+_FIRST_INSTANT = 1e-3
+"""s: when the first block has begun; at 0 no motion has taken place that could be stopped."""
 
 
 @dataclass(frozen=True)
@@ -181,14 +191,6 @@ def _extremes(knots: Array, first: Array, ends: Array) -> Array:
     return np.stack([least, largest])
 
 
-translate = App.Qt.translate
-
-_SAMPLES = 200
-"""Samples per block, to find the time of a tip position."""
-_FIRST_INSTANT = 1e-3
-"""s: when the first block has begun; at 0 no motion has taken place that could be stopped."""
-
-
 def simulate_job(job: Any, machine_object: Any = None) -> Simulation:
     """Plan the motion of a CAM job.
 
@@ -221,9 +223,9 @@ def simulation_of(placed: PlacedJob) -> Simulation:
 
 def _problems(checked: ReachReport, planned: Simulation) -> tuple[Problem, ...]:
     """One problem for each check and stretch of violating blocks."""
-    graves = [item for item in checked.findings if RULES[item.subject.code].severity is Severity.ERROR]
-    found = [problem for finding in graves for problem in _stretches(finding, checked, planned)]
-    return tuple(sorted(found, key=lambda problem: (problem.time, problem.text)))
+    errors = [item for item in checked.findings if RULES[item.subject.code].severity is Severity.ERROR]
+    problems = [problem for finding in errors for problem in _stretches(finding, checked, planned)]
+    return tuple(sorted(problems, key=lambda problem: (problem.time, problem.text)))
 
 
 def _stretches(finding: ReachFinding, checked: ReachReport, planned: Simulation) -> list[Problem]:
@@ -233,14 +235,14 @@ def _stretches(finding: ReachFinding, checked: ReachReport, planned: Simulation)
     for group in groups:
         first, worst = int(group[0]), int(group[np.argmin(finding.margin[group])])
         begins, is_worst = (int(checked.segment[row]) for row in (first, worst))
-        told = finding.subject.tell(int(finding.part[worst]), float(finding.margin[worst]))
+        text = finding.subject.tell(int(finding.part[worst]), float(finding.margin[worst]))
         problem = Problem(
             time=_time_of(first - 1, begins, checked, planned),
             place=checked.trajectory.place(begins),
             worst_time=_time_of(worst, is_worst, checked, planned),
             worst_place=checked.trajectory.place(is_worst),
             worst_tip=checked.tip[worst],
-            text=f"{finding.subject.name}: {told}",
+            text=f"{finding.subject.name}: {text}",
         )
         problems.append(problem)
     return problems

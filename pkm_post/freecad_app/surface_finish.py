@@ -34,9 +34,9 @@ _VIEW = "pkm_post.freecad_gui.surface_finish_view"
 """The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 _STEPS = 50
 """Steps of the progress bar per face."""
-_GOUGED = 1.1
+_GOUGE_FACTOR = 1.1
 """Depth in ChordTolerance beyond which a gouge is a fault: the measurement is accurate to a tenth of that."""
-_REACH = 2.0
+_MAX_EXCESS = 2.0
 """mm: larger excess is not measured."""
 
 _FEATURES = (
@@ -75,9 +75,9 @@ class SurfaceFinish(Path.Op.Base.ObjectOp):
         """Fill the list of commands: called by the base class once tool and job are known."""
         place = _place(obj)
         faces, cutter, settings = value_of(read_inputs(obj, self.job, place))
-        covered = _covered(faces, cutter, settings, bool(obj.FlipNormals), place)
-        program = value_of(program_from_poses(covered, settings, place))
-        _set_results(obj, covered, settings)
+        poses = _poses_over(faces, cutter, settings, bool(obj.FlipNormals), place)
+        program = value_of(program_from_poses(poses, settings, place))
+        _set_results(obj, poses, settings)
         _check(obj, program, cutter, faces, self.job)
         self.commandlist += commands_of(program)
 
@@ -131,16 +131,16 @@ def _check(obj: Any, program: Program, cutter: Cutter, faces: Sequence[NamedFace
     with Progress(App.Qt.translate("Progress", "{}: gouges").format(obj.Label), _STEPS) as bar:
         checked = check_faces(
             program, cutter, [named.face for named in faces], others, bool(obj.FlipNormals), spacing,
-            obj.ChordTolerance.Value / 10.0, _REACH, _steps(bar),
+            obj.ChordTolerance.Value / 10.0, _MAX_EXCESS, _steps(bar),
         )  # fmt: skip
     obj.MaximumGouge, obj.GougePoint = checked.gouge, App.Vector(*checked.gouge_point)
     obj.MaximumExcess, obj.ExcessPoint = checked.excess, App.Vector(*checked.excess_point)
-    if checked.gouge > _GOUGED * obj.ChordTolerance.Value:
+    if checked.gouge > _GOUGE_FACTOR * obj.ChordTolerance.Value:
         x, y, z = checked.gouge_point.tolist()
         raise Refused([Diagnostic("N311", _place(obj), f"{checked.gouge:.3f} mm at ({x:.3f}, {y:.3f}, {z:.3f})")])
 
 
-def _covered(
+def _poses_over(
     faces: Sequence[NamedFace], cutter: Cutter, settings: SurfaceOptions, flipped: bool, place: Place
 ) -> list[Poses]:
     """The poses over all faces, in sequence."""

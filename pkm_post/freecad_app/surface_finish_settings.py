@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surface Finish settings: the properties of the operation, and their conversion to settings.
+"""Surface Finish settings: the properties of the operation, and the inputs that they and the document give.
 
-Takes a document object; returns ``surface_path.Settings`` in mm, mm/s and rad, or the faults of the values. Documents
-store the names of the properties and of the choices: they are a file format.
+Takes the operation and its job; returns faces in the frame of the job, the cutter and the settings of the passes, in
+mm, mm/s and rad, or all their faults together. Documents store the names of the properties and of the choices: they are
+a file format.
+
+A machine limits the tilt of the tool from upright to what it reaches everywhere around the faces. Every direction is
+tried at the corners and the centre of their box; struts, joints and singular poses decide, as in the later check of the
+whole path, which is the binding one.
 """
 
 from __future__ import annotations
@@ -38,6 +43,11 @@ from pkm_post.toolpath import (
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
 DISTANCE, SCALLOP = "Distance", "Scallop height"
+_TILTS = np.radians(np.arange(0.0, 80.5, 0.5))
+_DIRECTIONS = np.radians(np.arange(0.0, 360.0, 15.0))
+
+Inputs = tuple[tuple[NamedFace, ...], Cutter, SurfaceOptions]
+"""Faces, cutter and settings."""
 
 
 def _choices(kind: type[enum.Enum]) -> list[str]:
@@ -113,7 +123,102 @@ def add_missing_properties(obj: Any) -> None:
     add_missing(obj, RESULTS, READ_ONLY)
 
 
-def read_settings(obj: Any, cone: float, place: Place) -> tuple[SurfaceOptions | None, tuple[Diagnostic, ...]]:
+def read_inputs(obj: Any, job: Any, place: Place) -> tuple[Inputs | None, tuple[Diagnostic, ...]]:
+    """Read faces, cutter and settings of an operation.
+
+    Args:
+        obj: the operation, with a tool controller.
+        job: its job.
+        place: location stated in diagnostics.
+
+    Returns:
+        The inputs, or None; and all their faults.
+    """
+    chosen = [(thing, names) for thing, names in obj.Base or ()]
+    faces, face_faults = model_faces(job.Model, chosen, place) if chosen else (None, ())
+    cutter, tool_faults = read_cutter(obj.ToolController, place)
+    diagnostics: list[Diagnostic] = [] if chosen else [Diagnostic("N308", place, "Base is empty")]
+    diagnostics += [*face_faults, *tool_faults]
+    cone, cone_faults = _cone(obj, job, faces or (), place)
+    settings, faults = _read_settings(obj, cone, place)
+    diagnostics += [*cone_faults, *faults]
+    if faces is None or cutter is None or settings is None or errors(diagnostics):
+        return None, tuple(diagnostics)
+    return (faces, cutter, settings), tuple(diagnostics)
+
+
+def _cone(obj: Any, job: Any, faces: Sequence[NamedFace], place: Place) -> tuple[float, tuple[Diagnostic, ...]]:
+    """Half angle of the cone of the tool axis in rad: the user's, or the machine's where that is narrower."""
+    limit = math.radians(obj.ConeLimit.Value)
+    if not obj.Machine or not faces:
+        return limit, ()
+    if not _is_upright(obj.ConeAxis):
+        return limit, (Diagnostic("N309", place, "a machine limits the tilt from upright: ConeAxis is not (0, 0, 1)"),)
+    boxes = [named.face.BoundBox for named in faces]
+    low = np.array([min(getattr(box, side) for box in boxes) for side in ("XMin", "YMin", "ZMin")])
+    high = np.array([max(getattr(box, side) for box in boxes) for side in ("XMax", "YMax", "ZMax")])
+    high[2] = max(high[2], obj.ClearanceHeight.Value)
+    tilt, faults = _reachable_tilt(obj.Machine, job, obj.ToolController, (low, high), place)
+    return (limit if tilt is None else min(limit, tilt)), faults
+
+
+def _reachable_tilt(
+    name: str, job: Any, controller: Any, box: tuple[Array, Array], place: Place
+) -> tuple[float | None, tuple[Diagnostic, ...]]:
+    """The largest tilt from upright that the machine reaches at the part in every direction.
+
+    Args:
+        name: name of a machine included in PKM Post, or path of a machine file.
+        job: the CAM job, with its work offset and its gauge lengths.
+        controller: the tool controller, with a gauge length.
+        box: lowest and highest corner of the region of the tip, (3,) each, mm.
+        place: location stated in diagnostics.
+
+    Returns:
+        The angle in rad, or None; and the faults: M1xx of the machine file, J113, K108, N310.
+
+    Raises:
+        Refused: the arguments of the job are invalid, J117.
+    """
+    settings = settings_of(job)
+    machine, machine_faults = machine_named(name)
+    tools, tool_faults = read_tools([controller], settings.tool_lengths, place.file)
+    if machine is None or not tools:
+        return None, (*machine_faults, *tool_faults)
+    offset, faults = work_offset(machine, settings.options)
+    if offset is None:
+        return None, faults
+    tilt = _largest_tilt(machine, offset, tools[int(controller.ToolNumber)].length, *box)
+    if tilt is None:
+        return None, (Diagnostic("N310", place, f"{machine.name} at {settings.arguments.work_offset}"),)
+    return tilt, ()
+
+
+def _largest_tilt(machine: Machine, machine_from_work: Array, length: float, low: Array, high: Array) -> float | None:
+    """The last tilt before the first that is out of reach somewhere; None if upright is out of reach."""
+    corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
+    points = np.vstack([(np.asarray(low) + high) / 2, corners])
+    tilt, turn = (each.ravel() for each in np.meshgrid(_TILTS, _DIRECTIONS, indexing="ij"))
+    lean = np.column_stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)])
+    tip = np.tile(points @ machine_from_work[:3, :3].T + machine_from_work[:3, 3], (len(lean), 1))
+    axis = np.repeat(lean @ machine_from_work[:3, :3].T, len(points), axis=0)
+    margins = reach_margins(machine, tip, axis, np.zeros(len(tip)), np.full(len(tip), length))
+    worst = np.minimum.reduce([
+        *(each.min(axis=1) for each in (margins.shortest, margins.longest, margins.base, margins.platform)),
+        margins.singular,
+    ])  # fmt: skip
+    reached = (worst.reshape(len(_TILTS), -1) >= 0.0).all(axis=1)
+    beyond = int(np.argmin(reached)) if not reached.all() else len(_TILTS)
+    return float(_TILTS[beyond - 1]) if beyond else None
+
+
+def _is_upright(cone_axis: Any) -> bool:
+    """Whether the axis of a cone points straight up."""
+    x, y, z = cone_axis
+    return bool(z > 0.0 and math.hypot(x, y) <= 1e-9 * z)
+
+
+def _read_settings(obj: Any, cone: float, place: Place) -> tuple[SurfaceOptions | None, tuple[Diagnostic, ...]]:
     """Read the settings from the properties of the operation and of its tool controller.
 
     Args:
@@ -155,106 +260,3 @@ def _settings(obj: Any, cone: float, feed: float, plunge: float) -> SurfaceOptio
         lead_length=obj.LeadLength.Value,
         approach=obj.ApproachDistance.Value,
     )
-
-
-_TILTS = np.radians(np.arange(0.0, 80.5, 0.5))
-_DIRECTIONS = np.radians(np.arange(0.0, 360.0, 15.0))
-
-
-def reachable_tilt(
-    name: str, job: Any, controller: Any, box: tuple[Array, Array], place: Place
-) -> tuple[float | None, tuple[Diagnostic, ...]]:
-    """The largest tilt from upright that the machine reaches at the part in every direction.
-
-    Args:
-        name: name of a machine included in PKM Post, or path of a machine file.
-        job: the CAM job, with its work offset and its gauge lengths.
-        controller: the tool controller, with a gauge length.
-        box: lowest and highest corner of the region of the tip, (3,) each, mm.
-        place: location stated in diagnostics.
-
-    Returns:
-        The angle in rad, or None; and the faults: M1xx of the machine file, J113, K108, N310.
-
-    Raises:
-        Refused: the arguments of the job are invalid, J117.
-    """
-    settings = settings_of(job)
-    machine, machine_faults = machine_named(name)
-    tools, tool_faults = read_tools([controller], settings.tool_lengths, place.file)
-    if machine is None or not tools:
-        return None, (*machine_faults, *tool_faults)
-    offset, faults = work_offset(machine, settings.options)
-    if offset is None:
-        return None, faults
-    tilt = _largest(machine, offset, tools[int(controller.ToolNumber)].length, *box)
-    if tilt is None:
-        return None, (Diagnostic("N310", place, f"{machine.name} at {settings.arguments.work_offset}"),)
-    return tilt, ()
-
-
-def _largest(machine: Machine, machine_from_work: Array, length: float, low: Array, high: Array) -> float | None:
-    """The last tilt before the first that is out of reach somewhere; None if upright is out of reach."""
-    corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
-    points = np.vstack([(np.asarray(low) + high) / 2, corners])
-    tilt, turn = (each.ravel() for each in np.meshgrid(_TILTS, _DIRECTIONS, indexing="ij"))
-    lean = np.column_stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)])
-    tip = np.tile(points @ machine_from_work[:3, :3].T + machine_from_work[:3, 3], (len(lean), 1))
-    axis = np.repeat(lean @ machine_from_work[:3, :3].T, len(points), axis=0)
-    margins = reach_margins(machine, tip, axis, np.zeros(len(tip)), np.full(len(tip), length))
-    worst = np.minimum.reduce([
-        *(each.min(axis=1) for each in (margins.shortest, margins.longest, margins.base, margins.platform)),
-        margins.singular,
-    ])  # fmt: skip
-    reached = (worst.reshape(len(_TILTS), -1) >= 0.0).all(axis=1)
-    beyond = int(np.argmin(reached)) if not reached.all() else len(_TILTS)
-    return float(_TILTS[beyond - 1]) if beyond else None
-
-
-def is_upright(cone_axis: Any) -> bool:
-    """Whether the axis of a cone points straight up."""
-    x, y, z = cone_axis
-    return bool(z > 0.0 and math.hypot(x, y) <= 1e-9 * z)
-
-
-Inputs = tuple[tuple[NamedFace, ...], Cutter, SurfaceOptions]
-"""Faces, cutter and settings."""
-
-
-def read_inputs(obj: Any, job: Any, place: Place) -> tuple[Inputs | None, tuple[Diagnostic, ...]]:
-    """Read faces, cutter and settings of an operation.
-
-    Args:
-        obj: the operation, with a tool controller.
-        job: its job.
-        place: location stated in diagnostics.
-
-    Returns:
-        The inputs, or None; and all their faults.
-    """
-    chosen = [(thing, names) for thing, names in obj.Base or ()]
-    faces, face_faults = model_faces(job.Model, chosen, place) if chosen else (None, ())
-    cutter, tool_faults = read_cutter(obj.ToolController, place)
-    found: list[Diagnostic] = [] if chosen else [Diagnostic("N308", place, "Base is empty")]
-    found += [*face_faults, *tool_faults]
-    cone, cone_faults = _cone(obj, job, faces or (), place)
-    settings, faults = read_settings(obj, cone, place)
-    found += [*cone_faults, *faults]
-    if faces is None or cutter is None or settings is None or errors(found):
-        return None, tuple(found)
-    return (faces, cutter, settings), tuple(found)
-
-
-def _cone(obj: Any, job: Any, faces: Sequence[NamedFace], place: Place) -> tuple[float, tuple[Diagnostic, ...]]:
-    """Half angle of the cone of the tool axis in rad: the user's, or the machine's where that is narrower."""
-    limit = math.radians(obj.ConeLimit.Value)
-    if not obj.Machine or not faces:
-        return limit, ()
-    if not is_upright(obj.ConeAxis):
-        return limit, (Diagnostic("N309", place, "a machine limits the tilt from upright: ConeAxis is not (0, 0, 1)"),)
-    boxes = [named.face.BoundBox for named in faces]
-    low = np.array([min(getattr(box, side) for box in boxes) for side in ("XMin", "YMin", "ZMin")])
-    high = np.array([max(getattr(box, side) for box in boxes) for side in ("XMax", "YMax", "ZMax")])
-    high[2] = max(high[2], obj.ClearanceHeight.Value)
-    tilt, faults = reachable_tilt(obj.Machine, job, obj.ToolController, (low, high), place)
-    return (limit if tilt is None else min(limit, tilt)), faults

@@ -3,7 +3,8 @@
 
 Takes an operation by the property ``Base``; sets the ``Path`` of the copy. Tool, coolant and feed are those of the
 base, which CAM finds by itself. Copies can be stacked. Saved documents store the classes of this module as
-``pkm_post.freecad_app.symmetry``: module and class names are a file format.
+``pkm_post.freecad_app.symmetry``: module and class names, and names, types and units of the properties, are a file
+format; properties can be added.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ from pkm_post.toolpath import concatenate, mirror, reversed_passes, rotation, tr
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
+_VIEW = "pkm_post.freecad_gui.symmetry_view"
+"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 _LINK = "App::PropertyLinkSubGlobal"
 _S = "Symmetry"
 _SIDE: Row = (
@@ -37,7 +40,7 @@ _SIDE: Row = (
     ),
     list(SIDES),
 )
-MIRROR: tuple[Row, ...] = (
+_MIRROR: tuple[Row, ...] = (
     *BASE_AND_ACTIVE,
     ("App::PropertyVectorDistance", "Point", _S,
      QT_TRANSLATE_NOOP("App::Property", "A point of the plane of the mirror"), App.Vector()),
@@ -49,7 +52,7 @@ MIRROR: tuple[Row, ...] = (
      QT_TRANSLATE_NOOP("App::Property", "Run each pass the other way, so that climb milling stays so"), False),
     _SIDE,
 )  # fmt: skip
-ROTATION: tuple[Row, ...] = (
+_ROTATION: tuple[Row, ...] = (
     *BASE_AND_ACTIVE,
     ("App::PropertyVectorDistance", "Point", _S,
      QT_TRANSLATE_NOOP("App::Property", "A point of the axis"), App.Vector()),
@@ -78,7 +81,7 @@ _COMMON: tuple[Row, ...] = (
     ("App::PropertyAngle", "JointTurn", _G,
      QT_TRANSLATE_NOOP("App::Property", "Largest angle of the tool axes where they meet"), 0.0),
 )  # fmt: skip
-MIRROR_RESULTS: tuple[Row, ...] = (
+_MIRROR_RESULTS: tuple[Row, ...] = (
     *_COMMON,
     ("App::PropertyInteger", "ReversedPasses", _G,
      QT_TRANSLATE_NOOP("App::Property", "Number of passes that are run the other way"), 0),
@@ -89,7 +92,7 @@ MIRROR_RESULTS: tuple[Row, ...] = (
     ("App::PropertyLength", "OverlapWithBase", _G,
      QT_TRANSLATE_NOOP("App::Property", "Width in which the original and the copy both cut"), 0.0),
 )  # fmt: skip
-ROTATION_RESULTS: tuple[Row, ...] = (
+_ROTATION_RESULTS: tuple[Row, ...] = (
     *_COMMON,
     ("App::PropertyAngle", "Covered", _G,
      QT_TRANSLATE_NOOP("App::Property", "Angle in which the original and its copies cut"), 0.0),
@@ -100,10 +103,6 @@ ROTATION_RESULTS: tuple[Row, ...] = (
     ("App::PropertyBool", "Tiles", _G,
      QT_TRANSLATE_NOOP("App::Property", "Whether they lie all round, none of them on another"), False),
 )  # fmt: skip
-
-
-_VIEW = "pkm_post.freecad_gui.symmetry_view"
-"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 
 
 class _SymmetricOperation(DerivedOperation):
@@ -132,17 +131,17 @@ class _SymmetricOperation(DerivedOperation):
             matrices = self.matrices(obj)
         except ValueError as wrong:
             return None, (Diagnostic("J121", Place(program.source, obj.Label), str(wrong)),)
-        copies, told = [], list[Diagnostic]()
+        copies, diagnostics = [], list[Diagnostic]()
         for matrix in matrices:
             copy, faults = transform(program, matrix)
-            told += faults
+            diagnostics += faults
             if copy is None:
-                return None, tuple(told)
+                return None, tuple(diagnostics)
             copies.append(copy)
-        made, faults = self.in_cutting_order(obj, concatenate(copies))
-        if made is not None:
-            write_report(obj, program, copies, made)
-        return made, (*told, *faults)
+        result, faults = self.in_cutting_order(obj, concatenate(copies))
+        if result is not None:
+            write_report(obj, program, copies, result)
+        return result, (*diagnostics, *faults)
 
 
 class MirroredOperation(_SymmetricOperation):
@@ -152,8 +151,8 @@ class MirroredOperation(_SymmetricOperation):
     then each pass is reversed.
     """
 
-    properties = MIRROR
-    results = MIRROR_RESULTS
+    properties = _MIRROR
+    results = _MIRROR_RESULTS
 
     def matrices(self, obj: Any) -> list[Array]:
         """The reflection in the plane."""
@@ -176,8 +175,8 @@ class MirroredOperation(_SymmetricOperation):
 class RotatedOperation(_SymmetricOperation):
     """Copies rotated about an axis."""
 
-    properties = ROTATION
-    results = ROTATION_RESULTS
+    properties = _ROTATION
+    results = _ROTATION_RESULTS
 
     def matrices(self, obj: Any) -> list[Array]:
         """The rotations about the axis."""

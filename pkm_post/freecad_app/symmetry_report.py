@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Symmetry report: cut direction of copies, their coverage around the part, and the fit of their joints.
+"""Symmetry report: how copies cut, how they cover the part, and how they fit where they meet.
 
 Takes programs or document objects; sets the read-only properties of a symmetric operation, and returns the totals of
 all copies of one operation in a job. Units: mm, rad; properties in mm and degrees.
+
+Copies mill climb or conventional depending on the side of the path on which the material is, and on the sense of the
+spindle. An operation's properties state both: CAM defines climb milling for a spindle that turns clockwise (M3), the
+material is then to the right of the path. Sides are +1 (right), -1 (left) or 0 (unknown).
 """
 
 from __future__ import annotations
@@ -17,6 +21,7 @@ from Path.Base.Util import toolControllerForOp
 from PathScripts import PathUtils
 
 from pkm_post.freecad_app.document_object import program_of
+from pkm_post.freecad_app.tools import SPINDLE_SENSES
 from pkm_post.geometry import Array
 from pkm_post.model import Kind, Program
 from pkm_post.toolpath import (
@@ -37,7 +42,6 @@ SIDES = {NOT_STATED: 0, LEFT: -1, RIGHT: 1}
 """Choices of the property ``MaterialSide``."""
 
 _CUT_MODES = {"Climb": 1, "Conventional": -1}
-_SENSES = {"Forward": 1, "Reverse": -1}
 _PROFILE = {("Outside", "CW"): 1, ("Outside", "CCW"): -1, ("Inside", "CCW"): 1, ("Inside", "CW"): -1}
 """Side of the contour and direction of CAM's profile operation; CAM reverses holes by itself."""
 _ORDERS = ("Order", "CutPattern", "OffsetPattern", "ClearingPattern")
@@ -75,7 +79,7 @@ def base_material_side(obj: Any) -> int:
 
 def spindle_sense_of(obj: Any) -> int:
     """+1 if the tool controller of an operation turns the spindle clockwise (M3), -1 counterclockwise, 0 if stopped."""
-    return _SENSES.get(getattr(toolControllerForOp(obj), "SpindleDir", ""), 0)
+    return SPINDLE_SENSES.get(getattr(toolControllerForOp(obj), "SpindleDir", ""), 0)
 
 
 _PARALLEL = 1e-6
@@ -99,22 +103,23 @@ class Family:
     joints: tuple[Seam, ...]
 
 
-def write_report(obj: Any, base: Program, copies: Sequence[Program], made: Program) -> None:
+def write_report(obj: Any, base: Program, copies: Sequence[Program], result: Program) -> None:
     """Write the read-only properties of a symmetric operation.
 
     Args:
         obj: the operation.
         base: the program of its base.
         copies: its copies, mirrored or rotated.
-        made: the program of the operation.
+        result: the program of the operation.
     """
     sense, side = spindle_sense_of(obj), base_material_side(obj)
     obj.CutOfBase = cut_lengths(base, side, sense).direction.value
-    obj.CutOfCopies = cut_lengths(made, side * obj.Proxy.side_factor(obj), sense).direction.value
-    met = _report_mirror(obj, base, copies[0]) if hasattr(obj, "Normal") else _report_rotation(obj, [base, *copies])
-    obj.Joints = len(met)
-    obj.JointDistance = max((each.distance for each in met), default=0.0)
-    obj.JointTurn = math.degrees(max((each.turn for each in met), default=0.0))
+    obj.CutOfCopies = cut_lengths(result, side * obj.Proxy.side_factor(obj), sense).direction.value
+    is_mirror = hasattr(obj, "Normal")
+    joints = _report_mirror(obj, base, copies[0]) if is_mirror else _report_rotation(obj, [base, *copies])
+    obj.Joints = len(joints)
+    obj.JointDistance = max((each.distance for each in joints), default=0.0)
+    obj.JointTurn = math.degrees(max((each.turn for each in joints), default=0.0))
 
 
 def _report_mirror(obj: Any, base: Program, copy: Program) -> tuple[Seam, ...]:
@@ -124,25 +129,25 @@ def _report_mirror(obj: Any, base: Program, copy: Program) -> tuple[Seam, ...]:
     return (seam(base, copy),) if len(pass_rows(base)) else ()
 
 
-def _swapped_arcs(base: Program, copy: Program, run_back: bool) -> int:
+def _swapped_arcs(base: Program, copy: Program, reversed_pass: bool) -> int:
     """Number of arcs with reversed sense about their coordinate; reversing the pass as well restores the sense."""
     arc = base.kind == Kind.ARC
     senses = []
     for axis in (base.arc_axis[arc], copy.arc_axis[arc]):
         along = np.argmax(np.abs(axis), axis=1)
         senses.append(axis[np.arange(len(axis)), along] > 0)
-    return int(np.sum((senses[0] != senses[1]) != run_back))
+    return int(np.sum((senses[0] != senses[1]) != reversed_pass))
 
 
 def _report_rotation(obj: Any, programs: list[Program]) -> tuple[Seam, ...]:
-    found, met = _circle(programs, np.array(obj.Point), np.array(obj.Axis))
-    angles = (found.covered, found.overlap, found.gap) if found else (0.0, 0.0, 2 * math.pi)
+    total, joints = _coverage(programs, np.array(obj.Point), np.array(obj.Axis))
+    angles = (total.covered, total.overlap, total.gap) if total else (0.0, 0.0, 2 * math.pi)
     obj.Covered, obj.Overlap, obj.Gap = (math.degrees(angle) for angle in angles)
-    obj.Tiles = found is not None and found.tiles
-    return met
+    obj.Tiles = total is not None and total.tiles
+    return joints
 
 
-def _circle(programs: list[Program], point: Array, axis: Array) -> tuple[Coverage | None, tuple[Seam, ...]]:
+def _coverage(programs: list[Program], point: Array, axis: Array) -> tuple[Coverage | None, tuple[Seam, ...]]:
     """Coverage of programs about an axis, and their joints; nothing if one of them has no cut."""
     sectors = [found for program in programs if (found := sector(program, point, axis))]
     if not programs or len(sectors) < len(programs):
@@ -161,11 +166,11 @@ def family_of(obj: Any) -> Family:
     """
     root, job = _root(obj), PathUtils.findParentJob(obj)
     operations = [root] if job is None else job.Operations.Group
-    others = [each for each in operations if _root(each) == root and each != root and _is_sound(each)]
+    others = [each for each in operations if _root(each) == root and each != root and _is_valid(each)]
     programs = [program for each in (root, *others) for program in _images(each)]
     axis = _axis(others)
-    found, met = _circle(programs, *axis) if axis else (None, ())
-    return Family(root.Label, len(programs), found, met)
+    total, joints = _coverage(programs, *axis) if axis else (None, ())
+    return Family(root.Label, len(programs), total, joints)
 
 
 def _root(obj: Any) -> Any:
@@ -175,7 +180,7 @@ def _root(obj: Any) -> Any:
     return obj
 
 
-def _is_sound(obj: Any) -> bool:
+def _is_valid(obj: Any) -> bool:
     """Whether a copy and all copies below it exist and are active."""
     while is_symmetric(obj) and obj.Base is not None:
         if not obj.Active or not obj.isValid():
@@ -196,9 +201,9 @@ def _images(obj: Any) -> list[Program]:
 
 def _axis(copies: list[Any]) -> tuple[Array, Array] | None:
     """A point and the direction of the axis: that of a rotation, or the intersection line of two mirror planes."""
-    turns = [each for each in copies if hasattr(each, "Axis")]
-    if turns:
-        return np.array(turns[0].Point), np.array(turns[0].Axis)
+    rotations = [each for each in copies if hasattr(each, "Axis")]
+    if rotations:
+        return np.array(rotations[0].Point), np.array(rotations[0].Axis)
     planes = [(np.array(each.Point), np.array(each.Normal.normalize())) for each in copies]
     for number, (point, normal) in enumerate(planes):
         for other_point, other in planes[number + 1 :]:

@@ -21,6 +21,8 @@ from pkm_post.model import Diagnostic, Place, Tool, corner_reach
 from pkm_post.toolpath import Cutter
 
 GAUGE_LENGTH = "GaugeLength"
+SPINDLE_SENSES = {"Forward": 1, "Reverse": -1, "None": 0}
+"""+1 clockwise (M3), -1 counterclockwise, 0 stopped, by the property ``SpindleDir`` of a tool controller."""
 _UPRIGHT_SHAPES = ("endmill", "ballend", "bullnose")
 """Shapes with a flat bottom and an upright side. ``read_tools`` does not return the angle of a tapered one."""
 _ANY_LENGTH = 1.0

@@ -98,7 +98,7 @@ def test_cut_round_an_edge_without_a_point_on_it_is_told(box_job):
     """The centre of the ball would cut the corner by 5 (1 - cos 45) = 1.46 mm."""
     text = refused(dressed(box_job, lines([(19.9, 5, 20), (20, 5, 19.9)])))
     assert "N113" in text
-    assert "the normal by 90, the axis by 0 degrees; half way the tool would be 1.46 mm off" in text
+    assert "the normal by 90, the axis by 0 degrees; halfway the tool would be 1.46 mm off" in text
     assert f"part: Cut: line {COMMENTS + 3}" in text
 
 
@@ -113,7 +113,7 @@ def test_flat_end_mill_would_jump_over_a_summit(document):
     points = SPHERE_RADIUS * np.column_stack([np.sin(angle), np.zeros(len(angle)), np.cos(angle)])
     text = refused(dressed(job_on(document, Part.makeSphere(SPHERE_RADIUS), "endmill.fcstd"), lines(points)))
     assert f"part: Cut: line {COMMENTS + 4}: error N113" in text
-    assert "the normal by 11.5, the axis by 0 degrees; half way the tool would be 5 mm off" in text
+    assert "the normal by 11.5, the axis by 0 degrees; halfway the tool would be 5 mm off" in text
 
 
 def test_rapid_move_onto_a_face_may_come_from_another_one(box_job):
@@ -131,7 +131,7 @@ def test_axis_that_turns_lifts_the_tool(box_job):
     """The tip goes straight while the centre of the ball goes round it: 5 (1 - cos 10) = 0.076 mm in the middle."""
     axes = [(np.sin(angle), 0, np.cos(angle)) for angle in np.radians([10, -10])]
     dressup = dressed(box_job, lines(ACROSS_THE_TOP[:2], axes))
-    assert "the normal by 0, the axis by 20 degrees; half way the tool would be 0.076 mm off" in refused(dressup)
+    assert "the normal by 0, the axis by 20 degrees; halfway the tool would be 0.076 mm off" in refused(dressup)
     dressup.ChordTolerance = 0.08
     box_job.Document.recompute()
     valid(dressup)

@@ -224,7 +224,7 @@ def test_decoded_with_the_controller_of_its_tool(document, tmp_path):
 )
 def test_what_an_operation_cannot_say_is_told(document, tmp_path, monkeypatch, code, lost):
     told = []
-    monkeypatch.setattr("pkm_post.freecad_app.program_object._tell", told.extend)
+    monkeypatch.setattr("pkm_post.freecad_app.program_object.print_diagnostics", told.extend)
     obj = create_program(document, written(tmp_path, "a.ngc", GCODE.replace("G17", f"{code}\nG17", 1)))
     decode(obj, new_job(document))
     assert [each.code for each in told] == ["J120"]
