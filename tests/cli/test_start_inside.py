@@ -121,3 +121,23 @@ def test_what_is_not_started_for_freecad_ends_as_it_ends(monkeypatch):
     assert inside[0] == "freecadcmd" and inside[-2:] == ["post", "part.FCStd"]
     assert [outcome(["python3"], code) for code in (0, 1, 64)] == [(0, ""), (1, ""), (64, "")]
     assert [outcome(inside, inner_exit_code(code)) for code in (0, 1, 2, 130)] == [(0, ""), (1, ""), (2, ""), (130, "")]
+
+
+@pytest.mark.parametrize(
+    ("files", "solids", "needed"),
+    [
+        (["a.ngc"], [], False),
+        (["a.ngc", "b.FCStd"], [], True),
+        (["a.cls"], ["wall.stl", "none"], False),
+        (["a.cls"], ["wall.stl", "vice.STP"], True),
+        (["a.cls"], ["wall.step"], True),
+    ],
+)
+def test_names_say_it(monkeypatch, files, solids, needed):
+    monkeypatch.setattr(processes, "is_inside", lambda: False)
+    assert processes.needs_freecad([Path(file) for file in files], solids) is needed
+
+
+def test_nothing_is_needed_inside(monkeypatch):
+    monkeypatch.setattr(processes, "is_inside", lambda: True)
+    assert not processes.needs_freecad([Path("a.FCStd")], ["wall.step"])

@@ -79,29 +79,29 @@ def by_pipeline(job, arguments, folder):
     return contents(folder)
 
 
-def by_cam(job, parse_text, folder):
+def by_cam(job, arguments, folder):
     job.PostProcessorOutputFile = str(folder / "part.pmc")
     ((_, text),) = PostProcessorFactory.get_post_processor(job, "hexapod_pmac").export()
     assert (folder / "part.pmc").read_text(encoding="ascii") == text
 
 
-def by_command_line(job, parse_text, folder):
-    assert main(["post", job.Document.FileName, "--out", str(folder), *parse_text]) == 0
+def by_command_line(job, arguments, folder):
+    assert main(["post", job.Document.FileName, "--out", str(folder), *arguments]) == 0
 
 
-def by_panel(job, parse_text, folder):
+def by_panel(job, arguments, folder):
     prepared_job(job, settings_of(job)).post(folder / "part.pmc")
 
 
-def by_macro(job, parse_text, folder):
-    pkm_post.post(job, out=folder, arguments=shlex.join(parse_text))
+def by_macro(job, arguments, folder):
+    pkm_post.post(job, out=folder, arguments=shlex.join(arguments))
 
 
-def by_macro_with_the_file(job, parse_text, folder):
-    pkm_post.post(job.Document.FileName, out=folder, arguments=shlex.join(parse_text))
+def by_macro_with_the_file(job, arguments, folder):
+    pkm_post.post(job.Document.FileName, out=folder, arguments=shlex.join(arguments))
 
 
-def as_the_job_says(job, parse_text, folder):
+def as_the_job_says(job, arguments, folder):
     post_job(job, out=folder)
 
 
