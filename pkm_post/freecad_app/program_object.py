@@ -52,7 +52,7 @@ _G = "Program"
 _PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyFile", "File", _G, QT_TRANSLATE_NOOP("App::Property", "The part program, G-code or CL data"), ""),
     ("App::PropertyEnumeration", "AxisWords", _G,
-     QT_TRANSLATE_NOOP("App::Property", "How G-code says the tool axis"), list(AXIS_WORDS)),
+     QT_TRANSLATE_NOOP("App::Property", "Notation of the tool axis in G-code"), list(AXIS_WORDS)),
     ("App::PropertyEnumeration", "DwellUnit", _G,
      QT_TRANSLATE_NOOP("App::Property", "The unit of dwells of G-code"), list(DWELL_UNITS)),
     ("App::PropertyEnumeration", "Unit", _G,
@@ -70,7 +70,7 @@ _PROPERTIES: tuple[Row, ...] = (
 )  # fmt: skip
 _RESULTS: tuple[Row, ...] = (
     ("App::PropertyStringList", "Found", _G,
-     QT_TRANSLATE_NOOP("App::Property", "What was found in reading the file"), []),
+     QT_TRANSLATE_NOOP("App::Property", "Diagnostics from reading the file"), []),
 )  # fmt: skip
 
 

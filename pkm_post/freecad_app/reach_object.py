@@ -47,20 +47,20 @@ PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyBool", "Active", _C,
      QT_TRANSLATE_NOOP("App::Property", "Switch this off to check no more when the job changes"), True),
     ("App::PropertyEnumeration", "ColourBy", _C,
-     QT_TRANSLATE_NOOP("App::Property", "The check that the way is coloured by"), ["shortest struts"]),
+     QT_TRANSLATE_NOOP("App::Property", "The check whose margins colour the path"), ["shortest struts"]),
 )  # fmt: skip
 RESULTS: tuple[Row, ...] = (
     ("App::PropertyBool", "Reachable", _R,
      QT_TRANSLATE_NOOP("App::Property", "Whether the machine can follow; where it is slower, it can"), False),
     ("App::PropertyStringList", "Checks", _R,
-     QT_TRANSLATE_NOOP("App::Property", "What was checked; the lists below have an entry for each"), []),
+     QT_TRANSLATE_NOOP("App::Property", "The checks; the lists below have an entry for each"), []),
     ("App::PropertyStringList", "Units", _R, QT_TRANSLATE_NOOP("App::Property", "Of the margins"), []),
     ("App::PropertyFloatList", "LeastMargins", _R,
      QT_TRANSLATE_NOOP("App::Property", "Least margin; negative is out of limits"), []),
     ("App::PropertyStringList", "ProvenMargins", _R,
-     QT_TRANSLATE_NOOP("App::Property", "What is proven between the points as well"), []),
+     QT_TRANSLATE_NOOP("App::Property", "Margins proven between the points as well"), []),
     ("App::PropertyStringList", "WorstParts", _R,
-     QT_TRANSLATE_NOOP("App::Property", "What has the least margin"), []),
+     QT_TRANSLATE_NOOP("App::Property", "Part of the machine with the smallest margin"), []),
     ("App::PropertyStringList", "WorstOperations", _R,
      QT_TRANSLATE_NOOP("App::Property", "Operation in which that is"), []),
     ("App::PropertyIntegerList", "WorstLines", _R,
@@ -68,11 +68,11 @@ RESULTS: tuple[Row, ...] = (
     ("App::PropertyVectorList", "WorstPoints", _R,
      QT_TRANSLATE_NOOP("App::Property", "Where the tool tip is then"), []),
     ("App::PropertyStringList", "Violations", _R,
-     QT_TRANSLATE_NOOP("App::Property", "What is out of limits, worst of each operation"), []),
+     QT_TRANSLATE_NOOP("App::Property", "Violated limits, the worst of each operation"), []),
     ("App::PropertyStringList", "Report", _R, QT_TRANSLATE_NOOP("App::Property", "The report for people"), []),
 )  # fmt: skip
 WAY: tuple[Row, ...] = (
-    ("App::PropertyVectorList", "Points", _W, QT_TRANSLATE_NOOP("App::Property", "The way of the tool tip"), []),
+    ("App::PropertyVectorList", "Points", _W, QT_TRANSLATE_NOOP("App::Property", "The path of the tool tip"), []),
     ("App::PropertyFloatList", "Margins", _W,
      QT_TRANSLATE_NOOP("App::Property", "Margin at each point, of the check that it is coloured by"), []),
 )  # fmt: skip

@@ -39,15 +39,14 @@ PROPERTIES: tuple[Row, ...] = (
 RESULTS: tuple[Row, ...] = (
     ("App::PropertyBool", "Followable", _R,
      QT_TRANSLATE_NOOP("App::Property", "Whether the machine can follow; where it is slower, it can"), False),
-    ("App::PropertyTime", "Duration", _R, QT_TRANSLATE_NOOP("App::Property", "How long the struts move"), 0.0),
+    ("App::PropertyTime", "Duration", _R, QT_TRANSLATE_NOOP("App::Property", "Time in which the struts move"), 0.0),
     ("App::PropertyTime", "DwellTime", _R,
-     QT_TRANSLATE_NOOP("App::Property", "How long the program waits beside that; stops and tool changes do not "
-                       "count"), 0.0),
+     QT_TRANSLATE_NOOP("App::Property", "Time of the dwells in addition; stops and tool changes do not count"), 0.0),
     ("App::PropertyInteger", "Blocks", _R, QT_TRANSLATE_NOOP("App::Property", "Motions of the program"), 0),
     ("App::PropertyInteger", "Points", _R,
      QT_TRANSLATE_NOOP("App::Property", "Knots in time that the controller would get"), 0),
     ("App::PropertyLength", "WayLength", _R,
-     QT_TRANSLATE_NOOP("App::Property", "Length of the way of the tool tip, rapid motions included"), 0.0),
+     QT_TRANSLATE_NOOP("App::Property", "Length of the path of the tool tip, with rapid moves"), 0.0),
     ("App::PropertyLength", "ShortestStrut", _R,
      QT_TRANSLATE_NOOP("App::Property", "Least length that a strut has"), 0.0),
     ("App::PropertyLength", "LongestStrut", _R,
@@ -59,7 +58,7 @@ RESULTS: tuple[Row, ...] = (
     ("App::PropertyStringList", "Operations", _T,
      QT_TRANSLATE_NOOP("App::Property", "The operations; the list below has an entry for each"), []),
     ("App::PropertyFloatList", "OperationTimes", _T,
-     QT_TRANSLATE_NOOP("App::Property", "How long each takes with its dwells, in s"), []),
+     QT_TRANSLATE_NOOP("App::Property", "Duration of each with its dwells, in s"), []),
     ("App::PropertyInteger", "ProblemCount", _P,
      QT_TRANSLATE_NOOP("App::Property", "How many there are; the first 1000 are in the lists"), 0),
     ("App::PropertyFloatList", "ProblemTimes", _P, QT_TRANSLATE_NOOP("App::Property", "When each begins, in s"), []),
@@ -71,7 +70,7 @@ RESULTS: tuple[Row, ...] = (
     ("App::PropertyVectorList", "WorstPoints", _P,
      QT_TRANSLATE_NOOP("App::Property", "Where the tool tip is then"), []),
     ("App::PropertyStringList", "Problems", _P,
-     QT_TRANSLATE_NOOP("App::Property", "What the machine cannot follow, by time"), []),
+     QT_TRANSLATE_NOOP("App::Property", "Stretches that the machine cannot follow, by time"), []),
 )  # fmt: skip
 
 

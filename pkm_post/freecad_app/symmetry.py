@@ -36,7 +36,7 @@ _SIDE: Row = (
     "MaterialSide",
     _S,
     QT_TRANSLATE_NOOP(
-        "App::Property", "Where the material is, seen along the way of the original, should the original not tell"
+        "App::Property", "Side of the material along the path of the original, where its properties do not state it"
     ),
     list(SIDES),
 )
@@ -49,7 +49,7 @@ _MIRROR: tuple[Row, ...] = (
     (_LINK, "Plane", _S,
      QT_TRANSLATE_NOOP("App::Property", "A flat face or datum plane that gives point and normal"), None),
     ("App::PropertyBool", "KeepClimb", _S,
-     QT_TRANSLATE_NOOP("App::Property", "Run each pass the other way, so that climb milling stays so"), False),
+     QT_TRANSLATE_NOOP("App::Property", "Reverse each pass, to keep climb milling"), False),
     _SIDE,
 )  # fmt: skip
 _ROTATION: tuple[Row, ...] = (
@@ -84,9 +84,9 @@ _COMMON: tuple[Row, ...] = (
 _MIRROR_RESULTS: tuple[Row, ...] = (
     *_COMMON,
     ("App::PropertyInteger", "ReversedPasses", _G,
-     QT_TRANSLATE_NOOP("App::Property", "Number of passes that are run the other way"), 0),
+     QT_TRANSLATE_NOOP("App::Property", "Number of reversed passes"), 0),
     ("App::PropertyInteger", "SwappedArcs", _G,
-     QT_TRANSLATE_NOOP("App::Property", "Number of arcs that turn the other way, G2 for G3 or G3 for G2"), 0),
+     QT_TRANSLATE_NOOP("App::Property", "Number of arcs with reversed sense, G2 for G3 or G3 for G2"), 0),
     ("App::PropertyLength", "GapToBase", _G,
      QT_TRANSLATE_NOOP("App::Property", "Distance between the cuts of the original and of the copy"), 0.0),
     ("App::PropertyLength", "OverlapWithBase", _G,
@@ -101,7 +101,7 @@ _ROTATION_RESULTS: tuple[Row, ...] = (
     ("App::PropertyAngle", "Gap", _G,
      QT_TRANSLATE_NOOP("App::Property", "Widest angle in which none of them cuts"), 0.0),
     ("App::PropertyBool", "Tiles", _G,
-     QT_TRANSLATE_NOOP("App::Property", "Whether they lie all round, none of them on another"), False),
+     QT_TRANSLATE_NOOP("App::Property", "Whether they cover the full circle without overlap"), False),
 )  # fmt: skip
 
 

@@ -56,11 +56,11 @@
         <translation>控制器计数的杆长</translation>
     </message>
     <message>
-        <source>What is left of the strut nearest to an end of its stroke</source>
+        <source>Smallest margin of a strut to an end of its stroke</source>
         <translation>最接近行程端点的支链的剩余行程</translation>
     </message>
     <message>
-        <source>What is left of the joint nearest to its cone</source>
+        <source>Smallest margin of a joint to its cone</source>
         <translation>最接近锥角极限的铰链的剩余摆角</translation>
     </message>
     <message>
@@ -68,7 +68,7 @@
         <translation>最小奇异值超出允许下限的量</translation>
     </message>
     <message>
-        <source>What is out of limits at this pose</source>
+        <source>Limits that are violated at this pose</source>
         <translation>此位姿下超出极限的项目</translation>
     </message>
     <message>
@@ -84,11 +84,11 @@
         <translation>允许接触的面；为空时为模型的所有面</translation>
     </message>
     <message>
-        <source>How far a point may be from the face it touches</source>
+        <source>Largest distance of a point from the face it touches</source>
         <translation>接触点与所接触的面之间允许的最大距离</translation>
     </message>
     <message>
-        <source>How far the tool may be off between two points</source>
+        <source>Largest deviation of the tool from the surface between two points</source>
         <translation>两点之间刀具允许的最大偏差</translation>
     </message>
     <message>
@@ -116,7 +116,7 @@
         <translation>零件程序，G 代码或刀位文件</translation>
     </message>
     <message>
-        <source>How G-code says the tool axis</source>
+        <source>Notation of the tool axis in G-code</source>
         <translation>G 代码中刀轴的表示方式</translation>
     </message>
     <message>
@@ -144,7 +144,7 @@
         <translation>零件程序是否可以没有结束语句（如 M2 或 FINI）</translation>
     </message>
     <message>
-        <source>What was found in reading the file</source>
+        <source>Diagnostics from reading the file</source>
         <translation>读取文件时发现的问题</translation>
     </message>
     <message>
@@ -160,7 +160,7 @@
         <translation>关闭后，作业更改时不再检查</translation>
     </message>
     <message>
-        <source>The check that the way is coloured by</source>
+        <source>The check whose margins colour the path</source>
         <translation>按此检查项为轨迹着色</translation>
     </message>
     <message>
@@ -168,7 +168,7 @@
         <translation>机床能否跟随；仅是速度较慢时视为能够跟随</translation>
     </message>
     <message>
-        <source>What was checked; the lists below have an entry for each</source>
+        <source>The checks; the lists below have an entry for each</source>
         <translation>检查项；下面的列表与其逐项对应</translation>
     </message>
     <message>
@@ -180,11 +180,11 @@
         <translation>最小余量；负值表示超出极限</translation>
     </message>
     <message>
-        <source>What is proven between the points as well</source>
+        <source>Margins proven between the points as well</source>
         <translation>点与点之间也已证明的余量</translation>
     </message>
     <message>
-        <source>What has the least margin</source>
+        <source>Part of the machine with the smallest margin</source>
         <translation>余量最小的部件</translation>
     </message>
     <message>
@@ -200,7 +200,7 @@
         <translation>此时刀尖的位置</translation>
     </message>
     <message>
-        <source>What is out of limits, worst of each operation</source>
+        <source>Violated limits, the worst of each operation</source>
         <translation>超出极限的项目，每个操作中最严重的一处</translation>
     </message>
     <message>
@@ -208,7 +208,7 @@
         <translation>供阅读的报告</translation>
     </message>
     <message>
-        <source>The way of the tool tip</source>
+        <source>The path of the tool tip</source>
         <translation>刀尖轨迹</translation>
     </message>
     <message>
@@ -224,11 +224,11 @@
         <translation>关闭后，作业更改时不再规划</translation>
     </message>
     <message>
-        <source>How long the struts move</source>
+        <source>Time in which the struts move</source>
         <translation>支链运动的时间</translation>
     </message>
     <message>
-        <source>How long the program waits beside that; stops and tool changes do not count</source>
+        <source>Time of the dwells in addition; stops and tool changes do not count</source>
         <translation>此外程序等待的时间；停止和换刀不计入</translation>
     </message>
     <message>
@@ -240,7 +240,7 @@
         <translation>控制器将得到的时间节点数</translation>
     </message>
     <message>
-        <source>Length of the way of the tool tip, rapid motions included</source>
+        <source>Length of the path of the tool tip, with rapid moves</source>
         <translation>刀尖轨迹的长度，包括快速移动</translation>
     </message>
     <message>
@@ -264,7 +264,7 @@
         <translation>各操作；下面的列表与其逐项对应</translation>
     </message>
     <message>
-        <source>How long each takes with its dwells, in s</source>
+        <source>Duration of each with its dwells, in s</source>
         <translation>每个操作的用时，包括暂停，单位 s</translation>
     </message>
     <message>
@@ -280,15 +280,15 @@
         <translation>每个问题最严重的时刻，单位 s</translation>
     </message>
     <message>
-        <source>What the machine cannot follow, by time</source>
+        <source>Stretches that the machine cannot follow, by time</source>
         <translation>机床不能跟随之处，按时间排列</translation>
     </message>
     <message>
-        <source>What the passes run along</source>
+        <source>Lines that the passes follow</source>
         <translation>走刀所沿的方向</translation>
     </message>
     <message>
-        <source>How passes follow each other</source>
+        <source>Order of the passes</source>
         <translation>各次走刀的先后方式</translation>
     </message>
     <message>
@@ -308,7 +308,7 @@
         <translation>材料在面的另一侧</translation>
     </message>
     <message>
-        <source>What says how far passes are apart</source>
+        <source>Whether distance or scallop height sets the stepover</source>
         <translation>行距的确定方式</translation>
     </message>
     <message>
@@ -316,15 +316,15 @@
         <translation>沿曲面的最大行距</translation>
     </message>
     <message>
-        <source>Largest height of what is left between passes</source>
+        <source>Largest scallop height between passes</source>
         <translation>两次走刀之间的最大残留高度</translation>
     </message>
     <message>
-        <source>How far straight moves may take the cutter off the surface</source>
+        <source>Largest deviation of the cutter from the surface on straight moves</source>
         <translation>直线移动时刀具偏离曲面的最大允许量</translation>
     </message>
     <message>
-        <source>How far the tool axis may be off between two points</source>
+        <source>Largest deviation of the tool axis between two points</source>
         <translation>两点之间刀轴允许的最大偏差</translation>
     </message>
     <message>
@@ -344,7 +344,7 @@
         <translation>快速移动结束处沿刀轴的距离</translation>
     </message>
     <message>
-        <source>How the cutter comes to the surface and leaves it</source>
+        <source>Form of lead-in and lead-out</source>
         <translation>刀具进入和离开曲面的方式</translation>
     </message>
     <message>
@@ -376,11 +376,11 @@
         <translation>在间距为 CheckSpacing 的各点上测得的最多残留材料，mm；点与点之间可能更多而未被发现；未测量时为 -1</translation>
     </message>
     <message>
-        <source>Half angle of the cone, with what the machine allows</source>
+        <source>Half angle of the cone that was used, limited by the machine</source>
         <translation>考虑机床允许范围后圆锥的半角</translation>
     </message>
     <message>
-        <source>Where the material is, seen along the way of the original, should the original not tell</source>
+        <source>Side of the material along the path of the original, where its properties do not state it</source>
         <translation>沿原操作的走刀方向看材料所在的一侧，用于原操作未说明时</translation>
     </message>
     <message>
@@ -396,7 +396,7 @@
         <translation>给出点和法线的平面或基准平面</translation>
     </message>
     <message>
-        <source>Run each pass the other way, so that climb milling stays so</source>
+        <source>Reverse each pass, to keep climb milling</source>
         <translation>每次走刀反向，使顺铣保持为顺铣</translation>
     </message>
     <message>
@@ -444,11 +444,11 @@
         <translation>相接处刀轴的最大夹角</translation>
     </message>
     <message>
-        <source>Number of passes that are run the other way</source>
+        <source>Number of reversed passes</source>
         <translation>反向走刀的次数</translation>
     </message>
     <message>
-        <source>Number of arcs that turn the other way, G2 for G3 or G3 for G2</source>
+        <source>Number of arcs with reversed sense, G2 for G3 or G3 for G2</source>
         <translation>反向的圆弧数，G2 变为 G3 或 G3 变为 G2</translation>
     </message>
     <message>
@@ -472,7 +472,7 @@
         <translation>均未切削的最大角度范围</translation>
     </message>
     <message>
-        <source>Whether they lie all round, none of them on another</source>
+        <source>Whether they cover the full circle without overlap</source>
         <translation>是否布满整周且互不重叠</translation>
     </message>
     <message>

@@ -61,7 +61,7 @@ def test_panel_is_in_the_language_that_was_chosen(session, chinese):
         assert chinese["SymmetryPanel", text] in found["labels"]
     assert found["climb"] == chinese["SymmetryPanel", "Keep climb milling: run passes the other way"]
     assert chinese["PKM_Mirror", "Mirror operation"] in found["undo"]
-    assert found["said"] == chinese["App::Property", "Run each pass the other way, so that climb milling stays so"]
+    assert found["said"] == chinese["App::Property", "Reverse each pass, to keep climb milling"]
     assert session.drew("panel.png")
 
 
@@ -76,7 +76,7 @@ def test_choices_are_translated_and_properties_keep_the_english_words(session, c
     found = session["choices_are_chinese_and_properties_are_not"]
     assert found["shown"] == chinese["PKM_SurfaceFinish", "Parallel planes"]
     assert found["kept"] == "Parallel planes"
-    assert found["tip"] == chinese["App::Property", "What the passes run along"]
+    assert found["tip"] == chinese["App::Property", "Lines that the passes follow"]
     assert found["unknown"] == []
 
 
