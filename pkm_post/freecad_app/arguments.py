@@ -91,7 +91,7 @@ def parse_arguments(text: str, place: Place, post_processor: str = PMAC) -> argp
     try:
         chosen = parse_text(text, _parser(post_processor))
         if chosen.also and post_processor != PMAC:
-            raise ValueError(f"--also is for {PMAC} alone in {text!r}")
+            raise ValueError(f"--also is only for {PMAC} in {text!r}")
     except ValueError as fault:
         raise Refused([Diagnostic("J117", place, str(fault))]) from fault
     return chosen

@@ -64,9 +64,9 @@ def guide_rows(program: Program, touching: Array, lead_length: float) -> tuple[A
     row, rapid = np.arange(len(program)), (program.kind == Kind.RAPID) & ~touching
     before, after = _latest(touching), _next(touching)
     since, until = _latest(rapid), _next(rapid)
-    way = np.cumsum(norm(np.diff(program.position, axis=0, prepend=program.position[:1])))
-    leads_in = (after < until) & (before <= since) & (way[np.minimum(after, row[-1:])] - way <= lead_length)
-    leads_out = (before > since) & (until <= after) & (way - way[np.maximum(before, 0)] <= lead_length)
+    travelled = np.cumsum(norm(np.diff(program.position, axis=0, prepend=program.position[:1])))
+    leads_in = (after < until) & (before <= since) & (travelled[np.minimum(after, row[-1:])] - travelled <= lead_length)
+    leads_out = (before > since) & (until <= after) & (travelled - travelled[np.maximum(before, 0)] <= lead_length)
     backwards = np.where(rapid, _belongs_to_previous_cut(program, rapid), leads_out) & (before >= 0)
     guide = np.where(backwards | (after == len(row)), before, after)
     off_face = ~touching & ~rapid & ~leads_in & ~leads_out

@@ -106,7 +106,7 @@ def _not_read(operation: Any) -> str:
 def _not_valid(operation: Any) -> str:
     if not operation.isValid():
         return str(operation.getStatusString())
-    return "the operation it copies is gone" if is_pkm_object(operation) and operation.Base is None else ""
+    return "its base operation no longer exists" if is_pkm_object(operation) and operation.Base is None else ""
 
 
 def _not_computed(operation: Any) -> str:

@@ -269,7 +269,7 @@ def _edges(face: Any) -> tuple[Array, Array]:
 
 def _micron(face: Any, at: Array) -> Array:
     """Upper bound of two microns in parameters, at each of some places on the face."""
-    lengths = np.array([[way.Length for way in face.derivative1At(u, v)] for u, v in at.tolist()])
+    lengths = np.array([[derivative.Length for derivative in face.derivative1At(u, v)] for u, v in at.tolist()])
     # At a pole one derivative is 0: the other one, and the neighbouring places, are used instead.
     least: Array = np.maximum(lengths, _SHARE * lengths.max(axis=0)).min(axis=1)
     return 2 * _EDGE / least

@@ -171,6 +171,6 @@ def set_best_work_offset(job: Any, free: str = "xyzc") -> Study:
     result = study_job(job, free)
     flag, equals, offset = work_offset_text(result.machine_from_work).partition("=")
     if not equals:
-        raise ValueError(f"expected a work offset that is turned about z alone, got {flag}")
+        raise ValueError(f"expected a work offset that is rotated only about z, got {flag}")
     job.PostProcessorArgs = replace_arguments(job.PostProcessorArgs, {flag: offset})
     return result

@@ -186,8 +186,8 @@ def _set_results(obj: Any, machine: Machine, pose: ToolPoses) -> None:
     obj.JointMargin = math.degrees(min(left.base.min(), left.platform.min()))
     obj.SingularMargin = float(left.singular[0])
     findings = reach_findings(machine, PosePath.straight(*pose))
-    bad = [finding for finding in findings if finding.margin[0] < 0.0]
+    violations = [finding for finding in findings if finding.margin[0] < 0.0]
     obj.OutOfLimits = [
         f"{finding.subject.name}: {finding.subject.tell(int(finding.part[0]), float(finding.margin[0]))}"
-        for finding in bad
+        for finding in violations
     ]

@@ -60,21 +60,21 @@ def model_faces(
     clones = [] if model is None else list(model.Group)
     picked = [(_clone(clones, thing), name.split(".")[-1]) for thing, names in chosen for name in names or ("",)]
     wanted = picked or [(clone, "") for clone in clones]
-    faces, gone = [], []
+    faces, missing = [], []
     for thing, name in wanted:
         elements = [(f"Face{number}", face) for number, face in enumerate(Part.getShape(thing).Faces, start=1)]
         found = [NamedFace(f"{thing.Label}.{element}", face) for element, face in elements if name in ("", element)]
         faces += found
-        gone += [] if found else [f"{thing.Label}.{name}" if name else f"{thing.Label} without faces"]
-    if gone or not faces:
-        return None, (Diagnostic("N115", place, ", ".join(gone) or "a job without a model"),)
+        missing += [] if found else [f"{thing.Label}.{name}" if name else f"{thing.Label} without faces"]
+    if missing or not faces:
+        return None, (Diagnostic("N115", place, ", ".join(missing) or "a job without a model"),)
     return tuple({face.name: face for face in faces}.values()), ()
 
 
 def _clone(clones: Sequence[Any], thing: Any) -> Any:
     """The job's clone of an object; the object itself if there is none."""
-    made = [clone for clone in clones if hasattr(clone, "PathResource") and thing in clone.Objects]
-    return made[0] if made else thing
+    matching = [clone for clone in clones if hasattr(clone, "PathResource") and thing in clone.Objects]
+    return matching[0] if matching else thing
 
 
 @dataclass(frozen=True)

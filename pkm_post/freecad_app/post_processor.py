@@ -2,8 +2,7 @@
 """Post-processor: the class that CAM calls to post a job with one of PKM Post's post-processors.
 
 CAM creates one for a job, for an incomplete job during its creation, and for no job at all to show a tooltip: all work
-happens in ``export``. CAM writes the text that ``export`` returns; the other files are
-already written to the same folder.
+happens in ``export``. CAM writes the text that ``export`` returns; the other files are already in the same folder.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ TOOLTIPS: dict[str, str] = {
     "hexapod_gcode": "G-code with tool axes as vectors or as angles of a head, before it is made into the motion of a"
     " hexapod",
 }
-"""Purpose of each, by name. CAM asks for it at startup, so this imports nothing else."""
+"""Purpose of each, by name. CAM reads it at startup, so this imports nothing else."""
 
 
 class HexapodPost(PostProcessor):

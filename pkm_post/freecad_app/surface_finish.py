@@ -94,7 +94,7 @@ def create_surface_finish(
         job: the CAM job.
         faces: pairs of an object of the job's model and names of its faces, such as ``(clone, ["Face1"])``.
         label: displayed name.
-        controller: the tool controller; if None, CAM chooses or asks, and takes the first without a window.
+        controller: the tool controller; if None, CAM chooses it or opens its dialog; the first one without a window.
     """
     obj = job.Document.addObject("Path::FeaturePython", "SurfaceFinish")
     with preselected(controller or (None if App.GuiUp else next(iter(job.Tools.Group), None))):

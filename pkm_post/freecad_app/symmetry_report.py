@@ -195,8 +195,8 @@ def _images(obj: Any) -> list[Program]:
         return [program_of(obj)]
     if obj.Base is None:
         return []
-    made = [transform(program, matrix)[0] for matrix in obj.Proxy.matrices(obj) for program in _images(obj.Base)]
-    return [program for program in made if program is not None]
+    images = [transform(program, matrix)[0] for matrix in obj.Proxy.matrices(obj) for program in _images(obj.Base)]
+    return [program for program in images if program is not None]
 
 
 def _axis(copies: list[Any]) -> tuple[Array, Array] | None:

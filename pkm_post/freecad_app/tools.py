@@ -191,7 +191,7 @@ def read_cutter(controller: Any, place: Place) -> tuple[Cutter | None, tuple[Dia
 
 @contextlib.contextmanager
 def preselected(controller: Any) -> Iterator[None]:
-    """Give new operations a tool controller: with several controllers CAM asks, and without a window it fails.
+    """Give new operations a tool controller: with several of them CAM opens a dialog, and without a window it fails.
 
     Args:
         controller: the tool controller; None leaves the question to the user.
