@@ -111,10 +111,10 @@ def post(path, axes):
     """Post a file and print what that took; the whole life of a process."""
     from pkm_post.model import Refused
     from pkm_post.posting.post_file import post_file
-    from pkm_post.reading.part_program import Reading
+    from pkm_post.reading.part_program import ReadingOptions
 
     meter = Meter()
-    reading = Reading(axis_words="vector" if axes == 5 else "none")
+    reading = ReadingOptions(axis_words="vector" if axes == 5 else "none")
     folder, words = Path(path).parent, f"{LENGTH} {PLACE}"
     try:
         post_file(path, roomy_machine(folder), folder, reading=reading, progress=meter.begins, arguments=words)

@@ -37,7 +37,7 @@ def post(source, machine=None, out=".", **choices):  # type: ignore[no-untyped-d
         choices: ``arguments`` (text as on the command line, option by option) or ``options``
             (``pkm_post.options.Options``, which replace all settings of the job), ``tool_lengths`` (mm by tool
             number), ``log`` (receives a line for each step) and ``progress`` (``pkm_post.posting.Progress``) for all;
-            ``job_name`` for documents, ``reading`` (``pkm_post.reading.Reading``) for part programs.
+            ``job_name`` for documents, ``reading`` (``pkm_post.reading.ReadingOptions``) for part programs.
 
     Returns:
         A tuple with a ``pkm_post.posting.Posted`` for each motion program: one, or one for each job of a document.

@@ -19,7 +19,7 @@ from pkm_post.options import explicit_values, inapplicable_options, input_kind, 
 
 if TYPE_CHECKING:
     from pkm_post.model import Machine
-    from pkm_post.reading import Reading
+    from pkm_post.reading import ReadingOptions
 
 NO_AXIS_WORDS = "none"
 """The default: the tool axis is vertical."""
@@ -46,7 +46,7 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def reading_from(namespace: argparse.Namespace) -> Reading:
+def reading_from(namespace: argparse.Namespace) -> ReadingOptions:
     """Reading options of the part programs."""
     return replace(part_program_from(namespace, namespace.axis_words), dwell_unit=namespace.dwell_unit)
 

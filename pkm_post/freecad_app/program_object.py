@@ -30,7 +30,7 @@ from pkm_post.reading import (
     DWELL_UNITS,
     SUFFIXES,
     UNITS,
-    Reading,
+    ReadingOptions,
     is_part_program,
     read_part_program,
 )
@@ -116,7 +116,9 @@ def create_program(
     obj = document.addObject("Path::FeaturePython", "PkmProgram")
     PartProgram(obj)
     obj.File, obj.Label = str(path), path.name
-    reading = Reading(axis_words, unit=unit, contour_data=contour_data, cl_dialect=cl_dialect, dwell_unit=dwell_unit)
+    reading = ReadingOptions(
+        axis_words, unit=unit, contour_data=contour_data, cl_dialect=cl_dialect, dwell_unit=dwell_unit
+    )
     set_reading(obj, replace(reading, allow_open_end=allow_open_end))
     if App.GuiUp:
         importlib.import_module(_VIEW).ProgramView(obj.ViewObject)
@@ -124,11 +126,11 @@ def create_program(
     return obj
 
 
-def reading_of(obj: Any) -> Reading:
+def reading_of(obj: Any) -> ReadingOptions:
     """The reading options in the properties of a program object."""
     choices = (obj.Unit, obj.ContourData, obj.ClDialect, obj.CycleValues)
     unit, contour_data, dialect, values = (None if choice == FROM_FILE else choice for choice in choices)
-    return Reading(
+    return ReadingOptions(
         obj.AxisWords,
         dwell_unit=obj.DwellUnit,
         unit=unit,
@@ -139,7 +141,7 @@ def reading_of(obj: Any) -> Reading:
     )
 
 
-def set_reading(obj: Any, reading: Reading) -> None:
+def set_reading(obj: Any, reading: ReadingOptions) -> None:
     """Store reading options in the properties of a program object; wear and cutters have no property."""
     choices: dict[str, str | bool] = {
         "AxisWords": reading.axis_words,

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pkm_post.machine import SpinPolicy
     from pkm_post.model import Tolerances, Tool
     from pkm_post.options.choices import Options
-    from pkm_post.reading import Reading
+    from pkm_post.reading import ReadingOptions
     from pkm_post.toolpath import SurfaceSpeed
 
 
@@ -78,11 +78,11 @@ def _cutters(sizes: Iterable[tuple[int, tuple[float, float | None]]]) -> dict[in
     }
 
 
-def part_program_from(namespace: argparse.Namespace, axis_words: str) -> Reading:
+def part_program_from(namespace: argparse.Namespace, axis_words: str) -> ReadingOptions:
     """Reading options of a part program, beside the tool axis notation of its G-code."""
-    from pkm_post.reading import Reading
+    from pkm_post.reading import ReadingOptions
 
-    return Reading(
+    return ReadingOptions(
         axis_words,
         tools_from(namespace),
         namespace.unit,

@@ -34,7 +34,7 @@ from pkm_post.options import (
 from pkm_post.posting.placement import trajectory_of
 from pkm_post.posting.run import Findings, Log, Posted, Progress, no_log, no_progress
 from pkm_post.posting.steps import SUFFIX, post
-from pkm_post.reading import AS_WRITTEN, Reading, read_part_program
+from pkm_post.reading import AS_WRITTEN, ReadingOptions, read_part_program
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ def post_file(
     out: str | Path = ".",
     options: Options | None = None,
     tool_lengths: Mapping[int, float] = _NO_LENGTHS,
-    reading: Reading = AS_WRITTEN,
+    reading: ReadingOptions = AS_WRITTEN,
     log: Log = no_log,
     progress: Progress = no_progress,
     arguments: str | ArgumentValues = "",
@@ -127,7 +127,7 @@ def prepared_file(
     machine: str | Path | None = None,
     options: Options | None = None,
     tool_lengths: Mapping[int, float] = _NO_LENGTHS,
-    reading: Reading = AS_WRITTEN,
+    reading: ReadingOptions = AS_WRITTEN,
     arguments: str | ArgumentValues = "",
 ) -> Prepared:
     """A part program with its machine and all inputs of posting, and their diagnostics; arguments as ``post_file``."""
@@ -160,7 +160,7 @@ def _given(arguments: str | ArgumentValues, file: Path) -> ArgumentValues:
         raise Refused([Diagnostic("J117", Place(str(file)), str(fault))]) from fault
 
 
-def _said(reading: Reading, chosen: Namespace) -> Reading:
+def _said(reading: ReadingOptions, chosen: Namespace) -> ReadingOptions:
     """How to read a file; typed options override ``reading``."""
     typed_ones = part_program_from(chosen, reading.axis_words)
     return replace(

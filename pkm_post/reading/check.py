@@ -16,7 +16,7 @@ import numpy as np
 
 from pkm_post.geometry import across, arc_points, arc_sweep, cross, dot, move_lengths
 from pkm_post.model import Array, Diagnostic, Kind, Program, errors
-from pkm_post.reading.part_program import AS_WRITTEN, Reading, read_part_program
+from pkm_post.reading.part_program import AS_WRITTEN, ReadingOptions, read_part_program
 
 _LONGEST_LINE = 200
 """Maximum number of characters shown of a line."""
@@ -59,7 +59,7 @@ class CheckedFile:
         return not errors(self.diagnostics)
 
 
-def check_file(file: Path, reading: Reading = AS_WRITTEN) -> CheckedFile:
+def check_file(file: Path, reading: ReadingOptions = AS_WRITTEN) -> CheckedFile:
     """Read a part program and measure it.
 
     Args:

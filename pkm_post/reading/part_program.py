@@ -49,7 +49,7 @@ SUFFIXES: dict[str, Language] = {
 
 
 @dataclass(frozen=True)
-class Reading:
+class ReadingOptions:
     """User settings for reading a file.
 
     Attributes:
@@ -78,7 +78,7 @@ class Reading:
     allow_open_end: bool = False
 
 
-AS_WRITTEN = Reading()
+AS_WRITTEN = ReadingOptions()
 
 
 def is_part_program(file: Path) -> bool:
@@ -98,7 +98,7 @@ def language_of(file: str | Path) -> Language:
     return SUFFIXES[suffix]
 
 
-def read_part_program(file: Path, reading: Reading) -> _Result:
+def read_part_program(file: Path, reading: ReadingOptions) -> _Result:
     """Read a file.
 
     Args:
@@ -121,7 +121,7 @@ def read_part_program(file: Path, reading: Reading) -> _Result:
     return program, diagnostics
 
 
-def read_content(content: bytes, name: str, reading: Reading) -> _Result:
+def read_content(content: bytes, name: str, reading: ReadingOptions) -> _Result:
     """Read the content of a file.
 
     Args:
@@ -137,7 +137,7 @@ def read_content(content: bytes, name: str, reading: Reading) -> _Result:
     return program, diagnostics if program is None else (*diagnostics, *end_warnings(program))
 
 
-def _read_gcode(content: bytes, file: str, reading: Reading) -> _Result:
+def _read_gcode(content: bytes, file: str, reading: ReadingOptions) -> _Result:
     # NaN as diameter or length is reported where it is used.
     unknown = Tool(0, "", math.nan, 0.0, math.nan, corner_known=False)
     numbers = {*reading.tools, *reading.lengths}
@@ -171,7 +171,7 @@ def _zero_where_unknown(tool: Tool) -> Tool:
     return replace(tool, diameter=float(np.nan_to_num(tool.diameter)), length=float(np.nan_to_num(tool.length)))
 
 
-def _read_cldata(content: bytes, file: str, reading: Reading) -> _Result:
+def _read_cldata(content: bytes, file: str, reading: ReadingOptions) -> _Result:
     options = cldata.ReadOptions(
         dialect=reading.cl_dialect,
         units=reading.unit,

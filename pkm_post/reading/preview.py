@@ -14,7 +14,7 @@ import numpy as np
 from pkm_post.geometry import arc_points, arc_sweep, dot
 from pkm_post.model import Array, Diagnostic, Kind, Program, errors
 from pkm_post.reading.check import Size, size_of
-from pkm_post.reading.part_program import AS_WRITTEN, Reading, read_content
+from pkm_post.reading.part_program import AS_WRITTEN, ReadingOptions, read_content
 
 _OPEN_END = {"G430", "L441"}
 """Diagnostics of a program without an end: an error while it is being typed, but it can still be drawn."""
@@ -36,7 +36,7 @@ class CheckedText:
     diagnostics: tuple[Diagnostic, ...]
 
 
-def check_text(text: str, name: str, reading: Reading = AS_WRITTEN) -> CheckedText:
+def check_text(text: str, name: str, reading: ReadingOptions = AS_WRITTEN) -> CheckedText:
     """Read a text like a file of that name.
 
     Args:

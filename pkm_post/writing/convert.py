@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from pkm_post.model import Diagnostic, errors
-from pkm_post.reading import AS_WRITTEN, Reading, read_part_program
+from pkm_post.reading import AS_WRITTEN, ReadingOptions, read_part_program
 from pkm_post.system import staged, write_fault
 from pkm_post.writing.gcode import Form, write
 
@@ -18,7 +18,7 @@ TARGETS: dict[str, Form] = {f"gcode:{form.value}": form for form in Form}
 
 
 def convert(
-    file: Path, target: str, out: Path, reading: Reading = AS_WRITTEN, decimals: int = 4, inch: bool = False
+    file: Path, target: str, out: Path, reading: ReadingOptions = AS_WRITTEN, decimals: int = 4, inch: bool = False
 ) -> tuple[Diagnostic, ...]:
     """Write a part program in another form.
 

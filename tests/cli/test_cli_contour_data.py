@@ -7,7 +7,7 @@ import pytest
 
 import pkm_post
 from pkm_post.cli import main
-from pkm_post.reading.part_program import Reading
+from pkm_post.reading.part_program import ReadingOptions
 
 RECTANGLE = """\
 TOOL PATH/PROFILE,TOOL,MILL_10
@@ -68,7 +68,7 @@ def test_what_is_posted_is_where_the_reading_has_it(capsys, tmp_path, header, ar
 @pytest.mark.parametrize("points", ["centre", "contour"])
 def test_a_macro_and_the_command_line_write_the_same_bytes(capsys, tmp_path, points):
     corner(capsys, tmp_path, NEITHER, f"--contour-data={points}", "--wear=1=-0.05", "--unit=mm")
-    reading = Reading(unit="mm", contour_data=points, wear={1: -0.05})
+    reading = ReadingOptions(unit="mm", contour_data=points, wear={1: -0.05})
     pkm_post.post(tmp_path / "part.cls", out=tmp_path / "macro", tool_lengths={1: 100.0}, reading=reading)
     for name in ("part.pmc", "part.pkmt", "part-report.json"):
         assert (tmp_path / name).read_bytes() == (tmp_path / "macro" / name).read_bytes()

@@ -7,7 +7,7 @@ import pytest
 from pkm_post import post
 from pkm_post.cli import main
 from pkm_post.options.choices import Options
-from pkm_post.reading.part_program import Reading
+from pkm_post.reading.part_program import ReadingOptions
 
 PROGRAM = "G21 F600\nG0 X0 Y0 Z5\nG82 X1 Z4 R5 P250\nG4 P1000\nG1 X2\nM2\n"
 POSTED = ["--tool-length", "0=120", "--work-offset=0,0,250"]
@@ -47,7 +47,7 @@ def test_what_is_posted_waits_as_long_as_was_said(file, tmp_path, capsys):
     assert dwells(tmp_path / "part.pmc") == ["250", "1000"]
     offset = np.eye(4)
     offset[2, 3] = 250.0
-    reading, options = Reading(dwell_unit="ms"), Options(work_offset=offset)
+    reading, options = ReadingOptions(dwell_unit="ms"), Options(work_offset=offset)
     post(file, out=tmp_path / "macro", reading=reading, options=options, tool_lengths={0: 120.0})
     assert (tmp_path / "macro" / "part.pmc").read_bytes() == (tmp_path / "part.pmc").read_bytes()
 

@@ -13,7 +13,7 @@ from pkm_post.cli import main
 from pkm_post.model import Kind, Tool
 from pkm_post.model.diagnostics import errors
 from pkm_post.reading.check import check_file, size_of
-from pkm_post.reading.part_program import Reading, read_part_program
+from pkm_post.reading.part_program import ReadingOptions, read_part_program
 from pkm_post.writing.convert import TARGETS, convert
 from pkm_post.writing.gcode import Form, write
 
@@ -31,9 +31,9 @@ def test_a_converted_file_holds_the_same_motion(tmp_path, target):
     given = square_with_arc() if target == "gcode:3axis" else random_job(np.random.default_rng(2))
     source = saved(tmp_path / "part.ngc", write(given, Form.BC)[0])
     out = tmp_path / "new" / "part.nc"
-    assert not errors(convert(source, target, out, Reading("BC")))
+    assert not errors(convert(source, target, out, ReadingOptions("BC")))
     assert [path.name for path in out.parent.iterdir()] == ["part.nc"]
-    back, diagnostics = read_part_program(out, Reading(AXIS_WORDS[TARGETS[target]]))
+    back, diagnostics = read_part_program(out, ReadingOptions(AXIS_WORDS[TARGETS[target]]))
     assert not errors(diagnostics)
     np.testing.assert_allclose(back.position, given.position, rtol=0, atol=0.2 * MICRON)
     np.testing.assert_allclose(back.tool_axis, given.tool_axis, rtol=0, atol=3e-6)
@@ -41,7 +41,7 @@ def test_a_converted_file_holds_the_same_motion(tmp_path, target):
 
 def test_nothing_is_written_when_the_form_cannot_say_the_program(tmp_path):
     source = saved(tmp_path / "part.ngc", write(cone(9), Form.VECTOR)[0])
-    found = convert(source, "gcode:3axis", tmp_path / "out.nc", Reading("vector"))
+    found = convert(source, "gcode:3axis", tmp_path / "out.nc", ReadingOptions("vector"))
     assert [one.code for one in errors(found)] == ["G501"]
     assert not (tmp_path / "out.nc").exists()
 
@@ -61,7 +61,7 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path):
 def test_compensation_needs_a_diameter(tmp_path):
     source = saved(tmp_path / "part.ngc", "T3 M6\nG0 X0 Y0 Z0\nG41\nG1 X10 F100\nY10\nG40\nX20\nM2\n")
     assert "G411" in [one.code for one in check_file(source).diagnostics]
-    result, found = read_part_program(source, Reading(tools={3: Tool(3, "", 8.0, 0.0, 0.0, corner_known=False)}))
+    result, found = read_part_program(source, ReadingOptions(tools={3: Tool(3, "", 8.0, 0.0, 0.0, corner_known=False)}))
     assert not errors(found)
     assert result.side_offset.max() == 4.0
 
@@ -86,7 +86,7 @@ def test_cl_data_is_checked_and_converted(tmp_path):
     assert checked.is_clean
     assert (checked.size.blocks, checked.size.length) == (3, 10.0)
     assert not errors(convert(source, "gcode:BC", out))
-    back, diagnostics = read_part_program(out, Reading("BC"))
+    back, diagnostics = read_part_program(out, ReadingOptions("BC"))
     assert not errors(diagnostics)
     np.testing.assert_allclose(back.tool_axis[1:], [[0, 0.6, 0.8]] * 2, atol=1e-8)
     np.testing.assert_allclose(back.feed[1:], 10.0)

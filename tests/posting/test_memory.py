@@ -15,7 +15,7 @@ from pkm_post.options.choices import Options
 from pkm_post.planning import motion, schedule, speed_limits, speed_profile
 from pkm_post.posting.post_file import post_file
 from pkm_post.posting.run import give_back_memory
-from pkm_post.reading.part_program import Reading
+from pkm_post.reading.part_program import ReadingOptions
 from pkm_post.writing import outputs
 from pkm_post.writing.controllers.pvt import reader as program_reader
 from pkm_post.writing.controllers.pvt import writer
@@ -69,7 +69,7 @@ def post(folder, lines, leans=False, name="scan"):
     """Post a scan; the files by name."""
     file = folder / "scan.ngc"
     file.write_text(scan(lines, leans))
-    reading = Reading(axis_words="vector" if leans else "none")
+    reading = ReadingOptions(axis_words="vector" if leans else "none")
     options = Options(work_offset=ON_PALLET)
     made = post_file(file, "example_6tps", folder / name, options, {1: 120.0, 2: 100.0}, reading)
     return {path.name: path for path in made.files}

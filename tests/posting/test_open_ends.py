@@ -10,7 +10,7 @@ from pkm_post.model import Refused
 from pkm_post.model.diagnostics import errors
 from pkm_post.posting.post_file import post_file
 from pkm_post.reading.check import check_file
-from pkm_post.reading.part_program import AS_WRITTEN, Reading, read_content
+from pkm_post.reading.part_program import AS_WRITTEN, ReadingOptions, read_content
 from pkm_post.reading.preview import check_text
 from pkm_post.writing.gcode import Form, write
 
@@ -140,7 +140,7 @@ def test_a_program_that_is_cut_is_refused_or_the_same(name):
 
 
 @pytest.mark.parametrize(("name", "code"), [("part.ngc", "G430"), ("part.apt", "L441")])
-@pytest.mark.parametrize("reading", [Reading(), Reading(allow_open_end=True)])
+@pytest.mark.parametrize("reading", [ReadingOptions(), ReadingOptions(allow_open_end=True)])
 def test_the_option_takes_what_is_there(tmp_path, name, code, reading):
     text = {"part.ngc": "S80 M3\nG0 X0 Y0 Z5\nG1 X9 F100\n", "part.apt": "UNITS/MM\nSPINDL/80,CLW\nGOTO/1,2,3\n"}[name]
     file = tmp_path / name

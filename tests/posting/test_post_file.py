@@ -14,7 +14,7 @@ from pkm_post.model import Refused, Tool
 from pkm_post.model.certificate import Tolerances
 from pkm_post.options.choices import Options
 from pkm_post.posting.post_file import post_file
-from pkm_post.reading.part_program import Reading
+from pkm_post.reading.part_program import ReadingOptions
 from pkm_post.writing import trajectory_file
 
 ADDON = Path(__file__).parents[2]
@@ -64,7 +64,7 @@ def posted(folder, name, text, **choices):
 
 def test_g_code_and_cl_data_of_one_path_give_one_report(tmp_path):
     reports = [
-        posted(tmp_path, "a.ngc", G_CODE, reading=Reading("vector", {1: cutter(10.0)})).report,
+        posted(tmp_path, "a.ngc", G_CODE, reading=ReadingOptions("vector", {1: cutter(10.0)})).report,
         posted(tmp_path, "a.cls", CL_DATA).report,
     ]
     assert all(report["certificate"]["holds"] for report in reports)
@@ -108,7 +108,7 @@ def fine_machine(tmp_path):
 
 
 def test_canned_cycles_and_cycles_of_cl_data_give_one_report(tmp_path, fine_machine):
-    reading = Reading("vector", {1: cutter(10.0)})
+    reading = ReadingOptions("vector", {1: cutter(10.0)})
     canned = posted(tmp_path, "a.ngc", G_HOLES, reading=reading, machine=fine_machine).report
     cycles = posted(tmp_path, "a.cls", CL_HOLES, machine=fine_machine).report
     assert canned["certificate"]["holds"]
@@ -146,7 +146,7 @@ M30
 
 
 def test_a_compensated_contour_is_cut_beside_what_is_programmed(tmp_path):
-    made = posted(tmp_path, "contour.ngc", CONTOUR, reading=Reading("none", {1: cutter(8.0)}))
+    made = posted(tmp_path, "contour.ngc", CONTOUR, reading=ReadingOptions("none", {1: cutter(8.0)}))
     assert made.report["certificate"]["holds"]
     (x0, y0, _), (x1, y1, _) = made.report["program"]["box_mm"]
     assert (x1, y1) == (24.0, 24.0)
@@ -155,19 +155,19 @@ def test_a_compensated_contour_is_cut_beside_what_is_programmed(tmp_path):
 
 def test_a_contour_too_narrow_for_the_tool_is_refused(tmp_path):
     with pytest.raises(Refused) as refused:
-        posted(tmp_path, "a.ngc", CONTOUR.replace("G41", "G42"), reading=Reading("none", {1: cutter(60.0)}))
+        posted(tmp_path, "a.ngc", CONTOUR.replace("G41", "G42"), reading=ReadingOptions("none", {1: cutter(60.0)}))
     assert {fault.code for fault in refused.value.diagnostics} <= {"N202", "N204", "N205"}
 
 
 def test_the_trajectory_names_its_source_by_its_hash(tmp_path):
-    made = posted(tmp_path, "part.ngc", G_CODE, reading=Reading("vector"))
+    made = posted(tmp_path, "part.ngc", G_CODE, reading=ReadingOptions("vector"))
     trajectory, _ = trajectory_file.read(made.program.with_suffix(".pkmt"))
     assert trajectory.source_fingerprint == hashlib.sha256(G_CODE.encode()).hexdigest()
     assert trajectory.tolerances == Tolerances(0.001, np.radians(0.001))
 
 
 def test_all_files_carry_the_stem(tmp_path):
-    made = posted(tmp_path, "part.ngc", G_CODE, reading=Reading("vector")).files
+    made = posted(tmp_path, "part.ngc", G_CODE, reading=ReadingOptions("vector")).files
     assert sorted(path.name for path in made) == [
         "part-manifest.json",
         "part-report.json",
@@ -181,10 +181,10 @@ def test_all_files_carry_the_stem(tmp_path):
 @pytest.mark.parametrize(
     ("name", "text", "choices", "codes"),
     [
-        ("a.ngc", G_CODE, {"tool_lengths": {}, "reading": Reading("vector")}, ["J113"]),
+        ("a.ngc", G_CODE, {"tool_lengths": {}, "reading": ReadingOptions("vector")}, ["J113"]),
         ("a.cls", CL_DATA, {"tool_lengths": {}}, ["J113"]),
         ("a.cls", "GOTO/1,2\nFINI\n", {}, ["L402"]),
-        ("a.ngc", G_CODE, {"reading": Reading("vector"), "options": Options(work_offset="G59")}, ["K108"]),
+        ("a.ngc", G_CODE, {"reading": ReadingOptions("vector"), "options": Options(work_offset="G59")}, ["K108"]),
     ],
 )
 def test_what_is_wrong_is_told_and_nothing_is_written(tmp_path, name, text, choices, codes):
@@ -244,7 +244,7 @@ def refusal_of(*arguments, **choices):
     ("name", "text"), [("a.ngc", G_CODE), ("a.cls", CL_DATA), ("a.cls", WITH_A_LENGTH)], ids=["G-code", "CL", "LENGTH"]
 )
 def test_a_length_for_a_tool_that_is_not_there_is_refused(tmp_path, name, text):
-    codes = refusal_of(tmp_path, name, text, tool_lengths={1: 60.0, 11: 75.0}, reading=Reading("vector"))
+    codes = refusal_of(tmp_path, name, text, tool_lengths={1: 60.0, 11: 75.0}, reading=ReadingOptions("vector"))
     assert codes[-1] == "J126"
     assert not list((tmp_path / "out").glob("*"))
 
@@ -290,7 +290,7 @@ def test_the_next_tool_keeps_the_offset_that_is_in_force(tmp_path):
 def test_arguments_are_typed_as_on_the_command_line(tmp_path, capsys):
     (tmp_path / "a.ngc").write_text(G_CODE)
     typed = "--tool-length 1=60 --work-offset=0,0,250 --tip-tolerance 0.003 --spin x-in-plane=10 --also csv"
-    made = post_file(tmp_path / "a.ngc", out=tmp_path / "macro", arguments=typed, reading=Reading("vector"))
+    made = post_file(tmp_path / "a.ngc", out=tmp_path / "macro", arguments=typed, reading=ReadingOptions("vector"))
     line = ["post", str(tmp_path / "a.ngc"), "--axis-words", "vector", "--out", str(tmp_path / "line"), *typed.split()]
     assert main(line) == 0
     assert [path.name for path in made.files] == sorted(path.name for path in (tmp_path / "line").iterdir())

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from pkm_post.reading import gcode
 from pkm_post.reading.editing import TextFile, renumbered
 from pkm_post.reading.highlighting import underlined
-from pkm_post.reading.part_program import Language, Reading
+from pkm_post.reading.part_program import Language, ReadingOptions
 from pkm_post.reading.preview import check_text, tip_paths_of_line
 
 # Text of a file
@@ -99,7 +99,7 @@ def test_a_program_and_its_size():
 
 def test_what_the_user_says_of_the_text_is_used():
     text = "G21 G90 G43.5\nG0 X0 Y0 Z5 I0 J0 K1\nG1 X3 I0 J0.6 K0.8 F100\nM2\n"
-    assert check_text(text, "a.ngc", Reading("vector")).program.tool_axis[-1] == pytest.approx([0, 0.6, 0.8])
+    assert check_text(text, "a.ngc", ReadingOptions("vector")).program.tool_axis[-1] == pytest.approx([0, 0.6, 0.8])
     assert check_text(text, "a.ngc").program is None
 
 

@@ -23,7 +23,7 @@ from pkm_post.freecad_gui.editor.reading_fields import ReadingFields
 from pkm_post.freecad_gui.editor.shown_block import ShownBlock
 from pkm_post.freecad_gui.editor.text_view import TextView
 from pkm_post.model import Program
-from pkm_post.reading import CheckedText, Language, Reading, language_of, renumbered, tip_paths_of_line
+from pkm_post.reading import CheckedText, Language, ReadingOptions, language_of, renumbered, tip_paths_of_line
 
 translate = FreeCAD.Qt.translate
 
@@ -110,7 +110,7 @@ class Body(QtWidgets.QWidget):
         """Whether the text is being changed, or a check is pending."""
         return self.text.edits.busy() or self.checker.busy()
 
-    def _text_to_check(self) -> tuple[str, str, Reading]:
+    def _text_to_check(self) -> tuple[str, str, ReadingOptions]:
         return self.text.toPlainText(), self.name(), self.reading.chosen()
 
     def _changed(self) -> None:

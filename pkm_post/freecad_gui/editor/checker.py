@@ -10,7 +10,7 @@ from PySide import QtCore
 
 from pkm_post.freecad_gui.task import Task
 from pkm_post.model import Refused
-from pkm_post.reading import Reading, check_text
+from pkm_post.reading import ReadingOptions, check_text
 
 PAUSE_MS = 300
 """Pause in typing before a text is read."""
@@ -24,7 +24,7 @@ class Checker(QtCore.QObject):
     missing = QtCore.Signal(str)
     """A missing package, or a lack of memory, which prevents reading."""
 
-    def __init__(self, text_of: Callable[[], tuple[str, str, Reading]], parent: QtCore.QObject) -> None:
+    def __init__(self, text_of: Callable[[], tuple[str, str, ReadingOptions]], parent: QtCore.QObject) -> None:
         super().__init__(parent)
         self._text_of = text_of
         self._task: Task | None = None

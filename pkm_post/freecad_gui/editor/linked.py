@@ -14,7 +14,7 @@ from PySide import QtWidgets
 
 from pkm_post.freecad_app.document import is_job, is_program, transaction
 from pkm_post.freecad_app.program_object import create_program, decode, set_reading
-from pkm_post.reading import Reading
+from pkm_post.reading import ReadingOptions
 
 translate = FreeCAD.Qt.translate
 
@@ -29,7 +29,7 @@ def object_of(file: Path | None) -> Any:
     return next((item for item in items if is_program(item) and Path(item.File) == file), None)
 
 
-def bring_up_to_date(obj: Any, reading: Reading) -> None:
+def bring_up_to_date(obj: Any, reading: ReadingOptions) -> None:
     """Let the object read its file again, with the editor's reading options."""
     set_reading(obj, reading)
     obj.touch()
@@ -57,7 +57,7 @@ def chosen_job(parent: QtWidgets.QWidget, title: str) -> Any:
     return known[label] if chosen else None
 
 
-def decode_file(file: Path, reading: Reading, job: Any) -> Any:
+def decode_file(file: Path, reading: ReadingOptions, job: Any) -> Any:
     """Convert a file to an operation of a job, in one undo step; it gets a program object if it has none.
 
     Raises:

@@ -24,7 +24,7 @@ from pkm_post.freecad_gui.task import Task
 from pkm_post.model import Place, Refused
 from pkm_post.options import explicit_values, part_program_from
 from pkm_post.posting import post_file
-from pkm_post.reading import Reading
+from pkm_post.reading import ReadingOptions
 
 translate = FreeCAD.Qt.translate
 
@@ -44,7 +44,7 @@ class Posting(QtCore.QObject):
         self._task: Task | None = None
         self._progress: Any = None
 
-    def ask_and_post(self, file: Path, reading: Reading) -> None:
+    def ask_and_post(self, file: Path, reading: ReadingOptions) -> None:
         """Show the fields of the post panel, and post a file into its folder."""
         kept = FreeCAD.ParamGet(GROUP).GetString(_ENTRY, default_arguments() or _AT_FIRST)
         dialog = _Dialog(PostChoices(kept, str(file.parent)), self._title, self._window)
@@ -54,7 +54,7 @@ class Posting(QtCore.QObject):
             self.post(file, reading, text, Path(folder or file.parent))
         dialog.deleteLater()
 
-    def post(self, file: Path, reading: Reading, arguments: str, folder: Path | None = None) -> None:
+    def post(self, file: Path, reading: ReadingOptions, arguments: str, folder: Path | None = None) -> None:
         """Post a file, beside it if no folder is given; its options in the arguments override ``reading``.
 
         ``ended`` is emitted when its files exist, or after the reason for their absence was reported.
@@ -110,7 +110,7 @@ class Posting(QtCore.QObject):
             self.ended.emit()
 
 
-def _with_typed(reading: Reading, chosen: Namespace) -> Reading:
+def _with_typed(reading: ReadingOptions, chosen: Namespace) -> ReadingOptions:
     """The options chosen beside the text, overridden by those typed as arguments."""
     typed = part_program_from(chosen, reading.axis_words)
     return replace(

@@ -10,7 +10,7 @@ from __future__ import annotations
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.reading import AXIS_WORDS, DIALECTS, DWELL_UNITS, UNITS, Language, Reading
+from pkm_post.reading import AXIS_WORDS, DIALECTS, DWELL_UNITS, UNITS, Language, ReadingOptions
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -71,9 +71,9 @@ class ReadingFields(QtWidgets.QWidget):
         for field in (self.contour_data, self.cl_dialect):
             field.setVisible(language is not Language.GCODE)
 
-    def chosen(self) -> Reading:
+    def chosen(self) -> ReadingOptions:
         """The chosen options."""
-        return Reading(
+        return ReadingOptions(
             self.axis_words.currentText(),
             dwell_unit=self.dwell_unit.currentText(),
             unit=self.unit.currentData(),
@@ -83,7 +83,7 @@ class ReadingFields(QtWidgets.QWidget):
             allow_open_end=self.allow_open_end.isChecked(),
         )
 
-    def show_reading(self, reading: Reading) -> None:
+    def show_reading(self, reading: ReadingOptions) -> None:
         """Show a reading, which does not count as a change."""
         blocker = QtCore.QSignalBlocker(self)
         self.axis_words.setCurrentText(reading.axis_words)

@@ -13,7 +13,7 @@ from pkm_post.model import Event, EventKind
 from pkm_post.model.diagnostics import errors
 from pkm_post.options.choices import LINUXCNC, Options
 from pkm_post.posting.steps import post
-from pkm_post.reading.part_program import Reading, read_part_program
+from pkm_post.reading.part_program import ReadingOptions, read_part_program
 from pkm_post.writing import trajectory_file
 
 SPINS = [ZERO_TORSION, SpinPolicy(SpinRule.X_IN_PLANE, heading=0.3)]
@@ -43,7 +43,7 @@ def posted(machine, request, tmp_path_factory):
 
 def test_it_says_the_same_poses_and_events(posted):
     trajectory, file = posted
-    program, faults = read_part_program(file, Reading(axis_words="RPY"))
+    program, faults = read_part_program(file, ReadingOptions(axis_words="RPY"))
     assert not errors(faults)
     np.testing.assert_allclose(program.position, trajectory.tip, rtol=0, atol=0.51 * LENGTH_DIGIT)
     np.testing.assert_allclose(program.tool_axis, trajectory.axis, rtol=0, atol=2 * ANGLE_DIGIT)
