@@ -106,23 +106,23 @@ def nearest_on_nurbs(surface: NurbsSurface, points: Array, closed: Closed = (Fal
     at = _seeds(surface, points)
     arrived = np.zeros(len(points), dtype=np.bool_)
     open_rows = np.arange(len(points))
-    found = surface.derivatives(*at.T)
+    at_feet = surface.derivatives(*at.T)
     scale = np.ones(len(points))
     for _ in range(_ITERATIONS):
         if not len(open_rows):
             break
-        step = _step(found, points[open_rows], at[open_rows], bounds, closed) * scale[open_rows, None]
+        step = _step(at_feet, points[open_rows], at[open_rows], bounds, closed) * scale[open_rows, None]
         moved = _within(at[open_rows] + step, bounds, closed)
-        length = np.abs(step[:, 0]) * norm(found[1]) + np.abs(step[:, 1]) * norm(found[2])
+        length = np.abs(step[:, 0]) * norm(at_feet[1]) + np.abs(step[:, 1]) * norm(at_feet[2])
         last = (length < _ARRIVED) & (scale[open_rows] == 1.0)
         trial = surface.derivatives(*moved.T)
-        better = _square(trial[0] - points[open_rows]) <= _square(found[0] - points[open_rows])
+        better = _square(trial[0] - points[open_rows]) <= _square(at_feet[0] - points[open_rows])
         better |= length < _SMALL
         at[open_rows[better]] = moved[better]
-        found[:, better] = trial[:, better]
+        at_feet[:, better] = trial[:, better]
         scale[open_rows] = np.where(better, 1.0, 0.3 * scale[open_rows])
         arrived[open_rows[last]] = True
-        open_rows, found = open_rows[~last], found[:, ~last]
+        open_rows, at_feet = open_rows[~last], at_feet[:, ~last]
     return at, arrived
 
 
@@ -160,9 +160,9 @@ def _evenly(breaks: Array, count: int) -> Array:
     return np.interp(np.arange((len(breaks) - 1) * inside + 1) / inside, np.arange(len(breaks)), breaks)
 
 
-def _step(found: Array, points: Array, at: Array, bounds: Array, closed: Closed) -> Array:
+def _step(at_feet: Array, points: Array, at: Array, bounds: Array, closed: Closed) -> Array:
     """Newton step (N, 2) for |S - q|^2 / 2; a Gauss-Newton step where the distance is not convex."""
-    s, su, sv, suu, suv, svv = found
+    s, su, sv, suu, suv, svv = at_feet
     away = s - points
     slope = np.column_stack([dot(su, away), dot(sv, away)])
     uu, uv, vv = dot(su, su), dot(su, sv), dot(sv, sv)

@@ -144,13 +144,13 @@ def _faults(program: Program, machine: Machine, way: dict[str, Any], keep: Array
     for event in program.events:
         speed = abs(event.value) if event.kind is EventKind.SPINDLE else 0.0
         if speed and not machine.spindle_least_speed <= speed <= machine.spindle_speed:
-            found = f"{speed:g} rpm, the machine allows {machine.spindle_least_speed:g} to {machine.spindle_speed:g}"
-            yield Diagnostic("K107", program.place(min(event.row, len(program) - 1)), found)
+            text = f"{speed:g} rpm, the machine allows {machine.spindle_least_speed:g} to {machine.spindle_speed:g}"
+            yield Diagnostic("K107", program.place(min(event.row, len(program) - 1)), text)
     yield from _of_tools(program, machine, way["tool"])
     fast = program.feed > machine.feed_speed
     for row in _first_of_each(program.operation, fast):
-        found = f"F{60 * program.feed[row]:g} mm/min, limited to {60 * machine.feed_speed:g}"
-        yield Diagnostic("K110", program.place(row), found)
+        text = f"F{60 * program.feed[row]:g} mm/min, limited to {60 * machine.feed_speed:g}"
+        yield Diagnostic("K110", program.place(row), text)
 
 
 def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterator[Diagnostic]:

@@ -186,8 +186,8 @@ def _low_tips(program: Program, pose: ToolChange, changes: tuple[_Tools, ...]) -
         for tool in dict.fromkeys(tools):
             tip = float(pose.tip(tool.length)[2])
             if tip < pose.safe_height:
-                found = f"T{tool.number} at z {tip:.3f} mm, safe are {pose.safe_height:g} mm"
-                yield Diagnostic("K141", _place(program, row), found)
+                text = f"T{tool.number} at z {tip:.3f} mm, safe are {pose.safe_height:g} mm"
+                yield Diagnostic("K141", _place(program, row), text)
 
 
 def _flat_axes(program: Program, machine: Machine, pose: ToolChange, rows: list[int]) -> Iterator[Diagnostic]:
@@ -196,8 +196,8 @@ def _flat_axes(program: Program, machine: Machine, pose: ToolChange, rows: list[
         for end in (_pose_before(program, machine, row), _goes_on(program, machine, row)):
             if end is not None and not end.rises_to(pose.safe_height):
                 tilt, most = (float(np.degrees(np.arccos(rise))) for rise in (end.axis[2], FLATTEST))
-                found = f"{tilt:.3f} degrees from upright, at most {most:.1f}"
-                yield Diagnostic("K142", _place(program, row), found)
+                text = f"{tilt:.3f} degrees from upright, at most {most:.1f}"
+                yield Diagnostic("K142", _place(program, row), text)
 
 
 def _place(program: Program, row: int) -> Place:

@@ -205,12 +205,12 @@ def _faults(program: Program, elements: Elements, on_row: Array) -> tuple[Diagno
         ("N206", turned & ~replaned, "the tool axis turns between two blocks"),
         ("N206", oblique & ~lead & ~leaning, "an arc outside the plane"),
     )
-    found = [
+    diagnostics = [
         Diagnostic(code, program.place(int(row)), text)
         for code, marked, text in table
         for row in elements.row[np.flatnonzero(marked)]
     ]
-    return tuple(sorted(found, key=lambda item: item.place.line))
+    return tuple(sorted(diagnostics, key=lambda item: item.place.line))
 
 
 def _not_parallel(left: Array, right: Array) -> Array:

@@ -54,15 +54,15 @@ def gouges(
     bounds = bounding_elements(elements, walls, owner, np.unique(walls.first[wall]))[owner[wall]]
     bounds &= ~program.smaller_tool[wall_row[wall]]
     path, wall, lacking = path_row[path[bounds]], wall_row[wall[bounds]], lacking[bounds]
-    found = []
+    diagnostics = []
     for code, chosen in (("N204", ~leads[path]), ("N205", leads[path])):
-        found += _worst(code, program, contour, source[path[chosen]], wall[chosen], lacking[chosen])
-    return tuple(sorted(found, key=lambda item: item.place.line))
+        diagnostics += _worst(code, program, contour, source[path[chosen]], wall[chosen], lacking[chosen])
+    return tuple(sorted(diagnostics, key=lambda item: item.place.line))
 
 
 def _worst(code: str, program: Program, contour: Array, path: Array, wall: Array, lacking: Array) -> list[Diagnostic]:
     """One diagnostic per contour: its worst place and the number of rows."""
-    found = []
+    diagnostics = []
     order = np.lexsort((path, -lacking, contour[path]))
     of = contour[path[order]]
     for begin in np.flatnonzero(np.append(True, of[1:] != of[:-1])[: len(of)]).tolist():
@@ -70,8 +70,8 @@ def _worst(code: str, program: Program, contour: Array, path: Array, wall: Array
         count = len(np.unique(path[contour[path] == of[begin]]))
         more = f", {count} blocks of this contour in all" if count > 1 else ""
         text = f"by {lacking[worst]:.4g} mm at the block of line {program.line[wall[worst]]}{more}"
-        found.append(Diagnostic(code, program.place(int(path[worst])), text))
-    return found
+        diagnostics.append(Diagnostic(code, program.place(int(path[worst])), text))
+    return diagnostics
 
 
 @dataclass(frozen=True)

@@ -45,7 +45,7 @@ class ContactPath:
 
     @classmethod
     def of(cls, u: Array, v: Array, number: Array, run: Array | None = None) -> ContactPath:
-        """A course in the direction of the pattern; each pass is a run unless runs are given."""
+        """A path in the direction of the pattern; each pass is a run unless runs are given."""
         rows = len(u)
         return cls(u, v, number, number if run is None else run, np.ones(rows), np.full(rows, np.nan))
 
@@ -58,19 +58,19 @@ class ContactPath:
 
     @staticmethod
     def concatenate(parts: list[ContactPath]) -> ContactPath:
-        """Concatenated courses; their runs keep their numbers."""
+        """Concatenated paths; their runs keep their numbers."""
         return ContactPath(
             *(np.concatenate([getattr(part, item.name) for part in parts]) for item in fields(ContactPath))
         )
 
     def with_rows(self, behind: Array, rows: ContactPath) -> ContactPath:
-        """The course with additional rows, each directly after the row with the given index, in order."""
+        """The path with additional rows, each directly after the row with the given index, in order."""
         return ContactPath(
             *(np.insert(getattr(self, item.name), behind + 1, getattr(rows, item.name)) for item in fields(self))
         )
 
     def with_runs(self, run: Array) -> ContactPath:
-        """The course with the given runs."""
+        """The path with the given runs."""
         return replace(self, run=run)
 
 
@@ -124,27 +124,27 @@ def _to_plane(patch: Patch, plane: Array, off: Array, free_u: Array, free_v: Arr
     return factor * slope_u / scale_u, factor * slope_v / scale_v
 
 
-def trimmed(surface: Surface, pattern: PassPattern, course: ContactPath) -> ContactPath:
-    """The pieces of a course on the face, each a run with its ends on the border.
+def trimmed(surface: Surface, pattern: PassPattern, path: ContactPath) -> ContactPath:
+    """The pieces of a path on the face, each a run with its ends on the border.
 
     Args:
         surface: the surface, with the face as its inside.
         pattern: the lines on which points are settled.
-        course: passes, before they are reversed or linked.
+        path: passes, before they are reversed or linked.
     """
-    if not len(course):
-        return course
-    inside = surface.contains(course.u, course.v)
-    crossing = np.flatnonzero((inside[:-1] != inside[1:]) & (course.run[:-1] == course.run[1:]))
-    whole = course.with_rows(crossing, _border(surface, pattern, course, crossing, inside))
+    if not len(path):
+        return path
+    inside = surface.contains(path.u, path.v)
+    crossing = np.flatnonzero((inside[:-1] != inside[1:]) & (path.run[:-1] == path.run[1:]))
+    whole = path.with_rows(crossing, _border(surface, pattern, path, crossing, inside))
     kept = np.insert(inside, crossing + 1, True)
     cut = (whole.run[:-1] != whole.run[1:]) | ~kept[:-1] | ~kept[1:]
     return whole.with_runs(np.concatenate([[0], np.cumsum(cut)])).take(kept)
 
 
-def _border(surface: Surface, pattern: PassPattern, course: ContactPath, crossing: Array, inside: Array) -> ContactPath:
+def _border(surface: Surface, pattern: PassPattern, path: ContactPath, crossing: Array, inside: Array) -> ContactPath:
     """The last points inside between the rows at the crossings and the next rows."""
-    before, after = course.take(crossing), course.take(crossing + 1)
+    before, after = path.take(crossing), path.take(crossing + 1)
     within = inside[crossing]
     near_u, near_v = np.where(within, before.u, after.u), np.where(within, before.v, after.v)
     far_u, far_v = np.where(within, after.u, before.u), np.where(within, after.v, before.v)
@@ -156,11 +156,11 @@ def _border(surface: Surface, pattern: PassPattern, course: ContactPath, crossin
     return replace(before, u=near_u, v=near_v)
 
 
-def thinned(course: ContactPath, every: int) -> ContactPath:
+def thinned(path: ContactPath, every: int) -> ContactPath:
     """The first and last row of each run and every n-th between: trimming needs more points than stepping."""
-    if not len(course):
-        return course
-    rows = np.arange(len(course))
-    begins = np.concatenate([[True], course.run[1:] != course.run[:-1]])
+    if not len(path):
+        return path
+    rows = np.arange(len(path))
+    begins = np.concatenate([[True], path.run[1:] != path.run[:-1]])
     since = rows - np.maximum.accumulate(np.where(begins, rows, 0))
-    return course.take(begins | np.concatenate([begins[1:], [True]]) | (since % every == 0))
+    return path.take(begins | np.concatenate([begins[1:], [True]]) | (since % every == 0))

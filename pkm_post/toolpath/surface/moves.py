@@ -95,7 +95,7 @@ def _visit(
 
 def _runs(poses: Poses) -> list[Array]:
     """The rows of each run."""
-    run = poses.course.run
+    run = poses.path.run
     return np.split(np.arange(len(run)), np.flatnonzero(run[1:] != run[:-1]) + 1)
 
 

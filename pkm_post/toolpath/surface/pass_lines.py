@@ -70,16 +70,16 @@ def plane_sections(surface: Surface, plane: Array, level: Array) -> ContactPath:
     return _in_direction(surface, plane, ContactPath.concatenate(parts))
 
 
-def _in_direction(surface: Surface, plane: Array, course: ContactPath) -> ContactPath:
+def _in_direction(surface: Surface, plane: Array, path: ContactPath) -> ContactPath:
     """The lines, each in the direction of the pattern: the plane normal is on its right, seen from outside."""
-    patch = surface.at(course.u, course.v)
+    patch = surface.at(path.u, path.v)
     step = np.diff(patch.point, axis=0)
-    same = course.run[:-1] == course.run[1:]
-    along = np.zeros(int(course.run[-1]) + 1)
-    np.add.at(along, course.run[:-1][same], dot(step, cross(patch.normal[:-1], plane))[same])
-    rows = np.arange(len(course))
-    order = np.lexsort((np.where(along[course.run] < 0.0, -rows, rows), course.run))
-    return course.take(order)
+    same = path.run[:-1] == path.run[1:]
+    along = np.zeros(int(path.run[-1]) + 1)
+    np.add.at(along, path.run[:-1][same], dot(step, cross(patch.normal[:-1], plane))[same])
+    rows = np.arange(len(path))
+    order = np.lexsort((np.where(along[path.run] < 0.0, -rows, rows), path.run))
+    return path.take(order)
 
 
 def _crossings(grid: Grid, height: Array) -> tuple[Array, Array, Array]:

@@ -64,14 +64,14 @@ def surface_poses(
     pattern, widest = _pattern(surface, cutter, settings)
     if math.isnan(widest):
         return None, (Diagnostic("N303", place, f"radius of the corner {cutter.corner_radius:g} mm"),)
-    course = _passes(surface, pattern, cutter, settings)
-    course = thinned(trimmed(surface, pattern, course), _EVERY)
-    if not len(course):
+    path = _passes(surface, pattern, cutter, settings)
+    path = thinned(trimmed(surface, pattern, path), _EVERY)
+    if not len(path):
         return None, (Diagnostic("N302", place, "no pass lies on it"),)
-    course = _in_order(surface, pattern, course, settings)
-    course = link_passes(surface, course, _LINK * widest, settings.order is PassOrder.ZIGZAG)
+    path = _in_order(surface, pattern, path, settings)
+    path = link_passes(surface, path, _LINK * widest, settings.order is PassOrder.ZIGZAG)
     stepping = PoseRefinement(surface, pattern, cutter, settings.rule, settings.tolerances, place)
-    return stepping.poses(course, progress)
+    return stepping.poses(path, progress)
 
 
 def _pattern(surface: Surface, cutter: Cutter, settings: SurfaceOptions) -> tuple[PassPattern, float]:
@@ -88,9 +88,9 @@ def _pattern(surface: Surface, cutter: Cutter, settings: SurfaceOptions) -> tupl
 def _passes(surface: Surface, pattern: PassPattern, cutter: Cutter, settings: SurfaceOptions) -> ContactPath:
     """The untrimmed passes."""
     if pattern.plane is not None:
-        course = plane_sections(surface, pattern.plane, pattern.level)
-        u, v = pattern.snap(surface, course.u, course.v, course.number)
-        return replace(course, u=u, v=v)
+        path = plane_sections(surface, pattern.plane, pattern.level)
+        u, v = pattern.snap(surface, path.u, path.v, path.number)
+        return replace(path, u=u, v=v)
     if not len(pattern.level):
         return ContactPath.of(np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.int64))
     make = spiral if settings.order is PassOrder.SPIRAL else iso_lines
@@ -107,36 +107,36 @@ def _nodes(surface: Surface, v: Array, cutter: Cutter) -> int:
     return int(np.clip(wanted, *_NODES))
 
 
-def _in_order(surface: Surface, pattern: PassPattern, course: ContactPath, settings: SurfaceOptions) -> ContactPath:
+def _in_order(surface: Surface, pattern: PassPattern, path: ContactPath, settings: SurfaceOptions) -> ContactPath:
     """The pieces in the order and direction of travel."""
-    backwards = np.zeros(len(course), dtype=bool)
+    backwards = np.zeros(len(path), dtype=bool)
     if settings.cut_mode is not CutMode.AS_IT_COMES:
-        first = course.take(course.number == course.number[0]) if settings.order is PassOrder.ZIGZAG else course
+        first = path.take(path.number == path.number[0]) if settings.order is PassOrder.ZIGZAG else path
         rising = -1.0 if settings.reversed else 1.0
         climbing = climbs(surface, pattern, first, settings.rule, rising) == settings.clockwise
         backwards ^= climbing != (settings.cut_mode is CutMode.CLIMB)
     if settings.order is PassOrder.ZIGZAG:
-        backwards = backwards ^ (course.number % 2 == 1)
-    return with_reversed(course, backwards)
+        backwards = backwards ^ (path.number % 2 == 1)
+    return with_reversed(path, backwards)
 
 
-def with_reversed(course: ContactPath, backwards: Array) -> ContactPath:
-    """The course with some passes reversed, their pieces in order of travel.
+def with_reversed(path: ContactPath, backwards: Array) -> ContactPath:
+    """The path with some passes reversed, their pieces in order of travel.
 
     Args:
-        course: pieces in the order of the pattern.
+        path: pieces in the order of the pattern.
         backwards: (N,) for each row whether its pass is reversed; equal for all rows of a pass.
     """
-    rows = np.arange(len(course))
+    rows = np.arange(len(path))
     along = np.where(backwards, -rows, rows)
-    order = np.lexsort((along, course.number))
-    changed = course.take(order)
+    order = np.lexsort((along, path.number))
+    changed = path.take(order)
     changed = replace(changed, sense=np.where(backwards[order], -changed.sense, changed.sense))
     return changed.with_runs(np.concatenate([[0], np.cumsum(changed.run[:-1] != changed.run[1:])]))
 
 
-def climbs(surface: Surface, pattern: PassPattern, course: ContactPath, rule: AxisRule, into_rising: float) -> bool:
-    """Whether a course mostly climbs, with a cutter that turns clockwise.
+def climbs(surface: Surface, pattern: PassPattern, path: ContactPath, rule: AxisRule, into_rising: float) -> bool:
+    """Whether a path mostly climbs, with a cutter that turns clockwise.
 
     Material is below the surface, towards -n, and on the side of the next passes, towards s. With the right of the feed
     t x k, the passes climb where the mean of (s - n) . (t x k) > 0: at a wall -n decides, on a floor s.
@@ -144,58 +144,58 @@ def climbs(surface: Surface, pattern: PassPattern, course: ContactPath, rule: Ax
     Args:
         surface: the surface.
         pattern: the lines.
-        course: passes, all in one direction.
+        path: passes, all in one direction.
         rule: rule of the tool axis.
         into_rising: 1 when passes follow each other with rising v or level, -1 when falling.
     """
-    patch = surface.at(course.u, course.v)
-    feed = np.nan_to_num(unit_or_nan(pattern.direction(patch)) * course.sense[:, None])
+    patch = surface.at(path.u, path.v)
+    feed = np.nan_to_num(unit_or_nan(pattern.direction(patch)) * path.sense[:, None])
     next_passes = patch.along_v if pattern.plane is None else np.broadcast_to(pattern.plane, feed.shape)
     sideways = next_passes - dot(next_passes, feed)[:, None] * feed
     s = into_rising * np.nan_to_num(unit_or_nan(sideways - dot(sideways, patch.normal)[:, None] * patch.normal))
-    side = cross(patch.normal, feed) * course.sense[:, None]
+    side = cross(patch.normal, feed) * path.sense[:, None]
     k = np.nan_to_num(tool_axes(patch.normal, feed, rule, side)[0])
     return bool(np.mean(dot(s - patch.normal, cross(feed, k))) > 0.0)
 
 
-def link_passes(surface: Surface, course: ContactPath, longest: float, zigzag: bool) -> ContactPath:
-    """The course with neighbouring passes linked along the surface where the link is short and stays on the face.
+def link_passes(surface: Surface, path: ContactPath, longest: float, zigzag: bool) -> ContactPath:
+    """The path with neighbouring passes linked along the surface where the link is short and stays on the face.
 
     Passes in one direction are linked only at the seam of closed lines: a link back along the surface would cut in the
     opposite direction.
 
     Args:
         surface: the surface.
-        course: pieces in order of travel.
+        path: pieces in order of travel.
         longest: longest link along the surface, mm; otherwise the tool is lifted.
         zigzag: whether passes alternate.
     """
-    course = _seams_passed(surface, course)
-    last = np.flatnonzero(course.run[:-1] != course.run[1:])
+    path = _seams_passed(surface, path)
+    last = np.flatnonzero(path.run[:-1] != path.run[1:])
     first = last + 1
     begin = np.concatenate([[0], first])[:-1]
     share = np.linspace(0.0, 1.0, _LOOKS)
-    u, v = ((column[last, None] + share * (column[first] - column[last])[:, None]) for column in (course.u, course.v))
+    u, v = ((column[last, None] + share * (column[first] - column[last])[:, None]) for column in (path.u, path.v))
     points = surface.at(u.ravel(), v.ravel()).point.reshape(len(last), _LOOKS, 3)
     length = np.sum(norm(np.diff(points, axis=1)), axis=1)
     held = surface.contains(u.ravel(), v.ravel()).reshape(len(last), _LOOKS).all(axis=1)
-    joins = (np.abs(course.number[first] - course.number[last]) == 1) & held & (length <= longest)
+    joins = (np.abs(path.number[first] - path.number[last]) == 1) & held & (length <= longest)
     if not zigzag:
-        loop = norm(surface.at(course.u[begin], course.v[begin]).point - points[:, 0]) < _SAME
+        loop = norm(surface.at(path.u[begin], path.v[begin]).point - points[:, 0]) < _SAME
         joins &= loop
-    lifts = np.zeros(max(len(course) - 1, 0), dtype=bool)
+    lifts = np.zeros(max(len(path) - 1, 0), dtype=bool)
     lifts[last[~joins]] = True
-    return course.with_runs(np.concatenate([[0], np.cumsum(lifts)]))
+    return path.with_runs(np.concatenate([[0], np.cumsum(lifts)]))
 
 
-def _seams_passed(surface: Surface, course: ContactPath) -> ContactPath:
-    """The course with each run shifted by whole turns, to begin as close as possible to the end of the one before."""
-    jump = np.concatenate([[False], course.run[:-1] != course.run[1:]])
+def _seams_passed(surface: Surface, path: ContactPath) -> ContactPath:
+    """The path with each run shifted by whole turns, to begin as close as possible to the end of the one before."""
+    jump = np.concatenate([[False], path.run[:-1] != path.run[1:]])
     columns = {}
     for name, span in (("u", surface.u), ("v", surface.v)):
-        column = getattr(course, name)
+        column = getattr(path, name)
         if span.closed:
             turns = np.round(np.diff(column, prepend=column[:1]) / span.width) * jump
             column = column - np.cumsum(turns) * span.width
         columns[name] = column
-    return replace(course, **columns)
+    return replace(path, **columns)

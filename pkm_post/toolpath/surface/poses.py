@@ -43,10 +43,10 @@ class Tolerances:
 
 @dataclass(frozen=True)
 class Poses:
-    """Tool poses at N rows of a course.
+    """Tool poses at N rows of a path.
 
     Attributes:
-        course: the rows.
+        path: the rows.
         point: (N, 3) contact points.
         normal: (N, 3) unit normals there.
         frame: directions of feed and tilt.
@@ -55,7 +55,7 @@ class Poses:
         clamped: (N,) whether the axis was clamped to its cone.
     """
 
-    course: ContactPath
+    path: ContactPath
     point: Array
     normal: Array
     frame: FeedFrame
@@ -95,65 +95,65 @@ class PoseRefinement:
     place: Place
 
     def poses(
-        self, course: ContactPath, progress: Progress = lambda share: None
+        self, path: ContactPath, progress: Progress = lambda share: None
     ) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
-        """Refine the course to the tolerances and compute the pose at each row.
+        """Refine the path to the tolerances and compute the pose at each row.
 
         Args:
-            course: passes in order of travel, settled on the pattern.
+            path: passes in order of travel, settled on the pattern.
             progress: called from time to time with the completed share, from 0 to 1; may raise to abort.
 
         Returns:
             The poses, or None when the cutter cannot touch the surface somewhere; and the diagnostics.
         """
-        patch = self.surface.at(course.u, course.v)
-        open_ = course.run[:-1] == course.run[1:]
+        patch = self.surface.at(path.u, path.v)
+        open_ = path.run[:-1] == path.run[1:]
         done = 0.0
         for _ in range(_ROUNDS):
-            found, faults = self._at(course, patch)
-            if found is None:
+            poses, faults = self._at(path, patch)
+            if poses is None:
                 return None, faults
-            behind = np.flatnonzero(open_ & self._divisible(found))
+            behind = np.flatnonzero(open_ & self._divisible(poses))
             if not len(behind):
                 break
-            middle, middle_patch, fails = self._looked_at(found, behind)
+            middle, middle_patch, fails = self._looked_at(poses, behind)
             behind, middle = behind[fails], middle.take(fails)
             rows = Patch(*(np.insert(old, behind + 1, new[fails], axis=0) for old, new in _pairs(patch, middle_patch)))
-            course, patch, open_ = course.with_rows(behind, middle), rows, _open_again(open_, behind)
-            done = max(done, 1.0 - len(behind) / max(len(course) - 1, 1))
+            path, patch, open_ = path.with_rows(behind, middle), rows, _open_again(open_, behind)
+            done = max(done, 1.0 - len(behind) / max(len(path) - 1, 1))
             progress(done)
         else:
             return None, (
                 Diagnostic("N305", self.place, f"after {_ROUNDS} halvings, {len(behind)} moves are too long"),
             )
-        return found, (*faults, *self._edges(found))
+        return poses, (*faults, *self._edges(poses))
 
-    def _at(self, course: ContactPath, patch: Patch) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
+    def _at(self, path: ContactPath, patch: Patch) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
         """Poses at rows of known patch."""
-        travel = np.gradient(patch.point, axis=0) if len(course) > 1 else patch.along_u
-        frame = feed_frame(self.pattern, course, patch, travel)
-        before, after = _passes_beside(course)
+        travel = np.gradient(patch.point, axis=0) if len(path) > 1 else patch.along_u
+        frame = feed_frame(self.pattern, path, patch, travel)
+        before, after = _passes_beside(path)
         links = LinkEnds(frame.take(before), frame.take(after), patch.point[after] - patch.point[before])
-        frame = frame.with_links(links, patch.normal, course.link)
+        frame = frame.with_links(links, patch.normal, path.link)
         axis, clamped = tool_axes(patch.normal, frame.feed, self.rule, frame.side)
         tip, faults = tip_from_contact(patch.point, patch.normal, axis, self.cutter, self.place)
         if tip is None:
             return None, _first_of_each(faults, patch.point)
-        return Poses(course, patch.point, patch.normal, frame, axis, tip, clamped), faults
+        return Poses(path, patch.point, patch.normal, frame, axis, tip, clamped), faults
 
-    def _divisible(self, found: Poses) -> Array:
+    def _divisible(self, poses: Poses) -> Array:
         """Moves that may be divided: long ones, and those of links that turn the tool in place."""
-        turns = angle_between(found.axis[:-1], found.axis[1:]) > self.tolerances.axis
-        moves: Array = (norm(np.diff(found.point, axis=0)) > _SHORTEST) | (_links(found.course) & turns)
+        turns = angle_between(poses.axis[:-1], poses.axis[1:]) > self.tolerances.axis
+        moves: Array = (norm(np.diff(poses.point, axis=0)) > _SHORTEST) | (_links(poses.path) & turns)
         return moves
 
-    def _looked_at(self, found: Poses, behind: Array) -> tuple[ContactPath, Patch, Array]:
+    def _looked_at(self, poses: Poses, behind: Array) -> tuple[ContactPath, Patch, Array]:
         """The rows in the middle of moves, the surface there, and the moves that exceed the tolerances."""
-        course = found.course
-        left, right = course.take(behind), course.take(behind + 1)
-        is_link = _links(course)[behind]
-        before, after = (rows[at] for rows, at in zip(_passes_beside(course), (behind, behind + 1), strict=True))
-        links = LinkEnds(found.frame.take(before), found.frame.take(after), found.point[after] - found.point[before])
+        path = poses.path
+        left, right = path.take(behind), path.take(behind + 1)
+        is_link = _links(path)[behind]
+        before, after = (rows[at] for rows, at in zip(_passes_beside(path), (behind, behind + 1), strict=True))
+        links = LinkEnds(poses.frame.take(before), poses.frame.take(after), poses.point[after] - poses.point[before])
         fails = np.zeros(len(behind), dtype=bool)
         for share in _SHARES:
             u, v = (before + share * (after - before) for before, after in ((left.u, right.u), (left.v, right.v)))
@@ -162,23 +162,23 @@ class PoseRefinement:
             link = np.where(is_link, _link_share(left.link, right.link, share), np.nan)
             between = replace(right, u=u, v=v, link=link)
             patch = self.surface.at(u, v)
-            fails |= self._fails(found, behind, between, patch, links, share)
+            fails |= self._fails(poses, behind, between, patch, links, share)
             if share == 0.5:
                 middle, middle_patch = between, patch
         return middle, middle_patch, fails
 
     def _fails(
-        self, found: Poses, behind: Array, between: ContactPath, patch: Patch, links: LinkEnds, share: float
+        self, poses: Poses, behind: Array, between: ContactPath, patch: Patch, links: LinkEnds, share: float
     ) -> Array:
         """Moves that exceed the tolerances at a place between their ends, (n,)."""
-        chord = found.point[behind + 1] - found.point[behind]
-        way = patch.point - found.point[behind]
+        chord = poses.point[behind + 1] - poses.point[behind]
+        way = patch.point - poses.point[behind]
         square = dot(chord, chord)
         on_the_spot = square <= _SHORTEST**2
         passed = np.where(on_the_spot, share, dot(way, chord) / np.where(on_the_spot, 1.0, square))
         passed = np.clip(passed, 0.0, 1.0)[:, None]
-        tip = found.tip[behind] + passed * (found.tip[behind + 1] - found.tip[behind])
-        axis = along(found.axis[behind], passed * towards(found.axis[behind], found.axis[behind + 1]))
+        tip = poses.tip[behind] + passed * (poses.tip[behind + 1] - poses.tip[behind])
+        axis = along(poses.axis[behind], passed * towards(poses.axis[behind], poses.axis[behind + 1]))
         frame = feed_frame(self.pattern, between, patch, chord).with_links(links, patch.normal, between.link)
         wanted, _ = tool_axes(patch.normal, frame.feed, self.rule, frame.side)
         off = cutter_gap(tip, axis, patch.point, patch.normal, self.cutter)
@@ -187,14 +187,14 @@ class PoseRefinement:
         fails: Array = (np.maximum(np.abs(off), sideways) > self.tolerances.chord) | twisted
         return fails
 
-    def _edges(self, found: Poses) -> tuple[Diagnostic, ...]:
+    def _edges(self, poses: Poses) -> tuple[Diagnostic, ...]:
         """A warning where the surface has edges: adjacent contacts with different normals."""
-        near = (found.course.run[:-1] == found.course.run[1:]) & (norm(np.diff(found.point, axis=0)) <= _SHORTEST)
-        angle = angle_between(found.normal[:-1], found.normal[1:])
+        near = (poses.path.run[:-1] == poses.path.run[1:]) & (norm(np.diff(poses.point, axis=0)) <= _SHORTEST)
+        angle = angle_between(poses.normal[:-1], poses.normal[1:])
         edges = np.flatnonzero(near & (angle > _EDGE))
         if not len(edges):
             return ()
-        x, y, z = found.point[edges[0]]
+        x, y, z = poses.point[edges[0]]
         text = f"{len(edges)} times, first at ({x:.3f}, {y:.3f}, {z:.3f}) by {np.degrees(angle[edges[0]]):.1f} degrees"
         return (Diagnostic("N306", self.place, text),)
 
@@ -203,19 +203,19 @@ def _first_of_each(faults: tuple[Diagnostic, ...], point: Array) -> tuple[Diagno
     """The first fault of each kind, with its contact point instead of an internal row number."""
     firsts = {fault.code: fault for fault in reversed(faults)}
     return tuple(
-        replace(first, place=replace(first.place, line=0), found=_told(point[first.place.line - 1], first.found))
+        replace(first, place=replace(first.place, line=0), found=_at_point(point[first.place.line - 1], first.found))
         for _, first in sorted(firsts.items())
     )
 
 
-def _told(point: Array, found: str) -> str:
+def _at_point(point: Array, found: str) -> str:
     return "at ({:.3f}, {:.3f}, {:.3f}): ".format(*point) + found
 
 
-def _links(course: ContactPath) -> Array:
+def _links(path: ContactPath) -> Array:
     """Moves of links, from the end of a pass to the start of the next, (N - 1,)."""
-    in_link = ~np.isnan(course.link)
-    links: Array = (course.number[1:] != course.number[:-1]) | in_link[1:] | in_link[:-1]
+    in_link = ~np.isnan(path.link)
+    links: Array = (path.number[1:] != path.number[:-1]) | in_link[1:] | in_link[:-1]
     return links
 
 
@@ -226,10 +226,10 @@ def _link_share(before: Array, after: Array, share: float) -> Array:
     return part
 
 
-def _passes_beside(course: ContactPath) -> tuple[Array, Array]:
+def _passes_beside(path: ContactPath) -> tuple[Array, Array]:
     """For each row the last pass row not after it, and the first pass row not before it, (N,) each."""
-    rows = np.arange(len(course))
-    in_pass = np.isnan(course.link)
+    rows = np.arange(len(path))
+    in_pass = np.isnan(path.link)
     before = np.maximum.accumulate(np.where(in_pass, rows, 0))
     after = np.minimum.accumulate(np.where(in_pass, rows, len(rows) - 1)[::-1])[::-1]
     return before, after

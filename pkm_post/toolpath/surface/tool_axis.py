@@ -142,17 +142,17 @@ class LinkEnds:
         )
 
 
-def feed_frame(pattern: PassPattern, course: ContactPath, patch: Patch, travel: Array) -> FeedFrame:
+def feed_frame(pattern: PassPattern, path: ContactPath, patch: Patch, travel: Array) -> FeedFrame:
     """The frame along passes: that of the pattern, or of travel where the pattern has no direction, as on a flat top.
 
     Args:
         pattern: the lines.
-        course: the rows.
+        path: the rows.
         patch: the surface there.
         travel: (N, 3) from row to row, of any length.
     """
     line = pattern.direction(patch)
-    sense = course.sense[:, None]
+    sense = path.sense[:, None]
     line = _across(np.where(norm(line)[:, None] > _NO_DIRECTION, line, travel * sense), patch.normal)
     return FeedFrame(sense * line, cross(patch.normal, line))
 

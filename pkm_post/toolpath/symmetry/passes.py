@@ -48,8 +48,8 @@ def cutting_rows(program: Program) -> Array:
     known = moving_rows(program)
     known[:1], cuts[:1] = True, False
     latest = np.maximum.accumulate(np.where(known, np.arange(len(program)), 0))
-    found: Array = cuts[latest] & (program.kind != Kind.RAPID)
-    return found
+    flags: Array = cuts[latest] & (program.kind != Kind.RAPID)
+    return flags
 
 
 def moving_rows(program: Program) -> Array:

@@ -101,15 +101,15 @@ def covered(surface, cutter=BALL, **chosen):
 
 def passes(poses):
     """The rows of each pass, without links, in the order of travel."""
-    course = poses.course
-    rows = np.flatnonzero(np.isnan(course.link))
-    changes = np.flatnonzero((np.diff(course.number[rows]) != 0) | (np.diff(course.run[rows]) != 0)) + 1
+    path = poses.path
+    rows = np.flatnonzero(np.isnan(path.link))
+    changes = np.flatnonzero((np.diff(path.number[rows]) != 0) | (np.diff(path.run[rows]) != 0)) + 1
     return np.split(rows, changes)
 
 
 def played(poses, instants=11):
     """Tips and axes at many instants of every move of the runs, as the machine plays them."""
-    moving = np.flatnonzero(poses.course.run[:-1] == poses.course.run[1:])
+    moving = np.flatnonzero(poses.path.run[:-1] == poses.path.run[1:])
     share = np.linspace(0.0, 1.0, instants)[:, None, None]
     tip = poses.tip[moving] + share * (poses.tip[moving + 1] - poses.tip[moving])
     first, second = poses.axis[moving], poses.axis[moving + 1]

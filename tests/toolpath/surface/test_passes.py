@@ -87,7 +87,7 @@ def test_ball_stays_within_the_chord_tolerance_of_a_torus_all_the_way(order, cho
     off = distance_to_torus((tip + 3.0 * axis).reshape(-1, 3)) - 3.0
     assert np.abs(off).max() < 1.05 * chord
     assert np.abs(off).max() > 0.3 * chord
-    assert np.isin(poses.course.number[moving], poses.course.number).all()
+    assert np.isin(poses.path.number[moving], poses.path.number).all()
 
 
 def test_bull_nose_stays_within_the_chord_tolerance_of_a_sphere():
@@ -117,8 +117,8 @@ def test_axis_stays_within_its_tolerance_on_a_cylinder():
     )
     tip, axis, moving = played(poses)
     point = poses.point[moving] + np.linspace(0, 1, 11)[:, None, None] * (poses.point[moving + 1] - poses.point[moving])
-    in_pass = np.isnan(poses.course.link[moving]) & np.isnan(poses.course.link[moving + 1])
-    in_pass &= poses.course.number[moving] == poses.course.number[moving + 1]
+    in_pass = np.isnan(poses.path.link[moving]) & np.isnan(poses.path.link[moving + 1])
+    in_pass &= poses.path.number[moving] == poses.path.number[moving + 1]
     angle = np.arctan2(point[..., 1], point[..., 0])
     n = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
     t = np.stack([-np.sin(angle), np.cos(angle), np.zeros_like(angle)], axis=-1)
@@ -129,7 +129,7 @@ def test_axis_stays_within_its_tolerance_on_a_cylinder():
 
 def test_straight_lines_need_no_points_between():
     few = covered(plate(), stepover=Stepover(distance=5.0), tolerances=Tolerances(1e-6, 1e-6))
-    assert len(few.course) < 60
+    assert len(few.path) < 60
 
 
 @pytest.mark.parametrize("cutter", [BALL, BULL, FLAT], ids=["ball", "bull", "flat"])
@@ -150,7 +150,7 @@ def test_axes_stay_in_their_cone_and_move_the_least():
     assert angle[poses.clamped] == pytest.approx(cone)
     assert np.count_nonzero(poses.clamped) > 100
     assert not free.clamped.any()
-    in_pass = np.isnan(poses.course.link) & ~poses.clamped
+    in_pass = np.isnan(poses.path.link) & ~poses.clamped
     k = np.sin(0.2) * poses.frame.feed + np.cos(0.2) * poses.normal
     assert poses.axis[in_pass] == pytest.approx(k[in_pass])
     # the smallest change is in the plane of the axis that was wanted and the middle of the cone
@@ -160,7 +160,7 @@ def test_axes_stay_in_their_cone_and_move_the_least():
 
 def test_lead_leans_forward_and_tilt_to_one_side_both_ways_of_a_zigzag():
     poses = covered(plate(), rule=LEAN)
-    in_pass = np.isnan(poses.course.link)
+    in_pass = np.isnan(poses.path.link)
     assert np.einsum("nj,nj->n", poses.axis, poses.frame.feed)[in_pass] == pytest.approx(np.sin(LEAN.lead))
     assert poses.axis[in_pass, 1] == pytest.approx(np.cos(LEAN.lead) * np.sin(LEAN.tilt))
     assert poses.axis[~in_pass, 1].min() > np.sin(LEAN.tilt) / 2
@@ -169,7 +169,7 @@ def test_lead_leans_forward_and_tilt_to_one_side_both_ways_of_a_zigzag():
 def test_tool_goes_round_its_contact_where_the_feed_turns():
     poses = covered(plate(), BULL, rule=AxisRule(lead=0.2))
     assert poses.axis[:, 2] == pytest.approx(np.cos(0.2))
-    in_link = ~np.isnan(poses.course.link)
+    in_link = ~np.isnan(poses.path.link)
     assert in_link.sum() > 100
     # at the end of a zigzag by way of the next pass, never over the border back
     assert poses.axis[in_link, 1].min() > 0.0
@@ -193,7 +193,7 @@ def test_passes_across_a_hole_are_cut_and_joined_nowhere_over_it():
     poses = covered(RING)
     away = np.hypot(poses.point[:, 0] - 20.0, poses.point[:, 1] - 10.0)
     assert away.min() >= 4.0
-    per_pass = [np.unique(poses.course.run[poses.course.number == n]) for n in np.unique(poses.course.number)]
+    per_pass = [np.unique(poses.path.run[poses.path.number == n]) for n in np.unique(poses.path.number)]
     assert max(len(runs) for runs in per_pass) == 2
     tip, _, _ = played(poses)
     assert np.hypot(tip[..., 0] - 20.0, tip[..., 1] - 10.0).min() > 3.9
@@ -201,16 +201,16 @@ def test_passes_across_a_hole_are_cut_and_joined_nowhere_over_it():
 
 def test_zigzag_goes_to_and_fro_without_lifting():
     poses = covered(plate())
-    assert np.unique(poses.course.run).tolist() == [0]
-    senses = [poses.course.sense[rows[0]] for rows in passes(poses)]
+    assert np.unique(poses.path.run).tolist() == [0]
+    senses = [poses.path.sense[rows[0]] for rows in passes(poses)]
     assert senses == [1.0 if number % 2 == 0 else -1.0 for number in range(21)]
 
 
 def test_one_way_lifts_between_passes_but_not_round_a_column():
     lifted, round_ = (covered(each, order=PassOrder.ONE_WAY, rule=AxisRule(tilt=0.5)) for each in (plate(), cylinder()))
-    assert len(np.unique(lifted.course.run)) == len(passes(lifted)) == 21
-    assert np.unique(round_.course.run).tolist() == [0]
-    assert set(round_.course.sense) == {1.0}
+    assert len(np.unique(lifted.path.run)) == len(passes(lifted)) == 21
+    assert np.unique(round_.path.run).tolist() == [0]
+    assert set(round_.path.sense) == {1.0}
 
 
 def test_spiral_is_one_pass_round_both_borders():
@@ -238,7 +238,7 @@ def test_parallel_planes_are_planes_and_all_lines_run_one_way():
 
 def test_level_planes_go_round_a_column_from_its_seam():
     poses = covered(cylinder(), lines=PassLines.PLANES, plane=(0.0, 0.0, 1.0), rule=AxisRule(tilt=0.5))
-    assert np.unique(poses.course.run).tolist() == [0]
+    assert np.unique(poses.path.run).tolist() == [0]
     for rows in passes(poses):
         angle = np.unwrap(np.arctan2(poses.point[rows, 1], poses.point[rows, 0]))
         assert abs(angle[-1] - angle[0]) == pytest.approx(2 * np.pi)
