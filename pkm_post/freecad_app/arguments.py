@@ -25,7 +25,6 @@ from pkm_post.options import (
     parse_text,
     text_parser,
 )
-from pkm_post.writing import Form
 
 PMAC, TRAJECTORY, LINUXCNC, GCODE = "hexapod_pmac", "hexapod_trajectory", "hexapod_linuxcnc", "hexapod_gcode"
 

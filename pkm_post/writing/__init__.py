@@ -8,17 +8,17 @@ from pkm_post.writing.controllers.pmac.program import program_text, rotary_openi
 from pkm_post.writing.controllers.pmac.settings import PmacSettings, setup_text
 from pkm_post.writing.controllers.power_pmac import PowerPmacSettings
 from pkm_post.writing.controllers.program_files import read_text, read_texts
-from pkm_post.writing.controllers.pvt.parts import parted
+from pkm_post.writing.controllers.pvt.parts import split_motion
 from pkm_post.writing.controllers.registry import TABLES, Controller, controller_of, controller_settings
 from pkm_post.writing.convert import TARGETS, convert
-from pkm_post.writing.gcode.tool_axes import Form
+from pkm_post.writing.gcode.tool_axes import GcodeDialect
 from pkm_post.writing.gcode.writer import write
 
 __all__ = [
     "TABLES",
     "TARGETS",
     "Controller",
-    "Form",
+    "GcodeDialect",
     "PmacSettings",
     "PowerPmacSettings",
     "controller_of",
@@ -26,7 +26,7 @@ __all__ = [
     "convert",
     "manifest",
     "outputs",
-    "parted",
+    "split_motion",
     "pmac",
     "power_pmac",
     "program_files",

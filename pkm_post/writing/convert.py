@@ -11,9 +11,9 @@ from pathlib import Path
 from pkm_post.model import Diagnostic, errors
 from pkm_post.reading import AS_WRITTEN, ReadingOptions, read_part_program
 from pkm_post.system import staged, write_fault
-from pkm_post.writing.gcode import Form, write
+from pkm_post.writing.gcode import GcodeDialect, write
 
-TARGETS: dict[str, Form] = {f"gcode:{form.value}": form for form in Form}
+TARGETS: dict[str, GcodeDialect] = {f"gcode:{form.value}": form for form in GcodeDialect}
 """Target forms by command line name."""
 
 
@@ -41,12 +41,12 @@ def convert(
     program, found = read_part_program(file, reading)
     if program is None or errors(found):
         return found
-    text, told = write(program, TARGETS[target], decimals=decimals, inch=inch)
+    text, warnings = write(program, TARGETS[target], decimals=decimals, inch=inch)
     if text is None:
-        return (*found, *told)
+        return (*found, *warnings)
     try:
         with staged(out.parent) as folder:
             (folder / out.name).write_text(text, encoding="ascii", newline="\n")
     except OSError as fault:
-        return (*found, *told, write_fault(out, fault))
-    return (*found, *told)
+        return (*found, *warnings, write_fault(out, fault))
+    return (*found, *warnings)

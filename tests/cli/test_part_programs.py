@@ -15,10 +15,16 @@ from pkm_post.model.diagnostics import errors
 from pkm_post.reading.check import check_file, size_of
 from pkm_post.reading.part_program import ReadingOptions, read_part_program
 from pkm_post.writing.convert import TARGETS, convert
-from pkm_post.writing.gcode import Form, write
+from pkm_post.writing.gcode import GcodeDialect, write
 
 MICRON = 1e-3
-AXIS_WORDS = {Form.VECTOR: "vector", Form.AC: "AC", Form.BC: "BC", Form.LINUXCNC: "RPY", Form.PLAIN: "none"}
+AXIS_WORDS = {
+    GcodeDialect.VECTOR: "vector",
+    GcodeDialect.AC: "AC",
+    GcodeDialect.BC: "BC",
+    GcodeDialect.LINUXCNC: "RPY",
+    GcodeDialect.PLAIN: "none",
+}
 
 
 def saved(file, text):
@@ -29,7 +35,7 @@ def saved(file, text):
 @pytest.mark.parametrize("target", TARGETS)
 def test_a_converted_file_holds_the_same_motion(tmp_path, target):
     given = square_with_arc() if target == "gcode:3axis" else random_job(np.random.default_rng(2))
-    source = saved(tmp_path / "part.ngc", write(given, Form.BC)[0])
+    source = saved(tmp_path / "part.ngc", write(given, GcodeDialect.BC)[0])
     out = tmp_path / "new" / "part.nc"
     assert not errors(convert(source, target, out, ReadingOptions("BC")))
     assert [path.name for path in out.parent.iterdir()] == ["part.nc"]
@@ -173,7 +179,7 @@ def test_arguments_that_make_no_sense(arguments, capsys):
 
 
 def test_convert_from_the_command_line(tmp_path, capsys):
-    source = saved(tmp_path / "part.ngc", write(replace(square_with_arc(), source="x"), Form.PLAIN)[0])
+    source = saved(tmp_path / "part.ngc", write(replace(square_with_arc(), source="x"), GcodeDialect.PLAIN)[0])
     out = tmp_path / "part.nc"
     assert main(["convert", str(source), "--to", "gcode:vector", "--out", str(out)]) == 0
     assert capsys.readouterr().out.strip() == str(out)

@@ -12,7 +12,7 @@ from pkm_post.posting.post_file import post_file
 from pkm_post.reading.check import check_file
 from pkm_post.reading.part_program import AS_WRITTEN, ReadingOptions, read_content
 from pkm_post.reading.preview import check_text
-from pkm_post.writing.gcode import Form, write
+from pkm_post.writing.gcode import GcodeDialect, write
 
 MILLED = b"""%
 O100 (BRACKET)
@@ -108,7 +108,7 @@ WITHOUT_MEANING = re.compile(rb"\([^()\n]*\)|;[^\n]*|\$\$[^\n]*|[\s%]")
 
 def written(program):
     """What a program is, as bytes of G-code."""
-    text, told = write(program, Form.VECTOR)
+    text, told = write(program, GcodeDialect.VECTOR)
     assert not errors(told)
     return text
 

@@ -21,14 +21,14 @@ from pkm_post.system import result_files
 
 
 @dataclass(frozen=True)
-class Stretch:
-    """A stretch of a motion.
+class Section:
+    """A section of a motion between two events that need another program; dwells are part of it.
 
     Attributes:
         before: events before it begins, in order.
         clock_ms: marks on its own clock, from 0 on.
         motion_ms: the time of the motion at each of these marks; linear between them.
-        after: events after its end; last stretch only.
+        after: events after its end; last section only.
     """
 
     before: tuple[Event, ...]
@@ -48,7 +48,7 @@ class Stretch:
 
 @dataclass
 class _Piece:
-    """A stretch under construction."""
+    """A section under construction."""
 
     motion_ms: list[float]
     clock_ms: list[float] = field(default_factory=lambda: [0.0])
@@ -70,8 +70,8 @@ class _Piece:
         return len(self.clock_ms) == 1
 
 
-def stretches(motion: StrutMotion) -> tuple[Stretch, ...]:
-    """The stretches of a motion, at least one; only a motion at standstill has a stretch without duration."""
+def sections(motion: StrutMotion) -> tuple[Section, ...]:
+    """The sections of a motion, at least one; only a motion at standstill has a section without duration."""
     pieces = [_Piece([0.0])]
     for event in motion.events:
         pieces[-1].go_to(float(motion.time_ms[event.row]))
@@ -83,7 +83,7 @@ def stretches(motion: StrutMotion) -> tuple[Stretch, ...]:
         pieces[-1].before.append(event)
     pieces[-1].go_to(float(motion.time_ms[-1]))
     after = pieces.pop().before if len(pieces) > 1 and pieces[-1].is_empty else []
-    made = [Stretch(tuple(piece.before), tuple(piece.clock_ms), tuple(piece.motion_ms)) for piece in pieces]
+    made = [Section(tuple(piece.before), tuple(piece.clock_ms), tuple(piece.motion_ms)) for piece in pieces]
     return (*made[:-1], replace(made[-1], after=tuple(after)))
 
 
@@ -147,34 +147,34 @@ def texts(motion: StrutMotion, heading: Sequence[str]) -> tuple[str, ...]:
         motion: the cubics.
         heading: lines of printable ASCII for the user.
     """
-    made = stretches(motion)
+    made = sections(motion)
     error = chord_error(motion)
     return tuple(
-        "".join([*_heading(heading, stretch, number, len(made), error), *_rows(motion, stretch), *_after(stretch)])
-        for number, stretch in enumerate(made, start=1)
+        "".join([*_heading(heading, section, number, len(made), error), *_rows(motion, section), *_after(section)])
+        for number, section in enumerate(made, start=1)
     )
 
 
-def _heading(heading: Sequence[str], stretch: Stretch, number: int, count: int, error: float) -> Iterator[str]:
-    told = [re.sub(r"[^ -~]", lambda sign: ascii(sign[0])[1:-1], line) for line in heading]
-    yield from (f"# {line}\n" for line in told)
+def _heading(heading: Sequence[str], section: Section, number: int, count: int, error: float) -> Iterator[str]:
+    lines = [re.sub(r"[^ -~]", lambda sign: ascii(sign[0])[1:-1], line) for line in heading]
+    yield from (f"# {line}\n" for line in lines)
     yield f"# part {number} of {count}; strut lengths in mm, strut 1 first; cfg=ffffff\n"
     yield f"# straight from row to row a strut is at most {error:.3g} mm from its cubic\n"
-    yield f"# before: {_happening(stretch.before)}\n"
+    yield f"# before: {_event_list(section.before)}\n"
     yield f"# period {PERIOD_MS} ms\n"
 
 
-def _after(stretch: Stretch) -> Iterator[str]:
-    if stretch.after:
-        yield f"# after: {_happening(stretch.after)}\n"
+def _after(section: Section) -> Iterator[str]:
+    if section.after:
+        yield f"# after: {_event_list(section.after)}\n"
 
 
-def _happening(events: Sequence[Event]) -> str:
+def _event_list(events: Sequence[Event]) -> str:
     return ", ".join(f"{event.kind.name.lower()} {event.value:.12g}" for event in events) or "nothing"
 
 
-def _rows(motion: StrutMotion, stretch: Stretch) -> Iterator[str]:
-    times = stretch.rows_ms(PERIOD_MS)
+def _rows(motion: StrutMotion, section: Section) -> Iterator[str]:
+    times = section.rows_ms(PERIOD_MS)
     row = " ".join([f"%.{DECIMALS}f"] * 6) + "\n"
     for start in range(0, len(times), _ROWS_PER_CHUNK):
         length = np.round(lengths_at(motion, times[start : start + _ROWS_PER_CHUNK]), DECIMALS) + 0.0
@@ -209,14 +209,14 @@ def measured(texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str
     """Read the tables back and measure their deviation from the cubics, at their rows and half way between."""
     limits = _HALF_DIGIT, chord_error(motion) + _HALF_DIGIT
     worst, rows = 0.0, 0
-    made = stretches(motion)
+    made = sections(motion)
     if len(made) != len(texts):
         return "", (Diagnostic("C107", Place(texts[0][0]), f"{len(texts)} tables, expected {len(made)}"),)
-    for (file, text), stretch in zip(texts, made, strict=True):
+    for (file, text), section in zip(texts, made, strict=True):
         stream, faults = read_stream(text, file)
         if stream is None:
             return "", faults
-        apart = _apart(stream, stretch, motion)
+        apart = _apart(stream, section, motion)
         for found, limit in zip(apart, limits, strict=True):
             if found > limit:
                 return "", (Diagnostic("C107", Place(file), f"{found:.3g} mm apart, at most {limit:.3g} mm can be"),)
@@ -224,12 +224,12 @@ def measured(texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str
     return f"{rows} rows, straight lines between them {worst:.3g} mm from the cubics", ()
 
 
-def _apart(stream: Stream, stretch: Stretch, motion: StrutMotion) -> tuple[float, float]:
+def _apart(stream: Stream, section: Section, motion: StrutMotion) -> tuple[float, float]:
     """Deviation of a table from the cubics at its rows and between them, mm; infinite if the number of rows differs."""
-    times = stretch.rows_ms(stream.period_ms)
+    times = section.rows_ms(stream.period_ms)
     if len(times) != len(stream.length):
         return math.inf, math.inf
-    half = stretch.time_at(stream.period_ms * (np.arange(len(times) - 1) + 0.5))
+    half = section.time_at(stream.period_ms * (np.arange(len(times) - 1) + 0.5))
     chord = (stream.length[:-1] + stream.length[1:]) / 2
     at_rows, between = stream.length - lengths_at(motion, times), chord - lengths_at(motion, half)
     return float(np.abs(at_rows).max()), float(np.abs(between).max(initial=0.0))

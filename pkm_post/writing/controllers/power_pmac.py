@@ -27,8 +27,16 @@ from pkm_post.writing.controllers.pvt.settings import (
     check_stroke,
     stroke_counts,
 )
-from pkm_post.writing.controllers.pvt.syntax import FLOW_FROM_MODES, PRINTABLE, START, Flow, Grammar, body_forms, form
-from pkm_post.writing.controllers.pvt.writer import Words, comment_lines
+from pkm_post.writing.controllers.pvt.syntax import (
+    FLOW_FROM_MODES,
+    PRINTABLE,
+    START,
+    Flow,
+    Grammar,
+    body_forms,
+    line_form,
+)
+from pkm_post.writing.controllers.pvt.writer import Keywords, comment_lines
 
 __all__ = [
     "SETUP_SUFFIX",
@@ -45,7 +53,7 @@ SETUP_SUFFIX = result_files.SETUPS["power_pmac"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class PowerPmacSettings(pvt.Settings):
+class PowerPmacSettings(pvt.PvtSettings):
     """Settings of the Power PMAC of one machine; its numbers are doubles."""
 
     KIND = "power_pmac"
@@ -67,12 +75,12 @@ def faults(motion: StrutMotion, settings: PowerPmacSettings, file: str) -> tuple
     return event_faults(motion, settings.codes, file)
 
 
-WORDS = Words(comment="//", linear="linear", dwell="dwell", interval="pvt", close="close")
+KEYWORDS = Keywords(comment="//", linear="linear", dwell="dwell", interval="pvt", close="close")
 
 
 def program_text(motion: StrutMotion, settings: PowerPmacSettings, heading: Sequence[str]) -> str:
     """Write a motion as a motion program; as ``pvt.writer.program_text``."""
-    return writer.program_text(motion, settings, WORDS, _opening(settings), heading)
+    return writer.program_text(motion, settings, KEYWORDS, _opening(settings), heading)
 
 
 def program_parts(motion: StrutMotion, settings: PowerPmacSettings, heading: Sequence[str]) -> tuple[str, ...]:
@@ -95,8 +103,8 @@ _FLOW: Flow = {START: {"comment": START, "open": "cleared"}, **FLOW_FROM_MODES}
 def _grammar(settings: PowerPmacSettings) -> Grammar:
     """The grammar of the programs of a Power PMAC."""
     forms = {
-        "comment": form("a comment", "//", PRINTABLE),
-        "open": form(f"open prog {settings.program}", "open prog ", str(settings.program)),
+        "comment": line_form("a comment", "//", PRINTABLE),
+        "open": line_form(f"open prog {settings.program}", "open prog ", str(settings.program)),
         **body_forms(settings, str.lower),
     }
     return Grammar(forms, _FLOW, (APPROACH_RAMP_MS, 0, settings.approach_speed))

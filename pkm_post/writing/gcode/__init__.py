@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""G-code: ``Program`` to text, in one of its forms."""
+"""G-code: ``Program`` to text, in one of its dialects."""
 
-from pkm_post.writing.gcode.writer import Form, write
+from pkm_post.writing.gcode.writer import GcodeDialect, write
 
-__all__ = ["Form", "write"]
+__all__ = ["GcodeDialect", "write"]

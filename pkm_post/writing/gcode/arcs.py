@@ -31,23 +31,23 @@ class WrittenArcs:
         plane: (n,) the coordinate normal to their plane.
         offset: (n, 3) centre minus start, an integer multiple of ``unit``; zero along the normal.
         clockwise: (n,) whether they run clockwise, G2.
-        sayable: (n,) whether the text reproduces the arc.
+        expressible: (n,) whether the text reproduces the arc.
     """
 
     row: Array
     plane: Array
     offset: Array
     clockwise: Array
-    sayable: Array
+    expressible: Array
 
 
-def written_arcs(program: Program, unit: float, may_turn: bool) -> WrittenArcs:
+def written_arcs(program: Program, unit: float, axis_may_change: bool) -> WrittenArcs:
     """Express the arcs of a program in text.
 
     Args:
         program: any.
         unit: resolution of the text, mm.
-        may_turn: whether tool axis words can accompany an arc.
+        axis_may_change: whether tool axis words can accompany an arc.
     """
     row = np.flatnonzero(program.kind == Kind.ARC)
     row = row[row > 0]
@@ -57,23 +57,25 @@ def written_arcs(program: Program, unit: float, may_turn: bool) -> WrittenArcs:
     plane = np.abs(axis).argmax(axis=1)
     across = np.arange(3) != plane[:, None]
     upright = np.where(across, 0.0, np.sign(axis))
-    offset = np.where(across, _fitting(printed_start, printed_end, centre, across, unit) - printed_start, 0.0)
+    offset = np.where(across, _adjusted_centres(printed_start, printed_end, centre, across, unit) - printed_start, 0.0)
     offset = np.rint(offset / unit) * unit
-    said = printed_start + offset
-    first, last = (norm(np.where(across, points - said, 0.0)) for points in (printed_start, printed_end))
+    centre_as_written = printed_start + offset
+    first, last = (norm(np.where(across, points - centre_as_written, 0.0)) for points in (printed_start, printed_end))
     radius = norm(np.where(across, start - centre, 0.0))
-    turned = np.abs(arc_sweep(printed_start, printed_end, said, upright) - arc_sweep(start, end, centre, axis))
+    turned = np.abs(
+        arc_sweep(printed_start, printed_end, centre_as_written, upright) - arc_sweep(start, end, centre, axis)
+    )
     lean = norm(np.where(across, axis, 0.0))
-    sayable = (np.abs(first - last) <= RADIUS_ERROR) & (np.minimum(first, last) > 0) & (turned < SWEEP_ERROR)
-    sayable &= 2 * radius * lean <= unit / 2
+    expressible = (np.abs(first - last) <= RADIUS_ERROR) & (np.minimum(first, last) > 0) & (turned < SWEEP_ERROR)
+    expressible &= 2 * radius * lean <= unit / 2
     compensated = program.side_offset[row] != 0
-    sayable &= ~compensated | (program.plane[row] == plane)
-    if not may_turn:
-        sayable &= norm(program.tool_axis[row] - program.tool_axis[row - 1]) <= AXIS_ERROR
-    return WrittenArcs(row, plane, offset, upright.sum(axis=1) < 0, sayable)
+    expressible &= ~compensated | (program.plane[row] == plane)
+    if not axis_may_change:
+        expressible &= norm(program.tool_axis[row] - program.tool_axis[row - 1]) <= AXIS_ERROR
+    return WrittenArcs(row, plane, offset, upright.sum(axis=1) < 0, expressible)
 
 
-def _fitting(start: Array, end: Array, centre: Array, across: Array, unit: float) -> Array:
+def _adjusted_centres(start: Array, end: Array, centre: Array, across: Array, unit: float) -> Array:
     """Shift centres along the chord to restore equal start and end radii after rounding."""
     chord = np.where(across, end - start, 0.0)
     middle = np.where(across, (start + end) / 2 - centre, 0.0)

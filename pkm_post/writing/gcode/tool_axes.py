@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The forms of G-code that a program can be written in, and the tool axis words of each.
+"""Dialects of G-code that a program can be written in, and the tool axis words of each.
 
 Enters: unit tool axes in {C}. Leaves: columns of words: vector components, or angles in degrees under a kinematic,
 continuous from row to row. The formulas invert those of ``axes.py``. Where linear interpolation of the angles leaves
@@ -22,14 +22,14 @@ POLE = 2e-6
 """rad: a tool axis closer to +z or -z does not rotate C. Vectors with six decimals have no azimuth within this."""
 
 
-SWING = np.radians(0.1)
+MAX_AXIS_DEVIATION = np.radians(0.1)
 """Deviation of the tool axis from the great circle between two rows, rad, above which it is reported."""
 
-_LOOKED_AT = (0.25, 0.5, 0.75)
+_SAMPLES = (0.25, 0.5, 0.75)
 """Fractions of a move at which its tool axis is compared with the great circle."""
 
 
-class Form(Enum):
+class GcodeDialect(Enum):
     """Tool axis notation; the values are those of the command line."""
 
     VECTOR = "vector"
@@ -46,17 +46,17 @@ class Form(Enum):
 
 @dataclass(frozen=True)
 class AxisWords:
-    """Tool axis words of a form.
+    """Tool axis words of a dialect.
 
     Attributes:
         letters: of the words.
-        follows: the code that enables tool length compensation.
+        length_code: the code that enables tool length compensation.
         as_vector: whether the words are written all or none, and never with an arc, where they are its centre.
         values: maps (N, 3) unit axes and (N,) spins to (N, len(letters)) words.
     """
 
     letters: str
-    follows: str
+    length_code: str
     as_vector: bool
     values: Callable[[Array, Array], Array]
 
@@ -85,17 +85,17 @@ def _head(axis: Array, lead: float) -> Array:
     chosen: through the pole the tilt changes sign and C is continuous.
     """
     level = np.hypot(axis[:, 0], axis[:, 1])
-    azimuth = _filled(np.arctan2(axis[:, 1], axis[:, 0]), level < POLE)
+    azimuth = _azimuth_at_pole(np.arctan2(axis[:, 1], axis[:, 0]), level < POLE)
     unbroken = np.unwrap(azimuth, period=np.pi)
     odd = np.rint((unbroken - azimuth) / np.pi).astype(np.int64) % 2 == 1
     tilt = np.arctan2(np.where(odd, -level, level), axis[:, 2])
     return np.degrees(np.column_stack([tilt, unbroken + lead]))
 
 
-def _filled(azimuth: Array, at_pole: Array) -> Array:
+def _azimuth_at_pole(azimuth: Array, at_pole: Array) -> Array:
     """Fill in azimuths at the pole from their neighbours.
 
-    The first row of a stretch at the pole keeps the azimuth before it, the others take the one after it: a necessary
+    The first row of a run at the pole keeps the azimuth before it, the others take the one after it: a necessary
     rotation of C happens while the tool is vertical.
     """
     known = np.flatnonzero(~at_pole)
@@ -117,16 +117,16 @@ def _roll_pitch_yaw(axis: Array, spin: Array) -> Array:
     return np.degrees(np.unwrap(np.column_stack([np.arctan2(y[:, 2], axis[:, 2]), pitch, yaw]), axis=0))
 
 
-FORMS: dict[Form, AxisWords] = {
-    Form.VECTOR: AxisWords("IJK", "G43.5", True, _vector),
-    Form.AC: AxisWords("AC", "G43.4", False, _ac),
-    Form.BC: AxisWords("BC", "G43.4", False, _bc),
-    Form.LINUXCNC: AxisWords("ABC", "G43", False, _roll_pitch_yaw),
-    Form.PLAIN: AxisWords("", "G43", False, _nothing),
+NOTATIONS: dict[GcodeDialect, AxisWords] = {
+    GcodeDialect.VECTOR: AxisWords("IJK", "G43.5", True, _vector),
+    GcodeDialect.AC: AxisWords("AC", "G43.4", False, _ac),
+    GcodeDialect.BC: AxisWords("BC", "G43.4", False, _bc),
+    GcodeDialect.LINUXCNC: AxisWords("ABC", "G43", False, _roll_pitch_yaw),
+    GcodeDialect.PLAIN: AxisWords("", "G43", False, _nothing),
 }
 
 
-def swings(axis: Array, spin: Array, form: Form) -> Array:
+def axis_deviation(axis: Array, spin: Array, dialect: GcodeDialect) -> Array:
     """Deviation of the tool axis from its great circle under linear interpolation of the angles, (N,), rad.
 
     Row i holds the deviation of the move to it. It is 0 for forms without angles, and is measured at equal fractions of
@@ -135,10 +135,10 @@ def swings(axis: Array, spin: Array, form: Form) -> Array:
     Args:
         axis: (N, 3) unit tool axes.
         spin: (N,) rotations about them, rad, or NaN.
-        form: tool axis notation.
+        dialect: tool axis notation.
     """
     swing = np.zeros(len(axis))
-    words = FORMS[form]
+    words = NOTATIONS[dialect]
     if words.as_vector or not words.letters:
         return swing
     angles = np.zeros_like(axis)
@@ -146,7 +146,7 @@ def swings(axis: Array, spin: Array, form: Form) -> Array:
     turning = np.flatnonzero(np.any(angles[1:] != angles[:-1], axis=1)) + 1
     before, after = axis[turning - 1], axis[turning]
     way, step = towards(before, after), angles[turning] - angles[turning - 1]
-    for part in _LOOKED_AT:
+    for part in _SAMPLES:
         led = axis_of(angles[turning - 1] + part * step)
         swing[turning] = np.maximum(swing[turning], angle_between(led, along(before, part * way)))
     return swing
@@ -155,15 +155,15 @@ def swings(axis: Array, spin: Array, form: Form) -> Array:
 _LEVEL, _UPSIDE_DOWN = "the tool axis is {:.6f} deg from upright", "the tool axis is ({:.6f}, {:.6f}, {:.6f})"
 
 
-def impossible_axis(axis: Array, form: Form) -> tuple[int, str, str] | None:
-    """The first row whose tool axis a form cannot express, with the fault code and what was found; or None."""
-    if form is Form.PLAIN:
+def unsupported_axis(axis: Array, dialect: GcodeDialect) -> tuple[int, str, str] | None:
+    """The first row whose tool axis a dialect cannot express, with the fault code and what was found; or None."""
+    if dialect is GcodeDialect.PLAIN:
         level = np.hypot(axis[:, 0], axis[:, 1])
         tilted = np.flatnonzero((level > POLE) | (axis[:, 2] < 0))
         if len(tilted):
             angle = np.degrees(np.arctan2(level[tilted[0]], axis[tilted[0], 2]))
             return int(tilted[0]), "G501", _LEVEL.format(angle)
-    if form is Form.LINUXCNC:
+    if dialect is GcodeDialect.LINUXCNC:
         hanging = np.flatnonzero(1 + axis[:, 2] < POLE)
         if len(hanging):
             return int(hanging[0]), "G502", _UPSIDE_DOWN.format(*axis[hanging[0]])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Words of the written blocks: their rounded values, and the rows on which they are written.
+"""Words and codes of the written blocks: their rounded values, and the rows on which they are written.
 
 Enters: a ``Program`` whose arcs can be expressed. Leaves: columns, lengths in the unit of the text, angles in degrees,
-feeds per minute. A word is written where its rounded value differs from the last one written, and again after a tool
+feeds per minute; and codes of path mode, plane, cutter compensation and motion, as indices into ``TEXTS``. A word is written where its rounded value differs from the last one written, and again after a tool
 change, so a program can be restarted there.
 """
 
@@ -28,7 +28,7 @@ def changed(values: Array, before: float) -> Array:
     return other
 
 
-def newly_said(values: Array, given: Array, restart: Array) -> Array:
+def new_or_changed(values: Array, given: Array, restart: Array) -> Array:
     """Mask of given rows whose value differs from the last given one, or that are first after a restart, (N,)."""
     rows = np.flatnonzero(given)
     new = np.ones(len(rows), dtype=np.bool_)
@@ -87,13 +87,13 @@ class Word:
         letter: of the word.
         decimals: number of decimals written.
         values: (N,) rounded to these decimals.
-        said: (N,) whether the word is written.
+        written: (N,) whether the word is written.
     """
 
     letter: str
     decimals: int
     values: Array
-    said: Array
+    written: Array
 
 
 def words_of(program: Program, axis_words: AxisWords, arcs: WrittenArcs, numbers: Numbers) -> list[Word]:
@@ -109,7 +109,7 @@ def words_of(program: Program, axis_words: AxisWords, arcs: WrittenArcs, numbers
 
     def word(letter: str, values: Array, decimals: int, given: Array) -> Word:
         written = round_columns(values, decimals)
-        return Word(letter, decimals, written, newly_said(written, given, restart))
+        return Word(letter, decimals, written, new_or_changed(written, given, restart))
 
     tip = program.position / numbers.scale
     tips = [word(letter, tip[:, i], numbers.decimals, always) for i, letter in enumerate("XYZ")]
@@ -120,11 +120,11 @@ def words_of(program: Program, axis_words: AxisWords, arcs: WrittenArcs, numbers
         word(letter, values[:, i], numbers.axis_decimals, can_turn) for i, letter in enumerate(axis_words.letters)
     ]  # fmt: skip
     if axis_words.as_vector:
-        _say_together(axes)
+        _write_together(axes)
     centres = _centres(arcs, numbers, len(program))
     feed = word("F", feed_as_written(program, numbers), FEED_DECIMALS, cutting(program))
     # A block without coordinates is not a motion: write at least the unchanged position.
-    tips[0].said[~np.any([one.said for one in (*tips, *axes, *centres)], axis=0)] = True
+    tips[0].written[~np.any([one.written for one in (*tips, *axes, *centres)], axis=0)] = True
     return [*tips, *axes, *centres, feed]
 
 
@@ -133,11 +133,11 @@ def feed_as_written(program: Program, numbers: Numbers) -> Array:
     return round_columns(program.feed * (60 / numbers.scale), FEED_DECIMALS)
 
 
-def _say_together(words: list[Word]) -> None:
+def _write_together(words: list[Word]) -> None:
     """Write all words of a vector where any of them changes: some controls read a missing one as zero."""
-    together = np.any([word.said for word in words], axis=0)
+    together = np.any([word.written for word in words], axis=0)
     for word in words:
-        word.said[:] = together
+        word.written[:] = together
 
 
 def _centres(arcs: WrittenArcs, numbers: Numbers, count: int) -> list[Word]:
@@ -226,7 +226,7 @@ def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers, exact: tuple
         path=path,
         plane=np.where(new_plane, 1 + plane, 0),
         side=np.where(new_side, side, 0),
-        motion=np.where(newly_said(motion, always, restart), motion, 0),
+        motion=np.where(new_or_changed(motion, always, restart), motion, 0),
         tolerance=tolerance,
         diameter=Word("D", numbers.decimals, np.abs(diameter), new_side & compensated),
     )

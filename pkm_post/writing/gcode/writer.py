@@ -3,7 +3,7 @@
 
 Enters: a ``Program`` (mm, rad, mm/s). Leaves: text: mm or inch, degrees, feed per minute. The text is modal: a word is
 written where its rounded value changes, and again after a tool change. Reading the text restores the program within the
-decimals. What a form of G-code cannot express is refused, or replaced and reported; nothing is dropped silently.
+decimals. What a dialect cannot express is refused, or replaced and reported; nothing is dropped silently.
 """
 
 from __future__ import annotations
@@ -17,7 +17,13 @@ from pkm_post.model import Array, Diagnostic, EventKind, Place, Program
 from pkm_post.reading import exact_codes
 from pkm_post.toolpath import CHORD_ERROR, with_chords
 from pkm_post.writing.gcode.arcs import WrittenArcs, written_arcs
-from pkm_post.writing.gcode.tool_axes import FORMS, SWING, Form, impossible_axis, swings
+from pkm_post.writing.gcode.tool_axes import (
+    MAX_AXIS_DEVIATION,
+    NOTATIONS,
+    GcodeDialect,
+    axis_deviation,
+    unsupported_axis,
+)
 from pkm_post.writing.gcode.words import TEXTS, Codes, Numbers, Word, codes_of, cutting, feed_as_written, words_of
 
 _MODES = "{unit} G17 G90 G94 G40 G49 G80 G64\n"
@@ -29,7 +35,7 @@ _LONGEST_COMMENT = 200
 """Characters; LinuxCNC reads lines of 255."""
 
 
-def heading(program: Program, form: Form, inch: bool) -> str:
+def heading(program: Program, dialect: GcodeDialect, inch: bool) -> str:
     """The lines before the first block: source, tools, modes."""
     tools = [program.tools[number] for number in sorted(program.tools)]
     lines = [
@@ -42,19 +48,19 @@ def heading(program: Program, form: Form, inch: bool) -> str:
             for tool in tools
         ),
     ]
-    follows = FORMS[form].follows
+    length_code = NOTATIONS[dialect].length_code
     starts_with_tool = any(event.row == 0 and event.kind is EventKind.TOOL_CHANGE for event in program.events)
-    if not starts_with_tool and follows in _AT_TIP:
-        return "".join(lines) + _MODES.format(unit="G20" if inch else "G21") + follows + "\n"
+    if not starts_with_tool and length_code in _AT_TIP:
+        return "".join(lines) + _MODES.format(unit="G20" if inch else "G21") + length_code + "\n"
     return "".join(lines) + _MODES.format(unit="G20" if inch else "G21")
 
 
-def between_blocks(program: Program, form: Form) -> dict[int, str]:
+def between_blocks(program: Program, dialect: GcodeDialect) -> dict[int, str]:
     """Whole lines by the row that follows them; the row count as key places lines after the last row."""
     lines: dict[int, str] = {}
     for row in _first_rows(program):
         lines[row] = _comment(f"operation: {program.operations[program.operation[row]]}")
-    say = _EVENTS | {EventKind.TOOL_CHANGE: _tool_change(form)}
+    say = _EVENTS | {EventKind.TOOL_CHANGE: _tool_change(dialect)}
     for event in program.events:
         lines[event.row] = lines.get(event.row, "") + say[event.kind](event.value)
     return lines
@@ -67,12 +73,12 @@ def _first_rows(program: Program) -> list[int]:
     return rows
 
 
-def _tool_change(form: Form) -> Callable[[float], str]:
-    follows = FORMS[form].follows
-    cancel = "G49\n" if follows in _AT_TIP else ""
+def _tool_change(dialect: GcodeDialect) -> Callable[[float], str]:
+    length_code = NOTATIONS[dialect].length_code
+    cancel = "G49\n" if length_code in _AT_TIP else ""
 
     def say(number: float) -> str:
-        return f"{cancel}T{number:.0f} M6\n{follows} H{number:.0f}\n"
+        return f"{cancel}T{number:.0f} M6\n{length_code} H{number:.0f}\n"
 
     return say
 
@@ -121,14 +127,14 @@ def block_texts(words: list[Word], codes: Codes, between: Mapping[int, str]) -> 
         for row in rows[bisect_left(rows, begin) : bisect_left(rows, begin + len(lines))]:
             lines[row - begin] = between[row].replace("%", "%%") + lines[row - begin]
         values = np.column_stack([word.values[chunk] for word in columns])
-        said = np.column_stack([word.said[chunk] for word in columns])
-        yield "".join(lines) % tuple(values[said].tolist())
+        written = np.column_stack([word.written[chunk] for word in columns])
+        yield "".join(lines) % tuple(values[written].tolist())
 
 
 def _templates(columns: list[Word], codes: Codes) -> tuple[Array, Array]:
     """The distinct templates, and the template index of each row, (N,)."""
     radices = [len(TEXTS[group]) for group in Codes.ORDER] + [2] * len(columns)
-    digits = [getattr(codes, group) for group in Codes.ORDER] + [word.said for word in columns]
+    digits = [getattr(codes, group) for group in Codes.ORDER] + [word.written for word in columns]
     key = np.zeros(len(codes.motion), dtype=np.int64)
     for radix, digit in zip(reversed(radices), reversed(digits), strict=True):
         key = key * radix + digit
@@ -143,8 +149,8 @@ def _template(key: int, radices: list[int], columns: list[Word]) -> str:
         digits.append(digit)
     code = {group: TEXTS[group][digit] for group, digit in zip(Codes.ORDER, digits, strict=False)}
     tolerance, diameter, *words = [
-        f"{word.letter}%.{word.decimals}f" if said else ""
-        for word, said in zip(columns, digits[len(Codes.ORDER) :], strict=True)
+        f"{word.letter}%.{word.decimals}f" if written else ""
+        for word, written in zip(columns, digits[len(Codes.ORDER) :], strict=True)
     ]
     parts = [code["plane"], code["side"], diameter, code["motion"], *words]
     if tolerance:  # on a separate line: other codes use P as well
@@ -156,31 +162,31 @@ def _line(parts: list[str]) -> str:
     return " ".join(part for part in parts if part) + "\n"
 
 
-__all__ = ["Form", "write"]
+__all__ = ["GcodeDialect", "write"]
 
 _INCH = 25.4
 
 
 def write(
-    program: Program, form: Form, decimals: int = 4, axis_decimals: int = 6, inch: bool = False
+    program: Program, dialect: GcodeDialect, decimals: int = 4, axis_decimals: int = 6, inch: bool = False
 ) -> tuple[str | None, tuple[Diagnostic, ...]]:
     """Write a program as G-code.
 
     Args:
         program: any; row 0 is written as a rapid move.
-        form: tool axis notation.
+        dialect: tool axis notation.
         decimals: of coordinates, centres and diameters.
         axis_decimals: of vectors, and of angles in degrees.
         inch: whether to write lengths in inches (G20).
 
     Returns:
-        The text, or None if the form cannot express the program; and the diagnostics.
+        The text, or None if the dialect cannot express the program; and the diagnostics.
 
     Raises:
         ValueError: a position, tool axis, feed, radius or tolerance is not finite.
     """
     _require_numbers(program)
-    fault = impossible_axis(program.tool_axis, form)
+    fault = unsupported_axis(program.tool_axis, dialect)
     if fault is not None:
         row, code, found = fault
         return None, (Diagnostic(code, program.place(row), found),)
@@ -189,18 +195,18 @@ def write(
     if len(standing):
         row = int(standing[0])
         return None, (Diagnostic("G506", program.place(row), f"{program.feed[row] * 60:g} mm/min"),)
-    may_turn = not FORMS[form].as_vector
-    arcs = written_arcs(program, numbers.unit, may_turn)
-    diagnostics = (*_chords_told(program, arcs), *_normals_told(program))
-    if not arcs.sayable.all():
-        program = with_chords(program, arcs.row[~arcs.sayable])
-        arcs = written_arcs(program, numbers.unit, may_turn)
-    diagnostics += _swings_told(program, form)
-    between = between_blocks(program, form)
-    codes = codes_of(program, arcs, numbers, exact_codes("RPY" if form is Form.LINUXCNC else ""))
-    blocks = block_texts(words_of(program, FORMS[form], arcs, numbers), codes, between)
+    axis_may_change = not NOTATIONS[dialect].as_vector
+    arcs = written_arcs(program, numbers.unit, axis_may_change)
+    diagnostics = (*_chord_warnings(program, arcs), *_normal_warnings(program))
+    if not arcs.expressible.all():
+        program = with_chords(program, arcs.row[~arcs.expressible])
+        arcs = written_arcs(program, numbers.unit, axis_may_change)
+    diagnostics += _deviation_warnings(program, dialect)
+    between = between_blocks(program, dialect)
+    codes = codes_of(program, arcs, numbers, exact_codes("RPY" if dialect is GcodeDialect.LINUXCNC else ""))
+    blocks = block_texts(words_of(program, NOTATIONS[dialect], arcs, numbers), codes, between)
     end = between.get(len(program), "")
-    return "".join([heading(program, form, inch), *blocks, end, "M2\n"]), diagnostics
+    return "".join([heading(program, dialect, inch), *blocks, end, "M2\n"]), diagnostics
 
 
 def _require_numbers(program: Program) -> None:
@@ -216,23 +222,23 @@ def _require_numbers(program: Program) -> None:
             raise ValueError(f"{name}: expected finite numbers, got {int((~np.isfinite(values)).sum())} that are not")
 
 
-def _chords_told(program: Program, arcs: WrittenArcs) -> tuple[Diagnostic, ...]:
-    rows = arcs.row[~arcs.sayable]
+def _chord_warnings(program: Program, arcs: WrittenArcs) -> tuple[Diagnostic, ...]:
+    rows = arcs.row[~arcs.expressible]
     if not len(rows):
         return ()
     found = f"{len(rows)} of {len(arcs.row)} arcs, this is the first; the lines stay within {CHORD_ERROR} mm"
     return (Diagnostic("G503", program.place(int(rows[0])), found),)
 
 
-def _swings_told(program: Program, form: Form) -> tuple[Diagnostic, ...]:
-    swing = np.where(cutting(program), swings(program.tool_axis, program.spin, form), 0.0)
-    rows = np.flatnonzero(swing > SWING)
+def _deviation_warnings(program: Program, dialect: GcodeDialect) -> tuple[Diagnostic, ...]:
+    swing = np.where(cutting(program), axis_deviation(program.tool_axis, program.spin, dialect), 0.0)
+    rows = np.flatnonzero(swing > MAX_AXIS_DEVIATION)
     if not len(rows):
         return ()
     found = f"by up to {np.degrees(swing.max()):.2f} deg in {len(rows)} cutting moves, this is the first"
     return (Diagnostic("G505", program.place(int(rows[0])), found),)
 
 
-def _normals_told(program: Program) -> tuple[Diagnostic, ...]:
+def _normal_warnings(program: Program) -> tuple[Diagnostic, ...]:
     count = int(np.isfinite(program.normal).all(axis=1).sum())
     return (Diagnostic("G504", Place(program.source), f"{count} moves have one"),) if count else ()

@@ -70,11 +70,11 @@ def _directions(vectors: Array) -> Array:
     return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
 
 
-def strayed(trajectory: Trajectory, segments: Records) -> dict[str, Array]:
+def deviating_columns(trajectory: Trajectory, segments: Records) -> dict[str, Array]:
     """By column name, the segments whose stored value differs from the recomputed one, (N,).
 
     Args:
-        trajectory: N segments that keep their promises.
+        trajectory: N segments that violate no invariant.
         segments: (N,) their records.
     """
     columns = interpolation(trajectory)
@@ -84,17 +84,17 @@ def strayed(trajectory: Trajectory, segments: Records) -> dict[str, Array]:
     weights = {"growth": radius, "axis_quarter": turns}
     with np.errstate(all="ignore"):  # the file may hold any numbers
         found = {name: _apart(segments[name], column, weights.get(name, 1.0)) for name, column in columns.items()}
-    return found | missed(trajectory, columns)
+    return found | missed_ends(trajectory, columns)
 
 
-def missed(trajectory: Trajectory, columns: dict[str, Array]) -> dict[str, Array]:
+def missed_ends(trajectory: Trajectory, columns: dict[str, Array]) -> dict[str, Array]:
     """Segments whose end a player would miss, (N,), by quantity, as with a wrong sweep or angle.
 
     A line always ends at its shift, by definition of the shift: only arcs and turns can end elsewhere. The speed of a
     player follows from the stated length of a segment.
 
     Args:
-        trajectory: N segments that keep their promises.
+        trajectory: N segments that violate no invariant.
         columns: their columns from ``interpolation``.
     """
     off = {name: np.zeros(len(trajectory), dtype=np.bool_) for name in ("tip", "axis")}

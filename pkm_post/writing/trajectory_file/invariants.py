@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Promises: the invariants of a trajectory, checked by both writer and reader.
+"""Invariants of a trajectory, which both the writer and the reader of trajectory files check.
 
-Enters: a ``model.Trajectory`` with any values. Leaves: in words, each promise that it breaks, with the first record
-(counted from 0) that does. A broken promise would become a wrong motion in a player of the file.
+Enters: a ``model.Trajectory`` with any values. Leaves: in words, each violation of a rule for single values, and then
+each contradiction between data that are stated twice, with the first record (counted from 0) where it occurs. A player
+of the file would make a wrong motion of either. The tool of a segment also follows from the instructions, a rest from
+the instructions executed there, and a smooth joint from the directions of its two segments.
 """
 
 from __future__ import annotations
@@ -30,11 +32,14 @@ from pkm_post.model import (
 )
 
 SEGMENTS_PER_CHUNK = 1 << 13
-"""Segments per part: some megabytes of records, which stay in the processor's cache."""
+"""Some megabytes of records, which stay in the processor's cache."""
 
 
 def chunks(trajectory: Trajectory) -> Iterator[tuple[int, Trajectory]]:
-    """The parts in order, each with the index of its first segment; events and names are those of the whole."""
+    """Chunks of a trajectory in order, each with the index of its first segment; their columns are views.
+
+    Work on the columns of a chunk takes little memory. Events and names are those of the whole trajectory.
+    """
     for begin in range(0, len(trajectory), SEGMENTS_PER_CHUNK):
         rows = slice(begin, begin + SEGMENTS_PER_CHUNK)
         columns = {name: getattr(trajectory, name)[rows] for name in TRAJECTORY_COLUMNS}
@@ -83,7 +88,7 @@ VALID_EVENT_VALUE: dict[EventKind, Callable[[float], bool]] = {
 
 
 def violations(trajectory: Trajectory) -> list[str]:
-    """Name the broken promises of a trajectory, each with its first offender; none for a sound one."""
+    """Name the rules that a trajectory violates, each with its first violation; none for a valid one."""
     with np.errstate(all="ignore"):  # any numbers may occur
         return [
             *_start_violations(trajectory),
@@ -161,7 +166,7 @@ def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
     """For each rule, in words, the segments that break it, (N,)."""
     arc = trajectory.kind == Kind.ARC
     sweep, length, angle = trajectory.sweep, trajectory.length, trajectory.angle
-    asked = trajectory.tip_tolerance
+    tip_tolerance = trajectory.tip_tolerance
     stands = (length == 0) & (angle == 0) & (trajectory.spin == trajectory.spin_before())
     return {
         "kind is unknown": ~np.isin(trajectory.kind, list(Kind)),
@@ -181,7 +186,7 @@ def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
         "angle is not between 0 and pi": ~_within(angle, 0, np.pi),
         "tip, the axis and the spin all stand": stands,
         f"tip tolerance is not 0, nor a finite number of at least {MIN_TOLERANCE:g} mm": ~(
-            (asked == 0) | _within(asked, MIN_TOLERANCE, FARTHEST)
+            (tip_tolerance == 0) | _within(tip_tolerance, MIN_TOLERANCE, FARTHEST)
         ),
         "feed is so low that the segment takes more than a day": length > LONGEST * trajectory.feed,
         "tool is not in the table": ~np.isin(trajectory.tool, list(trajectory.tools)),
@@ -246,7 +251,7 @@ _NO_DIRECTION = 1e-9
 
 
 def contradictions(trajectory: Trajectory) -> list[str]:
-    """Name the contradictions of a trajectory that keeps its promises; none for a sound one."""
+    """Name the contradictions of a trajectory without violations; none for a consistent one."""
     if not len(trajectory):
         return []
     return [*_tool_contradictions(trajectory), *_rest_contradictions(trajectory), *_joint_contradictions(trajectory)]

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Reader: read a trajectory file as the ``model.Trajectory`` that was written, bit for bit, or report its faults.
 
-The container is checked first, then the strings and numbers that a ``Trajectory`` cannot hold, then the promises of
+No statement of the file is trusted before it is checked: sizes against the file, tables against its bounds and each
+other, the bytes against their checksums. A table is a view into the bytes read: a false count cannot allocate memory.
+
+The container is checked first, then the strings and numbers that a ``Trajectory`` cannot hold, then the invariants of
 every trajectory, then the precomputed data: the returned trajectory does not contain it, but other players rely on it.
 """
 
@@ -28,7 +31,7 @@ from pkm_post.model import (
     Tool,
     Trajectory,
 )
-from pkm_post.writing.trajectory_file.interpolation import blocks, strayed
+from pkm_post.writing.trajectory_file.interpolation import blocks, deviating_columns
 from pkm_post.writing.trajectory_file.invariants import (
     SEGMENTS_PER_CHUNK,
     chunks,
@@ -202,7 +205,7 @@ def decode(content: Content, file: str) -> tuple[Trajectory | None, tuple[Diagno
 def _broken_advance(trajectory: Trajectory, tables: dict[str, Records]) -> Iterator[str]:
     """Precomputed data that does not follow from the trajectory."""
     records = tables["segments"]
-    found = ((begin, strayed(part, records[begin : begin + len(part)])) for begin, part in chunks(trajectory))
+    found = ((begin, deviating_columns(part, records[begin : begin + len(part)])) for begin, part in chunks(trajectory))
     for words in first_segments(found):
         yield f"{words} does not follow from the rest"
     if not np.array_equal(blocks(trajectory), tables["blocks"]):

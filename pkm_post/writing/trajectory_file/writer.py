@@ -18,7 +18,7 @@ import numpy as np
 
 from pkm_post.model import TRAJECTORY_COLUMNS, Event, Tool, Trajectory
 from pkm_post.system import staged
-from pkm_post.writing.trajectory_file.interpolation import blocks, interpolation, missed
+from pkm_post.writing.trajectory_file.interpolation import blocks, interpolation, missed_ends
 from pkm_post.writing.trajectory_file.invariants import chunks, contradictions, first_segments, violations
 from pkm_post.writing.trajectory_file.layout import (
     HEADER,
@@ -45,13 +45,12 @@ def write(trajectory: Trajectory, path: Path) -> None:
         path: the file; a missing folder is created, an existing file is replaced.
 
     Raises:
-        ValueError: the trajectory breaks the promises of a trajectory, contradicts itself, or has a text that is
-            not Unicode.
+        ValueError: the trajectory violates an invariant, or has a text that is not Unicode.
         OSError: the file cannot be written.
     """
-    broken = violations(trajectory) or contradictions(trajectory)
-    if broken:
-        raise ValueError(f"expected a trajectory that can be read back, got {'; '.join(broken)}")
+    faults = violations(trajectory) or contradictions(trajectory)
+    if faults:
+        raise ValueError(f"expected a trajectory that can be read back, got {'; '.join(faults)}")
     strings = _Strings.of(trajectory)
     with staged(path.parent) as folder, (folder / path.name).open("wb") as file:
         file.write(bytes(HEADER.itemsize))
@@ -154,7 +153,7 @@ def _segments(begin: int, trajectory: Trajectory) -> Records:
     for column in TRAJECTORY_COLUMNS:
         table[column] = getattr(trajectory, column)
     columns = interpolation(trajectory)
-    for words in first_segments([(begin, missed(trajectory, columns))]):
+    for words in first_segments([(begin, missed_ends(trajectory, columns))]):
         raise ValueError(f"expected segments that end where they say, got {words} does not follow from the rest")
     for column, values in columns.items():
         table[column] = values

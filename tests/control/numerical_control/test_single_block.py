@@ -13,7 +13,7 @@ from pkm_post.control.numerical_control.execute import target_deviation
 from pkm_post.control.numerical_control.single_block import read_blocks
 from pkm_post.model import EventKind
 from pkm_post.posting.post_file import post_file
-from pkm_post.writing.controllers.pvt.writer import rests
+from pkm_post.writing.controllers.pvt.writer import rest_knots
 
 MICRON, COUNT = 1e-3, 1e-4
 HOME = (0.0, 0.0, 300.0)
@@ -69,7 +69,7 @@ def origin(blocks):
 
 def test_the_posted_program_rests_seldom_and_has_a_block_for_each_line_that_moves(posted):
     job, _ = read_job((posted / "part.pmc").read_text(), SETTINGS, "part.pmc")
-    assert len(rests(job.motion, SETTINGS)) < len(ENDS)
+    assert len(rest_knots(job.motion, SETTINGS)) < len(ENDS)
     blocks = blocks_in(posted)
     lines = SOURCE.splitlines()
     shown = [blocks.shown(number) for number in range(1, len(blocks) + 1)]
@@ -120,7 +120,7 @@ def test_31_lines_that_blend_are_31_blocks(station, tmp_path):
     lines = [f"G1 X{x % 7} Y{x / 10:g} Z300 F3000" for x in range(1, 32)]
     post(tmp_path, "G21 G90 G64 P0.5\n" + "\n".join(lines) + "\nM30\n")
     job, _ = read_job((tmp_path / "part.pmc").read_text(), SETTINGS, "part.pmc")
-    assert len(rests(job.motion, SETTINGS)) == 2
+    assert len(rest_knots(job.motion, SETTINGS)) == 2
     blocks = blocks_in(tmp_path)
     assert station.control.open_blocks(blocks) == 31
     for number in (1, 2):

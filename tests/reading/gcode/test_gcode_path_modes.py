@@ -9,7 +9,7 @@ from programs import BALL, square_with_arc
 
 from pkm_post.reading.gcode import ReadOptions, read
 from pkm_post.toolpath import with_chords
-from pkm_post.writing.gcode import Form, write
+from pkm_post.writing.gcode import GcodeDialect, write
 
 START = "T1 M6\nG0 X0 Y0 Z0\n"
 MICRON = 1e-3
@@ -58,7 +58,9 @@ def test_q_alone_is_no_tolerance():
     assert not program.tip_tolerance.any()
 
 
-@pytest.mark.parametrize(("form", "stop", "path"), [(Form.VECTOR, "G61", "G61.1"), (Form.LINUXCNC, "G61.1", "G61")])
+@pytest.mark.parametrize(
+    ("form", "stop", "path"), [(GcodeDialect.VECTOR, "G61", "G61.1"), (GcodeDialect.LINUXCNC, "G61.1", "G61")]
+)
 def test_written_as_the_form_means_it(form, stop, path):
     given = square_with_arc()
     rows = np.arange(len(given))
@@ -71,7 +73,7 @@ def test_written_as_the_form_means_it(form, stop, path):
 
 def test_a_tolerance_below_the_last_decimal_is_not_lost():
     given = replace(square_with_arc(), tip_tolerance=np.full(len(square_with_arc()), 1e-9))
-    text, _ = write(given, Form.PLAIN, decimals=3)
+    text, _ = write(given, GcodeDialect.PLAIN, decimals=3)
     back, _ = read(text, "back.ngc", ReadOptions(default_tool=BALL))
     assert (back.tip_tolerance > 0).all()
     assert (back.tip_tolerance < 0.02 * MICRON).all()

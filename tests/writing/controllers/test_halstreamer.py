@@ -12,7 +12,7 @@ from pkm_post.writing.controllers.halstreamer import (
     lengths_at,
     measured,
     read_stream,
-    stretches,
+    sections,
     texts,
 )
 
@@ -30,7 +30,7 @@ def moving(events=(), knots=40, seed=2):
 
 def rows_of(motion):
     """The lengths that the tables of a motion state, before they are rounded."""
-    return [lengths_at(motion, stretch.rows_ms(PERIOD_MS)) for stretch in stretches(motion)]
+    return [lengths_at(motion, section.rows_ms(PERIOD_MS)) for section in sections(motion)]
 
 
 def named(made):

@@ -4,7 +4,7 @@ import pytest
 from controller_settings import settings_for
 
 from pkm_post.model import Event, EventKind, StrutMotion
-from pkm_post.writing.controllers.pvt.codes import MEANINGS, check_codes, code_text, event_faults
+from pkm_post.writing.controllers.pvt.codes import EVENT_CODES, check_codes, code_text, event_faults
 
 CODES, LETTERS = settings_for().codes, settings_for().letters
 
@@ -35,8 +35,8 @@ def test_a_code_with_fixed_decimals_writes_what_it_can_write_exactly():
 
 def test_the_codes_of_the_example_are_in_order_and_tell_all_meanings_apart():
     check_codes(CODES, LETTERS)
-    values = [3 * meaning.sign if meaning.value is None else meaning.value for meaning in MEANINGS.values()]
-    events = [Event(0, meaning.kind, value) for meaning, value in zip(MEANINGS.values(), values, strict=True)]
+    values = [3 * meaning.sign if meaning.value is None else meaning.value for meaning in EVENT_CODES.values()]
+    events = [Event(0, meaning.kind, value) for meaning, value in zip(EVENT_CODES.values(), values, strict=True)]
     texts = [code_text(event, CODES) for event in events]
     assert texts == ["T3 M6", "M5", "S3 M3", "S3 M4", "M9", "M8", "M7", "M0", "M1"]
 
@@ -91,7 +91,7 @@ def test_outputs_can_be_set_with_synchronous_assignments():
 
 
 def test_every_kind_of_event_but_the_dwell_has_a_code():
-    assert {meaning.kind for meaning in MEANINGS.values()} == set(EventKind) - {EventKind.DWELL}
+    assert {meaning.kind for meaning in EVENT_CODES.values()} == set(EventKind) - {EventKind.DWELL}
 
 
 @pytest.mark.parametrize(

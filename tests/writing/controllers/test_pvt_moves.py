@@ -34,8 +34,8 @@ def assert_as_one_by_one(text, _grammar):
     assert lines.complete == len(complete)
     assert np.diff(lines.edges).tolist() == [*(len(line) + 1 for line in complete), *map(len, rest)]
     assert lines.lengths().tolist() == [len(line) for line in [*complete, *rest]]
-    moves = [_grammar.forms["move"].fits(line) for line in complete]
-    intervals = [_grammar.forms["interval"].fits(line) for line in complete]
+    moves = [_grammar.forms["move"].match(line) for line in complete]
+    intervals = [_grammar.forms["interval"].match(line) for line in complete]
     assert lines.is_move.tolist() == [
         *(bool(move and in_full(move.groups())) for move in moves),
         *(False for _ in rest),
@@ -151,9 +151,9 @@ def pattern(letters):
     ],
 )
 def test_lines_to_be_read_by_themselves_are_all_but_moves_behind_a_move(letters, alone):
-    stretches = list(pattern(letters).stretches())
-    assert [row for row, _ in stretches] == alone
-    assert [end for _, end in stretches] == [*alone[1:], len(letters)][: len(alone)]
+    runs = list(pattern(letters).runs())
+    assert [row for row, _ in runs] == alone
+    assert [end for _, end in runs] == [*alone[1:], len(letters)][: len(alone)]
 
 
 def test_each_move_takes_the_time_told_last():

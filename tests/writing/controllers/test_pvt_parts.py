@@ -8,17 +8,17 @@ from strut_motions import read_back, with_rests
 
 from pkm_post.model import Event, EventKind
 from pkm_post.writing.controllers.pmac import program_parts
-from pkm_post.writing.controllers.pvt.parts import headings, joined, parted, stated_part
+from pkm_post.writing.controllers.pvt.parts import headings, join_motions, split_motion, stated_part
 
 
 @pytest.mark.parametrize("cuts", [(), (10,), (30, 40, 90)])
 def test_parts_joined_are_the_whole(cuts):
     events = [Event(row, EventKind.DWELL, row / 8) for row in (0, 10, 10, 30, 55, 100)]
     motion = with_rests(5, 101, events)
-    parts = parted(motion, cuts)
+    parts = split_motion(motion, cuts)
     assert len(parts) == len(cuts) + 1
     assert all(part.time_ms[0] == 0 for part in parts)
-    whole, faults = joined(parts, [f"part{number}" for number in range(len(parts))])
+    whole, faults = join_motions(parts, [f"part{number}" for number in range(len(parts))])
     assert faults == ()
     assert all(np.array_equal(getattr(whole, name), getattr(motion, name)) for name in ("time_ms", "length", "speed"))
     assert whole.events == motion.events

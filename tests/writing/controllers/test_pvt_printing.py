@@ -2,12 +2,12 @@
 import numpy as np
 import pytest
 
-from pkm_post.writing.controllers.pvt.decimals import BLANK, printed, rounded
+from pkm_post.writing.controllers.pvt.decimals import BLANK, print_columns, round_values
 
 
 def texts(values, decimals):
     """Every number as text, without the blanks."""
-    columns = printed(values, decimals)
+    columns = print_columns(values, decimals)
     rows = columns.reshape(-1, columns.shape[-1])
     return [row.tobytes().replace(BLANK, b"").decode("ascii") for row in rows]
 
@@ -52,10 +52,10 @@ def test_a_number_that_rounds_to_one_more_digit_has_room_for_it(at):
 def test_no_zero_has_a_sign():
     values = np.array([-0.0, -1e-300, -0.00004, -0.00005, -0.00006])
     assert texts(values, 4) == ["0.0000", "0.0000", "0.0000", "0.0000", "-0.0001"]
-    assert not np.signbit(rounded(values[:4], 4)).any()
+    assert not np.signbit(round_values(values[:4], 4)).any()
 
 
 def test_the_shape_of_the_numbers_is_kept():
     values = np.arange(24.0).reshape(2, 3, 4)
-    assert printed(values, 2).shape == (2, 3, 4, len("-12.34"))
-    assert printed(1e20 * values, 2).shape[:3] == values.shape
+    assert print_columns(values, 2).shape == (2, 3, 4, len("-12.34"))
+    assert print_columns(1e20 * values, 2).shape[:3] == values.shape

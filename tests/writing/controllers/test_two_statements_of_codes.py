@@ -10,7 +10,7 @@ from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.writing.controllers import CONTROLLERS
 from pkm_post.writing.controllers.pvt import codes, syntax
 
-PAIRS = list(combinations(codes.MEANINGS, 2))
+PAIRS = list(combinations(codes.EVENT_CODES, 2))
 VALUES = {
     EventKind.TOOL_CHANGE: (7.0,),
     EventKind.SPINDLE: (0.0, 900.0, -900.0),
@@ -20,16 +20,16 @@ VALUES = {
 
 
 def test_both_know_the_same_codes():
-    assert set(codes.MEANINGS) == set(syntax.EFFECTS)
+    assert set(codes.EVENT_CODES) == set(syntax.EFFECTS)
 
 
 @pytest.mark.parametrize("kind", CONTROLLERS)
 @pytest.mark.parametrize("pair", PAIRS, ids="-".join)
 def test_two_meanings_swapped_in_the_writer_are_found(monkeypatch, job, kind, pair):
     first, second = pair
-    swapped = codes.MEANINGS | {first: codes.MEANINGS[second], second: codes.MEANINGS[first]}
+    swapped = codes.EVENT_CODES | {first: codes.EVENT_CODES[second], second: codes.EVENT_CODES[first]}
     settings, controller = settings_for(kind), CONTROLLERS[kind]
-    monkeypatch.setattr(codes, "MEANINGS", swapped)
+    monkeypatch.setattr(codes, "EVENT_CODES", swapped)
     for event in (Event(0, kind, value) for kind, values in VALUES.items() for value in values):
         alone = StrutMotion(job.time_ms[:3], job.length[:3], job.speed[:3], (event,))
         if controller.faults(alone, settings, "job"):

@@ -13,11 +13,17 @@ from pkm_post.machine import platform_rotation
 from pkm_post.model import Event, EventKind, Kind, Tool
 from pkm_post.reading.gcode import ReadOptions, read
 from pkm_post.toolpath import CHORD_ERROR
-from pkm_post.writing.gcode import Form, write
-from pkm_post.writing.gcode.tool_axes import FORMS, POLE, SWING, swings
+from pkm_post.writing.gcode import GcodeDialect, write
+from pkm_post.writing.gcode.tool_axes import MAX_AXIS_DEVIATION, NOTATIONS, POLE, axis_deviation
 
-AXIS_WORDS = {Form.VECTOR: "vector", Form.AC: "AC", Form.BC: "BC", Form.LINUXCNC: "RPY", Form.PLAIN: "none"}
-TILTING = [form for form in Form if form is not Form.PLAIN]
+READER_WORDS = {
+    GcodeDialect.VECTOR: "vector",
+    GcodeDialect.AC: "AC",
+    GcodeDialect.BC: "BC",
+    GcodeDialect.LINUXCNC: "RPY",
+    GcodeDialect.PLAIN: "none",
+}
+TILTING = [form for form in GcodeDialect if form is not GcodeDialect.PLAIN]
 MICRODEGREE = np.radians(1e-6)
 FEED_UNIT = 1e-3 / 60
 """mm/s in the last decimal of F."""
@@ -25,7 +31,7 @@ RIGHT = np.eye(3)
 
 
 def read_back(text, written, form):
-    options = ReadOptions(tools=written.tools, default_tool=BALL, axis_words=AXIS_WORDS[form])
+    options = ReadOptions(tools=written.tools, default_tool=BALL, axis_words=READER_WORDS[form])
     back, faults = read(text, "back.ngc", options)
     assert not faults
     return back
@@ -98,7 +104,7 @@ def arcs_in_all_planes(rng, count=60):
 
 
 def test_text_of_a_small_job():
-    text, diagnostics = write(square_with_arc(), Form.VECTOR)
+    text, diagnostics = write(square_with_arc(), GcodeDialect.VECTOR)
     assert diagnostics == ()
     # Checked by eye against the job.
     assert text.splitlines()[2:] == [
@@ -122,18 +128,18 @@ def test_text_of_a_small_job():
 @pytest.mark.parametrize("form", TILTING)
 def test_a_random_job_is_read_back_as_it_was(form, seed):
     given = random_job(np.random.default_rng(seed))
-    error = 1e-6 if form is Form.VECTOR else 2 * MICRODEGREE
+    error = 1e-6 if form is GcodeDialect.VECTOR else 2 * MICRODEGREE
     assert_same(round_trip(given, form), given, 1e-4, error + POLE)
 
 
 @pytest.mark.parametrize("seed", range(12))
-@pytest.mark.parametrize("form", Form)
+@pytest.mark.parametrize("form", GcodeDialect)
 def test_arcs_and_events_are_read_back_as_they_were(form, seed):
     given = arcs_in_all_planes(np.random.default_rng(seed))
     assert_same(round_trip(given, form), given, 1e-4, POLE)
 
 
-@pytest.mark.parametrize("form", Form)
+@pytest.mark.parametrize("form", GcodeDialect)
 def test_inches_are_read_back_as_millimetres(form):
     given = arcs_in_all_planes(np.random.default_rng(5))
     assert_same(round_trip(given, form, inch=True, decimals=5), given, 25.4e-5, POLE, 25.4 * FEED_UNIT)
@@ -143,32 +149,32 @@ def test_a_long_program_is_read_back_as_it_was():
     rows = 20000  # several pieces of formatting
     given = cone(rows, turns=40)
     given = replace(given, events=tuple(Event(row, EventKind.DWELL, 1.5) for row in (0, 8191, 8192, 16384, rows)))
-    assert_same(round_trip(given, Form.AC), given, 1e-4, 2 * MICRODEGREE)
+    assert_same(round_trip(given, GcodeDialect.AC), given, 1e-4, 2 * MICRODEGREE)
 
 
 def test_compensation_is_read_back_with_its_plane():
     given = square_with_arc()
     given = replace(given, side_offset=[0, 0, 3.125, 3.125, -2, 0, 1], plane=[2, 2, 2, 2, 0, 2, 2])
-    back = round_trip(given, Form.PLAIN)
+    back = round_trip(given, GcodeDialect.PLAIN)
     assert_same(back, given, 1e-4, POLE)
 
 
 def test_compensation_may_change_its_plane_from_row_to_row():
     given = program([[0, 0, 0], [1, 0, 0], [1, 2, 0], [1, 2, 3]])
     given = replace(given, side_offset=[0, 2, 2, 0], plane=[2, 2, 1, 2])
-    assert_same(round_trip(given, Form.PLAIN), given, 1e-4, POLE)
+    assert_same(round_trip(given, GcodeDialect.PLAIN), given, 1e-4, POLE)
 
 
 def test_a_move_to_the_same_place_stays_a_row():
     given = program([[1, 2, 3], [1, 2, 3], [1, 2, 3]])
-    assert len(round_trip(given, Form.PLAIN)) == 3
+    assert len(round_trip(given, GcodeDialect.PLAIN)) == 3
 
 
 @pytest.mark.parametrize("decimals", [2, 3])
 def test_arcs_with_few_decimals_still_fit_their_ends(decimals):
     given = arcs_in_all_planes(np.random.default_rng(8))
-    text, _ = write(given, Form.PLAIN, decimals=decimals)
-    back = read_back(text, given, Form.PLAIN)
+    text, _ = write(given, GcodeDialect.PLAIN, decimals=decimals)
+    back = read_back(text, given, GcodeDialect.PLAIN)
     rows = np.flatnonzero(back.kind == Kind.ARC)
     across = back.arc_axis[rows] == 0
     first, last = (
@@ -183,9 +189,9 @@ def test_an_oblique_arc_becomes_lines_near_it():
     start, across = np.array([10.0, 0, 0]), np.cross(axis, [1.0, 0, 0])
     given = program([start, 10 * across], kind=[Kind.RAPID, Kind.ARC], centre=np.zeros((2, 3)), turn=[axis, axis])
     given = replace(given, events=(Event(2, EventKind.DWELL, 1.0),), exact_stop=[False, True])
-    text, diagnostics = write(given, Form.VECTOR)
+    text, diagnostics = write(given, GcodeDialect.VECTOR)
     assert [one.code for one in diagnostics] == ["G503"]
-    back = read_back(text, given, Form.VECTOR)
+    back = read_back(text, given, GcodeDialect.VECTOR)
     assert (back.kind[1:] == Kind.LINE).all()
     middle = (back.position[:-1] + back.position[1:]) / 2
     assert np.abs(norm(back.position) - 10).max() < 1e-4
@@ -199,33 +205,33 @@ def test_an_arc_that_turns_the_tool_is_lines_as_vectors_and_an_arc_as_angles():
     given = square_with_arc()
     tilted = np.array([0.6, 0, 0.8])
     given = replace(given, tool_axis=np.where(np.arange(7)[:, None] < 3, [0, 0, 1.0], tilted))
-    assert_same(round_trip(given, Form.BC), given, 1e-4, 2 * MICRODEGREE)
-    text, diagnostics = write(given, Form.VECTOR)
+    assert_same(round_trip(given, GcodeDialect.BC), given, 1e-4, 2 * MICRODEGREE)
+    text, diagnostics = write(given, GcodeDialect.VECTOR)
     assert [one.code for one in diagnostics] == ["G503"]
-    back = read_back(text, given, Form.VECTOR)
+    back = read_back(text, given, GcodeDialect.VECTOR)
     assert angle_between(back.tool_axis[-1], tilted) < 1e-6
     assert (np.diff(angle_between(back.tool_axis, tilted)) <= 1e-6).all()
 
 
 def test_three_axes_refuse_a_tilted_tool():
-    text, (diagnostic,) = write(cone(5), Form.PLAIN)
+    text, (diagnostic,) = write(cone(5), GcodeDialect.PLAIN)
     assert text is None
     assert diagnostic.code == "G501"
     assert diagnostic.place.line == 1
 
 
 def test_linuxcnc_refuses_a_tool_that_hangs():
-    text, (diagnostic,) = write(program(np.zeros((2, 3)), [[0, 0, 1.0], [0, 0, -1.0]]), Form.LINUXCNC)
+    text, (diagnostic,) = write(program(np.zeros((2, 3)), [[0, 0, 1.0], [0, 0, -1.0]]), GcodeDialect.LINUXCNC)
     assert text is None
     assert diagnostic.code == "G502"
     assert diagnostic.place.line == 2
 
 
-@pytest.mark.parametrize("form", [Form.AC, Form.BC])
+@pytest.mark.parametrize("form", [GcodeDialect.AC, GcodeDialect.BC])
 def test_c_rests_when_the_tool_swings_through_the_pole(form):
     tilt = np.radians(np.arange(-20.0, 21.0, 5.0))
     axis = np.column_stack([0.6 * np.sin(tilt), 0.8 * np.sin(tilt), np.cos(tilt)])
-    angles = FORMS[form].values(axis, np.zeros(len(axis)))
+    angles = NOTATIONS[form].values(axis, np.zeros(len(axis)))
     steps = np.diff(angles, axis=0)
     np.testing.assert_allclose(steps, np.tile(steps[0], (8, 1)), atol=1e-9)
     np.testing.assert_allclose(np.abs(steps[0]), [5.0, 0.0], atol=1e-9)
@@ -233,7 +239,7 @@ def test_c_rests_when_the_tool_swings_through_the_pole(form):
 
 def test_c_turns_on_over_several_turns():
     axis = cone(400, turns=3.0).tool_axis
-    c = FORMS[Form.BC].values(axis, np.zeros(len(axis)))[:, 1]
+    c = NOTATIONS[GcodeDialect.BC].values(axis, np.zeros(len(axis)))[:, 1]
     assert c[-1] - c[0] == pytest.approx(3 * 360)
     assert np.diff(c).max() < 3.0
 
@@ -242,12 +248,14 @@ def test_c_turns_while_the_tool_stands_upright():
     tilt = np.radians([10, 0, 0, 0, 10])
     azimuth = np.radians([0, 0, 0, 0, 60])
     axis = np.column_stack([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
-    np.testing.assert_allclose(FORMS[Form.BC].values(axis, np.zeros(len(axis)))[:, 1], [0, 0, 60, 60, 60], atol=1e-9)
+    np.testing.assert_allclose(
+        NOTATIONS[GcodeDialect.BC].values(axis, np.zeros(len(axis)))[:, 1], [0, 0, 60, 60, 60], atol=1e-9
+    )
 
 
 def test_angles_of_linuxcnc_have_no_torsion():
     axis = random_job(np.random.default_rng(4)).tool_axis
-    a, b, c = np.radians(FORMS[Form.LINUXCNC].values(axis, np.zeros(len(axis)))).T
+    a, b, c = np.radians(NOTATIONS[GcodeDialect.LINUXCNC].values(axis, np.zeros(len(axis)))).T
     zero, one = np.zeros_like(a), np.ones_like(a)
 
     def rows(*entries):
@@ -261,25 +269,27 @@ def test_angles_of_linuxcnc_have_no_torsion():
 
 def test_every_word_is_said_again_after_a_tool_change():
     given = program(np.ones((4, 3)), events=(Event(0, EventKind.TOOL_CHANGE, 1), Event(2, EventKind.TOOL_CHANGE, 1)))
-    text, _ = write(given, Form.BC)
+    text, _ = write(given, GcodeDialect.BC)
     assert text.splitlines()[-2:] == ["X1.0000", "M2"]
     assert text.splitlines()[-3] == "G1 X1.0000 Y1.0000 Z1.0000 B0.000000 C0.000000 F1800.000"
 
 
 def test_a_program_without_rows_is_a_heading_and_an_end():
-    text, diagnostics = write(program(np.zeros((0, 3)), kind=[], axis=np.zeros((0, 3)), events=()), Form.VECTOR)
+    text, diagnostics = write(program(np.zeros((0, 3)), kind=[], axis=np.zeros((0, 3)), events=()), GcodeDialect.VECTOR)
     assert diagnostics == ()
     assert text.splitlines()[-3:] == ["G21 G17 G90 G94 G40 G49 G80 G64", "G43.5", "M2"]
 
 
 def test_normals_that_are_left_out_are_told():
     given = square_with_arc()
-    _, diagnostics = write(replace(given, normal=np.tile([0, 0, 1.0], (7, 1))), Form.PLAIN)
+    _, diagnostics = write(replace(given, normal=np.tile([0, 0, 1.0], (7, 1))), GcodeDialect.PLAIN)
     assert [one.code for one in diagnostics] == ["G504"]
 
 
 def test_comments_hold_no_parentheses_and_one_line():
-    text, _ = write(replace(square_with_arc(), operations=("Tasche (tief)\nM3 100 %",), source="x" * 300), Form.PLAIN)
+    text, _ = write(
+        replace(square_with_arc(), operations=("Tasche (tief)\nM3 100 %",), source="x" * 300), GcodeDialect.PLAIN
+    )
     assert max(map(len, text.splitlines())) < 255
     assert "(operation: Tasche [tief] M3 100 %)" in text.splitlines()
 
@@ -290,45 +300,45 @@ def test_a_value_that_is_no_number_is_the_callers_fault(column):
     values = getattr(given, column).copy()
     values[-1] = np.nan
     with pytest.raises(ValueError, match=column):
-        write(replace(given, **{column: values}), Form.PLAIN)
+        write(replace(given, **{column: values}), GcodeDialect.PLAIN)
 
 
 def leaning(tilt, azimuth):
     return np.column_stack([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
 
 
-@pytest.mark.parametrize("form", [Form.AC, Form.BC])
+@pytest.mark.parametrize("form", [GcodeDialect.AC, GcodeDialect.BC])
 @pytest.mark.parametrize(("tilt", "turn"), [(5.0, 3.0), (20.0, 10.0), (40.0, 60.0)])
 def test_a_head_that_turns_c_alone_swings_past_the_great_circle(form, tilt, turn):
     tilt, turn = np.radians(tilt), np.radians(turn)
     # Halfway C keeps the tilt t; the great circle is at atan(tan t cos(turn / 2)) there: a right spherical triangle.
     expected = tilt - np.arctan(np.tan(tilt) * np.cos(turn / 2))
-    swing = swings(leaning(np.array([tilt, tilt]), np.array([0.3, 0.3 + turn])), np.zeros(2), form)
+    swing = axis_deviation(leaning(np.array([tilt, tilt]), np.array([0.3, 0.3 + turn])), np.zeros(2), form)
     np.testing.assert_allclose(swing, [0.0, expected], rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("form", Form)
+@pytest.mark.parametrize("form", GcodeDialect)
 def test_a_head_that_tilts_alone_stays_on_the_great_circle(form):
     axis = leaning(np.radians([0.0, 10.0, 30.0]), np.zeros(3))
-    np.testing.assert_allclose(swings(axis, np.zeros(len(axis)), form), 0.0, atol=1e-12)
+    np.testing.assert_allclose(axis_deviation(axis, np.zeros(len(axis)), form), 0.0, atol=1e-12)
 
 
 def test_swings_of_cutting_moves_are_told():
     axis = leaning(np.radians(np.full(4, 20.0)), np.radians([0.0, 1.0, 31.0, 61.0]))
     given = program(np.zeros((4, 3)), axis, kind=[Kind.RAPID, Kind.LINE, Kind.LINE, Kind.RAPID])
-    (told,) = write(given, Form.BC)[1]
+    (told,) = write(given, GcodeDialect.BC)[1]
     assert (told.code, told.place.line) == ("G505", 3)
-    swing = swings(axis, np.zeros(4), Form.BC)
+    swing = axis_deviation(axis, np.zeros(4), GcodeDialect.BC)
     assert told.found == f"by up to {np.degrees(swing[2]):.2f} deg in 1 cutting moves, this is the first"
-    assert swing[1] < SWING < swing[2]
-    assert write(given, Form.VECTOR)[1] == ()
+    assert swing[1] < MAX_AXIS_DEVIATION < swing[2]
+    assert write(given, GcodeDialect.VECTOR)[1] == ()
 
 
 @pytest.mark.parametrize(
     ("feed", "inch", "written"), [(0.0004, False, None), (0.0006, False, "F0.001"), (0.01, True, None)]
 )
 def test_a_feed_is_never_written_as_zero(feed, inch, written):
-    text, diagnostics = write(program(np.eye(3), feed=feed / 60), Form.PLAIN, inch=inch)
+    text, diagnostics = write(program(np.eye(3), feed=feed / 60), GcodeDialect.PLAIN, inch=inch)
     assert (text is None) == (written is None)
     if text is None:
         assert [(one.code, one.place.line) for one in diagnostics] == [("G506", 2)]
@@ -343,10 +353,10 @@ def test_the_spin_of_a_hexapod_is_written_and_read():
     options = ReadOptions(axis_words="RPY", default_tool=Tool(1, "", 10.0, 0.0, 50.0))
     first, _ = read("G21 G90\nG0 X0 Y0 Z0\n" + "\n".join(blocks) + "\nM2\n", "a.ngc", options)
     assert np.ptp(first.spin) > 0.5
-    text, _ = write(first, Form.LINUXCNC, decimals=6)
+    text, _ = write(first, GcodeDialect.LINUXCNC, decimals=6)
     again, _ = read(text, "b.ngc", options)
     np.testing.assert_allclose(again.spin, first.spin, atol=1e-6)
-    for form in (Form.VECTOR, Form.AC):
+    for form in (GcodeDialect.VECTOR, GcodeDialect.AC):
         text, _ = write(first, form)
-        words = "vector" if form is Form.VECTOR else "AC"
+        words = "vector" if form is GcodeDialect.VECTOR else "AC"
         assert np.isnan(read(text, "c.ngc", dataclasses.replace(options, axis_words=words))[0].spin).all()

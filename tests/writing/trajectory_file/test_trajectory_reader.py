@@ -319,7 +319,7 @@ MUTATIONS = 2500
 
 @pytest.mark.parametrize(("damage", "seal"), DAMAGES)
 def test_thousands_of_damaged_files_of_each_sort_are_told_or_sound(path, sound, damage, seal):
-    """All in all 15,000: without the right checksums none is taken, and with them only what keeps every promise."""
+    """All in all 15,000: without the right checksums none is taken, and with them only what violates no invariant."""
     rng = np.random.default_rng(DAMAGES.index((damage, seal)))
     outcomes = []
     for turn in range(MUTATIONS):

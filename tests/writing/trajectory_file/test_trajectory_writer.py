@@ -91,7 +91,7 @@ BAD_SEGMENTS = [
 
 
 @pytest.mark.parametrize(("column", "value", "found"), BAD_SEGMENTS)
-def test_a_trajectory_that_breaks_a_promise_is_not_written(tmp_path, column, value, found):
+def test_a_trajectory_that_violates_an_invariant_is_not_written(tmp_path, column, value, found):
     with pytest.raises(ValueError, match=f"segment 7: the {found}"):
         write(with_row(random_trajectory(6), column, 7, value), tmp_path / "part.pkmt")
     assert list(tmp_path.iterdir()) == []

@@ -12,7 +12,7 @@ import numpy as np
 
 from pkm_post.model import Array, Diagnostic, EventKind, Place, StrutMotion
 from pkm_post.writing.controllers.pmac.settings import PmacSettings
-from pkm_post.writing.controllers.pvt.writer import rests
+from pkm_post.writing.controllers.pvt.writer import rest_knots
 
 WORDS_PER_KNOT = 12
 """Six lengths and six speeds."""
@@ -60,7 +60,7 @@ def memory_faults(motion: StrutMotion, settings: PmacSettings, file: str) -> tup
     _, stuck = _cuts(motion, settings)
     if stuck is None:
         return ()
-    resting = rests(motion, settings)
+    resting = rest_knots(motion, settings)
     end = int(resting[resting > stuck].min(initial=len(motion) - 1))
     words = WORDS_OF_FRAME + int(_words_by_knot(motion)[stuck : end + 1].sum())
     found = (
@@ -76,7 +76,7 @@ def _cuts(motion: StrutMotion, settings: PmacSettings) -> tuple[tuple[int, ...],
     if own.sum() <= _room(settings, 0):
         return (), None
     behind = np.cumsum(own)
-    resting, merit = rests(motion, settings), _merit(motion)
+    resting, merit = rest_knots(motion, settings), _merit(motion)
     cuts: list[int] = []
     first, last = 0, len(motion) - 1
     while behind[last] - behind[first] + own[first] > (room := _room(settings, first)):

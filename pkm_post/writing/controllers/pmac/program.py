@@ -15,14 +15,14 @@ from pkm_post.writing.controllers.pmac.settings import PmacSettings
 from pkm_post.writing.controllers.pvt import parts, writer
 from pkm_post.writing.controllers.pvt.decimals import plain
 from pkm_post.writing.controllers.pvt.settings import APPROACH_RAMP_MS
-from pkm_post.writing.controllers.pvt.writer import Words
+from pkm_post.writing.controllers.pvt.writer import Keywords
 
-WORDS = Words(comment=";", linear="LINEAR", dwell="DWELL", interval="PVT", close="CLOSE")
+KEYWORDS = Keywords(comment=";", linear="LINEAR", dwell="DWELL", interval="PVT", close="CLOSE")
 
 
 def program_text(motion: StrutMotion, settings: PmacSettings, heading: Sequence[str]) -> str:
     """Write a motion as one motion program; as ``pvt.writer.program_text``."""
-    return writer.program_text(motion, settings, WORDS, _opening(settings), heading)
+    return writer.program_text(motion, settings, KEYWORDS, _opening(settings), heading)
 
 
 def program_parts(motion: StrutMotion, settings: PmacSettings, heading: Sequence[str]) -> tuple[str, ...]:
@@ -36,7 +36,7 @@ def program_parts(motion: StrutMotion, settings: PmacSettings, heading: Sequence
     Raises:
         ValueError: the motion cannot be written, or no rest is near enough; ``memory_faults`` reports this beforehand.
     """
-    motions = parts.parted(motion, memory_cuts(motion, settings))
+    motions = parts.split_motion(motion, memory_cuts(motion, settings))
     headings = parts.headings(heading, len(motions))
     return tuple(program_text(part, settings, lines) for part, lines in zip(motions, headings, strict=True))
 

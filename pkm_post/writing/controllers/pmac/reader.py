@@ -13,7 +13,15 @@ from pkm_post.model import Diagnostic, StrutMotion
 from pkm_post.writing.controllers.pmac.settings import PmacSettings
 from pkm_post.writing.controllers.pvt import reader
 from pkm_post.writing.controllers.pvt.settings import APPROACH_RAMP_MS
-from pkm_post.writing.controllers.pvt.syntax import FLOW_FROM_MODES, PRINTABLE, START, Flow, Grammar, body_forms, form
+from pkm_post.writing.controllers.pvt.syntax import (
+    FLOW_FROM_MODES,
+    PRINTABLE,
+    START,
+    Flow,
+    Grammar,
+    body_forms,
+    line_form,
+)
 
 _FLOW: Flow = {
     START: {"comment": START, "close": "closed"},
@@ -27,10 +35,10 @@ _FLOW: Flow = {
 def _grammar(settings: PmacSettings) -> Grammar:
     """The grammar of the programs of a Turbo PMAC."""
     forms = {
-        "comment": form("a comment", ";", PRINTABLE),
-        "delete": form("DELETE GATHER", "DELETE GATHER"),
-        "open": form(f"OPEN PROG {settings.program}", "OPEN PROG ", str(settings.program)),
-        "clear": form("CLEAR", "CLEAR"),
+        "comment": line_form("a comment", ";", PRINTABLE),
+        "delete": line_form("DELETE GATHER", "DELETE GATHER"),
+        "open": line_form(f"OPEN PROG {settings.program}", "OPEN PROG ", str(settings.program)),
+        "clear": line_form("CLEAR", "CLEAR"),
         **body_forms(settings, str.upper),
     }
     return Grammar(forms, _FLOW, (APPROACH_RAMP_MS, 0, settings.approach_speed))

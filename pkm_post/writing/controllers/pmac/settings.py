@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Settings: wiring and communication of one machine's Turbo PMAC.
+"""Settings: wiring and communication of one machine's Turbo PMAC, and the set-up file made of them.
 
-Enters: the ``[controller]`` table of the machine file. Leaves: settings with the memory of the controller.
+Enters: the ``[controller]`` table of the machine file, and the stroke of the struts in mm. Leaves: settings with the
+memory of the controller; and ASCII text of on-line commands that make axis values true strut lengths. The controls
+engineer loads them once; they are separate from the programs, as a part program must not redefine the machine.
+Positions are in encoder counts from motor zero.
 """
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ from pkm_post.writing.controllers.pvt.writer import comment_lines
 
 
 @dataclass(frozen=True, kw_only=True)
-class PmacSettings(pvt.Settings):
+class PmacSettings(pvt.PvtSettings):
     """Settings of the Turbo PMAC of one machine; it stores about 10 significant digits of a number.
 
     Attributes:

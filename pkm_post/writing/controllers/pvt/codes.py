@@ -19,7 +19,7 @@ from pkm_post.writing.controllers.pvt.decimals import exact, plain
 
 
 @dataclass(frozen=True)
-class Meaning:
+class EventCode:
     """The effect of the code with one name.
 
     Attributes:
@@ -34,20 +34,20 @@ class Meaning:
 
     def covers(self, event: Event) -> bool:
         """Whether this is the code of ``event``."""
-        fits = event.value * self.sign >= 0 if self.value is None else event.value == self.value
-        return self.kind == event.kind and fits
+        has_value = event.value * self.sign >= 0 if self.value is None else event.value == self.value
+        return self.kind == event.kind and has_value
 
 
-MEANINGS: dict[str, Meaning] = {
-    "tool_change": Meaning(EventKind.TOOL_CHANGE),
-    "spindle_stop": Meaning(EventKind.SPINDLE, 0.0),
-    "spindle_clockwise": Meaning(EventKind.SPINDLE),
-    "spindle_counterclockwise": Meaning(EventKind.SPINDLE, sign=-1),
-    "coolant_off": Meaning(EventKind.COOLANT, 0.0),
-    "coolant_flood": Meaning(EventKind.COOLANT, 1.0),
-    "coolant_mist": Meaning(EventKind.COOLANT, 2.0),
-    "stop": Meaning(EventKind.STOP, 0.0),
-    "optional_stop": Meaning(EventKind.STOP, 1.0),
+EVENT_CODES: dict[str, EventCode] = {
+    "tool_change": EventCode(EventKind.TOOL_CHANGE),
+    "spindle_stop": EventCode(EventKind.SPINDLE, 0.0),
+    "spindle_clockwise": EventCode(EventKind.SPINDLE),
+    "spindle_counterclockwise": EventCode(EventKind.SPINDLE, sign=-1),
+    "coolant_off": EventCode(EventKind.COOLANT, 0.0),
+    "coolant_flood": EventCode(EventKind.COOLANT, 1.0),
+    "coolant_mist": EventCode(EventKind.COOLANT, 2.0),
+    "stop": EventCode(EventKind.STOP, 0.0),
+    "optional_stop": EventCode(EventKind.STOP, 1.0),
 }
 """The first entry that covers an event is its code: spindle stop comes before the two directions. The reader has
 its own definition of what each code does (``syntax.EFFECTS``)."""
@@ -76,19 +76,19 @@ def check_codes(codes: Mapping[str, str], letters: Sequence[str]) -> None:
     """Check that a table of codes is complete, well formed and invertible, and moves no strut.
 
     Args:
-        codes: text for each name of ``MEANINGS``, with one field if it states the value of the event.
+        codes: text for each name of ``EVENT_CODES``, with one field if it states the value of the event.
         letters: letters of the axes.
 
     Raises:
         ValueError: a name is missing or unknown, a text is malformed, changes modes or moves an axis, or some text
             would stand for two events.
     """
-    if set(codes) != set(MEANINGS):
-        raise ValueError(f"codes: expected the names {', '.join(MEANINGS)}, got {', '.join(codes)}")
+    if set(codes) != set(EVENT_CODES):
+        raise ValueError(f"codes: expected the names {', '.join(EVENT_CODES)}, got {', '.join(codes)}")
     for name, template in codes.items():
         form, expected = (
             (_VALUE_CODE, "text with one {value}, {value:d} or {value:.3f}, apart from other digits")
-            if MEANINGS[name].value is None
+            if EVENT_CODES[name].value is None
             else (_FIXED_CODE, "text without ';' and braces")
         )
         reserved = template.upper().startswith(_RESERVED) or any(mark in template for mark in _COMMENTS)
@@ -96,7 +96,7 @@ def check_codes(codes: Mapping[str, str], letters: Sequence[str]) -> None:
             besides = f"no comment, not beginning with {', '.join(_RESERVED)} or a space"
             raise ValueError(f"codes.{name}: expected {expected}, {besides}, got {template!r}")
         _check_synchronous(name, template)
-        _check_stands(name, template, letters)
+        _check_no_motion(name, template, letters)
     _check_invertible(codes)
 
 
@@ -106,7 +106,7 @@ def _check_synchronous(name: str, template: str) -> None:
         raise ValueError(f"codes.{name}: expected DWELL0 behind a synchronous assignment, got {template!r}")
 
 
-def _check_stands(name: str, template: str, letters: Sequence[str]) -> None:
+def _check_no_motion(name: str, template: str, letters: Sequence[str]) -> None:
     """Refuse codes with moves and modes: the certificate only knows those of the program itself."""
     moves = re.compile(rf"(?<![A-Z])({'|'.join(map(re.escape, letters))})\s*[-+.(0-9{{]", re.IGNORECASE)
     found = _MODES.search(template) or moves.search(template)
@@ -140,7 +140,7 @@ def _number_text(template: str, value: float) -> str:
     return plain(value) if form is None else format(int(value) if form == "d" else value, form)
 
 
-def unwritable(event: Event, codes: Mapping[str, str]) -> str:
+def reason_unwritable(event: Event, codes: Mapping[str, str]) -> str:
     """The reason why ``event`` has no code, in words; empty if it has one."""
     if event.kind == EventKind.DWELL:
         return "" if 0 <= event.value <= LONGEST_DWELL else f"a dwell lasts 0 to {LONGEST_DWELL} s"
@@ -162,7 +162,7 @@ def code_text(event: Event, codes: Mapping[str, str], dwell: str = "DWELL") -> s
     Raises:
         ValueError: the event has no code; ``event_faults`` reports this beforehand.
     """
-    reason = unwritable(event, codes)
+    reason = reason_unwritable(event, codes)
     if reason:
         raise ValueError(f"event: expected one with a code, got {event}: {reason}")
     if event.kind == EventKind.DWELL:
@@ -179,7 +179,7 @@ def event_faults(motion: StrutMotion, codes: Mapping[str, str], file: str) -> tu
         codes: the machine's table of codes.
         file: name of the job, for the diagnostics.
     """
-    reasons = ((event, unwritable(event, codes)) for event in motion.events)
+    reasons = ((event, reason_unwritable(event, codes)) for event in motion.events)
     return tuple(
         Diagnostic("C104", Place(file), f"{event.kind.name.lower()} {event.value:.12g}: {reason}")
         for event, reason in reasons
@@ -188,4 +188,4 @@ def event_faults(motion: StrutMotion, codes: Mapping[str, str], file: str) -> tu
 
 
 def _name(event: Event) -> str:
-    return next((name for name, meaning in MEANINGS.items() if meaning.covers(event)), "")
+    return next((name for name, meaning in EVENT_CODES.items() if meaning.covers(event)), "")

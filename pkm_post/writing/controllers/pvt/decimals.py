@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Decimals: numbers in the form that the controller reads.
+"""Decimals: numbers as text in the form that the controller reads.
 
 The controller reads plain decimals: digits, and a point with digits on both sides of it. It has no exponent form.
-Enters: a number of any unit. Leaves: the shortest such decimal that reads back as the same number.
+Enters: a number of any unit. Leaves: the shortest such decimal that reads back as the same number. Or many numbers and
+their count of decimals: characters as columns of bytes, without a Python object per number. These are rounded to
+integers in units of the last decimal; each division by ten gives one column of digits. Numbers beyond the exact range
+of doubles are printed by Python.
 """
 
 from __future__ import annotations
@@ -40,12 +43,12 @@ _EXACT = 2**52
 """In units of the last decimal; below it the nearest double errs by less than half a unit and prints exactly."""
 
 
-def rounded(values: Array, decimals: int) -> Array:
+def round_values(values: Array, decimals: int) -> Array:
     """The numbers as printed; adding zero turns -0.0 into 0.0."""
     return np.round(values, decimals) + 0.0
 
 
-def printed(values: Array, decimals: int) -> Array:
+def print_columns(values: Array, decimals: int) -> Array:
     """Print rounded numbers, zero without a sign.
 
     Args:
@@ -59,7 +62,7 @@ def printed(values: Array, decimals: int) -> Array:
     most = np.abs(scaled).max()
     if most < _EXACT:
         return _columns(scaled, int(most), decimals)
-    texts = [f"{value:.{decimals}f}".encode("ascii") for value in rounded(values, decimals).ravel().tolist()]
+    texts = [f"{value:.{decimals}f}".encode("ascii") for value in round_values(values, decimals).ravel().tolist()]
     return np.array(texts)[:, None].view(np.uint8).reshape(*values.shape, -1)
 
 

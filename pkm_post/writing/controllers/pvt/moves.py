@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.model import Array
 from pkm_post.system import DecimalReader
-from pkm_post.writing.controllers.pvt.syntax import Form
+from pkm_post.writing.controllers.pvt.syntax import LineForm
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,8 @@ class Lines:
     values: Array
     interval: Array
 
-    def stretches(self) -> Iterator[tuple[int, int]]:
-        """Each line to be read individually, and the end of the stretch of moves and intervals after it.
+    def runs(self) -> Iterator[tuple[int, int]]:
+        """Each line to be read individually, and the end of the run of moves and intervals after it.
 
         The first line of moves is also read individually, so that its place in the program is checked.
         """
@@ -54,11 +54,11 @@ class Lines:
             end: the line after the range.
             interval: interval in force before the first line, ms.
         """
-        is_move, told = self.is_move[first:end], self.interval[first:end].copy()
-        told[0] = told[0] or interval
-        since = np.maximum.accumulate(np.where(told > 0, np.arange(len(told)), 0))
+        is_move, stated = self.is_move[first:end], self.interval[first:end].copy()
+        stated[0] = stated[0] or interval
+        since = np.maximum.accumulate(np.where(stated > 0, np.arange(len(stated)), 0))
         begin = np.count_nonzero(self.is_move[:first])
-        return self.values[begin : begin + np.count_nonzero(is_move)], told[since][is_move]
+        return self.values[begin : begin + np.count_nonzero(is_move)], stated[since][is_move]
 
     def lengths(self) -> Array:
         """The number of characters of each line without its line end, (L,)."""
@@ -67,7 +67,7 @@ class Lines:
         return lengths
 
 
-def lines_of(text: bytes, move: Form, interval: Form, longest: int) -> Lines:
+def lines_of(text: bytes, move: LineForm, interval: LineForm, longest: int) -> Lines:
     """Find lines of moves and intervals.
 
     Args:
@@ -80,9 +80,9 @@ def lines_of(text: bytes, move: Form, interval: Form, longest: int) -> Lines:
     rows, values = marks.moves(move)
     is_move = np.zeros(len(marks.edges) - 1, dtype=bool)
     is_move[rows] = True
-    interval_rows, told = marks.intervals(interval, longest)
+    interval_rows, interval_values = marks.intervals(interval, longest)
     intervals = np.zeros(len(is_move), dtype=np.int64)
-    intervals[interval_rows] = told
+    intervals[interval_rows] = interval_values
     return Lines(marks.edges, marks.complete, is_move, values, intervals)
 
 
@@ -103,24 +103,24 @@ class _Marks:
         self.edges = begins if begins[-1] == len(text) else np.append(begins, len(text))
         self._reader = DecimalReader(text)
 
-    def moves(self, form: Form) -> tuple[Array, Array]:
+    def moves(self, form: LineForm) -> tuple[Array, Array]:
         """Rows of lines of moves, (M,), and their lengths and speeds, (M, 6, 2)."""
         rows, places = self._alike(form.with_numbers("."))
         letters, lengths, colons, speeds, ends = np.moveaxis(places.reshape(-1, 6, 5), 2, 0)
-        values, fits = self._reader.decimals(
+        values, valid = self._reader.decimals(
             np.stack([letters, colons], axis=2), np.stack([lengths, speeds], axis=2), np.stack([colons, ends], axis=2)
         )
         begins = np.column_stack([self.edges[rows], ends[:, :-1] + 1])
-        right = fits.all(axis=(1, 2)) & (letters == begins).all(axis=1)
-        return rows[right], values[right]
+        valid_rows = valid.all(axis=(1, 2)) & (letters == begins).all(axis=1)
+        return rows[valid_rows], values[valid_rows]
 
-    def intervals(self, form: Form, longest: int) -> tuple[Array, Array]:
+    def intervals(self, form: LineForm, longest: int) -> tuple[Array, Array]:
         """Rows of lines of intervals, (M,), and the intervals in ms, (M,)."""
         rows, places = self._alike(form.with_numbers(""))
-        value, fits = self._reader.whole_numbers(places[:, -2], places[:, -1])
+        value, valid = self._reader.whole_numbers(places[:, -2], places[:, -1])
         in_one_piece = places[:, -2] - self.edges[rows] == places.shape[1] - 2
-        right = fits & in_one_piece & (value >= 1) & (value <= longest)
-        return rows[right], value[right]
+        valid_rows = valid & in_one_piece & (value >= 1) & (value <= longest)
+        return rows[valid_rows], value[valid_rows]
 
     def _alike(self, line: str) -> tuple[Array, Array]:
         """Rows of the complete lines with the same marks as a line, (M,), and the places of these, (M, marks)."""

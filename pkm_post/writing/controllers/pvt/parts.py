@@ -20,7 +20,7 @@ _STATED = re.compile(r"(?:(?:;|//).*\n)*?(?:;|//) part ([1-9][0-9]{0,3}) of ([1-
 """Matches in the comment on top only, as a program may be long; four digits limit the number of stated parts."""
 
 
-def parted(motion: StrutMotion, cuts: Sequence[int]) -> tuple[StrutMotion, ...]:
+def split_motion(motion: StrutMotion, cuts: Sequence[int]) -> tuple[StrutMotion, ...]:
     """The parts of a motion.
 
     Args:
@@ -70,7 +70,9 @@ def part_faults(texts: Sequence[tuple[str, str]]) -> tuple[Diagnostic, ...]:
     )
 
 
-def joined(motions: Sequence[StrutMotion], files: Sequence[str]) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
+def join_motions(
+    motions: Sequence[StrutMotion], files: Sequence[str]
+) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
     """Join the motions of the parts, if each begins where the previous one ended, at rest.
 
     Args:
@@ -79,7 +81,7 @@ def joined(motions: Sequence[StrutMotion], files: Sequence[str]) -> tuple[StrutM
     """
     if len(motions) == 1:
         return motions[0], ()
-    faults = tuple(_meeting_faults(motions, files))
+    faults = tuple(_joint_faults(motions, files))
     if faults:
         return None, faults
     shift = np.cumsum([0, *(len(motion) - 1 for motion in motions)])
@@ -97,7 +99,7 @@ def joined(motions: Sequence[StrutMotion], files: Sequence[str]) -> tuple[StrutM
     ), ()
 
 
-def _meeting_faults(motions: Sequence[StrutMotion], files: Sequence[str]) -> Iterator[Diagnostic]:
+def _joint_faults(motions: Sequence[StrutMotion], files: Sequence[str]) -> Iterator[Diagnostic]:
     for before, after, file in zip(motions[:-1], motions[1:], files[1:], strict=True):
         if before.speed[-1].any():
             yield Diagnostic("C105", Place(file), "the part before it does not end at rest")

@@ -15,8 +15,8 @@ import numpy as np
 
 from pkm_post.model import Array, Diagnostic, Event, EventKind, Place, StrutMotion, read_only
 from pkm_post.writing.controllers.pvt.moves import Lines, lines_of
-from pkm_post.writing.controllers.pvt.parts import joined, part_faults
-from pkm_post.writing.controllers.pvt.settings import Settings
+from pkm_post.writing.controllers.pvt.parts import join_motions, part_faults
+from pkm_post.writing.controllers.pvt.settings import PvtSettings
 from pkm_post.writing.controllers.pvt.syntax import EFFECTS, FINISHED, START, Grammar, effect, state_after
 
 MOST_FAULTS = 20
@@ -57,7 +57,7 @@ class Reading:
 
     def take(self, number: int, text: str, lines: Lines) -> None:
         """Process the lines of a text, starting at line ``number``."""
-        for row, end in lines.stretches():
+        for row, end in lines.runs():
             if len(self.faults) >= MOST_FAULTS:
                 break
             self._line(number + row, text[lines.edges[row] : lines.edges[row + 1]].removesuffix("\n"))
@@ -99,7 +99,7 @@ class Reading:
     def _form_of(self, line: str) -> tuple[str, Sequence[str] | None]:
         """The form of a line, preferably an expected one, and its numbers; empty if it has no known form."""
         for name in (*self._due[self._state], *self.forms):
-            match = self.forms[name].fits(line)
+            match = self.forms[name].match(line)
             if match:
                 return name, match.groups()
         return "", None
@@ -181,7 +181,7 @@ _CHUNK = 1 << 20
 
 
 def read_parts(
-    texts: Sequence[tuple[str, str]], grammar: Grammar, settings: Settings
+    texts: Sequence[tuple[str, str]], grammar: Grammar, settings: PvtSettings
 ) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
     """Read a motion program in one or several parts.
 
@@ -199,11 +199,11 @@ def read_parts(
         motion, found = read_program(text, grammar, settings, file)
         motions += [motion] if motion is not None else []
         faults += found
-    return (None, faults) if faults else joined(motions, [file for file, _ in texts])
+    return (None, faults) if faults else join_motions(motions, [file for file, _ in texts])
 
 
 def read_program(
-    text: str, grammar: Grammar, settings: Settings, file: str
+    text: str, grammar: Grammar, settings: PvtSettings, file: str
 ) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
     """Read a motion program, or one part of it.
 
@@ -240,7 +240,7 @@ def _chunks(text: str) -> Iterator[str]:
         start = end
 
 
-def _too_long(number: int, lines: Lines, settings: Settings, file: str) -> Iterator[Diagnostic]:
+def _too_long(number: int, lines: Lines, settings: PvtSettings, file: str) -> Iterator[Diagnostic]:
     lengths = lines.lengths()
     for row in np.flatnonzero(lengths > settings.line_limit)[:MOST_FAULTS].tolist():
         found = f"{lengths[row]} characters, the controller takes {settings.line_limit}"

@@ -4,7 +4,11 @@
 Enters: the ``[controller]`` table of a machine, whose entries the reader of machine files has checked one by one.
 Leaves: settings that the writer, the reader and the set-up file share as data. Checks here are those that the reader of
 machine files cannot make: the kind of controller, whether the codes are distinguishable, and a program number that no
-file states. Units: mm, mm/s, ms, encoder counts.
+file states. With them come the axis definitions of set-up files, which make axis values true strut lengths:
+
+    counts = counts_per_mm * (strut length - zero_length)
+
+These are exact decimals: binary rounding would add spurious digits. Units: mm, mm/s, ms, encoder counts.
 """
 
 from __future__ import annotations
@@ -26,7 +30,7 @@ _LAST_PROGRAM = 999
 
 
 @dataclass(frozen=True, kw_only=True)
-class Settings:
+class PvtSettings:
     """Settings of the controller of one machine; strut i is motor i and the axis of letter i.
 
     Attributes:
@@ -78,7 +82,7 @@ class Settings:
         return cls(**{item.name: controller[item.name] for item in fields(cls)})
 
 
-AnySettings = TypeVar("AnySettings", bound=Settings)
+AnySettings = TypeVar("AnySettings", bound=PvtSettings)
 
 
 def settings_of(form: type[AnySettings], machine: Machine) -> tuple[AnySettings | None, tuple[Diagnostic, ...]]:
@@ -109,7 +113,7 @@ def check_stroke(stroke: tuple[float, float]) -> None:
         raise ValueError(f"stroke: expected two finite lengths, the shorter first, got {stroke}")
 
 
-def axis_definitions(settings: Settings) -> list[str]:
+def axis_definitions(settings: PvtSettings) -> list[str]:
     """The axis definition of each motor: ``#motor->SCALE LETTER OFFSET``, without the spaces."""
     scale = exact(settings.counts_per_mm)
     offsets = [-scale * exact(length) for length in settings.zero_length]
@@ -119,7 +123,7 @@ def axis_definitions(settings: Settings) -> list[str]:
     ]
 
 
-def stroke_counts(settings: Settings, stroke: tuple[float, float]) -> list[tuple[Decimal, Decimal]]:
+def stroke_counts(settings: PvtSettings, stroke: tuple[float, float]) -> list[tuple[Decimal, Decimal]]:
     """The lowest and highest count of each strut."""
     scale = exact(settings.counts_per_mm)
     ends = [[scale * (exact(length) - exact(zero)) for length in stroke] for zero in settings.zero_length]

@@ -15,7 +15,7 @@ from itertools import chain
 
 from pkm_post.model import EventKind
 from pkm_post.writing.controllers.pvt.codes import FIELD
-from pkm_post.writing.controllers.pvt.settings import Settings
+from pkm_post.writing.controllers.pvt.settings import PvtSettings
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ END = Piece(r"\Z", "the end of the line")
 
 
 @dataclass(frozen=True)
-class Form:
+class LineForm:
     """The form of one kind of line.
 
     Attributes:
@@ -51,7 +51,7 @@ class Form:
     pieces: tuple[Piece, ...]
     pattern: re.Pattern[str]
 
-    def fits(self, line: str) -> re.Match[str] | None:
+    def match(self, line: str) -> re.Match[str] | None:
         """The match if the whole line has this form."""
         return self.pattern.fullmatch(line)
 
@@ -70,13 +70,13 @@ class Form:
         return position, ""
 
 
-def form(name: str, *parts: str | Piece) -> Form:
+def line_form(name: str, *parts: str | Piece) -> LineForm:
     """A form from literal text and pieces."""
     pieces = tuple(Piece(re.escape(part), repr(part), part) if isinstance(part, str) else part for part in parts)
-    return Form(name, pieces, re.compile("".join(piece.pattern for piece in pieces)))
+    return LineForm(name, pieces, re.compile("".join(piece.pattern for piece in pieces)))
 
 
-def body_forms(settings: Settings, spelt: Callable[[str], str]) -> dict[str, Form]:
+def body_forms(settings: PvtSettings, spelt: Callable[[str], str]) -> dict[str, LineForm]:
     """The forms of the lines common to all controllers of the family, by kind; codes of events by their names.
 
     Args:
@@ -88,29 +88,31 @@ def body_forms(settings: Settings, spelt: Callable[[str], str]) -> dict[str, For
     forms = {
         "close": _word(spelt("CLOSE")),
         "absolute": _word(spelt("ABS")),
-        "feed axes": form(spelt("FRAX"), spelt("FRAX") + "(", ",".join(settings.letters), ")"),
+        "feed axes": line_form(spelt("FRAX"), spelt("FRAX") + "(", ",".join(settings.letters), ")"),
         "linear": _word(spelt("LINEAR")),
-        "feed": form(f"{spelt('TA')}, {spelt('TS')} and F", spelt("TA"), WHOLE, spelt(" TS"), WHOLE, " F", DECIMAL),
-        "approach": form("six lengths", *list(chain.from_iterable(lengths))[:-1]),
+        "feed": line_form(
+            f"{spelt('TA')}, {spelt('TS')} and F", spelt("TA"), WHOLE, spelt(" TS"), WHOLE, " F", DECIMAL
+        ),
+        "approach": line_form("six lengths", *list(chain.from_iterable(lengths))[:-1]),
         "halt": _word(spelt("DWELL0")),
-        "interval": form(spelt("PVT"), spelt("PVT"), POSITIVE),
-        "move": form("six lengths with speeds", *list(chain.from_iterable(lengths_and_speeds))[:-1]),
-        "dwell": form(spelt("DWELL"), spelt("DWELL"), DECIMAL),
+        "interval": line_form(spelt("PVT"), spelt("PVT"), POSITIVE),
+        "move": line_form("six lengths with speeds", *list(chain.from_iterable(lengths_and_speeds))[:-1]),
+        "dwell": line_form(spelt("DWELL"), spelt("DWELL"), DECIMAL),
     }
     return forms | {name: _code_form(name, template) for name, template in settings.codes.items()}
 
 
-def _word(word: str) -> Form:
-    return form(word, word)
+def _word(word: str) -> LineForm:
+    return line_form(word, word)
 
 
-def _code_form(name: str, template: str) -> Form:
+def _code_form(name: str, template: str) -> LineForm:
     field = FIELD.search(template)
     if field is None:
-        return form(f"the code {name}", template)
+        return line_form(f"the code {name}", template)
     number = WHOLE if field["form"] == "d" else DECIMAL
     parts = (template[: field.start()], number, template[field.end() :])
-    return form(f"the code {name}", *(part for part in parts if part))
+    return line_form(f"the code {name}", *(part for part in parts if part))
 
 
 _Effect = tuple[EventKind, Callable[[float], float] | float]
@@ -189,6 +191,6 @@ class Grammar:
         feed: values in the line of the approach: ms of acceleration, ms of rounding, mm/s.
     """
 
-    forms: Mapping[str, Form]
+    forms: Mapping[str, LineForm]
     flow: Flow
     feed: tuple[float, float, float]

@@ -17,12 +17,12 @@ import numpy as np
 
 from pkm_post.model import Array, StrutMotion
 from pkm_post.writing.controllers.pvt.codes import code_text
-from pkm_post.writing.controllers.pvt.decimals import BLANK, printed, rounded
-from pkm_post.writing.controllers.pvt.settings import Settings
+from pkm_post.writing.controllers.pvt.decimals import BLANK, print_columns, round_values
+from pkm_post.writing.controllers.pvt.settings import PvtSettings
 
 
 @dataclass(frozen=True)
-class Words:
+class Keywords:
     """The command words of one controller.
 
     Attributes:
@@ -55,17 +55,19 @@ def comment_lines(text: str, line_limit: int, mark: str = ";") -> list[str]:
 
 LONGEST_INTERVAL_MS = 4095
 _ROWS_PER_CHUNK = 4096
-_END_OF_STRETCH = "\x1e"
+_END_OF_SECTION = "\x1e"
 """The ASCII record separator, which no program contains."""
 
 
-def program_text(motion: StrutMotion, settings: Settings, words: Words, opening: str, heading: Sequence[str]) -> str:
+def program_text(
+    motion: StrutMotion, settings: PvtSettings, keywords: Keywords, opening: str, heading: Sequence[str]
+) -> str:
     """Write a motion as a motion program.
 
     Args:
         motion: at rest at both ends and at every event; knots from 1 to 4095 ms apart, the first at 0.
         settings: settings of the controller.
-        words: words of the controller.
+        keywords: command words of the controller.
         opening: text between the comment on top and the lengths of knot 0.
         heading: lines of text for the comment on top.
 
@@ -74,39 +76,39 @@ def program_text(motion: StrutMotion, settings: Settings, words: Words, opening:
             or an event without code.
     """
     _check(motion, settings)
-    stretches = [_approach(motion, settings), *_stretches(motion, settings, words)]
-    body = chain.from_iterable(zip(stretches, _interruptions(motion, settings, words), strict=True))
-    comment = [f"{line}\n" for text in heading for line in comment_lines(text, settings.line_limit, words.comment)]
-    return "".join([*comment, opening, *body, f"{words.linear}\n{words.close}\n"])
+    sections = [_approach(motion, settings), *_sections(motion, settings, keywords)]
+    body = chain.from_iterable(zip(sections, _interruptions(motion, settings, keywords), strict=True))
+    comment = [f"{line}\n" for text in heading for line in comment_lines(text, settings.line_limit, keywords.comment)]
+    return "".join([*comment, opening, *body, f"{keywords.linear}\n{keywords.close}\n"])
 
 
-def rests(motion: StrutMotion, settings: Settings) -> Array:
+def rest_knots(motion: StrutMotion, settings: PvtSettings) -> Array:
     """The knots at which every printed speed is zero."""
-    return np.flatnonzero(~rounded(motion.speed, settings.speed_decimals).any(axis=1))
+    return np.flatnonzero(~round_values(motion.speed, settings.speed_decimals).any(axis=1))
 
 
-def _approach(motion: StrutMotion, settings: Settings) -> str:
+def _approach(motion: StrutMotion, settings: PvtSettings) -> str:
     """The line that moves to knot 0: lengths only."""
     decimals = settings.length_decimals
-    lengths = rounded(motion.length[0], decimals).tolist()
+    lengths = round_values(motion.length[0], decimals).tolist()
     return " ".join(f"{letter}{at:.{decimals}f}" for letter, at in zip(settings.letters, lengths, strict=True)) + "\n"
 
 
-def _stretches(motion: StrutMotion, settings: Settings, words: Words) -> list[str]:
+def _sections(motion: StrutMotion, settings: PvtSettings, keywords: Keywords) -> list[str]:
     """The lines of the other knots, with changed intervals: one text up to each knot where the motion rests."""
-    intervals = _interval_lines(motion, words.interval)
+    intervals = _interval_lines(motion, keywords.interval)
     ends = np.zeros(len(motion), dtype=np.uint8)
-    ends[_resting_knots(motion)] = ord(_END_OF_STRETCH)
-    stretches: list[list[str]] = [[]]
+    ends[_resting_knots(motion)] = ord(_END_OF_SECTION)
+    sections: list[list[str]] = [[]]
     for start in range(1, len(motion), _ROWS_PER_CHUNK):
         rows = slice(start, start + _ROWS_PER_CHUNK)
-        length = printed(motion.length[rows], settings.length_decimals)
-        speed = printed(motion.speed[rows], settings.speed_decimals)
+        length = print_columns(motion.length[rows], settings.length_decimals)
+        speed = print_columns(motion.speed[rows], settings.speed_decimals)
         lines = _lines(intervals[rows], settings.letters, length, speed, ends[rows])
-        first, *others = lines.tobytes().translate(None, BLANK).decode("ascii").split(_END_OF_STRETCH)
-        stretches[-1].append(first)
-        stretches += [[text] for text in others]
-    return ["".join(texts) for texts in stretches[:-1]]
+        first, *others = lines.tobytes().translate(None, BLANK).decode("ascii").split(_END_OF_SECTION)
+        sections[-1].append(first)
+        sections += [[text] for text in others]
+    return ["".join(texts) for texts in sections[:-1]]
 
 
 def _lines(intervals: Array, letters: Sequence[str], length: Array, speed: Array, ends: Array) -> Array:
@@ -133,14 +135,14 @@ def _resting_knots(motion: StrutMotion) -> list[int]:
     return sorted({0, len(motion) - 1} | {event.row for event in motion.events})
 
 
-def _interruptions(motion: StrutMotion, settings: Settings, words: Words) -> Iterable[str]:
+def _interruptions(motion: StrutMotion, settings: PvtSettings, keywords: Keywords) -> Iterable[str]:
     """The text after the line of each knot where the motion rests, in order.
 
     A dwell of 0 comes first: it stops the controller's look-ahead, which would execute the codes too early.
     """
-    text = dict.fromkeys(_resting_knots(motion), f"{words.dwell}0\n")
+    text = dict.fromkeys(_resting_knots(motion), f"{keywords.dwell}0\n")
     for event in motion.events:
-        text[event.row] += code_text(event, settings.codes, words.dwell) + "\n"
+        text[event.row] += code_text(event, settings.codes, keywords.dwell) + "\n"
     return text.values()
 
 
@@ -150,13 +152,13 @@ def _interval_lines(motion: StrutMotion, word: str) -> Array:
     It is needed when the interval changes, and after an interruption that ended PVT mode.
     """
     intervals = np.diff(motion.time_ms, prepend=0)
-    told = np.diff(intervals, prepend=0) != 0
-    told[[knot + 1 for knot in _resting_knots(motion)[:-1]]] = True
+    is_stated = np.diff(intervals, prepend=0) != 0
+    is_stated[[knot + 1 for knot in _resting_knots(motion)[:-1]]] = True
     lines = np.array([b"", *(f"{word}{ms}\n".encode("ascii") for ms in range(1, intervals.max() + 1))])
-    return lines[np.where(told, intervals, 0)]
+    return lines[np.where(is_stated, intervals, 0)]
 
 
-def _check(motion: StrutMotion, settings: Settings) -> None:
+def _check(motion: StrutMotion, settings: PvtSettings) -> None:
     if len(motion) == 0 or motion.time_ms[0] != 0:
         raise ValueError(f"motion: expected knots from 0 ms on, got {motion.time_ms[:1].tolist()}")
     intervals = np.diff(motion.time_ms)
@@ -172,7 +174,7 @@ def _check(motion: StrutMotion, settings: Settings) -> None:
     if rows != sorted(rows) or any(not 0 <= row < len(motion) for row in rows):
         raise ValueError(f"motion.events: expected rows in order from 0 to {len(motion) - 1}, got {rows}")
     knots = _resting_knots(motion)
-    moving = np.flatnonzero(rounded(motion.speed[knots], settings.speed_decimals).any(axis=1))
+    moving = np.flatnonzero(round_values(motion.speed[knots], settings.speed_decimals).any(axis=1))
     if len(moving):
         knot = knots[moving[0]]
         raise ValueError(f"motion.speed: expected rest at knot {knot}, got {motion.speed[knot].tolist()} mm/s")
