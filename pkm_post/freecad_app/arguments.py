@@ -42,8 +42,8 @@ POST_PROCESSORS: dict[str, str] = {
 _EXTRA_ARGUMENTS: dict[str, dict[str, dict[str, Any]]] = {
     GCODE: {
         "--form": {
-            "choices": tuple(form.value for form in Form),
-            "default": Form.VECTOR.value,
+            "choices": tuple(form.value for form in GcodeDialect),
+            "default": GcodeDialect.VECTOR.value,
             "help": "how the tool axis is written: I J K after G43.5, rotary words of a head after G43.4, A B C of"
             " LinuxCNC's hexapod, or not at all (default: %(default)s)",
         },

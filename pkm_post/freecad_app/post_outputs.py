@@ -86,7 +86,7 @@ def _gcode(job: Any, settings: JobSettings, path: FilePath) -> Written:
     job.Document.recompute()
     program, diagnostics = read_job(job, settings.tool_lengths, settings.selection)
     program, found = _require((program, (*settings.found, *diagnostics)))
-    return _require(write(program, Form(settings.arguments.form), inch=settings.arguments.inch), found)
+    return _require(write(program, GcodeDialect(settings.arguments.form), inch=settings.arguments.inch), found)
 
 
 OUTPUTS: dict[str, Callable[[Any, JobSettings, FilePath], Written]] = {

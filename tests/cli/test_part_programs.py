@@ -46,7 +46,7 @@ def test_a_converted_file_holds_the_same_motion(tmp_path, target):
 
 
 def test_nothing_is_written_when_the_form_cannot_say_the_program(tmp_path):
-    source = saved(tmp_path / "part.ngc", write(cone(9), Form.VECTOR)[0])
+    source = saved(tmp_path / "part.ngc", write(cone(9), GcodeDialect.VECTOR)[0])
     found = convert(source, "gcode:3axis", tmp_path / "out.nc", ReadingOptions("vector"))
     assert [one.code for one in errors(found)] == ["G501"]
     assert not (tmp_path / "out.nc").exists()

@@ -219,7 +219,7 @@ def remaining_job(job: Job, stop: ProgramStop, settings: PmacSettings) -> Job:
     """
     row = job.motion.events[stop.event].row
     rest = replace(job.motion, events=job.motion.events[stop.event + 1 :])
-    motion = parted(rest, [row])[-1] if row else rest
+    motion = split_motion(rest, [row])[-1] if row else rest
     return job_of(motion, replace(settings, program=job.program.number), f"after stop {stop.number}")
 
 
