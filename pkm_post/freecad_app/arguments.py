@@ -25,6 +25,7 @@ from pkm_post.options import (
     parse_text,
     text_parser,
 )
+from pkm_post.writing import GcodeDialect
 
 PMAC, TRAJECTORY, LINUXCNC, GCODE = "hexapod_pmac", "hexapod_trajectory", "hexapod_linuxcnc", "hexapod_gcode"
 

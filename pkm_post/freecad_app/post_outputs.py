@@ -24,7 +24,7 @@ from pkm_post.machine import check_reach, find_collisions
 from pkm_post.model import Diagnostic, Refused, Trajectory, errors
 from pkm_post.posting import effective_setup, step_names
 from pkm_post.system import staged, write_fault
-from pkm_post.writing import manifest, outputs, trajectory_file, write
+from pkm_post.writing import GcodeDialect, manifest, outputs, trajectory_file, write
 
 T = TypeVar("T")
 Findings = tuple[Diagnostic, ...]

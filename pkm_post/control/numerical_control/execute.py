@@ -23,7 +23,7 @@ from pkm_post.control.link.status import Array, Status, read_status
 from pkm_post.model import EventKind, Machine, StrutMotion
 from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.planning import LONGEST_MS
-from pkm_post.writing import PmacSettings, program_text
+from pkm_post.writing import PmacSettings, program_text, split_motion
 
 CREDIT_MS = 600
 """Time a program may run after a renewal: several readings over a serial line."""
