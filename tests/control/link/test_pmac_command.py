@@ -161,7 +161,8 @@ def test_one_client_has_the_machine_and_the_others_watch_and_stop(simulator, job
             assert pmac(order[0], port, *order[1:]) == 1
             told = capsys.readouterr().err
             if order[0] not in ("jog", "mdi"):  # they see first that the machine moves, and plan nothing
-                assert f"{name}: error C210: another client controls the machine: process 4711 of anna, jog" in told
+                owner = "process 4711 of anna, jog, since"
+                assert f"{name}: error C210: another client controls the machine: {owner}" in told
         monkeypatch.setattr("sys.stdin", io.StringIO("#1P\nP5=1\n&1H\n"))
         assert pmac("terminal", port, machine=None) == 1
         assert "error C210" in capsys.readouterr().out and made.variables.read("P", 5) == 0
