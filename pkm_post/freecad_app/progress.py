@@ -18,7 +18,7 @@ from FreeCAD import Base
 
 translate = App.Qt.translate
 
-_WATCH = "pkm_post.freecad_gui.escape_watch"
+_WATCH = "pkm_post.freecad_gui.observers"
 """The watch is in a higher layer: referenced by name, not imported."""
 
 

@@ -22,13 +22,13 @@ def open_cam_simulator(job: Any) -> bool:
     importlib.import_module("Path.GuiInit").Startup()  # registers the commands where CAM has not been opened yet
     FreeCAD.setActiveDocument(job.Document.Name)
     if FreeCADGui.Control.activeDialog():
-        told = translate("PKM_Simulate", "CAM's simulator needs the task panel: close what is open there first")
+        text = translate("PKM_Simulate", "CAM's simulator needs the task panel: close what is open there first")
     elif not FreeCADGui.Command.get(_COMMAND).isActive():
-        told = translate("PKM_Simulate", "CAM's simulator does not take this job")
+        text = translate("PKM_Simulate", "CAM's simulator does not take this job")
     else:
         FreeCADGui.Selection.clearSelection()
         FreeCADGui.Selection.addSelection(job)
         FreeCADGui.runCommand(_COMMAND, 0)
         return True
-    FreeCAD.Console.PrintUserWarning(told + "\n")
+    FreeCAD.Console.PrintUserWarning(text + "\n")
     return False

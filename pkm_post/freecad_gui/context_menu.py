@@ -15,7 +15,7 @@ import FreeCADGui
 from PySide import QtGui
 
 from pkm_post.freecad_app.document import transaction
-from pkm_post.freecad_gui.workbench import ICONS
+from pkm_post.freecad_gui.icons import ICONS
 
 translate = FreeCAD.Qt.translate
 

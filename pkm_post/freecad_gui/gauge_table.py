@@ -15,8 +15,8 @@ import FreeCAD
 from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_app.gauge_lengths import ToolRow, format_length, tool_rows
-from pkm_post.freecad_gui.change_watch import ChangeWatch
 from pkm_post.freecad_gui.length_field import LengthField, decimal_point
+from pkm_post.freecad_gui.observers import ChangeWatch
 from pkm_post.model import Refused
 
 translate = FreeCAD.Qt.translate
@@ -93,7 +93,7 @@ class GaugeTable(QtWidgets.QGroupBox):
         for name, text in kept.items():
             self.fields[name].setText(text)
         self._fit()
-        self._tell()
+        self._show_status()
 
     def _is_as_before(self, row: ToolRow) -> bool:
         return any((row.name, row.length) == (before.name, before.length) for before in self._rows)
@@ -106,7 +106,7 @@ class GaugeTable(QtWidgets.QGroupBox):
             self.table.setItem(number, column, item)
         field = self.fields[row.name]
         field.setToolTip(translate("GaugeTable", _COLUMNS[_LENGTH][1]))
-        field.textChanged.connect(self._tell)
+        field.textChanged.connect(self._show_status)
         self.table.setCellWidget(number, _LENGTH, field)
 
     def _fit(self) -> None:
@@ -123,9 +123,9 @@ class GaugeTable(QtWidgets.QGroupBox):
             lengths: mm, by tool number.
         """
         self._by_argument = dict(lengths)
-        self._tell()
+        self._show_status()
 
-    def _tell(self, *_: Any) -> None:
+    def _show_status(self, *_: Any) -> None:
         """Report the fault of each row, or what overrides it."""
         notes = []
         for row in self._rows:
@@ -146,8 +146,8 @@ class GaugeTable(QtWidgets.QGroupBox):
     def _goes_before(self, row: ToolRow) -> str:
         if row.number not in self._by_argument:
             return ""
-        told = translate("GaugeTable", "T{}: {} of --tool-length in More arguments goes before the field.")
-        return told.format(row.number, format_length(self._by_argument[row.number], decimal_point()))
+        text = translate("GaugeTable", "T{}: {} of --tool-length in More arguments goes before the field.")
+        return text.format(row.number, format_length(self._by_argument[row.number], decimal_point()))
 
     def _typed(self, row: ToolRow) -> str:
         return f"{self.fields[row.name].text()!r} is no length above zero"
@@ -158,8 +158,8 @@ class GaugeTable(QtWidgets.QGroupBox):
         Raises:
             Refused: the input is invalid, J113.
         """
-        said = {row: self.fields[row.name].length() for row in self._rows}
-        faults = [row.missing_length(self._typed(row)) for row, mm in said.items() if mm is None]
+        lengths = {row: self.fields[row.name].length() for row in self._rows}
+        faults = [row.missing_length(self._typed(row)) for row, mm in lengths.items() if mm is None]
         if faults:
             raise Refused(faults)
-        return {row.name: mm for row, mm in said.items() if mm is not None and mm != row.length}
+        return {row.name: mm for row, mm in lengths.items() if mm is not None and mm != row.length}

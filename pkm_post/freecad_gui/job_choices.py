@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import FreeCAD
+import FreeCADGui
 from PySide import QtWidgets
 
 from pkm_post.freecad_app.arguments import job_arguments, own_text, parse_arguments, store_in_job
@@ -20,7 +21,7 @@ from pkm_post.freecad_app.gauge_lengths import store_gauge_lengths
 from pkm_post.freecad_app.post_job import file_name
 from pkm_post.freecad_app.post_processor import program_path
 from pkm_post.freecad_gui.gauge_table import GaugeTable
-from pkm_post.freecad_gui.post_choices import PostChoices
+from pkm_post.freecad_gui.post_fields import PostChoices
 from pkm_post.freecad_gui.preferences import default_arguments, default_folder
 from pkm_post.model import Place, Refused
 from pkm_post.options import tool_lengths_from
@@ -86,3 +87,20 @@ def _folder_of(job: Any) -> Path:
     if job.PostProcessorOutputFile:
         return program_path(job).absolute().parent
     return Path(default_folder() or Path(job.Document.FileName or "job.FCStd").absolute().parent)
+
+
+def show_place(job: Any, label: str, line: int) -> None:
+    """Select an operation of a job and show the number of one of its commands.
+
+    Args:
+        job: the CAM job; None shows nothing.
+        label: of the operation.
+        line: number of the command in it, from 1.
+    """
+    FreeCADGui.Selection.clearSelection()
+    for operation in job.Operations.Group if job else ():
+        if operation.Label == label:
+            FreeCADGui.Selection.addSelection(operation)
+            commands = operation.Path.Commands
+            text = commands[line - 1].toGCode() if 0 < line <= len(commands) else ""
+            FreeCADGui.getMainWindow().statusBar().showMessage(f"{label}, {line}: {text}")

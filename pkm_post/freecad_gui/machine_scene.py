@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine scene: the machine as a scene graph that is built once; a pose changes only transforms and colours.
+"""Machine scene: the machine as a scene graph built once; a pose changes only transforms and colours.
 
 Takes a machine and its tool, then poses in {M}; returns a scene in mm. Joints, strut lengths and tool match the machine
 file. Dimensions missing from the file are drawn in proportion to it.
@@ -7,14 +7,17 @@ file. Dimensions missing from the file are drawn in proportion to it.
 
 from __future__ import annotations
 
+from typing import Any
+
+import FreeCADGui
 import numpy as np
 from pivy import coin
 
-from pkm_post.freecad_gui import lathe
-from pkm_post.freecad_gui.lathe import Colour
+from pkm_post.freecad_app.simulation import Simulation
+from pkm_post.freecad_gui.shapes import Colour, aim, ball, beam, cutter, cylinder, group, material
 from pkm_post.geometry import Array, norm
 from pkm_post.machine import ToolPoses, platform_joints, platform_rotation, reach_margins
-from pkm_post.model import Box, Machine
+from pkm_post.model import Box, Machine, Tool
 
 STEEL: Colour = (0.62, 0.65, 0.7)
 DARK: Colour = (0.25, 0.28, 0.33)
@@ -38,7 +41,7 @@ class MachineScene:
         self._size = float(norm(machine.platform_joints).mean())
         self._frame, self._platform, self._tool = coin.SoMatrixTransform(), coin.SoMatrixTransform(), coin.SoSeparator()
         self._struts = [_Strut(machine, number, self._size) for number in range(6)]
-        self.root = lathe.group(self._frame, self._base(), *(strut.root for strut in self._struts), self._moving())
+        self.root = group(self._frame, self._base(), *(strut.root for strut in self._struts), self._moving())
 
     def place(self, document_from_machine: Array) -> None:
         """Place the machine by a (4, 4) matrix."""
@@ -50,8 +53,8 @@ class MachineScene:
         if length > 0.0:
             shift = coin.SoTranslation()
             shift.translation = (0.0, 0.0, -self.machine.spindle_nose - length)
-            body = lathe.cutter(diameter or 0.1 * self._size, corner_radius, length)
-            for node in (lathe.material(GOLD), shift, body):
+            body = cutter(diameter or 0.1 * self._size, corner_radius, length)
+            for node in (material(GOLD), shift, body):
                 self._tool.addChild(node)
 
     def show(self, pose: ToolPoses) -> None:
@@ -71,7 +74,7 @@ class MachineScene:
         """The fixed part: a frame through the base joints, and the boxes of the machine file."""
         beams = _ring(self.machine.base_joints, 0.15 * self._size)
         boxes = [_box(box) for box in self.machine.fixtures]
-        return lathe.group(lathe.material(DARK), *beams, lathe.material(LIGHT), *boxes)
+        return group(material(DARK), *beams, material(LIGHT), *boxes)
 
     def _moving(self) -> coin.SoSeparator:
         """The moving part: the bodies of the machine file, or a plate and a spindle; and the tool."""
@@ -80,9 +83,9 @@ class MachineScene:
         shapes = shapes or [(1.05 * size, 0.0, 0.12 * size), (0.25 * size, -machine.spindle_nose, 0.6 * size)]
         bodies = []
         for number, (radius, start, end) in enumerate(shapes):
-            bodies += [lathe.material(LIGHT if number == 0 else DARK), lathe.cylinder(radius, start, end)]
+            bodies += [material(LIGHT if number == 0 else DARK), cylinder(radius, start, end)]
         ring = _ring(machine.platform_joints, 0.08 * size)
-        return lathe.group(self._platform, lathe.material(LIGHT), *ring, *bodies, self._tool)
+        return group(self._platform, material(LIGHT), *ring, *bodies, self._tool)
 
 
 class _Strut:
@@ -94,17 +97,17 @@ class _Strut:
         rod = machine.rod_length or min(longest - 0.8 * tube, shortest)
         tube_radius, rod_radius = machine.tube_radius or 0.12 * size, machine.rod_radius or 0.07 * size
         self._base = machine.base_joints[number]
-        self._swing, self._slide, self._rod = coin.SoTransform(), coin.SoTranslation(), lathe.material(LIGHT)
-        self._tube = lathe.material(STEEL)
-        inner = lathe.group(self._slide, self._rod, lathe.cylinder(rod_radius, -rod, 0.0), lathe.ball(1.7 * rod_radius))
-        outer = lathe.group(self._tube, lathe.ball(1.4 * tube_radius), lathe.cylinder(tube_radius, 0.0, tube))
-        self.root = lathe.group(self._swing, outer, inner)
+        self._swing, self._slide, self._rod = coin.SoTransform(), coin.SoTranslation(), material(LIGHT)
+        self._tube = material(STEEL)
+        inner = group(self._slide, self._rod, cylinder(rod_radius, -rod, 0.0), ball(1.7 * rod_radius))
+        outer = group(self._tube, ball(1.4 * tube_radius), cylinder(tube_radius, 0.0, tube))
+        self.root = group(self._swing, outer, inner)
         self._was_bad = False
 
     def reach(self, joint: Array, bad: bool) -> None:
         """Extend to a platform joint in {M}."""
         way = joint - self._base
-        lathe.aim(self._swing, self._base, way)
+        aim(self._swing, self._base, way)
         self._slide.translation = (0.0, 0.0, float(norm(way)))
         if bad != self._was_bad:
             self._tube.diffuseColor, self._rod.diffuseColor = (BAD, BAD) if bad else (STEEL, LIGHT)
@@ -114,16 +117,50 @@ class _Strut:
 def _ring(joints: Array, radius: float) -> list[coin.SoSeparator]:
     """A closed frame through joints."""
     ends = np.roll(joints, -1, axis=0)
-    return [lathe.beam(start, end, radius) for start, end in zip(joints, ends, strict=True)]
+    return [beam(start, end, radius) for start, end in zip(joints, ends, strict=True)]
 
 
 def _box(box: Box) -> coin.SoSeparator:
     shift, cube = coin.SoTranslation(), coin.SoCube()
     shift.translation = tuple(float(value) for value in (box.lowest + box.highest) / 2.0)
     cube.width, cube.height, cube.depth = (float(value) for value in box.highest - box.lowest)
-    return lathe.group(shift, cube)
+    return group(shift, cube)
 
 
 def _coin_matrix(matrix: Array) -> coin.SbMatrix:
     """Coin multiplies row vectors by matrices: its matrix is the transpose."""
     return coin.SbMatrix(*(float(value) for value in matrix.T.ravel()))
+
+
+class MovingMachine:
+    """The display of a simulation."""
+
+    def __init__(self, simulation: Simulation, document: Any, machine_object: Any = None) -> None:
+        self._simulation, self._tool = simulation, None
+        self._owner = None if machine_object is None else machine_object.ViewObject.Proxy
+        self._graph: Any = None
+        if self._owner is not None and self._owner.scene is not None:
+            self._owner.played, self._scene = True, self._owner.scene
+        else:
+            self._scene = MachineScene(simulation.machine)
+            self._graph = FreeCADGui.getDocument(document.Name).activeView().getSceneGraph()
+            self._graph.addChild(self._scene.root)
+        self._scene.place(np.linalg.inv(simulation.trajectory.machine_from_work))
+
+    def show(self, seconds: float) -> None:
+        """Move the machine to its pose at a time."""
+        tool: Tool = self._simulation.tool_at(seconds)
+        if tool is not self._tool:
+            self._tool = tool
+            self._scene.take_tool(tool.diameter, tool.corner_radius, tool.length)
+        self._scene.show(self._simulation.pose_at(np.array([seconds])))
+
+    def strike(self) -> None:
+        """Restore the view."""
+        if self._graph is not None:
+            self._graph.removeChild(self._scene.root)
+            self._graph = None
+        elif self._owner is not None:
+            self._owner.played = False
+            self._owner.refresh()
+            self._owner = None

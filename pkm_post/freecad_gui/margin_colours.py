@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from pivy import coin
 
-from pkm_post.freecad_gui.marks import OUT
+from pkm_post.freecad_gui.shapes import OUT
 from pkm_post.geometry import Array
 
 _NEAR, _FAR = np.array([1.0, 0.65, 0.0]), np.array([0.1, 0.65, 0.2])

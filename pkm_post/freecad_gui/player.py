@@ -17,16 +17,41 @@ from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_app.simulation import Problem, Simulation
 from pkm_post.freecad_app.simulation_object import plan_of
+from pkm_post.freecad_gui.animation import Animation, ask_for_animation, ask_for_pictures
 from pkm_post.freecad_gui.cam_simulator import open_cam_simulator
-from pkm_post.freecad_gui.deletion_watch import DeletionWatch
-from pkm_post.freecad_gui.film import Film, ask_for_animation, ask_for_pictures
-from pkm_post.freecad_gui.job_places import show_place
-from pkm_post.freecad_gui.player_content import PlayerContent
-from pkm_post.freecad_gui.player_text import told
-from pkm_post.freecad_gui.recompute_watch import RecomputeWatch
-from pkm_post.freecad_gui.stage import Stage
+from pkm_post.freecad_gui.job_choices import show_place
+from pkm_post.freecad_gui.machine_scene import MovingMachine
+from pkm_post.freecad_gui.observers import DeletionWatch, RecomputeWatch
+from pkm_post.freecad_gui.player_controls import PlayerContent
 from pkm_post.model import Place, Refused
 from pkm_post.system import memory_guard
+
+
+def status_text(simulation: Simulation, seconds: float, problem: Problem | None, override: float) -> str:
+    """Return the status line.
+
+    Args:
+        simulation: the simulation being played.
+        seconds: the current time.
+        problem: the one at which the player has stopped, if any.
+        override: feed override as a share: 1 is as planned.
+    """
+    place = simulation.trajectory.place(simulation.block_at(seconds))
+    block = translate("PKM_Simulate", "{}, line {}").format(place.operation, place.line)
+    more = [problem.text] if problem else []
+    return "   ".join([
+        f"{seconds:.3f} s / {simulation.duration:.3f} s", block, *more, *_too_fast(simulation, override)
+    ])  # fmt: skip
+
+
+def _too_fast(simulation: Simulation, override: float) -> list[str]:
+    """The struts that would exceed their speed limit at the chosen override."""
+    limit, speeds = simulation.machine.strut_speed, simulation.greatest_speeds * override
+    if override <= 1.0 or speeds.max() <= limit:
+        return []
+    text = translate("PKM_Simulate", "At this override strut {} would have to do {:.4g} of {:.4g} mm/s")
+    return [text.format(int(speeds.argmax()) + 1, float(speeds.max()), limit)]
+
 
 translate = FreeCAD.Qt.translate
 
@@ -51,7 +76,7 @@ class Player(QtWidgets.QDockWidget):
         self.setObjectName(_NAME)
         self.subject, self.simulation, self.seconds = subject, simulation, 0.0
         self.problem: Problem | None = None
-        self._stage: Stage | None = None
+        self._stage: MovingMachine | None = None
         document, machine = subject.Document.Name, subject.Machine
         self._document = document
         self._watches = [DeletionWatch(self.close, document, item.Name) for item in (subject, machine) if item]
@@ -87,7 +112,7 @@ class Player(QtWidgets.QDockWidget):
         self.simulation, self.problem = simulation, None
         if self._stage is not None:
             self._stage.strike()
-        self._stage = Stage(simulation, self.subject.Document, self.subject.Machine)
+        self._stage = MovingMachine(simulation, self.subject.Document, self.subject.Machine)
         self._content.take(simulation)
         self.go_to(self.seconds)
 
@@ -106,7 +131,7 @@ class Player(QtWidgets.QDockWidget):
             self._stage.show(self.seconds)
         self._content.show_time(self.seconds)
         override = self.controls.override.value() / 100.0
-        self.controls.tell(told(self.simulation, self.seconds, self.problem, override))
+        self.controls.show_text(status_text(self.simulation, self.seconds, self.problem, override))
 
     def leave_for(self, seconds: float) -> None:
         """Show a time unrelated to a problem."""
@@ -171,10 +196,10 @@ class Player(QtWidgets.QDockWidget):
     def _show(self, place: Place) -> None:
         show_place(self.subject.Job, place.operation, place.line)
 
-    def film(self, per_second: float, width: int, height: int) -> Film:
+    def film(self, per_second: float, width: int, height: int) -> Animation:
         """The motion as pictures, at the current speed."""
         self.pause()
-        return Film(
+        return Animation(
             view=FreeCADGui.getDocument(self._document).activeView(),
             show=self.go_to,
             now=self.seconds,

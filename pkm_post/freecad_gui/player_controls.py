@@ -9,7 +9,10 @@ from __future__ import annotations
 from typing import Any
 
 import FreeCAD
-from PySide import QtCore, QtWidgets
+from PySide import QtCore, QtGui, QtWidgets
+
+from pkm_post.freecad_app.simulation import Problem, Simulation
+from pkm_post.freecad_gui.strut_plot import StrutPlot
 
 translate = FreeCAD.Qt.translate
 
@@ -83,12 +86,12 @@ class PlayerControls(QtWidgets.QWidget):
         """Seconds of planned motion per second of real time."""
         return float(self.factor.currentText().rstrip("x")) * self.override.value() / 100.0
 
-    def tell(self, text: str) -> None:
+    def show_text(self, text: str) -> None:
         """Show a line."""
         self._told.setText(text)
         self._told.setToolTip(text)
 
-    def told(self) -> str:
+    def text(self) -> str:
         """The displayed line."""
         return str(self._told.text())
 
@@ -109,3 +112,102 @@ def _button(layout: Any, icon: str, tip: str, wanted: Any) -> QtWidgets.QToolBut
 def _icon(name: str) -> Any:
     """A standard Qt icon, so that the buttons look like those of other players on this system."""
     return QtWidgets.QApplication.style().standardIcon(getattr(QtWidgets.QStyle.StandardPixmap, name))
+
+
+_RED = QtGui.QColor(200, 0, 0)
+_MOST_SHOWN = 1000
+_WIDTH = 380
+"""Initial width, pixels."""
+
+
+class PlayerLists(QtWidgets.QTabWidget):
+    """Two lists as tabs."""
+
+    problem = QtCore.Signal(int)
+    operation = QtCore.Signal(int)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.problems, self.operations = QtWidgets.QListWidget(), QtWidgets.QListWidget()
+        for rows, wanted in ((self.problems, self.problem), (self.operations, self.operation)):
+            rows.itemClicked.connect(_sender(rows, wanted))
+            self.addTab(rows, "")
+
+    def sizeHint(self) -> QtCore.QSize:
+        """Wide enough for most lines, and no taller than the curves beside it."""
+        return QtCore.QSize(_WIDTH, 120)
+
+    def take(self, simulation: Simulation) -> None:
+        """Show another simulation; the tab of its problems if there are any."""
+        moving, dwelling = simulation.operation_times()
+        times = (moving + dwelling).tolist()
+        _fill(self.problems, [_problem_text(problem) for problem in simulation.problems[:_MOST_SHOWN]])
+        for row in range(self.problems.count()):
+            self.problems.item(row).setForeground(QtGui.QBrush(_RED))
+        names = simulation.trajectory.operations
+        _fill(self.operations, [f"{name}: {seconds:.1f} s" for name, seconds in zip(names, times, strict=True)])
+        self.setTabText(0, translate("PKM_Simulate", "Problems: {}").format(len(simulation.problems)))
+        self.setTabText(1, translate("PKM_Simulate", "Operations: {:.1f} s").format(sum(times)))
+        self.setCurrentIndex(0 if simulation.problems else 1)
+
+
+def _problem_text(problem: Problem) -> str:
+    place = problem.worst_place
+    return f"{problem.worst_time:.3f} s  {place.operation}, {place.line}: {problem.text}"
+
+
+def _fill(rows: Any, texts: list[str]) -> None:
+    rows.clear()
+    rows.addItems(texts)
+    for number, text in enumerate(texts):
+        rows.item(number).setToolTip(text)
+
+
+def _sender(rows: Any, wanted: Any) -> Any:
+    return lambda item: wanted.emit(rows.row(item))
+
+
+_PER_SECOND = 1000
+"""Slider steps per second: one per millisecond of motion."""
+
+
+class PlayerContent(QtWidgets.QWidget):
+    """The content.
+
+    Attributes:
+        controls: the row of buttons.
+        slider: over the whole motion.
+        plot: lengths and speeds.
+        lists: problems and operations.
+    """
+
+    wanted = QtCore.Signal(float)
+
+    def __init__(self, simulation: Simulation) -> None:
+        super().__init__()
+        self.controls, self.lists = PlayerControls(), PlayerLists()
+        self.slider = QtWidgets.QSlider(QtCore.Qt.Orientation.Horizontal)
+        self.slider.valueChanged.connect(lambda value: self.wanted.emit(value / _PER_SECOND))
+        self.plot = StrutPlot(simulation, self.wanted.emit)
+        self.controls.overridden.connect(self.plot.show_override)
+        below, layout = QtWidgets.QHBoxLayout(), QtWidgets.QVBoxLayout(self)
+        below.addWidget(self.plot, 1)
+        below.addWidget(self.lists)
+        layout.addWidget(self.controls)
+        layout.addWidget(self.slider)
+        layout.addLayout(below, 1)
+
+    def take(self, simulation: Simulation) -> None:
+        """Show another simulation."""
+        self.plot.take(simulation)
+        self.lists.take(simulation)
+        self.slider.blockSignals(True)
+        self.slider.setRange(0, round(simulation.duration * _PER_SECOND))
+        self.slider.blockSignals(False)
+
+    def show_time(self, seconds: float) -> None:
+        """Move cursor and slider without signals of user input."""
+        self.plot.show_time(seconds)
+        self.slider.blockSignals(True)
+        self.slider.setValue(round(seconds * _PER_SECOND))
+        self.slider.blockSignals(False)

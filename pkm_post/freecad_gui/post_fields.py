@@ -1,14 +1,20 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post fields: the field types for the posting options."""
+"""Post fields: the posting options as fields of a panel: the field types, and the options by row."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Any
 
 import FreeCAD
 import FreeCADGui
 from PySide import QtWidgets
+
+from pkm_post.freecad_app.arguments import parse_arguments, replace_arguments
+from pkm_post.machine import machine_named, presets
+from pkm_post.model import Place, Refused
+from pkm_post.options import FIXTURE_OF_THE_JOB, RULES_WITH_HEADING, SIDE_OUTPUTS, SPIN_WORDS
 
 _DECIMALS = 6
 
@@ -65,3 +71,169 @@ def below_each_other(fields: Iterable[QtWidgets.QWidget]) -> QtWidgets.QWidget:
     for field in fields:
         layout.addWidget(field)
     return whole
+
+
+translate = FreeCAD.Qt.translate
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+FLAGS = ("--machine", "--work-offset", "--tip-tolerance", "--axis-tolerance", "--spin", "--also")
+"""The arguments that have fields."""
+_SPINS = {
+    "zero": QT_TRANSLATE_NOOP("PostChoices", "Shortest rotation from upright"),
+    "file": QT_TRANSLATE_NOOP("PostChoices", "As the part program says"),
+    "x-in-plane": QT_TRANSLATE_NOOP("PostChoices", "x axis in a vertical plane"),
+    "y-in-plane": QT_TRANSLATE_NOOP("PostChoices", "y axis in a vertical plane"),
+    "optimise=stroke": QT_TRANSLATE_NOOP("PostChoices", "Most stroke left"),
+    "optimise=joints": QT_TRANSLATE_NOOP("PostChoices", "Most swing of the joints left"),
+    "optimise=singular": QT_TRANSLATE_NOOP("PostChoices", "Farthest from singular poses"),
+    "optimise=weighted": QT_TRANSLATE_NOOP("PostChoices", "Most left of all three"),
+}
+_ALSO = {
+    "csv": QT_TRANSLATE_NOOP("PostChoices", "Table of the strut motion (CSV)"),
+    "halstreamer": QT_TRANSLATE_NOOP("PostChoices", "Table for LinuxCNC's halstreamer"),
+    "linuxcnc": QT_TRANSLATE_NOOP("PostChoices", "G-code for LinuxCNC's hexapod, not certified"),
+}
+
+
+_ROWS = (
+    ("machine", QT_TRANSLATE_NOOP("PostChoices", "Machine"), QT_TRANSLATE_NOOP("PostChoices", "A name, or a file")),
+    (
+        "work_offset",
+        QT_TRANSLATE_NOOP("PostChoices", "Work offset"),
+        QT_TRANSLATE_NOOP("PostChoices", "Name of a work offset of the machine, or X,Y,Z[,degrees about z] in mm"),
+    ),
+    (
+        "tip_tolerance",
+        QT_TRANSLATE_NOOP("PostChoices", "Tip tolerance"),
+        QT_TRANSLATE_NOOP("PostChoices", "How far the tool tip may be from the programmed path"),
+    ),
+    (
+        "axis_tolerance",
+        QT_TRANSLATE_NOOP("PostChoices", "Axis tolerance"),
+        QT_TRANSLATE_NOOP("PostChoices", "How far the tool axis may be from the programmed axis"),
+    ),
+    (
+        "spin",
+        QT_TRANSLATE_NOOP("PostChoices", "Spin"),
+        QT_TRANSLATE_NOOP("PostChoices", "How the platform turns about the tool axis"),
+    ),
+    (
+        "heading",
+        QT_TRANSLATE_NOOP("PostChoices", "Heading"),
+        QT_TRANSLATE_NOOP("PostChoices", "Where the axis of the platform points when the tool is upright"),
+    ),
+    (
+        "also_box",
+        QT_TRANSLATE_NOOP("PostChoices", "Also write"),
+        QT_TRANSLATE_NOOP("PostChoices", "What to write beside the program"),
+    ),
+    (
+        "more",
+        QT_TRANSLATE_NOOP("PostChoices", "More arguments"),
+        QT_TRANSLATE_NOOP(
+            "PostChoices",
+            "Arguments that have no field here, such as --surface-speed 120, or --tool-length 1=120 for a part program",
+        ),
+    ),
+    (
+        "folder",
+        QT_TRANSLATE_NOOP("PostChoices", "Folder"),
+        QT_TRANSLATE_NOOP("PostChoices", "Where the files are written"),
+    ),
+)
+"""Attribute, label and tooltip of each field, from top to bottom."""
+
+
+class PostChoices(QtWidgets.QWidget):
+    """The fields, one below the other."""
+
+    def __init__(self, text: str, folder: str) -> None:
+        super().__init__()
+        self.machine, self.work_offset = editable_box(presets()), editable_box(())
+        self.tip_tolerance, self.axis_tolerance = quantity_field("mm"), quantity_field("deg")
+        self.heading, self.spin = quantity_field("deg"), QtWidgets.QComboBox()
+        self.also = {name: QtWidgets.QCheckBox(translate("PostChoices", _ALSO[name])) for name in SIDE_OUTPUTS}
+        self.also_box = below_each_other(self.also.values())
+        self.more, self.folder = QtWidgets.QLineEdit(), QtWidgets.QLineEdit()
+        for word in SPIN_WORDS:
+            self.spin.addItem(translate("PostChoices", _SPINS[word]), word)
+        self.work_offset.lineEdit().setPlaceholderText(translate("PostChoices", "the fixture of the job"))
+        self.machine.currentTextChanged.connect(self._offer_work_offsets)
+        self.spin.currentIndexChanged.connect(self._show_heading)
+        self._lay_out()
+        self.folder.setText(folder)
+        self.show_text(text)
+
+    def _lay_out(self) -> None:
+        layout, askers = QtWidgets.QFormLayout(self), {"machine": self._ask_machine, "folder": self._ask_folder}
+        for name, label, tip in _ROWS:
+            field = getattr(self, name)
+            field.setToolTip(translate("PostChoices", tip))
+            row = with_button(field, askers[name]) if name in askers else field
+            layout.addRow(translate("PostChoices", label), row)
+
+    def show_text(self, text: str) -> None:
+        """Show arguments in the fields; invalid ones stay unchanged, in the line for all others."""
+        try:
+            chosen, rest = parse_arguments(text, Place("")), replace_arguments(text, dict.fromkeys(FLAGS))
+        except Refused:
+            chosen, rest = parse_arguments("", Place("")), text
+        rule, heading, objective = chosen.spin
+        self.machine.setEditText(chosen.machine)
+        self._offer_work_offsets(chosen.machine)
+        self.work_offset.setEditText(_offset_text(chosen.work_offset))
+        show_quantity(self.tip_tolerance, chosen.tip_tolerance, "mm")
+        show_quantity(self.axis_tolerance, chosen.axis_tolerance, "deg")
+        show_quantity(self.heading, heading, "deg")
+        self.spin.setCurrentIndex(self.spin.findData(f"{rule}={objective}" if rule == "optimise" else rule))
+        for name, box in self.also.items():
+            box.setChecked(name in chosen.also)
+        self.more.setText(rest)
+        self._show_heading()
+
+    def text(self) -> str:
+        """The arguments."""
+        spin = self.spin.currentData()
+        chosen = {
+            "--machine": self.machine.currentText().strip() or None,
+            "--work-offset": self.work_offset.currentText().strip() or None,
+            "--tip-tolerance": number_text(self.tip_tolerance),
+            "--axis-tolerance": number_text(self.axis_tolerance),
+            "--spin": f"{spin}={number_text(self.heading)}" if spin in RULES_WITH_HEADING else spin,
+            "--also": ",".join(name for name, box in self.also.items() if box.isChecked()) or None,
+        }
+        try:
+            return replace_arguments(self.more.text(), chosen)
+        except ValueError:  # the parser reports the error
+            return self.more.text()
+
+    def _offer_work_offsets(self, machine: str) -> None:
+        """Offer the work offsets of the machine; the current input stays."""
+        typed = self.work_offset.currentText()
+        found, _ = machine_named(machine.strip())
+        self.work_offset.clear()
+        self.work_offset.addItems(["", *sorted(found.work_offsets)] if found else [""])
+        self.work_offset.setEditText(typed)
+
+    def _show_heading(self, *_changed: int) -> None:
+        self.heading.setEnabled(self.spin.currentData() in RULES_WITH_HEADING)
+
+    def _ask_machine(self) -> None:
+        title, kinds = translate("PostChoices", "Machine file"), translate("PostChoices", "Machine files")
+        name = QtWidgets.QFileDialog.getOpenFileName(self, title, "", f"{kinds} (*.toml)")[0]
+        if name:
+            self.machine.setEditText(name)
+
+    def _ask_folder(self) -> None:
+        title = translate("PostChoices", "Folder for the files")
+        name = QtWidgets.QFileDialog.getExistingDirectory(self, title, self.folder.text())
+        if name:
+            self.folder.setText(str(Path(name)))
+
+
+def _offset_text(offset: Any) -> str:
+    """A work offset in the syntax of the arguments."""
+    if isinstance(offset, str):
+        return "" if offset == FIXTURE_OF_THE_JOB else offset
+    shown = offset if offset[3] else offset[:3]
+    return ",".join(f"{number:.9g}" for number in shown)

@@ -69,11 +69,11 @@ class PostOutcome(QtWidgets.QWidget):
     def show_posted(self, posted: Posted) -> None:
         """Show the certificate."""
         certificate, seconds = posted.report["certificate"], posted.report["machining_time"]["total_s"]
-        told = translate(
+        text = translate(
             "PostOutcome",
             "Certified, as far as the lines below say ({} poses computed). {} s at the machine, {} files.",
         )
-        self.verdict.setText(told.format(certificate["instants"], seconds, len(posted.files)))
+        self.verdict.setText(text.format(certificate["instants"], seconds, len(posted.files)))
         self._show_diagnostics(posted.diagnostics)
         self.meaning.setText("\n".join(certificate["meaning"]))
         self.meaning.show()
@@ -138,3 +138,25 @@ def _icon(widget: QtWidgets.QWidget, diagnostic: Diagnostic) -> Any:
     sign = QtWidgets.QStyle.StandardPixmap
     chosen = sign.SP_MessageBoxCritical if diagnostic.severity is Severity.ERROR else sign.SP_MessageBoxWarning
     return widget.style().standardIcon(chosen)
+
+
+STEPS = {
+    "reading": QT_TRANSLATE_NOOP("PostSteps", "Reading"),
+    "trajectory": QT_TRANSLATE_NOOP("PostSteps", "Trajectory"),
+    "reach and feed plan": QT_TRANSLATE_NOOP("PostSteps", "Reach and feed plan"),
+    "collisions": QT_TRANSLATE_NOOP("PostSteps", "Collisions"),
+    "interpolation": QT_TRANSLATE_NOOP("PostSteps", "Interpolation"),
+    "motion program": QT_TRANSLATE_NOOP("PostSteps", "Motion program"),
+    "certificate": QT_TRANSLATE_NOOP("PostSteps", "Certificate"),
+    "report": QT_TRANSLATE_NOOP("PostSteps", "Report"),
+    "also csv": QT_TRANSLATE_NOOP("PostSteps", "Table of the strut motion"),
+    "also halstreamer": QT_TRANSLATE_NOOP("PostSteps", "Table for halstreamer"),
+    "also linuxcnc": QT_TRANSLATE_NOOP("PostSteps", "G-code for LinuxCNC"),
+    "": QT_TRANSLATE_NOOP("PostSteps", "Moving the files to their folder"),
+}
+"""Displayed name of each step, by its name in ``pkm_post.posting`` and ``pkm_post.options``."""
+
+
+def step_text(step: str) -> str:
+    """The displayed name of a step."""
+    return translate("PostSteps", STEPS[step])

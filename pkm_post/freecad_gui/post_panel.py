@@ -17,13 +17,11 @@ from PySide import QtCore, QtGui, QtWidgets
 from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.freecad_app.job_setup import prepared_job
 from pkm_post.freecad_app.progress import Stopped
-from pkm_post.freecad_gui.deletion_watch import DeletionWatch
-from pkm_post.freecad_gui.job_choices import JobChoices
-from pkm_post.freecad_gui.job_places import show_place
-from pkm_post.freecad_gui.post_outcome import PostOutcome
-from pkm_post.freecad_gui.post_steps import step_text
-from pkm_post.freecad_gui.task import Task
-from pkm_post.freecad_gui.workbench import ICONS
+from pkm_post.freecad_gui.background import BackgroundCall
+from pkm_post.freecad_gui.icons import ICONS
+from pkm_post.freecad_gui.job_choices import JobChoices, show_place
+from pkm_post.freecad_gui.observers import DeletionWatch
+from pkm_post.freecad_gui.post_outcome import PostOutcome, step_text
 from pkm_post.model import Refused
 from pkm_post.options import READING_STEP
 from pkm_post.posting import Prepared
@@ -91,7 +89,7 @@ class PostPanel:
             if not isinstance(fault, Refused):
                 raise
             return
-        task = Task(lambda: read.post(self._target, progress=task.tell), self.form)
+        task = BackgroundCall(lambda: read.post(self._target, progress=task.report), self.form)
         self._task = task
         task.progressed.connect(self._show_progress)
         task.finished.connect(self._end)

@@ -36,17 +36,17 @@ class PostPreferences:
     """The page, with FreeCAD's interface."""
 
     def __init__(self, _parent: Any = None) -> None:
-        from pkm_post.freecad_gui.post_choices import PostChoices
+        from pkm_post.freecad_gui.post_fields import PostChoices
 
         self.form = QtWidgets.QWidget()
         self.form.setWindowTitle(translate("PostPreferences", "Posting"))
         self.choices = PostChoices("", "")
         self.choices.folder.setPlaceholderText(translate("PostPreferences", "the folder of the document"))
-        told = translate(
+        text = translate(
             "PostPreferences", "What the post panel shows at first for a job that has no arguments of its own."
         )
         layout = QtWidgets.QVBoxLayout(self.form)
-        layout.addWidget(QtWidgets.QLabel(told))
+        layout.addWidget(QtWidgets.QLabel(text))
         layout.addWidget(self.choices)
         layout.addStretch(1)
 
@@ -64,7 +64,7 @@ class PostPreferences:
 
 def install() -> None:
     """Add the page to FreeCAD's preferences, which derive the icon from the group's name."""
-    from pkm_post.freecad_gui.workbench import ICONS
+    from pkm_post.freecad_gui.icons import ICONS
 
     FreeCADGui.addIcon(f"preferences-{PAGES.lower().replace(' ', '_')}", str(ICONS / "pkm_post.svg"))
     FreeCADGui.addPreferencePage(PostPreferences, PAGES)

@@ -44,5 +44,5 @@ def _in_editor(obj: Any, call: str) -> None:
     from pkm_post.freecad_gui.editor import open_editor
 
     editor = open_editor(obj)
-    if editor.body.file == Path(obj.File):
+    if editor.widget.file == Path(obj.File):
         getattr(editor, call)()

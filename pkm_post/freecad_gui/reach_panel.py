@@ -13,8 +13,8 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_gui.job_places import show_place
-from pkm_post.freecad_gui.workbench import ICONS
+from pkm_post.freecad_gui.icons import ICONS
+from pkm_post.freecad_gui.job_choices import show_place
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP

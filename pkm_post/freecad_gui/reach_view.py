@@ -16,7 +16,7 @@ from pivy import coin
 
 from pkm_post.freecad_gui.context_menu import add_commands, add_entry
 from pkm_post.freecad_gui.margin_colours import colours_of, largest, legend
-from pkm_post.freecad_gui.marks import OUT, marks
+from pkm_post.freecad_gui.shapes import OUT, points_through
 from pkm_post.freecad_gui.views import DrawnView
 
 translate = FreeCAD.Qt.translate
@@ -46,7 +46,7 @@ class ReachView(DrawnView):
         chosen = list(obj.Checks).index(obj.ColourBy)
         self._root.addChild(_way(points, margin))
         colour = OUT if obj.LeastMargins[chosen] < 0.0 else _WORST_IN_LIMITS
-        self._root.addChild(marks([obj.WorstPoints[chosen]], colour, _MARK_SIZE))
+        self._root.addChild(points_through([obj.WorstPoints[chosen]], colour, _MARK_SIZE))
         shown = coin.SoType.fromName("SkipBoundingGroup")
         corner = shown.createInstance() if shown.canCreateInstance() else coin.SoGroup()
         corner.addChild(legend(str(obj.ColourBy), largest(margin), obj.Units[chosen]))

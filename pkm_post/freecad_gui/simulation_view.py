@@ -12,7 +12,7 @@ from typing import Any
 import FreeCAD
 
 from pkm_post.freecad_gui.context_menu import add_commands, add_entry
-from pkm_post.freecad_gui.marks import OUT, marks
+from pkm_post.freecad_gui.shapes import OUT, points_through
 from pkm_post.freecad_gui.views import DrawnView
 
 translate = FreeCAD.Qt.translate
@@ -45,9 +45,9 @@ class SimulationView(DrawnView):
         self._root.removeAllChildren()
         points = list(getattr(self.Object, "WorstPoints", ()))
         if points:
-            self._root.addChild(marks(points, OUT, _SIZE))
+            self._root.addChild(points_through(points, OUT, _SIZE))
         if self.chosen is not None and self.chosen < len(points):
-            self._root.addChild(marks([points[self.chosen]], OUT, _CHOSEN_SIZE))
+            self._root.addChild(points_through([points[self.chosen]], OUT, _CHOSEN_SIZE))
 
     def doubleClicked(self, vobj: Any) -> bool:
         """Open the player."""

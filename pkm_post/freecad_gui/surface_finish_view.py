@@ -13,8 +13,8 @@ import Path.Op.Gui.Base as CamGui
 import Path.Op.Gui.Selection as CamSelection
 
 from pkm_post.freecad_gui.context_menu import add_commands, add_switch
+from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.surface_finish_panel import SurfaceFinishPage
-from pkm_post.freecad_gui.workbench import ICONS
 
 _ICON = str(ICONS / "surface_finish.svg")
 

@@ -29,7 +29,7 @@ def text_of(side: str) -> str:
     return str(translate("SymmetryPanel", _SIDES[side]))
 
 
-def said_of(obj: Any, name: str) -> str:
+def property_tip(obj: Any, name: str) -> str:
     """The description of a property, as the tooltip of its field."""
     return str(translate("App::Property", obj.getDocumentationOfProperty(name)))
 
@@ -76,6 +76,6 @@ def angles_of(text: str, before: Sequence[float]) -> list[float]:
     return [each.Value for each in quantities]
 
 
-def told_angles(angles: Sequence[float]) -> str:
+def angles_text(angles: Sequence[float]) -> str:
     """Angles in degrees as an editable list."""
     return "; ".join(f"{angle:.10g}" for angle in angles)

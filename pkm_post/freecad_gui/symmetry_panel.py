@@ -15,10 +15,11 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_gui.symmetry_fields import angles_of, quantity, said_of, text_of, told_angles
-from pkm_post.freecad_gui.symmetry_frames import PLANE
-from pkm_post.freecad_gui.symmetry_place import SymmetryPlace
+from pkm_post.freecad_gui.symmetry_fields import angles_of, angles_text, property_tip, quantity, text_of
+from pkm_post.freecad_gui.symmetry_placement import PLANE, SymmetryPlace
 from pkm_post.freecad_gui.symmetry_text import report_lines
+
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
 translate = FreeCAD.Qt.translate
 
@@ -64,7 +65,7 @@ class SymmetryPanel:
         self.keep_climb = QtWidgets.QCheckBox(
             translate("SymmetryPanel", "Keep climb milling: run passes the other way")
         )
-        self.keep_climb.setToolTip(said_of(self.obj, "KeepClimb"))
+        self.keep_climb.setToolTip(property_tip(self.obj, "KeepClimb"))
         self.keep_climb.toggled.connect(self.apply)
         self._fields.addRow(self.keep_climb)
 
@@ -75,7 +76,7 @@ class SymmetryPanel:
         self.angles.setPlaceholderText(translate("SymmetryPanel", "such as 90; 180; 270, in place of the two above"))
         self.angles.editingFinished.connect(self.apply)
         for name, field in (("Angle", self.angle), ("Copies", self.copies), ("Angles", self.angles)):
-            field.setToolTip(said_of(self.obj, name))
+            field.setToolTip(property_tip(self.obj, name))
         self._fields.addRow(translate("SymmetryPanel", "Angle"), self.angle)
         self._fields.addRow(translate("SymmetryPanel", "Copies"), self.copies)
         self._fields.addRow(translate("SymmetryPanel", "Angles"), self.angles)
@@ -83,7 +84,7 @@ class SymmetryPanel:
     def _add_side(self) -> None:
         self.side = QtWidgets.QComboBox()
         self.side.addItems([text_of(name) for name in self.obj.getEnumerationsOfProperty("MaterialSide")])
-        self.side.setToolTip(said_of(self.obj, "MaterialSide"))
+        self.side.setToolTip(property_tip(self.obj, "MaterialSide"))
         self.side.currentIndexChanged.connect(self.apply)
         self._fields.addRow(translate("SymmetryPanel", "Material"), self.side)
 
@@ -97,7 +98,7 @@ class SymmetryPanel:
         else:
             self.angle.setProperty("rawValue", obj.Angle.Value)
             self.copies.setValue(obj.Copies)
-            self.angles.setText(told_angles(obj.Angles))
+            self.angles.setText(angles_text(obj.Angles))
         self.side.setCurrentIndex(obj.getEnumerationsOfProperty("MaterialSide").index(obj.MaterialSide))
         self.report.setText("\n".join(report_lines(obj)))
         del blockers

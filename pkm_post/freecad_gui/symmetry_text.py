@@ -92,9 +92,9 @@ def _family(obj: Any, family: Family) -> list[str]:
         return []
     found = family.coverage
     covered, overlap, gap = (math.degrees(each) for each in (found.covered, found.overlap, found.gap))
-    told = _covered(covered, overlap, gap, found.tiles)
+    coverage = _covered(covered, overlap, gap, found.tiles)
     text = translate("SymmetryPanel", "{} with all its copies in the job, {} in number: {}")
-    lines = [text.format(family.label, family.members, told)]
+    lines = [text.format(family.label, family.members, coverage)]
     if family.joints:
         distance = max(each.distance for each in family.joints)
         turn = math.degrees(max(each.turn for each in family.joints))

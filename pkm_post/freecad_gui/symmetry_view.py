@@ -14,8 +14,8 @@ import FreeCAD
 import FreeCADGui
 
 from pkm_post.freecad_gui.context_menu import add_commands, add_entry
+from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.views import View
-from pkm_post.freecad_gui.workbench import ICONS
 
 translate = FreeCAD.Qt.translate
 

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 from pivy import coin
 
 from pkm_post.freecad_gui.context_menu import add_switch
-from pkm_post.freecad_gui.workbench import ICONS
+from pkm_post.freecad_gui.icons import ICONS
 
 
 class View:

@@ -9,8 +9,9 @@ from typing import ClassVar
 import FreeCAD
 import FreeCADGui
 
+from pkm_post.freecad_gui.icons import ICONS
+
 _RESOURCES = Path(__file__).parents[2] / "resources"
-ICONS = _RESOURCES / "icons"
 TRANSLATIONS = _RESOURCES / "translations"
 
 

@@ -56,7 +56,8 @@ def scene(tmp_path_factory):
         assert result.exists(), ran.stdout + ran.stderr
         found = json.loads(result.read_text())
         report = found.pop("report view")
-        assert [step["exception"] for step in found.values() if "exception" in step] == []
+        exceptions = [step["exception"] for step in found.values() if "exception" in step]
+        assert not exceptions, "\n".join(exceptions)
         assert "Traceback" not in ran.stdout + ran.stderr + report, ran.stdout + ran.stderr + report
         return Scene(folder, found)
 

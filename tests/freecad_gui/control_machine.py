@@ -22,7 +22,7 @@ def newest():
 
 
 def messages():
-    messages = the_panel().face.messages
+    messages = the_panel().panel.messages
     return [messages.item(row).text() for row in range(messages.count())]
 
 
@@ -52,9 +52,9 @@ def read_again():
     def look():
         looks.append(True)
 
-    console.looked.connect(look)
+    console.refreshed.connect(look)
     until(lambda: looks)
-    console.looked.disconnect(look)
+    console.refreshed.disconnect(look)
 
 
 def press_in_box(choice):
@@ -97,12 +97,14 @@ def posted_file(name, *lines):
 
     source = FOLDER / name
     source.write_text("\n".join(("G21 G90 G54", *lines, "M30", "")), encoding="ascii")
-    return post_file(source, "example_6tps", FOLDER, tool_lengths={0: the_panel().face.connecting.taken_length}).program
+    return post_file(
+        source, "example_6tps", FOLDER, tool_lengths={0: the_panel().panel.connecting.taken_length}
+    ).program
 
 
 def connect_and_home():
     """Make a simulated machine and home it, until it can be jogged."""
-    face = the_panel().face
+    face = the_panel().panel
     click(face.connecting.train)
     until(face.homing.home.isEnabled)
     press_in_box("OK")

@@ -15,7 +15,7 @@ def words_are_those_of_the_rooms_below():
     from pkm_post.control.link.stopping import EMERGENCY_STEPS
     from pkm_post.control.numerical_control.homing import HomingPhase
     from pkm_post.control.numerical_control.interlocks import Interlock
-    from pkm_post.freecad_gui.control_panel import words
+    from pkm_post.freecad_gui.control_panel import texts as words
 
     return {
         "why": {why: why.value for why in Interlock} == words.WHY,
@@ -31,7 +31,7 @@ def panel_opens_without_a_connection():
     FreeCADGui.activateWorkbench("PkmPostWorkbench")
     FreeCAD.newDocument("Control")
     press("PKM_Control")
-    face = the_panel().face
+    face = the_panel().panel
     return {
         "activity": face.activity.text(),
         "stops": [button.isEnabled() for button in (face.stops.hold, face.stops.abort, face.stops.resume)],
@@ -44,7 +44,7 @@ def panel_opens_without_a_connection():
 @step
 def names_that_are_wrong_are_told():
     panel = the_panel()
-    page = panel.face.connecting
+    page = panel.panel.connecting
     page.port.setText("usb:1")
     click(page.connect)
     page.machine.setEditText("no_such_machine")
@@ -62,7 +62,7 @@ def a_simulated_machine_is_connected_to_and_homed():
     from pkm_post.control.numerical_control.homing import HomingPhase
 
     panel = the_panel()
-    face = panel.face
+    face = panel.panel
     click(face.connecting.train)
     until(lambda: newest().status is not None)
     until(lambda: face.homing.home.isEnabled())
@@ -87,7 +87,7 @@ def a_simulated_machine_is_connected_to_and_homed():
     found["homing"] = newest().homing.phase.name
     idle()
     settle()
-    found["told"] = face.homing.told.text()
+    found["told"] = face.homing.status.text()
     found["homed"] = [face.struts.item(row, 2).text() for row in range(6)]
     found["tip"] = list(newest().pose.tip)
     return found
@@ -95,7 +95,7 @@ def a_simulated_machine_is_connected_to_and_homed():
 
 def _jogged(name, sign=1):
     before = newest().pose
-    click(the_panel().face.jog.buttons[name, sign])
+    click(the_panel().panel.jog.buttons[name, sign])
     idle()
     after = newest().pose
     return before, after
@@ -103,7 +103,7 @@ def _jogged(name, sign=1):
 
 @step
 def jogs_move_the_tool_by_the_step():
-    face = the_panel().face
+    face = the_panel().panel
     face.jog.step.setProperty("rawValue", 2.0)
     face.jog.speed.setProperty("rawValue", 10.0)
     before, after = _jogged("X")
@@ -123,15 +123,15 @@ def jogs_move_the_tool_by_the_step():
 @step
 def a_jog_out_of_reach_sends_nothing():
     panel = the_panel()
-    panel.face.jog.step.setProperty("rawValue", 500.0)
+    panel.panel.jog.step.setProperty("rawValue", 500.0)
     executed = []
     control = panel.console.connection.worker._control
     before, execute = list(newest().status.commanded), control.execute
     control.execute = lambda plan: executed.append(plan) or execute(plan)
-    click(panel.face.jog.buttons["X", 1])
+    click(panel.panel.jog.buttons["X", 1])
     idle()
     control.execute = execute
-    panel.face.jog.step.setProperty("rawValue", 2.0)
+    panel.panel.jog.step.setProperty("rawValue", 2.0)
     moved = float(np.abs(newest().status.commanded - before).max())
     return {"told": messages()[-2:], "executed": len(executed), "moved": moved}
 
@@ -140,17 +140,17 @@ def a_jog_out_of_reach_sends_nothing():
 def a_stop_drops_a_jog_that_is_being_planned():
     panel = the_panel()
     before = newest().status.commanded
-    click(panel.face.jog.buttons["X", 1])
-    click(panel.face.stops.hold)
+    click(panel.panel.jog.buttons["X", 1])
+    click(panel.panel.stops.hold)
     idle()
     return {"moved": float(np.abs(newest().status.commanded - before).max()), "running": newest().status.running}
 
 
 @step
 def a_line_is_checked_and_run():
-    page = the_panel().face.mdi
+    page = the_panel().panel.mdi
     panel = the_panel()
-    panel.face.pages.setCurrentWidget(page)
+    panel.panel.pages.setCurrentWidget(page)
     before = list(newest().pose.tip)
     page.line.setText("G1 X0 Y3 F600")
     click(page.check)
@@ -179,7 +179,7 @@ def the_machine_of_the_document_follows():
 
     obj = create_machine(FreeCAD.ActiveDocument)
     FreeCAD.ActiveDocument.recompute()
-    face = the_panel().face
+    face = the_panel().panel
     tip = tuple(obj.Tip)
     face.follows.setChecked(True)
     read_again()

@@ -29,7 +29,7 @@ def a_simulated_machine_is_homed():
 @step
 def a_program_is_loaded_held_and_resumed():
     panel = the_panel()
-    face, console = panel.face, panel.console
+    face, console = panel.panel, panel.console
     face.pages.setCurrentWidget(face.program)
     lengths = newest().status.commanded
     before = len(messages())
@@ -74,7 +74,7 @@ def a_program_is_loaded_held_and_resumed():
 @step
 def it_starts_from_its_start_alone_and_is_brought_there():
     panel = the_panel()
-    face, page = panel.face, panel.face.program
+    face, page = panel.panel, panel.panel.program
     face.stops.override.setValue(100)
     until(lambda: newest().status.override == 100, 10)
     idle()
@@ -97,7 +97,7 @@ def it_starts_from_its_start_alone_and_is_brought_there():
 @step
 def it_runs_line_by_line():
     panel = the_panel()
-    face, console = panel.face, panel.console
+    face, console = panel.panel, panel.console
     page = face.program
     found = {"step before": page.step.isEnabled()}
     before = len(messages())
@@ -132,8 +132,8 @@ def it_runs_line_by_line():
 def _begin_to_move(sign):
     """Begin a jog of two seconds."""
     panel = the_panel()
-    panel.face.jog.step.setProperty("rawValue", 20.0)
-    click(panel.face.jog.buttons["Z", sign])
+    panel.panel.jog.step.setProperty("rawValue", 20.0)
+    click(panel.panel.jog.buttons["Z", sign])
     until(lambda: newest().status.running)
     read_again()
 
@@ -143,7 +143,7 @@ def a_program_goes_on_after_its_stop():
     from pkm_post.model import Event, EventKind
 
     panel = the_panel()
-    page, console = panel.face.program, panel.console
+    page, console = panel.panel.program, panel.console
     found = {"without stops": page.go_on.isEnabled()}
     page.read(program_file("stop.pmc", Event(PER_BLOCK, EventKind.STOP, 0.0)), uncertified=True)
     until(lambda: console.stops == 1 and not console.waits)
@@ -165,10 +165,10 @@ def a_program_goes_on_after_its_stop():
 def an_abort_ends_a_jog():
     panel, before = the_panel(), newest().pose.tip
     _begin_to_move(-1)
-    click(panel.face.stops.abort)
+    click(panel.panel.stops.abort)
     idle()
     left = 20.0 - float(np.linalg.norm(newest().pose.tip - before))
-    return {"left": left, "enabled": until(lambda: panel.face.jog.buttons["Z", 1].isEnabled())}
+    return {"left": left, "enabled": until(lambda: panel.panel.jog.buttons["Z", 1].isEnabled())}
 
 
 @step
@@ -179,8 +179,8 @@ def a_window_that_hangs_lets_a_jog_be_held():
     found = {"held": until(lambda: newest().status.held and newest().status.standing, 30)}
     panel.console._timer.start(100)
     read_again()
-    found["activity"] = panel.face.activity.text()
-    click(panel.face.stops.abort)
+    found["activity"] = panel.panel.activity.text()
+    click(panel.panel.stops.abort)
     idle()
     return found
 
@@ -215,14 +215,14 @@ def it_holds_the_machine_and_closes_then():
 
     until(is_closed, 60)
     found["held"], found["open"] = any(held), panel.isVisible()
-    found["activity"] = panel.face.activity.text()
+    found["activity"] = panel.panel.activity.text()
     return found
 
 
 @step
 def a_lost_link_shows_what_to_do():
     panel = the_panel()
-    face = panel.face
+    face = panel.panel
     connect_and_home()
     _begin_to_move(1)
     panel.console.connection._session._pause = 0.01  # between calls; a second of silence tells nothing new

@@ -31,8 +31,8 @@ def _editor():
 
 
 def _findings(editor):
-    until(lambda: not editor.body.checker.busy())
-    return [editor.body.findings.item(row).text() for row in range(editor.body.findings.count())]
+    until(lambda: not editor.widget.checker.busy())
+    return [editor.widget.findings.item(row).text() for row in range(editor.widget.findings.count())]
 
 
 @step
@@ -45,33 +45,33 @@ def program_is_opened_and_its_editor_shows_a_block():
     press("PKM_Editor", obj)
     editor = _editor()
     findings = _findings(editor)
-    editor.body.text.jump(7)
+    editor.widget.text.jump(7)
     FreeCADGui.SendMsgToActiveView("ViewFit")
     picture("editor.png")
     drawn = obj.ViewObject.RootNode.getNumChildren() - before
-    coloured = [block.layout().formats() for block, _ in editor.body.text.lines_in_sight()]
+    coloured = [block.layout().formats() for block, _ in editor.widget.text.lines_in_sight()]
     return {
         "moves": len([each for each in obj.Path.Commands if each.Name.startswith("G")]),
         "view": type(obj.ViewObject.Proxy).__name__,
         "title": editor.windowTitle(),
         "findings": findings,
-        "size": editor.body.size.text(),
+        "size": editor.widget.size.text(),
         "drawn": drawn,
         "coloured": sum(map(bool, coloured)),
-        "points": editor.body._shown._places.point.getNum(),
+        "points": editor.widget._shown._places.point.getNum(),
     }
 
 
 @step
 def editor_finds_planted_errors_while_they_are_typed():
     editor = _editor()
-    editor.body.text.selectAll()
-    editor.body.text.insertPlainText(PROGRAM.replace("X10 Y4", "X1..5 Y4").replace("G0 Z30\nM2", "G0 Q\nM2"))
+    editor.widget.text.selectAll()
+    editor.widget.text.insertPlainText(PROGRAM.replace("X10 Y4", "X1..5 Y4").replace("G0 Z30\nM2", "G0 Q\nM2"))
     findings = _findings(editor)
-    underlined = [each.cursor.selectedText() for each in editor.body.text.extraSelections()[1:]]
-    editor.body.findings.itemClicked.emit(editor.body.findings.item(1))
-    jumped = editor.body.text.current_line()
-    editor.body.text.undo()
+    underlined = [each.cursor.selectedText() for each in editor.widget.text.extraSelections()[1:]]
+    editor.widget.findings.itemClicked.emit(editor.widget.findings.item(1))
+    jumped = editor.widget.text.current_line()
+    editor.widget.text.undo()
     return {"findings": findings, "underlined": underlined, "jumped": jumped, "after_undo": _findings(editor)}
 
 
@@ -79,15 +79,15 @@ def editor_finds_planted_errors_while_they_are_typed():
 def editor_replaces_renumbers_and_saves():
     (obj,) = FreeCAD.ActiveDocument.Objects
     editor = _editor()
-    bar = editor.body.find_bar
+    bar = editor.widget.find_bar
     bar.begin()
     bar.wanted.setText("y4")
-    found = [bar.find_next() and editor.body.text.current_line() for _ in range(3)]
+    found = [bar.find_next() and editor.widget.text.current_line() for _ in range(3)]
     bar.instead.setText("Y8")
-    backwards = bar.find_previous() and editor.body.text.current_line()
+    backwards = bar.find_previous() and editor.widget.text.current_line()
     bar.replace_all()
-    replaced = editor.body.size.text()
-    editor.body.renumber()
+    replaced = editor.widget.size.text()
+    editor.widget.renumber()
     title = editor.windowTitle()
     saved = editor.save()
     text = Path(obj.File).read_text(encoding="ascii")
@@ -107,18 +107,18 @@ def editor_replaces_renumbers_and_saves():
 @step
 def editor_colours_the_lines_in_sight_of_a_large_file():
     editor = _editor()
-    before, large = editor.body.file, editor.body.file.with_name("large.apt")
+    before, large = editor.widget.file, editor.widget.file.with_name("large.apt")
     large.write_text("UNITS/MM\nFEDRAT/600,MMPM\n" + "GOTO/1,2,3\n" * 19998, encoding="ascii")
     editor.open_file(large)
-    until(lambda: not editor.body.busy())
-    last = editor.body.text.document().findBlockByNumber(19999)
-    until(lambda: editor.body.text.document().firstBlock().layout().formats())
+    until(lambda: not editor.widget.busy())
+    last = editor.widget.text.document().findBlockByNumber(19999)
+    until(lambda: editor.widget.text.document().firstBlock().layout().formats())
     out_of_sight = len(last.layout().formats())
-    editor.body.text.jump(20000)
+    editor.widget.text.jump(20000)
     until(lambda: last.layout().formats())
     in_sight = len(last.layout().formats())
-    until(lambda: not editor.body.checker.busy())
-    told = {"out_of_sight": out_of_sight, "in_sight": in_sight, "size": editor.body.size.text()}
+    until(lambda: not editor.widget.checker.busy())
+    told = {"out_of_sight": out_of_sight, "in_sight": in_sight, "size": editor.widget.size.text()}
     told["back"] = editor.open_file(before)
     return told
 
@@ -144,7 +144,7 @@ def _widest_gap(call, done):
 @step
 def editor_leaves_the_window_its_turns_in_100000_lines():
     editor = _editor()
-    body, before, large = editor.body, editor.body.file, editor.body.file.with_name("long.ngc")
+    body, before, large = editor.widget, editor.widget.file, editor.widget.file.with_name("long.ngc")
     heading = ["G21 G90 G17", "T1 M6", "S9000 M3", "G0 X0 Y0 Z30", "G1 Z5 F600"]
     moves = [f"G1 X{row % 500 / 10:.1f} Y{row // 500 / 10:.1f}" for row in range(99995)]
     large.write_text("\n".join([*heading, *moves]), encoding="ascii")
@@ -203,7 +203,7 @@ END-OF-PATH
 @step
 def editor_asks_what_cl_data_leaves_open():
     editor = _editor()
-    reading, before, file = editor.body.reading, editor.body.file, editor.body.file.with_name("contour.cls")
+    reading, before, file = editor.widget.reading, editor.widget.file, editor.widget.file.with_name("contour.cls")
     file.write_text(CONTOUR, encoding="ascii")
     offered = [[reading.axis_words.isHidden(), reading.contour_data.isHidden()]]
     editor.open_file(file)
@@ -244,7 +244,7 @@ FINI
 @step
 def editor_asks_who_wrote_cl_data():
     editor = _editor()
-    reading, before, file = editor.body.reading, editor.body.file, editor.body.file.with_name("cycle.apt")
+    reading, before, file = editor.widget.reading, editor.widget.file, editor.widget.file.with_name("cycle.apt")
     file.write_text(CYCLE, encoding="ascii")
     editor.open_file(file)
     told = [_codes(editor)]
@@ -270,10 +270,10 @@ def _codes(editor):
 @step
 def editor_asks_whether_a_program_may_have_no_end():
     editor = _editor()
-    reading, before, file = editor.body.reading, editor.body.file, editor.body.file.with_name("cut.ngc")
+    reading, before, file = editor.widget.reading, editor.widget.file, editor.widget.file.with_name("cut.ngc")
     file.write_text(PROGRAM.replace("M2\n", ""), encoding="ascii")
     editor.open_file(file)
-    told, size = [_codes(editor)], editor.body.size.text()
+    told, size = [_codes(editor)], editor.widget.size.text()
     reading.allow_open_end.setChecked(True)
     told.append(_codes(editor))
     editor.open_file(before)
@@ -283,13 +283,13 @@ def editor_asks_whether_a_program_may_have_no_end():
 @step
 def editor_opens_what_is_dropped():
     editor = _editor()
-    before, dropped = editor.body.file, editor.body.file.with_name("dropped.ngc")
+    before, dropped = editor.widget.file, editor.widget.file.with_name("dropped.ngc")
     dropped.write_text("G0 X1 Y2 Z3\n", encoding="ascii")
     data = QtCore.QMimeData()
     data.setUrls([QtCore.QUrl.fromLocalFile(str(dropped.with_name(name))) for name in ("a.png", "dropped.ngc")])
-    _drop(editor.body.text.viewport(), data)
+    _drop(editor.widget.text.viewport(), data)
     settle()
-    text = editor.body.text.toPlainText()
+    text = editor.widget.text.toPlainText()
     editor.open_file(before)
     return {"text": text, "keys": sorted(action.shortcut().toString() for action in editor.actions())}
 
@@ -313,7 +313,7 @@ def editor_decodes_and_posts():
     messages, ended = [], []
     editor.posting.ended.connect(lambda: ended.append(True))
     answer(messages)
-    editor.posting.post(editor.body.file, editor.body.reading.chosen(), "--work-offset=0,0,250 --tool-length 1=120")
+    editor.posting.post(editor.widget.file, editor.widget.reading.chosen(), "--work-offset=0,0,250 --tool-length 1=120")
     until(lambda: ended, 60)
     files = sorted(file.name for file in FOLDER.glob("program*"))
     FreeCAD.closeDocument(program.Name)

@@ -15,7 +15,7 @@ class Panel:
 
     def __init__(self):
         from pkm_post.freecad_gui.gauge_table import GaugeTable
-        from pkm_post.freecad_gui.post_choices import PostChoices
+        from pkm_post.freecad_gui.post_fields import PostChoices
         from pkm_post.freecad_gui.post_outcome import PostOutcome
         from pkm_post.freecad_gui.post_panel import NAME
 

@@ -140,7 +140,7 @@ def program_has_a_menu():
     document.recompute()
     told = {"texts": _texts(part), "before": len(document.getObject("Job").Operations.Group)}
     _choose(part, "Open in the editor")
-    told["opened"] = [dock.body.file.name for dock in _docks("PKM_Editor")]
+    told["opened"] = [dock.widget.file.name for dock in _docks("PKM_Editor")]
     _choose(part, "Decode into a job")
     told["after"] = len(document.getObject("Job").Operations.Group)
     return told

@@ -20,7 +20,7 @@ class Panel:
     """The panel that is open, by its widgets."""
 
     def __init__(self):
-        from pkm_post.freecad_gui.post_choices import PostChoices
+        from pkm_post.freecad_gui.post_fields import PostChoices
         from pkm_post.freecad_gui.post_outcome import PostOutcome
         from pkm_post.freecad_gui.post_panel import NAME
 
@@ -215,7 +215,7 @@ def cancelled_job_leaves_nothing():
 @step
 def editor_asks_in_the_same_fields():
     from pkm_post.freecad_gui.editor import open_editor
-    from pkm_post.freecad_gui.post_choices import PostChoices
+    from pkm_post.freecad_gui.post_fields import PostChoices
 
     file, ended, told = FOLDER / "lines" / "lines.ngc", [], []
     file.parent.mkdir()

@@ -51,7 +51,7 @@ def simulation_from_its_button():
 def player_plays():
     player = _player()
     machine = FreeCAD.getDocument("hexapod").getObject("Machine")
-    told = {"told": player.controls.told()}
+    told = {"told": player.controls.text()}
     player.controls.factor.setCurrentText("2x")
     player.toggle()
     end = time.monotonic() + 1.0
@@ -82,7 +82,7 @@ def override_scales_time_and_speeds():
     settle()
     told = {"pace": player.controls.pace(), "curves_change": player.widget().plot.grab().toImage() != before}
     player.controls.override.setValue(200)
-    told["told"] = player.controls.told()
+    told["told"] = player.controls.text()
     told["limit"] = player.simulation.machine.strut_speed
     told["greatest"] = float(player.simulation.greatest_speeds.max())
     player.controls.override.setValue(100)

@@ -356,7 +356,7 @@ def motion_is_played():
 
 @step
 def program_is_posted():
-    from pkm_post.freecad_gui.post_choices import PostChoices
+    from pkm_post.freecad_gui.post_fields import PostChoices
     from pkm_post.freecad_gui.post_outcome import PostOutcome
 
     document().save()

@@ -91,15 +91,15 @@ class ConnectPage(QtWidgets.QWidget):
     def _begin(self, port: str | None) -> bool:
         name, self.taken_length = self.machine.currentText().strip(), self.tool_length.property("rawValue")
         if self.taken_length <= 0.0:
-            self._console.told.emit(translate("ControlPanel", "The length of the tool has to be above zero"), True)
+            self._console.message.emit(translate("ControlPanel", "The length of the tool has to be above zero"), True)
             return False
         try:
-            target, told = connection_target(port, name)
+            target, diagnostics = connection_target(port, name)
         except ValueError as fault:  # invalid port name
-            self._console.told.emit(str(fault), True)
+            self._console.message.emit(str(fault), True)
             return False
-        for each in told:
-            self._console.told.emit(str(each), target is None)
+        for each in diagnostics:
+            self._console.message.emit(str(each), target is None)
         if target is None:
             return False
         FreeCAD.ParamGet(GROUP).SetString(_MACHINE, name)

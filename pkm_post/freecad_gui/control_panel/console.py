@@ -29,7 +29,7 @@ from pkm_post.control import (
     connect,
     program_stops,
 )
-from pkm_post.freecad_gui.control_panel.beside import Beside, Then
+from pkm_post.freecad_gui.background import CallQueue, Then
 from pkm_post.model import Diagnostic, Refused
 
 translate = FreeCAD.Qt.translate
@@ -51,12 +51,12 @@ class Console(QtCore.QObject):
         stops: number of stops (M0, M1) after which it can continue.
         stepping: whether its blocks are in use for single block.
         progress: its loaded lines, and the total.
-        beside: runs what needs no controller.
+        calls: runs what needs no controller.
     """
 
-    looked = QtCore.Signal()
+    refreshed = QtCore.Signal()
     """Emitted ten times a second, and on changes."""
-    told = QtCore.Signal(str, bool)
+    message = QtCore.Signal(str, bool)
     """A text for the user, and whether it reports a fault."""
 
     def __init__(self, parent: QtCore.QObject) -> None:
@@ -64,8 +64,8 @@ class Console(QtCore.QObject):
         self.connection: Connection | None = None
         self.take_job(None)
         self._under_way: list[tuple[Future[Any], Then | None]] = []
-        self.beside = Beside(self, lambda fault: self.told.emit(str(fault), True), _TOLD)
-        self.beside.changed.connect(self.looked)
+        self.calls = CallQueue(self, lambda fault: self.message.emit(str(fault), True), _TOLD)
+        self.calls.changed.connect(self.refreshed)
         self._cancelled, self._homing, self._is_wanted = threading.Event(), False, True
         self._timer = QtCore.QTimer(self)
         self._timer.timeout.connect(self._look)
@@ -79,7 +79,7 @@ class Console(QtCore.QObject):
     @property
     def waits(self) -> bool:
         """Whether a call is running beside the window: connecting, disconnecting, reading a file."""
-        return self.beside.is_busy
+        return self.calls.is_busy
 
     @property
     def has_orders(self) -> bool:
@@ -106,7 +106,7 @@ class Console(QtCore.QObject):
     def connect_to(self, target: ConnectionTarget, tool_length: float) -> None:
         """Connect beside the window; mm."""
         self._is_wanted = True
-        self.beside.do(lambda: connect(target, tool_length), self._connected)
+        self.calls.do(lambda: connect(target, tool_length), self._connected)
 
     def _connected(self, connection: Connection) -> None:
         self.connection = connection
@@ -123,13 +123,13 @@ class Console(QtCore.QObject):
         self._under_way, self._homing = [], False
         self.take_job(None)
         if connection is not None:
-            self.beside.do(connection.close, lambda _ended: None)
+            self.calls.do(connection.close, lambda _ended: None)
 
     def order(self, call: Call, then: Then | None = None) -> None:
         """Queue an order for the control; ``then`` gets the result, unless a stop intervenes."""
         assert self.connection is not None
         self._under_way.append((self.connection.worker.submit(call), then))
-        self.looked.emit()
+        self.refreshed.emit()
 
     def stop(self, call: Call) -> None:
         """Run a stop next: waiting orders are cancelled, and so are their continuations."""
@@ -137,7 +137,7 @@ class Console(QtCore.QObject):
         self._cancelled.set()
         self._under_way = [(future, None) for future, _ in self._under_way]
         self._under_way.append((self.connection.worker.submit(call, urgent=True), None))
-        self.looked.emit()
+        self.refreshed.emit()
 
     def abort(self, at_once: bool) -> None:
         """Abort the program; a homing is no longer monitored."""
@@ -161,9 +161,9 @@ class Console(QtCore.QObject):
         """
         self.order(planning, lambda found: self._planned(*found, then, sends))
 
-    def _planned(self, plan: Plan | None, told: tuple[Diagnostic, ...], then: Then, sends: bool) -> None:
-        for each in told:
-            self.told.emit(str(each), plan is None)
+    def _planned(self, plan: Plan | None, diagnostics: tuple[Diagnostic, ...], then: Then, sends: bool) -> None:
+        for each in diagnostics:
+            self.message.emit(str(each), plan is None)
         then(plan)
         if plan is not None and sends:
             self.order(lambda control: control.execute(plan))
@@ -186,7 +186,7 @@ class Console(QtCore.QObject):
     def _has_loaded(self, loaded: Any) -> None:
         self.loaded = True
         text = translate("ControlPanel", "Program {}: {} lines, listed back as sent")
-        self.told.emit(text.format(loaded.program, loaded.lines), False)
+        self.message.emit(text.format(loaded.program, loaded.lines), False)
 
     def take_job(self, job: Job | None) -> None:
         """Replace the opened program, or close it; blocks of the previous one are no longer next."""
@@ -199,21 +199,21 @@ class Console(QtCore.QObject):
         if self.connection is not None:
             self.connection.worker.attend()
         if self.connection is not None and self.connection.worker.failure is not None:
-            told = translate("ControlPanel", "An error of this program ended the connection. THE MACHINE GOES ON.")
-            self.told.emit(told, True)
+            text = translate("ControlPanel", "An error of this program ended the connection. THE MACHINE GOES ON.")
+            self.message.emit(text, True)
             self.leave()
         while ended := next((each for each in self._under_way if each[0].done()), None):
             self._under_way.remove(ended)
             self._end(*ended)
-        self.looked.emit()
+        self.refreshed.emit()
 
     def _end(self, future: Future[Any], then: Then | None) -> None:
         if future.cancelled():
-            self.told.emit(translate("ControlPanel", "Not carried out: a stop came first"), False)
+            self.message.emit(translate("ControlPanel", "Not carried out: a stop came first"), False)
             return
         fault = future.exception()
         if isinstance(fault, _TOLD):
-            self.told.emit(str(fault), True)
+            self.message.emit(str(fault), True)
         elif fault is not None:
             raise fault
         elif then is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Dock: numerical control as a window beside the 3D view, one per main window.
+"""Dock: numerical control as a docked window, one per main window.
 
 While a machine moves, neither the dock nor FreeCAD closes before the user has decided what happens to it.
 """
@@ -15,7 +15,7 @@ from PySide import QtCore, QtWidgets
 
 from pkm_post.control import may_move
 from pkm_post.freecad_gui.control_panel.console import Console
-from pkm_post.freecad_gui.control_panel.face import Face
+from pkm_post.freecad_gui.control_panel.panel import PanelContent
 
 translate = FreeCAD.Qt.translate
 
@@ -27,19 +27,19 @@ class ControlPanel(QtWidgets.QDockWidget):
 
     Attributes:
         console: connection and orders.
-        face: the content.
+        panel: the content.
     """
 
     def __init__(self, window: QtWidgets.QMainWindow) -> None:
         super().__init__(translate("ControlPanel", "Numerical control"), window)
         self.setObjectName(NAME)
         self.console = Console(self)
-        self.face = Face(self.console, self.leave)
-        self.setWidget(self.face)
+        self.panel = PanelContent(self.console, self.leave)
+        self.setWidget(self.panel)
         self._when_at_rest: Callable[[], Any] | None = None
-        self.console.looked.connect(self._close_at_rest)
+        self.console.refreshed.connect(self._close_at_rest)
         window.installEventFilter(self)
-        self.face.refresh()
+        self.panel.refresh()
 
     def leave(self) -> None:
         """End the connection, unless the user wants to stay with a moving machine."""

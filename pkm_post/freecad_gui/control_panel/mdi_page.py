@@ -14,7 +14,7 @@ from PySide import QtCore, QtWidgets
 from pkm_post.control import ControlState, Interlock, MdiSettings, OperatorCommand, Plan, blocking_interlock
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
-from pkm_post.freecad_gui.control_panel.readout import angle_text, length_text
+from pkm_post.freecad_gui.control_panel.dro import angle_text, length_text
 from pkm_post.reading import AXIS_WORDS
 
 translate = FreeCAD.Qt.translate
@@ -113,5 +113,5 @@ class MdiPage(QtWidgets.QWidget):
             return
         tip = ", ".join(f"{name} {length_text(float(value))}" for name, value in zip("XYZ", plan.end.tip, strict=True))
         axis = " ".join(f"{name}{value:.5f}" for name, value in zip("IJK", plan.end.axis, strict=True))
-        told = translate("ControlPanel", "To {}, axis {}, spin {} in the machine frame; {:.1f} s")
-        self.outcome.setText(told.format(tip, axis, angle_text(plan.end.spin), plan.seconds))
+        text = translate("ControlPanel", "To {}, axis {}, spin {} in the machine frame; {:.1f} s")
+        self.outcome.setText(text.format(tip, axis, angle_text(plan.end.spin), plan.seconds))

@@ -104,11 +104,11 @@ class ProgramPage(QtWidgets.QWidget):
         def reading() -> tuple[Job | None, tuple[Diagnostic, ...]]:
             return job_to_load(file, target.machine, target.settings, uncertified)
 
-        self._console.beside.do(reading, lambda read: self._take(file, *read))
+        self._console.calls.do(reading, lambda read: self._take(file, *read))
 
-    def _take(self, file: Path, job: Job | None, told: tuple[Diagnostic, ...]) -> None:
-        for each in told:
-            self._console.told.emit(str(each), job is None)
+    def _take(self, file: Path, job: Job | None, diagnostics: tuple[Diagnostic, ...]) -> None:
+        for each in diagnostics:
+            self._console.message.emit(str(each), job is None)
         if job is not None and self._console.connection is not None:
             self._console.take_job(job)
             self._file = file
@@ -123,7 +123,7 @@ class ProgramPage(QtWidgets.QWidget):
 
     def _planned(self, plan: Plan | None) -> None:
         if plan is None:
-            self._console.told.emit(translate("ControlPanel", "Not sent: there is no way to the start"), True)
+            self._console.message.emit(translate("ControlPanel", "Not sent: there is no way to the start"), True)
 
     def _start(self) -> None:
         job = self._console.job
@@ -138,24 +138,24 @@ class ProgramPage(QtWidgets.QWidget):
         file, connection, at = self._file, self._console.connection, self.block.value()
         assert connection is not None
         machine = connection.target.machine
-        self._console.beside.do(lambda: read_blocks(file, machine), lambda found: self._take_blocks(*found, at))
+        self._console.calls.do(lambda: read_blocks(file, machine), lambda found: self._take_blocks(*found, at))
 
-    def _take_blocks(self, blocks: ProgramBlocks | None, told: tuple[Diagnostic, ...], at: int) -> None:
-        for each in told:
-            self._console.told.emit(str(each), blocks is None)
+    def _take_blocks(self, blocks: ProgramBlocks | None, diagnostics: tuple[Diagnostic, ...], at: int) -> None:
+        for each in diagnostics:
+            self._console.message.emit(str(each), blocks is None)
         if blocks is not None and self._console.connection is not None:
             first = min(at, len(blocks))
-            opened = lambda count: self._opened(count, first)  # noqa: E731 - with what was asked for
+            opened = lambda count: self._opened(count, first)  # noqa: E731
             self._console.order(lambda control: control.open_blocks(blocks, first), opened)
 
     def _opened(self, count: int, first: int) -> None:
         self._console.stepping = True
-        told = translate("ControlPanel", "The program has {} blocks; block {} comes next")
-        self._console.told.emit(told.format(count, first), False)
+        text = translate("ControlPanel", "The program has {} blocks; block {} comes next")
+        self._console.message.emit(text.format(count, first), False)
 
     def _step(self) -> None:
         self._console.move(lambda control: control.plan_step(), self._stepped)
 
     def _stepped(self, plan: Plan | None) -> None:
         if plan is None:
-            self._console.told.emit(translate("ControlPanel", "Not sent: the block is refused"), True)
+            self._console.message.emit(translate("ControlPanel", "Not sent: the block is refused"), True)

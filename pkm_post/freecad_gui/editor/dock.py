@@ -1,24 +1,23 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Dock: the part program editor as a window beside the 3D view, one per main window.
+"""Dock: the part program editor as a docked window, one per main window.
 
 Takes a file, or that of a program object; saves the edited text, decodes it into a job, or posts it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import FreeCAD
 import FreeCADGui
-from PySide import QtCore, QtWidgets
+from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app.document import is_program
-from pkm_post.freecad_gui.editor import linked
-from pkm_post.freecad_gui.editor.body import Body
-from pkm_post.freecad_gui.editor.file_drop import FileDrop
+from pkm_post.freecad_gui.editor import program_link
+from pkm_post.freecad_gui.editor.editor_widget import EditorWidget, FileDrop
 from pkm_post.freecad_gui.editor.posting import Posting
-from pkm_post.freecad_gui.editor.tool_bar import tool_bar
 from pkm_post.model import Refused
 from pkm_post.reading import SUFFIXES, TextFile, is_part_program
 from pkm_post.system import memory_guard, staged
@@ -41,16 +40,16 @@ class ProgramEditor(QtWidgets.QDockWidget):
         self.setObjectName(NAME)
         self._content = TextFile()
         inside = QtWidgets.QWidget(self)
-        self.body, self.posting = Body(inside), Posting(self)
+        self.widget, self.posting = EditorWidget(inside), Posting(self)
         layout = QtWidgets.QVBoxLayout(inside)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(tool_bar(self, inside))
-        layout.addWidget(self.body)
+        layout.addWidget(self.widget)
         self.setWidget(inside)
-        self._document = self.body.text.document()
+        self._document = self.widget.text.document()
         self._document.modificationChanged.connect(self._name_window)
         window.installEventFilter(self)
-        drop = FileDrop(self, self, self.body.text, self.body.text.viewport())
+        drop = FileDrop(self, self, self.widget.text, self.widget.text.viewport())
         # children get drags first; queued, since a question to the user would block the source program
         drop.dropped.connect(self.open_file, QtCore.Qt.ConnectionType.QueuedConnection)
         self._name_window()
@@ -72,14 +71,14 @@ class ProgramEditor(QtWidgets.QDockWidget):
         except OSError as fault:
             QtWidgets.QMessageBox.warning(self, translate("PKM_Editor", "Open"), str(fault))
             return False
-        self.body.text.edits.load(self._content.text)
-        self.body.set_file(file.absolute())
+        self.widget.text.edits.load(self._content.text)
+        self.widget.set_file(file.absolute())
         self._name_window()
         return True
 
     def save(self) -> bool:
         """Write the text to its file, and update its object; return whether it was written."""
-        return self.save_as() if self.body.file is None else self._write(self.body.file)
+        return self.save_as() if self.widget.file is None else self._write(self.widget.file)
 
     def save_as(self) -> bool:
         """Write the text to a file that the user chooses; return whether it was written."""
@@ -91,32 +90,32 @@ class ProgramEditor(QtWidgets.QDockWidget):
         return self._write(Path(name) if is_part_program(Path(name)) else Path(f"{name}.ngc"))
 
     def _write(self, file: Path) -> bool:
-        self.body.text.edits.finish()
+        self.widget.text.edits.finish()
         try:
             with staged(file.parent) as folder:
-                (folder / file.name).write_bytes(self._content.encode(self.body.text.toPlainText()))
+                (folder / file.name).write_bytes(self._content.encode(self.widget.text.toPlainText()))
         except OSError as fault:
             QtWidgets.QMessageBox.warning(self, translate("PKM_Editor", "Save"), str(fault))
             return False
-        if file != self.body.file:
-            self.body.set_file(file.absolute())
+        if file != self.widget.file:
+            self.widget.set_file(file.absolute())
         self._document.setModified(False)
         self._name_window()
-        self.body.follow()
+        self.widget.follow()
         return True
 
     def decode(self) -> Any:
         """Convert the program to an operation of a CAM job; return the operation, or None on failure."""
         title = translate("PKM_Editor", "Decode into a job")
-        job = linked.chosen_job(self, title)
+        job = program_link.chosen_job(self, title)
         if job is None:
             QtWidgets.QMessageBox.warning(
                 self, title, translate("PKM_Editor", "No CAM job of the active document was chosen.")
             )
         elif self._saved():
             try:
-                with memory_guard(str(self.body.file)):
-                    return linked.decode_file(self.body.file, self.body.reading.chosen(), job)
+                with memory_guard(str(self.widget.file)):
+                    return program_link.decode_file(self.widget.file, self.widget.reading.chosen(), job)
             except Refused as refused:
                 QtWidgets.QMessageBox.warning(self, title, str(refused))
         return None
@@ -124,7 +123,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
     def post(self) -> None:
         """Write a certified motion program beside the file."""
         if self._saved():
-            self.posting.ask_and_post(self.body.file, self.body.reading.chosen())
+            self.posting.ask_and_post(self.widget.file, self.widget.reading.chosen())
 
     def eventFilter(self, watched: QtCore.QObject, event: QtCore.QEvent) -> bool:
         """Called by Qt: FreeCAD does not end while changes would be lost."""
@@ -134,7 +133,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
         return False
 
     def _saved(self) -> bool:
-        is_saved = self.body.file is not None and not self._document.isModified()
+        is_saved = self.widget.file is not None and not self._document.isModified()
         return is_saved or self.save()
 
     def _may_leave(self) -> bool:
@@ -148,11 +147,11 @@ class ProgramEditor(QtWidgets.QDockWidget):
         return self.save() if answer == buttons.Save else answer == buttons.Discard
 
     def _folder(self) -> str:
-        return str(self.body.file.parent) if self.body.file else ""
+        return str(self.widget.file.parent) if self.widget.file else ""
 
     def _name_window(self, *changed: bool) -> None:
         star = " *" if self._document.isModified() else ""
-        self.setWindowTitle(f"{Path(self.body.name()).name}{star} - PKM Post")
+        self.setWindowTitle(f"{Path(self.widget.name()).name}{star} - PKM Post")
 
 
 def open_editor(item: Any = None) -> ProgramEditor:
@@ -164,7 +163,7 @@ def open_editor(item: Any = None) -> ProgramEditor:
         window.addDockWidget(QtCore.Qt.DockWidgetArea.RightDockWidgetArea, editor)
     editor.show()
     editor.raise_()
-    if item is not None and is_program(item) and editor.body.file != Path(item.File):
+    if item is not None and is_program(item) and editor.widget.file != Path(item.File):
         editor.open_file(Path(item.File))
     return editor
 
@@ -172,3 +171,59 @@ def open_editor(item: Any = None) -> ProgramEditor:
 def _name_filter() -> str:
     kind = translate("PKM_Editor", "Part programs")  # lupdate does not read f-strings
     return f"{kind} ({' '.join(f'*{suffix}' for suffix in SUFFIXES)})"
+
+
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+_KEYS = QtGui.QKeySequence.StandardKey
+_NO_KEY = _KEYS.UnknownKey
+
+_BUTTONS: tuple[tuple[str, str, Any, Callable[[ProgramEditor], Any]], ...] = (
+    (QT_TRANSLATE_NOOP("PKM_Editor", "Open"), QT_TRANSLATE_NOOP("PKM_Editor", "Open a part program"),
+     _KEYS.Open, lambda editor: editor.ask_and_open()),
+    (QT_TRANSLATE_NOOP("PKM_Editor", "Save"), QT_TRANSLATE_NOOP("PKM_Editor", "Save the part program"),
+     _KEYS.Save, lambda editor: editor.save()),
+    (QT_TRANSLATE_NOOP("PKM_Editor", "Save as"), QT_TRANSLATE_NOOP("PKM_Editor", "Save under another name"),
+     _KEYS.SaveAs, lambda editor: editor.save_as()),
+    (QT_TRANSLATE_NOOP("PKM_Editor", "Find"), QT_TRANSLATE_NOOP("PKM_Editor", "Find and replace"),
+     _KEYS.Find, lambda editor: editor.widget.find_bar.begin()),
+    (QT_TRANSLATE_NOOP("PKM_Editor", "Renumber"), QT_TRANSLATE_NOOP("PKM_Editor", "Give each block a line number"),
+     _NO_KEY, lambda editor: editor.widget.renumber()),
+    (QT_TRANSLATE_NOOP("PKM_Editor", "Decode"), QT_TRANSLATE_NOOP("PKM_Editor", "Make it an operation of a CAM job"),
+     _NO_KEY, lambda editor: editor.decode()),
+    (QT_TRANSLATE_NOOP("PKM_Editor", "Post"), QT_TRANSLATE_NOOP("PKM_Editor", "Write a certified motion program"),
+     _NO_KEY, lambda editor: editor.post()),
+)  # fmt: skip
+"""Text, tooltip, shortcut and action of each button."""
+_SHORTCUTS: tuple[tuple[Any, Callable[[ProgramEditor], Any]], ...] = (
+    (_KEYS.FindNext, lambda editor: editor.widget.find_bar.find_next()),
+    (_KEYS.FindPrevious, lambda editor: editor.widget.find_bar.find_previous()),
+    (_KEYS.Replace, lambda editor: editor.widget.find_bar.begin()),
+)
+"""Actions without a button."""
+
+
+def tool_bar(editor: ProgramEditor, parent: QtWidgets.QWidget) -> QtWidgets.QToolBar:
+    """Create the bar of an editor that has its body; this also adds the actions to the editor.
+
+    Args:
+        editor: target of the actions.
+        parent: parent widget of the bar.
+    """
+    bar = QtWidgets.QToolBar(parent)
+    for text, tip, key, call in _BUTTONS:
+        action = bar.addAction(translate("PKM_Editor", text))
+        _add(editor, action, key, call)
+        tip, shortcut = translate("PKM_Editor", tip), action.shortcut().toString()
+        action.setToolTip(f"{tip} ({shortcut})" if shortcut else tip)
+    for key, call in _SHORTCUTS:
+        _add(editor, QtGui.QAction(editor), key, call)
+    bar.addWidget(editor.widget.reading)
+    return bar
+
+
+def _add(editor: ProgramEditor, action: QtGui.QAction, key: Any, call: Callable[[ProgramEditor], Any]) -> None:
+    action.setShortcut(QtGui.QKeySequence(key))
+    action.setShortcutContext(QtCore.Qt.ShortcutContext.WidgetWithChildrenShortcut)
+    action.triggered.connect(lambda checked=False: call(editor))
+    editor.addAction(action)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Posting: converts the file of an editor to a certified motion program, beside the window.
+"""Posting: converts the file of an editor to a certified motion program, in the background.
 
 The user's choices come from the fields of the post panel, and are stored in the preferences.
 """
@@ -17,14 +17,14 @@ from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_app.arguments import parse_arguments
 from pkm_post.freecad_app.progress import Stopped
-from pkm_post.freecad_gui.post_choices import PostChoices
-from pkm_post.freecad_gui.post_steps import step_text
+from pkm_post.freecad_gui.background import BackgroundCall
+from pkm_post.freecad_gui.post_fields import PostChoices
+from pkm_post.freecad_gui.post_outcome import step_text
 from pkm_post.freecad_gui.preferences import GROUP, default_arguments
-from pkm_post.freecad_gui.task import Task
 from pkm_post.model import Place, Refused
 from pkm_post.options import explicit_values, part_program_from
 from pkm_post.posting import post_file
-from pkm_post.reading import ReadingOptions
+from pkm_post.reading import AXIS_WORDS, DIALECTS, DWELL_UNITS, UNITS, Language, ReadingOptions
 
 translate = FreeCAD.Qt.translate
 
@@ -41,7 +41,7 @@ class Posting(QtCore.QObject):
         super().__init__(window)
         self._window = window
         self._title = translate("PKM_Editor", "Post program")
-        self._task: Task | None = None
+        self._task: BackgroundCall | None = None
         self._progress: Any = None
 
     def ask_and_post(self, file: Path, reading: ReadingOptions) -> None:
@@ -69,12 +69,12 @@ class Posting(QtCore.QObject):
             return
         out, given = folder or file.parent, explicit_values(chosen)
         call = partial(post_file, file, out=out, reading=_with_typed(reading, chosen), arguments=given)
-        task = Task(lambda: call(progress=task.tell), self)
+        task = BackgroundCall(lambda: call(progress=task.report), self)
         self._task, self._progress = task, self._bar(task)
         task.finished.connect(self._end)
         task.start()
 
-    def _bar(self, task: Task) -> Any:
+    def _bar(self, task: BackgroundCall) -> Any:
         """A window with a progress bar and a button that stops the task."""
         cancel = translate("PKM_Editor", "Cancel")
         bar = QtWidgets.QProgressDialog(self._title, cancel, 0, _PER_MILLE, self._window)
@@ -99,12 +99,12 @@ class Posting(QtCore.QObject):
         except Refused as refused:
             QtWidgets.QMessageBox.warning(self._window, self._title, str(refused))
         except Stopped:
-            told = translate("PKM_Editor", "Stopped. Nothing was written.")
-            QtWidgets.QMessageBox.information(self._window, self._title, told)
+            text = translate("PKM_Editor", "Stopped. Nothing was written.")
+            QtWidgets.QMessageBox.information(self._window, self._title, text)
         else:
             written = "\n".join(str(path) for path in (*posted.files, *posted.diagnostics))
-            told = translate("PKM_Editor", "Certified and written:")
-            QtWidgets.QMessageBox.information(self._window, self._title, f"{told}\n{written}")
+            text = translate("PKM_Editor", "Certified and written:")
+            QtWidgets.QMessageBox.information(self._window, self._title, f"{text}\n{written}")
         finally:
             task.deleteLater()
             self.ended.emit()
@@ -143,3 +143,86 @@ class _Dialog(QtWidgets.QDialog):
         """Show the dialog; return whether the user accepted it."""
         show = getattr(self, "exec", None) or self.exec_  # Qt 6, Qt 5
         return bool(show())
+
+
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+_CONTOUR_DATA: dict[str | None, str] = {
+    None: QT_TRANSLATE_NOOP("PKM_Editor", "CUTCOM as the file says"),
+    "centre": QT_TRANSLATE_NOOP("PKM_Editor", "CUTCOM on the tool centre"),
+    "contour": QT_TRANSLATE_NOOP("PKM_Editor", "CUTCOM on the contour"),
+}
+
+
+class ReadingFields(QtWidgets.QWidget):
+    """The fields, side by side."""
+
+    changed = QtCore.Signal()
+
+    def __init__(self, parent: QtWidgets.QWidget) -> None:
+        super().__init__(parent)
+        self.axis_words, self.dwell_unit = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
+        self.unit, self.contour_data = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
+        self.cl_dialect = QtWidgets.QComboBox(self)
+        self.allow_open_end = QtWidgets.QCheckBox(translate("PKM_Editor", "Open end allowed"), self)
+        # Seldom needed, and chosen in the properties of the program object: here only stored.
+        self._cycle_values: tuple[str, ...] = ()
+        self.axis_words.addItems(list(AXIS_WORDS))
+        self.dwell_unit.addItems(list(DWELL_UNITS))
+        self.unit.addItem(translate("PKM_Editor", "Unit as the file says"), None)
+        for name in UNITS:
+            self.unit.addItem(name, name)
+        for choice, text in _CONTOUR_DATA.items():
+            self.contour_data.addItem(translate("PKM_Editor", text), choice)
+        self.cl_dialect.addItem(translate("PKM_Editor", "CAM system as the file says"), None)
+        for name, dialect in DIALECTS.items():
+            self.cl_dialect.addItem(dialect.title, name)
+        self.axis_words.setToolTip(translate("PKM_Editor", "How the G-code says the tool axis"))
+        self.dwell_unit.setToolTip(translate("PKM_Editor", "The unit of dwells of the G-code"))
+        self.unit.setToolTip(translate("PKM_Editor", "The unit of length of the part program"))
+        self.contour_data.setToolTip(
+            translate("PKM_Editor", "What the points of CL data under CUTCOM are: tool centre or part contour")
+        )
+        self.cl_dialect.setToolTip(translate("PKM_Editor", "The CAM system that wrote the CL data"))
+        self.allow_open_end.setToolTip(
+            translate("PKM_Editor", "Take a program that neither M2, M30 or % nor FINI or END-OF-PATH ends")
+        )
+        layout = QtWidgets.QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        for field in (self.axis_words, self.dwell_unit, self.unit, self.contour_data, self.cl_dialect):
+            layout.addWidget(field)
+            field.currentIndexChanged.connect(lambda index: self.changed.emit())
+        layout.addWidget(self.allow_open_end)
+        self.allow_open_end.toggled.connect(lambda is_on: self.changed.emit())
+        self.offer_for(Language.GCODE)
+
+    def offer_for(self, language: Language) -> None:
+        """Show the fields that apply to a language."""
+        for field in (self.axis_words, self.dwell_unit):
+            field.setVisible(language is Language.GCODE)
+        for field in (self.contour_data, self.cl_dialect):
+            field.setVisible(language is not Language.GCODE)
+
+    def chosen(self) -> ReadingOptions:
+        """The chosen options."""
+        return ReadingOptions(
+            self.axis_words.currentText(),
+            dwell_unit=self.dwell_unit.currentText(),
+            unit=self.unit.currentData(),
+            contour_data=self.contour_data.currentData(),
+            cl_dialect=self.cl_dialect.currentData(),
+            cycle_values=self._cycle_values,
+            allow_open_end=self.allow_open_end.isChecked(),
+        )
+
+    def show_reading(self, reading: ReadingOptions) -> None:
+        """Show a reading, which does not count as a change."""
+        blocker = QtCore.QSignalBlocker(self)
+        self.axis_words.setCurrentText(reading.axis_words)
+        self.dwell_unit.setCurrentText(reading.dwell_unit)
+        self.unit.setCurrentIndex(self.unit.findData(reading.unit))
+        self.contour_data.setCurrentIndex(self.contour_data.findData(reading.contour_data))
+        self.cl_dialect.setCurrentIndex(self.cl_dialect.findData(reading.cl_dialect))
+        self.allow_open_end.setChecked(reading.allow_open_end)
+        self._cycle_values = reading.cycle_values
+        blocker.unblock()

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_gui.editor.long_edits import LongEdits
-from pkm_post.freecad_gui.editor.margin import Margin
 from pkm_post.reading import Colour, Language, coloured_spans
 
 LIGHT: dict[Colour, str] = {
@@ -65,7 +64,7 @@ class TextView(QtWidgets.QPlainTextEdit):
         self.edits = LongEdits(self)
         self._language = Language.GCODE
         self._marks: tuple[Mark, ...] = ()
-        self._margin = Margin(self)
+        self._margin = LineNumbers(self)
         self._colouring = QtCore.QTimer(self)
         self._colouring.setSingleShot(True)
         self._colouring.timeout.connect(self._colour_lines_in_sight)
@@ -199,3 +198,28 @@ def _range(start: int, end: int, text_format: QtGui.QTextCharFormat) -> QtGui.QT
     made = QtGui.QTextLayout.FormatRange()
     made.start, made.length, made.format = start, end - start, text_format
     return made
+
+
+class LineNumbers(QtWidgets.QWidget):
+    """The numbers of the visible lines; the text provides their positions."""
+
+    def __init__(self, text: TextView) -> None:
+        super().__init__(text)
+        self._text = text
+
+    def wanted_width(self) -> int:
+        """The width of the largest number."""
+        digits = len(str(self._text.blockCount()))
+        return self._text.fontMetrics().horizontalAdvance("9") * (max(digits, 3) + 1) + 6
+
+    def paintEvent(self, event: QtGui.QPaintEvent) -> None:
+        """Called by Qt: paint the numbers of the visible lines."""
+        painter, metrics = QtGui.QPainter(self), self._text.fontMetrics()
+        painter.setFont(self._text.font())
+        painter.fillRect(event.rect(), QtGui.QColor("#2b2f2b" if self._text.is_dark() else "#f0f0ee"))
+        painter.setPen(QtGui.QColor("#888a85"))
+        width = self.width() - 6
+        for block, top in self._text.lines_in_sight():
+            place = QtCore.QRect(0, int(top), width, metrics.height())
+            painter.drawText(place, int(QtCore.Qt.AlignmentFlag.AlignRight), str(block.blockNumber() + 1))
+        painter.end()

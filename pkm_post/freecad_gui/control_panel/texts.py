@@ -98,13 +98,13 @@ def activity_text(state: ControlState) -> str:
     status = state.status
     if status is None:
         return translate("ControlPanel", "Nothing was read yet")
-    told = translate("ControlPanel", "no program runs")
+    text = translate("ControlPanel", "no program runs")
     if status.running:
-        told = why_text(Interlock.HELD if status.held else Interlock.RUNS)
+        text = why_text(Interlock.HELD if status.held else Interlock.RUNS)
     moves = [] if status.standing else [why_text(Interlock.MOVES)]
     block = [] if state.block is None or state.block.is_over else [_block_text(state.block)]
     override = translate("ControlPanel", "override {:g} %").format(status.override)
-    return ", ".join([told, *moves, *block, override, *_told(status.system, SYSTEM)])
+    return ", ".join([text, *moves, *block, override, *_texts_of_bits(status.system, SYSTEM)])
 
 
 def _block_text(block: BlockDisplay) -> str:
@@ -117,16 +117,16 @@ def _block_text(block: BlockDisplay) -> str:
 
 def strut_text(status: Status, index: int) -> str:
     """Message for a strut, counted from 0; empty if all is well."""
-    return ", ".join(_told(status.motors[index], MOTOR))
+    return ", ".join(_texts_of_bits(status.motors[index], MOTOR))
 
 
 def homing_text(homing: Homing) -> str:
     """Progress of a homing."""
-    told = translate("ControlPanel", PHASES[homing.phase])
+    text = translate("ControlPanel", PHASES[homing.phase])
     if not homing.missing:
-        return told
+        return text
     missing = translate("ControlPanel", "no home yet: strut {}").format(", ".join(map(str, homing.missing)))
-    return f"{told}; {missing}"
+    return f"{text}; {missing}"
 
 
 def emergency_text(lines: tuple[str, ...]) -> str:
@@ -134,5 +134,5 @@ def emergency_text(lines: tuple[str, ...]) -> str:
     return "\n".join(translate("ControlPanel", line) for line in lines)
 
 
-def _told(bits: Bits, texts: dict[str, str]) -> list[str]:
+def _texts_of_bits(bits: Bits, texts: dict[str, str]) -> list[str]:
     return [translate("ControlPanel", texts[name]) for name in bits.FAULT_TEXTS if bits.has(name)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Face: the content of the numerical control dock, from top to bottom, refreshed as one."""
+"""Panel: the content of the numerical control dock, from top to bottom, refreshed as one."""
 
 from __future__ import annotations
 
@@ -12,14 +12,13 @@ from PySide import QtCore, QtGui, QtWidgets
 from pkm_post.control import Connection, ControlState
 from pkm_post.freecad_gui.control_panel.connect_page import ConnectPage
 from pkm_post.freecad_gui.control_panel.console import Console
-from pkm_post.freecad_gui.control_panel.follower import Follower
-from pkm_post.freecad_gui.control_panel.homing_page import HomingPage
-from pkm_post.freecad_gui.control_panel.jog_page import JogPage
+from pkm_post.freecad_gui.control_panel.dro import PoseReadout, StrutTable
+from pkm_post.freecad_gui.control_panel.machine_follower import Follower
 from pkm_post.freecad_gui.control_panel.mdi_page import MdiPage
+from pkm_post.freecad_gui.control_panel.motion_pages import HomingPage, JogPage
 from pkm_post.freecad_gui.control_panel.program_page import ProgramPage
-from pkm_post.freecad_gui.control_panel.readout import PoseReadout, StrutTable
 from pkm_post.freecad_gui.control_panel.stop_bar import StopBar
-from pkm_post.freecad_gui.control_panel.words import activity_text, emergency_text
+from pkm_post.freecad_gui.control_panel.texts import activity_text, emergency_text
 from pkm_post.geometry import Array
 
 translate = FreeCAD.Qt.translate
@@ -29,7 +28,7 @@ _RED = "background-color: #cc0000; color: white; font-weight: bold; padding: 4px
 _YELLOW = "background-color: #edd400; color: black; font-weight: bold; padding: 4px;"
 
 
-class Face(QtWidgets.QWidget):
+class PanelContent(QtWidgets.QWidget):
     """The parts.
 
     Attributes:
@@ -57,8 +56,8 @@ class Face(QtWidgets.QWidget):
         self.mdi, self.program = MdiPage(console, self.readout.work_offset), ProgramPage(console)
         self.pages = self._pages()
         self._set_up()
-        console.told.connect(self.tell)
-        console.looked.connect(self.refresh)
+        console.message.connect(self.show_message)
+        console.refreshed.connect(self.refresh)
 
     def _pages(self) -> QtWidgets.QTabWidget:
         pages = QtWidgets.QTabWidget()
@@ -92,7 +91,7 @@ class Face(QtWidgets.QWidget):
         layout.addWidget(self.stops)
         layout.addWidget(self.messages)
 
-    def tell(self, text: str, is_bad: bool) -> None:
+    def show_message(self, text: str, is_bad: bool) -> None:
         """Add a message."""
         item = QtWidgets.QListWidgetItem(text)
         if is_bad:
@@ -150,6 +149,6 @@ class Face(QtWidgets.QWidget):
         if not wished or self._connection is None:
             self._follower.end()
         elif not self._follower.begin(FreeCAD.ActiveDocument, self._connection.target.machine):
-            told = translate("ControlPanel", "The active document has no machine object of this machine that is free")
-            self.tell(told, False)
+            text = translate("ControlPanel", "The active document has no machine object of this machine that is free")
+            self.show_message(text, False)
             self.follows.setChecked(False)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Readout: the tool position in large digits, and the state of each strut.
+"""DRO: the tool position in large digits, and the state of each strut.
 
-Takes a state ten times a second, with a work offset. The large digits are coordinates in the work frame, those beside
-them in the machine frame; lengths are in FreeCAD's display unit.
+Takes a state ten times a second, with a work offset. The large digits are coordinates in the work frame, the small ones
+in the machine frame; lengths are in FreeCAD's display unit.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.control import Status
-from pkm_post.freecad_gui.control_panel.words import strut_text
+from pkm_post.freecad_gui.control_panel.texts import strut_text
 from pkm_post.geometry import Array
 from pkm_post.toolpath import ToolPose
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jog page: moves the tool or one strut by a step.
+"""Motion pages: jogging the tool or one strut by a step, and homing.
 
 Takes steps and speeds as quantities; a click plans a move of the console. Directions are those of {M}.
 """
@@ -12,10 +12,23 @@ from collections.abc import Callable
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.control import CartesianJog, ControlState, Interlock, Jog, OperatorCommand, Plan, StrutJog
+from pkm_post.control import (
+    SIMULATED_HOMING,
+    CartesianJog,
+    ControlState,
+    Interlock,
+    Jog,
+    OperatorCommand,
+    Plan,
+    StrutJog,
+    blocking_interlock,
+    check_trigger,
+)
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all
 from pkm_post.freecad_gui.control_panel.console import Console
+from pkm_post.freecad_gui.control_panel.texts import homing_text
 from pkm_post.freecad_gui.post_fields import quantity_field, show_quantity
+from pkm_post.freecad_gui.preferences import GROUP
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -117,10 +130,82 @@ class JogPage(QtWidgets.QWidget):
         turns = isinstance(jog, CartesianJog) and not any(jog.shift)
         feed = self.turning.value() if turns else self.speed.property("rawValue")
         if feed <= 0.0:
-            self._console.told.emit(translate("ControlPanel", "Not sent: the speed has to be above zero"), True)
+            self._console.message.emit(translate("ControlPanel", "Not sent: the speed has to be above zero"), True)
             return
         self._console.move(lambda control: control.plan_jog(jog, feed), self._planned)
 
     def _planned(self, plan: Plan | None) -> None:
         if plan is None:
-            self._console.told.emit(translate("ControlPanel", "Not sent: the jog is refused"), True)
+            self._console.message.emit(translate("ControlPanel", "Not sent: the jog is refused"), True)
+
+
+_ENTRY = "ControlHoming"
+
+
+class HomingPage(QtWidgets.QWidget):
+    """The page.
+
+    Attributes:
+        trigger: the line.
+        home: the button.
+        status: progress of the homing.
+    """
+
+    def __init__(self, console: Console) -> None:
+        super().__init__()
+        self._console, self._shown = console, False
+        self.trigger, self.status = QtWidgets.QLineEdit(), QtWidgets.QLabel()
+        self.trigger.setPlaceholderText("ENABLE PLC 3")
+        self.status.setWordWrap(True)
+        self.home = OrderButton(
+            translate("ControlPanel", "Home"),
+            translate("ControlPanel", "Start the homing of the machine, and watch it"),
+            OperatorCommand.HOME,
+            self._ask_and_home,
+        )
+        text = translate(
+            "ControlPanel", "Line that starts the homing of this machine, as its builder says, such as ENABLE PLC 3"
+        )
+        label = QtWidgets.QLabel(text)
+        label.setWordWrap(True)
+        layout = QtWidgets.QVBoxLayout(self)
+        for widget in (label, self.trigger, self.home, self.status):
+            layout.addWidget(widget)
+        layout.addStretch(1)
+
+    def refresh(self, state: ControlState, found: frozenset[Interlock]) -> None:
+        """Enable what is possible, and show the progress of a homing."""
+        self.home.refresh(found)
+        self.status.setText("" if state.homing is None else homing_text(state.homing))
+        connection = self._console.connection
+        if (connection is not None) != self._shown:
+            self._shown = connection is not None
+            if connection is not None:
+                self.trigger.setText(
+                    SIMULATED_HOMING if connection.simulated else FreeCAD.ParamGet(GROUP).GetString(_ENTRY, "")
+                )
+
+    def _ask_and_home(self) -> None:
+        trigger, connection = self.trigger.text().strip(), self._console.connection
+        try:
+            check_trigger(trigger)
+        except ValueError as fault:  # invalid user input
+            self._console.message.emit(str(fault), True)
+            return
+        if not self._is_sure(trigger) or blocking_interlock(OperatorCommand.HOME, self._console.found()) is not None:
+            return  # the state may have changed during the question
+        if connection is not None and not connection.simulated:
+            FreeCAD.ParamGet(GROUP).SetString(_ENTRY, trigger)
+        self._console.home(trigger)
+
+    def _is_sure(self, trigger: str) -> bool:
+        text = translate(
+            "ControlPanel",
+            "The machine moves by itself now, and Hold does not stop it: have the emergency stop at hand.\n"
+            "Is the way of all struts, of the platform and of the tool free?",
+        )
+        buttons = QtWidgets.QMessageBox.StandardButton
+        question = f"{text}\n\n{trigger}"
+        title = translate("ControlPanel", "Home the machine")
+        answer = QtWidgets.QMessageBox.question(self, title, question, buttons.Ok | buttons.Cancel, buttons.Cancel)
+        return answer == buttons.Ok

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Body: the text of a part program with live feedback.
+"""Editor widget: the text of a part program with live feedback.
 
 Takes a text, its file name and its reading options; shows the faults, the contents of the program, and the block under
 the cursor on the path of its program object.
@@ -12,18 +12,25 @@ from dataclasses import replace
 from pathlib import Path
 
 import FreeCAD
-from PySide import QtWidgets
+from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_app.program_object import reading_of
-from pkm_post.freecad_gui.editor import linked
-from pkm_post.freecad_gui.editor.checker import Checker
+from pkm_post.freecad_gui.editor import program_link
+from pkm_post.freecad_gui.editor.checking import Checker, Findings, marks_of
 from pkm_post.freecad_gui.editor.find_bar import FindBar
-from pkm_post.freecad_gui.editor.findings import Findings, marks_of
-from pkm_post.freecad_gui.editor.reading_fields import ReadingFields
-from pkm_post.freecad_gui.editor.shown_block import ShownBlock
+from pkm_post.freecad_gui.editor.posting import ReadingFields
+from pkm_post.freecad_gui.editor.program_link import ShownBlock
 from pkm_post.freecad_gui.editor.text_view import TextView
 from pkm_post.model import Program
-from pkm_post.reading import CheckedText, Language, ReadingOptions, language_of, renumbered, tip_paths_of_line
+from pkm_post.reading import (
+    CheckedText,
+    Language,
+    ReadingOptions,
+    is_part_program,
+    language_of,
+    renumbered,
+    tip_paths_of_line,
+)
 
 translate = FreeCAD.Qt.translate
 
@@ -33,7 +40,7 @@ _NUMBERED = re.compile(r"^[ \t]*/?[ \t]*N\d", re.M)
 """The start of a block that ``renumbered`` has numbered."""
 
 
-class Body(QtWidgets.QWidget):
+class EditorWidget(QtWidgets.QWidget):
     """The text and its feedback.
 
     Attributes:
@@ -56,7 +63,7 @@ class Body(QtWidgets.QWidget):
         for widget in (self.find_bar, self.text, self._progress, self.size, self.findings):
             layout.addWidget(widget)
         self.checker = Checker(self._text_to_check, self)
-        self.checker.checked.connect(self._tell)
+        self.checker.checked.connect(self._show_status)
         self.checker.missing.connect(self.size.setText)
         self.findings.chosen.connect(self._jump)
         self.find_bar.replaced.connect(self._tell_replaced)
@@ -76,7 +83,7 @@ class Body(QtWidgets.QWidget):
     def set_file(self, file: Path | None) -> None:
         """Attach the text to this file."""
         self.file = file
-        obj = linked.object_of(file)
+        obj = program_link.object_of(file)
         # Options of other CL data do not apply to this file; G-code files mostly share theirs.
         kept = replace(
             self.reading.chosen(), unit=None, contour_data=None, cl_dialect=None, cycle_values=(), allow_open_end=False
@@ -88,9 +95,9 @@ class Body(QtWidgets.QWidget):
 
     def follow(self) -> None:
         """The file was saved: let its object read it again."""
-        obj = linked.object_of(self.file)
+        obj = program_link.object_of(self.file)
         if obj is not None:
-            linked.bring_up_to_date(obj, self.reading.chosen())
+            program_link.bring_up_to_date(obj, self.reading.chosen())
 
     def renumber(self) -> None:
         """Number all blocks; CL data has no line numbers."""
@@ -120,9 +127,9 @@ class Body(QtWidgets.QWidget):
 
     def _read_otherwise(self) -> None:
         self.checker.request()
-        obj = linked.object_of(self.file)
+        obj = program_link.object_of(self.file)
         if obj is not None and reading_of(obj) != self.reading.chosen():
-            linked.bring_up_to_date(obj, self.reading.chosen())
+            program_link.bring_up_to_date(obj, self.reading.chosen())
 
     def _tell_progress(self, share: float) -> None:
         self._progress.setVisible(share < 1)
@@ -131,7 +138,7 @@ class Body(QtWidgets.QWidget):
     def _tell_replaced(self, count: int) -> None:
         self.size.setText(translate("PKM_Editor", "{} replaced").format(count))
 
-    def _tell(self, checked: CheckedText) -> None:
+    def _show_status(self, checked: CheckedText) -> None:
         self.program, size = checked.program, checked.size
         self.findings.show_all(checked.diagnostics)
         lines = self.text.toPlainText().split("\n")
@@ -145,5 +152,44 @@ class Body(QtWidgets.QWidget):
         self.text.setFocus()
 
     def _show_block(self) -> None:
-        paths = [] if self.program is None else tip_paths_of_line(self.program, self.text.current_line())
-        self._shown.show(linked.scene_of(linked.object_of(self.file)), paths)
+        ways = [] if self.program is None else tip_paths_of_line(self.program, self.text.current_line())
+        self._shown.show(program_link.scene_of(program_link.object_of(self.file)), ways)
+
+
+_DRAGGED = (QtCore.QEvent.Type.DragEnter, QtCore.QEvent.Type.DragMove)
+
+
+class FileDrop(QtCore.QObject):
+    """Accepts part programs dropped on widgets. Text is handled as usual, other files by the enclosing window."""
+
+    dropped = QtCore.Signal(object)
+    """The path of the first file."""
+
+    def __init__(self, parent: QtCore.QObject, *widgets: QtWidgets.QWidget) -> None:
+        super().__init__(parent)
+        for widget in widgets:
+            widget.setAcceptDrops(True)
+            widget.installEventFilter(self)
+
+    def eventFilter(self, watched: QtCore.QObject, event: QtCore.QEvent) -> bool:
+        """Called by Qt."""
+        is_drop = event.type() == QtCore.QEvent.Type.Drop
+        if not is_drop and event.type() not in _DRAGGED:
+            return False
+        if not event.mimeData().hasUrls():
+            return False
+        file = _part_program(event.mimeData())
+        if file is None:  # a text widget would insert the file name; FreeCAD's window may handle it
+            event.ignore()
+            return True
+        event.setDropAction(QtCore.Qt.DropAction.CopyAction)
+        event.accept()
+        if is_drop:
+            self.dropped.emit(file)
+        return True
+
+
+def _part_program(data: QtCore.QMimeData) -> Path | None:
+    """The first part program among the dragged files."""
+    files = (Path(url.toLocalFile()) for url in data.urls() if url.isLocalFile())
+    return next((file for file in files if is_part_program(file)), None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Symmetry place: the fields for the plane of a mirror or the axis of a rotation.
+"""Symmetry placement: the fields for the plane of a mirror or the axis of a rotation.
 
 Takes the object; its point, its direction and the picked element follow the fields. The plane or axis is one of the
 document's, or picked in the 3D view, or typed in.
@@ -8,13 +8,64 @@ document's, or picked in the 3D view, or typed in.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.freecad_gui.symmetry_fields import Three, said_of
-from pkm_post.freecad_gui.symmetry_frames import AXIS, PLANE
+from pkm_post.freecad_app.frames import axis_of, plane_of
+from pkm_post.freecad_gui.symmetry_fields import Three, property_tip
+
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The reference of a mirror or a rotation.
+
+    Attributes:
+        direction: property with the normal or the axis.
+        link: property with the picked element.
+        read: returns point and direction of the picked element.
+        label: of the choice.
+        choices: texts and directions.
+        hint: pickable elements.
+    """
+
+    direction: str
+    link: str
+    read: Callable[[Any], Any]
+    label: str
+    choices: tuple[tuple[str, tuple[float, float, float]], ...]
+    hint: str
+
+
+PLANE = Frame(
+    "Normal",
+    "Plane",
+    plane_of,
+    QT_TRANSLATE_NOOP("SymmetryPanel", "Plane"),
+    (
+        (QT_TRANSLATE_NOOP("SymmetryPanel", "XY"), (0.0, 0.0, 1.0)),
+        (QT_TRANSLATE_NOOP("SymmetryPanel", "XZ"), (0.0, 1.0, 0.0)),
+        (QT_TRANSLATE_NOOP("SymmetryPanel", "YZ"), (1.0, 0.0, 0.0)),
+    ),
+    QT_TRANSLATE_NOOP("SymmetryPanel", "Pick a flat face or a datum plane"),
+)
+AXIS = Frame(
+    "Axis",
+    "Line",
+    axis_of,
+    QT_TRANSLATE_NOOP("SymmetryPanel", "Axis"),
+    (
+        (QT_TRANSLATE_NOOP("SymmetryPanel", "X"), (1.0, 0.0, 0.0)),
+        (QT_TRANSLATE_NOOP("SymmetryPanel", "Y"), (0.0, 1.0, 0.0)),
+        (QT_TRANSLATE_NOOP("SymmetryPanel", "Z"), (0.0, 0.0, 1.0)),
+    ),
+    QT_TRANSLATE_NOOP("SymmetryPanel", "Pick an edge, a round face or a datum line"),
+)
+
 
 translate = FreeCAD.Qt.translate
 
@@ -48,7 +99,7 @@ class SymmetryPlace:
         self.choice.currentIndexChanged.connect(self.choose)
         tips = ((self.frame.link, self.choice), (self.frame.direction, self.direction), ("Point", self.point))
         for name, field in tips:
-            field.setToolTip(said_of(obj, name))
+            field.setToolTip(property_tip(obj, name))
         form.addRow(translate("SymmetryPanel", self.frame.label), self.choice)
         form.addRow(self.picked)
         form.addRow(translate("SymmetryPanel", "Direction"), self.direction)
@@ -87,16 +138,16 @@ class SymmetryPlace:
         if self.choice.currentIndex() != self._pick_index or item.Document != self._obj.Document:
             return
         if self._obj == item or self._obj in item.OutListRecursive:
-            self._tell(translate("SymmetryPanel", "It depends on this operation"))
+            self._show_status(translate("SymmetryPanel", "It depends on this operation"))
             return
         link = (item, [element])
         try:
             self.frame.read(link)
         except ValueError as unfit:
-            self._tell(str(unfit))
+            self._show_status(str(unfit))
             return
         setattr(self._obj, self.frame.link, link)
-        self._tell(self._told_pick())
+        self._show_status(self._told_pick())
         self._changed()
 
     def _link(self) -> Any:
@@ -115,11 +166,11 @@ class SymmetryPlace:
     def _show_values(self) -> None:
         """Show direction and point, which of them are editable, and the picked element."""
         chosen = self.choice.currentIndex()
-        self._tell(self._told_pick())
+        self._show_status(self._told_pick())
         self.direction.show_values(getattr(self._obj, self.frame.direction), enabled=chosen == self._pick_index + 1)
         self.point.show_values(self._obj.Point, enabled=chosen != self._pick_index)
 
-    def _tell(self, text: str) -> None:
+    def _show_status(self, text: str) -> None:
         """Show the picked element, or what can be picked."""
         self.picked.setText(text)
         self.picked.setVisible(bool(text))

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.freecad_gui.deletion_watch import DeletionWatch
+from pkm_post.freecad_gui.observers import DeletionWatch
 from pkm_post.geometry import Array
 from pkm_post.machine import machine_named
 from pkm_post.model import Machine

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Film: exports a motion as pictures, one by one or as one animated picture.
+"""Animation: exports a motion as pictures, one by one or as one animated picture.
 
 Takes a view, a function that shows an instant, and the instants; writes PNG files. Escape cancels it.
 """
@@ -26,7 +26,7 @@ _PICTURES, _ANIMATION = (30.0, 1280, 720), (15.0, 800, 450)
 
 
 @dataclass(frozen=True)
-class Film:
+class Animation:
     """Subject and settings of a film.
 
     Attributes:
@@ -61,8 +61,8 @@ class Film:
                     written = number
                     bar.step()
         except Stopped:
-            told = translate("PKM_Simulate", "{} of {} pictures were written")
-            FreeCAD.Console.PrintWarning(told.format(written, len(instants)) + "\n")
+            text = translate("PKM_Simulate", "{} of {} pictures were written")
+            FreeCAD.Console.PrintWarning(text.format(written, len(instants)) + "\n")
         self.show(self.now)
         return written
 
@@ -75,7 +75,7 @@ class Film:
         return written
 
 
-Shooting = Callable[[float, int, int], Film]
+Shooting = Callable[[float, int, int], Animation]
 """Creates a film from pictures per second, width and height."""
 
 

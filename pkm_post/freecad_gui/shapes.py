@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Lathe: bodies of revolution for the 3D view, built once and moved only by transforms.
+"""Shapes: bodies of revolution and visible points for the 3D view, built once and moved only by transforms.
 
-Takes profiles in mm; returns Coin nodes. All drawn machine parts are round.
+Takes profiles and points in mm; returns Coin nodes. All drawn machine parts are round.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def material(colour: Colour) -> coin.SoMaterial:
     return node
 
 
-def turned(profile: Array) -> coin.SoSeparator:
+def revolved(profile: Array) -> coin.SoSeparator:
     """A profile revolved about z.
 
     Args:
@@ -82,7 +82,7 @@ def cutter(diameter: float, corner_radius: float, length: float) -> coin.SoSepar
     corner = min(corner_radius, radius)
     angle = np.linspace(0.0, np.pi / 2.0, _ARC_STEPS + 1)
     arc = np.column_stack([radius - corner + corner * np.sin(angle), corner * (1.0 - np.cos(angle))])
-    return turned(np.vstack([(0.0, 0.0), arc, (radius, length), (0.0, length)]))
+    return revolved(np.vstack([(0.0, 0.0), arc, (radius, length), (0.0, length)]))
 
 
 def group(*children: coin.SoNode) -> coin.SoSeparator:
@@ -104,3 +104,27 @@ def aim(node: coin.SoTransform, start: Sequence[float], direction: Sequence[floa
     """Set a transform to map z to a direction and the origin to a point."""
     node.translation = tuple(float(value) for value in start)
     node.rotation = coin.SbRotation(coin.SbVec3f(0, 0, 1), coin.SbVec3f(*(float(value) for value in direction)))
+
+
+Point = Sequence[float]
+
+OUT: Colour = (0.85, 0.0, 0.0)
+"""Colour for violated limits."""
+
+
+def points_through(points: Sequence[Point], colour: Colour, size: float) -> coin.SoSeparator:
+    """Points drawn over everything else.
+
+    Args:
+        points: their positions.
+        colour: of all of them.
+        size: of each, pixels.
+    """
+    separator, light, ink, style = coin.SoAnnotation(), coin.SoLightModel(), coin.SoBaseColor(), coin.SoDrawStyle()
+    light.model, style.pointSize = coin.SoLightModel.BASE_COLOR, size
+    ink.rgb = colour
+    coordinates, node = coin.SoCoordinate3(), coin.SoPointSet()
+    coordinates.point.setValues(0, len(points), [tuple(point) for point in points])
+    for child in (light, ink, style, coordinates, node):
+        separator.addChild(child)
+    return separator

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Observers: Escape during a long computation; changes, recomputes and deletions in a document.
+
+Each takes a callback and calls it in the window's thread. While a computation runs, FreeCAD's progress bar blocks other
+keys and the mouse, so that nothing can be changed while events are processed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import FreeCAD
+import FreeCADGui
+from PySide import QtCore, QtGui, QtWidgets
+
+
+class EscapeWatch(QtCore.QObject):
+    """Filters every key from ``begin`` to ``end``."""
+
+    _was_pressed = False
+
+    def begin(self) -> None:
+        """Filter keys ahead of FreeCAD's progress bar, which would ask a question at the end of the recompute."""
+        QtWidgets.QApplication.instance().installEventFilter(self)
+
+    def end(self) -> None:
+        """Stop filtering."""
+        QtWidgets.QApplication.instance().removeEventFilter(self)
+        FreeCADGui.getMainWindow().statusBar().clearMessage()
+
+    def pressed(self, text: str) -> bool:
+        """Show a text in the status bar, process events, and return whether Escape was pressed so far."""
+        FreeCADGui.getMainWindow().statusBar().showMessage(text)
+        FreeCADGui.updateGui()
+        return self._was_pressed
+
+    def eventFilter(self, _target: QtCore.QObject, event: QtCore.QEvent) -> bool:
+        """Consume Escape.
+
+        PySide2 may pass a deleted widget that previously had the event's address. Accessing an attribute that it lacks
+        would crash FreeCAD, so only its class is examined.
+        """
+        if not issubclass(type(event), QtGui.QKeyEvent):
+            return False
+        if event.type() == QtCore.QEvent.Type.KeyPress and event.key() == QtCore.Qt.Key.Key_Escape:
+            self._was_pressed = True
+            return True
+        return False
+
+
+class ChangeWatch:
+    """A document observer, from its creation until ``end``; FreeCAD calls its slots.
+
+    Args:
+        notify: callback when the window is idle again.
+        document: name of the document.
+        names: names of the properties.
+    """
+
+    def __init__(self, notify: Callable[[], Any], document: str, names: Iterable[str]) -> None:
+        self._document, self._names = document, frozenset(names)
+        self._later = QtCore.QTimer()
+        self._later.setSingleShot(True)
+        self._later.timeout.connect(notify)
+        FreeCAD.addDocumentObserver(self)
+
+    def end(self) -> None:
+        """Stop watching."""
+        self._later.stop()
+        FreeCAD.removeDocumentObserver(self)
+
+    def slotChangedObject(self, item: Any, name: str) -> None:
+        """A property has a new value."""
+        if name in self._names and item.Document.Name == self._document:
+            self._later.start(0)
+
+    def slotRemoveDynamicProperty(self, item: Any, name: str) -> None:
+        """A property is removed."""
+        self.slotChangedObject(item, name)
+
+
+class DeletionWatch:
+    """A document observer, from its creation until ``end``; FreeCAD calls its slots.
+
+    Args:
+        notify: callback at the deletion.
+        document: name of the document.
+        item: name of the object in it; None if there is none.
+    """
+
+    def __init__(self, notify: Callable[[], Any], document: str, item: str | None) -> None:
+        self._notify, self._document, self._item = notify, document, item
+        FreeCAD.addDocumentObserver(self)
+
+    def end(self) -> None:
+        """Stop watching."""
+        FreeCAD.removeDocumentObserver(self)
+
+    def slotDeletedDocument(self, document: Any) -> None:
+        """A document is deleted."""
+        if document.Name == self._document:
+            self._notify()
+
+    def slotDeletedObject(self, item: Any) -> None:
+        """An object is deleted."""
+        if (item.Document.Name, item.Name) == (self._document, self._item):
+            self._notify()
+
+
+class RecomputeWatch:
+    """A document observer, from its creation until ``end``; FreeCAD calls its slot.
+
+    Args:
+        notify: callback after a recompute.
+        document: its name.
+    """
+
+    def __init__(self, notify: Callable[[], Any], document: str) -> None:
+        self._notify, self._document = notify, document
+        FreeCAD.addDocumentObserver(self)
+
+    def end(self) -> None:
+        """Stop watching."""
+        FreeCAD.removeDocumentObserver(self)
+
+    def slotRecomputedDocument(self, document: Any) -> None:
+        """A document was recomputed."""
+        if document.Name == self._document:
+            self._notify()
