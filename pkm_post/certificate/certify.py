@@ -2,8 +2,9 @@
 """Certify: decide whether a program follows its trajectory within tolerances and limits.
 
 Enters: the strut motion read back from the written program, the trajectory read back from its file, the machine, and
-the planned motion, which assigns each knot a place on the trajectory. Leaves: a certificate, and a diagnostic for every
-finding that does not hold.
+the planned motion, which assigns each knot a place on the trajectory. Leaves: a certificate with each quantity at its
+worst, its limit, a time and a source line; figures without a limit; and a diagnostic for every finding that does not
+hold. docs/certificate.md has the table; ``coverage`` assigns entries of the machine file to rows.
 """
 
 from __future__ import annotations
@@ -51,17 +52,22 @@ def findings(
     joints = partial(_of_columns, motion.joint_time, np.arange(len(trajectory)))
     at_ends = trajectory.tip_tolerances(tolerances.tip)
     axis_limit = math.degrees(tolerances.axis)
-    told = partial(_where_most_was_found, task, passed, played)
+    at_worst = partial(_largest_sample, task, passed, played)
     axis_speed, tip_acceleration = tool_limits(task)
-    turning = math.degrees(machine.axis_speed)
+    turning, axis_degrees = math.degrees(machine.axis_speed), np.degrees(played.axis)
     rows: tuple[_Row, ...] = (
         ("V107", "interval without a pose", "", 1.0 - played.found, 0.0, starts),
-        ("V101", "deviation of the tool tip", "mm", *told(Quantity.TIP, played.tip, played.tip_tolerance)),
-        ("V102", "deviation of the tool axis", "degrees", *told(Quantity.AXIS, np.degrees(played.axis), axis_limit)),
+        ("V101", "deviation of the tool tip", "mm", *at_worst(Quantity.TIP, played.tip, played.tip_tolerance)),
+        (
+            "V102",
+            "deviation of the tool axis",
+            "degrees",
+            *at_worst(Quantity.AXIS, axis_degrees, axis_limit),
+        ),
         ("V110", "tool tip off a programmed point", "mm", passed.tip, at_ends, joints),
         ("V110", "tool axis off a programmed one", "degrees", np.degrees(passed.axis), axis_limit, joints),
         ("V111", "strut off its plan", "mm", off_plan(struts, task.knots) + task.spin_deviation, tolerances.tip, knots),
-        ("V108", "tip speed", "mm/s", *told(Quantity.SPEED, played.tip_speed, task.ceiling)),
+        ("V108", "tip speed", "mm/s", *at_worst(Quantity.SPEED, played.tip_speed, task.ceiling)),
         ("V103", "strut speed", "mm/s", played.strut_speed, machine.strut_speed, starts),
         ("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration, starts),
         ("V113", "turning rate of the tool axis", "degrees/s", np.degrees(axis_speed), turning, starts),
@@ -110,17 +116,17 @@ _When = Callable[[int], tuple[float, int]]
 _Row = tuple[str, str, str, Array, Array | float, _When]
 
 
-def _where_most_was_found(
-    task: Task, passed: JointDeviations, played: PlaybackBounds, looked: Quantity, values: Array, limit: Array | float
+def _largest_sample(
+    task: Task, passed: JointDeviations, played: PlaybackBounds, quantity: Quantity, values: Array, limit: Array | float
 ) -> tuple[Array, float, _When]:
     """The largest figure by its limit, assigned to the interval with the largest measured value; its limit and time.
 
     The figure may belong to another interval, due to its undetected part, whose time is unknown.
     """
-    interval = int(played.most_found[looked])
+    interval = int(played.most_found[quantity])
     there = float(np.broadcast_to(limit, values.shape)[interval])
     figure = np.max(values / limit, keepdims=True) * there
-    return figure, there, lambda _: when_worst(task, passed, looked, interval)
+    return figure, there, lambda _: when_worst(task, passed, quantity, interval)
 
 
 def _start(motion: Motion, interval: int) -> tuple[float, int]:
@@ -185,8 +191,8 @@ def certify(
     ruler, ceiling = TrajectoryRuler(trajectory, tolerances), _feed_ceiling(trajectory, motion)
 
     def measured(struts: StrutMotion) -> Certificate:
-        course, knots = ToolSpline.of(machine, struts, motion)
-        task = Task(struts, machine, ruler, motion, knots, course, ceiling, spin_deviation)
+        spline, knots = ToolSpline.of(machine, struts, motion)
+        task = Task(struts, machine, ruler, motion, knots, spline, ceiling, spin_deviation)
         return _certificate(task, trajectory, tolerances, collisions)
 
     certificate = measured(struts)

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Structure: what a program and its plan must have in common before they can be compared.
+"""Consistency: what program, plan, trajectory and machine must have in common before they can be compared.
 
-Enters: a strut motion as read back, and the plan it was made from. Leaves: diagnostics, each with the first difference,
-as found and as planned. Times: whole ms, as in the program.
+Enters: a strut motion as read back, the plan it was made from, a trajectory as read from its file, and the machine it
+names. Leaves: diagnostics, each with the first difference, as found and as planned; and the values of a trajectory that
+no posting for its machine can produce. Such a file was modified; it is not planned, since its path or duration may be
+unbounded. Times: whole ms, as in the program.
 """
 
 from __future__ import annotations
@@ -17,6 +19,12 @@ from pkm_post.geometry import norm
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Motion, Place, StrutMotion, Trajectory
 
 _Thing = TypeVar("_Thing")
+_FARTHEST = 10
+"""Distance from the middle of the base in longest struts, as in placement."""
+_ROUNDING = 1e-9
+"""Relative rounding error of limits converted from other units."""
+_SAME = 1e-9
+"""mm, rad, and of unit axes."""
 
 
 def structure_faults(
@@ -40,8 +48,8 @@ def structure_faults(
     for which, speed in (("first", struts.speed[0]), ("last", struts.speed[-1])):
         if speed.any():
             found.append(("V105", f"{which} speeds {speed.tolist()} mm/s"))
-    told = (Diagnostic(code, Place(program_name), text) for code, text in found)
-    return (another, *told) if another else tuple(told)
+    diagnostics = (Diagnostic(code, Place(program_name), text) for code, text in found)
+    return (another, *diagnostics) if another else tuple(diagnostics)
 
 
 def machine_fault(trajectory: Trajectory, machine: Machine, name: str) -> Diagnostic | None:
@@ -63,25 +71,17 @@ def event_fault(found: Sequence[Event], planned: Sequence[Event]) -> str:
 
 
 def _first_difference(
-    what: str, found: Sequence[_Thing], planned: Sequence[_Thing], told: Callable[[_Thing], str]
+    what: str, found: Sequence[_Thing], planned: Sequence[_Thing], text_of: Callable[[_Thing], str]
 ) -> str:
     """The first difference of two sequences, with its index from 0, and their lengths."""
     pairs = enumerate(zip_longest(found, planned))
     number, pair = next((number, pair) for number, pair in pairs if pair[0] != pair[1])
-    here, there = ("none" if thing is None else told(thing) for thing in pair)
+    here, there = ("none" if thing is None else text_of(thing) for thing in pair)
     return f"{what} {number}: {here}, planned {there}; {len(found)} found, {len(planned)} planned"
 
 
 def _event(event: Event) -> str:
     return f"{event.kind.name.lower().replace('_', ' ')} {event.value} at knot {event.row}"
-
-
-_FARTHEST = 10
-"""Distance from the middle of the base in longest struts, as in placement."""
-_ROUNDING = 1e-9
-"""Relative rounding error of limits converted from other units."""
-_SAME = 1e-9
-"""mm, rad, and of unit axes."""
 
 
 def values_beyond_machine(trajectory: Trajectory, machine: Machine) -> Iterator[tuple[Place, str]]:

@@ -2,7 +2,10 @@
 """Coverage: which hazards a certificate covers, and which it does not.
 
 Enters: a machine and a trajectory. Leaves: a row for each hazard. A body whose size the machine file does not state is
-not checked, so the rows differ from machine to machine. docs/certificate.md has the same table for users.
+not checked, so the rows differ from machine to machine. For approach, tool changes and spindle start, statements of the
+machine file alone are not trusted: a row is covered if the trajectory confirms it. ``CERTIFIED`` and
+``CHECKED_ELSEWHERE`` name what enforces each limit that a machine file can state. docs/certificate.md has the same
+table for users.
 """
 
 from __future__ import annotations

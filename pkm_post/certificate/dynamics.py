@@ -1,9 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool limits: upper bounds on the turning rate of the tool axis and the acceleration of the tip in each interval.
+"""Dynamics: turning rate of the tool axis, acceleration and jerk of the tip, and effects of the drives at the tip.
 
-Enters: a playback task. Leaves: upper bounds for each interval. Most come from the tool's cubics; where these could be
-the worst of the program or decide a limit, or have no bound, velocity and acceleration follow from poses found by
-Newton's method, at as many instants as needed.
+Enters: a playback task. Leaves: upper bounds of turning rate and acceleration for each interval. Most come from the
+tool's cubics; where these could be the worst of the program or decide a limit, or have no bound, velocity and
+acceleration follow from poses found by Newton's method, at as many instants as needed.
+
+Drives, as far as the machine file describes them: figures at the knots; they are samples, not bounds. One count of each
+strut is 1 / c mm, and for the worst signs s of +1 or -1 the tip deviates by |J^-1 s| / c.
+
+A strut with the velocity gain k follows its length l as a first-order lag, y' = k (l - y). The lag e = l - y obeys
+e' = l' - k e, which on a cubic has the solution l' / k - l'' / k^2 + j / k^3, j being its jerk, plus the residual of
+the earlier lag times exp(-k t). With T the mean of all 1 / k, l(t - T) is a place of the path; the component of
+J^-1 (y(t) - l(t - T)) perpendicular to the tip's motion there is the contour error. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -29,6 +37,14 @@ _INSTANTS_AT_ONCE = 8192
 """Instants in one pass: the working arrays of one pass stay in the processor's cache."""
 _SPEED_BY_RESIDUAL = 10.0
 """1/s: error of a tip velocity at a knot per deviation of a strut from its plan there."""
+_STANDING = 1e-9
+"""mm/s: below it the tip has no direction of motion."""
+_SIGNS = np.array([signs for signs in itertools.product((1.0, -1.0), repeat=6) if signs[0] > 0]).T
+_FORGOTTEN = 1e-12
+"""Share of a lag below which it is negligible."""
+_MICROMETRES = 1000.0
+_MOST_KNOTS = 2048
+_KNOTS_AT_ONCE = 4096
 
 
 def tool_limits(task: Task) -> tuple[Array, Array]:
@@ -37,7 +53,7 @@ def tool_limits(task: Task) -> tuple[Array, Array]:
     found, hidden = np.empty((2, 2, len(task.struts) - 1))
     for piece in pieces(found.shape[1], _INSTANTS_AT_ONCE):
         rows = np.arange(piece.start, piece.stop)
-        found[:, piece], hidden[:, piece] = (part / limits for part in task.course.rates(rows))
+        found[:, piece], hidden[:, piece] = (part / limits for part in task.spline.rates(rows))
     for instants in _INSTANTS:
         rows = _unsettled(found, hidden)
         for first in range(0, len(rows), _INSTANTS_AT_ONCE // instants):
@@ -86,20 +102,10 @@ def tip_jerk(task: Task) -> Array:
     """
     struts = task.struts
     miss = _SPEED_BY_RESIDUAL * np.abs(struts.length - task.knots.length).max(axis=1)
-    changes, apart = mean_changes(struts.time_ms, task.course.rate[:3].T)
+    changes, apart = mean_changes(struts.time_ms, task.spline.rate[:3].T)
     duration = np.diff(struts.time_ms) / 1000
     of_interval = np.concatenate([[0.0], (miss[1:] + miss[:-1]) / duration, [0.0]])
     return np.asarray((length_of(*changes.T) + of_interval[1:] + of_interval[:-1]) / apart)
-
-
-_STANDING = 1e-9
-"""mm/s: below it the tip has no direction of motion."""
-_SIGNS = np.array([signs for signs in itertools.product((1.0, -1.0), repeat=6) if signs[0] > 0]).T
-_FORGOTTEN = 1e-12
-"""Share of a lag below which it is negligible."""
-_MICROMETRES = 1000.0
-_MOST_KNOTS = 2048
-_KNOTS_AT_ONCE = 4096
 
 
 def count_at_tip(task: Task, counts_per_mm: float) -> Array:

@@ -49,7 +49,7 @@ class _SampledPath:
 
 
 def joint_times(
-    course: PlayedPath,
+    path: PlayedPath,
     trajectory: Trajectory,
     machine: Machine,
     tolerances: Tolerances,
@@ -59,16 +59,16 @@ def joint_times(
     """Times at which the end of each of the N segments is passed, (N,) s, never decreasing.
 
     Args:
-        course: path of the program.
+        path: path of the program.
         trajectory: the programmed trajectory.
         machine: determines the weight of turns relative to distance.
         tolerances: the requested tolerances.
         joints: (R,) segments at the ends of which both rest, ascending; the last is the last segment.
         knots: (R,) the knots of these rests.
     """
-    search = _Search(course, trajectory, machine, tolerances)
+    search = _Search(path, trajectory, machine, tolerances)
     time, fit = np.full((2, len(trajectory)), np.nan)
-    time[joints], fit[joints] = course.time[knots], 0.0
+    time[joints], fit[joints] = path.time[knots], 0.0
     for reach in _REACHES:
         rows = np.flatnonzero(~(fit <= (_WELL if reach <= _NEAR else _FITS)))
         if not len(rows):
@@ -82,7 +82,7 @@ def joint_times(
     time[missing] = search.time_of(search.guess(missing, time))
     moving = np.setdiff1d(np.arange(len(trajectory)), joints)
     time[moving] = search.settled(moving, np.maximum.accumulate(time)[moving])
-    return np.asarray(np.maximum.accumulate(np.clip(time, 0.0, course.time[-1])))
+    return np.asarray(np.maximum.accumulate(np.clip(time, 0.0, path.time[-1])))
 
 
 def _disorder(time: Array, joints: Array) -> Array:
@@ -97,10 +97,10 @@ def _disorder(time: Array, joints: Array) -> Array:
 class _Search:
     """Search for joints on the path of a program."""
 
-    def __init__(self, course: PlayedPath, trajectory: Trajectory, machine: Machine, tolerances: Tolerances) -> None:
-        self._course, self._count, self._machine = course, len(course.time) - 1, machine
+    def __init__(self, path: PlayedPath, trajectory: Trajectory, machine: Machine, tolerances: Tolerances) -> None:
+        self._path, self._count, self._machine = path, len(path.time) - 1, machine
         turn = machine.characteristic_length
-        self._way = _way(course, turn)
+        self._way = _way(path, turn)
         spun = np.abs(np.diff(trajectory.spin, prepend=trajectory.start_spin))
         self._programmed = np.cumsum(trajectory.length + turn * (trajectory.angle + spun))
         self._joint = np.vstack([trajectory.tip.T, trajectory.axis.T, trajectory.spin])
@@ -141,11 +141,11 @@ class _Search:
         interval, share = self._place(instant / _LOOKS)
         time = self._time_at(interval, share)
         for _ in range(_NEWTON_STEPS):
-            late = self._late(rows, interval, share, self._course.at(interval, share[None])[:, 0])
-            longest = (self._course.time[interval + 1] - self._course.time[interval]) / _LOOKS
-            time = np.clip(time - np.clip(late, -longest, longest), 0.0, self._course.time[-1])
+            late = self._late(rows, interval, share, self._path.at(interval, share[None])[:, 0])
+            longest = (self._path.time[interval + 1] - self._path.time[interval]) / _LOOKS
+            time = np.clip(time - np.clip(late, -longest, longest), 0.0, self._path.time[-1])
             interval, share = self._place(self._instant_of(time) / _LOOKS)
-        off = (self._course.at(interval, share[None])[:, 0] - self._joint[:, rows]) * self._weight[:, rows]
+        off = (self._path.at(interval, share[None])[:, 0] - self._joint[:, rows]) * self._weight[:, rows]
         return np.stack([time, np.maximum(norm(off[:3].T), norm(off[3:6].T))])
 
     def settled(self, rows: Array, time: Array) -> Array:
@@ -153,13 +153,13 @@ class _Search:
         if not len(rows):
             return time
         interval, share = self._place(self._instant_of(time) / _LOOKS)
-        place = self._course.at(interval, share[None])[:, 0]
-        length = hermite_lengths(*self._course.struts.cubics(interval), share[:, None])[:, 0]
-        tool_length = self._course.tool_length[interval + 1]
+        place = self._path.at(interval, share[None])[:, 0]
+        length = hermite_lengths(*self._path.struts.cubics(interval), share[:, None])[:, 0]
+        tool_length = self._path.tool_length[interval + 1]
         pose = forward(self._machine, length, tool_length, place[:3].T, place[3:6].T, place[6])
         place[:3], place[3:6] = pose.tip.T, pose.axis.T
         late = self._late(rows, interval, share, place)
-        step = (self._course.time[interval + 1] - self._course.time[interval]) / _LOOKS
+        step = (self._path.time[interval + 1] - self._path.time[interval]) / _LOOKS
         return np.where(pose.converged & (np.abs(late) < step), time - late, time)
 
     def _late(self, rows: Array, interval: Array, share: Array, place: Array) -> Array:
@@ -170,12 +170,12 @@ class _Search:
         """
         weight = self._weight[:, rows]
         off = (place - self._joint[:, rows]) * weight
-        rate, bend = (one * weight for one in self._course.rates_at(interval, share))
+        rate, bend = (one * weight for one in self._path.rates_at(interval, share))
         square = np.square(rate).sum(axis=0) + np.maximum((off * bend).sum(axis=0), 0.0)
         return np.divide((off * rate).sum(axis=0), square, out=np.zeros(len(rows)), where=square > 0)
 
     def _time_at(self, interval: Array, share: Array) -> Array:
-        begin, end = self._course.time[interval], self._course.time[interval + 1]
+        begin, end = self._path.time[interval], self._path.time[interval + 1]
         return np.asarray(begin + (end - begin) * share)
 
     def _place(self, at: Array) -> tuple[Array, Array]:
@@ -183,18 +183,18 @@ class _Search:
         return interval, np.clip(at - interval, 0.0, 1.0)
 
     def _instant_of(self, time: Array) -> Array:
-        interval = np.clip(np.searchsorted(self._course.time, time) - 1, 0, self._count - 1)
-        begin, end = self._course.time[interval], self._course.time[interval + 1]
+        interval = np.clip(np.searchsorted(self._path.time, time) - 1, 0, self._count - 1)
+        begin, end = self._path.time[interval], self._path.time[interval + 1]
         return np.asarray(_LOOKS * (interval + (time - begin) / (end - begin)))
 
 
-def _way(course: PlayedPath, turn: float) -> _SampledPath:
+def _way(path: PlayedPath, turn: float) -> _SampledPath:
     """Sample the path at even instants; a turn of one radian counts as ``turn`` mm."""
-    count = len(course.time) - 1
-    inside = course.at(np.arange(count), np.linspace(0.0, 1.0, _LOOKS + 1)[:, None])
+    count = len(path.time) - 1
+    inside = path.at(np.arange(count), np.linspace(0.0, 1.0, _LOOKS + 1)[:, None])
     step = np.diff(inside, axis=1)  # within intervals: the tip's jump at a tool change is not distance travelled
     way = np.sqrt(np.square(step[:3]).sum(axis=0)) + turn * (
         np.sqrt(np.square(step[3:6]).sum(axis=0)) + np.abs(step[6])
     )
-    place = np.hstack([inside[:, :-1].transpose(0, 2, 1).reshape(7, -1), course.place[:, -1:]])
+    place = np.hstack([inside[:, :-1].transpose(0, 2, 1).reshape(7, -1), path.place[:, -1:]])
     return _SampledPath(place, np.append(0.0, np.cumsum(way.T)))

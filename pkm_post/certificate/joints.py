@@ -49,8 +49,8 @@ def measure_joints(task: Task, trajectory: Trajectory) -> JointDeviations:
     def part(first: int) -> tuple[Array, ...]:
         return _passed(task, trajectory, np.arange(first, min(first + _AT_ONCE, len(trajectory))))
 
-    found = list(workers().map(part, range(0, len(trajectory), _AT_ONCE)))
-    return JointDeviations(*(np.concatenate(columns, axis=-1) for columns in zip(*found, strict=True)))
+    parts = list(workers().map(part, range(0, len(trajectory), _AT_ONCE)))
+    return JointDeviations(*(np.concatenate(columns, axis=-1) for columns in zip(*parts, strict=True)))
 
 
 def _passed(task: Task, trajectory: Trajectory, rows: Array) -> tuple[Array, ...]:
@@ -83,17 +83,22 @@ def _tool_at(task: Task, trajectory: Trajectory, rows: Array, knot: Array, share
 
     They come from the tool's cubics if these are accurate enough; else from Newton's method.
     """
-    tip, axis, _ = (columns.reshape(-1, len(rows)).T for columns in task.course.at(knot, share[None]))
-    missed, found = task.course.missed[:2, knot], np.ones(len(rows), dtype=bool)
+    tip, axis, _ = (columns.reshape(-1, len(rows)).T for columns in task.spline.at(knot, share[None]))
+    missed, found = task.spline.missed[:2, knot], np.ones(len(rows), dtype=bool)
     tool_length = trajectory.tool_length()[rows]
     limit = np.stack([task.ruler.tip_tolerance[rows], np.full(len(rows), task.ruler.axis_tolerance)])
-    told = (missed < _SETTLED * limit).all(axis=0) & (tool_length == task.motion.tool_length[knot + 1])
-    odd = np.flatnonzero(~told)
+    accurate = (missed < _SETTLED * limit).all(axis=0) & (tool_length == task.motion.tool_length[knot + 1])
+    odd = np.flatnonzero(~accurate)
     if len(odd):
         length = hermite_lengths(*task.struts.cubics(knot[odd]), share[odd, None])[:, 0]
         guess = trajectory.tip[rows[odd]], trajectory.axis[rows[odd]], trajectory.spin[rows[odd]]
         exact = forward(task.machine, length, tool_length[odd], *guess)
-        tip[odd], axis[odd], found[odd], missed[:, odd] = exact.tip, exact.axis, exact.converged, 0.0
+        tip[odd], axis[odd], found[odd], missed[:, odd] = (
+            exact.tip,
+            exact.axis,
+            exact.converged,
+            0.0,
+        )
     return tip, axis, missed, found
 
 

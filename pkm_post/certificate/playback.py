@@ -81,20 +81,20 @@ class _Measured:
         time: (M, N) s since the start.
         segment: (M, N) the trajectory segment executed then, the reference of the deviation.
         tip_tolerance: (M, N) tolerance of the tip there, mm.
-        looked: deviation of the tip by tolerance, of the axis, rad, and speed of the tip, mm/s; (M, N) each.
+        values: deviation of the tip by tolerance, of the axis, rad, and speed of the tip, mm/s; (M, N) each.
     """
 
     tool: ToolStates
     time: Array
     segment: Array
     tip_tolerance: Array
-    looked: tuple[Array, Array, Array]
+    values: tuple[Array, Array, Array]
 
 
 def sample(task: Task, rows: Array, instants: int, closely: bool) -> Samples:
     """Play the intervals that begin at some knots, (N,), and measure each at a number of even instants."""
     measured = _measured(task, rows, instants, closely)
-    tool, tip_tolerance, (by_tolerance, off_axis, speed) = measured.tool, measured.tip_tolerance, measured.looked
+    tool, tip_tolerance, (by_tolerance, off_axis, speed) = measured.tool, measured.tip_tolerance, measured.values
     worst = np.argmax(by_tolerance, axis=0), np.arange(len(rows))
     axis_tolerance, ceiling = task.ruler.axis_tolerance, task.ceiling[rows]
     missed_tip, missed_axis, missed_speed = tool.missed
@@ -113,13 +113,13 @@ def sample(task: Task, rows: Array, instants: int, closely: bool) -> Samples:
     )  # fmt: skip
 
 
-def when_worst(task: Task, passed: JointDeviations, looked: Quantity, row: int) -> tuple[float, int]:
+def when_worst(task: Task, passed: JointDeviations, quantity: Quantity, row: int) -> tuple[float, int]:
     """Time of the worst value in the interval that begins at a knot, s since the start, and its segment."""
     measured = _measured(task, np.array([row]), _TO_FIND_THE_WORST, closely=True)
     allowed = 1.0, task.ruler.axis_tolerance, task.ceiling[row]
     joints = np.flatnonzero((passed.intervals == row).any(axis=0))
-    at_joints = passed.off[looked, joints] if looked is not Quantity.SPEED else np.zeros(len(joints))
-    values = np.append(measured.looked[looked] / allowed[looked], at_joints)
+    at_joints = passed.off[quantity, joints] if quantity is not Quantity.SPEED else np.zeros(len(joints))
+    values = np.append(measured.values[quantity] / allowed[quantity], at_joints)
     worst = np.argmax(np.where(np.isnan(values), np.inf, values))
     time = np.append(measured.time, task.motion.joint_time[joints])
     return float(time[worst]), int(np.append(measured.segment, joints)[worst])
@@ -190,7 +190,7 @@ def play(task: Task, passed: JointDeviations) -> PlaybackBounds:
     """
     rows = np.arange(len(task.struts) - 1)
     seen, peaks = Samples.nothing(len(rows)), _JointPeaks.of(passed, len(rows))
-    unsettled, closely, instants = np.flatnonzero(np.isfinite(task.course.missed[0])), False, 0
+    unsettled, closely, instants = np.flatnonzero(np.isfinite(task.spline.missed[0])), False, 0
     for closer in _INSTANTS:
         _resample(task, seen, peaks, unsettled, closer, closely)
         instants += closer * len(unsettled)

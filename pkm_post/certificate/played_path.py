@@ -1,9 +1,20 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Played course: the tool path of a played program, from its strut lengths and speeds alone.
+"""Played path: the tool path of a played program, its backward motion, and its deviation of spin, without a plan.
 
-Enters: a strut motion as read back, the gauge length in use at each knot, and the start pose of the program. Leaves:
-tool poses at the knots by forward kinematics, each starting from the previous one, with their rates; between two knots
-tip, axis and spin are approximated by cubics. The certificate is not measured on these cubics (``tool_at``).
+Enters: a strut motion as read back, the gauge length in use at each knot, the trajectory with its ruler, and when each
+joint is passed. Leaves: tool poses at the knots by forward kinematics, each starting from the previous one, with their
+rates; between two knots tip, axis and spin are approximated by cubics. The certificate is not measured on these cubics
+(``tool_states``). Units: mm, s, rad.
+
+Backward motion: a tool that moves back and forth on the path stays within all tolerances, so its progress is checked
+separately. The reference, the best-fitting programmed pose, may itself move backward by as much as the tolerance.
+
+Spin: it does not affect the cut, so tip and axis do not show its deviation; cones, singular poses and strut lengths
+depend on it. The programmed spin is that of the best-fitting programmed pose. The allowed deviation is the sum of
+
+* the change of spin when that pose moves within the tolerances;
+* the rounding of a joint, over less than half of the shorter of its two segments: with the change D of the spin's
+  rate by path length, half width d and the distance x from the joint D 2 d (v^3 - v^4 / 2), v = (d - x) / 2 d.
 """
 
 from __future__ import annotations
@@ -24,6 +35,15 @@ from pkm_post.geometry import (
 )
 from pkm_post.machine import attitude_rates, forward_along_path, jacobian_of_tip, platform_rotation, solve_regular
 from pkm_post.model import Machine, StrutMotion, Trajectory
+
+_ADVANCE_SHARES = np.linspace(0.125, 1.0, 8)[:, None]
+"""Shares of each interval at which it is evaluated."""
+_INTERVALS_AT_ONCE = 8192
+_SPIN_SHARES = np.array([[0.0], [0.25], [0.5], [0.75], [1.0]])
+"""Shares of each interval at which the spin is compared."""
+_ROUNDED = 0.45
+"""Share of the shorter segment at a joint over which it may be rounded."""
+_AT_ONCE = 8192
 
 
 @dataclass(frozen=True)
@@ -52,16 +72,16 @@ class PlayedPath:
     ) -> tuple[PlayedPath | None, int]:
         """The tool path of a program; or None, and the first knot that small steps from the start cannot reach."""
         begin = platform_rotation(trajectory.start_axis[None], np.array([trajectory.start_spin]))[0]
-        found = forward_along_path(machine, struts.length, tool_length, trajectory.start_tip, begin)
-        if not found.converged.all():
-            return None, int(np.argmin(found.converged))
-        spin = _spin(found.rotation, trajectory.start_spin)
-        jacobian = jacobian_of_tip(machine, found.tip, found.axis, spin, tool_length)
+        poses = forward_along_path(machine, struts.length, tool_length, trajectory.start_tip, begin)
+        if not poses.converged.all():
+            return None, int(np.argmin(poses.converged))
+        spin = _spin(poses.rotation, trajectory.start_spin)
+        jacobian = jacobian_of_tip(machine, poses.tip, poses.axis, spin, tool_length)
         twist, regular = solve_regular(jacobian, struts.speed)
         if not regular.all():
             return None, int(np.argmin(regular))
-        swing, spun = attitude_rates(found.axis, twist[:, 3:])
-        place = np.vstack([found.tip.T, found.axis.T, spin])
+        swing, spun = attitude_rates(poses.axis, twist[:, 3:])
+        place = np.vstack([poses.tip.T, poses.axis.T, spin])
         start = place[:, :-1].copy()
         start[:3] -= np.diff(tool_length) * start[3:6]
         rate = np.vstack([twist[:, :3].T, swing.T, spun])
@@ -90,16 +110,11 @@ def _spin(rotation: Array, start: float) -> Array:
     return np.asarray(spin + 2 * np.pi * np.round((start - spin[0]) / (2 * np.pi)))
 
 
-_ADVANCE_SHARES = np.linspace(0.125, 1.0, 8)[:, None]
-"""Shares of each interval at which it is evaluated."""
-_INTERVALS_AT_ONCE = 8192
-
-
-def largest_backward_motion(course: PlayedPath, ruler: TrajectoryRuler, passed: Array) -> tuple[float, float]:
+def largest_backward_motion(path: PlayedPath, ruler: TrajectoryRuler, passed: Array) -> tuple[float, float]:
     """Largest backward motion of the tool, where 1 is the tolerance; and its time, s."""
-    count = len(course.time) - 1
+    count = len(path.time) - 1
     parts = [
-        _along(course, np.arange(first, min(first + _INTERVALS_AT_ONCE, count)), ruler, passed)
+        _along(path, np.arange(first, min(first + _INTERVALS_AT_ONCE, count)), ruler, passed)
         for first in range(0, count, _INTERVALS_AT_ONCE)
     ]
     time, along, slack = np.concatenate(parts, axis=1)
@@ -108,50 +123,43 @@ def largest_backward_motion(course: PlayedPath, ruler: TrajectoryRuler, passed: 
     return float(back[worst]), float(time[worst])
 
 
-def _along(course: PlayedPath, rows: Array, ruler: TrajectoryRuler, passed: Array) -> Array:
+def _along(path: PlayedPath, rows: Array, ruler: TrajectoryRuler, passed: Array) -> Array:
     """Times in intervals; progress of the tool, in segments; and the tolerance of that progress, (3, M)."""
-    place = course.at(rows, _ADVANCE_SHARES).transpose(0, 2, 1).reshape(7, -1)
-    begin, end = course.time[rows, None], course.time[rows + 1, None]
+    place = path.at(rows, _ADVANCE_SHARES).transpose(0, 2, 1).reshape(7, -1)
+    begin, end = path.time[rows, None], path.time[rows + 1, None]
     time = (begin + (end - begin) * _ADVANCE_SHARES[:, 0]).ravel()
     segment = np.minimum(np.searchsorted(passed, time), len(passed) - 1)
     share, slack = ruler.share_of(place[:3].T, (place[3:6] / norm(place[3:6].T)).T, segment)
     return np.stack([time, segment + share, slack])
 
 
-_SPIN_SHARES = np.array([[0.0], [0.25], [0.5], [0.75], [1.0]])
-"""Shares of each interval at which the spin is compared."""
-_ROUNDED = 0.45
-"""Share of the shorter segment at a joint over which it may be rounded."""
-_AT_ONCE = 8192
-
-
 def spin_deviation(
-    course: PlayedPath, trajectory: Trajectory, machine: Machine, ruler: TrajectoryRuler, passed: Array
+    path: PlayedPath, trajectory: Trajectory, machine: Machine, ruler: TrajectoryRuler, passed: Array
 ) -> Array:
     """Deviation of the spin about each knot from the programmed one, (K + 1,) mm of a strut.
 
     Args:
-        course: path of the program.
+        path: path of the program.
         trajectory: the programmed trajectory.
         machine: the geometry.
         ruler: ruler of the trajectory.
         passed: (N,) s, when the end of each segment is passed.
     """
     allowed = _Allowed(trajectory, ruler)
-    count = len(course.time) - 1
+    count = len(path.time) - 1
     off = np.empty(count)
     for first in range(0, count, _AT_ONCE):
         rows = np.arange(first, min(first + _AT_ONCE, count))
-        off[rows] = _off(course, rows, allowed, passed)
-    lever = _lever(course, machine)
+        off[rows] = _off(path, rows, allowed, passed)
+    lever = _lever(path, machine)
     by_interval = off * np.maximum(lever[:-1], lever[1:])
     return np.maximum(np.append(by_interval, 0.0), np.append(0.0, by_interval))
 
 
-def _off(course: PlayedPath, rows: Array, allowed: _Allowed, passed: Array) -> Array:
+def _off(path: PlayedPath, rows: Array, allowed: _Allowed, passed: Array) -> Array:
     """Largest excess of the spin in intervals over its allowed range, (M,) rad."""
-    place = course.at(rows, _SPIN_SHARES).reshape(7, -1)
-    begin, end = course.time[rows], course.time[rows + 1]
+    place = path.at(rows, _SPIN_SHARES).reshape(7, -1)
+    begin, end = path.time[rows], path.time[rows + 1]
     time = (begin + (end - begin) * _SPIN_SHARES).ravel()
     # an interval that begins at a joint belongs to the next segment
     first = np.tile(np.searchsorted(passed, begin, side="right"), len(_SPIN_SHARES))
@@ -196,8 +204,8 @@ class _Allowed:
         return np.asarray(self._change[joint] * 2 * width * v**3 * (1 - v / 2))
 
 
-def _lever(course: PlayedPath, machine: Machine) -> Array:
+def _lever(path: PlayedPath, machine: Machine) -> Array:
     """Largest change of a strut length with the spin at each knot, (K + 1,) mm per rad."""
-    tip, axis = course.place[:3].T, course.place[3:6].T
-    jacobian = jacobian_of_tip(machine, tip, axis, course.place[6], course.tool_length)
+    tip, axis = path.place[:3].T, path.place[3:6].T
+    jacobian = jacobian_of_tip(machine, tip, axis, path.place[6], path.tool_length)
     return np.asarray(np.abs((jacobian[:, :, 3:] @ axis[..., None])[..., 0]).max(axis=1))

@@ -33,18 +33,18 @@ class ReconstructedMotion:
     Attributes:
         motion: motion with the knots of the program.
         spin_deviation: (K + 1,) mm of a strut, deviation of the spin about each knot from the programmed one.
-        course: path of the tool.
+        path: path of the tool.
     """
 
     motion: Motion
     spin_deviation: Array
-    course: PlayedPath
+    path: PlayedPath
 
     def way(self) -> tuple[PosePath, Array]:
         """The pose path through even instants of all intervals, and the segments of these."""
         count = len(self.motion) - 1
-        first = self.course.at(np.array([0]), np.zeros((1, 1)))[:, 0]
-        inside = self.course.at(np.arange(count), _LOOKS).transpose(0, 2, 1).reshape(7, -1)
+        first = self.path.at(np.array([0]), np.zeros((1, 1)))[:, 0]
+        inside = self.path.at(np.arange(count), _LOOKS).transpose(0, 2, 1).reshape(7, -1)
         place = np.hstack([first, inside])
         axis = (place[3:6] / norm(place[3:6].T)).T
         looks = len(_LOOKS)
@@ -66,18 +66,18 @@ def reconstruct(
         tolerances: the requested tolerances.
     """
     rests = _Rests.of(struts, trajectory)
-    course, fault = None, rests.fault(struts, trajectory, machine)
+    path, fault = None, rests.fault(struts, trajectory, machine)
     if fault is None:
-        course, fault = _course(struts, rests, trajectory, machine)
-    if course is None:
+        path, fault = _played_path(struts, rests, trajectory, machine)
+    if path is None:
         return None, _diagnostics(fault, program_name)
     ruler = TrajectoryRuler(trajectory, tolerances)
-    passed = joint_times(course, trajectory, machine, tolerances, rests.rows[1:] - 1, rests.knots[1:])
-    fault = _way_back(course, ruler, passed)
+    passed = joint_times(path, trajectory, machine, tolerances, rests.rows[1:] - 1, rests.knots[1:])
+    fault = _way_back(path, ruler, passed)
     if fault is not None:
         return None, _diagnostics(fault, program_name)
-    off = spin_deviation(course, trajectory, machine, ruler, passed)
-    return ReconstructedMotion(_motion(course, passed), off, course), ()
+    off = spin_deviation(path, trajectory, machine, ruler, passed)
+    return ReconstructedMotion(_motion(path, passed), off, path), ()
 
 
 _Fault = tuple[str, str]
@@ -88,18 +88,18 @@ def _diagnostics(fault: _Fault | None, program_name: str) -> Findings:
     return () if fault is None else (Diagnostic(fault[0], Place(program_name), fault[1]),)
 
 
-def _course(
+def _played_path(
     struts: StrutMotion, rests: _Rests, trajectory: Trajectory, machine: Machine
 ) -> tuple[PlayedPath | None, _Fault | None]:
-    course, lost = PlayedPath.of(struts, rests.tool_lengths(trajectory), trajectory, machine)
-    if course is not None:
-        return course, None
+    path, lost = PlayedPath.of(struts, rests.tool_lengths(trajectory), trajectory, machine)
+    if path is not None:
+        return path, None
     found = f"from {struts.time_ms[lost] / 1000:g} s on no pose near the one before it has the strut lengths"
     return None, ("V107", found)
 
 
-def _way_back(course: PlayedPath, ruler: TrajectoryRuler, passed: Array) -> _Fault | None:
-    back, when = largest_backward_motion(course, ruler, passed)
+def _way_back(path: PlayedPath, ruler: TrajectoryRuler, passed: Array) -> _Fault | None:
+    back, when = largest_backward_motion(path, ruler, passed)
     if back <= 1:
         return None
     return (
@@ -108,19 +108,19 @@ def _way_back(course: PlayedPath, ruler: TrajectoryRuler, passed: Array) -> _Fau
     )
 
 
-def _motion(course: PlayedPath, passed: Array) -> Motion:
+def _motion(path: PlayedPath, passed: Array) -> Motion:
     return Motion(
-        time_ms=course.struts.time_ms,
-        tip=course.place[:3].T,
-        axis=course.place[3:6].T,
-        spin=course.place[6],
-        tip_rate=course.rate[:3].T,
-        axis_rate=course.rate[3:6].T,
-        spin_rate=course.rate[6],
-        tool_length=course.tool_length,
-        segment=np.minimum(np.searchsorted(passed, course.time), len(passed) - 1),
+        time_ms=path.struts.time_ms,
+        tip=path.place[:3].T,
+        axis=path.place[3:6].T,
+        spin=path.place[6],
+        tip_rate=path.rate[:3].T,
+        axis_rate=path.rate[3:6].T,
+        spin_rate=path.rate[6],
+        tool_length=path.tool_length,
+        segment=np.minimum(np.searchsorted(passed, path.time), len(passed) - 1),
         joint_time=passed,
-        events=course.struts.events,
+        events=path.struts.events,
     )
 
 

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool course: the path of the tool in each interval as one cubic, with error bounds.
+"""Tool spline: kinematic state at the knots, and the path of the tool in each interval as one cubic, with error bounds.
 
-Enters: a strut motion as read back, and the planned motion as start value. Leaves: tool poses and their rates at the
-knots. Between two of them tip, axis and spin follow the cubics with these ends, which need no kinematics. The struts of
-such a cubic are not exactly those that are played; their difference at three instants gives the error of the cubic
-there, and a bound for all others.
+Enters: a strut motion as read back, and the planned motion as start value. Leaves: planned strut lengths and speeds,
+inverse Jacobians, and the intervals in which the Jacobian varies so little that the mean of both inverses can replace
+that of an instant; tool poses and their rates at the knots. Between two of them tip, axis and spin follow the cubics
+with these ends, which need no kinematics: the rough pair of ``tool_states.states_by_kinematics``. The struts of such a
+cubic are not exactly those that are played; their difference at three instants gives the error of the cubic there, and
+a bound for all others. Units: mm, s, rad.
 """
 
 from __future__ import annotations
@@ -45,7 +47,7 @@ class KnotKinematics:
     alike: Array
 
     @classmethod
-    def room(cls, motion: Motion) -> KnotKinematics:
+    def allocated(cls, motion: Motion) -> KnotKinematics:
         """Allocate columns for the knots of a plan, to be filled piece by piece."""
         length, speed = np.empty((2, len(motion), 6))
         return cls(length, speed, np.empty((len(motion), 3, 6)), np.diff(motion.tool_length) == 0)
@@ -127,19 +129,19 @@ class ToolSpline:
     @classmethod
     def of(cls, machine: Machine, struts: StrutMotion, motion: Motion) -> tuple[ToolSpline, KnotKinematics]:
         """The cubics of a strut motion with the knots of a planned one; and the kinematic state at these."""
-        knots, count = KnotKinematics.room(motion), len(struts) - 1
+        knots, count = KnotKinematics.allocated(motion), len(struts) - 1
         place, rate = np.empty((2, 7, len(struts)))
-        course = cls(place, rate, np.diff(struts.time_ms) / 1000, np.full((3, count), np.inf))
+        spline = cls(place, rate, np.diff(struts.time_ms) / 1000, np.full((3, count), np.inf))
         for piece in pieces(count, _AT_ONCE):
             rows = slice(piece.start, piece.stop + 1)  # includes the end of its last interval
             inverse = knots.fill(machine, motion, rows)
-            course.place[:, rows], course.rate[:, rows], near = _at_knots(struts, motion, knots, rows, inverse)
-            told = course._told(knots, near, piece)
-            ends = inverse[told - piece.start], inverse[told - piece.start + 1]
-            course.missed[:, told] = course._missed(machine, struts, motion, ends, told)
-        return course, knots
+            spline.place[:, rows], spline.rate[:, rows], near = _at_knots(struts, motion, knots, rows, inverse)
+            bounded = spline._bounded(knots, near, piece)
+            ends = inverse[bounded - piece.start], inverse[bounded - piece.start + 1]
+            spline.missed[:, bounded] = spline._missed(machine, struts, motion, ends, bounded)
+        return spline, knots
 
-    def _told(self, knots: KnotKinematics, near: Array, piece: slice) -> Array:
+    def _bounded(self, knots: KnotKinematics, near: Array, piece: slice) -> Array:
         """The intervals of a piece that have a bound; ``near`` has their knots, one more."""
         swing = length_of(*self.rate[3:6, piece.start : piece.stop + 1])
         turn = np.maximum(swing[:-1], swing[1:]) * self.duration[piece]

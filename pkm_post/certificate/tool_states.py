@@ -33,7 +33,7 @@ class Task:
         ruler: measures poses against the programmed trajectory.
         motion: the planned motion with the same knots.
         knots: kinematic state at the knots.
-        course: approximate cubics of the tool.
+        spline: approximate cubics of the tool.
         ceiling: (K,) highest tip speed of each interval, mm/s.
         spin_deviation: (K + 1,) mm of a strut due to spin error, in addition to the deviation from the plan.
     """
@@ -43,7 +43,7 @@ class Task:
     ruler: TrajectoryRuler
     motion: Motion
     knots: KnotKinematics
-    course: ToolSpline
+    spline: ToolSpline
     ceiling: Array
     spin_deviation: Array | float = 0.0
 
@@ -69,9 +69,9 @@ class ToolStates:
 
 def states_on_spline(task: Task, rows: Array, shares: Array) -> ToolStates:
     """The tool at shares of intervals, from its cubics."""
-    course, share = task.course, shares[:, None]
-    tip, axis, spin = course.at(rows, share)
-    return ToolStates(tip, axis, course.velocity(rows, share), course.missed[:, rows], np.ones(spin.shape, dtype=bool))
+    spline, share = task.spline, shares[:, None]
+    tip, axis, spin = spline.at(rows, share)
+    return ToolStates(tip, axis, spline.velocity(rows, share), spline.missed[:, rows], np.ones(spin.shape, dtype=bool))
 
 
 def states_by_kinematics(task: Task, rows: Array, shares: Array) -> ToolStates:

@@ -46,16 +46,16 @@ def knots(rests_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Arra
     """
     start, end = _even(rests_ms)
     edges_ms = edges_ms[slice(*np.searchsorted(edges_ms, rests_ms[[0, -1]]))]
-    found = [start, rests_ms[-1:]]
+    times = [start, rests_ms[-1:]]
     while len(start):
         wide = end - start >= 2 * shortest
         start, end = start[wide], end[wide]
         wide = error(start, end) > 1
         start, end = start[wide], end[wide]
         cut = _cut(start, end, edges_ms, shortest)
-        found.append(cut)
+        times.append(cut)
         start, end = np.column_stack([start, cut]).ravel(), np.column_stack([cut, end]).ravel()
-    return np.sort(np.concatenate(found))
+    return np.sort(np.concatenate(times))
 
 
 def _even(rests_ms: Array) -> tuple[Array, Array]:

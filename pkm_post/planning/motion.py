@@ -129,13 +129,13 @@ def plan_feed(
         tolerances: the requested tolerances.
     """
     path = tool_path(trajectory, tolerances)
-    most = DerivativeBounds.of(path)
-    faults = reach_faults(machine, trajectory, *_way(path, stations(path, deviates_in_blends(path, most))))
+    bounds = DerivativeBounds.of(path)
+    faults = reach_faults(machine, trajectory, *_way(path, stations(path, deviates_in_blends(path, bounds))))
     try:
-        return FeedPlan(path, _schedule(path, machine, most), trajectory.events, machine, tolerances), faults
+        return FeedPlan(path, _schedule(path, machine, bounds), trajectory.events, machine, tolerances), faults
     except _TooLongError as fault:
-        found = f"{fault.seconds:.6g} s, at most {LONGEST_MOTION:g} s"
-        return None, (*faults, Diagnostic("K145", trajectory.place(fault.segment), found))
+        duration = f"{fault.seconds:.6g} s, at most {LONGEST_MOTION:g} s"
+        return None, (*faults, Diagnostic("K145", trajectory.place(fault.segment), duration))
 
 
 class _TooLongError(Exception):
@@ -146,7 +146,7 @@ class _TooLongError(Exception):
         super().__init__(f"{seconds} s")
 
 
-def _schedule(path: ToolPath, machine: Machine, most: DerivativeBounds) -> Schedule:
+def _schedule(path: ToolPath, machine: Machine, bounds: DerivativeBounds) -> Schedule:
     """The schedule of a path with these bounds.
 
     Raises:
@@ -154,7 +154,7 @@ def _schedule(path: ToolPath, machine: Machine, most: DerivativeBounds) -> Sched
     """
     if np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk):
         return _without_jumps(path, machine)
-    rough = rough_limits(path, machine, most)
+    rough = rough_limits(path, machine, bounds)
     close = below_feed(path, *rough)
     marks = stations(path, close)
     profile = speed_profile(marks.s, *limits_at(path, marks, close, rough, machine))
@@ -176,11 +176,11 @@ def _check_duration(s: Array, square: Array, marks: Stations) -> None:
 def _way(path: ToolPath, marks: Stations) -> tuple[PosePath, Array]:
     """The pose path through stations, straight from one to the next; and their segments."""
 
-    def seen(rows: slice) -> tuple[Array, ...]:
-        found = fast_poses_within(path, marks.segment[rows], marks.u[rows])
-        return found.tip, found.axis, found.spin, found.tool_length
+    def columns(rows: slice) -> tuple[Array, ...]:
+        poses = fast_poses_within(path, marks.segment[rows], marks.u[rows])
+        return poses.tip, poses.axis, poses.spin, poses.tool_length
 
-    return PosePath.straight(*in_pieces(len(marks.s), _STATIONS_AT_ONCE, seen)), marks.segment
+    return PosePath.straight(*in_pieces(len(marks.s), _STATIONS_AT_ONCE, columns)), marks.segment
 
 
 def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
@@ -272,12 +272,12 @@ def _motion(feed_plan: FeedPlan, time_ms: Array) -> Motion:
     )
 
 
-def _too_coarse(found: Array, cubics: InterpolationCheck, shortest: int) -> Array:
+def _too_coarse(times: Array, cubics: InterpolationCheck, shortest: int) -> Array:
     """Starts and ends of intervals that cannot be cut for the controller but are out of tolerance, (2, R) ms.
 
     Intervals of one millisecond are exempt, as nothing is shorter.
     """
-    start, end = found[:-1], found[1:]
+    start, end = times[:-1], times[1:]
     rows = np.flatnonzero((end - start < 2 * shortest) & (end - start > 1))
     rows = rows[cubics.error(start[rows], end[rows]) > 1] if len(rows) else rows
     return np.stack([start[rows], end[rows]])

@@ -118,10 +118,10 @@ def limits_at(path: ToolPath, marks: Stations, close: Array, rough: Pair, machin
         block = rows[begin : first + _STATIONS_AT_ONCE + 1]
         segment, u = marks.segment[block], marks.u[block]
         poses = path.within(segment, u)
-        found = limits(feed_at(path, poses, u), limited_quantities(machine, poses))
-        own = np.flatnonzero(inner[block])
-        own = own[(own >= first - begin) & (own < first - begin + _STATIONS_AT_ONCE)]
-        square[block[own]], along[block[own]] = found[0][own], found[1][own]
+        exact = limits(feed_at(path, poses, u), limited_quantities(machine, poses))
+        inside = np.flatnonzero(inner[block])
+        inside = inside[(inside >= first - begin) & (inside < first - begin + _STATIONS_AT_ONCE)]
+        square[block[inside]], along[block[inside]] = exact[0][inside], exact[1][inside]
     square[marks.rest] = 0.0
     return square, along
 

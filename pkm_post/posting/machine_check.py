@@ -80,8 +80,8 @@ def machine_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
         file: file name in messages.
     """
     _, faults = controller_settings(machine)
-    told = (replace(fault, place=Place(file)) for fault in faults)
-    return (*told, *home_faults(machine, file), *change_faults(machine, file))
+    of_controller = (replace(fault, place=Place(file)) for fault in faults)
+    return (*of_controller, *home_faults(machine, file), *change_faults(machine, file))
 
 
 def _count_at_tip(machine: Machine, pose: tuple[Array, ...]) -> float | None:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Placed: a program as a trajectory on its machine.
+"""Placement: a program as a trajectory on its machine, with its set-up of part, stock and fixtures.
 
-Enters: a program in {C}. Leaves: the compensated trajectory on the machine, in {M}, with its spin, or diagnostics.
+Enters: a program in {C}, a machine and the options. Leaves: the compensated trajectory on the machine, in {M}, with its
+spin; and the effective set-up, where files named by the user override those of the job; or diagnostics.
 """
 
 from __future__ import annotations
@@ -22,23 +23,23 @@ Findings = tuple[Diagnostic, ...]
 
 def trajectory_of(program: Program, machine: Machine, options: Options) -> tuple[Trajectory | None, Findings]:
     """The compensated program on the machine, with its spin; or None with diagnostics."""
-    offset, told = work_offset(machine, options)
+    offset, diagnostics = work_offset(machine, options)
     moved, faults = compensate(program, options.contours, options.actual_tools)
-    told += faults
+    diagnostics += faults
     if offset is None or moved is None:
-        return None, told
+        return None, diagnostics
     if options.surface_speed is not None:
         limits = machine.spindle_least_speed, machine.spindle_speed
         moved, faults = with_surface_speed(moved, options.surface_speed, limits)
-        told += faults
+        diagnostics += faults
         if moved is None:
-            return None, told
+            return None, diagnostics
     placed, faults = place(moved, machine, offset)
-    told += faults
+    diagnostics += faults
     if placed is None:
-        return None, told
+        return None, diagnostics
     turned, faults = with_spin(placed, machine, options.spin)
-    return turned, told + faults
+    return turned, diagnostics + faults
 
 
 def work_offset(machine: Machine, options: Options) -> tuple[Array | None, Findings]:
@@ -59,13 +60,13 @@ def effective_setup(options: Options, program: Program | None) -> tuple[Setup, t
         options: the files, and the set-up of the job.
         program: knows the tools with unknown corners, which a trajectory file does not store; None if it has errors.
     """
-    files, found = options.mesh_files, list[Diagnostic]()
+    files, diagnostics = options.mesh_files, list[Diagnostic]()
 
     def read(file: str | None, otherwise: Mesh | None = None) -> Mesh | None:
         if file is None or file == NO_MESH:
             return otherwise if file is None else None
         mesh, faults = read_mesh(file)
-        found.extend(faults)
+        diagnostics.extend(faults)
         return mesh
 
     fixtures = tuple(mesh for mesh in map(read, files.fixtures) if mesh is not None)
@@ -78,4 +79,4 @@ def effective_setup(options: Options, program: Program | None) -> tuple[Setup, t
         fixtures=(*known.fixtures, *fixtures),
         unknown_corners=frozenset(tool.number for tool in tools if not tool.corner_known),
     )
-    return setup, tuple(found)
+    return setup, tuple(diagnostics)

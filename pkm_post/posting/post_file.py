@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Post file: from a part program, G-code or CL data, to a certified motion program.
 
-Enters: a file and its options. Leaves: the files of the pipeline. All faults of the file and of the machine file are
+Enters: a file and its options. Leaves: the files of a post. All faults of the file and of the machine file are
 collected before anything is refused. Tool lengths, which a part program rarely states, are required as options.
+``Prepared`` holds the inputs of a post for every entry point: documents and user files are no longer needed, so a run
+can continue in any thread.
 """
 
 from __future__ import annotations
@@ -70,10 +72,10 @@ class Prepared:
         Raises:
             Refused: it cannot be read or placed.
         """
-        trajectory, told = trajectory_of(*self.sound, self.options)
+        trajectory, diagnostics = trajectory_of(*self.sound, self.options)
         if trajectory is None:
-            raise Refused((*self.found, *told))
-        return trajectory, (*self.found, *told)
+            raise Refused((*self.found, *diagnostics))
+        return trajectory, (*self.found, *diagnostics)
 
     def post(self, program_path: Path, log: Log = no_log, progress: Progress = no_progress) -> Posted:
         """Post it to a motion program of this name; the other files take its stem.
@@ -137,8 +139,8 @@ def prepared_file(
     chosen = overridden(parse_text(""), given)
     lengths = tool_lengths_from(chosen) | dict(tool_lengths)
     model, found = machine_named(chosen.machine if machine is None else machine)
-    program, told = read_part_program(Path(file), replace(_said(reading, chosen), lengths=lengths))
-    faults = [fault for fault in told if fault.code != _ASKED_FOR]
+    program, diagnostics = read_part_program(Path(file), replace(_with_typed_options(reading, chosen), lengths=lengths))
+    faults = [fault for fault in diagnostics if fault.code != _ASKED_FOR]
     strangers = inapplicable_options(given, {input_kind(Path(file))})
     faults += [Diagnostic("L442", Place(str(file)), each) for each in strangers]
     if program is not None:
@@ -160,7 +162,7 @@ def _given(arguments: str | ArgumentValues, file: Path) -> ArgumentValues:
         raise Refused([Diagnostic("J117", Place(str(file)), str(fault))]) from fault
 
 
-def _said(reading: ReadingOptions, chosen: Namespace) -> ReadingOptions:
+def _with_typed_options(reading: ReadingOptions, chosen: Namespace) -> ReadingOptions:
     """How to read a file; typed options override ``reading``."""
     typed_ones = part_program_from(chosen, reading.axis_words)
     return replace(
@@ -177,16 +179,16 @@ def _replaced(program: Program, lengths: Mapping[int, float]) -> Iterator[Diagno
     """J125 for each gauge length of the file that is overridden."""
     for number, tool in program.tools.items():
         if tool.length > 0 and lengths.get(number, tool.length) != tool.length:
-            told = Override(flag_of("tool_length"), f"{tool.length:.12g} of T{number}", _shown(number, lengths))
-            yield Diagnostic("J125", Place(program.source), str(told))
+            override = Override(flag_of("tool_length"), f"{tool.length:.12g} of T{number}", _shown(number, lengths))
+            yield Diagnostic("J125", Place(program.source), str(override))
 
 
 def _unknown(program: Program, lengths: Mapping[int, float]) -> Iterator[Diagnostic]:
     """J126 for each gauge length whose number the program uses neither as a tool nor as an offset."""
     for number in sorted(set(lengths) - {*program.tools, *program.length_offsets}):
         called = ", ".join(f"T{each}" for each in sorted(program.tools))
-        told = f"{flag_of('tool_length')} {_shown(number, lengths)}, the program has {called}"
-        yield Diagnostic("J126", Place(program.source), told)
+        unused = f"{flag_of('tool_length')} {_shown(number, lengths)}, the program has {called}"
+        yield Diagnostic("J126", Place(program.source), unused)
 
 
 def _shown(number: int, lengths: Mapping[int, float]) -> str:

@@ -73,30 +73,30 @@ def study(
         The study, or None when the program cannot be placed; and the diagnostics, those of the checks included.
     """
     untwisted = replace(options, spin=ZERO_TORSION)
-    placed, told = trajectory_of(program, machine, untwisted)
+    placed, diagnostics = trajectory_of(program, machine, untwisted)
     if placed is None:
-        return None, told
+        return None, diagnostics
     stages = [("as it is, zero torsion", least_normalised_margins(placed, machine))]
     if free:
         of_machine = placed.operation >= len(program.operations)  # the routes to tool changes and back
         offset = best_position(placed, machine, free, fixed=of_machine).machine_from_work
         untwisted, options = replace(untwisted, work_offset=offset), replace(options, work_offset=offset)
-        placed, told = trajectory_of(program, machine, untwisted)
+        placed, diagnostics = trajectory_of(program, machine, untwisted)
         if placed is None:
-            return None, told
+            return None, diagnostics
         stages.append((f"moved in {', '.join(free)}", least_normalised_margins(placed, machine)))
     if options.spin.rule is not SpinRule.ZERO:
-        placed, told = trajectory_of(program, machine, options)
+        placed, diagnostics = trajectory_of(program, machine, options)
         if placed is None:
-            return None, told
+            return None, diagnostics
         stages.append((f"spin {options.spin.rule.value}", least_normalised_margins(placed, machine)))
     setup, faults = effective_setup(options, program)
     if errors(faults):
-        return None, (*told, *faults)
+        return None, (*diagnostics, *faults)
     checked = check_reach(placed, machine, placed_workpiece(setup, placed))
     collisions = find_collisions(placed, machine, setup, options.tolerances)
     both = (*checked.faults(), *(fault for fault in collisions.faults if fault.code not in _IN_REACH))
-    return Study(checked, tuple(stages), placed.machine_from_work), (*told, *both)
+    return Study(checked, tuple(stages), placed.machine_from_work), (*diagnostics, *both)
 
 
 _IN_REACH = ("K117", "K121")

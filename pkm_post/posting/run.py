@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Run: log, progress and diagnostics of one run.
+"""Run: log, progress and diagnostics of one run, what its steps share, and its result.
 
 Log and progress are callbacks; warnings are collected, errors stop the run.
 """
@@ -72,28 +72,28 @@ class Run:
     def step(self, name: str) -> Iterator[list[str]]:
         """Report the start of a step; at its end log its time and the notes added to the list."""
         give_back_memory()
-        self._tell(self.progress, name, self._done_before(name))
-        told: list[str] = []
+        self._call(self.progress, name, self._done_before(name))
+        notes: list[str] = []
         begin = time.perf_counter()
         try:
-            yield told
+            yield notes
         except MemoryError as fault:
             fault.add_note(f"in the step {name}")
             raise
-        self._tell(self.log, f"{name:<22}{time.perf_counter() - begin:7.2f} s   {', '.join(told)}")
+        self._call(self.log, f"{name:<22}{time.perf_counter() - begin:7.2f} s   {', '.join(notes)}")
 
     def print(self, lines: Iterable[str]) -> None:
         """Log additional lines."""
         for line in lines:
-            self._tell(self.log, line)
+            self._call(self.log, line)
 
     def end(self) -> None:
         """Report that all steps are done."""
-        self._tell(self.progress, "", 1.0)
+        self._call(self.progress, "", 1.0)
 
-    def _tell(self, call: Callable[..., None], *what: object) -> None:
+    def _call(self, callback: Callable[..., None], *what: object) -> None:
         try:
-            call(*what)
+            callback(*what)
         except OSError as fault:
             self.raised_outside = fault
             raise

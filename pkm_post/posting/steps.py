@@ -137,9 +137,9 @@ def _trajectory_hash(frame: PostContext) -> str:
 
 def _stored_trajectory(run: Run, frame: PostContext, program: Program) -> Trajectory:
     """The trajectory as read back from its file: the plan is made from the stored data."""
-    with run.step(_TRAJECTORY) as told:
+    with run.step(_TRAJECTORY) as notes:
         trajectory = run.value(trajectory_file.read(_store(run, frame, program)))
-        told.append(f"{len(trajectory)} segments")
+        notes.append(f"{len(trajectory)} segments")
     return trajectory
 
 
@@ -182,10 +182,10 @@ def _feed_plan(run: Run, frame: PostContext, trajectory: Trajectory) -> FeedPlan
 
 def _collisions(run: Run, frame: PostContext, trajectory: Trajectory, setup: Setup) -> tuple[Coverage, ...]:
     """Check collisions with part, stock and fixtures; return the coverage for the certificate."""
-    with run.step(_COLLISIONS) as told:
+    with run.step(_COLLISIONS) as notes:
         collisions = find_collisions(trajectory, frame.machine, setup, frame.tolerances)
         run.accept(collisions.faults)
-        told.extend(setup_names(setup) or ["part and stock are not known"])
+        notes.extend(setup_names(setup) or ["part and stock are not known"])
     return collisions.coverage
 
 
@@ -200,7 +200,7 @@ def _interpolation(run: Run, frame: PostContext, feed_plan: FeedPlan) -> Plan:
 
 def _motion_program(run: Run, frame: PostContext, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
     """Write the program and the set-up it relies on; return the names of its parts."""
-    with run.step(_PROGRAM) as told:
+    with run.step(_PROGRAM) as notes:
         controller, settings, machine = frame.controller, frame.settings, frame.machine
         records = program_files.source_hash_lines(_trajectory_hash(frame), machine.fingerprint)
         heading = [*summary.heading(trajectory), *records]
@@ -209,7 +209,7 @@ def _motion_program(run: Run, frame: PostContext, trajectory: Trajectory, struts
         setup = controller.setup_text(settings, machine.name, machine.strut_stroke)
         if setup is not None:
             outputs.write_parts(frame.beside(controller.SETUP_SUFFIX), (setup,))
-        told.append(f"{sum(map(len, parts)) / 1e6:.1f} MB" + f" in {len(parts)} parts" * (len(parts) > 1))
+        notes.append(f"{sum(map(len, parts)) / 1e6:.1f} MB" + f" in {len(parts)} parts" * (len(parts) > 1))
     return names
 
 
@@ -217,11 +217,11 @@ def _certificate(
     run: Run, frame: PostContext, trajectory: Trajectory, motion: Motion, covered: tuple[Coverage, ...]
 ) -> tuple[StrutMotion, Certificate, dict[str, Any]]:
     """The program read back from its text, its certificate, and the hashes of both files for the report."""
-    with run.step(_CERTIFICATE) as told:
+    with run.step(_CERTIFICATE) as notes:
         played, digests = _read_back(run, frame)
         measured = certify(played, frame.path.name, trajectory, frame.machine, motion, frame.tolerances, covered)
         certificate = run.value(measured)
-        told.append(f"{certificate.instants} instants")
+        notes.append(f"{certificate.instants} instants")
         files = summary.hashes(digests, _trajectory_hash(frame))
     return played, certificate, files
 
@@ -244,23 +244,23 @@ def _report(
     files: dict[str, Any],
 ) -> dict[str, Any]:
     """Write the report as JSON and as a picture; return its content."""
-    with run.step(_REPORT) as told:
+    with run.step(_REPORT) as notes:
         machine, tolerances = frame.machine, frame.tolerances
         report = summary.report(trajectory, machine, certificate, tolerances, played, motion, reading, files)
         summary.write(report, frame.beside(result_files.REPORT))
         picture = frame.beside(result_files.PICTURE)
         run.accept(plots.draw(picture, trajectory, machine, motion, played, certificate, tolerances))
-        told.extend(summary.verdict(certificate))
+        notes.extend(summary.verdict(certificate))
     run.print([*reading, *report["certificate"]["meaning"]])
     return report
 
 
 def _write_another(run: Run, frame: PostContext, name: str, trajectory: Trajectory, played: StrutMotion) -> None:
     """Write an additional output."""
-    with run.step(_another(name)) as told:
+    with run.step(_another(name)) as notes:
         if name == LINUXCNC:
             run.accept(outputs.write_for_linuxcnc(frame.path, trajectory, frame.tolerances.tip))
             return
-        found, faults = outputs.write_table(frame.path, TABLES[name], played, summary.origin(trajectory))
+        note, faults = outputs.write_table(frame.path, TABLES[name], played, summary.origin(trajectory))
         run.accept(faults)
-        told.append(found)
+        notes.append(note)

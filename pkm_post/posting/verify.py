@@ -37,10 +37,10 @@ def verify(program: Path, trajectory: Path, machine: Machine) -> tuple[dict[str,
         Refused: a file cannot be read or is faulty, the certificate does not hold, or files differ from their manifest
             or from the heading of the program.
     """
-    found, faults = controller_settings(machine)
-    if found is None:
+    controller, faults = controller_settings(machine)
+    if controller is None:
         raise Refused(faults)
-    texts, faults = read_texts(program, found[0])
+    texts, faults = read_texts(program, controller[0])
     if texts is None:
         raise Refused(faults)
     return verify_texts(texts, program, trajectory, machine)
@@ -54,14 +54,14 @@ def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine
         for name, text in texts
         if program_files.own_hash_matches(text) is False
     )
-    told = (*listed, *changed)
+    diagnostics = (*listed, *changed)
     try:
         report = _certified(texts, program, trajectory, machine)
     except Refused as refused:
-        raise Refused((*told, *refused.diagnostics)) from None
-    if errors(told):
-        raise Refused(told)
-    return report, told
+        raise Refused((*diagnostics, *refused.diagnostics)) from None
+    if errors(diagnostics):
+        raise Refused(diagnostics)
+    return report, diagnostics
 
 
 def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> dict[str, Any]:
@@ -74,19 +74,19 @@ def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) 
     if tolerances is None:
         raise Refused([Diagnostic("T105", Place(str(trajectory)), "none are in its header")])
     _refuse_for_machine(planned, machine, program.name)
-    found, faults = reconstruct(struts, program.name, planned, machine, tolerances)
-    if found is None:
+    result, faults = reconstruct(struts, program.name, planned, machine, tolerances)
+    if result is None:
         raise Refused(faults)
     certificate, faults = certify(
-        struts, program.name, planned, machine, found.motion, tolerances, spin_deviation=found.spin_deviation
+        struts, program.name, planned, machine, result.motion, tolerances, spin_deviation=result.spin_deviation
     )
-    faults = (*faults, *reach_faults(machine, planned, *found.way()))
+    faults = (*faults, *reach_faults(machine, planned, *result.way()))
     if certificate is None or errors(faults):
         raise Refused(faults)
     files = summary.hashes(
         [program_files.program_hash(text) for _, text in texts], manifest.fingerprint_of_file(trajectory)
     )
-    return summary.report(planned, machine, certificate, tolerances, struts, found.motion, files=files)
+    return summary.report(planned, machine, certificate, tolerances, struts, result.motion, files=files)
 
 
 def _refuse_for_machine(planned: Trajectory, machine: Machine, name: str) -> None:
@@ -101,10 +101,10 @@ def _refuse_for_machine(planned: Trajectory, machine: Machine, name: str) -> Non
 
 def _played(texts: Texts, machine: Machine) -> StrutMotion:
     """The motion of all parts of a program."""
-    found, faults = controller_settings(machine)
-    if found is None:
+    chosen, faults = controller_settings(machine)
+    if chosen is None:
         raise Refused(faults)
-    controller, settings = found
+    controller, settings = chosen
     struts, faults = controller.read_parts(texts, settings)
     if struts is None:
         raise Refused(faults)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plots: the picture of the report.
+"""Plots: the picture of the report, and that of a reach map.
 
-It shows the path in 3D with the tool axes, strut lengths and speeds over time with their limits, and the deviations
-from the certificate. Without matplotlib there is a warning instead.
+The first shows the path in 3D with the tool axes, strut lengths and speeds over time with their limits, and the
+deviations from the certificate; the second, horizontal slices with the angle by which the tool may tilt. Without
+matplotlib there is a warning instead.
 """
 
 from __future__ import annotations
@@ -140,8 +141,8 @@ def _deviations(axes: Any, certificate: Certificate, tolerances: Tolerances) -> 
     for name, line in by_tolerance.items():
         axes.plot(*decimated(certificate.time, line), linewidth=0.5, label=name)
     axes.axhline(1.0, **_LIMIT)
-    told = f"tip {1000 * tolerances.tip:g} um, axis {np.degrees(tolerances.axis):g} degrees"
-    axes.set(xlabel="time s", ylabel="deviation by tolerance", title=f"tolerances: {told}", ylim=(0, 1.1))
+    limits = f"tip {1000 * tolerances.tip:g} um, axis {np.degrees(tolerances.axis):g} degrees"
+    axes.set(xlabel="time s", ylabel="deviation by tolerance", title=f"tolerances: {limits}", ylim=(0, 1.1))
     axes.legend(fontsize="small", loc="center right")
 
 

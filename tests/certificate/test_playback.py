@@ -87,7 +87,7 @@ def test_linear_steps_and_newtons_method_agree(job):
     one = task_of(job)
     assert one.knots.alike.mean() > 0.9
     other = by_newton(task_of(job))
-    other.course.missed[:] = np.inf
+    other.spline.missed[:] = np.inf
     assert_alike(seen(one), seen(other))
     np.testing.assert_allclose(seen(one).worst[2], seen(other).worst[2], rtol=SPEED_MISSED, atol=1e-9)
     for name, tolerance in (("tip", TOLERANCES.tip), ("axis", TOLERANCES.axis)):

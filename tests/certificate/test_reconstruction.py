@@ -116,9 +116,9 @@ def test_a_tool_that_runs_to_and_fro_on_its_path_is_found(machine, swing, expect
     turn = 2 * np.pi * (warped - begin) / (end - begin)
     at = (warped - (end - begin) * swing * (1 - np.cos(turn))) / 1000
     pace = 1 - 2 * np.pi * swing * np.sin(turn)
-    interval = np.searchsorted(found.course.time, at) - 1
-    share = (at - found.course.time[interval]) / np.diff(found.course.time)[interval]
-    place, rate = found.course.at(interval, share[None])[:, 0], pace * found.course.rates_at(interval, share)[0]
+    interval = np.searchsorted(found.path.time, at) - 1
+    share = (at - found.path.time[interval]) / np.diff(found.path.time)[interval]
+    place, rate = found.path.at(interval, share[None])[:, 0], pace * found.path.rates_at(interval, share)[0]
     outside = (motion.time_ms < begin) | (motion.time_ms >= end)
     columns = {
         "time_ms": warped, "tip": place[:3].T, "axis": place[3:6].T, "spin": place[6], "tip_rate": rate[:3].T,
