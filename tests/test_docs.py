@@ -60,7 +60,8 @@ def dead_links(page):
 def bindings(file):
     """What a module binds at its top: by name a class or function, or the module a name comes from, or None."""
     bound = {}
-    for node in ast.parse(file.read_text(encoding="utf-8")).body:
+    body = ast.parse(file.read_text(encoding="utf-8")).body
+    for node in (each for top in body for each in (top.body if isinstance(top, ast.If) else [top])):
         if isinstance(node, ast.ImportFrom):
             source = node.module.split(".")
             bound |= {alias.asname or alias.name: source for alias in node.names}
@@ -98,10 +99,10 @@ def exists(parts):
     """Whether a dotted name below the package is a room, a module, a name in one, or one in a class of one."""
     here = PACKAGE
     for index, part in enumerate(parts):
+        if (here / f"{part}.py").exists():
+            return has_name(here / f"{part}.py", parts[index + 1 :])
         if (here / part).is_dir():
             here /= part
-        elif (here / f"{part}.py").exists():
-            return has_name(here / f"{part}.py", parts[index + 1 :])
         else:
             return has_name(here / "__init__.py", parts[index:])
     return True

@@ -2,6 +2,7 @@
 """The rules of the house: floors go down, a room is entered by its door, and each optional package has one door."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -19,7 +20,7 @@ BY_FLOOR = (
     "posting",
     "control",
     "freecad_app",
-    "cli freecad_gui",
+    "api cli freecad_gui",
     "__main__",
 )
 """Rooms from the ground floor upwards. A room imports from lower floors only, not from its neighbours."""
@@ -43,60 +44,42 @@ DOORS = {
 }
 """Where an optional package may be imported."""
 
-MODULES = sorted(PACKAGE.rglob("*.py"))
+ROOMS = sorted(FLOORS)
 
 
-def room(path):
-    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+def modules(room):
+    """The files of a room."""
+    return sorted(PACKAGE.joinpath(room).rglob("*.py")) or [PACKAGE / f"{room}.py"]
 
 
+@cache
 def imports(path):
     """Modules and names that a file imports, as it writes them; also inside functions and for types only."""
+    found = []
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            yield from ((alias.name, "") for alias in node.names)
+            found += [(alias.name, "") for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: relative import"
-            yield from ((node.module, alias.name) for alias in node.names)
+            found += [(node.module, alias.name) for alias in node.names]
+    return found
 
 
-def imports_of_rooms(path):
-    """Room, module and name of each import of another room."""
-    for module, name in imports(path):
-        parts = module.split(".")
-        if parts[0] == "pkm_post":
-            target = parts[1] if len(parts) > 1 else name
-            if target in FLOORS and target != room(path):
-                yield target, module, name
+def imports_of_rooms(room):
+    """File, room, module and name of each import of another room."""
+    for path in modules(room):
+        for module, name in imports(path):
+            parts = module.split(".")
+            if parts[0] == "pkm_post":
+                target = parts[1] if len(parts) > 1 else name
+                if target in FLOORS and target != room:
+                    yield path.relative_to(PACKAGE), target, module, name
 
 
-def test_there_are_modules():
-    assert len(MODULES) > 30
-
-
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_imports_go_down(path):
-    here = room(path)
-    if here == "__init__":
-        # The front door of the house: it may call any room, from inside its functions.
-        body = ast.parse(path.read_text(encoding="utf-8")).body
-        assert not [node for node in body if isinstance(node, ast.Import | ast.ImportFrom)]
-        return
-    for target, module, name in imports_of_rooms(path):
-        assert FLOORS[target] < FLOORS[here], f"{here} (floor {FLOORS[here]}) imports {module}.{name}"
-
-
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_rooms_are_entered_by_their_doors(path):
-    for target, module, name in imports_of_rooms(path):
-        if target not in WITHOUT_A_DOOR:
-            assert module == f"pkm_post.{target}", f"{module} is behind the door of {target}"
-            assert name in exported(target), f"{name} is not in __all__ of {target}"
-
-
-def exported(target):
+@cache
+def exported(room):
     """The names of a door."""
-    body = ast.parse((PACKAGE / target / "__init__.py").read_text(encoding="utf-8")).body
+    body = ast.parse((PACKAGE / room / "__init__.py").read_text(encoding="utf-8")).body
     (names,) = (ast.literal_eval(node.value) for node in body if _is_all(node))
     return names
 
@@ -105,9 +88,68 @@ def _is_all(node):
     return isinstance(node, ast.Assign) and [getattr(target, "id", None) for target in node.targets] == ["__all__"]
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_optional_packages_have_one_door(path):
-    inside = path.relative_to(PACKAGE).as_posix()
-    for module, _ in imports(path):
-        doors = DOORS.get(module.split(".")[0])
-        assert not doors or inside.startswith(doors), f"{module} is imported by {inside}"
+def test_every_file_is_in_a_room():
+    there = {path.relative_to(PACKAGE).parts[0].removesuffix(".py") for path in PACKAGE.rglob("*.py")}
+    assert there - {"__init__"} == set(ROOMS)
+
+
+def test_the_front_door_of_the_house_imports_nothing_at_once():
+    body = ast.parse((PACKAGE / "__init__.py").read_text(encoding="utf-8")).body
+    assert not [
+        node
+        for node in body
+        if isinstance(node, ast.Import | ast.ImportFrom) and "pkm_post" in (getattr(node, "module", "") or "")
+    ]
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_imports_go_down(room):
+    for path, target, module, name in imports_of_rooms(room):
+        assert FLOORS[target] < FLOORS[room], f"{path} (floor {FLOORS[room]}) imports {module}.{name}"
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_rooms_are_entered_by_their_doors(room):
+    for path, target, module, name in imports_of_rooms(room):
+        if target not in WITHOUT_A_DOOR:
+            assert module == f"pkm_post.{target}", f"{path} imports {module}, behind the door of {target}"
+            assert name in exported(target), f"{path} imports {name}, not in __all__ of {target}"
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_optional_packages_have_one_door(room):
+    for path in modules(room):
+        inside = path.relative_to(PACKAGE).as_posix()
+        for module, _ in imports(path):
+            doors = DOORS.get(module.split(".")[0])
+            assert not doors or inside.startswith(doors), f"{module} is imported by {inside}"
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_modules_inside_a_room_do_not_go_in_circles(room):
+    """Of the modules of a room none imports itself by way of others; imports for types only count as well."""
+    imported = {name: set(inside) for name, inside in _inside(room)}
+    finished, open_ones = set(), []
+
+    def visit(name):
+        assert name not in open_ones, " imports ".join([*open_ones[open_ones.index(name) :], name])
+        if name not in finished:
+            open_ones.append(name)
+            for other in sorted(imported.get(name, ())):
+                visit(other)
+            finished.add(open_ones.pop())
+
+    for name in imported:
+        visit(name)
+
+
+def _inside(room):
+    """The modules of a room by dotted name, each with those of the same room that it imports."""
+    dotted = {_dotted(path): path for path in modules(room)}
+    for name, path in dotted.items():
+        for_each = (full if (full := f"{module}.{each}") in dotted else module for module, each in imports(path))
+        yield name, [other for other in for_each if other in dotted and other != name]
+
+
+def _dotted(path):
+    return ".".join(("pkm_post", *path.relative_to(PACKAGE).with_suffix("").parts)).removesuffix(".__init__")

@@ -23,12 +23,7 @@ import Path.Main.Job
 import Path.Op.Custom
 import Path.Preferences
 
-from pkm_post.freecad_app.face_surface import surface_points
-from pkm_post.freecad_app.symmetry import create_mirror, create_rotation
-from pkm_post.freecad_app.tools import set_gauge_length
-from pkm_post.model import Tool
-from pkm_post.toolpath.compensation.contact import tip_from_contact
-from pkm_post.toolpath.compensation.cutter import Cutter
+import pkm_post as pkm
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -66,7 +61,7 @@ class Column:
     spacing: float = 0.4
     relief: float = math.radians(31.0)
     lead: float = math.radians(8.0)
-    tool: Tool = Tool(number=1, name="Bull nose D16 r4", diameter=16.0, corner_radius=4.0, length=120.0)
+    tool: pkm.Tool = pkm.Tool(number=1, name="Bull nose D16 r4", diameter=16.0, corner_radius=4.0, length=120.0)
     feed: float = 30.0
     spindle_speed: float = 12000.0
     standoff: float = 5.0
@@ -133,7 +128,7 @@ def contacts(column: Column) -> Contacts:
     for number, v in enumerate(np.linspace(1.0, column.lowest_contact / column.height, levels)):
         u, fraction = _even_steps(face, v, column.spacing)
         direction = 1 if number % 2 == 0 else -1
-        point, normal = surface_points(face, u, np.full(len(u), v))
+        point, normal = pkm.surface_points(face, u, np.full(len(u), v))
         lead = direction * column.lead * np.sin(np.pi * fraction)
         passes.append((point[::direction], normal[::direction], lead[::direction]))
     return Contacts(*(np.concatenate(columns) for columns in zip(*passes, strict=True)))
@@ -142,7 +137,7 @@ def contacts(column: Column) -> Contacts:
 def _even_steps(face: Part.Face, v: float, spacing: float) -> tuple[Array, Array]:
     """Parameters u of a quarter turn at equal steps of arc length, and the fraction of the way there."""
     dense_u = np.linspace(0.0, math.pi / 2, 361)
-    points, _ = surface_points(face, dense_u, np.full(len(dense_u), v))
+    points, _ = pkm.surface_points(face, dense_u, np.full(len(dense_u), v))
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     fraction = np.linspace(0.0, 1.0, math.ceil(way[-1] / spacing) + 1)
     return np.interp(fraction * way[-1], way, dense_u), fraction
@@ -164,7 +159,7 @@ def tool_axes(normals: Array, relief: float, lead: Array) -> Array:
 def tool_path(column: Column, touched: Contacts) -> tuple[Array, Array]:
     """Tool tips and unit tool axes that touch the wall, (N, 3) each."""
     axis = tool_axes(touched.normal, column.relief, touched.lead)
-    tip, faults = tip_from_contact(touched.point, touched.normal, axis, Cutter.of(column.tool))
+    tip, faults = pkm.tip_from_contact(touched.point, touched.normal, axis, pkm.Cutter.of(column.tool))
     if tip is None:
         raise ValueError("\n".join(str(fault) for fault in faults))
     return tip, axis
@@ -191,7 +186,7 @@ def _line(code: str, tip: Any, axis: Any, feed: float | None = None) -> str:
     return " ".join([code, *(f"{letter}{round(number, 6) + 0.0:.6f}" for letter, number in numbers.items())])
 
 
-def bull_nose(document: App.Document, tool: Tool) -> App.DocumentObject:
+def bull_nose(document: App.Document, tool: pkm.Tool) -> App.DocumentObject:
     """A stock tool bit with the sizes of the tool; FreeCAD 1.0 gives the flat radius where 1.1 gives the corner."""
     sizes = {"Diameter": tool.diameter, "ShankDiameter": tool.diameter, "CuttingEdgeHeight": 40.0, "Length": 110.0}
     flat = {"FlatRadius": tool.diameter / 2 - tool.corner_radius}
@@ -221,7 +216,7 @@ def controller(job: App.DocumentObject, column: Column) -> App.DocumentObject:
     tool_controller.HorizFeed = tool_controller.VertFeed = f"{column.feed} mm/s"
     tool_controller.SpindleSpeed = column.spindle_speed
     tool_controller.SpindleDir = "Forward"
-    set_gauge_length(tool_controller, column.tool.length)
+    pkm.set_gauge_length(tool_controller, column.tool.length)
     return tool_controller
 
 
@@ -252,9 +247,9 @@ def build(
     first.ToolController = tool_controller
     first.Gcode = quadrant(column)
     document.recompute()
-    create_mirror(first, (0.0, 1.0, 0.0), label="Quadrant 4")
-    create_mirror(first, (1.0, 0.0, 0.0), label="Quadrant 2")
-    create_rotation(first, (0.0, 0.0, 1.0), math.pi, label="Quadrant 3")
+    pkm.mirror(first, (0.0, 1.0, 0.0), label="Quadrant 4")
+    pkm.mirror(first, (1.0, 0.0, 0.0), label="Quadrant 2")
+    pkm.rotate(first, (0.0, 0.0, 1.0), math.pi, label="Quadrant 3")
     document.recompute()
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)

@@ -20,9 +20,7 @@ from build import build
 from Path.Post.Command import CommandPathPost
 from Path.Post.Processor import PostProcessorFactory
 
-import pkm_post
-from pkm_post.freecad_app.post_job import find_job
-from pkm_post.model import Refused
+import pkm_post as pkm
 
 MACHINE = "example_6tps"
 PICTURE_SECONDS = 120
@@ -34,7 +32,7 @@ def main() -> int:
     parser.add_argument("--out", type=FilePath, default=FilePath("out"), help="folder for the results")
     out = parser.parse_args().out.resolve()
     out.mkdir(parents=True, exist_ok=True)
-    print(f"PKM Post {pkm_post.__version__} in FreeCAD {'.'.join(FreeCAD.Version()[:3])}")
+    print(f"PKM Post {pkm.__version__} in FreeCAD {'.'.join(FreeCAD.Version()[:3])}")
 
     begin = time.perf_counter()
     (out / "tapered_column.FCStd").unlink(missing_ok=True)  # or FreeCAD keeps it as a backup
@@ -45,7 +43,7 @@ def main() -> int:
 
     try:
         post(saved, out / "tapered_column.pmc")
-    except Refused as refused:
+    except pkm.Refused as refused:
         print(refused, file=sys.stderr)
         return 1
     pictures(saved, out / "path.png", out / "machine.png")
@@ -59,7 +57,7 @@ def post(saved: FilePath, program: FilePath) -> None:
     """Post the saved document as CAM's Post Process command does."""
     document = FreeCAD.openDocument(str(saved))
     document.recompute()
-    job = find_job(document)
+    job = pkm.job(document)
     job.PostProcessorOutputFile = str(program)
     job.PostProcessorArgs = f"--machine {MACHINE}"
     for _, text in PostProcessorFactory.get_post_processor(job, "hexapod_pmac").export():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the tool does between two blocks, when angles or poses are interpolated instead of tip and tool axis.
+"""How far the tool strays between two blocks when angles or poses are interpolated instead of tip and tool axis.
 
 The path of the column's first quadrant enters, with every point and with only every n-th one as a coarser program would
 have them; for each way to interpolate, the largest deviations of tip and tool axis from the programmed move leave: the
@@ -16,20 +16,30 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry import along, angle_between, norm, towards, unit
+import pkm_post as pkm
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 STEPS = (1, 5, 10, 25, 50, 100)
 """Every n-th point of the path is a block."""
 SHARES = np.linspace(0.0, 1.0, 21)[1:-1]
-"""Places in a block that are looked at."""
+"""Shares of a block at which the deviation is measured."""
 
 
 def by_axis(axis: Array) -> Array:
     """Tool axes between each two rows, along the great circle, (N - 1, S, 3)."""
-    turn = towards(axis[:-1], axis[1:])
-    return along(axis[:-1, None], SHARES[:, None] * turn[:, None])
+    turn = angle_between(axis[:-1], axis[1:])[:, None, None]
+    first, last = axis[:-1, None], axis[1:, None]
+    share = SHARES[:, None]
+    straight = first + share * (last - first)  # where the axis stands still
+    with np.errstate(invalid="ignore"):
+        along = (np.sin((1 - share) * turn) * first + np.sin(share * turn) * last) / np.sin(turn)
+    return np.where(turn > 0, along, straight)
+
+
+def angle_between(axis: Array, other: Array) -> Array:
+    """Angles between unit vectors, rad."""
+    return 2.0 * np.arcsin(np.linalg.norm(axis - other, axis=-1) / 2.0)
 
 
 def by_angles(axis: Array) -> Array:
@@ -50,7 +60,7 @@ def tip_by_pose(tip: Array, axis: Array, reach: float) -> Array:
     origin = tip + reach * axis
     between = origin[:-1, None] + SHARES[:, None] * np.diff(origin, axis=0)[:, None]
     straight = tip[:-1, None] + SHARES[:, None] * np.diff(tip, axis=0)[:, None]
-    return norm(between - reach * by_axis(axis) - straight)
+    return np.linalg.norm(between - reach * by_axis(axis) - straight, axis=-1)
 
 
 def table(tip: Array, axis: Array, reach: float) -> list[tuple[int, float, float, float, float]]:
@@ -75,12 +85,10 @@ def first_quadrant() -> tuple[Array, Array, float]:
     sys.path.insert(0, str(Path(__file__).parent))
     from build import Column, contacts, tool_path
 
-    from pkm_post.machine import machine_named
-
     column = Column()
-    machine = machine_named("example_6tps")[0]
+    machine = pkm.read_machine("example_6tps")
     tip, axis = tool_path(column, contacts(column))
-    return tip, unit(axis), machine.spindle_nose + column.tool.length
+    return tip, axis / np.linalg.norm(axis, axis=-1, keepdims=True), machine.spindle_nose + column.tool.length
 
 
 def main() -> int:

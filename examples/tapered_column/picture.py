@@ -16,10 +16,7 @@ import FreeCADGui
 import numpy as np
 from PySide import QtCore
 
-from pkm_post.freecad_app.job import read_job
-from pkm_post.freecad_app.machine_object import create_machine
-from pkm_post.freecad_app.post_job import find_job
-from pkm_post.model import EventKind
+import pkm_post as pkm
 
 SIZE = 1200, 1000
 FROM_ABOVE = FreeCAD.Rotation(FreeCAD.Vector(0, 0, 1), 20) * FreeCAD.Rotation(FreeCAD.Vector(1, 0, 0), 45)
@@ -34,7 +31,7 @@ COLOURS = (0.46, 0.31, 0.48), (0.20, 0.40, 0.64), (0.31, 0.60, 0.02), (0.77, 0.6
 
 def show_path(document):
     """Hide what would hide the path, and give each operation its colour."""
-    job = find_job(document)
+    job = pkm.job(document)
     for item in (job.Stock, *(controller.Tool for controller in job.Tools.Group)):
         item.ViewObject.Visibility = False
     for operation, colour in zip(job.Operations.Group, COLOURS, strict=True):
@@ -44,13 +41,13 @@ def show_path(document):
 
 def show_machine(document, machine):
     """Add the machine to the document, at the middle of the job's first operation."""
-    job = find_job(document)
-    program, _ = read_job(job)
+    job = pkm.job(document)
+    program = pkm.read(job)
     rows = np.flatnonzero(program.operation == 0)
     row = int(rows[len(rows) // 2])
-    number = next(event.value for event in program.events if event.kind == EventKind.TOOL_CHANGE)
+    number = next(event.value for event in program.events if event.kind == pkm.EventKind.TOOL_CHANGE)
     tool = program.tools[int(number)]
-    shown = create_machine(document, machine, job)
+    shown = pkm.add_machine(document, machine, job)
     shown.Tip = FreeCAD.Vector(*program.position[row])
     shown.ToolAxis = FreeCAD.Vector(*program.tool_axis[row])
     shown.ToolLength, shown.ToolDiameter, shown.ToolCornerRadius = tool.length, tool.diameter, tool.corner_radius

@@ -72,7 +72,8 @@ def _output_is_closed() -> bool:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="python3 -m pkm_post", description=pkm_post.__doc__)
+    program = "pkm-post" if os.path.basename(sys.argv[0]) == "pkm-post" else "python3 -m pkm_post"
+    parser = argparse.ArgumentParser(prog=program, description=pkm_post.__doc__)
     parser.add_argument("--version", action="version", version=f"PKM Post {pkm_post.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for module in (post, reach, programs, machine, pmac):

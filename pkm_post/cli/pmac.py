@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from pkm_post.cli import pmac_manual, pmac_simulate
 from pkm_post.cli.inputs import NO_AXIS_WORDS, axis_words
-from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, OF_POWER_PMAC, ROTARY_WORDS, JobTarget, Target
+from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, OF_POWER_PMAC, ROTARY_WORDS
+from pkm_post.cli.pmac_stop import JobTarget, Target
 from pkm_post.options import LONGEST_TOOL, above_zero, between, count, positive, tool_length, whole
 
 if TYPE_CHECKING:

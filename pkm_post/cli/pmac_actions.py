@@ -10,16 +10,13 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.pmac_stop import abort, held_at_the_end, hold, signals_interrupt
+from pkm_post.cli.pmac_stop import JobTarget, Target, abort, held_at_the_end, hold, signals_interrupt
 
 if TYPE_CHECKING:
-    from pkm_post.control import Job, Session, Status
-    from pkm_post.model import Machine
-    from pkm_post.writing import PmacSettings
+    from pkm_post.control import Session, Status
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
     from pkm_post.control import Session
@@ -35,30 +32,6 @@ _NEEDS_NO_OWNERSHIP = re.compile(
     rf"(?:{_QUESTION}|{_STOP})(?: (?:{_QUESTION}|{_STOP}))*|LIST .*|[\w.]+\[[\w.\[\]]+", re.IGNORECASE
 )
 """Terminal lines that only query, stop, or clear the variables that hold the machine's owner."""
-
-
-@dataclass(frozen=True)
-class Target:
-    """The named machine.
-
-    Attributes:
-        machine: the machine.
-        settings: of its controller.
-    """
-
-    machine: Machine
-    settings: PmacSettings
-
-
-@dataclass(frozen=True)
-class JobTarget(Target):
-    """The named machine and a program for it.
-
-    Attributes:
-        job: the program file.
-    """
-
-    job: Job
 
 
 def probe(session: Session, target: Target | None, namespace: argparse.Namespace) -> int:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from pkm_post.cli.pmac_stop import held_at_the_end
 
 if TYPE_CHECKING:
-    from pkm_post.cli.pmac_actions import JobTarget, Target
+    from pkm_post.cli.pmac_stop import JobTarget, Target
     from pkm_post.control import Jog, Session
 
     Action = Callable[[Session, Any, argparse.Namespace], int]

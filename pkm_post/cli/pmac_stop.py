@@ -13,16 +13,41 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from types import FrameType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pkm_post.cli.pmac_actions import Target
-    from pkm_post.control import Session, Status
+    from pkm_post.control import Job, Session, Status
+    from pkm_post.model import Machine
     from pkm_post.writing import PmacSettings
 
 _SIGNALS = ("SIGTERM", "SIGHUP", "SIGBREAK")
 """Termination of the process, of its terminal, and of its console on Windows; a system defines some of them."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """The named machine.
+
+    Attributes:
+        machine: the machine.
+        settings: of its controller.
+    """
+
+    machine: Machine
+    settings: PmacSettings
+
+
+@dataclass(frozen=True)
+class JobTarget(Target):
+    """The named machine and a program for it.
+
+    Attributes:
+        job: the program file.
+    """
+
+    job: Job
 
 
 def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int:

@@ -83,7 +83,7 @@ def _verify(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     if machine is None:
         return 1
     try:
-        report, warnings = verify(namespace.program, namespace.against, machine)
+        _, report, warnings = verify(namespace.program, namespace.against, machine)
     except Refused as refused:
         print_diagnostics([refused])
         return 1

@@ -66,6 +66,19 @@ def _call_values(machine: str | FilePath | None, tool_lengths: Mapping[int, floa
     return lengths | ({} if machine is None else {"machine": str(machine)})
 
 
+def prepared(
+    job: Any, tool_lengths: Mapping[int, float] = NO_LENGTHS, arguments: str | ArgumentValues = ""
+) -> Prepared:
+    """Read a CAM job with its machine and options; arguments as ``post_job``.
+
+    Raises:
+        Refused: J117 for the arguments.
+    """
+    settings = settings_of(job, {**values_of(arguments), **_call_values(None, tool_lengths)})
+    job.Document.recompute()
+    return prepared_job(job, settings)
+
+
 def post_document(
     file: str | FilePath,
     machine: str | FilePath | None = None,

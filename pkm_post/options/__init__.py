@@ -113,11 +113,12 @@ __all__ = [
 
 _WITH_NUMPY = ("LINUXCNC", "NO_MESH", "MeshFiles", "Options")
 
+if not TYPE_CHECKING:
 
-def __getattr__(name: str) -> Any:
-    """Import what needs NumPy at its first use: the arguments do without."""
-    if name in _WITH_NUMPY:
-        from pkm_post.options import choices
+    def __getattr__(name: str) -> Any:
+        """Import what needs NumPy at its first use: the arguments do without."""
+        if name in _WITH_NUMPY:
+            from pkm_post.options import choices
 
-        return getattr(choices, name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+            return getattr(choices, name)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

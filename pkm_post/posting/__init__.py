@@ -9,7 +9,7 @@ from pkm_post.posting.placement import effective_setup, trajectory_of, work_offs
 from pkm_post.posting.post_file import Prepared, post_file, prepared_file
 from pkm_post.posting.reach_study import Study, study, work_offset_text
 from pkm_post.posting.run import Log, Posted, Progress, no_log, no_progress
-from pkm_post.posting.steps import SUFFIX, post, step_names
+from pkm_post.posting.steps import SUFFIX, post, step_names, write_program
 from pkm_post.posting.verify import verify, verify_texts
 
 __all__ = [
@@ -35,4 +35,5 @@ __all__ = [
     "verify",
     "verify_texts",
     "work_offset",
+    "write_program",
 ]

@@ -201,16 +201,47 @@ def _interpolation(run: Run, frame: PostContext, feed_plan: FeedPlan) -> Plan:
 def _motion_program(run: Run, frame: PostContext, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
     """Write the program and the set-up it relies on; return the names of its parts."""
     with run.step(_PROGRAM) as notes:
-        controller, settings, machine = frame.controller, frame.settings, frame.machine
-        records = program_files.source_hash_lines(_trajectory_hash(frame), machine.fingerprint)
-        heading = [*summary.heading(trajectory), *records]
-        parts = tuple(map(program_files.with_own_hash, controller.program_parts(struts, settings, heading)))
-        names = outputs.write_parts(frame.path, parts)
-        setup = controller.setup_text(settings, machine.name, machine.strut_stroke)
-        if setup is not None:
-            outputs.write_parts(frame.beside(controller.SETUP_SUFFIX), (setup,))
-        notes.append(f"{sum(map(len, parts)) / 1e6:.1f} MB" + f" in {len(parts)} parts" * (len(parts) > 1))
+        names = _write_parts(frame, trajectory, struts)
+        size = sum(frame.path.with_name(name).stat().st_size for name in names)
+        notes.append(f"{size / 1e6:.1f} MB" + f" in {len(names)} parts" * (len(names) > 1))
     return names
+
+
+def _write_parts(frame: PostContext, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
+    controller, settings, machine = frame.controller, frame.settings, frame.machine
+    records = program_files.source_hash_lines(_trajectory_hash(frame), machine.fingerprint)
+    heading = [*summary.heading(trajectory), *records]
+    parts = tuple(map(program_files.with_own_hash, controller.program_parts(struts, settings, heading)))
+    names = outputs.write_parts(frame.path, parts)
+    setup = controller.setup_text(settings, machine.name, machine.strut_stroke)
+    if setup is not None:
+        outputs.write_parts(frame.beside(controller.SETUP_SUFFIX), (setup,))
+    return names
+
+
+def write_program(
+    path: Path, trajectory: Trajectory, plan: Plan, machine: Machine
+) -> tuple[list[str] | None, tuple[Diagnostic, ...]]:
+    """Write a trajectory and its plan: the trajectory file, the motion program, and the set-up it relies on.
+
+    Args:
+        path: of the program; the other files take its stem.
+        trajectory: what was planned.
+        plan: strut motion by time.
+        machine: its file says for which controller.
+
+    Returns:
+        The names of the parts of the program, or None if the controller cannot take it; and the diagnostics.
+    """
+    found, faults = controller_settings(machine)
+    if found is None:
+        return None, faults
+    frame = PostContext(path, machine, *found, Options())
+    faults = (*faults, *frame.controller.faults(plan.struts, frame.settings, path.name))
+    if errors(faults):
+        return None, faults
+    trajectory_file.write(trajectory, frame.beside(result_files.TRAJECTORY))
+    return _write_parts(frame, trajectory, plan.struts), faults
 
 
 def _certificate(

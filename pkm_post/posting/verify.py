@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from pkm_post.certificate import certify, machine_fault, reconstruct, values_beyond_machine
 from pkm_post.machine import reach_faults
-from pkm_post.model import Diagnostic, Machine, Place, Refused, StrutMotion, Trajectory, errors
+from pkm_post.model import Certificate, Diagnostic, Machine, Place, Refused, StrutMotion, Trajectory, errors
 from pkm_post.report import summary
 from pkm_post.writing import controller_settings, manifest, program_files, read_texts, trajectory_file
 
@@ -22,16 +22,27 @@ Findings = tuple[Diagnostic, ...]
 Texts = Sequence[tuple[str, str]]
 
 
-def verify(program: Path, trajectory: Path, machine: Machine) -> tuple[dict[str, Any], Findings]:
+class Verified(NamedTuple):
+    """A program that does what was posted.
+
+    Attributes:
+        certificate: it holds.
+        report: as posting writes it.
+        diagnostics: warnings.
+    """
+
+    certificate: Certificate
+    report: dict[str, Any]
+    diagnostics: Findings
+
+
+def verify(program: Path, trajectory: Path, machine: Machine) -> Verified:
     """Certify an existing program, and check that its files were posted together.
 
     Args:
         program: the motion program, or the first of its parts.
         trajectory: the trajectory file it was made from; it states the requested tolerances.
         machine: the machine it was made for.
-
-    Returns:
-        The report, whose certificate holds, and warnings.
 
     Raises:
         Refused: a file cannot be read or is faulty, the certificate does not hold, or files differ from their manifest
@@ -46,7 +57,7 @@ def verify(program: Path, trajectory: Path, machine: Machine) -> tuple[dict[str,
     return verify_texts(texts, program, trajectory, machine)
 
 
-def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> tuple[dict[str, Any], Findings]:
+def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> Verified:
     """The same for the texts of all parts of a program, by file name, as read from its files."""
     listed = tuple(dict.fromkeys(one for file in (program, trajectory) for one in manifest.check(file)[1]))
     changed = tuple(
@@ -56,16 +67,16 @@ def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine
     )
     diagnostics = (*listed, *changed)
     try:
-        report = _certified(texts, program, trajectory, machine)
+        certificate, report = _certified(texts, program, trajectory, machine)
     except Refused as refused:
         raise Refused((*diagnostics, *refused.diagnostics)) from None
     if errors(diagnostics):
         raise Refused(diagnostics)
-    return report, diagnostics
+    return Verified(certificate, report, diagnostics)
 
 
-def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> dict[str, Any]:
-    """The report on a program whose certificate holds."""
+def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> tuple[Certificate, dict[str, Any]]:
+    """The certificate of a program, which holds, and the report."""
     planned, faults = trajectory_file.read(trajectory)
     if planned is None:
         raise Refused(faults)
@@ -86,7 +97,7 @@ def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) 
     files = summary.hashes(
         [program_files.program_hash(text) for _, text in texts], manifest.fingerprint_of_file(trajectory)
     )
-    return summary.report(planned, machine, certificate, tolerances, struts, result.motion, files=files)
+    return certificate, summary.report(planned, machine, certificate, tolerances, struts, result.motion, files=files)
 
 
 def _refuse_for_machine(planned: Trajectory, machine: Machine, name: str) -> None:

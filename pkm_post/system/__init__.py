@@ -36,10 +36,11 @@ __all__ = [
     "write_fault",
 ]
 
+if not TYPE_CHECKING:
 
-def __getattr__(name: str) -> Any:
-    if name == "DecimalReader":
-        from pkm_post.system.decimals import DecimalReader
+    def __getattr__(name: str) -> Any:
+        if name == "DecimalReader":
+            from pkm_post.system.decimals import DecimalReader
 
-        return DecimalReader
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+            return DecimalReader
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -226,7 +226,7 @@ def a_lost_link_shows_what_to_do():
     connect_and_home()
     _begin_to_move(1)
     panel.console.connection._session._pause = 0.01  # between calls; a second of silence tells nothing new
-    panel.console.connection._training.close()
+    panel.console.connection._simulated.close()
     until(lambda: bool(newest().emergency), 60)
     until(lambda: "EMERGENCY STOP" in face.banner.text())
     found = {

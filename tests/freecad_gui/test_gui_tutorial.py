@@ -90,7 +90,7 @@ def test_the_program_is_certified(session):
 
 def test_the_program_on_disk_is_verified_as_the_page_says(session):
     machine, _ = machine_named("example_6tps")
-    report, _ = verify(session.folder / PROGRAM, session.folder / "tapered_column.pkmt", machine)
+    _, report, _ = verify(session.folder / PROGRAM, session.folder / "tapered_column.pkmt", machine)
     certificates_agree(report["certificate"], session["program_is_posted"]["certificate"])
 
 

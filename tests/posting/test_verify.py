@@ -61,7 +61,7 @@ def judge(machine, posted):
 
 
 def test_a_posted_program_is_verified(machine, posted):
-    report, warnings = verify(posted.program, posted.program.with_suffix(".pkmt"), machine)
+    _, report, warnings = verify(posted.program, posted.program.with_suffix(".pkmt"), machine)
     assert not warnings
     agree(report, posted.report)
 
@@ -137,7 +137,7 @@ def test_files_that_are_something_else_are_told(machine, posted, program, trajec
 def test_line_ends_of_windows_are_verified(machine, posted, copied):
     program = copied / "cone.pmc"
     program.write_bytes(program.read_bytes().replace(b"\n", b"\r\n"))
-    report, warnings = verify(program, copied / "cone.pkmt", machine)
+    _, report, warnings = verify(program, copied / "cone.pkmt", machine)
     assert not warnings
     agree(report, posted.report)
 

@@ -17,9 +17,10 @@ import numpy as np
 
 from pkm_post.control.simulator.coordinate_system import CoordinateSystem
 from pkm_post.control.simulator.errors import CommandError
+from pkm_post.control.simulator.machine_state import PortSession
 from pkm_post.control.simulator.memory import Memory
 from pkm_post.control.simulator.motors import Motors
-from pkm_post.control.simulator.online import PortSession, execute
+from pkm_post.control.simulator.online import execute
 from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SYSTEMS, Variables
 
 _M_CODE_STATEMENTS = {

@@ -9,23 +9,19 @@ goes into it.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 from pkm_post.control.simulator import online_memory, online_motion
 from pkm_post.control.simulator.errors import DATA, NOT_OPEN, RUNNING, CommandError
 from pkm_post.control.simulator.expressions import Scanner
+from pkm_post.control.simulator.machine_state import Handler, MachineState, PortSession
 from pkm_post.control.simulator.modal_state import parse_axis_definition
 from pkm_post.control.simulator.moves import PvtMove
 from pkm_post.control.simulator.programs import parse_statements
 from pkm_post.control.simulator.variables import MOTORS, SIMULATED_MOTORS, SYSTEMS, hexadecimal
 
-if TYPE_CHECKING:
-    from pkm_post.control.simulator.controller import Controller
 
-
-def motor_status(controller: Controller, motor: int) -> str:
+def motor_status(controller: MachineState, motor: int) -> str:
     """The answer to ``#n?``: two words."""
     if motor > SIMULATED_MOTORS:
         return hexadecimal(0, 0)
@@ -55,7 +51,7 @@ def motor_status(controller: Controller, motor: int) -> str:
     return hexadecimal(_word(first), _word(second) | number)
 
 
-def system_status(controller: Controller, number: int) -> str:
+def system_status(controller: MachineState, number: int) -> str:
     """The answer to ``&n??``: three words."""
     system, motors = controller.systems[number - 1], controller.motors
     indices = system.axes.indices()
@@ -74,33 +70,13 @@ def system_status(controller: Controller, number: int) -> str:
     return hexadecimal(_word(first), _word(second), _word(third))
 
 
-def global_status(controller: Controller) -> str:
+def global_status(controller: MachineState) -> str:
     """The answer to ``???``: two words. None of the faults they report can occur in a simulation."""
     return hexadecimal(0, 0)
 
 
 def _word(bits: Mapping[int, object]) -> int:
     return sum(1 << bit for bit, is_set in bits.items() if is_set)
-
-
-Handler = Callable[["PortSession", re.Match[str], Scanner], list[str]]
-
-
-@dataclass(eq=False)
-class PortSession:
-    """The sender of commands, and the motor and coordinate system it addresses.
-
-    Attributes:
-        controller: that executes them.
-        motor: addressed by ``#n``.
-        system: addressed by ``&n``.
-        bank: eight motors, addressed by ``##n``.
-    """
-
-    controller: Controller
-    motor: int = 1
-    system: int = 1
-    bank: int = 0
 
 
 def execute(session: PortSession, line: str) -> list[str]:

@@ -12,7 +12,7 @@ from pkm_post.control.simulator.programs import listed
 from pkm_post.control.simulator.variables import HIGHEST, SystemScope, holds_address, printed
 
 if TYPE_CHECKING:
-    from pkm_post.control.simulator.online import Handler, PortSession
+    from pkm_post.control.simulator.machine_state import Handler, PortSession
 
 PROTECTED_FROM = 1000
 """Programs from this number on can be password-protected [TurboPMAC, PASSWORD]."""

@@ -14,14 +14,13 @@ from pkm_post.control.simulator.expressions import Scanner, argument, constant
 from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SystemScope, printed
 
 if TYPE_CHECKING:
-    from pkm_post.control.simulator.controller import Controller
-    from pkm_post.control.simulator.online import Handler, PortSession
+    from pkm_post.control.simulator.machine_state import Handler, MachineState, PortSession
 
 DECIMALS = 1
 """Positions are reported to a tenth of a count."""
 
 
-def position_text(controller: Controller, what: str, motor: int) -> str:
+def position_text(controller: MachineState, what: str, motor: int) -> str:
     """The answer to ``#nP``, ``#nV`` and ``#nF``: counts, counts/ms, counts."""
     if motor > SIMULATED_MOTORS:
         return "0"
@@ -110,7 +109,7 @@ def _run(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[s
     return []
 
 
-def run(controller: Controller, number: int, step: bool) -> None:
+def run(controller: MachineState, number: int, step: bool) -> None:
     """Execute R or S in a coordinate system.
 
     Raises:

@@ -11,7 +11,8 @@ from collections.abc import Callable
 
 from pkm_post.control.simulator.controller import Controller
 from pkm_post.control.simulator.errors import CHARACTER, DATA, CommandError
-from pkm_post.control.simulator.online import PortSession, execute, global_status, motor_status, system_status
+from pkm_post.control.simulator.machine_state import PortSession
+from pkm_post.control.simulator.online import execute, global_status, motor_status, system_status
 from pkm_post.control.simulator.online_memory import open_rotary
 from pkm_post.control.simulator.online_motion import position_text, run
 from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SYSTEMS

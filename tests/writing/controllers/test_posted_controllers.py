@@ -41,7 +41,7 @@ def test_a_job_is_posted_and_verified_for_every_kind(machine, tmp_path, kind):
     posted = post(job(), other, tmp_path / f"job{SUFFIX}")
     assert posted.report["certificate"]["holds"]
     assert f"job{controller.SETUP_SUFFIX}" in {path.name for path in posted.files}
-    report, warnings = verify(posted.program, posted.program.with_suffix(".pkmt"), other)
+    _, report, warnings = verify(posted.program, posted.program.with_suffix(".pkmt"), other)
     assert not warnings
     agree(report, posted.report)
 
@@ -80,7 +80,7 @@ def test_a_program_larger_than_the_memory_is_certified_in_parts(machine, in_part
 
 def test_a_program_in_parts_is_verified_from_its_first(in_parts):
     small, posted = in_parts
-    report, warnings = verify(posted.program, posted.program.with_suffix(".pkmt"), small)
+    _, report, warnings = verify(posted.program, posted.program.with_suffix(".pkmt"), small)
     assert not warnings
     agree(report, posted.report)
 

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The public API: its examples, its stages against ``post``, and what it says of faults."""
+
+import doctest
+import inspect
+import runpy
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from interpreter import PYTHON
+
+import pkm_post as pkm
+from pkm_post import api
+
+ROOT = Path(__file__).parents[1]
+PART = "T1 M6\nS9000 M3\nG0 X0 Y0 Z60\nG1 Z50 F600\nX10\nG2 X20 Y0 I5 J0\nG0 Z60\nM5\nM2\n"
+CONTOUR = "T1 M6\nS9000 M3\nG0 X-20 Y20 Z50\nG41 D1 G1 X-10 Y0 F600\nX30\nG40 Y30\nG0 Z60\nM5\nM2\n"
+FUNCTIONS = [each for each in vars(api).values() if inspect.isfunction(each) and each.__module__ == api.__name__]
+PUBLIC = [each for each in FUNCTIONS if not each.__name__.startswith("_")]
+WITHOUT_FREECAD = [each for each in PUBLIC if "# in FreeCAD" not in (each.__doc__ or "")]
+"""The others are run by tests/freecad_app/test_api_in_freecad.py."""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    (tmp_path / "part.ngc").write_text(PART, encoding="ascii")
+    (tmp_path / "contour.ngc").write_text(CONTOUR, encoding="ascii")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_the_stages_of_a_post_are_there():
+    named = {each.__name__ for each in PUBLIC}
+    assert {"read", "place", "compensate", "reach", "plan", "write", "certify", "post"} <= named
+    assert named <= set(pkm.__all__)
+
+
+def test_every_name_of_the_package_is_there_and_none_is_a_room():
+    rooms = {path.stem for path in (ROOT / "pkm_post").iterdir()}
+    assert [name for name in pkm.__all__ if not hasattr(pkm, name) or name in rooms] == []
+    with pytest.raises(AttributeError, match="no_such_name"):
+        _ = pkm.no_such_name
+
+
+@pytest.mark.parametrize("function", WITHOUT_FREECAD, ids=lambda each: each.__name__)
+@pytest.mark.filterwarnings("ignore::pkm_post.api.DiagnosticWarning")
+def test_examples_give_what_they_say(function, folder):
+    text = function.__doc__
+    assert ">>>" in text
+    test = doctest.DocTestParser().get_doctest(text, {"pkm": pkm, "np": np}, function.__name__, None, 0)
+    runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
+    said = []
+    assert runner.run(test, out=said.append).failed == 0, "".join(said)
+
+
+@pytest.mark.filterwarnings("ignore:.*F107:pkm_post.api.DiagnosticWarning")  # there is no manifest
+def test_the_stages_give_the_program_that_post_gives(folder):
+    """Each stage by itself, against the one call: the same trajectory file, and the same motion."""
+    (posted,) = pkm.post("part.ngc", tool_lengths={1: 120.0}, out="posted")
+    machine, program = pkm.read_machine(), pkm.read("part.ngc", tool_lengths={1: 120.0})
+    trajectory = pkm.place(program, machine)
+    files = pkm.write(pkm.plan(trajectory, machine), folder / "staged" / "part.pmc", machine, trajectory)
+    assert {path.name for path in files} < {path.name for path in posted.files}
+    for path in files:
+        other = posted.program.with_name(path.name)
+        assert _without_heading(path) == _without_heading(other), path.name
+    certificate = pkm.certify("staged/part.pmc", machine)
+    assert certificate.holds
+
+
+def _without_heading(path):
+    return [line for line in path.read_bytes().split(b"\n") if not line.startswith(b";")]
+
+
+def test_a_fault_is_refused_and_a_warning_is_issued(folder):
+    (folder / "bad.ngc").write_text("G1 X10\n", encoding="ascii")
+    with pytest.raises(pkm.Refused):
+        pkm.read("bad.ngc")
+    (folder / "long.ngc").write_text(PART.replace("X10\n", "X10\nG4 P100\n"), encoding="ascii")
+    with pytest.warns(pkm.DiagnosticWarning, match="G428"):
+        pkm.read("long.ngc", tool_lengths={1: 120.0})
+
+
+def test_a_program_is_written_as_g_code_and_read_again(folder):
+    program = pkm.read("part.ngc", tool_lengths={1: 120.0})
+    (copy,) = pkm.write(program, "copy.ngc")
+    again = pkm.read(copy, tool_lengths={1: 120.0}, reading=pkm.ReadingOptions(axis_words="vector"))
+    np.testing.assert_allclose(again.position, program.position, atol=1e-4)
+
+
+def test_writing_is_refused_where_a_folder_cannot_be_made(folder):
+    program = pkm.read("part.ngc", tool_lengths={1: 120.0})
+    (folder / "taken").write_text("", encoding="ascii")
+    with pytest.raises(pkm.Refused, match="F1"):
+        pkm.write(program, folder / "taken" / "copy.ngc")
+
+
+def test_a_type_checker_sees_the_types_of_the_package():
+    assert (ROOT / "pkm_post" / "py.typed").is_file()
+
+
+def test_importing_the_package_imports_no_numpy():
+    code = "import sys; sys.modules['numpy'] = None; import pkm_post; print(pkm_post.__version__)"
+    ran = subprocess.run([PYTHON, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    assert ran.stdout.strip() == pkm.__version__, ran.stderr
+
+
+def test_the_page_is_up_to_date():
+    page = runpy.run_path(str(ROOT / "tools" / "make_api_doc.py"))["page"]
+    assert (ROOT / "docs" / "api.md").read_text(encoding="utf-8") == page(api), "run tools/make_api_doc.py"
