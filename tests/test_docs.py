@@ -4,6 +4,7 @@
 import ast
 import re
 import runpy
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -16,9 +17,11 @@ from pkm_post.certificate import certify
 from pkm_post.geometry import unit
 from pkm_post.machine import find_machine
 from pkm_post.machine.description.reader import read_machine
+from pkm_post.model import EventKind, Kind
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import RULES
 from pkm_post.planning import plan
+from pkm_post.reading import ReadingOptions, read_part_program
 from pkm_post.toolpath.place import place
 from pkm_post.writing.controllers import pmac
 
@@ -161,6 +164,23 @@ def test_floors_are_those_of_the_test():
 def test_diagnostics_page_is_up_to_date():
     page = runpy.run_path(str(ROOT / "tools" / "make_diagnostics_doc.py"))["page"]
     assert text(DOCS / "diagnostics.md") == page(RULES), "run tools/make_diagnostics_doc.py"
+
+
+@pytest.mark.parametrize(
+    ("language", "suffix", "reading", "lengths"),
+    [("gcode", ".ngc", ReadingOptions(axis_words="vector"), {1: 120.0}), ("cldata", ".cls", ReadingOptions(), {})],
+)
+def test_the_journey_begins_the_same_at_every_door(language, suffix, reading, lengths, tmp_path):
+    (source,) = re.findall(rf"^```{language}\n(.*?)^```$", text(DOCS / "journey.md"), re.MULTILINE | re.DOTALL)
+    (tmp_path / f"part{suffix}").write_text(source, encoding="ascii")
+    made, _ = read_part_program(tmp_path / f"part{suffix}", replace(reading, lengths=lengths))
+    np.testing.assert_allclose(made.position[1], [4, 3, 50])
+    np.testing.assert_allclose(made.tool_axis[1], unit(np.array([0.173648, 0, 0.984808])), atol=1e-9)
+    assert (made.kind[1], made.feed[1], made.tools[1].length) == (Kind.LINE, 10.0, 120.0)
+    assert [(event.row, event.kind, event.value) for event in made.events] == [
+        (0, EventKind.TOOL_CHANGE, 1), (0, EventKind.SPINDLE, 12000), (2, EventKind.SPINDLE, 0),
+    ]  # fmt: skip
+    assert f"Ours is line {made.line[1]}." in text(DOCS / "journey.md")
 
 
 def test_the_journey_is_one_that_was_made():
