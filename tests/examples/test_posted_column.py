@@ -88,6 +88,6 @@ def test_quadrants_in_mirror_have_the_same_struts_in_another_order(posted):
 
 def test_a_macro_gives_the_same_program(posted, tmp_path):
     folder, _, job = posted
-    result = pkm_post.post_job(job, "example_6tps", tmp_path)
+    (result,) = pkm_post.post(job, "example_6tps", tmp_path)
     assert result.program == tmp_path / "tapered_column.pmc"
     assert result.program.read_bytes() == (folder / "tapered_column.pmc").read_bytes()

@@ -62,10 +62,9 @@ def test_an_object_says_it_in_a_line(job, monkeypatch):
     assert "F130" in reach.getStatusString()
 
 
-@pytest.mark.parametrize("post", [pkm_post.post, pkm_post.post_job])
-def test_macros_get_a_refusal(job, tmp_path, monkeypatch, post):
+def test_macros_get_a_refusal(job, tmp_path, monkeypatch):
     monkeypatch.setattr(PLACED, lack)
     with pytest.raises(Refused) as refused:
-        post(job, out=tmp_path)
+        pkm_post.post(job, out=tmp_path)
     assert only_fault(refused) == "F130"
     assert list(tmp_path.iterdir()) == []
