@@ -11,7 +11,6 @@ properties are a file format.
 
 from __future__ import annotations
 
-import importlib
 import math
 from typing import Any
 
@@ -21,6 +20,7 @@ import numpy as np
 from pkm_post.freecad_app.document_object import EDITABLE, READ_ONLY, PropertyProxy, Row, without_traceback
 from pkm_post.freecad_app.frames import matrix_of, placement_of
 from pkm_post.freecad_app.job_settings import settings_of
+from pkm_post.freecad_app.window import add_view
 from pkm_post.geometry import Array
 from pkm_post.machine import PosePath, ToolPoses, machine_named, reach_findings, reach_margins, strut_lengths
 from pkm_post.model import Machine, Refused
@@ -28,8 +28,6 @@ from pkm_post.posting import work_offset
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
-_VIEW = "pkm_post.freecad_gui.machine_view"
-"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 _EXAMPLE = "example_6tps"
 _M, _W, _P, _T, _R = "Machine", "Work Offset", "Pose", "Tool", "Result"
 _STRUTS = tuple(f"Strut{number}" for number in range(1, 7))
@@ -110,8 +108,7 @@ def create_machine(document: Any, machine: str = "", job: Any = None, label: str
         obj.WorkOffset = placement_of(offsets.get("G54", next(iter(offsets.values()))))
     _take_work_offset(obj, model)
     go_home(obj, model)
-    if App.GuiUp:
-        importlib.import_module(_VIEW).MachineView(obj.ViewObject)
+    add_view("machine", obj)
     return obj
 
 

@@ -9,7 +9,6 @@ properties are a file format.
 
 from __future__ import annotations
 
-import importlib
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -23,13 +22,12 @@ from pkm_post.freecad_app.cutter_contact import Compensation, compensate_contact
 from pkm_post.freecad_app.document_object import BASE_AND_ACTIVE, DerivedOperation, Row
 from pkm_post.freecad_app.model_faces import Contacts, NamedFace, find_contacts, model_faces, nearest_face
 from pkm_post.freecad_app.tools import read_cutter
+from pkm_post.freecad_app.window import add_view
 from pkm_post.model import Diagnostic, Kind, Place, Program
 from pkm_post.toolpath import AxisRule, Cutter, with_chords
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
-_VIEW = "pkm_post.freecad_gui.normal_compensation_view"
-"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 
 KEEP, FROM_NORMAL = "Of the operation", "From the normal"
 
@@ -141,6 +139,5 @@ def create_normal_compensation(base: Any, label: str | None = None) -> Any:
     obj.Label, obj.Base, obj.Model = label or f"Normal Compensation of {base.Label}", base, job.Model
     job.Proxy.addOperation(obj, base, True)
     base.Visibility = False
-    if App.GuiUp:
-        importlib.import_module(_VIEW).NormalCompensationView(obj.ViewObject)
+    add_view("normal_compensation", obj)
     return obj

@@ -9,7 +9,6 @@ of the object. ``decode`` converts it to an operation of a CAM job. Saved docume
 
 from __future__ import annotations
 
-import importlib
 from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
@@ -22,6 +21,7 @@ import Path.Op.Custom
 from pkm_post.freecad_app.commands import commands_of
 from pkm_post.freecad_app.document_object import PropertyProxy, Row, print_diagnostics
 from pkm_post.freecad_app.tools import preselected
+from pkm_post.freecad_app.window import add_view
 from pkm_post.model import Diagnostic, EventKind, Place, Program, Refused
 from pkm_post.reading import (
     AXIS_WORDS,
@@ -40,8 +40,6 @@ QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
 Findings = tuple[Diagnostic, ...]
 
-_VIEW = "pkm_post.freecad_gui.program_view"
-"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 
 FROM_FILE = "file"
 """The choice that defers to the file."""
@@ -120,8 +118,7 @@ def create_program(
         axis_words, unit=unit, contour_data=contour_data, cl_dialect=cl_dialect, dwell_unit=dwell_unit
     )
     set_reading(obj, replace(reading, allow_open_end=allow_open_end))
-    if App.GuiUp:
-        importlib.import_module(_VIEW).ProgramView(obj.ViewObject)
+    add_view("program", obj)
     document.recompute()
     return obj
 

@@ -9,17 +9,15 @@ here.
 
 from __future__ import annotations
 
-import importlib
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
 import FreeCAD as App
 from FreeCAD import Base
 
-translate = App.Qt.translate
+from pkm_post.freecad_app.window import escape_watch
 
-_WATCH = "pkm_post.freecad_gui.observers"
-"""The watch is in a higher layer: referenced by name, not imported."""
+translate = App.Qt.translate
 
 
 class Stopped(Exception):  # noqa: N818 - it is no error of the program
@@ -37,7 +35,7 @@ class Progress:
     def __init__(self, text: str, steps: int) -> None:
         self._text, self._steps, self._done = text, max(steps, 1), 0
         self._bar = Base.ProgressIndicator()
-        self._watch: Any = importlib.import_module(_WATCH).EscapeWatch() if App.GuiUp else None
+        self._watch = escape_watch()
 
     def __enter__(self) -> Self:
         self._bar.start(self._text, self._steps)

@@ -9,7 +9,6 @@ properties are a file format.
 
 from __future__ import annotations
 
-import importlib
 from typing import Any
 
 import FreeCAD as App
@@ -27,14 +26,13 @@ from pkm_post.freecad_app.document_object import (
 from pkm_post.freecad_app.frames import apply, vectors_of
 from pkm_post.freecad_app.job_setup import placed_job
 from pkm_post.freecad_app.progress import Progress
+from pkm_post.freecad_app.window import add_view
 from pkm_post.geometry import Array
 from pkm_post.machine import DISPLAY_UNITS, ReachReport, check_reach
 from pkm_post.model import errors
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
-_VIEW = "pkm_post.freecad_gui.reach_view"
-"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 _MOST_POINTS = 100_000
 """Largest number of path points that are stored and drawn."""
 _C, _R, _W = "Reach", "Result", "Way"
@@ -129,8 +127,7 @@ def create_reach(job: Any, machine: Any = None, label: str = "") -> Any:
     obj = job.Document.addObject("App::FeaturePython", "Reach")
     ReachObject(obj)
     obj.Label, obj.Job, obj.Machine = label or f"Reach of {job.Label}", job, machine
-    if App.GuiUp:
-        importlib.import_module(_VIEW).ReachView(obj.ViewObject)
+    add_view("reach", obj)
     return obj
 
 

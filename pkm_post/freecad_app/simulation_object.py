@@ -9,7 +9,6 @@ properties are a file format.
 
 from __future__ import annotations
 
-import importlib
 from typing import Any
 
 import FreeCAD as App
@@ -19,11 +18,10 @@ from pkm_post.freecad_app.document_object import PropertyProxy, Row, without_tra
 from pkm_post.freecad_app.frames import apply, vectors_of
 from pkm_post.freecad_app.job_setup import placed_job
 from pkm_post.freecad_app.simulation import Problem, Simulation, simulation_of
+from pkm_post.freecad_app.window import add_view
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
-_VIEW = "pkm_post.freecad_gui.simulation_view"
-"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 _MOST_PROBLEMS = 1000
 """Number of stored problems, as stated in the tooltip of their count; the player has all of them."""
 _S, _R, _T, _P = "Simulation", "Result", "Operations", "Problems"
@@ -108,8 +106,7 @@ def create_simulation(job: Any, machine: Any = None, label: str = "") -> Any:
     obj = job.Document.addObject("App::FeaturePython", "Simulation")
     SimulationObject(obj)
     obj.Label, obj.Job, obj.Machine = label or f"Simulation of {job.Label}", job, machine
-    if App.GuiUp:
-        importlib.import_module(_VIEW).SimulationView(obj.ViewObject)
+    add_view("simulation", obj)
     return obj
 
 

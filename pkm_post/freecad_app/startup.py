@@ -19,7 +19,7 @@ from typing import Any
 
 FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "postprocessors")
 _PREFERENCES = "Path.Preferences"
-_MESH_FILE = "pkm_post.reading.mesh_file"
+_MESH_FILE = "pkm_post.reading"
 
 Then = Callable[[ModuleType], None]
 
@@ -50,8 +50,8 @@ def _add_folder(preferences: ModuleType) -> None:
     preferences.searchPathsPost = searchPathsPost
 
 
-def _add_step(mesh_file: ModuleType) -> None:
-    mesh_file.READERS.update(dict.fromkeys(mesh_file.STEP_SUFFIXES, _read_step))
+def _add_step(reading: ModuleType) -> None:
+    reading.MESH_READERS.update(dict.fromkeys(reading.STEP_SUFFIXES, _read_step))
 
 
 def _read_step(path: Path, name: str) -> Any:

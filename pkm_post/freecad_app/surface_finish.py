@@ -9,7 +9,6 @@ format.
 
 from __future__ import annotations
 
-import importlib
 import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
@@ -27,11 +26,10 @@ from pkm_post.freecad_app.progress import Progress
 from pkm_post.freecad_app.surface_check import check_faces
 from pkm_post.freecad_app.surface_finish_settings import add_missing_properties, read_inputs
 from pkm_post.freecad_app.tools import has_upright_side, preselected
+from pkm_post.freecad_app.window import add_view
 from pkm_post.model import Diagnostic, Place, Program, Refused
 from pkm_post.toolpath import Cutter, Poses, SurfaceOptions, program_from_poses, surface_poses
 
-_VIEW = "pkm_post.freecad_gui.surface_finish_view"
-"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 _STEPS = 50
 """Steps of the progress bar per face."""
 _GOUGE_FACTOR = 1.1
@@ -102,8 +100,7 @@ def create_surface_finish(
     obj.Label, obj.Base = label, [(thing, tuple(names)) for thing, names in faces]
     if controller is not None:
         obj.ToolController = controller
-    if App.GuiUp:
-        importlib.import_module(_VIEW).SurfaceFinishView(obj.ViewObject)
+    add_view("surface_finish", obj)
     return obj
 
 

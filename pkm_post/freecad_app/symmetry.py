@@ -10,7 +10,6 @@ format; properties can be added.
 from __future__ import annotations
 
 import abc
-import importlib
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -21,14 +20,13 @@ from PathScripts import PathUtils
 from pkm_post.freecad_app.document_object import BASE_AND_ACTIVE, DerivedOperation, Row
 from pkm_post.freecad_app.frames import axis_of, plane_of
 from pkm_post.freecad_app.symmetry_report import SIDES, write_report
+from pkm_post.freecad_app.window import add_view
 from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Place, Program
 from pkm_post.toolpath import concatenate, mirror, reversed_passes, rotation, transform
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
-_VIEW = "pkm_post.freecad_gui.symmetry_view"
-"""The view is in a higher layer: referenced by name, not imported, as in saved documents."""
 _LINK = "App::PropertyLinkSubGlobal"
 _S = "Symmetry"
 _SIDE: Row = (
@@ -258,6 +256,5 @@ def _create(base: Any, name: str, proxy: type[_SymmetricOperation], label: str) 
     proxy(obj)
     obj.Label, obj.Base = label, base
     job.Proxy.addOperation(obj)
-    if App.GuiUp:
-        importlib.import_module(_VIEW).SymmetryView(obj.ViewObject)
+    add_view("symmetry", obj)
     return obj

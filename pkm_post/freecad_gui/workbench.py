@@ -3,16 +3,30 @@
 
 from __future__ import annotations
 
+import importlib
+from functools import partial
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import FreeCAD
 import FreeCADGui
 
+from pkm_post.freecad_app.window import ESCAPE_WATCHES, VIEWS
 from pkm_post.freecad_gui.icons import ICONS
 
 _RESOURCES = Path(__file__).parents[2] / "resources"
 TRANSLATIONS = _RESOURCES / "translations"
+
+_VIEWS = {
+    "machine": ("pkm_post.freecad_gui.machine_view", "MachineView"),
+    "normal_compensation": ("pkm_post.freecad_gui.normal_compensation_view", "NormalCompensationView"),
+    "program": ("pkm_post.freecad_gui.program_view", "ProgramView"),
+    "reach": ("pkm_post.freecad_gui.reach_view", "ReachView"),
+    "simulation": ("pkm_post.freecad_gui.simulation_view", "SimulationView"),
+    "surface_finish": ("pkm_post.freecad_gui.surface_finish_view", "SurfaceFinishView"),
+    "symmetry": ("pkm_post.freecad_gui.symmetry_view", "SymmetryView"),
+}
+"""Module and class of the view provider for each kind of object; imported when the first of its kind is made."""
 
 
 class PkmPostWorkbench(FreeCADGui.Workbench):
@@ -60,6 +74,12 @@ def install() -> None:
     FreeCADGui.updateLocale()  # FreeCAD selects its language before it loads add-ons
     register()
     preferences.install()
+    VIEWS.update({kind: partial(_attach, *where) for kind, where in _VIEWS.items()})
+    ESCAPE_WATCHES[:] = [partial(_attach, "pkm_post.freecad_gui.observers", "EscapeWatch")]
     FreeCADGui.addWorkbench(PkmPostWorkbench())
     CamMenu.registered.append(CamMenu())
     FreeCADGui.addWorkbenchManipulator(CamMenu.registered[-1])
+
+
+def _attach(module: str, name: str, *arguments: Any) -> Any:
+    return getattr(importlib.import_module(module), name)(*arguments)

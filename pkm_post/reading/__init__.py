@@ -12,7 +12,7 @@ from pkm_post.reading.gcode.feeds import exact_codes
 from pkm_post.reading.gcode.options import AXIS_WORDS, DWELL_UNITS
 from pkm_post.reading.gcode.tool_axes import axis_of
 from pkm_post.reading.highlighting import Colour, coloured_spans, underlined
-from pkm_post.reading.mesh_file import mesh_of_triangles, read_mesh
+from pkm_post.reading.mesh_file import MESH_READERS, STEP_SUFFIXES, mesh_of_triangles, read_mesh
 from pkm_post.reading.part_program import (
     AS_WRITTEN,
     SUFFIXES,
@@ -31,7 +31,9 @@ __all__ = [
     "DIALECTS",
     "DWELL_UNITS",
     "LONG_DWELL",
+    "MESH_READERS",
     "SPINDLE_SYNCHRONISED",
+    "STEP_SUFFIXES",
     "SUFFIXES",
     "UNITS",
     "CheckedText",

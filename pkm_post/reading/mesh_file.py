@@ -35,7 +35,7 @@ _LARGEST_COORDINATE = 1e6
 """mm: coordinates beyond this are rejected as implausible."""
 
 Result = tuple[Mesh | None, tuple[Diagnostic, ...]]
-READERS: dict[str, Callable[[Path, str], Result]] = {}
+MESH_READERS: dict[str, Callable[[Path, str], Result]] = {}
 """Readers of other formats by suffix. Inside FreeCAD, ``freecad_app.mesh`` adds STEP."""
 
 
@@ -48,8 +48,8 @@ def read_mesh(file: str | Path) -> Result:
     path = Path(file)
     name = os.fsencode(path).decode("utf-8", "replace")
     suffix = path.suffix.lower()
-    if suffix in READERS:
-        return READERS[suffix](path, name)
+    if suffix in MESH_READERS:
+        return MESH_READERS[suffix](path, name)
     if suffix != SUFFIX:
         known = f"expected a name that ends in {' or '.join((SUFFIX, *STEP_SUFFIXES))}"
         found = "STEP files are read only inside FreeCAD" if suffix in STEP_SUFFIXES else known
