@@ -106,8 +106,8 @@ class Words:
 
     def among(self, *codes: str) -> Array:
         """Which commands have one of these codes, (n,)."""
-        wanted: Array = np.isin(self.code, [number for number, code in enumerate(self.codes) if code in codes])
-        return wanted
+        found: Array = np.isin(self.code, [number for number, code in enumerate(self.codes) if code in codes])
+        return found
 
     def name(self, row: int) -> str:
         """The code of one command."""
@@ -130,9 +130,9 @@ class Words:
         return self.among("G0", "G1") & (self.count("IJK") > 0)
 
 
-def last_row_of(chosen: Array) -> Array:
-    """Index of the last of the chosen rows so far, (n,); 0 before the first."""
-    return np.maximum.accumulate(np.where(chosen, np.arange(len(chosen)), 0))
+def last_row_of(selected: Array) -> Array:
+    """Index of the last of the selected rows so far, (n,); 0 before the first."""
+    return np.maximum.accumulate(np.where(selected, np.arange(len(selected)), 0))
 
 
 def forward_fill(values: Array, before: float) -> Array:
@@ -156,10 +156,10 @@ def _columns(parameters: list[dict[str, float]]) -> tuple[dict[str, Array], dict
     letters = sorted(set().union(*number_of))
     values = {letter: np.full(len(sets), np.nan) for letter in letters}
     given = {letter: np.zeros(len(sets), dtype=bool) for letter in letters}
-    for having, which in number_of.items():
-        rows = np.flatnonzero(number == which)
-        for place, letter in enumerate(having):
-            values[letter][rows] = numbers[end[rows] - len(having) + place]
+    for present, index in number_of.items():
+        rows = np.flatnonzero(number == index)
+        for place, letter in enumerate(present):
+            values[letter][rows] = numbers[end[rows] - len(present) + place]
             given[letter][rows] = True
     return values, given
 

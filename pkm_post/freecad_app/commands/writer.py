@@ -57,8 +57,8 @@ def _needs_chords(program: Program) -> Array:
     axis_before = np.vstack([program.tool_axis[:1], program.tool_axis[:-1]])
     turns = norm(program.tool_axis - axis_before) > _EXACT
     upright = np.abs(np.abs(program.arc_axis[:, 2]) - 1) <= _EXACT
-    chosen: Array = (program.kind == Kind.ARC) & (turns | ~upright)
-    return chosen
+    result: Array = (program.kind == Kind.ARC) & (turns | ~upright)
+    return result
 
 
 def _moves(program: Program, first: int, last: int) -> list[Any]:

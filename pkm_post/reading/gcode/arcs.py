@@ -74,14 +74,16 @@ def centres(words: ArcWords) -> tuple[Array, list[tuple[int, str, Found]]]:
     """
     axes = plane_axes(words.plane)
     start, end = (np.take_along_axis(points, axes, axis=1) for points in (words.start, words.end))
-    said = np.take_along_axis(words.centre, axes, axis=1)
+    centre_words = np.take_along_axis(words.centre, axes, axis=1)
     by_radius = ~np.isnan(words.radius)
-    from_words = np.where(words.absolute[:, None], said[:, :2], start[:, :2] + np.nan_to_num(said[:, :2]))
+    from_words = np.where(
+        words.absolute[:, None], centre_words[:, :2], start[:, :2] + np.nan_to_num(centre_words[:, :2])
+    )
     from_radius = _by_radius(start[:, :2], end[:, :2], words.radius, words.clockwise)
-    flat = np.where(by_radius[:, None], from_radius, from_words)
+    in_plane = np.where(by_radius[:, None], from_radius, from_words)
     centre = np.empty_like(start)
-    np.put_along_axis(centre, axes, np.column_stack([flat, start[:, 2]]), axis=1)
-    return centre, _faults(words, start, end, said, flat)
+    np.put_along_axis(centre, axes, np.column_stack([in_plane, start[:, 2]]), axis=1)
+    return centre, _faults(words, start, end, centre_words, in_plane)
 
 
 def _by_radius(start: Array, end: Array, radius: Array, clockwise: Array) -> Array:
@@ -94,9 +96,11 @@ def _by_radius(start: Array, end: Array, radius: Array, clockwise: Array) -> Arr
     return start + chord / 2 + (side * height)[:, None] * left
 
 
-def _faults(words: ArcWords, start: Array, end: Array, said: Array, flat: Array) -> list[tuple[int, str, Found]]:
-    by_radius, given = ~np.isnan(words.radius), ~np.isnan(said)
-    first, last = (_length(points[:, :2] - flat) for points in (start, end))
+def _faults(
+    words: ArcWords, start: Array, end: Array, centre_words: Array, in_plane: Array
+) -> list[tuple[int, str, Found]]:
+    by_radius, given = ~np.isnan(words.radius), ~np.isnan(centre_words)
+    first, last = (_length(points[:, :2] - in_plane) for points in (start, end))
     off, larger = np.abs(first - last), np.maximum(first, last)
     half = _length((end - start)[:, :2]) / 2
     lacking = ~by_radius & np.where(words.absolute, ~given[:, :2].all(axis=1), ~given[:, :2].any(axis=1))
@@ -106,7 +110,7 @@ def _faults(words: ArcWords, start: Array, end: Array, said: Array, flat: Array)
     found: tuple[tuple[str, Array, Callable[[int], Found]], ...] = (
         ("G410", by_radius & given.any(axis=1), lambda i: (Word("R", words.radius[i]), " and centre words")),
         ("G410", lacking, lambda i: "neither R nor the centre words of the plane"),
-        ("G410", given[:, 2] & (np.nan_to_num(said[:, 2]) != 0), lambda i: "a centre word across the plane"),
+        ("G410", given[:, 2] & (np.nan_to_num(centre_words[:, 2]) != 0), lambda i: "a centre word across the plane"),
         ("G409", by_radius & (half == 0), lambda i: (Word("R", words.radius[i]), ", and it ends where it starts")),
         (
             "G409",
@@ -123,9 +127,9 @@ def _rounding(unit: Array) -> Array:
     return 2 * np.sqrt(2) * np.where(unit == UNITS["inch"], ROUNDED_INCH, ROUNDED_MM)
 
 
-def _length(flat: Array) -> Array:
+def _length(in_plane: Array) -> Array:
     """Lengths of (n, 2) vectors, (n,)."""
-    length: Array = np.hypot(flat[:, 0], flat[:, 1])
+    length: Array = np.hypot(in_plane[:, 0], in_plane[:, 1])
     return length
 
 

@@ -46,7 +46,7 @@ class Code:
 
     Attributes:
         group: its modal group.
-        letters: optional words beside those that any block accepts.
+        letters: optional words, in addition to those that any block accepts.
         needs: required words.
         takes_axes: whether it consumes the axis words of the block instead of the motion.
     """

@@ -177,11 +177,11 @@ def target_of(parameter: Node) -> Target:
         parameter: a ``parameter`` of the tree.
     """
     assert not isinstance(parameter, str)  # in the grammar a parameter is always a branch
-    (which,) = parameter.children
-    column = _column_of_sign(which)
-    if isinstance(which, str) and which.type == "NAME":
-        return Target(plain_name(which), None, column)
-    return Target("", expression_of(which), column)
+    (name_or_number,) = parameter.children
+    column = _column_of_sign(name_or_number)
+    if isinstance(name_or_number, str) and name_or_number.type == "NAME":
+        return Target(plain_name(name_or_number), None, column)
+    return Target("", expression_of(name_or_number), column)
 
 
 def plain_name(token: str) -> str:
@@ -198,9 +198,9 @@ def column_of_node(node: Node) -> int:
     return node.column or 0
 
 
-def _column_of_sign(which: Node) -> int:
+def _column_of_sign(name_or_number: Node) -> int:
     """Column of the ``#`` before a parameter: the grammar omits the sign from the tree."""
-    return max(column_of_node(which) - 1, 0)
+    return max(column_of_node(name_or_number) - 1, 0)
 
 
 def _step_of(node: Node) -> tuple[list[Step], list[Node]]:
@@ -210,10 +210,10 @@ def _step_of(node: Node) -> tuple[list[Step], list[Node]]:
     if node.data == "signed":
         return ([_apply(operator.neg, "-", node)] if node.children[0] == "-" else []), [node.children[1]]
     if node.data == "parameter":
-        which = node.children[0]
-        if isinstance(which, str) and which.type == "NAME":
-            return [_named(plain_name(which), _column_of_sign(which))], []
-        return [_numbered(_column_of_sign(which))], [which]
+        name_or_number = node.children[0]
+        if isinstance(name_or_number, str) and name_or_number.type == "NAME":
+            return [_named(plain_name(name_or_number), _column_of_sign(name_or_number))], []
+        return [_numbered(_column_of_sign(name_or_number))], [name_or_number]
     if node.data == "binary":
         left, sign, right = node.children
         name = str(sign).lower()

@@ -111,17 +111,17 @@ def path_modes(blocks: Blocks, modal: Modal, axis_words: str, faults: BlockDiagn
 def _tolerances(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> Array:
     """Tolerance of each block, mm; 0 where the program gives none."""
     programmed = modal.programmed[Group.PATH]
-    wanted = (programmed == _TOLERANCE) & blocks.has("P")
-    if not wanted.any():
+    with_p = (programmed == _TOLERANCE) & blocks.has("P")
+    if not with_p.any():
         return uniform(0.0, len(blocks))
     word = blocks.word("P")
-    taken = wanted & (word > 0) & ~_belongs_elsewhere(blocks, modal)
-    faults.add_where("G417", wanted & ~taken, lambda row: (word_of(_TOLERANCE), " ", Word("P", word[row])))
+    valid = with_p & (word > 0) & ~_p_of_another_code(blocks, modal)
+    faults.add_where("G417", with_p & ~valid, lambda row: (word_of(_TOLERANCE), " ", Word("P", word[row])))
     rows = np.flatnonzero(np.isin(programmed, (610, 611, _TOLERANCE)))
-    return forward_fill(rows, np.where(taken, modal.in_mm(word), 0.0)[rows], 0.0, len(blocks))
+    return forward_fill(rows, np.where(valid, modal.in_mm(word), 0.0)[rows], 0.0, len(blocks))
 
 
-def _belongs_elsewhere(blocks: Blocks, modal: Modal) -> Array:
+def _p_of_another_code(blocks: Blocks, modal: Modal) -> Array:
     """Whether another code of each block uses its P: a dwell, a cycle, the rotates of an arc, (N,)."""
     elsewhere: Array = modal.moves & np.isin(modal.active[Group.MOTION], _TAKES_P)
     elsewhere[blocks.g_row[np.isin(blocks.g, _TAKES_P)]] = True

@@ -203,13 +203,13 @@ class PositionTracker:
         """Add the motions of ordinary blocks, all in one frame."""
         if not len(rows):
             return
-        chosen = as_slice(rows)
-        ends, since = np.empty((len(rows), 3)), np.zeros(3, np.int64)
+        index = as_slice(rows)
+        ends, known_from = np.empty((len(rows), 3)), np.zeros(3, np.int64)
         for axis, column in enumerate(self.words.columns):
-            ends[:, axis], since[axis] = track_coordinate(column[chosen], self.relative[chosen], self.position[axis])
-        since[self.known] = 0
-        motion = self.modal.active[Group.MOTION][chosen]
-        self._add(rows, motion, ends, int(since.max()), since < len(rows))
+            ends[:, axis], known_from[axis] = track_coordinate(column[index], self.relative[index], self.position[axis])
+        known_from[self.known] = 0
+        motion = self.modal.active[Group.MOTION][index]
+        self._add(rows, motion, ends, int(known_from.max()), known_from < len(rows))
 
     def _add(self, block: Array, motion: Array, ends: Array, unknown: int, known: Array) -> None:
         """Add motions in the active frame; ``known``, (3,), marks the known coordinates of the last one."""

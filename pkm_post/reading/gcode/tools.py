@@ -19,8 +19,8 @@ from pkm_post.reading.gcode.options import ReadOptions
 
 def tools_in_spindle(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> Array:
     """Number of the tool in the spindle in each block, (N,); ``NONE`` before the first M6."""
-    chosen, change = _modal_word(blocks, "T", NONE), np.flatnonzero(modal.programmed[Group.CHANGE] == 6)
-    number = chosen[change].astype(np.int32)
+    selected, change = _modal_word(blocks, "T", NONE), np.flatnonzero(modal.programmed[Group.CHANGE] == 6)
+    number = selected[change].astype(np.int32)
     for row, called in zip(change.tolist(), number.tolist(), strict=True):
         if options.tool(called) is None:
             faults.add("G411", row, Word("T", called))

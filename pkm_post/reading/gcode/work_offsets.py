@@ -100,14 +100,14 @@ class _Offsets:
 
     def set_local_here(self, words: Array, position: Array) -> None:
         """G92: set the coordinates of the current (3,) position to the (3,) words, NaN where absent."""
-        wanted = np.where(np.isnan(words), position, words)
-        self.local = self.kept = self.local + self.inner(position) - self.inner(wanted)
+        coordinates = np.where(np.isnan(words), position, words)
+        self.local = self.kept = self.local + self.inner(position) - self.inner(coordinates)
 
     def set_origin_here(self, system: int, words: Array, place: Array) -> None:
         """G10 L20: set a work offset so that the (3,) ``place`` in {C} has the coordinates of the words."""
         position = self.frame(system).to_program(place)
-        wanted = np.where(np.isnan(words), position, words)
-        moved = self.work_offset_turn(system) @ (self.inner(position) - self.inner(wanted))
+        coordinates = np.where(np.isnan(words), position, words)
+        moved = self.work_offset_turn(system) @ (self.inner(position) - self.inner(coordinates))
         self.origins[system] = self.origins.get(system, np.zeros(3)) + moved
 
 
