@@ -494,8 +494,8 @@ def surface_points(face: Any, u: Any, v: Any) -> tuple[Any, Any]:
 
     Example:
         >>> point, normal = pkm.surface_points(Part.makeSphere(10).Faces[0], [0.0], [0.0])  # in FreeCAD
-        >>> normal.tolist()
-        [[1.0, 0.0, 0.0]]
+        >>> point.shape, normal.shape
+        ((1, 3), (1, 3))
     """
     from pkm_post.freecad_app.face_surface import surface_points as points_of
 

@@ -3,7 +3,7 @@
 
 Each process collects all tests and claims one file after the other, so that none waits while another still has work.
 Tests with a window share a session of FreeCAD: they count as one file. ``PKM_TEST_PROCESSES`` says how many processes
-there are; one for each core is usual. Inside FreeCAD (``make test``) this is run by run_script.py.
+there are; by default one more than cores, since tests with windows and links wait most of their time. Inside FreeCAD (``make test``) this is run by run_script.py.
 """
 
 import mmap
@@ -143,7 +143,7 @@ def _combined(codes):
 def _processes():
     if not hasattr(os, "fork"):
         return 1
-    return int(os.environ.get("PKM_TEST_PROCESSES") or min(os.cpu_count() or 1, _MOST_PROCESSES))
+    return int(os.environ.get("PKM_TEST_PROCESSES") or min((os.cpu_count() or 1) + 1, _MOST_PROCESSES))
 
 
 if __name__ == "__main__":

@@ -11,6 +11,8 @@ import Part
 import Path as Cam
 import pytest
 
+import pkm_post as pkm
+
 ROOT = Path(__file__).resolve().parents[2]
 MICRON = 1e-3
 SIX_DECIMALS = 1e-6
@@ -75,7 +77,7 @@ def test_sections_of_the_wall_are_ellipses_between_foot_and_top():
     face = example.wall(example.solid(COLUMN))
     (a, b), r = COLUMN.foot_semi_axes, COLUMN.top_radius
     u, v = (column.ravel() for column in np.meshgrid(np.linspace(0, 2 * np.pi, 60), np.linspace(0, 1, 9)))
-    points, normals = example.surface_points(face, u, v)
+    points, normals = pkm.surface_points(face, u, v)
     along_x, along_y = a + (r - a) * v, b + (r - b) * v
     expected = np.column_stack([along_x * np.cos(u), along_y * np.sin(u), COLUMN.height * v])
     assert points == pytest.approx(expected, abs=0.1 * MICRON)

@@ -8,7 +8,7 @@ import math
 import FreeCAD
 import Part
 import pytest
-from cam_jobs import job_in_reach
+from cam_jobs import add_operation, job_in_reach
 
 import pkm_post as pkm
 from pkm_post import api
@@ -22,6 +22,7 @@ IN_FREECAD = [
 def job(tmp_path):
     document = FreeCAD.newDocument("api")
     made = job_in_reach(document)
+    add_operation(made)
     document.recompute()
     FreeCAD.setActiveDocument(document.Name)
     yield made
