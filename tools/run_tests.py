@@ -3,7 +3,8 @@
 
 Each process collects all tests and claims one file after the other, so that none waits while another still has work.
 Tests with a window share a session of FreeCAD: they count as one file. ``PKM_TEST_PROCESSES`` says how many processes
-there are; by default one more than cores, since tests with windows and links wait most of their time. Inside FreeCAD (``make test``) this is run by run_script.py.
+there are; by default one more than cores, since tests with windows and links wait most of their time. Inside FreeCAD
+(``make test``) this is run by run_script.py.
 """
 
 import mmap
