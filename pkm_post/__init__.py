@@ -5,7 +5,21 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pkm_post.api import (
+        Certificate,
+        Cutter,
         DiagnosticWarning,
+        EventKind,
+        GcodeDialect,
+        Machine,
+        Options,
+        Plan,
+        Posted,
+        Program,
+        ReachReport,
+        ReadingOptions,
+        Refused,
+        Tool,
+        Trajectory,
         add_machine,
         certify,
         compensate,
@@ -24,38 +38,8 @@ if TYPE_CHECKING:
         set_gauge_length,
         surface_points,
         symmetry,
-        write,
-    )
-    from pkm_post.machine import (
-        ReachReport,
-    )
-    from pkm_post.model import (
-        Certificate,
-        EventKind,
-        Machine,
-        Program,
-        Refused,
-        Tool,
-        Trajectory,
-    )
-    from pkm_post.options import (
-        Options,
-    )
-    from pkm_post.planning import (
-        Plan,
-    )
-    from pkm_post.posting import (
-        Posted,
-    )
-    from pkm_post.reading import (
-        ReadingOptions,
-    )
-    from pkm_post.toolpath import (
-        Cutter,
         tip_from_contact,
-    )
-    from pkm_post.writing import (
-        GcodeDialect,
+        write,
     )
 
 __all__ = [

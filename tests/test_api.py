@@ -17,8 +17,8 @@ from pkm_post import api
 ROOT = Path(__file__).parents[1]
 PART = "T1 M6\nS9000 M3\nG0 X0 Y0 Z60\nG1 Z50 F600\nX10\nG2 X20 Y0 I5 J0\nG0 Z60\nM5\nM2\n"
 CONTOUR = "T1 M6\nS9000 M3\nG0 X-20 Y20 Z50\nG41 D1 G1 X-10 Y0 F600\nX30\nG40 Y30\nG0 Z60\nM5\nM2\n"
-FUNCTIONS = [each for each in vars(api).values() if inspect.isfunction(each) and each.__module__ == api.__name__]
-PUBLIC = [each for each in FUNCTIONS if not each.__name__.startswith("_")]
+FUNCTIONS = [each for each in vars(api).values() if inspect.isfunction(each)]
+PUBLIC = [each for each in FUNCTIONS if each.__module__.startswith("pkm_post.api.")]
 WITHOUT_FREECAD = [each for each in PUBLIC if "# in FreeCAD" not in (each.__doc__ or "")]
 """The others are run by tests/freecad_app/test_api_in_freecad.py."""
 
@@ -45,7 +45,7 @@ def test_every_name_of_the_package_is_there_and_none_is_a_room():
 
 
 @pytest.mark.parametrize("function", WITHOUT_FREECAD, ids=lambda each: each.__name__)
-@pytest.mark.filterwarnings("ignore::pkm_post.api.DiagnosticWarning")
+@pytest.mark.filterwarnings("ignore::pkm_post.api.inputs.DiagnosticWarning")
 def test_examples_give_what_they_say(function, folder):
     text = function.__doc__
     assert ">>>" in text
@@ -55,7 +55,7 @@ def test_examples_give_what_they_say(function, folder):
     assert runner.run(test, out=said.append).failed == 0, "".join(said)
 
 
-@pytest.mark.filterwarnings("ignore:.*F107:pkm_post.api.DiagnosticWarning")  # there is no manifest
+@pytest.mark.filterwarnings("ignore:.*F107:pkm_post.api.inputs.DiagnosticWarning")  # there is no manifest
 def test_the_stages_give_the_program_that_post_gives(folder):
     """Each stage by itself, against the one call: the same trajectory file, and the same motion."""
     (posted,) = pkm.post("part.ngc", tool_lengths={1: 120.0}, out="posted")

@@ -29,14 +29,15 @@ A post in one call is `pkm.post`; the other functions are its stages, on the typ
 In an installed package, `pkm-post` is the command line, as `python3 -m pkm_post` is. The examples are tests: those
 without FreeCAD run in a folder with `part.ngc` and `contour.ngc`, those marked "in FreeCAD" in a document with one job.
 
-This page is made from `pkm_post/api.py` by `tools/make_api_doc.py`: do not edit it.
+This page is made from `pkm_post/api` by `tools/make_api_doc.py`: do not edit it.
 """
 
 
 def page(api):
     """The text of the page."""
     preamble = inspect.getdoc(api).split("\n\n", 1)[1].partition(". ")[2]
-    functions = [each for each in vars(api).values() if inspect.isfunction(each) and each.__module__ == api.__name__]
+    ours = (each for each in vars(api).values() if inspect.isfunction(each))
+    functions = [each for each in ours if each.__module__.startswith(f"{api.__name__}.")]
     sections = [_section(each) for each in functions if not each.__name__.startswith("_")]
     return HEAD.format(preamble=_plain(preamble)) + "".join(sections)
 

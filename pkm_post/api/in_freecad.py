@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""In FreeCAD: jobs, symmetric copies and machines of a document, for macros. FreeCAD is imported at the first call."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+
+def jobs(document: Any) -> list[Any]:
+    """The CAM jobs of a FreeCAD document.
+
+    Raises:
+        Refused: there is none, J102.
+
+    Example:
+        >>> [job.Label for job in pkm.jobs(FreeCAD.ActiveDocument)]  # in FreeCAD
+        ['Job']
+    """
+    from pkm_post.freecad_app.post_job import find_jobs
+
+    return find_jobs(document)
+
+
+def job(document: Any, name: str | None = None) -> Any:
+    """The CAM job of a document with a name or label; without a name its only job.
+
+    Raises:
+        Refused: there is none, or more than one, J102.
+
+    Example:
+        >>> pkm.job(FreeCAD.ActiveDocument).Label  # in FreeCAD
+        'Job'
+    """
+    from pkm_post.freecad_app.post_job import find_job
+
+    return find_job(document, name)
+
+
+def mirror(
+    operation: Any,
+    normal: Sequence[float],
+    point: Sequence[float] = (0.0, 0.0, 0.0),
+    label: str | None = None,
+    keep_climb: bool = False,
+) -> Any:
+    """Add a mirrored copy of an operation to its job.
+
+    Args:
+        operation: of a CAM job.
+        normal: (3,) normal of the mirror plane.
+        point: (3,) a point of the plane, mm.
+        label: displayed name.
+        keep_climb: whether each pass is reversed, so that the copy climb mills as the original does.
+
+    Raises:
+        ValueError: the operation is in no job.
+
+    Example:
+        >>> operation = pkm.job(FreeCAD.ActiveDocument).Operations.Group[0]  # in FreeCAD
+        >>> pkm.mirror(operation, normal=(1, 0, 0), label="Quadrant 2").Label
+        'Quadrant 2'
+    """
+    from pkm_post.freecad_app.symmetry import create_mirror
+
+    return create_mirror(operation, normal, point, label, keep_climb)
+
+
+def rotate(
+    operation: Any,
+    axis: Sequence[float],
+    angle: float,
+    point: Sequence[float] = (0.0, 0.0, 0.0),
+    label: str | None = None,
+) -> Any:
+    """Add a rotated copy of an operation to its job.
+
+    Args:
+        operation: of a CAM job.
+        axis: (3,) direction of the axis.
+        angle: rad, right-handed about the axis.
+        point: (3,) a point of the axis, mm.
+        label: displayed name.
+
+    Raises:
+        ValueError: the operation is in no job.
+
+    Example:
+        >>> operation = pkm.job(FreeCAD.ActiveDocument).Operations.Group[0]  # in FreeCAD
+        >>> pkm.rotate(operation, axis=(0, 0, 1), angle=math.pi, label="Quadrant 3").Label
+        'Quadrant 3'
+    """
+    from pkm_post.freecad_app.symmetry import create_rotation
+
+    return create_rotation(operation, axis, angle, point, label)
+
+
+def symmetry(operation: Any) -> Any:
+    """What an operation and its mirrored and rotated copies cover together, and where they meet.
+
+    Args:
+        operation: one that has copies, or a copy.
+
+    Returns:
+        Number of members, covered angle about the common axis (rad), and joints.
+
+    Raises:
+        Refused: the commands of the original cannot be read.
+
+    Example:
+        >>> pkm.symmetry(pkm.job(FreeCAD.ActiveDocument).Operations.Group[0]).members  # in FreeCAD
+        3
+    """
+    from pkm_post.freecad_app.symmetry_report import family_of
+
+    return family_of(operation)
+
+
+def set_gauge_length(controller: Any, length: float) -> None:
+    """Set the gauge length of a tool controller, from the spindle nose to the tool tip.
+
+    Args:
+        controller: a tool controller of a CAM job.
+        length: mm.
+
+    Example:
+        >>> pkm.set_gauge_length(pkm.job(FreeCAD.ActiveDocument).Tools.Group[0], 120.0)  # in FreeCAD
+    """
+    from pkm_post.freecad_app.tools import set_gauge_length as set_length
+
+    set_length(controller, length)
+
+
+def surface_points(face: Any, u: Any, v: Any) -> tuple[Any, Any]:
+    """Points of a face and their outward unit normals.
+
+    Args:
+        face: a face of a shape.
+        u: (N,) first parameters.
+        v: (N,) second parameters.
+
+    Returns:
+        (N, 3) points, mm, and (N, 3) normals.
+
+    Example:
+        >>> point, normal = pkm.surface_points(Part.makeSphere(10).Faces[0], [0.0], [0.0])  # in FreeCAD
+        >>> point.shape, normal.shape
+        ((1, 3), (1, 3))
+    """
+    from pkm_post.freecad_app.face_surface import surface_points as points_of
+
+    return points_of(face, u, v)
+
+
+def add_machine(document: Any, machine: str = "", job: Any = None, label: str = "") -> Any:
+    """Add a machine to a FreeCAD document, at its home pose.
+
+    Args:
+        document: gets the object.
+        machine: name or path of a machine file; empty for that of the job, or the example.
+        job: CAM job that supplies the work offset.
+        label: displayed name; empty for that of the machine.
+
+    Raises:
+        Refused: the machine does not exist, or its file has faults; nothing was added.
+
+    Example:
+        >>> pkm.add_machine(FreeCAD.ActiveDocument, "example_6tps").Label  # in FreeCAD
+        'Machine Example 6-TPS'
+    """
+    from pkm_post.freecad_app.machine_object import create_machine
+
+    return create_machine(document, machine, job, label)
