@@ -1,17 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Ownership: one client at a time may move a machine or load its controller; all others may monitor and stop it.
 
-Two clients that load or start at the same time close each other's buffers, or move the struts to unwanted places.
-So a client first claims ownership: with a lock file among the clients of this computer, and with five P-variables of
-the controller among those of all computers. They record the owner, its operation, its start time, and a heartbeat
-count.
-
-One assignment in the controller claims it atomically: it changes the variable only if that still has the value read
-before, so of two simultaneous clients one finds the other. A killed owner leaves its number behind; it is overridden if
-it shows no sign of life for a while and the machine rests. An owner that was silent for long verifies that it still is
-the owner before it sends anything.
-
-Enters: a session and the intended operation. Leaves: ownership for the duration of a block, or ``NotOwnerError``.
+Two clients that load or start at the same time close each other's buffers, or move the struts to unwanted places. So a
+client first claims ownership for a block: with a lock file among the clients of this computer, and with five
+P-variables of the controller among all computers. They record owner, operation, start time and a heartbeat count. One
+assignment in the controller claims it atomically: it changes the variable only if that still has the value read
+before, so of two simultaneous clients one finds the other. A killed owner leaves its number behind; it is overridden
+if it shows no sign of life for a while and the machine rests. An owner that was silent for long verifies that it still
+is the owner before it sends anything.
 """
 
 from __future__ import annotations
