@@ -43,7 +43,7 @@ def test_examples_give_what_they_say(job):
 def test_a_job_by_stages_has_the_motion_of_its_post(job, tmp_path):
     (posted,) = pkm.post(job, out=tmp_path / "posted")
     machine, program = pkm.read_machine(), pkm.read(job)
-    trajectory = pkm.place(program, machine)
+    trajectory = pkm.place(program, machine, pkm.read_options("--work-offset=0,0,250"))
     pkm.write(trajectory, tmp_path / "staged.pkmt")
     stored = posted.program.with_suffix(".pkmt").read_bytes()
     assert (tmp_path / "staged.pkmt").read_bytes() == stored
