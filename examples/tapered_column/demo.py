@@ -59,7 +59,7 @@ def post(saved: FilePath, program: FilePath) -> None:
     document.recompute()
     job = pkm.job(document)
     job.PostProcessorOutputFile = str(program)
-    job.PostProcessorArgs = f"--machine {MACHINE}"
+    job.PostProcessorArgs = f"--machine {MACHINE} --also picture"
     for _, text in PostProcessorFactory.get_post_processor(job, "hexapod_pmac").export():
         CommandPathPost()._write_file(str(program), text, "Overwrite existing file")
     FreeCAD.closeDocument(document.Name)

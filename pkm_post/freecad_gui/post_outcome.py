@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post outcome: displays the result of posting: the certificate with its picture, or the reasons for a refusal.
+"""Post outcome: displays the result of posting: the certificate and its report, or the reasons for a refusal.
 
 Takes posting results or diagnostics; a click on a row emits its operation and line.
 """
@@ -27,19 +27,20 @@ _HEAD = (
 )
 _PLACE = QtCore.Qt.ItemDataRole.UserRole
 """Role of a row's operation label and command number."""
-_WIDTH = 380
-"""Width of the picture, pixels; a click shows it in full size."""
 
 
 class PostOutcome(QtWidgets.QWidget):
-    """Verdict, findings, diagnostics and picture; what does not apply is hidden."""
+    """Verdict, findings, diagnostics and report; what does not apply is hidden."""
 
     chosen = QtCore.Signal(str, int)
     """The place of a row that was clicked: label of the operation, number of the command."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.verdict, self.picture = QtWidgets.QLabel(), _Picture()
+        self.verdict = QtWidgets.QLabel()
+        self.report = QtWidgets.QPushButton(translate("PostOutcome", "Open the report"))
+        self.report.setToolTip(translate("PostOutcome", "Shows the report in the web browser; no network is needed"))
+        self._page = ""
         self.findings, self.diagnostics = _table(), QtWidgets.QListWidget()
         self.meaning = QtWidgets.QLabel()
         self.verdict.setWordWrap(True)
@@ -47,10 +48,11 @@ class PostOutcome(QtWidgets.QWidget):
         self.diagnostics.setWordWrap(True)
         layout = QtWidgets.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for part in (self.verdict, self.diagnostics, self.meaning, self.findings, self.picture):
+        for part in (self.verdict, self.report, self.diagnostics, self.meaning, self.findings):
             layout.addWidget(part)
         self.diagnostics.itemClicked.connect(self._choose)
         self.findings.itemClicked.connect(self._choose)
+        self.report.clicked.connect(self._open)
         self.show_nothing("")
 
     def show_nothing(self, text: str) -> None:
@@ -59,7 +61,7 @@ class PostOutcome(QtWidgets.QWidget):
         self._show_diagnostics(())
         self.meaning.hide()
         self.findings.hide()
-        self.picture.hide()
+        self.report.hide()
 
     def show_refused(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Show why nothing was written."""
@@ -79,10 +81,12 @@ class PostOutcome(QtWidgets.QWidget):
         self.meaning.show()
         _fill(self.findings, certificate["findings"])
         self.findings.show()
-        pictures = [path for path in posted.files if path.suffix == ".png"]
-        self.picture.setVisible(bool(pictures))
-        if pictures:
-            self.picture.show_file(str(pictures[0]))
+        pages = [str(path) for path in posted.files if path.suffix == ".html"]
+        self.report.setVisible(bool(pages))
+        self._page = pages[0] if pages else ""
+
+    def _open(self) -> None:
+        QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(self._page))
 
     def _choose(self, item: Any) -> None:
         self.chosen.emit(*item.data(_PLACE))
@@ -95,20 +99,6 @@ class PostOutcome(QtWidgets.QWidget):
             item.setData(_PLACE, (each.place.operation, each.place.line))
             self.diagnostics.addItem(item)
         self.diagnostics.setVisible(bool(diagnostics))
-
-
-class _Picture(QtWidgets.QLabel):
-    """The report's picture as a thumbnail; a click shows it in full size."""
-
-    def show_file(self, name: str) -> None:
-        """Show a picture."""
-        self._name = name
-        self.setPixmap(QtGui.QPixmap(name).scaledToWidth(_WIDTH, QtCore.Qt.TransformationMode.SmoothTransformation))
-        self.setToolTip(translate("PostOutcome", "Click to see it in full size"))
-
-    def mousePressEvent(self, _event: Any) -> None:
-        """Show it in full size."""
-        QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(self._name))
 
 
 def _table() -> QtWidgets.QTableWidget:

@@ -54,7 +54,7 @@ from pkm_post.options.layers import (
 from pkm_post.options.result_names import PostItem, job_stem, missing_results, overwritten_sources, result_conflicts
 
 if TYPE_CHECKING:
-    from pkm_post.options.choices import LINUXCNC, NO_MESH, MeshFiles, Options
+    from pkm_post.options.choices import LINUXCNC, NO_MESH, PICTURE, MeshFiles, Options
 
 __all__ = [
     "APPROACH_MM_S",
@@ -65,6 +65,7 @@ __all__ = [
     "NO_MESH",
     "NO_VALUES",
     "PARITIES",
+    "PICTURE",
     "READING_STEP",
     "RULES_WITH_HEADING",
     "SIDE_OUTPUTS",
@@ -111,7 +112,7 @@ __all__ = [
     "whole_from",
 ]
 
-_WITH_NUMPY = ("LINUXCNC", "NO_MESH", "MeshFiles", "Options")
+_WITH_NUMPY = ("LINUXCNC", "NO_MESH", "PICTURE", "MeshFiles", "Options")
 
 if not TYPE_CHECKING:
 

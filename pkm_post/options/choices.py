@@ -16,6 +16,9 @@ from pkm_post.toolpath import OffsetOptions, SurfaceSpeed
 LINUXCNC = "linuxcnc"
 """The name in ``Options.also`` of a program for LinuxCNC's hexapod, which is not a table of the motion."""
 
+PICTURE = "picture"
+"""The name in ``Options.also`` of the report as a picture."""
+
 NO_MESH = "none"
 """Instead of a file: the mesh is unknown, even if the job has one."""
 

@@ -15,9 +15,15 @@ from pathlib import Path
 
 from pkm_post.system import result_files
 
-_REQUIRED = (result_files.PROGRAM, result_files.TRAJECTORY, result_files.REPORT, result_files.MANIFEST)
+_REQUIRED = (
+    result_files.PROGRAM,
+    result_files.TRAJECTORY,
+    result_files.REPORT,
+    result_files.PAGE,
+    result_files.MANIFEST,
+)
 """Endings of the files that every posting writes, whatever its options."""
-_POSSIBLE = (*_REQUIRED, result_files.PICTURE, *result_files.SETUPS.values())
+_POSSIBLE = (*_REQUIRED, *result_files.SETUPS.values())
 """Endings of the files that a posting without side outputs may write, for any controller."""
 _IN_PARTS = (result_files.PROGRAM, result_files.SIDE_OUTPUTS["halstreamer"])
 _PART = re.compile(r"(.*)-part[1-9][0-9]*(\.[a-z]+)")

@@ -28,12 +28,12 @@ from pkm_post.model import (
     Trajectory,
     errors,
 )
-from pkm_post.options import LINUXCNC, Options
+from pkm_post.options import LINUXCNC, PICTURE, Options
 from pkm_post.planning import FeedPlan, Plan, interpolate, plan_feed
 from pkm_post.posting.machine_check import home_faults
 from pkm_post.posting.placement import effective_setup, trajectory_of
 from pkm_post.posting.run import Findings, Log, PostContext, Posted, Progress, Run, no_log, no_progress
-from pkm_post.report import plots, summary
+from pkm_post.report import draw_report, summary, write_page
 from pkm_post.system import memory_guard, result_files, staged, write_fault
 from pkm_post.writing import TABLES, controller_settings, manifest, outputs, program_files, read_texts, trajectory_file
 
@@ -127,7 +127,7 @@ def _all_steps(
     played, certificate, files = _certificate(run, frame, trajectory, motion, covered)
     report = _report(run, frame, trajectory, motion, played, certificate, program.reading, files)
     for name in options.also:
-        _write_another(run, frame, name, trajectory, played)
+        _write_another(run, frame, name, trajectory, motion, played, certificate)
     return names, report
 
 
@@ -274,23 +274,35 @@ def _report(
     reading: tuple[str, ...],
     files: dict[str, Any],
 ) -> dict[str, Any]:
-    """Write the report as JSON and as a picture; return its content."""
+    """Write the report as JSON and as a page; return its content."""
     with run.step(_REPORT) as notes:
         machine, tolerances = frame.machine, frame.tolerances
         report = summary.report(trajectory, machine, certificate, tolerances, played, motion, reading, files)
         summary.write(report, frame.beside(result_files.REPORT))
-        picture = frame.beside(result_files.PICTURE)
-        run.accept(plots.draw(picture, trajectory, machine, motion, played, certificate, tolerances))
+        page = frame.beside(result_files.PAGE)
+        write_page(page, report, trajectory, machine, motion, played, certificate, tolerances)
         notes.extend(summary.verdict(certificate))
     run.print([*reading, *report["certificate"]["meaning"]])
     return report
 
 
-def _write_another(run: Run, frame: PostContext, name: str, trajectory: Trajectory, played: StrutMotion) -> None:
+def _write_another(
+    run: Run,
+    frame: PostContext,
+    name: str,
+    trajectory: Trajectory,
+    motion: Motion,
+    played: StrutMotion,
+    certificate: Certificate,
+) -> None:
     """Write an additional output."""
     with run.step(_another(name)) as notes:
         if name == LINUXCNC:
             run.accept(outputs.write_for_linuxcnc(frame.path, trajectory, frame.tolerances.tip))
+            return
+        if name == PICTURE:
+            picture = frame.beside(result_files.PICTURE)
+            run.accept(draw_report(picture, trajectory, frame.machine, motion, played, certificate, frame.tolerances))
             return
         note, faults = outputs.write_table(frame.path, TABLES[name], played, summary.origin(trajectory))
         run.accept(faults)

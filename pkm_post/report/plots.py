@@ -17,6 +17,7 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.model import Certificate, Diagnostic, Kind, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory
+from pkm_post.report.charts import decimated
 
 _MATPLOTLIB = ("matplotlib.backends.backend_agg", "matplotlib.figure", "mpl_toolkits.mplot3d")
 """Required modules; the last provides 3D axes."""
@@ -24,8 +25,6 @@ _LIMIT = {"color": "0.3", "linestyle": "--", "linewidth": 0.8}
 _AXES_SHOWN = 150
 _AXIS_DRAWN = 15.0
 """mm"""
-_COLUMNS = 1000
-"""Columns of pixels, more than a plot over time has; each shows the minimum and maximum of its values."""
 _PATH = (0.03, 0.02, 0.87, 0.88)
 _PLOTS_OVER_TIME = {"left": 0.09, "right": 0.99, "bottom": 0.06, "top": 0.92, "hspace": 0.16}
 """Shares of the subfigure; an automatic layout takes as long as drawing it."""
@@ -44,7 +43,7 @@ def missing_matplotlib(picture: Path) -> tuple[Diagnostic, ...]:
     return ()
 
 
-def draw(
+def draw_report(
     path: Path,
     trajectory: Trajectory,
     machine: Machine,
@@ -144,16 +143,6 @@ def _deviations(axes: Any, certificate: Certificate, tolerances: Tolerances) -> 
     limits = f"tip {1000 * tolerances.tip:g} um, axis {np.degrees(tolerances.axis):g} degrees"
     axes.set(xlabel="time s", ylabel="deviation by tolerance", title=f"tolerances: {limits}", ylim=(0, 1.1))
     axes.legend(fontsize="small", loc="center right")
-
-
-def decimated(time: Array, values: Array) -> tuple[Array, Array]:
-    """A line over increasing times, or the minimum and maximum of each column of pixels if it has more points."""
-    if len(time) <= 2 * _COLUMNS:
-        return time, values
-    first = np.unique(np.searchsorted(time, np.linspace(time[0], time[-1], _COLUMNS)))
-    both = np.stack([np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)], axis=1)
-    both[1::2] = both[1::2, ::-1].copy()  # alternate up and down: half the ink of going up in every column
-    return np.repeat(time[first], 2), both.ravel()
 
 
 _MOST_LEVELS = 6

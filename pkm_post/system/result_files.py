@@ -9,9 +9,16 @@ from __future__ import annotations
 PROGRAM = ".pmc"
 TRAJECTORY = ".pkmt"
 REPORT = "-report.json"
+PAGE = "-report.html"
 PICTURE = "-report.png"
 MANIFEST = "-manifest.json"
 SETUPS = {"turbo_pmac": "-setup.pmc", "power_pmac": "-setup.cfg"}
 """Set-up files by ``controller.kind`` of the machine file."""
-SIDE_OUTPUTS = {"csv": ".csv", "halstreamer": "-halstreamer.txt", "linuxcnc": "-linuxcnc.ngc"}
-"""Optional files by the names of ``--also``: two tables of the strut motion, and G-code for LinuxCNC's hexapod."""
+SIDE_OUTPUTS = {
+    "csv": ".csv",
+    "halstreamer": "-halstreamer.txt",
+    "linuxcnc": "-linuxcnc.ngc",
+    "picture": PICTURE,
+}
+"""Optional files by the names of ``--also``: two tables of the strut motion, G-code for LinuxCNC's hexapod, and the
+report as a picture."""

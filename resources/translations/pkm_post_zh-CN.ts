@@ -1862,16 +1862,20 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>位置</translation>
     </message>
     <message>
+        <source>Open the report</source>
+        <translation>打开报告</translation>
+    </message>
+    <message>
+        <source>Shows the report in the web browser; no network is needed</source>
+        <translation>在网页浏览器中显示报告；不需要网络</translation>
+    </message>
+    <message>
         <source>Refused. Nothing was written.</source>
         <translation>已拒绝。未写出任何内容。</translation>
     </message>
     <message>
         <source>Certified, as far as the lines below say ({} poses computed). {} s at the machine, {} files.</source>
         <translation>已验证，范围如下各行所述（计算了 {} 个位姿）。加工用时 {} 秒，{} 个文件。</translation>
-    </message>
-    <message>
-        <source>Click to see it in full size</source>
-        <translation>点击查看原始尺寸</translation>
     </message>
 </context>
 <context>

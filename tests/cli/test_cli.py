@@ -49,7 +49,7 @@ def test_post_starts_freecad_by_itself(tmp_path):
     told = pkm_post("post", part, "--machine", "example_6tps", "--out", tmp_path / "out dir", *REACHED)
     assert told.returncode == 0, told.stderr
     made = sorted(path.name for path in (tmp_path / "out dir").iterdir())
-    endings = ("-manifest.json", "-report.json", "-report.png", "-setup.pmc", ".pkmt", ".pmc")
+    endings = ("-manifest.json", "-report.html", "-report.json", "-setup.pmc", ".pkmt", ".pmc")
     assert made == [f"my_part{ending}" for ending in endings]
     assert [Path(line).name for line in told.stdout.splitlines()[-6:]] == made
     assert json.loads((tmp_path / "out dir" / "my_part-report.json").read_text())["certificate"]["holds"]

@@ -93,7 +93,7 @@ def test_batch_is_told_file_by_file(programs, tmp_path):
     assert written == [
         f"{name}{end}"
         for name in "ac"
-        for end in ("-manifest.json", "-report.json", "-report.png", "-setup.pmc", ".pkmt", ".pmc")
+        for end in ("-manifest.json", "-report.html", "-report.json", "-setup.pmc", ".pkmt", ".pmc")
     ]
     assert re.search(r"b\.ngc: line 5.* error G408", errors)
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == sorted(written)

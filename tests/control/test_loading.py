@@ -105,7 +105,7 @@ def test_line_ends_of_windows_are_certified(program, machine):
     assert found is not None and not found.verified_now
 
 
-@pytest.mark.parametrize("gone", ["cone-report.json", "cone-manifest.json", "cone-report.png"])
+@pytest.mark.parametrize("gone", ["cone-report.json", "cone-manifest.json", "cone-report.html"])
 def test_what_is_missing_is_made_up_for_by_verifying_or_refused(program, machine, gone):
     program.with_name(gone).unlink()
     found, faults = certified(program, machine)

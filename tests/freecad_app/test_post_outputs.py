@@ -55,7 +55,7 @@ def test_results_that_are_beside_another_trajectory_are_told(job, tmp_path, monk
     monkeypatch.setattr(App.Console, "PrintWarning", told.append)
     exported(job, "hexapod_trajectory")
     (warning,) = [line for line in told if "F104" in line]
-    assert "made (by cam)-report.json, made (by cam)-report.png, made (by cam)-setup.pmc;" in warning
+    assert "made (by cam)-report.html, made (by cam)-report.json, made (by cam)-setup.pmc;" in warning
 
 
 def test_text_that_names_the_trajectory_is_a_legal_program(job):

@@ -111,7 +111,7 @@ def posting_shows_the_certificate():
         "files": names_in(folder),
         "verdict": panel.outcome.verdict.text(),
         "findings": panel.outcome.findings.rowCount(),
-        "picture": panel.outcome.picture.isVisible(),
+        "report": panel.outcome.report.isVisible(),
         "drawn": picture("posted.png"),
         "longest": longest,
         "clicked": clicked(panel.outcome.findings, panel.outcome.findings.item(0, 0)),

@@ -16,12 +16,12 @@ def session(scene):
 def test_panel_writes_and_shows_the_certificate(session):
     found = session["posting_shows_the_certificate"]
     assert found["files"] == [
-        "gui-manifest.json", "gui-report.json", "gui-report.png", "gui-setup.pmc", "gui.FCStd", "gui.csv", "gui.pkmt",
+        "gui-manifest.json", "gui-report.html", "gui-report.json", "gui-setup.pmc", "gui.FCStd", "gui.csv", "gui.pkmt",
         "gui.pmc",
     ]  # fmt: skip
     assert found["verdict"].startswith("Certified")
     assert found["findings"] >= 11  # rows of the certificate
-    assert found["picture"]
+    assert found["report"]
     assert found["steps to undo"] == 1
     selected, told = found["clicked"]
     operation, line = found["where"].split(": ")

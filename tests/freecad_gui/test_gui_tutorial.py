@@ -78,7 +78,7 @@ def test_the_program_is_certified(session):
     found = session["program_is_posted"]
     assert found["folder"]
     assert found["verdict"].startswith("Certified")
-    assert {f"tapered_column{end}" for end in (".pmc", "-setup.pmc", ".pkmt", "-report.json", "-report.png")} <= set(
+    assert {f"tapered_column{end}" for end in (".pmc", "-setup.pmc", ".pkmt", "-report.json", "-report.html")} <= set(
         found["files"]
     )
     assert found["certificate"]["holds"]

@@ -20,7 +20,7 @@ from pkm_post.machine import find_machine
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.model import Refused
 from pkm_post.options import Options
-from pkm_post.posting import post, step_names, steps
+from pkm_post.posting import post, step_names
 from pkm_post.system.out_of_memory import memory_guard
 
 GCODE = "T1 M6\nS1000 M3\nG0 X0 Y0 Z60\nG1 X10 F600\nG2 X20 Y0 I5 J0\nM5\nM2\n"
@@ -37,12 +37,6 @@ def files(tmp_path_factory):
     made = folder / "made"
     assert main(["post", str(folder / "part.ngc"), "--tool-length", "1=120", "--out", str(made)]) == 0
     return folder
-
-
-@pytest.fixture
-def without_picture(monkeypatch):
-    """Drawing takes most of the time, and has a test of its own."""
-    monkeypatch.setattr(steps.plots, "draw", lambda *everything: ())
 
 
 COMMANDS = {
@@ -85,7 +79,6 @@ def told(errors):
     return line
 
 
-@pytest.mark.usefixtures("without_picture")
 def test_memory_runs_out_in_each_module_once(files, tmp_path, capsys):
     done, found = {"cli.__init__.main"}, 0  # what catches it
     for name in COMMANDS:
@@ -121,7 +114,6 @@ STEPS = {
 """What each step calls."""
 
 
-@pytest.mark.usefixtures("without_picture")
 @pytest.mark.parametrize("step", step_names(Options(also=("csv", "linuxcnc"))))
 def test_the_step_that_lacked_memory_is_named(files, tmp_path, capsys, monkeypatch, step):
     def lack(*_, **__):
@@ -133,7 +125,6 @@ def test_the_step_that_lacked_memory_is_named(files, tmp_path, capsys, monkeypat
     assert left_in(tmp_path / "out") == []
 
 
-@pytest.mark.usefixtures("without_picture")
 @pytest.mark.parametrize("call", range(6))
 @pytest.mark.parametrize("name", ["fsync", "replace", "listdir"])
 def test_memory_runs_out_while_files_get_their_names(files, tmp_path, capsys, monkeypatch, name, call):
@@ -156,10 +147,10 @@ def test_memory_runs_out_while_files_get_their_names(files, tmp_path, capsys, mo
     assert left_in(tmp_path / "out") == []
 
 
-@pytest.mark.parametrize("place", ["report.plots.draw", "report.plots._draw", "report.animated_png.no_such"])
-def test_memory_runs_out_while_the_picture_is_drawn(files, tmp_path, capsys, place):
+@pytest.mark.parametrize("place", ["report.page.write_page", "report.plots.draw_report", "report.animated_png.no_such"])
+def test_memory_runs_out_while_the_report_is_drawn(files, tmp_path, capsys, place):
     with lacking(place) as met:
-        code = main(command("post", files, tmp_path / "out"))
+        code = main([*command("post", files, tmp_path / "out"), "--also", "picture"])
     assert code == int(bool(met))
     assert bool(met) == (not left_in(tmp_path / "out"))
 
@@ -178,7 +169,6 @@ def test_each_of_several_files_is_by_itself(files, tmp_path, capsys):
     assert "part.pmc" not in left_in(tmp_path / "out")
 
 
-@pytest.mark.usefixtures("without_picture")
 def test_macros_get_a_refusal(files, tmp_path):
     for place in ("machine.description.reader.machine_of", "reading.gcode.read.read", "certificate.certify.certify"):
         with lacking(place), pytest.raises(Refused) as refused:

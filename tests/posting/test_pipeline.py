@@ -29,12 +29,12 @@ def machine():
 def test_everything_is_written_and_certified(machine, tmp_path):
     told = []
     posted = post(cone(), machine, tmp_path / "cone.pmc", log=told.append)
-    names = ["cone-manifest.json", "cone-report.json", "cone-report.png", "cone-setup.pmc", "cone.pkmt", "cone.pmc"]
+    names = ["cone-manifest.json", "cone-report.html", "cone-report.json", "cone-setup.pmc", "cone.pkmt", "cone.pmc"]
     assert sorted(path.name for path in tmp_path.iterdir()) == names
     assert sorted(path.name for path in posted.files) == names
     assert posted.report == json.loads((tmp_path / "cone-report.json").read_text())
     assert posted.report["certificate"]["holds"]
-    assert (tmp_path / "cone-report.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "cone-report.html").read_text(encoding="utf-8").startswith("<!doctype html>")
     steps = [
         "trajectory", "reach and feed plan", "collisions", "interpolation", "motion program", "certificate", "report",
     ]  # fmt: skip

@@ -170,8 +170,8 @@ def test_all_files_carry_the_stem(tmp_path):
     made = posted(tmp_path, "part.ngc", G_CODE, reading=ReadingOptions("vector")).files
     assert sorted(path.name for path in made) == [
         "part-manifest.json",
+        "part-report.html",
         "part-report.json",
-        "part-report.png",
         "part-setup.pmc",
         "part.pkmt",
         "part.pmc",

@@ -8,31 +8,10 @@ from pictures import painted
 from programs import cone
 
 from pkm_post.machine import machine_named
+from pkm_post.options import PICTURE, Options
 from pkm_post.posting.steps import post
 from pkm_post.report import plots
-from pkm_post.report.plots import _only, decimated, draw_reach
-
-
-def test_a_short_line_is_drawn_as_it_is():
-    time, values = np.arange(5.0), np.array([1.0, 3.0, 2.0, 0.0, 1.0])
-    found = decimated(time, values)
-    np.testing.assert_array_equal(found, (time, values))
-
-
-def test_a_long_line_keeps_its_ends_in_time_and_every_peak_of_one_point():
-    rng = np.random.default_rng(4)
-    time, values = np.cumsum(rng.uniform(0.001, 0.1, 100_000)), rng.normal(size=100_000)
-    peaks = rng.choice(100_000, 300, replace=False)
-    values[peaks] = np.where(np.arange(300) % 2, 1, -1) * np.linspace(10, 20, 300)
-    when, drawn = decimated(time, values)
-    assert len(when) == len(drawn) < 2500
-    assert np.all(np.diff(when) >= 0)
-    assert when[0] == time[0] and when[-1] == time[-1]
-    assert drawn.min() == values.min() and drawn.max() == values.max()
-    width = (time[-1] - time[0]) / 900
-    for peak in peaks:
-        near = np.abs(when - time[peak]) <= width
-        assert drawn[near].max() >= values[peak] if values[peak] > 0 else drawn[near].min() <= values[peak]
+from pkm_post.report.plots import _only, draw_reach
 
 
 def test_runs_of_chosen_points_are_drawn_without_those_between():
@@ -42,6 +21,7 @@ def test_runs_of_chosen_points_are_drawn_without_those_between():
     np.testing.assert_array_equal(x, [3, 6, np.nan, 18, 21])
 
 
+WITH_PICTURE = Options(also=(PICTURE,))
 NO_MATHEMATICS = "$x^_$ \\frac{ 日本"
 """What matplotlib would take for mathematics, and what its font does not have."""
 
@@ -52,7 +32,7 @@ def test_a_picture_shows_names_as_they_are(tmp_path):
         made, source=f"{NO_MATHEMATICS}.ngc", operations=tuple(f"{NO_MATHEMATICS} {name}" for name in made.operations)
     )
     machine = dataclasses.replace(machine_named("example_6tps")[0], name=NO_MATHEMATICS)
-    assert post(named, machine, tmp_path / "part.pmc").diagnostics == ()
+    assert post(named, machine, tmp_path / "part.pmc", WITH_PICTURE).diagnostics == ()
     assert 0.02 < painted(tmp_path / "part-report.png") < 0.5
 
 
@@ -61,7 +41,7 @@ def test_the_picture_of_a_report_has_its_axes_lines_and_legends(tmp_path, monkey
     monkeypatch.setattr(plots, "save", lambda figure, path, **how: figures.append(figure) or path.touch())
     machine = machine_named("example_6tps")[0]
     program = cone()
-    post(program, machine, tmp_path / "part.pmc")
+    post(program, machine, tmp_path / "part.pmc", WITH_PICTURE)
     (figure,) = figures
     path, lengths, speeds, deviations = figure.get_axes()
     assert [axes.get_ylabel() for axes in (lengths, speeds, deviations)] == [
@@ -107,7 +87,7 @@ def test_a_matplotlib_that_cannot_be_imported_costs_the_picture_alone(tmp_path, 
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setattr(sys, "meta_path", [Broken(fault), *sys.meta_path])
     machine, _ = machine_named("example_6tps")
-    posted = post(cone(), machine, tmp_path / "part.pmc")
+    posted = post(cone(), machine, tmp_path / "part.pmc", WITH_PICTURE)
     (warning,) = [each for each in posted.diagnostics if each.code == "F102"]
     assert warning.found == f"{type(fault).__name__}: {fault}"
     names = {path.name for path in tmp_path.iterdir()}

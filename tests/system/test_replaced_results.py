@@ -52,7 +52,7 @@ def locked_by_another_program(monkeypatch, when):
     monkeypatch.setattr("os.replace", call)
 
 
-@pytest.mark.parametrize("name", ["part.pmc", "part.pkmt", "part-report.png", "part-manifest.json"])
+@pytest.mark.parametrize("name", ["part.pmc", "part.pkmt", "part-report.html", "part-manifest.json"])
 def test_earlier_results_stay_whole_when_one_is_open_elsewhere(posted, tmp_path, monkeypatch, capsys, name):
     before = contents(posted)
     locked_by_another_program(monkeypatch, lambda source, target: source == posted / name)
@@ -78,7 +78,7 @@ def test_results_that_are_mixed_are_named_and_no_reader_accepts_them(posted, tmp
     locked_by_another_program(monkeypatch, program_stays_and_trajectory_does_not_come)
     output = refusal(tmp_path, capsys)
     assert "part.pmc: error F110" in output and output.rstrip().endswith("try again")
-    assert "could not be restored: part.pkmt, part-setup.pmc, part-report.png, part-report.json;" in output
+    assert "could not be restored: part.pkmt, part-setup.pmc, part-report.json, part-report.html;" in output
     for name in contents(posted):
         found, (fault,) = manifest.check(posted / name)
         assert found is None and fault.code == "F107"

@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Page: the report as one HTML file that a browser shows without a network.
+
+Enters: the content of the report, the planned motion, the program as read back and its certificate. Leaves: the file,
+with the verdict, the path in 3D, charts over time and the tables. A click on a row or into a chart marks that instant
+everywhere. The page has no date: the same job gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds
+from pkm_post.model import Certificate, Kind, Machine, Motion, StrutMotion, Tolerances, Trajectory
+from pkm_post.report.charts import Band, Line, chart, legend
+
+_PLACES = 6000
+"""Instants at which the path is drawn in 3D."""
+_CHART_PLACES = 1000
+"""Instants at which charts show the cubics, in addition to the knots."""
+_AXES, _AXIS_LENGTH = 150, 15.0
+"""Tool axes drawn, and their length in mm."""
+_MM_IN_UM = 1000.0
+_HINT = (
+    "drag to turn, shift or right button to move, wheel to zoom, double click to reset; click a row or a chart to mark"
+    " an instant"
+)
+
+
+def write_page(
+    path: Path,
+    report: Mapping[str, Any],
+    trajectory: Trajectory,
+    machine: Machine,
+    motion: Motion,
+    struts: StrutMotion,
+    certificate: Certificate,
+    tolerances: Tolerances,
+) -> None:
+    """Write the page of a report.
+
+    Args:
+        path: of the HTML file.
+        report: the content of the report (``summary.report``).
+        trajectory: the programmed path.
+        machine: its limits are drawn.
+        motion: the planned motion.
+        struts: the program as read back.
+        certificate: certificate of the program.
+        tolerances: the requested tolerances.
+    """
+    duration = float(struts.time_ms[-1]) / 1000
+    parts = [
+        _heading(report, machine.name),
+        "<h2>Tool path</h2>",
+        f'<p class="hint">{_HINT}</p><canvas id="path"></canvas>',
+        f'<script type="application/json" id="path-data">{_path(trajectory, motion)}</script>',
+        _charts(report, trajectory, machine, motion, struts, certificate, tolerances, duration),
+        _certificate_tables(report["certificate"]),
+        _time_table(report["machining_time"]),
+        _origin(report),
+    ]
+    style, script = (resources.files("pkm_post.report").joinpath(name).read_text("utf-8") for name in _ASSETS)
+    title = html.escape(f"{trajectory.source} on {machine.name}")
+    head = f'<html lang="en"><head><meta charset="utf-8"><title>{title}</title>\n<style>\n{style}</style></head>'
+    text = "\n".join(["<!doctype html>", head, "<body>", *parts, f"<script>\n{script}</script>", "</body></html>", ""])
+    path.write_text(text, encoding="utf-8", newline="\n")
+
+
+_ASSETS = ("page.css", "page.js")
+
+
+def _heading(report: Mapping[str, Any], machine: str) -> str:
+    certificate, program, motion = report["certificate"], report["program"], report["motion"]
+    holds = certificate["holds"]
+    verdict = "Certified, as far as the table below says" if holds else "Not certified"
+    tolerances = report["tolerances"]
+    numbers = {
+        "machine": machine,
+        "machining time": f"{report['machining_time']['total_s']:g} s",
+        "points": f"{motion['points']}",
+        "cutting length": f"{program['cutting_length_mm']:g} mm",
+        "tolerance of the tip": f"{_MM_IN_UM * tolerances['tip_mm']:g} um",
+        "tolerance of the axis": f"{tolerances['axis_deg']:g} degrees",
+        "tools": ", ".join(f"T{tool['number']} {tool['name']} {tool['length']:g} mm" for tool in program["tools"]),
+    }
+    items = "".join(f"<li><span>{name}</span> <b>{html.escape(value)}</b></li>" for name, value in numbers.items())
+    return (
+        f"<h1>{html.escape(program['source'])}</h1>\n"
+        f'<p class="verdict{" holds" if holds else ""}">{verdict}</p>\n<ul class="numbers">{items}</ul>'
+    )
+
+
+def _path(trajectory: Trajectory, motion: Motion) -> str:
+    """The drawn path as JSON: points, instants, runs of one operation, and tool axes."""
+    time, interval, share = _instants(motion.time_ms, _PLACES)
+    after, duration = interval + 1, np.diff(motion.time_ms)[interval] / 1000
+    ends = (motion.tip[interval].T, motion.tip_rate[interval].T, motion.tip[after].T, motion.tip_rate[after].T)
+    tip = hermite_columns(*ends, duration, share[None])[:, 0].T
+    row = np.minimum(np.searchsorted(motion.joint_time, time), len(trajectory) - 1)
+    operation, rapid = trajectory.operation[row], trajectory.kind[row] == Kind.RAPID
+    first = np.flatnonzero(np.append(True, (np.diff(operation) != 0) | (np.diff(rapid) != 0)))
+    last = np.append(first[1:], len(time) - 1)
+    runs = [
+        {"first": int(a), "last": int(b), "operation": int(operation[a]), "rapid": bool(rapid[a])}
+        for a, b in zip(first, last, strict=True)
+    ]
+    some = np.unique(np.linspace(0, len(motion) - 1, _AXES).astype(int))
+    some = some[trajectory.kind[motion.segment[some]] != Kind.RAPID]
+    axes = np.stack([motion.tip[some], motion.tip[some] + _AXIS_LENGTH * motion.axis[some]], axis=1)
+    shown = tip if rapid.all() else tip[~rapid]
+    low, high = shown.min(axis=0), shown.max(axis=0)
+    data = {
+        "tip": _packed(tip), "time": _packed(time), "axes": _packed(axes), "runs": runs,
+        "low": np.round(low, 3).tolist(), "high": np.round(high, 3).tolist(),
+    }  # fmt: skip
+    return json.dumps(data)
+
+
+def _packed(values: Array) -> str:
+    return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode("ascii")
+
+
+def _instants(time_ms: Array, count: int) -> tuple[Array, Array, Array]:
+    """Even instants and knots: time, s; the interval of each; and the elapsed share of it.
+
+    Where there are more knots than instants, every n-th is taken.
+    """
+    knots = time_ms[:: max(1, len(time_ms) // count)] / 1000
+    time = np.unique(np.concatenate([knots, np.linspace(0.0, time_ms[-1] / 1000, max(2, count - len(knots)))]))
+    interval = np.clip(np.searchsorted(time_ms, 1000 * time, side="right") - 1, 0, len(time_ms) - 2)
+    share = (1000 * time - time_ms[interval]) / (time_ms[interval + 1] - time_ms[interval])
+    return time, interval, np.clip(share, 0.0, 1.0)
+
+
+def _charts(
+    report: Mapping[str, Any],
+    trajectory: Trajectory,
+    machine: Machine,
+    motion: Motion,
+    struts: StrutMotion,
+    certificate: Certificate,
+    tolerances: Tolerances,
+    duration: float,
+) -> str:
+    bands = list(_operations(trajectory, motion, duration))
+    time, length, speed = _strut_course(struts)
+    lengths, speeds = (
+        [Line(f"strut {number}", time, column, f"c{number}") for number, column in enumerate(values, 1)]
+        for values in (length, speed)
+    )
+    tip = Line("tip", certificate.time, _MM_IN_UM * certificate.tip_deviation, "c1")
+    axis = Line("axis", certificate.time, np.degrees(certificate.axis_deviation), "c2")
+    limit = machine.strut_speed
+    return "\n".join(
+        [
+            "<h2>Struts, as read back from the program</h2>",
+            legend(lengths),
+            chart("length, mm", lengths, duration, machine.strut_stroke, bands),
+            chart("speed, mm/s", speeds, duration, (-limit, limit), bands),
+            "<h2>Deviation from the programmed path</h2>",
+            chart("tip, um", [tip], duration, [_MM_IN_UM * tolerances.tip], bands),
+            chart("axis, degrees", [axis], duration, [float(np.degrees(tolerances.axis))], bands),
+        ]
+    )
+
+
+def _strut_course(struts: StrutMotion) -> tuple[Array, Array, Array]:
+    """Time, (N,) s; strut lengths and speeds on the cubics, (6, N) each."""
+    time, interval, share = _instants(struts.time_ms, _CHART_PLACES)
+    p0, v0, p1, v1, duration = struts.cubics(interval)
+    ends = p0, v0, p1, v1, duration, share[:, None]
+    return time, hermite_lengths(*ends)[:, 0].T, hermite_speeds(*ends)[:, 0].T
+
+
+def _operations(trajectory: Trajectory, motion: Motion, duration: float) -> Iterable[Band]:
+    """The operations as bands of time."""
+    change = np.flatnonzero(np.diff(trajectory.operation)) + 1
+    begin = np.concatenate([[0.0], motion.joint_time[change - 1]])
+    end = np.append(begin[1:], duration)
+    for row, since, until in zip(np.append(0, change), begin.tolist(), end.tolist(), strict=True):
+        yield Band(trajectory.operations[trajectory.operation[row]], since, until)
+
+
+def _certificate_tables(certificate: Mapping[str, Any]) -> str:
+    findings = "".join(map(_finding, certificate["findings"]))
+    figures = "".join(_finding(figure | {"limit": None, "holds": True}) for figure in certificate["figures"])
+    covered = "".join(
+        _row([row["topic"], row["what"], row["extent"], row["detail"]]) for row in certificate["coverage"]
+    )
+    return (
+        f"<h2>Worst values, {certificate['instants']} poses measured</h2>\n"
+        "<table><tr><th>quantity<th>value<th>limit<th>time, s<th>operation<th>line</tr>"
+        f"{findings}{figures}</table>\n"
+        "<h2>What certified means</h2>\n"
+        f"<table><tr><th>topic<th>hazard<th>coverage<th>how</tr>{covered}</table>"
+    )
+
+
+def _finding(row: Mapping[str, Any]) -> str:
+    unit = f" {row['unit']}" if row["unit"] else ""
+    value = "none" if row["value"] is None else f"{row['value']:.4g}{unit}"
+    limit = "" if row["limit"] is None else f"{row['limit']:.4g}{unit}"
+    cells = [row["what"], value, limit, f"{row['time_s']:.3f}", row["operation"], str(row["line"])]
+    fails = "" if row["holds"] else ' class="fails"'
+    return f'<tr data-time="{row["time_s"]:.6g}"{fails}>{_cells(cells)}</tr>'
+
+
+def _time_table(machining: Mapping[str, Any]) -> str:
+    rows = (
+        _row([one["name"], *(f"{one[part]:.1f}" for part in ("cutting_s", "rapid_s", "dwell_s"))])
+        for one in machining["operations"]
+    )
+    return (
+        f"<h2>Machining time, s</h2>\n<table><tr><th>operation<th>cutting<th>rapid<th>dwell</tr>{''.join(rows)}</table>"
+    )
+
+
+def _origin(report: Mapping[str, Any]) -> str:
+    files = report["files"]
+    rows = [
+        ("machine file", report["machine"]["sha256"]),
+        ("trajectory", files.get("trajectory_sha256", "")),
+        *(("program", digest) for digest in files.get("programs_sha256", [])),
+    ]
+    hashes = "".join(f"<tr><td>{name}<td><code>{digest}</code></tr>" for name, digest in rows)
+    reading = "".join(f"<li>{html.escape(line)}</li>" for line in report["program"]["reading"])
+    return (
+        f"<h2>Files, SHA-256</h2>\n<table>{hashes}</table>"
+        + f"<h2>How the source was read</h2><ul>{reading}</ul>" * bool(reading)
+    )
+
+
+def _row(cells: Sequence[str]) -> str:
+    return f"<tr>{_cells(cells)}</tr>"
+
+
+def _cells(cells: Sequence[str]) -> str:
+    return "".join(f"<td>{html.escape(cell)}</td>" for cell in cells)
