@@ -68,7 +68,7 @@ def write_page(
         _time_table(report["machining_time"]),
         _origin(report),
     ]
-    style, script = (resources.files("pkm_post.report").joinpath(name).read_text("utf-8") for name in _ASSETS)
+    style, script = (resources.files(__package__).joinpath(name).read_text("utf-8") for name in _ASSETS)
     title = html.escape(f"{trajectory.source} on {machine.name}")
     head = f'<html lang="en"><head><meta charset="utf-8"><title>{title}</title>\n<style>\n{style}</style></head>'
     text = "\n".join(["<!doctype html>", head, "<body>", *parts, f"<script>\n{script}</script>", "</body></html>", ""])
