@@ -25,6 +25,7 @@ from pkm_post.model.columns import (
     shifted,
     uniform,
 )
+from pkm_post.model.diagnostic_log import DiagnosticLog
 from pkm_post.model.diagnostics import Diagnostic, Place, Refused, errors
 from pkm_post.model.machine import Body, Box, Machine, ToolChange
 from pkm_post.model.motion import Motion, Poses, StrutMotion
@@ -58,6 +59,7 @@ __all__ = [
     "ColumnBuilder",
     "Coverage",
     "Diagnostic",
+    "DiagnosticLog",
     "Event",
     "EventKind",
     "Extent",

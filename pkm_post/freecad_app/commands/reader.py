@@ -74,7 +74,7 @@ def read_commands(
     except UnicodeDecodeError as fault:
         return None, (undecodable_command(fault, source, operation),)
     check_words(words, diagnostics)
-    if any(fault.code == "J119" for fault in diagnostics.diagnostics):
+    if diagnostics.has("J119"):
         return None, diagnostics.in_order()
 
     words = _without_cycles(words, np.asarray(start, dtype=np.float64), diagnostics)

@@ -10,14 +10,14 @@ commands with the same fault, so a diagnostic names the first of them and counts
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import chain, count
 from typing import Any
 
 import numpy as np
 
-from pkm_post.model import Diagnostic, EventKind, Place, errors
+from pkm_post.model import Diagnostic, DiagnosticLog, EventKind, Place
 from pkm_post.reading import LONG_DWELL, SPINDLE_SYNCHRONISED
 
 Array = np.ndarray[Any, Any]
@@ -176,11 +176,12 @@ _NEEDED = {"G4": "P", "M3": "S", "M4": "S", "M6": "T"}
 
 @dataclass
 class CommandDiagnostics:
-    """The diagnostics of one operation, under construction."""
+    """The diagnostics of one operation, under construction: one for each check that fails."""
 
     source: str
     operation: str
-    diagnostics: list[Diagnostic] = field(default_factory=list)
+    _log: DiagnosticLog = field(default_factory=lambda: DiagnosticLog(1))
+    _checks: Iterator[int] = field(default_factory=count)
 
     def add(self, code: str, wrong: Array, found: str | Callable[[int], str], line: Array | None = None) -> None:
         """Add a diagnostic if any row is faulty.
@@ -194,19 +195,23 @@ class CommandDiagnostics:
         rows = np.flatnonzero(wrong)
         if not len(rows):
             return
-        row = int(rows[0])
+        row, check = int(rows[0]), next(self._checks)
         text = found if isinstance(found, str) else found(row)
-        more = f", and {len(rows) - 1} more like it" if len(rows) > 1 else ""
         place = Place(self.source, self.operation, row + 1 if line is None else int(line[row]))
-        self.diagnostics.append(Diagnostic(code, place, text + more))
+        self._log.add(Diagnostic(code, place, text), check)
+        self._log.count(len(rows) - 1, check)
 
     def has_errors(self) -> bool:
         """Whether there are errors."""
-        return bool(errors(self.diagnostics))
+        return self._log.has_errors()
+
+    def has(self, code: str) -> bool:
+        """Whether a diagnostic has this code."""
+        return any(fault.code == code for fault in self._log.kept)
 
     def in_order(self) -> tuple[Diagnostic, ...]:
         """The diagnostics in the order of the commands."""
-        return tuple(sorted(self.diagnostics, key=lambda fault: (fault.place.line, fault.code, fault.found)))
+        return self._log.in_order(lambda fault: (fault.place.line, fault.code, fault.found))
 
 
 def undecodable_command(fault: UnicodeDecodeError, source: str, operation: str) -> Diagnostic:

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from pkm_post.model import RULES, Diagnostic, Place, Severity
+from pkm_post.model import RULES, Diagnostic, DiagnosticLog, Place, Severity
 from pkm_post.reading.cldata.logical_lines import JOINT, LogicalLines
 from pkm_post.reading.grammar import Fault, in_words
 
@@ -42,37 +42,37 @@ class Faults:
 
     def __init__(self, file: str) -> None:
         self._file = file
-        self._reported: list[Diagnostic] = []
-        self._errors = 0
+        self._errors, self._warnings = DiagnosticLog(MAX_REPORTED), list[Diagnostic]()
 
     def add(self, code: str, place: tuple[int, int], found: str) -> None:
         """Add a fault; place is line and column, (0, 0) for the whole file."""
+        diagnostic = Diagnostic(code, Place(self._file, line=place[0], column=place[1]), found)
         if RULES[code].severity is Severity.ERROR:
-            self._errors += 1
-            if self._errors > MAX_REPORTED:
-                return
-        self._reported.append(Diagnostic(code, Place(self._file, line=place[0], column=place[1]), found))
+            self._errors.add(diagnostic)
+        else:
+            self._warnings.append(diagnostic)
 
     def add_line(self, lines: LogicalLines, index: int, explain: Callable[[str], Fault]) -> None:
         """Add the fault of an invalid line; the cause is determined only if it is reported."""
-        if self._errors >= MAX_REPORTED:
-            self._errors += 1
+        if not self._errors.keeps():
+            self._errors.count(1)
             return
         fault = explain(lines.text[index])
         self.add(fault.code, lines.place(index, fault.offset), fault.found)
 
     def any_errors(self) -> bool:
         """Whether there are errors."""
-        return self._errors > 0
+        return self._errors.has_errors()
 
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The reported diagnostics, in file order."""
         reported = sorted(
-            self._reported, key=lambda fault: (fault.place.line, fault.place.column, fault.code, fault.found)
+            [*self._errors.kept, *self._warnings],
+            key=lambda fault: (fault.place.line, fault.place.column, fault.code, fault.found),
         )
-        others = self._errors - MAX_REPORTED
-        more = [Diagnostic("L199", Place(self._file), f"and {others} more")] if others > 0 else []
-        return (*reported, *more)
+        more = self._errors.more()
+        rest = [Diagnostic("L199", Place(self._file), f"and {more} more")] if more else []
+        return (*reported, *rest)
 
 
 def fault_of(text: str, unexpected: UnexpectedInput) -> Fault:

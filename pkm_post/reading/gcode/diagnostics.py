@@ -9,14 +9,13 @@ blocks may have the same fault in each.
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Place, errors
+from pkm_post.model import Array, Diagnostic, DiagnosticLog, Place
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import Word
 
@@ -40,21 +39,20 @@ class BlockDiagnostics:
     Attributes:
         blocks: the program.
         text: its source text, empty if unknown: without it diagnostics have no columns.
-        diagnostics: what is collected.
     """
 
     blocks: Blocks
     text: bytes | str = ""
-    diagnostics: list[Diagnostic] = field(default_factory=list)
-    _count: Counter[str] = field(default_factory=Counter)
+    _log: DiagnosticLog = field(default_factory=lambda: DiagnosticLog(_MOST_REPORTED))
 
     def add(self, code: str, row: int, found: Found) -> None:
         """Add a diagnostic of one block, or of the whole file if there are no blocks."""
-        self._count[code] += 1
-        if self._count[code] <= _MOST_REPORTED:
-            parts = found if isinstance(found, tuple) and not isinstance(found, Word) else (found,)
-            words = [part for part in parts if isinstance(part, Word)]
-            self.diagnostics.append(Diagnostic(code, self._place(row, words), "".join(map(str, parts))))
+        if not self._log.keeps(code):
+            self._log.count(1, code)
+            return
+        parts = found if isinstance(found, tuple) and not isinstance(found, Word) else (found,)
+        words = [part for part in parts if isinstance(part, Word)]
+        self._log.add(Diagnostic(code, self._place(row, words), "".join(map(str, parts))), code)
 
     def add_where(self, code: str, wrong: Array, found: Callable[[int], Found]) -> None:
         """Add a diagnostic for every faulty block.
@@ -67,7 +65,7 @@ class BlockDiagnostics:
         rows = np.flatnonzero(wrong)
         for row in rows[:_MOST_REPORTED].tolist():
             self.add(code, row, found(row))
-        self._count[code] += max(len(rows) - _MOST_REPORTED, 0)
+        self._log.count(len(rows[_MOST_REPORTED:]), code)
 
     def source_line(self, row: int) -> str | None:
         """The line of a block, without comments; None if it is unknown."""
@@ -90,18 +88,11 @@ class BlockDiagnostics:
 
     def has_errors(self) -> bool:
         """Whether there are errors."""
-        return bool(errors(self.diagnostics))
+        return self._log.has_errors()
 
     def in_order(self) -> tuple[Diagnostic, ...]:
         """The diagnostics in line order; the last one of a code states how many more there are."""
-        diagnostics = sorted(self.diagnostics, key=lambda fault: (fault.place.line, fault.code))
-        last = {fault.code: index for index, fault in enumerate(diagnostics)}
-        for code, index in last.items():
-            more = self._count[code] - sum(fault.code == code for fault in diagnostics)
-            if more:
-                fault = diagnostics[index]
-                diagnostics[index] = Diagnostic(code, fault.place, f"{fault.found}, and {more} more like it")
-        return tuple(diagnostics)
+        return self._log.in_order(lambda fault: (fault.place.line, fault.code))
 
 
 def column_of(words: Iterable[Word], line: str) -> int:

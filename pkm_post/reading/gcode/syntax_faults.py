@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from pkm_post.model import Diagnostic, Place
+from pkm_post.model import Diagnostic, DiagnosticLog, Place
 from pkm_post.reading.grammar import Fault, in_words
 
 if TYPE_CHECKING:
@@ -52,8 +52,7 @@ class SyntaxFaults:
 
     def __init__(self, file: str) -> None:
         self._file = file
-        self._diagnostics: list[Diagnostic] = []
-        self._count = 0
+        self._log = DiagnosticLog(MOST_REPORTED)
 
     def add(self, number: int, line: bytes, unexpected: UnexpectedInput | Fault) -> None:
         """Add the fault of a line.
@@ -63,19 +62,18 @@ class SyntaxFaults:
             line: its bytes.
             unexpected: its fault.
         """
-        self._count += 1
-        if self._count > MOST_REPORTED:
+        if not self._log.keeps():
+            self._log.count(1)
             return
         fault = unexpected if isinstance(unexpected, Fault) else fault_of_unexpected(line.decode("latin-1"), unexpected)
-        self._diagnostics.append(
-            Diagnostic(fault.code, Place(self._file, line=number, column=_column(line, fault)), fault.found)
-        )
+        place = Place(self._file, line=number, column=_column(line, fault))
+        self._log.add(Diagnostic(fault.code, place, fault.found))
 
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The diagnostics of the file."""
-        unreported = self._count - len(self._diagnostics)
-        more = [Diagnostic("G199", Place(self._file), f"and {unreported} more")] if unreported else []
-        return (*self._diagnostics, *more)
+        more = self._log.more()
+        rest = [Diagnostic("G199", Place(self._file), f"and {more} more")] if more else []
+        return (*self._log.kept, *rest)
 
 
 def readable(text: bytes) -> str:
