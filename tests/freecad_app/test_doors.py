@@ -16,7 +16,6 @@ from cam_jobs import add_operation
 from meshes import binary_stl
 from option_examples import ADDED, FLAGS, words
 from Path.Post.Processor import PostProcessorFactory
-from pictures import draw_equal_pictures_once
 
 import pkm_post
 from pkm_post.cli import main
@@ -114,8 +113,7 @@ WHERE = ["job", "command line", "both"]
 
 @pytest.mark.parametrize("where", WHERE)
 @pytest.mark.parametrize("flag", [flag for flag in FLAGS if flag not in {NORMALS, *FOR_PART_PROGRAMS}])
-def test_every_option_at_every_door(job, tmp_path, flag, where, capsys, monkeypatch):
-    draw_equal_pictures_once(monkeypatch)
+def test_every_option_at_every_door(job, tmp_path, flag, where, capsys):
     others = [text for name, text in ALWAYS.items() if name != flag]
     of_job = others + (words(flag, 0) if where != "command line" else [])
     over_it = words(flag, 1) if where != "job" else []
