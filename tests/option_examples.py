@@ -22,12 +22,13 @@ EXAMPLES = {
     "--stock": ("far.stl", "none"),
     "--fixture": ("far.stl", "farther.stl"),
     "--actual-tool": ("1=9.5,4.75", "1=9"),
+    "--copies": ("xz,180", "yz"),
     "--surface-speed": ("120", "150.5"),
     "--spin": ("x-in-plane=20", "optimise=joints"),
     "--also": ("csv", "halstreamer,linuxcnc"),
 }
 """Each with an effect of its own, so that one is not mistaken for the other."""
-SWITCHES = {flag: (flag, f"--no-{flag[2:]}") for flag in ("--keep-chip-load", "--allow-open-end")}
+SWITCHES = {flag: (flag, f"--no-{flag[2:]}") for flag in ("--keep-chip-load", "--keep-climb", "--allow-open-end")}
 """On and off."""
 
 

@@ -12,7 +12,7 @@ import shlex
 from collections.abc import Iterable
 from typing import Any, NoReturn
 
-from pkm_post.options.argument_types import above_zero, between, number, numbered, offset, tool_length
+from pkm_post.options.argument_types import above_zero, between, number, numbered, offset, tool_length, validated
 from pkm_post.options.layers import NOTHING, add_recorded
 from pkm_post.system import result_files
 
@@ -91,6 +91,19 @@ def _cycle_values(text: str) -> tuple[str, ...]:
     if not set(chosen) <= set(CYCLE_VALUES) or len(set(chosen)) < len(chosen):
         raise argparse.ArgumentTypeError(f"expected different names out of {', '.join(CYCLE_VALUES)}, got {text!r}")
     return chosen
+
+
+MIRRORS = ("xy", "xz", "yz")
+"""Names of mirror planes, as in ``toolpath.MIRRORS``."""
+
+
+def _copies(text: str) -> tuple[str | float, ...]:
+    """Mirror planes and angles in degrees, in order; the word for nothing cancels a job's choice."""
+    words = text.split(",") if text != NOTHING else []
+    return tuple(word if word in MIRRORS else _copy_angle(word) for word in words)
+
+
+_copy_angle = validated(number, lambda angle: 0 < abs(angle) < 360, "xy, xz, yz or an angle within 360 degrees")
 
 
 def _surface_speed_or_none(text: str) -> float | None:
@@ -203,6 +216,18 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "action": "store_true",
         "help": "take a part program without an end (M2, M30 or %% of G-code, FINI or END-OF-PATH of CL data), although"
         " it may have been cut short; --no-allow-open-end takes it back",
+    },
+    "--copies": {
+        "metavar": "LIST",
+        "type": _copies,
+        "default": (),
+        "help": "copies that follow the program, joined by commas: xy, xz or yz is the mirror image in that plane of"
+        " the work frame, a number the rotation about z in degrees, as in xz,yz,180; none is the default",
+    },
+    "--keep-climb": {
+        "action": "store_true",
+        "help": "reverse each pass of the mirror images of --copies, to keep climb milling; --no-keep-climb takes it"
+        " back",
     },
     "--surface-speed": {
         "metavar": "M/MIN",

@@ -11,7 +11,7 @@ from pkm_post.geometry import Array
 from pkm_post.machine import ZERO_TORSION, SpinPolicy
 from pkm_post.model import EMPTY_SETUP, Setup, Tolerances, Tool
 from pkm_post.system import result_files
-from pkm_post.toolpath import OffsetOptions, SurfaceSpeed
+from pkm_post.toolpath import Copies, OffsetOptions, SurfaceSpeed
 
 LINUXCNC = "linuxcnc"
 """The name in ``Options.also`` of a program for LinuxCNC's hexapod, which is not a table of the motion."""
@@ -50,6 +50,7 @@ class Options:
         contours: how 2D cutter compensation (G41, G42, CUTCOM) is applied.
         actual_tools: by number, tools whose cutters differ from those the program was made for; a program with
             surface normals is compensated for them.
+        copies: mirror images and rotations that follow the program.
         surface_speed: cutting speed to keep; None leaves the spindle as programmed.
         also: side outputs, keys of ``system.result_files.SIDE_OUTPUTS``.
         mesh_files: mesh files of the bodies in the collision check.
@@ -62,6 +63,7 @@ class Options:
     spin: SpinPolicy = ZERO_TORSION
     contours: OffsetOptions = OffsetOptions()
     actual_tools: Mapping[int, Tool] = field(default_factory=dict)
+    copies: Copies = Copies()
     surface_speed: SurfaceSpeed | None = None
     also: tuple[str, ...] = ()
     mesh_files: MeshFiles = MeshFiles()

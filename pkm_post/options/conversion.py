@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def options_from(namespace: argparse.Namespace) -> Options:
     """The options of a parsed command line, in mm and rad."""
     from pkm_post.options.choices import MeshFiles, Options
-    from pkm_post.toolpath import OffsetOptions
+    from pkm_post.toolpath import Copies, OffsetOptions
 
     offset, tolerances = namespace.work_offset, tolerances_from(namespace)
     return Options(
@@ -33,6 +33,7 @@ def options_from(namespace: argparse.Namespace) -> Options:
         axis_tolerance=tolerances.axis,
         spin=_policy(*namespace.spin),
         contours=OffsetOptions(namespace.corners, namespace.leads, namespace.swallowed),
+        copies=Copies(tuple(map(_move, namespace.copies)), namespace.keep_climb),
         surface_speed=_surface_speed(namespace.surface_speed, namespace.keep_chip_load),
         also=namespace.also,
         actual_tools=_cutters(namespace.actual_tool),
@@ -60,6 +61,11 @@ def _policy(rule: str, heading_deg: float, objective: str) -> SpinPolicy:
     from pkm_post.machine import SpinPolicy, SpinRule
 
     return SpinPolicy(SpinRule(rule), heading=math.radians(heading_deg), objective=objective)
+
+
+def _move(move: str | float) -> str | float:
+    """A mirror plane, or an angle in rad."""
+    return move if isinstance(move, str) else math.radians(move)
 
 
 def _surface_speed(metres_per_minute: float | None, keep_chip_load: bool) -> SurfaceSpeed | None:
@@ -122,6 +128,8 @@ def argument_values(options: Options) -> ArgumentValues:
         "leads": options.contours.leads,
         "swallowed": options.contours.swallowed,
         "actual_tool": [(number, _sizes(tool)) for number, tool in options.actual_tools.items()],
+        "copies": tuple(move if isinstance(move, str) else math.degrees(move) for move in options.copies.moves),
+        "keep_climb": options.copies.keep_climb,
         "surface_speed": None if speed is None else speed.speed * 60 / 1000,
         "keep_chip_load": speed is not None and speed.keep_chip_load,
         "also": options.also,

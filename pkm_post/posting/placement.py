@@ -16,17 +16,21 @@ from pkm_post.machine import with_spin
 from pkm_post.model import Diagnostic, Machine, Mesh, Place, Program, Setup, Trajectory
 from pkm_post.options import NO_MESH, Options
 from pkm_post.reading import read_mesh
-from pkm_post.toolpath import compensate, place, with_surface_speed
+from pkm_post.toolpath import compensate, place, with_copies, with_surface_speed
 
 Findings = tuple[Diagnostic, ...]
 
 
 def trajectory_of(program: Program, machine: Machine, options: Options) -> tuple[Trajectory | None, Findings]:
-    """The compensated program on the machine, with its spin; or None with diagnostics."""
+    """The compensated program and its copies on the machine, with their spin; or None with diagnostics."""
     offset, diagnostics = work_offset(machine, options)
     moved, faults = compensate(program, options.contours, options.actual_tools)
     diagnostics += faults
     if offset is None or moved is None:
+        return None, diagnostics
+    moved, faults = with_copies(moved, options.copies)
+    diagnostics += faults
+    if moved is None:
         return None, diagnostics
     if options.surface_speed is not None:
         limits = machine.spindle_least_speed, machine.spindle_speed

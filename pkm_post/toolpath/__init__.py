@@ -17,6 +17,7 @@ from pkm_post.toolpath.surface.stepover import Stepover
 from pkm_post.toolpath.surface.surface import ParameterRange, Surface
 from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
 from pkm_post.toolpath.surface_speed import SurfaceSpeed, with_surface_speed
+from pkm_post.toolpath.symmetry.copies import MIRRORS, Copies, with_copies
 from pkm_post.toolpath.symmetry.coverage import Coverage, Seam, coverage, mirror_gap, seam, seams, sector
 from pkm_post.toolpath.symmetry.cut_direction import cut_lengths
 from pkm_post.toolpath.symmetry.passes import pass_rows
@@ -26,8 +27,11 @@ from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
 
 __all__ = [
     "CHORD_ERROR",
+    "MIRRORS",
     "with_chords",
+    "with_copies",
     "AxisRule",
+    "Copies",
     "Coverage",
     "CutMode",
     "Cutter",

@@ -32,8 +32,8 @@ from pkm_post.posting import post
 CUT = ["G0 X0 Y0 Z30 I0 J0 K1", "G1 X0 Y0 Z25 I0 J0.28 K0.96 F20", "G1 X4 Y2 Z25 I0.28 J0 K0.96 F25", "G0 Z30 I0 J0 K1"]
 ALWAYS = {"--work-offset": "--work-offset=0,0,250", "--surface-speed": "--surface-speed=100"}
 """Where the machine reaches, and what --keep-chip-load needs; in every job but where the option itself is tried."""
-NO_EFFECT_HERE = {"--corners", "--leads", "--swallowed"}
-"""They are for contours with the tool beside them, which this job has not."""
+NO_EFFECT_HERE = {"--corners", "--leads", "--swallowed", "--keep-climb"}
+"""They are for contours with the tool beside them, and for copies, which this job has not."""
 MESHES = {"far": -5000.0, "farther": -6000.0}
 """Files with a triangle so far below the part that nothing touches it, and its height, mm."""
 FOR_PART_PROGRAMS = {"--tool", "--unit", "--contour-data", "--wear", "--cl-dialect", "--cycle-values",

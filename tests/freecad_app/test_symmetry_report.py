@@ -7,8 +7,10 @@ import pytest
 from cam_jobs import add_operation, moves, reopened
 
 from pkm_post.freecad_app.document_object import program_of
+from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.symmetry import create_mirror, create_rotation
 from pkm_post.freecad_app.symmetry_report import family_of
+from pkm_post.toolpath import Copies, with_copies
 
 QUARTER = ["G0 X60 Y0 Z90", "G0 Z40", "G1 Z30 F5", "G3 X0 Y60 I-60 J0 F20", "G0 Z40", "G0 Z90"]
 EXACT, SIX_DECIMALS = 1e-9, 1e-6
@@ -38,6 +40,20 @@ def test_passes_of_a_mirror_are_run_the_other_way(quarter):
     np.testing.assert_allclose(ends[3:], [[60, 0, 30], [60, 0, 40], [60, 0, 90]], atol=EXACT)
     assert [words.get("F") for _, words in moves(copy)] == [None, None, 5, 20, None, None]
     assert copy.ReversedPasses == 1
+
+
+@pytest.mark.parametrize("keep", [False, True])
+def test_copies_of_a_program_are_those_of_the_tree(job, quarter, keep):
+    """One law for ``--copies`` and for the operations: two ways to the same rows."""
+    original, _ = read_job(job)
+    expected, _ = with_copies(original, Copies(("xz", "yz", np.pi), keep))
+    for normal in ((0, 1, 0), (1, 0, 0)):
+        recomputed(create_mirror(quarter, normal, keep_climb=keep))
+    recomputed(create_rotation(quarter, (0, 0, 1), np.pi))
+    found, _ = read_job(job)
+    for name in ("position", "tool_axis", "arc_centre", "arc_axis", "feed"):
+        np.testing.assert_allclose(getattr(found, name), getattr(expected, name), atol=SIX_DECIMALS, err_msg=name)
+    np.testing.assert_array_equal(found.kind, expected.kind)
 
 
 @pytest.mark.parametrize(("keep", "swapped"), [(False, 1), (True, 0)])

@@ -134,6 +134,10 @@ MACHINING_RULES: dict[str, Rule] = {
     ),
     "K146": error("the tolerance of a move is too small", "raise P of its G64, or leave P out"),
     "K147": error("the platform is turned too far about the tool axis", "write the spin within a few turns"),
+    "K148": error(
+        "a copy of the program would be reached by a feed move",
+        "begin the program with a rapid move (G0, RAPID) above the part",
+    ),
     # N1: surface normals, and compensation with them
     "N101": error("a contact point, normal or tool axis is not a number or has no direction", "regenerate the path"),
     "N102": error("the surface is undercut: the corner of the cutter does not touch it", "lean the tool further back"),
