@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 NO_AXIS_WORDS = "none"
 """The default: the tool axis is vertical."""
-_FOR_SOME_FILES = {"axis_words": NO_AXIS_WORDS, "dwell_unit": "s", "job": None}
+_FOR_SOME_FILES = {"axis_words": NO_AXIS_WORDS, "dwell_unit": None, "job": None}
 """Arguments that apply to some files only and are not among ``options``, with their defaults."""
 
 
@@ -40,9 +40,8 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--dwell-unit",
         choices=("s", "ms"),
-        default="s",
-        help="unit of the dwells of G-code, P of G4, G82, G86 and G89 (default: %(default)s); those of CAM jobs and CL"
-        " data are in s",
+        help="unit of the dwells of G-code, P of G4, G82, G86 and G89 (default: that of its flavour, s for rs274, ms"
+        " for fanuc); those of CAM jobs and CL data are in s",
     )
 
 

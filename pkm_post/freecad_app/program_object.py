@@ -28,6 +28,7 @@ from pkm_post.reading import (
     CONTOUR_DATA,
     DIALECTS,
     DWELL_UNITS,
+    FLAVOUR_NAMES,
     SUFFIXES,
     UNITS,
     ReadingOptions,
@@ -46,13 +47,20 @@ FROM_FILE = "file"
 CYCLE_ORDERS = ("depth,feed,clearance", "depth,feed,clearance,step", "depth,feed")
 """The usual meanings of cycle parameters; the command line accepts others."""
 
+_DWELL_CHOICES = [FROM_FILE, *DWELL_UNITS]
 _G = "Program"
 _PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyFile", "File", _G, QT_TRANSLATE_NOOP("App::Property", "The part program, G-code or CL data"), ""),
     ("App::PropertyEnumeration", "AxisWords", _G,
      QT_TRANSLATE_NOOP("App::Property", "Notation of the tool axis in G-code"), list(AXIS_WORDS)),
+    ("App::PropertyEnumeration", "Flavour", _G,
+     QT_TRANSLATE_NOOP("App::Property", "Whose G-code the part program is"), [FROM_FILE, *FLAVOUR_NAMES]),
     ("App::PropertyEnumeration", "DwellUnit", _G,
-     QT_TRANSLATE_NOOP("App::Property", "The unit of dwells of G-code"), list(DWELL_UNITS)),
+     QT_TRANSLATE_NOOP("App::Property", "The unit of dwells of G-code"), _DWELL_CHOICES),
+    ("App::PropertyFloatList", "MachineZero", _G,
+     QT_TRANSLATE_NOOP("App::Property", "X, Y and Z in mm where G53 X0 Y0 Z0, G28 and G30 bring the tool tip"), []),
+    ("App::PropertyStringList", "LeaveOut", _G,
+     QT_TRANSLATE_NOOP("App::Property", "Codes of G-code to leave out where they are not known, such as M21"), []),
     ("App::PropertyEnumeration", "Unit", _G,
      QT_TRANSLATE_NOOP("App::Property", "Unit of length of the part program"), [FROM_FILE, *UNITS]),
     ("App::PropertyEnumeration", "ContourData", _G,
@@ -78,6 +86,14 @@ class PartProgram(PropertyProxy):
     properties = _PROPERTIES
     results = _RESULTS
 
+    def onDocumentRestored(self, obj: Any) -> None:
+        """Add the properties and choices that documents of older versions lack."""
+        super().onDocumentRestored(obj)
+        if FROM_FILE not in obj.getEnumerationsOfProperty("DwellUnit"):
+            chosen = obj.DwellUnit
+            obj.DwellUnit = _DWELL_CHOICES
+            obj.DwellUnit = chosen
+
     def execute(self, obj: Any) -> None:
         """Read the file: FreeCAD calls this when a property has changed. A faulty file gives no path but its faults."""
         obj.Path = Path.Path()
@@ -92,11 +108,12 @@ def create_program(
     document: Any,
     file: str | FilePath,
     axis_words: str = "none",
-    dwell_unit: str = "s",
+    dwell_unit: str | None = None,
     unit: str | None = None,
     contour_data: str | None = None,
     cl_dialect: str | None = None,
     allow_open_end: bool = False,
+    flavour: str | None = None,
 ) -> Any:
     """Add a part program to a document.
 
@@ -104,11 +121,12 @@ def create_program(
         document: target; it is recomputed, and the diagnostics of the file appear in the report view.
         file: G-code or CL data.
         axis_words: form of the tool axis in G-code, a key of ``AXIS_WORDS``.
-        dwell_unit: of G-code, a key of ``DWELL_UNITS``.
+        dwell_unit: of G-code, a key of ``DWELL_UNITS``; None for that of its flavour.
         unit: of length, a key of ``cldata.UNITS``; None for that of the file.
         contour_data: meaning of CL data points under CUTCOM, one of ``cldata.CONTOUR_DATA``; None for that of the file.
         cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; None to detect it from its words.
         allow_open_end: whether the end, such as M2 or FINI, may be missing.
+        flavour: whose G-code it is, one of ``FLAVOUR_NAMES``; None to guess it from its codes.
     """
     path = FilePath(file).absolute()
     obj = document.addObject("Path::FeaturePython", "PkmProgram")
@@ -117,7 +135,7 @@ def create_program(
     reading = ReadingOptions(
         axis_words, unit=unit, contour_data=contour_data, cl_dialect=cl_dialect, dwell_unit=dwell_unit
     )
-    set_reading(obj, replace(reading, allow_open_end=allow_open_end))
+    set_reading(obj, replace(reading, allow_open_end=allow_open_end, flavour=flavour))
     add_view("program", obj)
     document.recompute()
     return obj
@@ -125,24 +143,33 @@ def create_program(
 
 def reading_of(obj: Any) -> ReadingOptions:
     """The reading options in the properties of a program object."""
-    choices = (obj.Unit, obj.ContourData, obj.ClDialect, obj.CycleValues)
-    unit, contour_data, dialect, values = (None if choice == FROM_FILE else choice for choice in choices)
+    choices = (obj.Unit, obj.ContourData, obj.ClDialect, obj.CycleValues, obj.Flavour, obj.DwellUnit)
+    unit, contour_data, dialect, values, flavour, dwell_unit = (
+        None if choice == FROM_FILE else choice for choice in choices
+    )
+    x_y_z = tuple(obj.MachineZero)
     return ReadingOptions(
         obj.AxisWords,
-        dwell_unit=obj.DwellUnit,
+        dwell_unit=dwell_unit,
         unit=unit,
         contour_data=contour_data,
         cl_dialect=dialect,
         cycle_values=tuple(values.split(",")) if values else (),
         allow_open_end=obj.OpenEnd,
+        flavour=flavour,
+        machine_zero=x_y_z if len(x_y_z) == len("XYZ") else None,
+        left_out=tuple(code.upper() for code in obj.LeaveOut),
     )
 
 
 def set_reading(obj: Any, reading: ReadingOptions) -> None:
     """Store reading options in the properties of a program object; wear and cutters have no property."""
-    choices: dict[str, str | bool] = {
+    choices: dict[str, str | bool | list[Any]] = {
         "AxisWords": reading.axis_words,
-        "DwellUnit": reading.dwell_unit,
+        "Flavour": reading.flavour or FROM_FILE,
+        "DwellUnit": reading.dwell_unit or FROM_FILE,
+        "MachineZero": list(reading.machine_zero or ()),
+        "LeaveOut": list(reading.left_out),
         "Unit": reading.unit or FROM_FILE,
         "ContourData": reading.contour_data or FROM_FILE,
         "ClDialect": reading.cl_dialect or FROM_FILE,

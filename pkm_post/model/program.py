@@ -95,7 +95,7 @@ class Program:
         source: name of the file the program comes from.
         source_fingerprint: SHA-256 of the bytes of that file, hexadecimal; empty if unknown.
         reading: interpretation of an ambiguous file, and its evidence; as text, by subject.
-        exact_stop: (N,) whether the motion comes to rest at the end of the row (G61); none does by default.
+        exact_stop: (N,) whether the motion comes to rest at the end of the row (exact stop); none does by default.
         exact_path: (N,) whether the corners at both ends of the row are followed and not rounded, so that the motion
             rests there (G61.1); none are by default.
         tip_tolerance: (N,) tolerance of the tool tip along the row, where the program states it (G64 P), mm; 0, the

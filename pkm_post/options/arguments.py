@@ -8,6 +8,7 @@ units of the user: mm, degrees, m/min. ``conversion`` makes options of them.
 from __future__ import annotations
 
 import argparse
+import re
 import shlex
 from collections.abc import Iterable
 from typing import Any, NoReturn
@@ -106,6 +107,28 @@ def _copies(text: str) -> tuple[str | float, ...]:
 _copy_angle = validated(number, lambda angle: 0 < abs(angle) < 360, "xy, xz, yz or an angle within 360 degrees")
 
 
+GCODE_FLAVOURS = ("rs274", "fanuc")
+"""Whose G-code it is, as in ``gcode.FLAVOUR_NAMES``."""
+_CODE = re.compile(r"[GM]\d{1,4}(\.\d)?", re.IGNORECASE)
+
+
+def _codes(text: str) -> tuple[str, ...]:
+    """Codes without leading zeros, in upper case."""
+    words = text.split(",")
+    if not all(map(_CODE.fullmatch, words)):
+        raise argparse.ArgumentTypeError(f"expected G and M codes such as M21,G187, got {text!r}")
+    return tuple(f"{word[0].upper()}{float(word[1:]):g}" for word in words)
+
+
+def _point(text: str) -> tuple[float, float, float]:
+    """X, Y and Z in mm."""
+    words = text.split(",")
+    if len(words) != 3:
+        raise argparse.ArgumentTypeError(f"expected X,Y,Z, got {text!r}")
+    x, y, z = map(offset, words)
+    return x, y, z
+
+
 def _surface_speed_or_none(text: str) -> float | None:
     return None if text == NOTHING else above_zero(100_000)(text)
 
@@ -187,6 +210,23 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     "--unit": {
         "choices": ("mm", "inch"),
         "help": "unit of length of a part program: of CL data whatever it says itself, of G-code before G20 or G21",
+    },
+    "--flavour": {
+        "choices": GCODE_FLAVOURS,
+        "help": "whose G-code a part program is: rs274, that of LinuxCNC, or fanuc, that of controls of Fanuc's kind"
+        " (default: the one whose codes it has; the report says which and why)",
+    },
+    "--machine-zero": {
+        "metavar": "X,Y,Z",
+        "type": _point,
+        "help": "where G-code brings the tool tip with G53 X0 Y0 Z0, and with G28 and G30: mm in the work frame",
+    },
+    "--leave-out": {
+        "metavar": "CODES",
+        "type": _codes,
+        "default": (),
+        "help": "G and M codes of G-code that do not move the tool and are not known here, such as M21,G187: left out"
+        " with their words, and named in the report",
     },
     "--contour-data": {
         "choices": ("centre", "contour"),
@@ -288,7 +328,18 @@ def add_part_program(parser: argparse.ArgumentParser) -> None:
     """Add the arguments for what a part program does not state itself."""
     _add(
         parser,
-        ("--tool", "--unit", "--contour-data", "--wear", "--cl-dialect", "--cycle-values", "--allow-open-end"),
+        (
+            "--tool",
+            "--unit",
+            "--flavour",
+            "--machine-zero",
+            "--leave-out",
+            "--contour-data",
+            "--wear",
+            "--cl-dialect",
+            "--cycle-values",
+            "--allow-open-end",
+        ),
     )
 
 

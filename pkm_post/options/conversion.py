@@ -97,6 +97,9 @@ def part_program_from(namespace: argparse.Namespace, axis_words: str) -> Reading
         namespace.cl_dialect,
         namespace.cycle_values,
         allow_open_end=namespace.allow_open_end,
+        flavour=namespace.flavour,
+        machine_zero=namespace.machine_zero,
+        left_out=namespace.leave_out,
     )
 
 

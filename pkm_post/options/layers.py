@@ -164,6 +164,9 @@ _PART_PROGRAMS = (InputKind.GCODE, InputKind.CLDATA)
 _KINDS: dict[str, tuple[InputKind, ...]] = {
     "axis_words": (InputKind.GCODE,),
     "dwell_unit": (InputKind.GCODE,),
+    "flavour": (InputKind.GCODE,),
+    "machine_zero": (InputKind.GCODE,),
+    "leave_out": (InputKind.GCODE,),
     "contour_data": (InputKind.CLDATA,),
     "cl_dialect": (InputKind.CLDATA,),
     "cycle_values": (InputKind.CLDATA,),

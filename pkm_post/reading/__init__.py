@@ -8,8 +8,8 @@ from pkm_post.reading.editing import TextFile, renumbered
 from pkm_post.reading.gcode.codes import SPINDLE_SYNCHRONISED
 from pkm_post.reading.gcode.cycles import CycleSeries, Strokes, cycle_fault, cycle_strokes
 from pkm_post.reading.gcode.events import LONG_DWELL
-from pkm_post.reading.gcode.feeds import exact_codes
-from pkm_post.reading.gcode.options import AXIS_WORDS, DWELL_UNITS
+from pkm_post.reading.gcode.flavours import FLAVOURS
+from pkm_post.reading.gcode.options import AXIS_WORDS, DWELL_UNITS, FLAVOUR_NAMES
 from pkm_post.reading.gcode.tool_axes import axis_of
 from pkm_post.reading.highlighting import Colour, coloured_spans, underlined
 from pkm_post.reading.mesh_file import MESH_READERS, STEP_SUFFIXES, mesh_of_triangles, read_mesh
@@ -30,6 +30,8 @@ __all__ = [
     "CONTOUR_DATA",
     "DIALECTS",
     "DWELL_UNITS",
+    "FLAVOURS",
+    "FLAVOUR_NAMES",
     "LONG_DWELL",
     "MESH_READERS",
     "SPINDLE_SYNCHRONISED",
@@ -51,7 +53,6 @@ __all__ = [
     "coloured_spans",
     "cycle_fault",
     "cycle_strokes",
-    "exact_codes",
     "gcode",
     "is_part_program",
     "language_of",

@@ -61,7 +61,10 @@ class ReadingOptions:
         wear: by number, mm by which the tool radius exceeds the one that CL data with CUTCOM was made for.
         cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; detected if None.
         cycle_values: meaning of the numbers of CYCLE statements without words, out of ``cldata.CYCLE_VALUES``.
-        dwell_unit: unit of P of G4 and of cycles in G-code, a key of ``DWELL_UNITS``.
+        flavour: whose G-code it is, one of ``FLAVOUR_NAMES``; guessed if None.
+        dwell_unit: unit of P of G4 and of cycles in G-code, a key of ``DWELL_UNITS``; that of the flavour if None.
+        machine_zero: where G53 X0 Y0 Z0, and G28 and G30, bring the tool tip in {C}, mm.
+        left_out: codes of G-code, such as "M21", to leave out where they are not understood.
         lengths: gauge lengths of tools, and values of length offsets (H), by number, mm.
         allow_open_end: whether a file may lack an end statement, such as M2 or FINI.
     """
@@ -73,9 +76,12 @@ class ReadingOptions:
     wear: Mapping[int, float] = field(default_factory=dict)
     cl_dialect: str | None = None
     cycle_values: tuple[str, ...] = ()
-    dwell_unit: str = "s"
+    dwell_unit: str | None = None
     lengths: Mapping[int, float] = field(default_factory=dict)
     allow_open_end: bool = False
+    flavour: str | None = None
+    machine_zero: tuple[float, float, float] | None = None
+    left_out: tuple[str, ...] = ()
 
 
 AS_WRITTEN = ReadingOptions()
@@ -150,7 +156,10 @@ def _read_gcode(content: bytes, file: str, reading: ReadingOptions) -> _Result:
         default_tool=unknown,
         axis_words=reading.axis_words,
         unit=reading.unit or "mm",
+        flavour=reading.flavour,
         dwell_unit=reading.dwell_unit,
+        machine_zero=reading.machine_zero,
+        left_out=reading.left_out,
         needs_end=not reading.allow_open_end,
     )
     program, diagnostics = gcode.read(content, file, options)

@@ -120,8 +120,20 @@
         <translation>G 代码中刀轴的表示方式</translation>
     </message>
     <message>
+        <source>Whose G-code the part program is</source>
+        <translation>零件程序所用 G 代码的方言</translation>
+    </message>
+    <message>
         <source>The unit of dwells of G-code</source>
         <translation>G 代码中暂停时间的单位</translation>
+    </message>
+    <message>
+        <source>X, Y and Z in mm where G53 X0 Y0 Z0, G28 and G30 bring the tool tip</source>
+        <translation>G53 X0 Y0 Z0、G28 和 G30 使刀尖到达的 X、Y、Z（mm）</translation>
+    </message>
+    <message>
+        <source>Codes of G-code to leave out where they are not known, such as M21</source>
+        <translation>不认识时略去的 G 代码，例如 M21</translation>
     </message>
     <message>
         <source>Unit of length of the part program</source>
@@ -1168,6 +1180,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>允许无结束</translation>
     </message>
     <message>
+        <source>Flavour as the file says</source>
+        <translation>方言：按文件说明</translation>
+    </message>
+    <message>
+        <source>Dwells as the flavour has them</source>
+        <translation>暂停时间单位：按方言</translation>
+    </message>
+    <message>
         <source>Unit as the file says</source>
         <translation>单位：按文件说明</translation>
     </message>
@@ -1178,6 +1198,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>How the G-code says the tool axis</source>
         <translation>G 代码中刀轴的表示方式</translation>
+    </message>
+    <message>
+        <source>Whose G-code it is</source>
+        <translation>G 代码的方言</translation>
     </message>
     <message>
         <source>The unit of dwells of the G-code</source>

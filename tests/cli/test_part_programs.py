@@ -129,10 +129,11 @@ def test_check_tells_line_and_caret_and_fails(tmp_path, capsys):
     bad = saved(tmp_path / "bad.ngc", "G0 X0 Y0 Z0\nG1 X1..5 F100\n")
     assert main(["check", str(good), str(bad)]) == 1
     told = capsys.readouterr().out.splitlines()
-    assert told[0].startswith(f"{bad}: line 2:")
-    assert " G102: " in told[0]
-    assert told[1:3] == ["    G1 X1..5 F100", "        ^"]
-    assert told[3].split() == [
+    assert told[0] == f"{good}: flavour rs274: nothing in the program speaks for another"
+    assert told[1].startswith(f"{bad}: line 2:")
+    assert " G102: " in told[1]
+    assert told[2:4] == ["    G1 X1..5 F100", "        ^"]
+    assert told[4].split() == [
         "file",
         "blocks",
         "arcs",
@@ -147,8 +148,8 @@ def test_check_tells_line_and_caret_and_fails(tmp_path, capsys):
         "Y",
         "Z",
     ]
-    assert told[4].split() == [str(good), "3", "1", "25.708", "0.000", "0.000", "0.000", "20.000", "5.000", "0.000"]
-    assert told[5].split() == [str(bad), "-", "-", "-", "-", "-"]
+    assert told[5].split() == [str(good), "3", "1", "25.708", "0.000", "0.000", "0.000", "20.000", "5.000", "0.000"]
+    assert told[6].split() == [str(bad), "-", "-", "-", "-", "-"]
 
 
 def test_check_writes_json(tmp_path, capsys):

@@ -15,7 +15,8 @@ GCODE = "T1 M6 G43 H1\nG21 G90 G94 S8000 M3\nG0 X0 Y0 Z30\nG4 P10\nG1 X10 Y0 Z20
 CLDATA = "UNITS/MM\nLOADTL/1\nRAPID\nGOTO/0,0,30\nFEDRAT/600,MMPM\nGOTO/10,0,20\nRAPID\nGOTO/10,0,30\nFINI\n"
 REACHED = ("--tool-length=1=60", "--work-offset=0,0,250")
 FOR_CLDATA = ("--contour-data", "--cl-dialect", "--cycle-values")
-FOR_PART_PROGRAMS = (*FOR_CLDATA, "--tool", "--unit", "--allow-open-end", "--wear")
+FOR_GCODE = ("--flavour", "--machine-zero", "--leave-out")
+FOR_PART_PROGRAMS = (*FOR_CLDATA, *FOR_GCODE, "--tool", "--unit", "--allow-open-end", "--wear")
 
 
 @pytest.fixture
@@ -35,9 +36,8 @@ def test_files_are_told_apart_by_their_names():
 @pytest.mark.parametrize("source", InputKind)
 def test_each_option_fits_or_is_named(flag, source):
     given = explicit_values(parse_text(" ".join(words(flag, 0))))
-    fits = not (flag in FOR_CLDATA and source is InputKind.GCODE) and not (
-        flag in FOR_PART_PROGRAMS and source is InputKind.JOB
-    )
+    unfit = {InputKind.GCODE: FOR_CLDATA, InputKind.CLDATA: FOR_GCODE, InputKind.JOB: FOR_PART_PROGRAMS}
+    fits = flag not in unfit[source]
     assert [each.split()[0] for each in inapplicable_options(given, {source})] == ([] if fits else [flag])
     assert applicable_values(given, source) == (given if fits else {})
     assert inapplicable_options(given, set(InputKind)) == []
@@ -52,6 +52,7 @@ def test_each_option_fits_or_is_named(flag, source):
         ("a.ngc", "--cycle-values=depth,feed", "--cycle-values is for CL data"),
         ("b.apt", "--dwell-unit=ms", "--dwell-unit is for G-code"),
         ("b.apt", "--axis-words=AC", "--axis-words is for G-code"),
+        ("b.apt", "--flavour=fanuc", "--flavour is for G-code"),
     ],
 )
 def test_an_option_for_another_kind_of_file_is_refused(files, capsys, command, file, option, found):

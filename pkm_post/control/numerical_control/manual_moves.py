@@ -312,7 +312,10 @@ def _read(
     # A NaN diameter reveals cutter compensation.
     tool = Tool(0, "in the spindle", math.nan, 0.0, tool_length)
     options = gcode.ReadOptions(
-        default_tool=tool, start=_in_work(here, machine_from_work), axis_words=reading.axis_words
+        default_tool=tool,
+        start=_in_work(here, machine_from_work),
+        axis_words=reading.axis_words,
+        flavour="rs274",  # one line is no evidence, and the same words mean the same in every line
     )
     program, diagnostics = gcode.read(line, _MDI, options)
     if program is None:

@@ -24,7 +24,16 @@ from pkm_post.freecad_gui.preferences import GROUP, default_arguments
 from pkm_post.model import Place, Refused
 from pkm_post.options import explicit_values, part_program_from
 from pkm_post.posting import post_file
-from pkm_post.reading import AXIS_WORDS, DIALECTS, DWELL_UNITS, UNITS, Language, ReadingOptions
+from pkm_post.reading import (
+    AS_WRITTEN,
+    AXIS_WORDS,
+    DIALECTS,
+    DWELL_UNITS,
+    FLAVOUR_NAMES,
+    UNITS,
+    Language,
+    ReadingOptions,
+)
 
 translate = FreeCAD.Qt.translate
 
@@ -115,7 +124,10 @@ def _with_typed(reading: ReadingOptions, chosen: Namespace) -> ReadingOptions:
     typed = part_program_from(chosen, reading.axis_words)
     return replace(
         typed,
+        flavour=typed.flavour or reading.flavour,
         dwell_unit=reading.dwell_unit,
+        machine_zero=typed.machine_zero or reading.machine_zero,
+        left_out=typed.left_out or reading.left_out,
         unit=typed.unit or reading.unit,
         contour_data=typed.contour_data or reading.contour_data,
         cl_dialect=typed.cl_dialect or reading.cl_dialect,
@@ -163,12 +175,17 @@ class ReadingFields(QtWidgets.QWidget):
         super().__init__(parent)
         self.axis_words, self.dwell_unit = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
         self.unit, self.contour_data = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
-        self.cl_dialect = QtWidgets.QComboBox(self)
+        self.cl_dialect, self.flavour = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
         self.allow_open_end = QtWidgets.QCheckBox(translate("PKM_Editor", "Open end allowed"), self)
-        # Seldom needed, and chosen in the properties of the program object: here only stored.
-        self._cycle_values: tuple[str, ...] = ()
+        # Some are seldom needed, and chosen in the properties of the program object: here only stored.
+        self._shown = AS_WRITTEN
         self.axis_words.addItems(list(AXIS_WORDS))
-        self.dwell_unit.addItems(list(DWELL_UNITS))
+        self.flavour.addItem(translate("PKM_Editor", "Flavour as the file says"), None)
+        for name in FLAVOUR_NAMES:
+            self.flavour.addItem(name, name)
+        self.dwell_unit.addItem(translate("PKM_Editor", "Dwells as the flavour has them"), None)
+        for name in DWELL_UNITS:
+            self.dwell_unit.addItem(name, name)
         self.unit.addItem(translate("PKM_Editor", "Unit as the file says"), None)
         for name in UNITS:
             self.unit.addItem(name, name)
@@ -178,6 +195,7 @@ class ReadingFields(QtWidgets.QWidget):
         for name, dialect in DIALECTS.items():
             self.cl_dialect.addItem(dialect.title, name)
         self.axis_words.setToolTip(translate("PKM_Editor", "How the G-code says the tool axis"))
+        self.flavour.setToolTip(translate("PKM_Editor", "Whose G-code it is"))
         self.dwell_unit.setToolTip(translate("PKM_Editor", "The unit of dwells of the G-code"))
         self.unit.setToolTip(translate("PKM_Editor", "The unit of length of the part program"))
         self.contour_data.setToolTip(
@@ -189,7 +207,8 @@ class ReadingFields(QtWidgets.QWidget):
         )
         layout = QtWidgets.QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for field in (self.axis_words, self.dwell_unit, self.unit, self.contour_data, self.cl_dialect):
+        gcode, cl_data = (self.axis_words, self.flavour, self.dwell_unit), (self.contour_data, self.cl_dialect)
+        for field in (*gcode, self.unit, *cl_data):
             layout.addWidget(field)
             field.currentIndexChanged.connect(lambda index: self.changed.emit())
         layout.addWidget(self.allow_open_end)
@@ -198,20 +217,21 @@ class ReadingFields(QtWidgets.QWidget):
 
     def offer_for(self, language: Language) -> None:
         """Show the fields that apply to a language."""
-        for field in (self.axis_words, self.dwell_unit):
+        for field in (self.axis_words, self.flavour, self.dwell_unit):
             field.setVisible(language is Language.GCODE)
         for field in (self.contour_data, self.cl_dialect):
             field.setVisible(language is not Language.GCODE)
 
     def chosen(self) -> ReadingOptions:
         """The chosen options."""
-        return ReadingOptions(
-            self.axis_words.currentText(),
-            dwell_unit=self.dwell_unit.currentText(),
+        return replace(
+            self._shown,
+            axis_words=self.axis_words.currentText(),
+            flavour=self.flavour.currentData(),
+            dwell_unit=self.dwell_unit.currentData(),
             unit=self.unit.currentData(),
             contour_data=self.contour_data.currentData(),
             cl_dialect=self.cl_dialect.currentData(),
-            cycle_values=self._cycle_values,
             allow_open_end=self.allow_open_end.isChecked(),
         )
 
@@ -219,10 +239,11 @@ class ReadingFields(QtWidgets.QWidget):
         """Show a reading, which does not count as a change."""
         blocker = QtCore.QSignalBlocker(self)
         self.axis_words.setCurrentText(reading.axis_words)
-        self.dwell_unit.setCurrentText(reading.dwell_unit)
+        self.flavour.setCurrentIndex(self.flavour.findData(reading.flavour))
+        self.dwell_unit.setCurrentIndex(self.dwell_unit.findData(reading.dwell_unit))
         self.unit.setCurrentIndex(self.unit.findData(reading.unit))
         self.contour_data.setCurrentIndex(self.contour_data.findData(reading.contour_data))
         self.cl_dialect.setCurrentIndex(self.cl_dialect.findData(reading.cl_dialect))
         self.allow_open_end.setChecked(reading.allow_open_end)
-        self._cycle_values = reading.cycle_values
+        self._shown = reading
         blocker.unblock()

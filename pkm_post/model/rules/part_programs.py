@@ -128,8 +128,14 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
         "the tool axis or normal cannot be given in this way here", "write the tool axis alone, on straight moves"
     ),
     # G4: what a G-code program means
-    "G401": error("the code is not supported", "remove it, or replace it by supported codes"),
-    "G402": error("the code has no meaning on this machine", "write the program without it"),
+    "G401": error(
+        "the code is not supported",
+        "replace it by supported codes, or leave it out with --leave-out if it does not move the tool",
+    ),
+    "G402": error(
+        "the code has no meaning on this machine",
+        "write the program without it, or leave it out with --leave-out if it does not move the tool",
+    ),
     "G403": error("two codes of one group in a block exclude each other", "write them in two blocks"),
     "G404": error("no code of the block uses the word", "remove it, or add the code that it belongs to"),
     "G405": error("a word is missing", "add it"),
@@ -139,8 +145,11 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
     "G409": error("the arc does not fit its end points", "correct end point, centre or radius"),
     "G410": error("the arc has no centre", "write I J K of its plane, or R"),
     "G411": error("the tool is unknown", "give its diameter and corner radius: --tool NUMBER=D[,R]"),
-    "G412": error("the offset of this coordinate system is unknown", "give its offset, or set it with G10 L2"),
-    "G413": error("the reference point is unknown", "give it as an option, or set it with G28.1 or G30.1"),
+    "G412": error(
+        "the offset of this coordinate system is unknown",
+        "set it with G10 L2; for G53 give the place of the machine's zero with --machine-zero X,Y,Z",
+    ),
+    "G413": error("the reference point is unknown", "give it with --machine-zero X,Y,Z, or set it with G28.1 or G30.1"),
     "G414": error("rotary words have no meaning here", "give the rotary axes with --axis-words, and write G43.4 first"),
     "G415": error("the tool axis is unknown", "write I, J and K, not all zero, after G43.5"),
     "G416": error("the position of the tool is not yet known", "first move to X, Y and Z"),

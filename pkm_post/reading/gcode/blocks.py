@@ -61,7 +61,8 @@ class Blocks:
             words: parameters, expressions, assignments, O words. Such a row has no words and codes in the columns.
         comments: line and text of operator messages and of tool descriptions.
         source: name of the file.
-        closed: whether a percent sign closes the file.
+        closed: whether a percent sign, or M99 of the main program, closes the file.
+        restarts: whether M99 ends the main program, which a control begins again.
     """
 
     line: Array
@@ -75,6 +76,7 @@ class Blocks:
     comments: tuple[tuple[int, str], ...]
     source: str
     closed: bool = False
+    restarts: bool = False
 
     def __post_init__(self) -> None:
         rows = len(self.line)

@@ -7,18 +7,15 @@ code of the block uses, and missing or invalid words.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from pkm_post.model import Array, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import (
-    G_CODES,
-    M_CODES,
     NONE,
     SPINDLE_SYNCHRONISED,
-    UNSUPPORTED,
     WORDS_OF_ANY_BLOCK,
     Code,
     Group,
@@ -26,6 +23,7 @@ from pkm_post.reading.gcode.codes import (
     word_of,
 )
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
+from pkm_post.reading.gcode.flavours import Flavour
 from pkm_post.reading.gcode.modal import Modal, is_cycle
 from pkm_post.reading.gcode.options import NORMAL_WORDS, VECTOR_WORDS, ReadOptions, axis_names
 
@@ -34,7 +32,7 @@ _NOT_NEGATIVE = "DFHLQST"
 _LIMIT = 1e9
 """Upper bound of lengths, angles, times and numbers of a program; beyond it decimals are lost."""
 
-_Codes = tuple[str, Array, Array, dict[int, Code]]
+_Codes = tuple[str, Array, Array, Mapping[int, Code]]
 """Letter, codes, their rows, and their definitions."""
 
 
@@ -47,16 +45,16 @@ def check(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagn
         options: read options.
         faults: collects the faults.
     """
-    _unknown_codes(blocks, faults)
-    _codes_of_one_group(blocks, faults)
+    _unknown_codes(blocks, modal.flavour, faults)
+    _codes_of_one_group(blocks, modal.flavour, faults)
     _unused_words(blocks, modal, options, faults)
     _missing_words(blocks, modal, faults)
     _values(blocks, modal, faults)
     _axis_words(blocks, modal, faults)
 
 
-def _codes(blocks: Blocks) -> tuple[_Codes, _Codes]:
-    return ("G", blocks.g, blocks.g_row, G_CODES), ("M", blocks.m, blocks.m_row, M_CODES)
+def _codes(blocks: Blocks, flavour: Flavour) -> tuple[_Codes, _Codes]:
+    return ("G", blocks.g, blocks.g_row, flavour.g_codes), ("M", blocks.m, blocks.m_row, flavour.m_codes)
 
 
 def _marked(blocks: Blocks, rows: Array) -> Array:
@@ -66,8 +64,8 @@ def _marked(blocks: Blocks, rows: Array) -> Array:
     return marked
 
 
-def _unknown_codes(blocks: Blocks, faults: BlockDiagnostics) -> None:
-    for letter, codes, rows, known in _codes(blocks):
+def _unknown_codes(blocks: Blocks, flavour: Flavour, faults: BlockDiagnostics) -> None:
+    for letter, codes, rows, known in _codes(blocks, flavour):
         for code in np.unique(codes).tolist():
             if code in known:
                 continue
@@ -75,15 +73,16 @@ def _unknown_codes(blocks: Blocks, faults: BlockDiagnostics) -> None:
             wrong = _marked(blocks, rows[codes == code])
             if str(word) in SPINDLE_SYNCHRONISED:
                 faults.add_where("G425", wrong, lambda _, word=word: word)  # type: ignore[misc]
-            elif str(word) in UNSUPPORTED:
-                faults.add_where("G402", wrong, lambda _, word=word: (word, f": {UNSUPPORTED[str(word)]}"))  # type: ignore[misc]
+            elif str(word) in flavour.unsupported:
+                why = f": {flavour.unsupported[str(word)]}"
+                faults.add_where("G402", wrong, lambda _, word=word, why=why: (word, why))  # type: ignore[misc]
             else:
                 faults.add_where("G401", wrong, lambda _, word=word: word)  # type: ignore[misc]
 
 
-def _codes_of_one_group(blocks: Blocks, faults: BlockDiagnostics) -> None:
+def _codes_of_one_group(blocks: Blocks, flavour: Flavour, faults: BlockDiagnostics) -> None:
     groups = list(Group)
-    for letter, codes, rows, known in _codes(blocks):
+    for letter, codes, rows, known in _codes(blocks, flavour):
         with_next = np.append(rows[1:] == rows[:-1], False)[: len(rows)]
         together = with_next | np.append(False, with_next[:-1])[: len(rows)]
         used, which = np.unique(codes[together], return_inverse=True)
@@ -105,7 +104,7 @@ def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
         if letter not in WORDS_OF_ANY_BLOCK and letter not in rotary:
             unused = blocks.has(letter) & ~_used_by_motion(letter, modal, options)
             if unused.any():
-                unused[_rows_that_use(letter, blocks)] = False
+                unused[_rows_that_use(letter, blocks, modal.flavour)] = False
                 useless[letter] = unused
     _report_words("G414", {letter: blocks.has(letter) for letter in blocks.words if letter in rotary}, blocks, faults)
     _report_words("G404", useless, blocks, faults)
@@ -113,8 +112,8 @@ def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
 
 def _used_by_motion(letter: str, modal: Modal, options: ReadOptions) -> Array:
     """Whether the motion of each block uses a word, (N,)."""
-    takes = np.zeros(max(G_CODES) + 1, dtype=np.bool_)
-    for code, meaning in G_CODES.items():
+    takes = np.zeros(max(modal.flavour.g_codes) + 1, dtype=np.bool_)
+    for code, meaning in modal.flavour.g_codes.items():
         if meaning.group is Group.MOTION:
             turns = letter in axis_names(options.axis_words)
             takes[code] = code == 800 or letter in meaning.letters or turns or letter in NORMAL_WORDS
@@ -123,10 +122,10 @@ def _used_by_motion(letter: str, modal: Modal, options: ReadOptions) -> Array:
     return modal.moves & map_rows(takes.__getitem__, modal.active[Group.MOTION])
 
 
-def _rows_that_use(letter: str, blocks: Blocks) -> Array:
+def _rows_that_use(letter: str, blocks: Blocks, flavour: Flavour) -> Array:
     """Rows with a non-motion code that uses a word; an unknown code may use any word."""
     rows = []
-    for _, codes, row, known in _codes(blocks):
+    for _, codes, row, known in _codes(blocks, flavour):
         users = [
             code
             for code in np.unique(codes).tolist()
@@ -155,8 +154,9 @@ def _spaced(words: Sequence[Word]) -> tuple[str | Word, ...]:
 
 
 def _missing_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
+    known = modal.flavour.g_codes
     for code in np.unique(blocks.g).tolist():
-        for letter in G_CODES[code].needs if code in G_CODES else "":
+        for letter in known[code].needs if code in known else "":
             missing = _marked(blocks, blocks.g_row[blocks.g == code]) & ~blocks.has(letter)
             faults.add_where("G405", missing, lambda _, c=code, w=letter: (word_of(c), f" without {w}"))  # type: ignore[misc]
     spindle = modal.programmed[Group.SPINDLE]
@@ -197,14 +197,16 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
         "G407", modal.moves & (motion == 800), lambda _: ("axis words while no motion is in force (", word_of(800), ")")
     )
     both = (modal.takes_axes != NONE) & (explicit != NONE) & (explicit != 800)
+    if modal.flavour.moves_beside_reference:
+        both &= ~(np.isin(modal.takes_axes, (280, 300)) & np.isin(explicit, (0, 10)))
     faults.add_where(
         "G407", both, lambda row: (word_of(modal.takes_axes[row]), " and ", word_of(explicit[row]), " in one block")
     )
-    takers = blocks.g_row[np.isin(blocks.g, [code for code, meaning in G_CODES.items() if meaning.takes_axes])]
+    takers = blocks.g_row[np.isin(blocks.g, modal.flavour.axis_takers())]
     for row in np.unique(takers[1:][takers[1:] == takers[:-1]]).tolist():
         faults.add("G407", row, _spaced([word_of(code) for code in blocks.g_of(row).tolist()]))
     directly = modal.programmed[Group.ONCE] == 530
-    wrong = directly & (motion != 0) & (motion != 10)
+    wrong = directly & (motion != 0) & (motion != 10) & (not modal.flavour.g53_is_rapid)
     faults.add_where("G407", wrong, lambda row: (word_of(530), " while ", word_of(motion[row]), " is in force"))
     inverse = modal.moves & is_cycle(motion) & (modal.active[Group.FEED_MODE] == 930)
     faults.add_where(

@@ -60,6 +60,8 @@ class Code:
 _DRILL = "XYZRLK"
 WORK_OFFSETS = (540, 550, 560, 570, 580, 590, 591, 592, 593)
 """In order of the P word of G10."""
+FURTHER_OFFSET, MOST_FURTHER_OFFSETS = -1000, 300
+"""G54.1 P1 has the code below the first number; how many there are."""
 
 G_CODES: dict[int, Code] = {
     0: Code(Group.MOTION, "XYZ"),
@@ -171,6 +173,8 @@ class Word(NamedTuple):
 
 def word_of(code: int, letter: str = "G") -> Word:
     """The word of a code: G43.4 for 434, M6 for 6."""
+    if code < NONE:
+        return Word(f"G54.1 P{FURTHER_OFFSET - code}")
     return Word(letter, code / 10 if letter == "G" else code)
 
 

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Drilling cycles: G73, G81, G82, G83, G85, G86 and G89, in any plane, as defined by RS274NGC.
+"""Drilling cycles: G73, G81, G82, G83, G85, G86 and G89, in any plane.
 
 Enters: cycle blocks and the tool position, in mm and program coordinates. Leaves: rapid and linear moves, with the
 events between them. R, Q, P and the depth are modal as long as the cycle is active, the initial level until another
 motion intervenes. L, or K on Fanuc, repeats the hole, with G91 at the same increment each time [LinuxCNC; Fanuc, canned
-cycles].
+cycles]. The flavour says where controls differ.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -20,6 +20,7 @@ from pkm_post.model import Array, EventKind, Kind
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
+from pkm_post.reading.gcode.flavours import RS274, Flavour
 from pkm_post.reading.gcode.frames import PLANES, Frame
 from pkm_post.reading.gcode.modal import Modal, PositionWords, is_cycle
 
@@ -28,8 +29,6 @@ PECK_CLEARANCE = 0.254
 MOST_STROKES = 10_000
 """A block with more pecks or holes than this is taken for a programming error."""
 
-DWELLS = (820, 860, 890)
-"""Cycles that dwell at the bottom."""
 _PECKS = (730, 830)
 _STOPS_SPINDLE = 860
 _REPEATS = "LK"
@@ -90,7 +89,9 @@ class CycleSeries:
     initial: float
 
     @classmethod
-    def after(cls, before: CycleSeries | None, code: int, height: float, words: Words) -> CycleSeries:
+    def after(
+        cls, before: CycleSeries | None, code: int, height: float, words: Words, flavour: Flavour = RS274
+    ) -> CycleSeries:
         """Extend the series by one cycle.
 
         Args:
@@ -98,10 +99,12 @@ class CycleSeries:
             code: code of the cycle.
             height: of the tool.
             words: R, depth, Q and P of its block, NaN where absent.
+            flavour: whose cycles they are.
         """
         if before is None:
             return cls(Cycle(code).with_words(*words), height)
-        same = before.cycle if before.cycle.code == code else Cycle(code)
+        holds = flavour.keeps_cycle_words or before.cycle.code == code
+        same = replace(before.cycle, code=code) if holds else Cycle(code)
         return cls(same.with_words(*words), before.initial)
 
     def hole(self, relative: bool, returns: bool) -> Hole:
@@ -139,10 +142,13 @@ class Strokes:
         self.events.append((len(self.ends), kind, value))
 
 
-def cycle_fault(cycle: Cycle, hole: Hole, repeats: float, spindle: float) -> tuple[str, tuple[str | Word, ...]] | None:
+def cycle_fault(
+    cycle: Cycle, hole: Hole, repeats: float, spindle: float, flavour: Flavour = RS274
+) -> tuple[str, tuple[str | Word, ...]] | None:
     """The fault that prevents a cycle from being executed: code and what was found."""
     name = word_of(cycle.code)
-    for letter, value, codes in (("Q", cycle.peck, _PECKS), ("P", cycle.dwell, DWELLS)):
+    dwells = flavour.cycle_dwells if flavour.needs_dwell else ()
+    for letter, value, codes in (("Q", cycle.peck, _PECKS), ("P", cycle.dwell, dwells)):
         if cycle.code in codes and math.isnan(value):
             return "G405", (name, f" without {letter}")
     if math.isnan(hole.top):
@@ -165,7 +171,13 @@ def cycle_fault(cycle: Cycle, hole: Hole, repeats: float, spindle: float) -> tup
 
 
 def cycle_strokes(
-    cycle: Cycle, hole: Hole, centres: Array, axes: tuple[int, int, int], here: Array, spindle: float
+    cycle: Cycle,
+    hole: Hole,
+    centres: Array,
+    axes: tuple[int, int, int],
+    here: Array,
+    spindle: float,
+    flavour: Flavour = RS274,
 ) -> Strokes:
     """The moves of a cycle: retract if the tool is too low, traverse, descend to R, and drill the hole.
 
@@ -176,6 +188,7 @@ def cycle_strokes(
         axes: first, second and normal coordinate of the plane.
         here: (3,) tool position.
         spindle: signed spindle speed, 1/min.
+        flavour: whose cycle it is.
     """
     strokes = Strokes(here)
     normal = axes[2]
@@ -185,7 +198,7 @@ def cycle_strokes(
         strokes.move(Kind.RAPID, axes[:2], centre)
         strokes.move(Kind.RAPID, normal, hole.top)
         _drill_down(cycle, hole, normal, strokes)
-        _retract(cycle, hole, normal, strokes, spindle)
+        _retract(cycle, hole, normal, strokes, spindle, flavour)
     return strokes
 
 
@@ -205,13 +218,13 @@ def _drill_down(cycle: Cycle, hole: Hole, normal: int, strokes: Strokes) -> None
     strokes.move(Kind.LINE, normal, hole.bottom)
 
 
-def _retract(cycle: Cycle, hole: Hole, normal: int, strokes: Strokes, spindle: float) -> None:
-    if cycle.code in DWELLS and cycle.dwell > 0:
+def _retract(cycle: Cycle, hole: Hole, normal: int, strokes: Strokes, spindle: float, flavour: Flavour) -> None:
+    if cycle.code in flavour.cycle_dwells and cycle.dwell > 0:
         strokes.add_event(EventKind.DWELL, cycle.dwell)
     if cycle.code == _STOPS_SPINDLE:
         strokes.add_event(EventKind.SPINDLE, 0.0)
     if cycle.code in (850, 890):
-        strokes.move(Kind.LINE, normal, hole.top if cycle.code == 850 else hole.clear)
+        strokes.move(Kind.LINE, normal, hole.top if cycle.code in flavour.feeds_to_r else hole.clear)
     strokes.move(Kind.RAPID, normal, hole.clear)
     if cycle.code == _STOPS_SPINDLE:
         strokes.add_event(EventKind.SPINDLE, spindle)
@@ -264,14 +277,27 @@ class CycleTracker:
         hole = series.hole(relative, returns)
         repeats, spindle = self._repeats(row), float(self._spindle[row])
         conflict = self._mode_conflict(row, series, relative or returns, frame)
-        fault = ("G426", conflict) if conflict else cycle_fault(series.cycle, hole, repeats, spindle)
+        if repeats == 0 and self._modal.flavour.stores_cycle:
+            return self._stored(row, position)
+        fault = cycle_fault(series.cycle, hole, repeats, spindle, self._modal.flavour)
+        if conflict:
+            fault = "G426", conflict
         if math.isnan(repeats):
             fault = "G418", (word_of(code), " with L and K")
         if fault:
             self._faults.add(fault[0], row, fault[1])
             return None
         centres = self._centres(row, position, axes, relative, int(repeats))
-        return cycle_strokes(series.cycle, hole, centres, axes, position, spindle)
+        return cycle_strokes(series.cycle, hole, centres, axes, position, spindle, self._modal.flavour)
+
+    def _stored(self, row: int, position: Array) -> Strokes | None:
+        """A cycle that only stores its words; whether it goes to a place of its own, controls do not agree."""
+        axes = PLANES[int(self._modal.active[Group.PLANE][row])]
+        if np.isnan(self._words.at(row)[list(axes[:2])]).all():
+            return Strokes(position)
+        name = word_of(int(self._modal.active[Group.MOTION][row]))
+        self._faults.add("G418", row, (name, " repeated 0 times at another place"))
+        return None
 
     def _extend_series(self, row: int, code: int, position: Array, frame: Frame) -> CycleSeries:
         """Extend the series by the cycle of this block."""
@@ -280,7 +306,7 @@ class CycleTracker:
         retract, peck = (scale * float(self._cycle_words[letter][row]) for letter in "RQ")
         words = (retract, float(self._words.columns[normal][row]), peck, float(self._dwells[row]))
         before = self._series if self._series_number[row] == self._series_number[self._row] else None
-        self._series = CycleSeries.after(before, code, float(position[normal]), words)
+        self._series = CycleSeries.after(before, code, float(position[normal]), words, self._modal.flavour)
         self._row = row
         if before is None:
             self._level, self._plane = frame.to_work(position), int(self._modal.active[Group.PLANE][row])

@@ -16,12 +16,12 @@ import numpy as np
 from pkm_post.model import Array, Event, EventKind, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import NONE, Group, Word
-from pkm_post.reading.gcode.cycles import DWELLS
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
 from pkm_post.reading.gcode.modal import Modal, changed
 from pkm_post.reading.gcode.options import DWELL_UNITS, ReadOptions
 
 _COOLANT = {7: 2.0, 8: 1.0, 9: 0.0}
+_DWELL = 40
 _STOPS = {0: 0.0, 1: 1.0, 60: 0.0}
 ENDS = (2, 30)
 
@@ -44,7 +44,7 @@ def events_of_blocks(blocks: Blocks, modal: Modal, tools: Array, spindle: Array,
     on_coolant = np.isin(blocks.m, list(_COOLANT))
     for row, code in zip(blocks.m_row[on_coolant].tolist(), blocks.m[on_coolant].tolist(), strict=True):
         events.append((row, -2, EventKind.COOLANT, _COOLANT[code]))
-    for row in blocks.g_row[blocks.g == 40].tolist():
+    for row in blocks.g_row[blocks.g == _DWELL].tolist():
         events.append((row, -1, EventKind.DWELL, float(dwells[row])))
     for row in np.flatnonzero(stops != NONE).tolist():
         if stops[row] in ENDS:
@@ -87,9 +87,20 @@ LONG_DWELL = 60.0
 _POINTED = re.compile(r"P[ \t]*\d*\.", re.IGNORECASE)
 
 
-def dwell_words(blocks: Blocks, options: ReadOptions) -> Array:
-    """P of each block in s, (N,), NaN where absent; meaningful only for dwells."""
-    return blocks.word("P") * DWELL_UNITS[options.dwell_unit]
+def dwell_words(blocks: Blocks, modal: Modal, options: ReadOptions) -> Array:
+    """P of each block in s, or X of G4, which is in s, (N,), NaN where absent; meaningful only for dwells."""
+    words = blocks.word("P") * DWELL_UNITS[dwell_unit(modal, options)]
+    rows = blocks.g_row[blocks.g == _DWELL]
+    in_seconds = rows[blocks.has("X")[rows] & ~blocks.has("P")[rows]]
+    if len(in_seconds) and "X" in modal.flavour.g_codes[_DWELL].letters:
+        words = words.copy()
+        words[in_seconds] = blocks.word("X")[in_seconds]
+    return words
+
+
+def dwell_unit(modal: Modal, options: ReadOptions) -> str:
+    """The unit of P: as chosen, or that of the flavour."""
+    return options.dwell_unit or modal.flavour.dwell_unit
 
 
 def check_dwells(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> None:
@@ -102,10 +113,11 @@ def check_dwells(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Blo
         faults: collects the faults; only in its source text is the point after an integer visible.
     """
     rows = _dwells(blocks, modal)
-    words = blocks.word("P")[rows]
-    for row, word in zip(rows[words * DWELL_UNITS[options.dwell_unit] > LONG_DWELL].tolist(), words, strict=False):
-        faults.add("G428", row, _both_ways(float(word), options.dwell_unit))
-    if options.dwell_unit == "ms" and len(rows):
+    words, unit = blocks.word("P")[rows], dwell_unit(modal, options)
+    long = words * DWELL_UNITS[unit] > LONG_DWELL
+    for row, word in zip(rows[long].tolist(), words[long].tolist(), strict=True):
+        faults.add("G428", row, _both_ways(word, unit))
+    if unit == "ms" and len(rows):
         for row, word in zip(rows.tolist(), words.tolist(), strict=True):
             if _POINTED.search(faults.source_line(row) or "") or word != round(word):
                 faults.add("G427", row, Word("P", word))
@@ -113,8 +125,8 @@ def check_dwells(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Blo
 
 def _dwells(blocks: Blocks, modal: Modal) -> Array:
     """Blocks whose P is a time; only the first execution of each."""
-    waits = modal.moves & map_rows(lambda codes: np.isin(codes, DWELLS), modal.active[Group.MOTION])
-    waits[blocks.g_row[blocks.g == 40]] = True
+    waits = modal.moves & map_rows(lambda codes: np.isin(codes, modal.flavour.cycle_dwells), modal.active[Group.MOTION])
+    waits[blocks.g_row[blocks.g == _DWELL]] = True
     rows = np.flatnonzero(waits & blocks.has("P"))
     return np.sort(rows[np.unique(blocks.line[rows], return_index=True)[1]])
 

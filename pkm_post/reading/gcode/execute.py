@@ -17,6 +17,7 @@ import numpy as np
 from pkm_post.model import Array, Diagnostic, Place
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
 from pkm_post.reading.gcode.blocks import Block, Blocks
+from pkm_post.reading.gcode.flavours import RS274, Flavour
 from pkm_post.reading.gcode.o_words import JumpTargets, link_o_words
 from pkm_post.reading.gcode.options import DEFAULT_LIMITS, ExecutionLimits
 from pkm_post.reading.gcode.parameters import ExecutionFault, Parameters, whole
@@ -25,17 +26,23 @@ from pkm_post.reading.gcode.statements import OWord, Statement, label_of_number,
 _PROGRAM_END = (2, 30)
 _CALL, _RETURN = 98, 99
 _SUBPROGRAM_CODES = (_CALL, _RETURN)
+_COUNTED = 10_000
+"""P of M98 from here on is the number of passes and the last four digits of the program [Fanuc]."""
 
 
 def execute(
-    blocks: Blocks, limits: ExecutionLimits = DEFAULT_LIMITS, block_delete: bool = False
+    blocks: Blocks,
+    limits: ExecutionLimits = DEFAULT_LIMITS,
+    block_delete: bool = False,
+    flavour: Flavour = RS274,
 ) -> tuple[Blocks | None, tuple[Diagnostic, ...]]:
     """Execute a program.
 
     Args:
         blocks: the scanned blocks; returned unchanged when there is nothing to execute.
         limits: bounds of the execution.
-        block_delete: whether to skip blocks that first_row with ``/``.
+        block_delete: whether to skip blocks that begin with ``/``.
+        flavour: whose subprogram calls they are.
 
     Returns:
         Plain blocks, or None if there are faults; and the faults: all those found before execution, or else the one
@@ -53,12 +60,17 @@ def execute(
     special[blocks.m_row[np.isin(blocks.m, (*_SUBPROGRAM_CODES, *_PROGRAM_END))]] = True
     special[list(statements)] = True
     executed = ExecutedBlocksBuilder(blocks)
-    interpreter = _Interpreter(blocks, statements, jumps, skipped, limits, executed)
+    interpreter = _Interpreter(blocks, statements, jumps, skipped, limits, executed, flavour)
     try:
         interpreter.run(np.flatnonzero(special).tolist())
     except ExecutionFault as fault:
         return None, _diagnostics(blocks, [(interpreter.row, fault)])
-    return executed.blocks(), ()
+    return _ended(executed.blocks(), interpreter), ()
+
+
+def _ended(blocks: Blocks, interpreter: _Interpreter) -> Blocks:
+    """The executed blocks; where M99 ends the main program, it has come to its end."""
+    return replace(blocks, closed=True, restarts=True) if interpreter.restarts else blocks
 
 
 def _statements(blocks: Blocks, skipped: Array) -> tuple[dict[int, Statement], list[tuple[int, ExecutionFault]]]:
@@ -113,6 +125,7 @@ class _Interpreter:
         skipped: (N,) mask of skipped blocks.
         limits: bounds of the execution.
         executed: collects the executed blocks.
+        flavour: whose subprogram calls they are.
     """
 
     def __init__(
@@ -123,10 +136,13 @@ class _Interpreter:
         skipped: Array,
         limits: ExecutionLimits,
         executed: ExecutedBlocksBuilder,
+        flavour: Flavour,
     ) -> None:
         self.row = 0
         self._blocks, self._statements, self._jumps, self._skipped = blocks, statements, jumps, skipped
-        self._limits, self._executed = limits, executed
+        self._limits, self._executed, self._flavour = limits, executed, flavour
+        self.restarts = False
+        """Whether M99 ended the main program."""
         self._blocks_left, self._operations_left = limits.blocks, limits.operations
         self._cost = {row: statement.cost for row, statement in statements.items()}
         self._parameters = Parameters()
@@ -211,6 +227,9 @@ class _Interpreter:
         if number is None or passes is None or number < 0 or passes < 0:
             words = "".join(f" {letter}{block.words[letter]:.10g}" for letter in "PL" if letter in block.words)
             raise ExecutionFault("G316", f"M98{words}")
+        counted = self._flavour.counts_in_p and number >= _COUNTED and str(number) not in self._jumps.programs
+        if counted and "L" not in block.words:
+            passes, number = divmod(number, _COUNTED)
         label = str(number)
         # M98 cannot call a sub/endsub subprogram: it passes no arguments.
         if label not in self._jumps.programs:
@@ -223,6 +242,9 @@ class _Interpreter:
 
     def _leave_program(self, block: Block) -> int:
         level = self._levels[-1]
+        if self._flavour.restarts and len(self._levels) == 1 and "P" not in block.words:
+            self.restarts = True
+            return len(self._blocks) + 1
         if not level.by_m98 or "P" in block.words:
             raise ExecutionFault("G312", "M99 P" if "P" in block.words else "M99 outside of a subprogram called by M98")
         self._parameters.leave(None)
@@ -245,6 +267,10 @@ class _Interpreter:
 
     def _next(self, row: int, _: OWord) -> int:
         return row + 1
+
+    def _program(self, row: int, _: OWord) -> int:
+        """A number alone: where it begins another program, the one before it has no further blocks."""
+        return len(self._blocks) if self._flavour.programs_apart and row > 0 else row + 1
 
     def _call(self, row: int, word: OWord) -> int:
         label = word.label
@@ -305,7 +331,7 @@ class _Interpreter:
 
 
 _STEPS: dict[str, Callable[[_Interpreter, int, OWord], int]] = {
-    "program": _Interpreter._next,
+    "program": _Interpreter._program,
     "sub": _Interpreter._after_other_end,
     "endsub": _Interpreter._return,
     "return": _Interpreter._return,

@@ -5,8 +5,8 @@ Enters: F by block, in the unit of its mode: units per minute (G94), units per r
 1/min (G93); and the path control codes. Leaves: speeds of the tool tip in mm/s, by motion; and by block whether the
 motion stops at its end (exact stop), whether corners are followed rather than rounded (exact path), and the permitted
 deviation of the tip from the path (G64 P), mm. A change of feed mode cancels F: the next cutting move needs a new one.
-LinuxCNC swaps G61 and G61.1; a program for its hexapod is read accordingly. Q of G64, which merges nearly collinear
-moves, is not needed: no moves are merged.
+Which of G61 and G61.1 is which depends on the flavour. Q of G64, which merges nearly collinear moves, is not needed: no
+moves are merged.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.model import Array, map_rows, uniform
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import G_CODES, Group, Word, word_of
+from pkm_post.reading.gcode.codes import Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
 from pkm_post.reading.gcode.modal import Modal, changed, forward_fill
 from pkm_post.reading.gcode.motions import Motions
@@ -78,31 +78,26 @@ def _feed_fault(row: int, mode: Array, value: Array, spindle: Array, path_length
 
 
 _TOLERANCE = 640
-_TAKES_P = [code for code, meaning in G_CODES.items() if "P" in meaning.letters and code != _TOLERANCE]
+_EXACT_STOP_ONCE = 90
 
 
-def exact_codes(axis_words: str) -> tuple[int, int]:
-    """The codes of exact stop and of exact path, in tenths.
-
-    Args:
-        axis_words: tool axis notation; "RPY" is specific to LinuxCNC.
-    """
-    return (611, 610) if axis_words == "RPY" else (610, 611)
-
-
-def path_modes(blocks: Blocks, modal: Modal, axis_words: str, faults: BlockDiagnostics) -> dict[str, Array]:
+def path_modes(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> dict[str, Array]:
     """The columns ``exact_stop``, ``exact_path`` and ``tip_tolerance`` of a program, by block, (N,) each.
 
     Args:
         blocks: the program.
         modal: its modal codes.
-        axis_words: tool axis notation.
         faults: collects rejected tolerances.
     """
-    stop, path = exact_codes(axis_words)
+    stop, path = modal.flavour.exact_stop, modal.flavour.exact_path
     in_force = modal.active[Group.PATH]
+    rests: Array = map_rows(lambda codes: codes == stop, in_force)
+    once = blocks.g_row[blocks.g == _EXACT_STOP_ONCE]
+    if len(once):
+        rests = rests.copy()
+        rests[once] = True
     return {
-        "exact_stop": map_rows(lambda codes: codes == stop, in_force),
+        "exact_stop": rests,
         "exact_path": map_rows(lambda codes: codes == path, in_force),
         "tip_tolerance": _tolerances(blocks, modal, faults),
     }
@@ -123,6 +118,8 @@ def _tolerances(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> Array
 
 def _p_of_another_code(blocks: Blocks, modal: Modal) -> Array:
     """Whether another code of each block uses its P: a dwell, a cycle, the rotates of an arc, (N,)."""
-    elsewhere: Array = modal.moves & np.isin(modal.active[Group.MOTION], _TAKES_P)
-    elsewhere[blocks.g_row[np.isin(blocks.g, _TAKES_P)]] = True
+    codes = modal.flavour.g_codes.items()
+    takes_p = [code for code, meaning in codes if "P" in meaning.letters and code != _TOLERANCE]
+    elsewhere: Array = modal.moves & np.isin(modal.active[Group.MOTION], takes_p)
+    elsewhere[blocks.g_row[np.isin(blocks.g, takes_p)]] = True
     return elsewhere

@@ -15,7 +15,8 @@ import numpy as np
 
 from pkm_post.model import Array, is_uniform, map_rows, uniform
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import ARCS, CYCLES, G_CODES, M_CODES, NONE, Group
+from pkm_post.reading.gcode.codes import ARCS, CYCLES, NONE, Group
+from pkm_post.reading.gcode.flavours import RS274, Flavour
 
 _DEFAULTS: dict[Group, int] = {
     Group.MOTION: 800,
@@ -69,6 +70,7 @@ class Modal:
         scale: (N,) mm per length unit.
         moves: (N,) whether the block moves the tool by the active motion code.
         takes_axes: (N,) the non-motion G code that consumes the axis words, ``NONE`` where absent.
+        flavour: what the codes mean.
     """
 
     programmed: dict[Group, Array]
@@ -76,32 +78,34 @@ class Modal:
     scale: Array
     moves: Array
     takes_axes: Array
+    flavour: Flavour
 
     def in_mm(self, words: Array) -> Array:
         """Convert (N,) lengths as written to mm."""
         return words if is_uniform(self.scale) and (self.scale[:1] == 1).all() else words * self.scale
 
 
-def modal_state(blocks: Blocks, unit: float, axis_words: Iterable[str]) -> Modal:
+def modal_state(blocks: Blocks, unit: float, axis_words: Iterable[str], flavour: Flavour = RS274) -> Modal:
     """The active codes of every block.
 
     Args:
         blocks: plain blocks; codes missing from the tables are ignored.
         unit: mm per length unit before G20 or G21.
         axis_words: words that move the tool axis.
+        flavour: what the codes mean.
     """
     count = len(blocks)
-    by_group = _by_group(blocks)
+    by_group = _by_group(blocks, flavour)
     active = {
         group: forward_fill(*by_group.get(group, _NOTHING), default, count) for group, default in _DEFAULTS.items()
     }  # fmt: skip
     rows, units = by_group.get(Group.UNIT, _NOTHING)
     scale = forward_fill(rows, np.where(units == 200, 25.4, 1.0), unit, count)
     programmed = {group: _scattered(*by_group.get(group, _NOTHING), count) for group in Group}
-    takes = np.isin(blocks.g, [code for code, meaning in G_CODES.items() if meaning.takes_axes])
+    takes = np.isin(blocks.g, flavour.axis_takers())
     takes_axes = _scattered(blocks.g_row[takes], blocks.g[takes].astype(_CODE), count)
     moves = _moves(blocks, programmed, active, axis_words) & (takes_axes == NONE)
-    return Modal(programmed, active, scale, moves, takes_axes)
+    return Modal(programmed, active, scale, moves, takes_axes, flavour)
 
 
 _CODE = np.int16
@@ -109,10 +113,13 @@ _CODE = np.int16
 _NOTHING = (np.empty(0, np.int32), np.empty(0, _CODE))
 
 
-def _by_group(blocks: Blocks) -> dict[Group, tuple[Array, Array]]:
+def _by_group(blocks: Blocks, flavour: Flavour) -> dict[Group, tuple[Array, Array]]:
     """Rows and codes by group."""
     by_group: dict[Group, tuple[Array, Array]] = {}
-    for codes, rows, table in ((blocks.g, blocks.g_row, G_CODES), (blocks.m, blocks.m_row, M_CODES)):
+    for codes, rows, table in (
+        (blocks.g, blocks.g_row, flavour.g_codes),
+        (blocks.m, blocks.m_row, flavour.m_codes),
+    ):
         used = {table[code].group for code in np.unique(codes).tolist() if code in table}
         for group in used:
             of_group = np.isin(codes, [code for code, meaning in table.items() if meaning.group is group])

@@ -137,6 +137,8 @@ def _joined(columns: list[Array]) -> Array:
     return columns[0] if len(columns) == 1 else np.concatenate(columns)
 
 
+_SECOND = 2
+"""P of G30 for the second reference point; those beyond are not known."""
 _SPECIAL_CODES = (280, 281, 300, 301, 530, *SETS_OFFSETS)
 
 
@@ -159,10 +161,12 @@ class PositionTracker:
         self.relative = modal.active[Group.DISTANCE] == 910
         self.offset_codes = OffsetCodes(blocks, modal, self.words, tools, options, faults)
         self.drilling = CycleTracker(blocks, modal, self.words, spindle, dwells, faults)
-        self.home = {280: options.home, 300: options.second_home}
+        zero = options.machine_zero
+        self.home = {280: options.home or zero, 300: options.second_home or zero}
         self.in_cycles: list[CycleEvent] = []
         self._sections: list[Section] = []
         self._rows = 0
+        self._uses_work_offset = False
         self.frame = self.offset_codes.offsets.frame()
         self.frames = [self.frame]
         start = options.start
@@ -203,6 +207,7 @@ class PositionTracker:
         """Add the motions of ordinary blocks, all in one frame."""
         if not len(rows):
             return
+        self._uses_work_offset = True
         index = as_slice(rows)
         ends, known_from = np.empty((len(rows), 3)), np.zeros(3, np.int64)
         for axis, column in enumerate(self.words.columns):
@@ -228,7 +233,7 @@ class PositionTracker:
             point = self.frame.to_work(self.position)
             for groups in (IN_ORDER, (Group.ONCE,)):
                 for group in groups:
-                    self.offset_codes.execute(row, group, self.position, self.known, bool(self._rows))
+                    self.offset_codes.execute(row, group, self.position, self.known, self._uses_work_offset)
                 self._rebase(point)
 
     def _rebase(self, point: Array) -> None:
@@ -271,7 +276,14 @@ class PositionTracker:
             self._add(rows, np.array(motions, np.int16), np.array(points), unknown, known)
 
     def _machine_move(self, row: int) -> None:
-        """G53: words in machine coordinates, those of the spindle nose while a length offset is in force."""
+        """G53: words in machine coordinates, those of the spindle nose while a length offset is in force.
+
+        With ``machine_zero`` they are those of the tip, whatever the tool.
+        """
+        motion = 0 if self.modal.flavour.g53_is_rapid else int(self.modal.active[Group.MOTION][row])
+        if self.options.machine_zero is not None:
+            self._move_to(row, motion, self.words.at(row) + np.array(self.options.machine_zero))
+            return
         if not self.options.work_offsets:
             self.faults.add("G412", row, ("machine coordinates (", word_of(530), ")"))
         offsets = self.offset_codes.offsets
@@ -279,7 +291,7 @@ class PositionTracker:
             self.faults.add("G412", row, ("machine coordinates (", word_of(530), ") while the tool axis can tilt"))
         own = 0.0 if offsets.length is None else offsets.own_length
         words = self.words.at(row) - np.array([0.0, 0.0, own])
-        self._move_to(row, int(self.modal.active[Group.MOTION][row]), words)
+        self._move_to(row, motion, words)
 
     def _move_to(self, row: int, motion: int, words: Array) -> None:
         """Move to coordinates in {C}; NaN leaves a coordinate unchanged."""
@@ -294,12 +306,14 @@ class PositionTracker:
     def _home(self, row: int, code: int) -> None:
         """G28, G30: move via the programmed point, if any, to the reference point, in the programmed axes."""
         home = self.home[code]
-        if home is None:
+        number = self.blocks.word("P")[row]
+        if home is None or number > _SECOND:
             self.faults.add("G413", row, word_of(code))
             return
         words = self.words.at(row)
         given = ~np.isnan(words)
         if given.any():
+            self._uses_work_offset |= not self.relative[row]
             from_here = words + self.position if self.relative[row] else words
             known = self.known if self.relative[row] else self.known | given
             self._add_moves(row, [0], [np.where(given, from_here, self.position)], known)
@@ -309,5 +323,6 @@ class PositionTracker:
         strokes = self.drilling.strokes(row, self.position, self.known, self.frame)
         if strokes is None:
             return
+        self._uses_work_offset = True
         self.in_cycles += [(self._rows + index, row, kind, value) for index, kind, value in strokes.events]
         self._add_moves(row, [int(kind) * 10 for kind in strokes.kinds], strokes.ends, np.ones(3, dtype=np.bool_))

@@ -36,6 +36,9 @@ UNITS: dict[str, float] = {"mm": 1.0, "inch": 25.4}
 DWELL_UNITS: dict[str, float] = {"s": 1.0, "ms": 0.001}
 """s per dwell unit."""
 
+FLAVOUR_NAMES = ("rs274", "fanuc")
+"""Keys of ``flavours.FLAVOURS``."""
+
 
 @dataclass(frozen=True)
 class ReadOptions:
@@ -49,12 +52,16 @@ class ReadOptions:
             G43.4, "RPY" those of LinuxCNC's hexapod: k = Rz(C) Ry(B) Rx(A) e_z.
         work_offsets: by name, "G54" to "G59.3", origin in mm and angle about Z in degrees, in {C}. If empty, {C} is the
             frame of the only work offset that the program uses.
-        home: target of G28, in {C}, mm.
+        machine_zero: tool tip position in {C}, mm, where X, Y and Z of G53 are zero: with ``work_offsets`` {C}'s own
+            zero.
+        home: target of G28, in {C}, mm; ``machine_zero`` if None.
         second_home: target of G30, likewise.
         start: initial tool tip position in {C}; without it motion starts once X, Y and Z are programmed.
         block_delete: whether to skip blocks that begin with ``/``.
         unit: length unit before G20 or G21, a key of ``UNITS``.
-        dwell_unit: unit of P of G4 and of cycles, a key of ``DWELL_UNITS``.
+        flavour: whose G-code it is, one of ``FLAVOUR_NAMES``; guessed from the program if None.
+        dwell_unit: unit of P of G4 and of cycles, a key of ``DWELL_UNITS``; that of the flavour if None.
+        left_out: codes, such as "M21", that are left out where the reader does not understand them.
         needs_end: whether the text is a complete program, which must end with M2, M30 or a percent sign; an MDI line is
             not.
     """
@@ -63,18 +70,27 @@ class ReadOptions:
     default_tool: Tool | None = None
     axis_words: str = "none"
     work_offsets: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
+    machine_zero: Point | None = None
     home: Point | None = None
     second_home: Point | None = None
     start: Point | None = None
     block_delete: bool = False
     unit: str = "mm"
-    dwell_unit: str = "s"
+    flavour: str | None = None
+    dwell_unit: str | None = None
+    left_out: tuple[str, ...] = ()
     needs_end: bool = False
 
     def __post_init__(self) -> None:
-        for name, allowed in (("axis_words", AXIS_WORDS), ("unit", UNITS), ("dwell_unit", DWELL_UNITS)):
+        for name, allowed in (
+            ("axis_words", (*AXIS_WORDS,)),
+            ("unit", (*UNITS,)),
+            ("flavour", (*FLAVOUR_NAMES, None)),
+            ("dwell_unit", (*DWELL_UNITS, None)),
+        ):
             if getattr(self, name) not in allowed:
-                raise ValueError(f"{name}: expected one of {', '.join(allowed)}, got {getattr(self, name)!r}")
+                expected = ", ".join(each for each in allowed if each)
+                raise ValueError(f"{name}: expected one of {expected}, got {getattr(self, name)!r}")
 
     def tool(self, number: int) -> Tool | None:
         """The tool with that number, or the default tool."""

@@ -7,11 +7,18 @@ step that fails: a block that cannot be parsed cannot be processed further.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from pkm_post.model import Diagnostic, Program
+from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.execute import execute
+from pkm_post.reading.gcode.flavours import FLAVOURS, Flavour
+from pkm_post.reading.gcode.guess import guessed_flavour
 from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, ExecutionLimits, ReadOptions
 from pkm_post.reading.gcode.resolve import resolve
 from pkm_post.reading.gcode.scan import scan
+
+_RESTARTS = ("M99 ends the main program, which a control would begin again: it is carried out once",)
 
 
 def read(
@@ -37,8 +44,20 @@ def read(
     scanned, syntax = scan(text, file)
     if scanned is None:
         return None, syntax
-    executed, execution = execute(scanned, limits, options.block_delete)
+    flavour, why = _flavour(scanned, options)
+    executed, execution = execute(scanned, limits, options.block_delete, flavour)
     if executed is None:
         return None, syntax + execution
-    program, meaning = resolve(executed, options, text)
-    return program, syntax + execution + meaning
+    program, meaning = resolve(executed, replace(options, flavour=flavour.name), text)
+    diagnostics = syntax + execution + meaning
+    if program is None:
+        return None, diagnostics
+    return replace(program, reading=(why, *program.reading, *_RESTARTS[: executed.restarts])), diagnostics
+
+
+def _flavour(blocks: Blocks, options: ReadOptions) -> tuple[Flavour, str]:
+    """The flavour as chosen or guessed, and why, for the report."""
+    if options.flavour is not None:
+        return FLAVOURS[options.flavour], f"flavour {options.flavour}, as chosen"
+    guess = guessed_flavour(blocks)
+    return guess.flavour, str(guess)

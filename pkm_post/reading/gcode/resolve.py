@@ -14,13 +14,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.model import Array, Diagnostic, Kind, Program, Tool, is_uniform, map_rows, read_only, uniform
+from pkm_post.reading.gcode.adapt import adapted
 from pkm_post.reading.gcode.arcs import arc_geometry, path_lengths, split_turns, with_known_ends
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.checks import check
-from pkm_post.reading.gcode.codes import ARCS, CANCEL_CYCLE, NONE, Group
+from pkm_post.reading.gcode.codes import NONE, Group
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.events import ENDS, check_dwells, dwell_words, events_of_blocks, ordered_events
 from pkm_post.reading.gcode.feeds import INVERSE_TIME, feeds, path_modes
+from pkm_post.reading.gcode.flavours import FLAVOURS, RS274
 from pkm_post.reading.gcode.frames import RowFrames, normal_coordinate
 from pkm_post.reading.gcode.modal import Modal, modal_state
 from pkm_post.reading.gcode.motions import Motions, PositionTracker
@@ -44,6 +46,8 @@ def resolve(
         options: read options.
         text: the source text, if available: for the columns of diagnostics, and for the points of integers.
 
+    Without a flavour among the options the blocks are RS274NGC.
+
     Returns:
         The program, or None if there are errors; and the diagnostics in line order.
 
@@ -52,16 +56,19 @@ def resolve(
     """
     if blocks.special:
         raise ValueError(f"expected plain blocks, got {len(blocks.special)} that have to be executed first")
+    flavour = FLAVOURS[options.flavour or RS274.name]
     blocks, ended = _up_to_end(blocks, options)
-    blocks = _without_redundant_g80(blocks)
+    blocks, notes = adapted(blocks, flavour, options.left_out)
     faults = BlockDiagnostics(blocks, text)
-    modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words))
+    modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), flavour)
     check(blocks, modal, options, faults)
     check_dwells(blocks, modal, options, faults)
     program = None if faults.has_errors() else _program(blocks, modal, options, faults)
     if options.needs_end and not ended:
         faults.add("G430", len(blocks) - 1, "no M2, M30 or % after it")
-    return None if faults.has_errors() else program, faults.in_order()
+    if program is None or faults.has_errors():
+        return None, faults.in_order()
+    return replace(program, reading=notes), faults.in_order()
 
 
 def _up_to_end(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:
@@ -74,15 +81,6 @@ def _up_to_end(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:
     if options.block_delete and blocks.deleted.any():
         blocks = blocks.selected(np.flatnonzero(~blocks.deleted))
     return blocks, blocks.closed or bool(len(ends))
-
-
-def _without_redundant_g80(blocks: Blocks) -> Blocks:
-    """Drop G80 next to G0, G1, G2 or G3, which cancel a cycle themselves, as in ``G0 G80 G90`` [LinuxCNC]."""
-    ends = np.flatnonzero(blocks.g == CANCEL_CYCLE)
-    if not len(ends):
-        return blocks
-    redundant = ends[np.isin(blocks.g_row[ends], blocks.g_row[np.isin(blocks.g, (0, 10, *ARCS))])]
-    return replace(blocks, g=np.delete(blocks.g, redundant), g_row=np.delete(blocks.g_row, redundant))
 
 
 @dataclass(frozen=True)
@@ -122,8 +120,8 @@ def _block_states(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
 
 def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> Program | None:
     states = _block_states(blocks, modal, options, faults)
-    modes = path_modes(blocks, modal, options.axis_words, faults)
-    dwells = dwell_words(blocks, options)
+    modes = path_modes(blocks, modal, faults)
+    dwells = dwell_words(blocks, modal, options)
     tracker = PositionTracker(blocks, modal, states.tools, states.spindle, dwells, options, faults)
     motions = tracker.motions()
     centre, axis = arc_geometry(blocks, modal, motions, faults)

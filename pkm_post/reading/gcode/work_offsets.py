@@ -152,7 +152,7 @@ class OffsetCodes:
             group: one of ``IN_ORDER``, or ``Group.ONCE``.
             position: (3,) tool position.
             known: (3,) which coordinates are known.
-            moved: whether a motion has occurred.
+            moved: whether a motion in work coordinates has occurred.
         """
         code = int(self._modal.programmed[group][row])
         if group is Group.ONCE and code in SETS_OFFSETS:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.model import Array, EventKind, Kind, Program
+from pkm_post.reading import FLAVOURS
 from pkm_post.writing.gcode.arcs import WrittenArcs
 from pkm_post.writing.gcode.tool_axes import AxisWords
 
@@ -157,7 +158,7 @@ def _centres(arcs: WrittenArcs, numbers: Numbers, count: int) -> list[Word]:
 
 _FINER = 2
 """Extra decimals of a tolerance: it may be smaller than the resolution of coordinates."""
-_BLEND = 1
+_BLEND, _REST, _EXACT_PATH = 1, 2, 3
 """Index in ``TEXTS`` of G64, which is active at program start."""
 
 
@@ -185,8 +186,10 @@ class Codes:
     ORDER = ("path", "plane", "side", "motion")
 
 
+WRITTEN = FLAVOURS["rs274"]
+"""What the codes of all forms mean."""
 TEXTS: dict[str, tuple[str, ...]] = {
-    "path": ("", "G64", "G61", "G61.1"),
+    "path": ("", "G64", *(f"G{code / 10:g}" for code in (WRITTEN.exact_stop, WRITTEN.exact_path))),
     "plane": ("", "G19", "G18", "G17"),
     # LinuxCNC refuses to start compensation while it is already active.
     "side": ("", "G40", "G41.1", "G42.1", "G40\nG41.1", "G40\nG42.1"),
@@ -198,14 +201,13 @@ _XY = 2
 """The active plane at program start, by its normal."""
 
 
-def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers, exact: tuple[int, int]) -> Codes:
+def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers) -> Codes:
     """The codes of all rows; ``words_of`` returns the words.
 
     Args:
         program: a program whose arcs can all be expressed.
         arcs: its written arcs.
         numbers: number format.
-        exact: the codes of exact stop and exact path, in tenths.
     """
     always, restart = np.ones(len(program), dtype=np.bool_), tool_changes(program)
     diameter = round_columns(2 * program.side_offset / numbers.scale, numbers.decimals)
@@ -222,7 +224,7 @@ def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers, exact: tuple
 
     motion = np.where(cutting(program), 2, 1)
     motion[arcs.row] = np.where(arcs.clockwise, 3, 4)
-    path, tolerance = _path(program, numbers, exact)
+    path, tolerance = _path(program, numbers)
     return Codes(
         path=path,
         plane=np.where(new_plane, 1 + plane, 0),
@@ -233,10 +235,9 @@ def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers, exact: tuple
     )
 
 
-def _path(program: Program, numbers: Numbers, exact: tuple[int, int]) -> tuple[Array, Word]:
+def _path(program: Program, numbers: Numbers) -> tuple[Array, Word]:
     """The path mode code as index into ``TEXTS``, and its P; both are written where either changes."""
-    stop, path = (TEXTS["path"].index(f"G{code / 10:g}") for code in exact)
-    code = np.select([program.exact_stop, program.exact_path], [stop, path], _BLEND)
+    code = np.select([program.exact_stop, program.exact_path], [_REST, _EXACT_PATH], _BLEND)
     decimals = numbers.decimals + _FINER
     least = np.where((code == _BLEND) & (program.tip_tolerance > 0), 10.0**-decimals, 0.0)
     value = np.where(least > 0, np.maximum(round_columns(program.tip_tolerance / numbers.scale, decimals), least), 0.0)

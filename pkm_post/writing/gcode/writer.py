@@ -14,7 +14,6 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 
 from pkm_post.model import Array, Diagnostic, EventKind, Place, Program
-from pkm_post.reading import exact_codes
 from pkm_post.toolpath import CHORD_ERROR, with_chords
 from pkm_post.writing.gcode.arcs import WrittenArcs, written_arcs
 from pkm_post.writing.gcode.tool_axes import (
@@ -203,7 +202,7 @@ def write(
         arcs = written_arcs(program, numbers.unit, axis_may_change)
     diagnostics += _deviation_warnings(program, dialect)
     between = between_blocks(program, dialect)
-    codes = codes_of(program, arcs, numbers, exact_codes("RPY" if dialect is GcodeDialect.LINUXCNC else ""))
+    codes = codes_of(program, arcs, numbers)
     blocks = block_texts(words_of(program, NOTATIONS[dialect], arcs, numbers), codes, between)
     end = between.get(len(program), "")
     return "".join([heading(program, dialect, inch), *blocks, end, "M2\n"]), diagnostics

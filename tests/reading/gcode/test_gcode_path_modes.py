@@ -22,17 +22,18 @@ def taken(text, **options):
 
 
 def test_exact_stop_exact_path_and_tolerance_hold_until_another_one():
-    program, codes = taken("G61 G1 X1 F60\nX2\nG61.1 X3\nG64 P0.05\nX4\nX5\nG64 X6\n")
+    program, codes = taken("G61.1 G1 X1 F60\nX2\nG61 X3\nG64 P0.05\nX4\nX5\nG64 X6\n")
     assert codes == []
     assert program.exact_stop.tolist() == [False, True, True, False, False, False, False]
     assert program.exact_path.tolist() == [False, False, False, True, False, False, False]
     assert program.tip_tolerance.tolist() == [0, 0, 0, 0, 0.05, 0.05, 0]
 
 
-def test_linuxcnc_has_exact_stop_and_exact_path_the_other_way_round():
-    program, _ = taken("G61 G1 X1 F60\nG61.1 X2\n", axis_words="RPY")
-    assert program.exact_path.tolist() == [False, True, False]
-    assert program.exact_stop.tolist() == [False, False, True]
+def test_fanuc_stops_with_g61_and_for_one_block_with_g9_and_smooths_with_g61_1():
+    program, _ = taken("G61 G1 X1 F60\nG61.1 X2\nG64 X3\nG9 X4\nX5\n", flavour="fanuc")
+    assert not program.exact_path.any()
+    assert program.exact_stop.tolist() == [False, True, True, False, True, False]
+    assert [line.split()[0] for line in program.reading[1:]] == ["G61.1"]
 
 
 def test_the_tolerance_has_the_unit_that_holds_where_it_is_said():
@@ -58,16 +59,14 @@ def test_q_alone_is_no_tolerance():
     assert not program.tip_tolerance.any()
 
 
-@pytest.mark.parametrize(
-    ("form", "stop", "path"), [(GcodeDialect.VECTOR, "G61", "G61.1"), (GcodeDialect.LINUXCNC, "G61.1", "G61")]
-)
-def test_written_as_the_form_means_it(form, stop, path):
+@pytest.mark.parametrize("form", GcodeDialect)
+def test_written_as_rs274_means_it(form):
     given = square_with_arc()
     rows = np.arange(len(given))
     given = replace(given, exact_stop=rows == 1, exact_path=rows == 2, tip_tolerance=np.where(rows >= 3, 0.05, 0.0))
     text, _ = write(given, form)
     lines = [line for line in text.splitlines() if line.startswith("G6")]
-    assert [line.split()[0] for line in lines] == [stop, path, "G64"]
+    assert [line.split()[0] for line in lines] == ["G61.1", "G61", "G64"]
     assert lines[-1] == "G64 P0.050000"
 
 

@@ -170,7 +170,7 @@ def test_feeds_of_all_modes():
 
 
 def test_exact_stop_is_marked():
-    assert read("G0 X0 Y0 Z0\nG61 G1 X1 F60\nG64 X2\n").exact_stop.tolist() == [False, True, False]
+    assert read("G0 X0 Y0 Z0\nG61.1 G1 X1 F60\nG64 X2\n").exact_stop.tolist() == [False, True, False]
 
 
 def test_deleted_blocks_are_left_out_when_asked():

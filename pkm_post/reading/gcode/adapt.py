@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Adapt: blocks of a flavour to blocks that mean the same in RS274NGC, before they are resolved.
+
+Enters: plain blocks. Leaves: as many blocks, with other codes: G80 as the motion that is in force after it, codes
+without an effect here and codes that the user leaves out gone together with their words; and what was left out, as
+text for the report. A program in which nothing of this occurs comes out as it went in, without a copy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from pkm_post.model import Array
+from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.codes import (
+    ARCS,
+    CANCEL_CYCLE,
+    FURTHER_OFFSET,
+    MOST_FURTHER_OFFSETS,
+    SPINDLE_SYNCHRONISED,
+    name_of,
+)
+from pkm_post.reading.gcode.flavours import Flavour
+
+_NEVER_DROPPED = frozenset("FSTXYZABCIJK")
+"""Words that mean something without a code of their own block."""
+_LINES_SHOWN = 3
+_HERE = ": here the tolerances of planning decide"
+_OF_GROUP_1 = (0, 10, *ARCS)
+
+
+def adapted(blocks: Blocks, flavour: Flavour, left_out: Collection[str]) -> tuple[Blocks, tuple[str, ...]]:
+    """Adapt plain blocks.
+
+    Args:
+        blocks: with codes as written.
+        flavour: whose meaning they have.
+        left_out: codes, such as "M21", that the user wants to be left out.
+
+    Returns:
+        The adapted blocks, and what was left out, as lines of text.
+    """
+    blocks = _with_equivalents(blocks, flavour)
+    g, m = _left_out(blocks, flavour, left_out)
+    requests = np.isin(blocks.g, [*flavour.requests])
+    notes = [
+        *_notes(blocks, "G", g, lambda _: ", left out as chosen"),
+        *_notes(blocks, "M", m, lambda _: ", left out as chosen"),
+        *_notes(blocks, "G", requests, lambda code: f" asks for {flavour.requests[code]}{_HERE}"),
+    ]
+    g |= requests | np.isin(blocks.g, [*flavour.without_motion])
+    m |= np.isin(blocks.m, [*flavour.silent_m])
+    blocks = _without(blocks, g, m, flavour)
+    blocks = without_idle_g80(_with_further_offsets(blocks))
+    return _with_restored_motions(blocks) if flavour.g80_restores_motion else blocks, tuple(notes)
+
+
+def _left_out(blocks: Blocks, flavour: Flavour, names: Collection[str]) -> tuple[Array, Array]:
+    """Which G and M codes are left out as chosen: none that is understood, and no G code that may move the tool.
+
+    A G code may do so where its block has X, Y or Z, and where it is known and refused: then it says what the words of
+    other blocks mean, as G16 does.
+    """
+    g, m = (np.isin(codes, _named(codes, names, letter)) for letter, codes in (("G", blocks.g), ("M", blocks.m)))
+    refused = {*flavour.unsupported, *SPINDLE_SYNCHRONISED}
+    fixed = [code for code in np.unique(blocks.g[g]).tolist() if code in flavour.g_codes or name_of(code) in refused]
+    moves = blocks.has("X") | blocks.has("Y") | blocks.has("Z")
+    return g & ~np.isin(blocks.g, fixed) & ~moves[blocks.g_row], m & ~np.isin(blocks.m, [*flavour.m_codes])
+
+
+def _named(codes: Array, names: Collection[str], letter: str) -> list[int]:
+    """The codes that some names stand for."""
+    return [code for code in np.unique(codes).tolist() if name_of(code, letter) in names] if names else []
+
+
+def _with_equivalents(blocks: Blocks, flavour: Flavour) -> Blocks:
+    """Replace codes that mean the same as another one."""
+    found = np.isin(blocks.g, [*flavour.equivalents])
+    if not found.any():
+        return blocks
+    g = blocks.g.copy()
+    g[found] = [flavour.equivalents[code] for code in g[found].tolist()]
+    return replace(blocks, g=g)
+
+
+def _notes(blocks: Blocks, letter: str, found: Array, text: Callable[[int], str]) -> list[str]:
+    """A line for each code that is left out: why, and where it stands."""
+    codes, rows = (blocks.g, blocks.g_row) if letter == "G" else (blocks.m, blocks.m_row)
+    return [
+        f"{name_of(code, letter)}{text(code)} ({_lines(np.unique(blocks.line[rows[found & (codes == code)]]))})"
+        for code in np.unique(codes[found]).tolist()
+    ]
+
+
+def _lines(lines: Array) -> str:
+    """The first lines of some, and how many more there are."""
+    first = ", ".join(map(str, lines[:_LINES_SHOWN].tolist()))
+    more = f" and {len(lines) - _LINES_SHOWN} more" if len(lines) > _LINES_SHOWN else ""
+    return f"line{'s' * (len(lines) > 1)} {first}{more}"
+
+
+def _without(blocks: Blocks, g: Array, m: Array, flavour: Flavour) -> Blocks:
+    """Drop codes, and the words of their blocks that no other code there takes."""
+    if not (g.any() or m.any()):
+        return blocks
+    rows = np.unique(np.concatenate([blocks.g_row[g], blocks.m_row[m]])).tolist()
+    kept = replace(
+        blocks, g=blocks.g[~g], g_row=blocks.g_row[~g], m=blocks.m[~m], m_row=blocks.m_row[~m]
+    )  # fmt: skip
+    words = dict(kept.words)
+    for letter in [letter for letter in words if letter not in _NEVER_DROPPED]:
+        theirs = [row for row in rows if not np.isnan(words[letter][row]) and letter not in _taken(kept, row, flavour)]
+        if theirs:
+            words[letter] = words[letter].copy()
+            words[letter][theirs] = np.nan
+    return replace(kept, words=words)
+
+
+def _taken(blocks: Blocks, row: int, flavour: Flavour) -> Iterable[str]:
+    """The words that the codes of a block take."""
+    codes = [flavour.g_codes.get(code) for code in blocks.g_of(row).tolist()]
+    codes += [flavour.m_codes.get(code) for code in blocks.m_of(row).tolist()]
+    return "".join(code.letters for code in codes if code is not None)
+
+
+def _with_further_offsets(blocks: Blocks) -> Blocks:
+    """Give each work offset of G54.1 P a code of its own, and G54.1 with a P that does not exist its own code."""
+    found = np.flatnonzero(blocks.g == 541)
+    number = blocks.word("P")[blocks.g_row[found]]
+    exist = (number == np.round(number)) & (number >= 1) & (number <= MOST_FURTHER_OFFSETS)
+    if not exist.any():
+        return blocks
+    g, p = blocks.g.copy(), blocks.word("P").copy()
+    g[found[exist]] = FURTHER_OFFSET - number[exist].astype(np.int32)
+    p[blocks.g_row[found[exist]]] = np.nan
+    return replace(blocks, g=g, words={**blocks.words, "P": p})
+
+
+def without_idle_g80(blocks: Blocks) -> Blocks:
+    """Drop G80 beside G0 to G3, which end a cycle themselves, as in ``G0 G80 G90`` [LinuxCNC]."""
+    ends = np.flatnonzero(blocks.g == CANCEL_CYCLE)
+    if not len(ends):
+        return blocks
+    idle = ends[np.isin(blocks.g_row[ends], blocks.g_row[np.isin(blocks.g, _OF_GROUP_1)])]
+    return replace(blocks, g=np.delete(blocks.g, idle), g_row=np.delete(blocks.g_row, idle))
+
+
+def _with_restored_motions(blocks: Blocks) -> Blocks:
+    """Replace G80 by the last of G0 to G3, which the cycles, in a group of their own, have left in force [Fanuc]."""
+    ends, motions = np.flatnonzero(blocks.g == CANCEL_CYCLE), np.flatnonzero(np.isin(blocks.g, _OF_GROUP_1))
+    before = np.searchsorted(motions, ends) - 1
+    g = blocks.g.copy()
+    g[ends[before >= 0]] = blocks.g[motions[before[before >= 0]]]
+    return replace(blocks, g=g)

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Flavours: what controls of two families mean by the same G-code, in one table.
+
+Enters: nothing. Leaves: ``FLAVOURS``; its rows are the differences, with their sources in docs/g-code.md. The reader
+asks the flavour for what it needs to know and never for its name, so that another family is another row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from pkm_post.reading.gcode.codes import (
+    CYCLES,
+    FURTHER_OFFSET,
+    G_CODES,
+    M_CODES,
+    MOST_FURTHER_OFFSETS,
+    NONE,
+    UNSUPPORTED,
+    Code,
+    Group,
+)
+
+
+@dataclass(frozen=True)
+class Flavour:
+    """What a family of controls means by codes and words that others take otherwise.
+
+    Attributes:
+        name: as given by the user.
+        title: whose language it is.
+        dwell_unit: unit of P of G4 and of cycles, a key of ``DWELL_UNITS``.
+        exact_stop: code, in tenths, under which the motion rests at the end of every block.
+        exact_path: code, in tenths, under which corners are followed; NONE where there is none.
+        g80_restores_motion: whether G0 to G3 before a cycle are in force again after G80, rather than no motion.
+        keeps_cycle_words: whether R, depth, Q and P hold until the series ends, rather than for one cycle.
+        cycle_dwells: cycles that dwell at the bottom.
+        needs_dwell: whether these need P.
+        feeds_to_r: cycles that come out with feed as far as R, and rapidly from there; other ones go on with feed.
+        stores_cycle: whether a cycle repeated 0 times only stores its words.
+        moves_beside_reference: whether G0 or G1 may stand beside G28 and G30, which take the axis words.
+        g53_is_rapid: whether G53 moves rapidly whatever motion is in force.
+        counts_in_p: whether P of M98 above four digits begins with how often the subprogram runs.
+        programs_apart: whether an O number begins another program, which only a call enters.
+        restarts: whether M99 ends the main program, to begin it again.
+        equivalents: codes, in tenths, that mean the same as another one.
+        without_motion: codes that change nothing here: switches of what this reader never switches on.
+        requests: codes that ask the control for smoothing, by what they ask for.
+        silent_m: M codes that change nothing here.
+        g_codes, m_codes: all codes that are understood.
+        unsupported: codes that are known and refused, with the reason.
+    """
+
+    name: str
+    title: str
+    dwell_unit: str
+    exact_stop: int
+    exact_path: int
+    g80_restores_motion: bool
+    keeps_cycle_words: bool
+    cycle_dwells: tuple[int, ...]
+    needs_dwell: bool
+    feeds_to_r: tuple[int, ...]
+    stores_cycle: bool
+    moves_beside_reference: bool
+    g53_is_rapid: bool
+    counts_in_p: bool
+    programs_apart: bool
+    restarts: bool
+    equivalents: Mapping[int, int]
+    without_motion: Mapping[int, str]
+    requests: Mapping[int, str]
+    silent_m: Mapping[int, str]
+    g_codes: Mapping[int, Code]
+    m_codes: Mapping[int, Code]
+    unsupported: Mapping[str, str]
+
+    def axis_takers(self) -> list[int]:
+        """Codes that consume the axis words of their block."""
+        return [code for code, meaning in self.g_codes.items() if meaning.takes_axes]
+
+
+RS274 = Flavour(
+    name="rs274",
+    title="RS274NGC, as LinuxCNC has it",
+    dwell_unit="s",
+    exact_stop=611,
+    exact_path=610,
+    g80_restores_motion=False,
+    keeps_cycle_words=False,
+    cycle_dwells=(820, 860, 890),
+    needs_dwell=True,
+    feeds_to_r=(850,),
+    stores_cycle=False,
+    moves_beside_reference=False,
+    g53_is_rapid=False,
+    counts_in_p=False,
+    programs_apart=False,
+    restarts=False,
+    equivalents={},
+    without_motion={},
+    requests={},
+    silent_m={},
+    g_codes=G_CODES,
+    m_codes=M_CODES,
+    unsupported=UNSUPPORTED,
+)
+
+_SMOOTHING = "smoothing"
+_FANUC_CODES: dict[int, Code] = {
+    **{code: meaning for code, meaning in G_CODES.items() if code not in (281, 301, 431, 432, 922, 923)},
+    40: Code(Group.ONCE, "PX", takes_axes=True),
+    90: Code(Group.ONCE),
+    300: replace(G_CODES[300], letters="XYZP"),
+    541: Code(Group.SYSTEM, "P", "P"),
+    **{FURTHER_OFFSET - number: Code(Group.SYSTEM) for number in range(1, MOST_FURTHER_OFFSETS + 1)},
+    **{code: Code(Group.MOTION, "XYZRLKPQ") for code in CYCLES},
+}
+_FANUC_REFUSED: dict[str, str] = {
+    **{code: reason for code, reason in UNSUPPORTED.items() if code not in ("G5", "G5.1", "G15", "G50", "M50", "M51")},
+    "G16": "polar coordinates",
+    "G27": "checks of the reference point",
+    "G29": "the way back from the reference point",
+    "G31": "probing",
+    "G37": "measuring of tools",
+    "G43.1": "tool length along a tilted axis without control of the tip; G43.4 is understood",
+    **{f"G{code}": "tool offsets of single moves" for code in (45, 46, 47, 48)},
+    "G60": "approach from one side",
+    "G63": "tapping mode",
+    "G7.1": "interpolation on a cylinder",
+    "G12.1": "interpolation in polar coordinates",
+    "G65": "macros",
+    "G66": "macros",
+    "G76": "fine boring, which needs an oriented spindle",
+}
+
+FANUC = replace(
+    RS274,
+    name="fanuc",
+    title="ISO code, as controls of Fanuc's kind have it",
+    dwell_unit="ms",
+    exact_stop=610,
+    exact_path=NONE,
+    g80_restores_motion=True,
+    keeps_cycle_words=True,
+    cycle_dwells=(820, 890),
+    needs_dwell=False,
+    feeds_to_r=(850, 890),
+    stores_cycle=True,
+    moves_beside_reference=True,
+    g53_is_rapid=True,
+    counts_in_p=True,
+    programs_apart=True,
+    restarts=True,
+    equivalents={2340: 434},
+    without_motion={
+        131: "end of interpolation in polar coordinates",
+        150: "end of polar coordinates",
+        220: "stroke check",
+        230: "end of the stroke check",
+        250: "end of the watch of the spindle",
+        260: "watch of the spindle",
+        401: "end of normal direction",
+        491: "end of a tool length",
+        500: "end of scaling",
+        670: "end of a modal macro",
+        1130: "end of interpolation in polar coordinates",
+        1500: "end of normal direction",
+        2550: "end of an offset of the work",
+    },
+    requests={50: _SMOOTHING, 51: _SMOOTHING, 80: _SMOOTHING, 611: _SMOOTHING, 620: "slower corners", 1870: _SMOOTHING},
+    silent_m={29: "rigid tapping, which G74 and G84 are refused for"},
+    g_codes=_FANUC_CODES,
+    unsupported=_FANUC_REFUSED,
+)
+
+FLAVOURS: dict[str, Flavour] = {flavour.name: flavour for flavour in (RS274, FANUC)}
+"""By name."""

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Guess: the flavour of a program, by what only one family of controls would take.
+
+Enters: scanned blocks. Leaves: the flavour and the evidence for it, for the report. Evidence is a code, word or order
+of blocks that the other flavour does not have or refuses; one kind of it counts once, wherever it stands. Without any
+the program is RS274NGC, which is the stricter of the two: what means something else there is an error, or the same
+motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.model import Array
+from pkm_post.reading.gcode.adapt import without_idle_g80
+from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.codes import CANCEL_CYCLE, CYCLES, G_CODES, Group, name_of
+from pkm_post.reading.gcode.flavours import FANUC, RS274, Flavour
+from pkm_post.reading.gcode.modal import forward_fill
+
+_MOST_SHOWN = 4
+"""Pieces of evidence in a line of the report."""
+
+_FANUC_G = (80, 150, 160, 500, 510, 531, 541, 650, 660, 670, 682, 1870, 2340, 2550)
+_WITHOUT_PLACE = (50, 51)
+"""G5 and G5.1: splines in LinuxCNC, which need X or Y."""
+_RS274_G = (281, 301, 382, 383, 384, 385, 431, 432, 901, 911, 922, 923)
+_RS274_M = (62, 63, 64, 65, 66, 67, 68, 70, 71, 72, 73)
+
+_Found = Iterator[tuple[str, int]]
+"""Evidence, and its row."""
+
+
+@dataclass(frozen=True)
+class FlavourGuess:
+    """A flavour, and the evidence for it and against it, as text with lines."""
+
+    flavour: Flavour
+    evidence: tuple[str, ...]
+    against: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """Describe it for the report."""
+        if not self.evidence:
+            return f"flavour {self.flavour.name}: nothing in the program speaks for another"
+        against = f"; although {_listed(self.against)}" if self.against else ""
+        return f"flavour {self.flavour.name}, by {_listed(self.evidence)}{against}"
+
+
+def _listed(evidence: tuple[str, ...]) -> str:
+    more = len(evidence) - _MOST_SHOWN
+    return ", ".join(evidence[:_MOST_SHOWN]) + (f" and {more} more" if more > 0 else "")
+
+
+def guessed_flavour(blocks: Blocks) -> FlavourGuess:
+    """Guess the flavour of scanned blocks."""
+    fanuc, rs274 = (tuple(_first_of_each(blocks, found)) for found in (_for_fanuc(blocks), _for_rs274(blocks)))
+    if len(fanuc) > len(rs274):
+        return FlavourGuess(FANUC, fanuc, rs274)
+    return FlavourGuess(RS274, rs274, fanuc)
+
+
+def _first_of_each(blocks: Blocks, found: _Found) -> Iterator[str]:
+    for what, row in found:
+        yield f"{what} in line {int(blocks.line[row])}"
+
+
+def _for_fanuc(blocks: Blocks) -> _Found:
+    yield from _o_words(blocks, lambda keyword: not keyword)
+    yield from _codes(blocks.g, blocks.g_row, _FANUC_G, "G")
+    here = np.isin(blocks.g, _WITHOUT_PLACE) & ~(blocks.has("X") | blocks.has("Y"))[blocks.g_row]
+    yield from _codes(blocks.g[here], blocks.g_row[here], _WITHOUT_PLACE, "G")
+    yield from _codes(blocks.m, blocks.m_row, (29,), "M")
+    yield from _word_beside(blocks, (40,), "X", "G4 X")
+    yield from _word_beside(blocks, CYCLES, "K", "K in a cycle")
+    yield from _after_g80(blocks)
+
+
+def _for_rs274(blocks: Blocks) -> _Found:
+    yield from _o_words(blocks, bool)
+    yield from _named_parameters(blocks)
+    yield from _codes(blocks.g, blocks.g_row, _RS274_G, "G")
+    yield from _codes(blocks.m, blocks.m_row, _RS274_M, "M")
+    yield from _word_beside(blocks, (640,), "P", "G64 P")
+
+
+def _codes(codes: Array, rows: Array, wanted: tuple[int, ...], letter: str) -> _Found:
+    """The first of each of some codes."""
+    found = np.flatnonzero(np.isin(codes, wanted))
+    for index in np.sort(found[np.unique(codes[found], return_index=True)[1]]).tolist():
+        yield name_of(int(codes[index]), letter), int(rows[index])
+
+
+def _word_beside(blocks: Blocks, codes: tuple[int, ...], letter: str, name: str) -> _Found:
+    """The first block with one of some codes and a word."""
+    if letter in blocks.words:
+        rows = blocks.g_row[np.isin(blocks.g, codes)]
+        rows = rows[blocks.has(letter)[rows]]
+        if len(rows):
+            yield name, int(rows[0])
+
+
+def _after_g80(blocks: Blocks) -> _Found:
+    """The first block with X, Y or Z after G80 and without a motion code, which RS274NGC refuses."""
+    blocks = without_idle_g80(blocks)
+    if not (blocks.g == CANCEL_CYCLE).any():
+        return
+    here = np.isin(blocks.g, [code for code, meaning in G_CODES.items() if meaning.group is Group.MOTION])
+    active = forward_fill(blocks.g_row[here], blocks.g[here], 0, len(blocks))
+    moves = blocks.has("X") | blocks.has("Y") | blocks.has("Z")
+    moves[blocks.g_row[np.isin(blocks.g, RS274.axis_takers())]] = False
+    found = np.flatnonzero(moves & (active == CANCEL_CYCLE))
+    if len(found):
+        yield "axis words after G80", int(found[0])
+
+
+def _o_words(blocks: Blocks, wanted: Callable[[str], bool]) -> _Found:
+    """The first O word whose keyword, empty for a number alone, is wanted."""
+    for row, tree in sorted(blocks.special.items()):
+        for child in tree.children:
+            if not isinstance(child, str) and child.data == "o_word":
+                label, *rest = child.children
+                keyword = str(rest[0]).lower() if rest else ""
+                if wanted(keyword):
+                    yield f"O{label if isinstance(label, str) else ''} {keyword}".strip(), row
+                    return
+
+
+def _named_parameters(blocks: Blocks) -> _Found:
+    """The first block with a named parameter."""
+    for row, tree in sorted(blocks.special.items()):
+        names = [*tree.scan_values(lambda leaf: getattr(leaf, "type", "") == "NAME")]
+        if names:
+            yield f"#{names[0]}", row
+            return

@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Flavours of G-code: what words mean on controls of Fanuc's kind and in RS274NGC, and how the two are told apart.
+
+What Fanuc's controls do is from Fanuc, Series 15i/150i-MA Operator's Manual (Programming), B-63324EN, the chapters that
+each test names; what RS274NGC does from LinuxCNC and its rs274.
+"""
+
+import dataclasses
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pkm_post.model import EventKind, Kind, Tool
+from pkm_post.options.arguments import GCODE_FLAVOURS
+from pkm_post.reading.gcode import ReadOptions, read
+from pkm_post.reading.gcode.flavours import FLAVOURS, Flavour
+from pkm_post.reading.gcode.guess import guessed_flavour
+from pkm_post.reading.gcode.options import DWELL_UNITS, FLAVOUR_NAMES
+from pkm_post.reading.gcode.scan import scan
+
+ANY = Tool(0, "any", 6.0, 0.0, 50.0)
+START = "G21 F100 S900\nG0 X0 Y0 Z50\n"
+
+
+def taken(text, **options):
+    return read(START + text, "part.nc", ReadOptions(default_tool=ANY, **options))
+
+
+def fanuc(text, **options):
+    program, faults = taken(text, flavour="fanuc", **options)
+    assert program is not None, [str(fault) for fault in faults]
+    return program
+
+
+def codes(text, **options):
+    return [fault.code for fault in taken(text, **options)[1]]
+
+
+def moves(program):
+    """Kind and place of each row that goes elsewhere, after the first."""
+    rows = np.flatnonzero(np.any(np.diff(program.position, axis=0) != 0, axis=1)) + 1
+    return [(int(program.kind[row]), *program.position[row].tolist()) for row in rows]
+
+
+R, L = int(Kind.RAPID), int(Kind.LINE)
+
+
+def test_the_names_are_the_same_everywhere():
+    assert tuple(FLAVOURS) == FLAVOUR_NAMES == GCODE_FLAVOURS
+    assert {flavour.dwell_unit for flavour in FLAVOURS.values()} <= set(DWELL_UNITS)
+
+
+def test_each_difference_has_a_row_in_the_documentation():
+    text = (Path(__file__).parents[3] / "docs" / "g-code.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `(\w+)` \|.*\|.*\|.*\[.*\].*\|$", text, re.MULTILINE)
+    differ = [
+        field.name
+        for field in dataclasses.fields(Flavour)
+        if field.name not in ("name", "title")
+        and len({repr(getattr(flavour, field.name)) for flavour in FLAVOURS.values()}) > 1
+    ]
+    assert rows == differ
+
+
+# G80: 13.1 canned cycle. The cycles are group 09, the motions group 01
+
+
+def test_after_g80_the_motion_before_the_cycle_is_in_force():
+    cycle = "G98 G81 X10 Z-5 R2\nG80\n"
+    assert moves(fanuc(f"{cycle}Z60\n"))[-1] == (R, 10, 0, 60)
+    assert moves(fanuc(f"G1 X5\n{cycle}Z60\n"))[-1] == (L, 10, 0, 60)
+    assert codes(f"{cycle}Z60\n", flavour="rs274") == ["G407"]
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_g0_beside_g80_is_in_force_in_every_flavour(flavour):
+    program, _ = taken("G0 G17 G40 G80 G90\nX1\nG80 G1 X2\nX3\n", flavour=flavour)
+    assert moves(program) == [(R, 1, 0, 50), (L, 2, 0, 50), (L, 3, 0, 50)]
+
+
+def test_without_a_motion_before_g80_there_is_none_after_it():
+    program, faults = read("G80\nX1 Y1 Z1\nM30\n", "part.nc", ReadOptions(default_tool=ANY, flavour="fanuc"))
+    assert (program, [fault.code for fault in faults]) == (None, ["G407"])
+
+
+# cycles: 13.1 drilling data are held until the cycle is cancelled; K0 stores them
+
+
+def test_the_words_of_a_cycle_hold_for_the_next_one():
+    text = "G99 G81 X10 Z-5 R2\nG82 X20 P50\nG80\n"
+    program = fanuc(text)
+    assert moves(program) == [
+        (R, 10, 0, 50), (R, 10, 0, 2), (L, 10, 0, -5), (R, 10, 0, 2),
+        (R, 20, 0, 2), (L, 20, 0, -5), (R, 20, 0, 2),
+    ]  # fmt: skip
+    assert [event.value for event in program.events if event.kind is EventKind.DWELL] == [0.05]
+    assert codes(text, flavour="rs274") == ["G405"]
+
+
+def test_a_cycle_that_dwells_needs_no_p():
+    for code in ("G82", "G86", "G89"):
+        assert not [event for event in fanuc(f"M3\n{code} X1 Z-1 R1\n").events if event.kind is EventKind.DWELL]
+        assert codes(f"M3\n{code} X1 Z-1 R1\n", flavour="rs274") == ["G405"]
+
+
+def test_g89_feeds_out_to_r_and_goes_on_rapidly():
+    text = "G98 G89 X1 Z-1 R1 P{}\n"
+    assert moves(fanuc(text.format(100)))[-2:] == [(L, 1, 0, 1), (R, 1, 0, 50)]
+    program, _ = taken(text.format("0.1"), flavour="rs274")
+    assert moves(program)[-1] == (L, 1, 0, 50)
+
+
+@pytest.mark.parametrize("word", ["L0", "K0"])
+def test_a_cycle_repeated_no_times_stores_its_words(word):
+    program = fanuc(f"G99 G82 R2 Z-5 P200 F80 {word}\nX10\nG80\n")
+    assert moves(program) == [(R, 10, 0, 50), (R, 10, 0, 2), (L, 10, 0, -5), (R, 10, 0, 2)]
+    assert [event.value for event in program.events if event.kind is EventKind.DWELL] == [0.2]
+    assert codes(f"G81 R2 Z-5 {word}\n", flavour="rs274") == ["G418"]
+    assert codes(f"G81 X5 R2 Z-5 {word}\n", flavour="fanuc") == ["G418"]
+
+
+def test_r_with_g91_is_from_the_initial_level_in_every_flavour():
+    for flavour in FLAVOURS:
+        program, _ = taken("G91 G99 G81 X10 Z-20 R-48\nX10\n", flavour=flavour)
+        assert moves(program)[1:3] == [(R, 10, 0, 2), (L, 10, 0, -18)]
+        assert moves(program)[4:6] == [(R, 20, 0, 2), (L, 20, 0, -18)]
+
+
+# dwells: 5.x G04: P in ms without a point, X in s
+
+
+def test_dwells_are_in_ms_and_x_of_g4_in_s():
+    program = fanuc("G4 P500\nG4 X1.5\nG1 X1\n")
+    assert [event.value for event in program.events if event.kind is EventKind.DWELL] == [0.5, 1.5]
+    assert moves(program) == [(L, 1, 0, 50)]
+    assert codes("G4 P0.5\n", flavour="fanuc") == ["G427"]
+    assert codes("G4 P0.5\n", flavour="fanuc", dwell_unit="s") == []
+    assert codes("G4 X1.5\n", flavour="rs274") == ["G405"]
+
+
+# places of the machine: 6.x G28 and G30, 7.1 G53
+
+
+ZERO = (5.0, 6.0, 300.0)
+
+
+@pytest.mark.parametrize(
+    ("block", "places"),
+    [
+        ("G91 G28 Z0", [(R, 0, 0, 300)]),
+        ("G0 G28 Z60", [(R, 0, 0, 60), (R, 0, 0, 300)]),
+        ("G28 X0 Y0", [(R, 5, 6, 50)]),
+        ("G30 P2 Z50", [(R, 0, 0, 300)]),
+        ("G1 G53 Z-10", [(R, 0, 0, 290)]),
+        ("G53 X1 Y-1", [(R, 6, 5, 50)]),
+    ],
+)
+def test_places_of_the_machine(block, places):
+    assert moves(fanuc(f"{block}\n", machine_zero=ZERO)) == places
+    assert codes(f"{block}\n", flavour="fanuc") in (["G413"], ["G412"])
+
+
+def test_g53_takes_the_motion_in_force_in_rs274():
+    program, _ = taken("G1 G53 Z-10\n", flavour="rs274", machine_zero=ZERO)
+    assert moves(program) == [(L, 0, 0, 290)]
+    assert codes("G0 G28 Z0\n", flavour="rs274", machine_zero=ZERO) == ["G407"]
+
+
+def test_a_third_reference_point_is_not_known():
+    assert codes("G30 P3 Z0\n", flavour="fanuc", machine_zero=ZERO) == ["G413"]
+
+
+def test_the_way_to_the_reference_point_uses_no_work_offset():
+    text = "G21\nG91 G28 Z0\nG90 G54.1 P7\nG0 X1 Y2 Z3\nM30\n"
+    program, _ = read(text, "part.nc", ReadOptions(default_tool=ANY, flavour="fanuc", machine_zero=ZERO))
+    assert program.position[-1].tolist() == [1, 2, 3]
+    text = text.replace("M30", "G54.1 P8\nX5\nM30")
+    faults = read(text, "part.nc", ReadOptions(default_tool=ANY, flavour="fanuc", machine_zero=ZERO))[1]
+    assert [(fault.code, fault.found) for fault in faults] == [("G412", "G54.1 P8")]
+
+
+# codes that change nothing, and requests
+
+
+def test_ends_of_what_was_never_begun_change_nothing():
+    text = "G15 G50 G69 G49 G67\nG13.1\nG22\nG25\nM29 S100\nG1 X1\n"
+    assert moves(fanuc(text)) == [(L, 1, 0, 50)]
+    assert codes("G15\n", flavour="rs274") == ["G402"]
+
+
+def test_requests_for_smoothing_are_reported():
+    program = fanuc("G5.1 Q1\nG1 X1\nG5.1 Q0\nG5 P10000\nG187 P2 E0.02\nG8 P1\nG61.1\nG5.1 Q1\nG5.1 Q0\nX2\n")
+    assert moves(program) == [(L, 1, 0, 50), (L, 2, 0, 50)]
+    assert not program.exact_stop.any()
+    assert [line.split()[0] for line in program.reading[1:]] == ["G5", "G5.1", "G8", "G61.1", "G187"]
+    assert "(lines 3, 5, 10 and 1 more)" in program.reading[2]
+
+
+def test_codes_are_left_out_as_chosen_and_named():
+    text = "M21\nM46 P2 Q1\nG1 X1 M21\nG211 P1\n"
+    assert codes(text, flavour="fanuc") == ["G401"] * 4
+    program = fanuc(text, left_out=("M21", "M46", "G211"))
+    assert moves(program) == [(L, 1, 0, 50)]
+    assert program.reading[1:] == (
+        "G211, left out as chosen (line 6)",
+        "M21, left out as chosen (lines 3, 5)",
+        "M46, left out as chosen (line 4)",
+    )
+
+
+@pytest.mark.parametrize(
+    ("block", "code", "fault"),
+    [("G1 X1", "G1", None), ("G16", "G16", "G402"), ("G84 X1 Z-1 R1", "G84", "G425"), ("G211 X1", "G211", "G401")],
+)
+def test_nothing_that_is_understood_or_moves_the_tool_is_left_out(block, code, fault):
+    assert codes(f"{block}\n", flavour="fanuc", left_out=(code,)) == ([fault] if fault else [])
+
+
+# programs
+
+
+def test_subprograms_are_counted_in_p():
+    text = "M98 P30020\nM30\nO20\nG91 G1 X1\nG90\nM99\n"
+    assert fanuc(text).position[-1].tolist() == [3, 0, 50]
+    assert codes(text, flavour="rs274") == ["G309"]
+
+
+def test_m99_ends_the_main_program_and_it_is_carried_out_once():
+    program = fanuc("G1 X1\nM99\nX2\n", needs_end=True)
+    assert moves(program) == [(L, 1, 0, 50)]
+    assert "M99" in program.reading[-1]
+    assert codes("G1 X1\nM99\n", flavour="rs274") == ["G312"]
+
+
+def test_another_program_is_only_entered_by_a_call():
+    assert codes("M98 P7\nO7\nG1 X5\nM99\n", flavour="fanuc", needs_end=True) == ["G430"]
+    assert codes("M98 P7\nM30\nO7\nG1 X5\nO8\nM99\n", flavour="fanuc") == ["G308"]
+
+
+# the guess
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "evidence"),
+    [
+        ("G0 X1\nM2", "rs274", ()),
+        ("O1001\nG0 X1\nM30", "fanuc", ("O1001 in line 1",)),
+        ("G0 X1\nG5.1 Q1\nM30", "fanuc", ("G5.1 in line 2",)),
+        ("G5.1 X1 Y1 I1 J1", "rs274", ()),
+        ("G81 X1 Z-1 R1\nG80\nZ5", "fanuc", ("axis words after G80 in line 3",)),
+        ("G81 X1 Z-1 R1\nG0 G80\nZ5", "rs274", ()),
+        ("G80\nG0 Z5\nG80 G28 Z0", "rs274", ()),
+        ("G4 X1", "fanuc", ("G4 X in line 1",)),
+        ("G81 X1 Z-1 R1 K3", "fanuc", ("K in a cycle in line 1",)),
+        ("o10 sub\no10 endsub\n#<a>=1\nG64 P0.1", "rs274", ("O10 sub in line 1", "#<a> in line 3", "G64 P in line 4")),
+        ("G92.2\nO1\nG15\nG1 X1", "fanuc", ("O1 in line 2", "G15 in line 3")),
+    ],
+)
+def test_the_flavour_is_guessed_by_what_only_one_has(text, name, evidence):
+    guess = guessed_flavour(scan(text, "part.nc")[0])
+    assert (guess.flavour.name, guess.evidence) == (name, evidence)
+
+
+def test_the_report_names_the_flavour_and_its_evidence():
+    assert taken("M2\n")[0].reading == ("flavour rs274: nothing in the program speaks for another",)
+    assert fanuc("M30\n").reading == ("flavour fanuc, as chosen",)
+    program, _ = taken("G64 P0.1\nG15\nG50\nG22\nG5.1 Q1\nG1 X1\nM2\n")
+    assert program.reading[0] == (
+        "flavour fanuc, by G15 in line 4, G50 in line 5, G5.1 in line 7; although G64 P in line 3"
+    )
+
+
+def test_a_value_that_is_no_flavour_is_refused():
+    with pytest.raises(ValueError, match="flavour: expected one of rs274, fanuc, got 'heidenhain'"):
+        ReadOptions(flavour="heidenhain")
+
+
+def test_a_program_of_another_flavour_is_the_same_motion_where_they_agree():
+    text = "G17 G90 G1 X1 Y2 F50\nG2 X3 Y2 I1 J0\nG91 G1 X1\nG90 Z5\nG83 X5 Z-3 R1 Q1\n"
+    one, other = (taken(text, flavour=flavour)[0] for flavour in FLAVOURS)
+    np.testing.assert_array_equal(one.position, other.position)
