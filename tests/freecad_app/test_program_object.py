@@ -220,7 +220,7 @@ def test_decoded_with_the_controller_of_its_tool(document, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("code", "lost"), [("G61", "exact stops"), ("G61.1", "exact paths"), ("G64 P0.05", "tolerances of the path")]
+    ("code", "lost"), [("G61.1", "exact stops"), ("G61", "exact paths"), ("G64 P0.05", "tolerances of the path")]
 )
 def test_what_an_operation_cannot_say_is_told(document, tmp_path, monkeypatch, code, lost):
     told = []

@@ -279,9 +279,8 @@ class CycleTracker:
         conflict = self._mode_conflict(row, series, relative or returns, frame)
         if repeats == 0 and self._modal.flavour.stores_cycle:
             return self._stored(row, position)
-        fault = cycle_fault(series.cycle, hole, repeats, spindle, self._modal.flavour)
-        if conflict:
-            fault = "G426", conflict
+        flavour = self._modal.flavour
+        fault = ("G426", conflict) if conflict else cycle_fault(series.cycle, hole, repeats, spindle, flavour)
         if math.isnan(repeats):
             fault = "G418", (word_of(code), " with L and K")
         if fault:
