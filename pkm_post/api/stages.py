@@ -27,7 +27,7 @@ from pkm_post.posting import (
     write_program,
 )
 from pkm_post.reading import AS_WRITTEN, ReadingOptions
-from pkm_post.system import memory_guard, staged, write_fault
+from pkm_post.system import memory_guard, result_files, staged, write_fault
 from pkm_post.toolpath import compensate as compensated
 from pkm_post.writing import GcodeDialect, trajectory_file
 from pkm_post.writing import write as gcode_text
@@ -194,7 +194,7 @@ def certify(program: str | Path, machine: Machine, trajectory: str | Path | None
         True
     """
     path = Path(program)
-    verified = verify(path, Path(trajectory) if trajectory else path.with_suffix(".pkmt"), machine)
+    verified = verify(path, Path(trajectory) if trajectory else path.with_suffix(result_files.TRAJECTORY), machine)
     return sound_value(verified.certificate, verified.diagnostics)
 
 

@@ -19,6 +19,7 @@ from typing import Any
 from pkm_post.control.link.program import Job, read_job
 from pkm_post.model import Diagnostic, Machine, Place, Refused
 from pkm_post.posting import verify_texts
+from pkm_post.system import result_files
 from pkm_post.writing import PmacSettings, controller_of, manifest, program_files, read_text, read_texts
 
 Findings = tuple[Diagnostic, ...]
@@ -97,7 +98,7 @@ def _certified(program: Path, text: str, machine: Machine) -> tuple[Certified | 
     if not reasons:
         return Certified(text, digest, False), ()
     doubts = (Diagnostic("C110", Place(str(program)), "; ".join(reasons)),)
-    trajectory = first.with_suffix(".pkmt")
+    trajectory = first.with_suffix(result_files.TRAJECTORY)
     if not trajectory.is_file():
         return None, doubts
     texts, faults = read_texts(first, controller)
@@ -130,10 +131,10 @@ def _reasons(program: Path, text: str, machine: Machine, first: Path, part: tupl
     if listed is None:
         yield from (f"{fault.code} {fault.found}" for fault in faults)
         return
-    trajectory = listed.fingerprint_of(first.with_suffix(".pkmt").name) or ""
+    trajectory = listed.fingerprint_of(first.with_suffix(result_files.TRAJECTORY).name) or ""
     if not program_files.states_hash(text, "trajectory", trajectory):
         yield "its heading does not name the trajectory file beside it"
-    report = first.with_name(f"{first.stem}-report.json")
+    report = first.with_name(first.stem + result_files.REPORT)
     if listed.fingerprint_of(report.name) is None:
         yield f"the manifest lists no {report.name}"
         return

@@ -23,7 +23,7 @@ from pkm_post.freecad_app.progress import Progress
 from pkm_post.machine import check_reach, find_collisions
 from pkm_post.model import Diagnostic, Refused, Trajectory, errors
 from pkm_post.posting import effective_setup, step_names
-from pkm_post.system import staged, write_fault
+from pkm_post.system import result_files, staged, write_fault
 from pkm_post.writing import GcodeDialect, manifest, outputs, trajectory_file, write
 
 T = TypeVar("T")
@@ -54,7 +54,7 @@ def _motion_program(job: Any, settings: JobSettings, path: FilePath) -> Written:
 def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
     """A short text about the trajectory, which is written to the same folder: CAM cannot write bytes."""
     trajectory, found = _reachable(job, settings)
-    target = path.with_suffix(".pkmt")
+    target = path.with_suffix(result_files.TRAJECTORY)
     earlier = manifest.listed(target.parent, target.stem)
     try:
         with staged(target.parent, manifest.manifest_name(target.stem)) as folder:

@@ -3,7 +3,7 @@
 
 from pkm_post.reading import gcode
 from pkm_post.reading.check import check_file, checks_as_json, checks_as_text
-from pkm_post.reading.cldata.options import CONTOUR_DATA, DIALECTS, UNITS
+from pkm_post.reading.cldata.options import CONTOUR_DATA, DIALECTS
 from pkm_post.reading.editing import TextFile, renumbered
 from pkm_post.reading.gcode.codes import SPINDLE_SYNCHRONISED
 from pkm_post.reading.gcode.cycles import CycleSeries, Strokes, cycle_fault, cycle_strokes
@@ -23,6 +23,7 @@ from pkm_post.reading.part_program import (
     read_part_program,
 )
 from pkm_post.reading.preview import CheckedText, check_text, tip_paths_of_line
+from pkm_post.reading.units import UNITS
 
 __all__ = [
     "AS_WRITTEN",

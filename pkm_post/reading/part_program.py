@@ -56,7 +56,7 @@ class ReadingOptions:
         axis_words: tool axis notation of G-code, a key of ``AXIS_WORDS``.
         tools: by number, the cutters the file was made for; their diameters and corner radii override those in the
             file. Number 0 is the tool before the first tool call.
-        unit: length unit, a key of ``cldata.UNITS``: overrides that of CL data; for G-code applies before G20 or G21.
+        unit: length unit, a key of ``UNITS``: overrides that of CL data; for G-code applies before G20 or G21.
         contour_data: one of ``cldata.CONTOUR_DATA``: meaning of the points of CL data under CUTCOM.
         wear: by number, mm by which the tool radius exceeds the one that CL data with CUTCOM was made for.
         cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; detected if None.

@@ -23,11 +23,11 @@ import numpy as np
 from pkm_post.geometry import Array
 from pkm_post.model import TRAJECTORY_COLUMNS, Diagnostic, EventKind, Machine, Place, Trajectory, errors
 from pkm_post.reading import is_part_program
+from pkm_post.system import result_files
 from pkm_post.writing import manifest, trajectory_file
 
 Findings = tuple[Diagnostic, ...]
 
-_TRAJECTORY = ".pkmt"
 _MOST_SOURCE = 1 << 28
 """Most bytes read of a source."""
 
@@ -167,7 +167,7 @@ def read_blocks(program: Path, machine: Machine) -> tuple[ProgramBlocks | None, 
     posted, faults = manifest.check(program)
     if errors(faults):
         return None, faults
-    names = [] if posted is None else [name for name in posted.files if name.endswith(_TRAJECTORY)]
+    names = [] if posted is None else [name for name in posted.files if name.endswith(result_files.TRAJECTORY)]
     if not names:
         return None, (Diagnostic("C205", Place(str(program)), "no manifest beside it lists it with a trajectory"),)
     file = program.with_name(names[0])

@@ -10,9 +10,9 @@ import math
 from collections.abc import Iterable
 
 from pkm_post.model import EventKind
-from pkm_post.reading.cldata.options import UNITS
 from pkm_post.reading.cldata.state import Feed, ReaderState
 from pkm_post.reading.cldata.statements import Statement
+from pkm_post.reading.units import UNITS
 
 MM_PER_MINUTE: dict[str, float | None] = {"MMPM": 1.0, "IPM": 25.4, "FPM": 304.8, "PERMIN": None}
 """mm per length unit of a feed per minute; None is the program unit."""

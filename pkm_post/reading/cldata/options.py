@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from pkm_post.model import Tool
+from pkm_post.reading.units import UNITS
 
 
 @dataclass(frozen=True)
@@ -69,9 +70,6 @@ def detect_dialect(text: str) -> Dialect:
     best = max(counts, key=lambda name: counts[name])
     return DIALECTS[best if counts[best] else "apt"]
 
-
-UNITS: dict[str, float] = {"mm": 1.0, "inch": 25.4}
-"""mm per length unit."""
 
 POINT = ("x", "y", "z")
 AXIS = ("i", "j", "k")

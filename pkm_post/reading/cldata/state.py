@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 from pkm_post.model import Array, EventKind, Tool
 from pkm_post.reading.cldata.cycle_notation import Cycle
 from pkm_post.reading.cldata.faults import Faults
-from pkm_post.reading.cldata.options import UNITS, Dialect, ReadOptions
+from pkm_post.reading.cldata.options import Dialect, ReadOptions
 from pkm_post.reading.cldata.statements import Statement, Statements
+from pkm_post.reading.units import UNITS
 
 Vector = tuple[float, ...]
 

@@ -15,9 +15,9 @@ import re
 import numpy as np
 
 from pkm_post.model import Array
-from pkm_post.reading.cldata.options import UNITS
 from pkm_post.reading.cldata.state import LengthUnit, ReaderState
 from pkm_post.reading.cldata.statements import Statement, Statements
+from pkm_post.reading.units import UNITS
 
 _UNIT_WORDS: dict[str, str] = {"MM": "mm", "INCHES": "inch", "INCH": "inch", "IN": "inch"}
 """Operands of UNITS."""

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from pkm_post.model import Tool
+from pkm_post.reading.units import UNITS as UNITS
 
 Point = tuple[float, float, float]
 
@@ -29,9 +30,6 @@ def axis_names(axis_words: str) -> tuple[str, ...]:
     letters = AXIS_WORDS[axis_words]
     return tuple(name for letter in letters for name in VECTOR_WORDS.get(letter, (letter,)))
 
-
-UNITS: dict[str, float] = {"mm": 1.0, "inch": 25.4}
-"""mm per length unit."""
 
 DWELL_UNITS: dict[str, float] = {"s": 1.0, "ms": 0.001}
 """s per dwell unit."""
