@@ -68,7 +68,7 @@ class Row:
 
 
 _FUNCTIONS = "abs|acos|asin|atan|cos|exists|exp|fix|fup|ln|round|sin|sqrt|tan"
-_FLOW = "break|call|continue|do|else|elseif|endif|endrepeat|endsub|endwhile|if|repeat|return|sub|while"  # O words
+_FLOW = r"break|call|continue|do|else\s*if|else|end\s*(?:if|repeat|sub|while)|if|repeat|return|sub|while"  # O words
 
 GCODE: tuple[Row, ...] = (
     Row(Colour.KEYWORD, ("TRAORI", "TRAFOOF"), r"TRAORI(?:\s*\(\s*\d*\s*\))?|TRAFOOF"),
@@ -88,7 +88,7 @@ GCODE: tuple[Row, ...] = (
     ),
     Row(Colour.KEYWORD, ("LN", "_O", "PERCENT"), r"LN|O|%"),
     Row(Colour.OPERATOR, ("DELETE", "EQUAL", "LSQB", "RSQB"), r"[][/=]"),
-    Row(Colour.WORD, ("NAMED", "SURFACE", "LETTER"), r"[ABC]\s*3(?=\s*=)|[NT]\s*[XYZ]|[A-MP-Z]"),
+    Row(Colour.WORD, ("NAMED", "SURFACE", "LETTER"), r"[ABC]\s*3(?=\s*=)|[NT]\s*[XYZ]|[A-MP-Z@^]"),
     Row(Colour.LINE_NUMBER, ("_N",), r"N(?:\s*\d+\.?\d*)?"),  # with its number
     Row(Colour.NUMBER, ("NUMBER", "SIGN"), r"[+-]?(?:\d+\.?\d*|\.\d+)|[+-]"),
 )

@@ -179,7 +179,7 @@ def _values(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
         if letter in _WHOLE:
             wrong |= np.abs(value - np.round(value)) > 0
         if letter in _NOT_NEGATIVE:
-            wrong |= value < 0
+            wrong |= (value < 0) & ~_other_side(letter, modal)
         faults.add_where("G406", wrong, lambda row, name=letter, value=value: Word(name, value[row]))  # type: ignore[misc]
     rows = np.flatnonzero(map_rows(lambda codes: np.isin(codes, (410, 420)), modal.programmed[Group.SIDE]))
     diameter = blocks.word("D")[rows]
@@ -188,6 +188,12 @@ def _values(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     rows = blocks.g_row[blocks.g == 40]
     for row in np.unique(rows[blocks.word("P")[rows] < 0]).tolist():
         faults.add("G406", row, Word("P", blocks.word("P")[row]))
+
+
+def _other_side(letter: str, modal: Modal) -> Array:
+    """Whether a word below zero changes the side of cutter compensation, as D of G41.1 does [LinuxCNC, rs274]."""
+    side = modal.programmed[Group.SIDE]
+    return map_rows(lambda codes: np.isin(codes, (411, 421)), side) & (letter == "D")
 
 
 def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:

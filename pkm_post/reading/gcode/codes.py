@@ -32,6 +32,7 @@ class Group(Enum):
     PATH = "path control"
     SPINDLE_MODE = "spindle mode"
     ROTATION = "rotation"
+    POLAR = "polar coordinates"
     MIRROR = "mirror"
     STOP = "stop"
     CHANGE = "tool change"
@@ -57,17 +58,17 @@ class Code:
     takes_axes: bool = False
 
 
-_DRILL = "XYZRLK"
+_DRILL = "XYZ@^RLK"
 WORK_OFFSETS = (540, 550, 560, 570, 580, 590, 591, 592, 593)
 """In order of the P word of G10."""
 FURTHER_OFFSET, MOST_FURTHER_OFFSETS = -1000, 300
 """G54.1 P1 has the code below the first number; how many there are."""
 
 G_CODES: dict[int, Code] = {
-    0: Code(Group.MOTION, "XYZ"),
-    10: Code(Group.MOTION, "XYZ"),
-    20: Code(Group.MOTION, "XYZIJKRP"),
-    30: Code(Group.MOTION, "XYZIJKRP"),
+    0: Code(Group.MOTION, "XYZ@^"),
+    10: Code(Group.MOTION, "XYZ@^"),
+    20: Code(Group.MOTION, "XYZ@^IJKRP"),
+    30: Code(Group.MOTION, "XYZ@^IJKRP"),
     730: Code(Group.MOTION, _DRILL + "Q"),
     800: Code(Group.MOTION),
     810: Code(Group.MOTION, _DRILL),
@@ -125,8 +126,8 @@ UNSUPPORTED: dict[str, str] = {
     "G5.2": "NURBS",
     "G5.3": "NURBS",
     "G7": "diameters of a lathe",
-    "G15": "polar coordinates",
-    "G16": "polar coordinates",
+    "G15": "polar coordinates of Fanuc's controls; @ and ^ are understood, and G16 with --flavour fanuc",
+    "G16": "polar coordinates of Fanuc's controls; @ and ^ are understood, and G16 with --flavour fanuc",
     "G38.2": "probing",
     "G38.3": "probing",
     "G38.4": "probing",

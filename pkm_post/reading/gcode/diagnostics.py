@@ -23,7 +23,7 @@ _MOST_REPORTED = 50
 """Faults per code that are reported with their own place."""
 
 _WORD = re.compile(
-    r"([ABC][ \t]*3(?=[ \t]*=)|[NT][ \t]*[XYZ]|[A-Z])[ \t]*=?[ \t]*([+-]?(?:\d+\.?\d*|\.\d+))", re.IGNORECASE
+    r"([ABC][ \t]*3(?=[ \t]*=)|[NT][ \t]*[XYZ]|[A-Z@^])[ \t]*=?[ \t]*([+-]?(?:\d+\.?\d*|\.\d+))", re.IGNORECASE
 )
 _COMMENT = re.compile(r"\([^)]*\)?|;.*")
 

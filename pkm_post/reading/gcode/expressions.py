@@ -248,7 +248,11 @@ def _numbered(column: int) -> Step:
 
 
 def _exists(target: Target) -> Step:
-    return lambda stack, parameters: stack.append(float(parameters.exists(target.resolved(parameters))))
+    def exists(stack: list[float], parameters: Parameters) -> None:
+        name = target.resolved(parameters)
+        stack.append(float(_located(target.column, parameters.exists, name)))
+
+    return exists
 
 
 def _apply(function: Callable[[float], float], name: str, node: Node) -> Step:

@@ -112,14 +112,14 @@ _FANUC_CODES: dict[int, Code] = {
     **{code: meaning for code, meaning in G_CODES.items() if code not in (281, 301, 431, 432, 922, 923)},
     40: Code(Group.ONCE, "PX", takes_axes=True),
     90: Code(Group.ONCE),
+    **{code: Code(Group.POLAR) for code in (150, 160)},
     300: replace(G_CODES[300], letters="XYZP"),
     541: Code(Group.SYSTEM, "P", "P"),
     **{FURTHER_OFFSET - number: Code(Group.SYSTEM) for number in range(1, MOST_FURTHER_OFFSETS + 1)},
     **{code: Code(Group.MOTION, "XYZRLKPQ") for code in CYCLES},
 }
 _FANUC_REFUSED: dict[str, str] = {
-    **{code: reason for code, reason in UNSUPPORTED.items() if code not in ("G5", "G5.1", "G15", "G50", "M50", "M51")},
-    "G16": "polar coordinates",
+    **{code: why for code, why in UNSUPPORTED.items() if code not in ("G5", "G5.1", "G15", "G16", "G50", "M50", "M51")},
     "G27": "checks of the reference point",
     "G29": "the way back from the reference point",
     "G31": "probing",
@@ -156,7 +156,6 @@ FANUC = replace(
     equivalents={2340: 434},
     without_motion={
         131: "end of interpolation in polar coordinates",
-        150: "end of polar coordinates",
         220: "stroke check",
         230: "end of the stroke check",
         250: "end of the watch of the spindle",

@@ -18,6 +18,9 @@ from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import ARCS, CYCLES, NONE, Group
 from pkm_post.reading.gcode.flavours import RS274, Flavour
 
+POLAR_WORDS = ("@", "^")
+"""Distance from the origin and angle in degrees of LinuxCNC."""
+
 _DEFAULTS: dict[Group, int] = {
     Group.MOTION: 800,
     Group.PLANE: 170,
@@ -30,6 +33,7 @@ _DEFAULTS: dict[Group, int] = {
     Group.RETRACT: 980,
     Group.PATH: 640,
     Group.SYSTEM: 540,
+    Group.POLAR: 150,
 }
 """Active codes at program start."""
 
@@ -151,7 +155,8 @@ def _moves(
 ) -> Array:
     """Whether each block has words that cause motion, (N,)."""
     # On an arc the centre or the radius suffices; G1 I J K rotates the tool axis, but on an arc I J K are the centre.
-    moves = _has(blocks, ("X", "Y", "Z", *axis_words)) | (is_arc(active[Group.MOTION]) & _has(blocks, "IJKR"))
+    moves = _has(blocks, ("X", "Y", "Z", *POLAR_WORDS, *axis_words))
+    moves |= is_arc(active[Group.MOTION]) & _has(blocks, "IJKR")
     return moves | is_cycle(programmed[Group.MOTION])
 
 

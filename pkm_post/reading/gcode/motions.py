@@ -24,6 +24,7 @@ from pkm_post.reading.gcode.events import CycleEvent
 from pkm_post.reading.gcode.frames import Frame
 from pkm_post.reading.gcode.modal import Modal, PositionWords, forward_fill, is_cycle, track_coordinate
 from pkm_post.reading.gcode.options import ReadOptions
+from pkm_post.reading.gcode.polar import PolarWords
 from pkm_post.reading.gcode.work_offsets import IN_ORDER, SETS_OFFSETS, TIP_CONTROL, OffsetCodes
 
 
@@ -157,7 +158,8 @@ class PositionTracker:
     ):
         self.blocks, self.modal, self.options, self.faults = blocks, modal, options, faults
         self.tools, self.spindle = tools, spindle
-        self.words = PositionWords.of(blocks, modal)
+        self.polar = PolarWords(blocks, modal, PositionWords.of(blocks, modal), faults)
+        self.words, self._is_polar = self.polar.words, self.polar.rows()
         self.relative = modal.active[Group.DISTANCE] == 910
         self.offset_codes = OffsetCodes(blocks, modal, self.words, tools, options, faults)
         self.drilling = CycleTracker(blocks, modal, self.words, spindle, dwells, faults)
@@ -181,8 +183,13 @@ class PositionTracker:
             self._add_ordinary(moves[done:until])
             done = until
             self._change_frame(row)
+            if self._is_polar[row]:
+                self.polar.resolve(row, self.position, self.known)
             if self._special_motion(row):
                 done += int(self.modal.moves[row])
+            elif self._is_polar[row]:
+                self._add_ordinary(moves[done : done + 1])
+                done += 1
         self._add_ordinary(moves[done:])
         return concatenated(self._sections, self.frames, self.in_cycles)
 
@@ -195,7 +202,7 @@ class PositionTracker:
             special = special | (programmed[group] != NONE)
         if not is_uniform(programmed[Group.LENGTH]):
             special = special | ((programmed[Group.LENGTH] != NONE) & ~self._repeats_length_code())
-        return section_ends | special
+        return section_ends | special | self._is_polar
 
     def _repeats_length_code(self) -> Array:
         """Mask of blocks that repeat the active tip control, (N,): every LN block does."""

@@ -140,8 +140,9 @@ class _Linker:
         self.open[min(loops)].jumps.append(row)
 
     def _return(self, row: int, keyword: str, label: str) -> None:
-        if not self._depths.get(("sub", label)):
-            raise ExecutionFault("G312", f"O{_shown(label)} {keyword} outside of its sub")
+        """Any label: it is the subprogram that runs that ends [LinuxCNC, rs274]."""
+        if not self._subs:
+            raise ExecutionFault("G312", f"O{_shown(label)} {keyword} outside of a sub")
 
     def _first_within(self, keyword: str, label: str) -> int | None:
         """Index of the outermost such construct that is open within the current subprogram."""

@@ -48,6 +48,9 @@ _NAMES_OF_THE_MACHINE = frozenset((
 # fmt: on
 """Names that the control reserves for its own state."""
 
+_SETTINGS_OF_THE_MACHINE = ("_hal[", "_ini[")
+"""Beginnings of the names of pins and of entries of the configuration."""
+
 _OF_A_CALL = ("_value", "_value_returned", "_call_level")
 """Names set by subprogram calls only, not by assignment."""
 
@@ -119,7 +122,13 @@ class Parameters:
         self._named(name)[name] = value
 
     def exists(self, name: Name) -> bool:
-        """Whether a parameter can be read."""
+        """Whether a parameter can be read.
+
+        Raises:
+            ExecutionFault: only the control knows.
+        """
+        if isinstance(name, str) and name.startswith(_SETTINGS_OF_THE_MACHINE):
+            raise ExecutionFault("G303", f"#<{name}>")
         return isinstance(name, int) or name in _NAMES_OF_THE_MACHINE or name in self._named(name)
 
     def enter(self, arguments: Sequence[float] | None) -> None:
@@ -181,5 +190,5 @@ def _numbered(number: int) -> int:
 
 
 def _refuse_names_of_the_machine(name: str) -> None:
-    if name in _NAMES_OF_THE_MACHINE:
+    if name in _NAMES_OF_THE_MACHINE or name.startswith(_SETTINGS_OF_THE_MACHINE):
         raise ExecutionFault("G303", f"#<{name}>")

@@ -148,7 +148,7 @@ _ADD: dict[str, Callable[[Words, Tree[Token]], None]] = {
 
 def _o_word_of(tree: Tree[Token]) -> OWord:
     label, *rest = tree.children
-    keyword = str(rest.pop(0)).lower() if rest else "program"
+    keyword = "".join(str(rest.pop(0)).split()).lower() if rest else "program"
     if len(rest) > ARGUMENTS:
         raise ExecutionFault("G315", f"{len(rest)} arguments", column_of_node(rest[ARGUMENTS]))
     return OWord(keyword, _label_of(label), tuple(expression_of(node) for node in rest))

@@ -134,6 +134,8 @@ def _token_fault(text: str, unexpected: UnexpectedToken) -> Fault:
     if text.count("[") > text.count("]") and _open_brackets(text[:offset]):
         return Fault("G205", _open_brackets(text[:offset])[-1], "'['")
     accepted = _accepted(text, unexpected)
+    if "PRODUCT" in accepted:
+        accepted.discard("DELETE")  # division, an operator like the others
     code, place = _code_and_place(text, offset, unexpected, accepted)
     found = "the end of the block" if place == offset and at_end else f"'{text[place : place + 1]}'"
     return Fault(code, place, f"{found}, expected {in_words(accepted, EXPECTED)}")

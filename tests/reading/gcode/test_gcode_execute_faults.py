@@ -85,7 +85,7 @@ FAULTS = [
     ("o#1 if [1]\nX1", "G311", 1, 3, "the label of if is computed"),
     ("o<a>", "G311", 1, 0, "O<a> without a keyword"),
     ("o1 sub\no2 sub\no2 endsub\no1 endsub", "G312", 2, 0, "O2 sub within another sub"),
-    ("o1 return", "G312", 1, 0, "O1 return outside of its sub"),
+    ("o1 return", "G312", 1, 0, "O1 return outside of a sub"),
     ("o1 if [1]\nO7\no1 endif", "G312", 2, 0, "O7 within O1 if"),
     ("X1\nM99", "G312", 2, 0, "M99 outside of a subprogram called by M98"),
     ("o1 sub\nM99\no1 endsub\no1 call", "G312", 2, 0, "M99 outside of a subprogram called by M98"),
