@@ -8,7 +8,7 @@ first step is ``scan`` and whose whole is ``read``; for a 3-axis program (modal 
 with the tool axis as I J K (G1 in every block). Readers that are not installed are left out; slow ones read the
 beginning of the program. Nothing is asserted about times.
 
-With ``--memory``, each size is read from a file by a process of its own. The most memory is told that it had, with
+With ``--memory``, each size is read from a file by a process of its own. The most memory is reported that it had, with
 Python, numpy and the text of the program, and per row what it had more than at its beginning; and the time of the
 processor, which others on the machine do not change as much as the time of the clock.
 """
@@ -137,10 +137,10 @@ def read_file(path):
     before = _peak()
     text = Path(path).read_bytes()
     start = time.process_time()
-    program, told = read(text, path, OPTIONS)
+    program, reported = read(text, path, OPTIONS)
     took = time.process_time() - start
     if program is None:
-        raise SystemExit("\n".join(map(str, told)))
+        raise SystemExit("\n".join(map(str, reported)))
     rows, peak = len(program), _peak()
     print(
         f"{rows:12,} {len(text) / 1e6:9.0f} {peak:9.0f} {(peak - before) / rows * 1e6:10.0f} {took / rows * 1e6:10.2f}"

@@ -86,7 +86,7 @@ class Stopwatch:
         """A step begins, and the one before it ends."""
         self.steps.append((name, np.array([time.perf_counter(), time.process_time()])))
 
-    def told(self):
+    def reported(self):
         """A line for each step; the seconds of all of them."""
         for (name, begin), (_, end) in itertools.pairwise(self.steps):
             if name:
@@ -104,7 +104,7 @@ def post(job, folder, options):
     watch = Stopwatch()
     post_job(job, roomy_machine(folder), folder, options, progress=watch.begins)
     watch.begins("")
-    return watch.told()
+    return watch.reported()
 
 
 def post_as_text(job):
@@ -113,7 +113,7 @@ def post_as_text(job):
     watch.begins("linuxcnc text post")
     PostProcessorFactory.get_post_processor(job, "linuxcnc").export()
     watch.begins("")
-    return watch.told()
+    return watch.reported()
 
 
 def main():

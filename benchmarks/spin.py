@@ -42,7 +42,7 @@ def path(poses):
     return machine, place(program(position, axis), machine, offset)[0]
 
 
-def told(name, seconds, before, after):
+def reported(name, seconds, before, after):
     """One line of the table: seconds, and the shares of stroke, joints and distance to singular poses."""
     shares = " -> ".join(" ".join(f"{share:.3f}" for share in left) for left in (before, after))
     print(f"{name:<22}{seconds:7.2f} s   {shares}", flush=True)
@@ -58,7 +58,7 @@ def main():
         begin = time.perf_counter()
         found = optimise_spin(trajectory, machine, SpinPolicy(SpinRule.OPTIMISED, objective=objective))
         seconds = time.perf_counter() - begin
-        told(
+        reported(
             f"spin, {objective}",
             seconds,
             least_normalised_margins(trajectory, machine),
@@ -66,7 +66,7 @@ def main():
         )
     begin = time.perf_counter()
     position = best_position(trajectory, machine)
-    told("position", time.perf_counter() - begin, position.before, position.after)
+    reported("position", time.perf_counter() - begin, position.before, position.after)
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ SHARES = np.sort(np.arange(1, 10) * (np.sqrt(5) - 1) / 2 % 1)
 CHUNK = 4096
 
 
-def told(name, time_ms, path, schedule, machine):
+def reported(name, time_ms, path, schedule, machine):
     """One line of the table."""
     tip = axis = 0.0
     for first in range(0, len(time_ms) - 1, CHUNK):
@@ -59,10 +59,10 @@ def main():
         sys.exit("\n".join(map(str, (*faults, *machine_faults))))
     feed_plan, _ = plan_feed(trajectory, machine, trajectory.tolerances)
     path, schedule, motion = feed_plan.path, feed_plan.schedule, interpolate(feed_plan).motion
-    told("by error", motion.time_ms, path, schedule, machine)
+    reported("by error", motion.time_ms, path, schedule, machine)
     for step in FIXED_MS:
         fixed = np.unique(np.concatenate([np.arange(0, schedule.rests_ms[-1], step), schedule.rests_ms]))
-        told(f"{step} ms", fixed, path, schedule, machine)
+        reported(f"{step} ms", fixed, path, schedule, machine)
 
 
 if __name__ == "__main__":

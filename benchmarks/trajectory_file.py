@@ -8,8 +8,8 @@ Enters: a number of blocks. Leaves: seconds by way of getting at all segments, a
 ``gcode.read`` of the text. The files were just written, so both are in memory; seconds are of the processor, so that
 other processes and waiting for the disk do not count. A walk in C needs a compiler, cc or gcc.
 
-With ``--memory``, each size is written by a process of its own that has made a trajectory before, and it is told how
-much more memory that process took for writing. Nothing is asserted.
+With ``--memory``, each size is written by a process of its own that has made a trajectory before; printed is how much
+more memory that process took for writing. Nothing is asserted.
 """
 
 import argparse

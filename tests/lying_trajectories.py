@@ -88,16 +88,16 @@ def posted(folder):
 def verified(program, trajectory, content):
     """Exit code and diagnostics of ``verify`` with a trajectory of this content; warnings of NumPy are raised."""
     trajectory.write_bytes(content)
-    told = io.StringIO()
-    with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(told):
+    reported = io.StringIO()
+    with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(reported):
         warnings.simplefilter("error")
         code = main(["verify", str(program), "--against", str(trajectory)])
-    return code, told.getvalue()
+    return code, reported.getvalue()
 
 
-def is_refused_by_name(code, told):
+def is_refused_by_name(code, reported):
     """Whether something was refused, in diagnostics alone."""
-    lines = [line for line in told.splitlines() if ": warning F107: " not in line]
+    lines = [line for line in reported.splitlines() if ": warning F107: " not in line]
     return code == 1 and bool(lines) and all(": error " in line for line in lines)
 
 
@@ -110,9 +110,9 @@ def series(seconds):
         while time.monotonic() < end:
             content, done = lie(random.Random(count), sound)
             begin = time.monotonic()
-            code, told = verified(program, trajectory, content)
-            if not (code == 0 or is_refused_by_name(code, told)) or time.monotonic() - begin > 10:
-                raise SystemExit(f"seed {count}, {done}: exit code {code}, {told}")
+            code, reported = verified(program, trajectory, content)
+            if not (code == 0 or is_refused_by_name(code, reported)) or time.monotonic() - begin > 10:
+                raise SystemExit(f"seed {count}, {done}: exit code {code}, {reported}")
             count, refused = count + 1, refused + code
     return count, refused
 

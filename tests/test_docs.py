@@ -156,9 +156,9 @@ def test_every_page_is_in_the_index():
 
 
 def test_floors_are_those_of_the_test():
-    told = {room: int(floor) for floor, room in FLOOR_ROW.findall(text(DOCS / "architecture.md"))}
+    reported = {room: int(floor) for floor, room in FLOOR_ROW.findall(text(DOCS / "architecture.md"))}
     rooms = {path.stem for path in PACKAGE.iterdir() if path.suffix == ".py" or any(path.glob("*.py"))}
-    assert told == {room: FLOORS[room] for room in rooms - {"__init__"}}
+    assert reported == {room: FLOORS[room] for room in rooms - {"__init__"}}
 
 
 def test_diagnostics_page_is_up_to_date():
@@ -196,8 +196,8 @@ def test_the_journey_is_one_that_was_made():
     played, _ = pmac.read_program(written, settings, "journey.pmc")
     certificate, _ = certify(played, "journey.pmc", trajectory, machine, motion, tolerances)
 
-    told = text(DOCS / "journey.md")
-    assert "\n".join(re.findall(r"^    (PVT\d+|A\d.*)$", told, re.MULTILINE)) in written
-    assert f"There are {len(motion)} knots" in told
+    reported = text(DOCS / "journey.md")
+    assert "\n".join(re.findall(r"^    (PVT\d+|A\d.*)$", reported, re.MULTILINE)) in written
+    assert f"There are {len(motion)} knots" in reported
     for found in certificate.findings[1:]:
-        assert f"| {found.name} | {found.value:.4g} {found.unit} | {found.limit:.4g} {found.unit} |" in told
+        assert f"| {found.name} | {found.value:.4g} {found.unit} | {found.limit:.4g} {found.unit} |" in reported

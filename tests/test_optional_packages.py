@@ -21,14 +21,14 @@ def python(code, *arguments):
 
 
 def test_a_job_is_posted_without_lark_pyserial_and_paramiko():
-    told = python("import pkm_post.posting, pkm_post.options, pkm_post.reading.gcode; print('imported')")
-    assert told.stdout == "imported\n", told.stderr
+    reported = python("import pkm_post.posting, pkm_post.options, pkm_post.reading.gcode; print('imported')")
+    assert reported.stdout == "imported\n", reported.stderr
 
 
 def test_a_part_program_needs_lark_and_says_so(tmp_path):
     part = tmp_path / "part.ngc"
     part.write_text("G0 X1\n")
-    told = python("from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))", "check", part)
-    assert told.returncode == 1
-    assert "Traceback" not in told.stderr
-    assert "lark" in told.stderr and "install" in told.stderr
+    reported = python("from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))", "check", part)
+    assert reported.returncode == 1
+    assert "Traceback" not in reported.stderr
+    assert "lark" in reported.stderr and "install" in reported.stderr

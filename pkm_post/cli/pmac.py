@@ -254,19 +254,19 @@ def _target(namespace: argparse.Namespace) -> Target | None:
     from pkm_post.machine import machine_named
     from pkm_post.writing import pmac, power_pmac
 
-    machine = _told(*machine_named(namespace.machine))
+    machine = _printed(*machine_named(namespace.machine))
     if machine is None:
         return None
-    settings: Any = _told(*(power_pmac if namespace.port.is_power else pmac).settings_of(machine))
+    settings: Any = _printed(*(power_pmac if namespace.port.is_power else pmac).settings_of(machine))
     if settings is None:
         return None
     if "program" not in namespace:
         return Target(machine, settings)
-    job = _told(*job_to_load(namespace.program, machine, settings, namespace.uncertified))
+    job = _printed(*job_to_load(namespace.program, machine, settings, namespace.uncertified))
     return None if job is None else JobTarget(machine, settings, job)
 
 
-def _told(value: Value | None, faults: Sequence[Diagnostic]) -> Value | None:
+def _printed(value: Value | None, faults: Sequence[Diagnostic]) -> Value | None:
     """Print the faults and return the value."""
     for fault in faults:
         print(fault, file=sys.stderr)

@@ -22,7 +22,7 @@ translate = FreeCAD.Qt.translate
 
 
 @contextmanager
-def memory_or_told(title: str) -> Iterator[None]:
+def show_lack_of_memory(title: str) -> Iterator[None]:
     """Show a lack of memory during an action in a window; other exceptions propagate.
 
     Args:
@@ -82,7 +82,7 @@ class Command:
         """Run the command; a fault restores the previous state."""
         subject = next(iter(FreeCADGui.Selection.getSelection()), None)
         document = subject.Document if subject else FreeCAD.ActiveDocument
-        with memory_or_told(translate(self.name, self.text)):
+        with show_lack_of_memory(translate(self.name, self.text)):
             with transaction(document, translate(self.name, self.text)):
                 self.action(subject)
             document.recompute()
@@ -98,7 +98,7 @@ class WindowCommand(Command):
 
     def Activated(self) -> None:
         """Open the window."""
-        with memory_or_told(translate(self.name, self.text)):
+        with show_lack_of_memory(translate(self.name, self.text)):
             self.action(next(iter(FreeCADGui.Selection.getSelection()), None))
 
 
@@ -110,7 +110,7 @@ class PanelCommand(Command):
         """Add the object and open its panel; a fault restores the previous state."""
         (subject,) = FreeCADGui.Selection.getSelection()
         document, before = subject.Document, set(subject.Document.Objects)
-        with memory_or_told(translate(self.name, self.text)):
+        with show_lack_of_memory(translate(self.name, self.text)):
             self._add(subject, document, before)
 
     def _add(

@@ -51,7 +51,7 @@ class PlayerControls(QtWidgets.QWidget):
         _button(layout, "SP_MediaSkipBackward", back, self.back)
         _button(layout, "SP_MediaSkipForward", on, self.forward)
         self.factor, self.override, self.stops = QtWidgets.QComboBox(), QtWidgets.QSpinBox(), QtWidgets.QCheckBox()
-        self._told = QtWidgets.QLabel()
+        self._message = QtWidgets.QLabel()
         self._set_up()
         for widget in (self.factor, QtWidgets.QLabel(translate("PKM_Simulate", "Override")), self.override, self.stops):
             layout.addWidget(widget)
@@ -63,7 +63,7 @@ class PlayerControls(QtWidgets.QWidget):
         _button(layout, "SP_FileIcon", film, self.animation)
         removal = translate("PKM_Simulate", "Removal of material, in CAM's own simulator; it shows every tool upright")
         _button(layout, "SP_ComputerIcon", removal, self.removal)
-        layout.addWidget(self._told, 1)
+        layout.addWidget(self._message, 1)
 
     def _set_up(self) -> None:
         self.factor.addItems([f"{factor}x" for factor in FACTORS])
@@ -80,7 +80,7 @@ class PlayerControls(QtWidgets.QWidget):
         self.stops.setText(translate("PKM_Simulate", "Stop at problems"))
         self.stops.setChecked(True)
         # a text that changes with every frame must not change the layout of the dock
-        self._told.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Preferred)
+        self._message.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Preferred)
 
     def pace(self) -> float:
         """Seconds of planned motion per second of real time."""
@@ -88,12 +88,12 @@ class PlayerControls(QtWidgets.QWidget):
 
     def show_text(self, text: str) -> None:
         """Show a line."""
-        self._told.setText(text)
-        self._told.setToolTip(text)
+        self._message.setText(text)
+        self._message.setToolTip(text)
 
     def text(self) -> str:
         """The displayed line."""
-        return str(self._told.text())
+        return str(self._message.text())
 
     def show_playing(self, plays: bool) -> None:
         """Turn the button into a pause button during play."""

@@ -147,7 +147,7 @@ class SymmetryPlace:
             self._show_status(str(unfit))
             return
         setattr(self._obj, self.frame.link, link)
-        self._show_status(self._told_pick())
+        self._show_status(self._pick_text())
         self._changed()
 
     def _link(self) -> Any:
@@ -166,7 +166,7 @@ class SymmetryPlace:
     def _show_values(self) -> None:
         """Show direction and point, which of them are editable, and the picked element."""
         chosen = self.choice.currentIndex()
-        self._show_status(self._told_pick())
+        self._show_status(self._pick_text())
         self.direction.show_values(getattr(self._obj, self.frame.direction), enabled=chosen == self._pick_index + 1)
         self.point.show_values(self._obj.Point, enabled=chosen != self._pick_index)
 
@@ -175,7 +175,7 @@ class SymmetryPlace:
         self.picked.setText(text)
         self.picked.setVisible(bool(text))
 
-    def _told_pick(self) -> str:
+    def _pick_text(self) -> str:
         link = self._link()
         if link:
             return " ".join([link[0].Label, *link[1]]).strip()

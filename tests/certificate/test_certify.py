@@ -91,15 +91,15 @@ def test_a_dropped_point_is_found():
     assert (fault.code, fault.found) == ("V110", f"knot 20: {times[21]} ms, planned {times[20]} ms; {points}")
 
 
-def test_a_last_point_that_is_missing_is_told_as_such():
+def test_a_last_point_that_is_missing_is_reported_as_such():
     times = planned()[3].time_ms
     points = f"{len(times) - 1} found, {len(times)} planned"
     _, faults = verdict(changed(rows=slice(-1)))
-    told = {fault.code: fault.found for fault in faults}
-    assert told["V110"] == f"knot {len(times) - 1}: none, planned {times[-1]} ms; {points}"
+    reported = {fault.code: fault.found for fault in faults}
+    assert reported["V110"] == f"knot {len(times) - 1}: none, planned {times[-1]} ms; {points}"
 
 
-def test_a_shifted_point_is_told_with_both_its_times():
+def test_a_shifted_point_is_reported_with_both_its_times():
     times = planned()[3].time_ms.copy()
     times[[30, 31]] += 1
     _, (fault,) = verdict(changed(time_ms=times))
@@ -113,7 +113,7 @@ def test_a_dropped_event_is_found():
     assert (fault.code, fault.found) == ("V109", f"event 0: none, planned {event}; 0 found, 1 planned")
 
 
-def test_the_first_event_that_is_another_is_told_as_found_and_as_planned():
+def test_the_first_event_that_is_another_is_reported_as_found_and_as_planned():
     (change,) = planned()[3].events
     spindle = Event(0, EventKind.SPINDLE, 9000.0)
     for events, found in (
@@ -144,12 +144,12 @@ def test_another_machine_is_found():
     assert codes(verdict(machine=other)) == {"T104"}
 
 
-@pytest.mark.parametrize(("row", "told"), [(0, "first"), (-1, "last")])
-def test_motion_at_an_end_is_found_where_it_is(row, told):
+@pytest.mark.parametrize(("row", "reported"), [(0, "first"), (-1, "last")])
+def test_motion_at_an_end_is_found_where_it_is(row, reported):
     speed = planned()[3].speed.copy()
     speed[row, 0] = 0.5
     _, (fault,) = verdict(changed(speed=speed))
-    assert (fault.code, fault.found) == ("V105", f"{told} speeds [0.5, 0.0, 0.0, 0.0, 0.0, 0.0] mm/s")
+    assert (fault.code, fault.found) == ("V105", f"{reported} speeds [0.5, 0.0, 0.0, 0.0, 0.0, 0.0] mm/s")
 
 
 def test_lengths_without_a_pose_are_found():

@@ -70,7 +70,7 @@ def test_a_turn_about_the_tool_axis_alone_has_something_to_be_measured_by():
 
 @pytest.mark.parametrize("past", [-1e-3, 1e-6, 1e-4])
 @pytest.mark.parametrize(("rise", "tilt"), [(-4.0, 0.0), (-0.0024, 0.0), (-0.002, 0.0), (-0.001, 0.0), (0.0, 5.0)])
-def test_both_ends_of_a_full_turn_are_told_apart(past, rise, tilt):
+def test_both_ends_of_a_full_turn_are_reported_apart(past, rise, tilt):
     start, centre = np.array([0.0, 0, 40]), np.array([5.0, 0, 40])
     blank = np.full((2, 3), np.nan)
     position, kind = [start, start + [0, 0, rise]], [Kind.RAPID, Kind.ARC]
@@ -115,13 +115,13 @@ def test_no_other_segment_is_measured_from_than_the_one_that_is_named():
     assert off[0].max() > 29
 
 
-def test_what_the_tip_may_be_is_told_by_segment():
+def test_what_the_tip_may_be_is_reported_by_segment():
     made = dataclasses.replace(square_with_arc(), tip_tolerance=np.array([0, 0, 0.02, 0, 0.05, 0, 0]))
     trajectory, poses = poses_on(made, 700)
-    told = TrajectoryRuler(trajectory, TOLERANCES).deviation_from(poses.tip, poses.axis, poses.segment)[2]
+    reported = TrajectoryRuler(trajectory, TOLERANCES).deviation_from(poses.tip, poses.axis, poses.segment)[2]
     said = trajectory.tip_tolerance[poses.segment]
     assert set(np.unique(said)) == {0, 0.02, 0.05}
-    np.testing.assert_array_equal(told, np.where(said > 0, said, TOLERANCES.tip))
+    np.testing.assert_array_equal(reported, np.where(said > 0, said, TOLERANCES.tip))
 
 
 def test_no_poses_have_no_deviations():

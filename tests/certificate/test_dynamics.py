@@ -48,9 +48,9 @@ def test_no_instant_is_above_the_figures(name, seed, tolerances, decimals):
     job = posted(name, seed, tolerances, decimals)
     assert job is not None
     for value, row in zip(densely(job), ("turning rate of the tool axis", "tip acceleration"), strict=True):
-        told = finding(job[4], row)
-        assert value <= told.value * (1 + DIFFERENCES)
-        assert told.value <= max(1.006 * value, 0.5 * told.limit)  # and little above what there is
+        reported = finding(job[4], row)
+        assert value <= reported.value * (1 + DIFFERENCES)
+        assert reported.value <= max(1.006 * value, 0.5 * reported.limit)  # and little above what there is
 
 
 @pytest.mark.parametrize(("name", "seed", "tolerances", "decimals"), CASES)
@@ -61,12 +61,12 @@ def test_jobs_are_posted_within_the_limits(name, seed, tolerances, decimals):
 
 
 def test_where_the_course_says_nothing_the_figures_are_those_of_newtons_method(monkeypatch):
-    *_, told, _ = posted("example_6tps", 6, NARROW)
+    *_, reported, _ = posted("example_6tps", 6, NARROW)
     blind = lambda _, rows: (np.zeros((2, len(rows))), np.full((2, len(rows)), np.inf))  # noqa: E731
     monkeypatch.setattr(ToolSpline, "rates", blind)
     *_, closely, _ = of(preset("example_6tps"), random_job(np.random.default_rng(6)), NARROW)
     for row in ("turning rate of the tool axis", "tip acceleration"):
-        assert finding(closely, row).value == pytest.approx(finding(told, row).value, rel=6e-3)
+        assert finding(closely, row).value == pytest.approx(finding(reported, row).value, rel=6e-3)
 
 
 def test_a_circle_has_the_acceleration_of_a_circle():
@@ -86,7 +86,7 @@ def test_a_circle_has_the_acceleration_of_a_circle():
     )
 
 
-def test_the_tip_keeps_a_limit_of_jerk_and_is_told_where_it_does_not():
+def test_the_tip_keeps_a_limit_of_jerk_and_is_reported_where_it_does_not():
     limited = dataclasses.replace(preset("example_6tps"), tip_jerk=50_000.0)
     for tolerances in (NARROW, WIDE):
         *_, certificate, faults = of(limited, random_job(np.random.default_rng(7)), tolerances)
@@ -107,7 +107,7 @@ def test_the_jerk_of_the_tip_is_that_of_the_velocities_at_the_knots():
     assert finding(certificate, "tip jerk").value == pytest.approx(max(inner, *ends), rel=1e-2)
 
 
-def test_steps_of_acceleration_are_told_and_have_no_limit():
+def test_steps_of_acceleration_are_reported_and_have_no_limit():
     _, _, _, struts, certificate, _ = posted("example_6tps", 6, WIDE)
     figure = next(each for each in certificate.figures if each.name.startswith("step of strut acceleration"))
     h = np.diff(struts.time_ms)[:, None] / 1000
@@ -179,14 +179,14 @@ def test_equal_gains_draw_a_smaller_circle():
 
 
 @pytest.mark.parametrize("gains", [30.0, [30, 33, 30, 30, 30, 30], [40, 30, 35, 45, 38, 50]])
-def test_six_loops_leave_the_circle_by_what_is_told(gains):
+def test_six_loops_leave_the_circle_by_what_is_reported(gains):
     machine, _, motion, struts, certificate, faults = of(with_gains(gains), circle(15.0, turns=1), WIDE)
     assert faults == ()
     asked, there = followed(machine, motion, struts)
     begin, end = (int(part * len(there)) for part in STEADY)
-    found, told = off_path(asked, there[begin:end]).max(), steady(machine, motion, struts).max()
-    assert 0.8 * told <= found <= 1.05 * told
-    assert told <= figure(certificate, "contour error")
+    found, reported = off_path(asked, there[begin:end]).max(), steady(machine, motion, struts).max()
+    assert 0.8 * reported <= found <= 1.05 * reported
+    assert reported <= figure(certificate, "contour error")
 
 
 def test_unequal_gains_leave_a_straight_line_and_equal_ones_do_not():
@@ -200,7 +200,7 @@ def test_unequal_gains_leave_a_straight_line_and_equal_ones_do_not():
     assert errors[1] > 5 * errors[0]
 
 
-def test_one_count_moves_the_tip_by_no_more_than_is_told():
+def test_one_count_moves_the_tip_by_no_more_than_is_reported():
     machine, _, motion, struts, certificate, _ = of(preset("example_6tps"), random_job(np.random.default_rng(3)), WIDE)
     count = 1 / machine.controller["counts_per_mm"]
     rows = np.arange(0, len(motion), max(1, len(motion) // 40))
@@ -211,8 +211,8 @@ def test_one_count_moves_the_tip_by_no_more_than_is_told():
             machine, lengths, motion.tool_length[rows], motion.tip[rows], motion.axis[rows], motion.spin[rows]
         )
         most = max(most, 1000 * norm(moved.tip - motion.tip[rows]).max())
-    told = figure(certificate, "tip moved by one count")
-    assert 0.9 * told <= most <= told * 1.01
+    reported = figure(certificate, "tip moved by one count")
+    assert 0.9 * reported <= most <= reported * 1.01
 
 
 def test_without_gains_there_is_no_figure_of_them():

@@ -43,8 +43,8 @@ def test_lies_are_refused_by_name_or_change_nothing_that_is_run(files):
     codes = []
     for seed in range(SEEDS):
         content, done = lie(random.Random(seed), sound)
-        code, told = verified(program, file, content)
-        assert code == 0 or is_refused_by_name(code, told), (seed, done, told)
+        code, reported = verified(program, file, content)
+        assert code == 0 or is_refused_by_name(code, reported), (seed, done, reported)
         codes.append(code)
     assert sum(codes) > SEEDS / 2
 
@@ -120,8 +120,8 @@ def test_what_its_machine_cannot_do_is_not_planned(files, trajectory, tmp_path, 
     machine, _ = machine_named("example_6tps")
     with pytest.raises(Refused) as refused:
         verify(files[0], tmp_path / "part.pkmt", machine)
-    told = [item for item in refused.value.diagnostics if item.code == "T107"]
-    assert any(item.found.startswith(found) for item in told), refused.value
+    reported = [item for item in refused.value.diagnostics if item.code == "T107"]
+    assert any(item.found.startswith(found) for item in reported), refused.value
 
 
 def test_a_motion_of_more_than_a_week_is_refused_before_it_is_planned(tmp_path, capsys):

@@ -68,8 +68,8 @@ def dense(job, rows):
     tool = motion.tool_length[knot + 1]
     pose = forward(machine, length.reshape(-1, 6), tool, motion.tip[knot], motion.axis[knot], motion.spin[knot])
     assert pose.converged.all()
-    told = np.column_stack([certificate.tip_deviation[knot] + FORWARD, certificate.axis_deviation[knot] + FORWARD])
-    off = off_by(trajectory, pose, motion.segment[knot], motion.segment[knot + 1], told)
+    reported = np.column_stack([certificate.tip_deviation[knot] + FORWARD, certificate.axis_deviation[knot] + FORWARD])
+    off = off_by(trajectory, pose, motion.segment[knot], motion.segment[knot + 1], reported)
     jacobian, _ = linearise(machine, pose.tip, pose.rotation, tool)
     twist = np.linalg.solve(jacobian, speed.reshape(-1, 6, 1))[..., 0]
     fastest = np.array([trajectory.feed[motion.segment[row] : motion.segment[row + 1] + 1].max() for row in rows])
@@ -77,19 +77,22 @@ def dense(job, rows):
     return *off.T.reshape(2, -1, DENSE), of_ceiling, length, speed
 
 
-def off_by(trajectory, pose, first, last, told):
-    """Parts of what is told, (N, 2), that poses are off in tip and axis, from the programmed pose that fits best by it.
+def off_by(trajectory, pose, first, last, reported):
+    """Parts of what is reported, (N, 2), by which poses are off in tip and axis, from the pose that fits best by it.
 
-    What is told is that there is a programmed pose from which neither is off by more. On a segment the candidates lie
+    Reported is that there is a programmed pose from which neither is off by more. On a segment the candidates lie
     between the one nearest for the tip and the one nearest for the axis: weights from one to the other find them.
     """
-    off, free = np.full(told.shape, np.inf), dataclasses.replace(trajectory, tip_tolerance=np.zeros(len(trajectory)))
+    off, free = (
+        np.full(reported.shape, np.inf),
+        dataclasses.replace(trajectory, tip_tolerance=np.zeros(len(trajectory))),
+    )
     others = (TrajectoryRuler(free, Tolerances(TOLERANCES.tip * weight, TOLERANCES.axis)) for weight in WEIGHTS)
     for ruler in (TrajectoryRuler(trajectory, TOLERANCES), *others):
         open_yet = np.flatnonzero(off.max(axis=1) > 1)
         for further in range((last - first)[open_yet].max(initial=-1) + 1):
             segment = np.minimum(first + further, last)[open_yet]
-            parts = ruler.deviation_from(pose.tip[open_yet], pose.axis[open_yet], segment)[:2].T / told[open_yet]
+            parts = ruler.deviation_from(pose.tip[open_yet], pose.axis[open_yet], segment)[:2].T / reported[open_yet]
             better = parts.max(axis=1) < off[open_yet].max(axis=1)
             off[open_yet[better]] = parts[better]
     return off
@@ -105,7 +108,7 @@ def chosen(job):
     return np.unique(np.concatenate([by_tip, by_axis, chance]))
 
 
-def told(certificate, name):
+def reported(certificate, name):
     return found(certificate, name).value
 
 
@@ -124,10 +127,10 @@ def test_dense_instants_find_nothing_above_the_figures(job):
     assert axis.max() <= 1
     fastest = found(certificate, "tip speed")
     assert of_ceiling.max() <= fastest.value / fastest.limit
-    assert np.abs(speed).max() <= told(certificate, "strut speed") * (1 + 1e-12)
+    assert np.abs(speed).max() <= reported(certificate, "strut speed") * (1 + 1e-12)
     low, high = certified(job)[0].strut_stroke
-    assert low - length.min() <= told(certificate, "strut shorter than its stroke") + FORWARD
-    assert length.max() - high <= told(certificate, "strut longer than its stroke") + FORWARD
+    assert low - length.min() <= reported(certificate, "strut shorter than its stroke") + FORWARD
+    assert length.max() - high <= reported(certificate, "strut longer than its stroke") + FORWARD
 
 
 def test_figures_say_little_more_than_there_is():
@@ -148,7 +151,7 @@ def test_even_instants_alone_would_say_too_little(monkeypatch):
         certified.cache_clear()
 
 
-def test_tolerance_at_the_worst_place_is_told_with_it():
+def test_tolerance_at_the_worst_place_is_reported_with_it():
     certificate = certified(3)[-1]
     assert set(np.unique(certificate.tip_tolerance)) <= {TOLERANCES.tip, 0.02}
     finding = next(finding for finding in certificate.findings if finding.code == "V101")

@@ -190,10 +190,10 @@ def test_cubics_leave_their_chords_by_no_more_than_is_said_and_not_much_less(ins
     rng = np.random.default_rng(instants)
     share = np.linspace(0, 1, 3201)
     curve = np.einsum("cnk,kd->cnd", rng.normal(size=(3, 200, 4)), share ** np.arange(4)[:, None])
-    told = chordal_deviation(curve[..., :: 3200 // (instants - 1)].swapaxes(1, 2))
+    reported = chordal_deviation(curve[..., :: 3200 // (instants - 1)].swapaxes(1, 2))
     found = leaving(curve, instants)
-    assert np.all(found <= told)
-    assert np.all(told <= 1.5 * found)
+    assert np.all(found <= reported)
+    assert np.all(reported <= 1.5 * found)
 
 
 def test_a_straight_way_hides_nothing():
@@ -206,6 +206,6 @@ def test_a_circle_leaves_its_chords_by_what_its_bend_says():
     turn, radius = np.linspace(0, 0.8, 801), 5.0
     circle = radius * np.stack([np.cos(turn), np.sin(turn), 0 * turn])[:, None]
     few = circle[..., ::100].swapaxes(1, 2)
-    told, found = sagitta(few, 1 / radius), leaving(circle, 9)
-    assert found[0] <= told[0] <= 1.2 * found[0]
+    reported, found = sagitta(few, 1 / radius), leaving(circle, 9)
+    assert found[0] <= reported[0] <= 1.2 * found[0]
     assert found[0] <= chordal_deviation(few)[0] <= 1.3 * found[0]

@@ -46,43 +46,43 @@ def saved_job(path, lines=FIVE_AXIS, **operation):
 
 def test_post_starts_freecad_by_itself(tmp_path):
     part = saved_job(tmp_path / "my part.FCStd")
-    told = pkm_post("post", part, "--machine", "example_6tps", "--out", tmp_path / "out dir", *REACHED)
-    assert told.returncode == 0, told.stderr
+    reported = pkm_post("post", part, "--machine", "example_6tps", "--out", tmp_path / "out dir", *REACHED)
+    assert reported.returncode == 0, reported.stderr
     made = sorted(path.name for path in (tmp_path / "out dir").iterdir())
     endings = ("-manifest.json", "-report.html", "-report.json", "-setup.pmc", ".pkmt", ".pmc")
     assert made == [f"my_part{ending}" for ending in endings]
-    assert [Path(line).name for line in told.stdout.splitlines()[-6:]] == made
+    assert [Path(line).name for line in reported.stdout.splitlines()[-6:]] == made
     assert json.loads((tmp_path / "out dir" / "my_part-report.json").read_text())["certificate"]["holds"]
 
 
 def test_relative_paths_mean_the_current_folder(tmp_path):
     saved_job(tmp_path / "part.FCStd")
-    told = pkm_post("post", "part.FCStd", "--out", "results", *REACHED, cwd=tmp_path)
-    assert told.returncode == 0, told.stderr
+    reported = pkm_post("post", "part.FCStd", "--out", "results", *REACHED, cwd=tmp_path)
+    assert reported.returncode == 0, reported.stderr
     assert (tmp_path / "results" / "part.pmc").exists()
 
 
 def test_two_documents_in_one_call(tmp_path):
     parts = [saved_job(tmp_path / name) for name in ("a.FCStd", "b.FCStd")]
-    told = pkm_post("post", *parts, "--out", tmp_path, *REACHED)
-    assert told.returncode == 0, told.stderr
+    reported = pkm_post("post", *parts, "--out", tmp_path, *REACHED)
+    assert reported.returncode == 0, reported.stderr
     assert {"a.pmc", "b.pmc"} <= {path.name for path in tmp_path.iterdir()}
 
 
-def test_documents_in_processes_of_their_own_are_told_in_order(tmp_path):
+def test_documents_in_processes_of_their_own_are_reported_in_order(tmp_path):
     parts = [saved_job(tmp_path / name) for name in ("a.FCStd", "c.FCStd")]
     parts.insert(1, saved_job(tmp_path / "b.FCStd", ["G0 X0 Y0 Z30", "G1 X10"]))
-    told = pkm_post("post", *parts, "--out", tmp_path / "out", "--jobs", 3, *REACHED)
-    assert told.returncode == 1
-    assert [Path(line).name for line in told.stdout.splitlines() if line.endswith(".pkmt")] == ["a.pkmt", "c.pkmt"]
-    assert "b.FCStd: Cut: line 4: error J105" in told.stderr
+    reported = pkm_post("post", *parts, "--out", tmp_path / "out", "--jobs", 3, *REACHED)
+    assert reported.returncode == 1
+    assert [Path(line).name for line in reported.stdout.splitlines() if line.endswith(".pkmt")] == ["a.pkmt", "c.pkmt"]
+    assert "b.FCStd: Cut: line 4: error J105" in reported.stderr
     assert {path.name[0] for path in (tmp_path / "out").iterdir()} == {"a", "c"}
 
 
 def test_one_process_goes_on_behind_a_refused_document(tmp_path):
     parts = [saved_job(tmp_path / "a.FCStd", ["G0 X0 Y0 Z30", "G1 X10"]), saved_job(tmp_path / "b.FCStd")]
-    told = pkm_post("post", *parts, "--out", tmp_path / "out", "--jobs", 1, *REACHED)
-    assert told.returncode == 1
+    reported = pkm_post("post", *parts, "--out", tmp_path / "out", "--jobs", 1, *REACHED)
+    assert reported.returncode == 1
     assert (tmp_path / "out" / "b.pmc").exists()
 
 
@@ -99,8 +99,10 @@ def test_batch_from_inside_freecad(tmp_path):
         "--",
         str(script),
     ]
-    told = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=False)
-    assert told.returncode == 0, told.stderr
+    reported = subprocess.run(
+        command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=False
+    )
+    assert reported.returncode == 0, reported.stderr
     assert {"a.pmc", "b.pmc"} <= {path.name for path in (tmp_path / "out").iterdir()}
 
 
@@ -118,13 +120,13 @@ BAD_JOBS = {
 
 
 @pytest.mark.parametrize(("lines", "code", "place"), BAD_JOBS.values(), ids=BAD_JOBS)
-def test_bad_job_is_told_with_place_and_leaves_nothing(tmp_path, lines, code, place):
+def test_bad_job_is_reported_with_place_and_leaves_nothing(tmp_path, lines, code, place):
     part = saved_job(tmp_path / "bad.FCStd", lines)
-    told = pkm_post("post", part, "--out", tmp_path / "out")
-    assert told.returncode == 1
-    assert f"bad.FCStd: {place}" in told.stderr
-    assert f" error {code}: " in told.stderr
-    assert "Traceback" not in told.stderr
+    reported = pkm_post("post", part, "--out", tmp_path / "out")
+    assert reported.returncode == 1
+    assert f"bad.FCStd: {place}" in reported.stderr
+    assert f" error {code}: " in reported.stderr
+    assert "Traceback" not in reported.stderr
     assert not (tmp_path / "out").exists() or list((tmp_path / "out").iterdir()) == []
 
 
@@ -132,53 +134,53 @@ def test_singular_path_is_refused(tmp_path):
     text = (ADDON / "resources" / "machines" / "example_6tps.toml").read_text()
     machine = tmp_path / "near.toml"
     machine.write_text(text.replace("least_singular_value = 0.1", "least_singular_value = 0.5"))
-    told = pkm_post(
+    reported = pkm_post(
         "post", saved_job(tmp_path / "part.FCStd"), "--machine", machine, "--out", tmp_path / "out", *REACHED
     )
-    assert told.returncode == 1
-    assert "error K105: the path comes too close to a singular pose" in told.stderr
+    assert reported.returncode == 1
+    assert "error K105: the path comes too close to a singular pose" in reported.stderr
 
 
 @pytest.mark.parametrize(
     ("content", "code"), [(None, "M101"), ("name = ", "M102"), ("name = 'x'\n", "M103"), (b"\xff\xfe\x00", "M10")]
 )
-def test_unreadable_machine_file_is_told(tmp_path, content, code):
+def test_unreadable_machine_file_is_reported(tmp_path, content, code):
     machine = tmp_path / "machine.toml"
     if content is not None:
         machine.write_bytes(content if isinstance(content, bytes) else content.encode())
-    told = pkm_post("post", saved_job(tmp_path / "part.FCStd"), "--machine", machine, "--out", tmp_path / "out")
-    assert told.returncode == 1
-    assert f"machine.toml: line 1:8: error {code}" in told.stderr or f"error {code}" in told.stderr
-    assert "Traceback" not in told.stderr
+    reported = pkm_post("post", saved_job(tmp_path / "part.FCStd"), "--machine", machine, "--out", tmp_path / "out")
+    assert reported.returncode == 1
+    assert f"machine.toml: line 1:8: error {code}" in reported.stderr or f"error {code}" in reported.stderr
+    assert "Traceback" not in reported.stderr
 
 
 def test_no_place_to_write_to(tmp_path):
     (tmp_path / "taken").write_text("a file where the folder should be")
-    told = pkm_post("post", saved_job(tmp_path / "part.FCStd"), "--out", tmp_path / "taken", *REACHED)
-    assert told.returncode == 1
-    assert "error F101: the output cannot be written" in told.stderr
+    reported = pkm_post("post", saved_job(tmp_path / "part.FCStd"), "--out", tmp_path / "taken", *REACHED)
+    assert reported.returncode == 1
+    assert "error F101: the output cannot be written" in reported.stderr
 
 
 def test_document_that_is_none(tmp_path):
     (tmp_path / "text.FCStd").write_text("no document")
     for name in ("text.FCStd", "missing.FCStd"):
-        told = pkm_post("post", tmp_path / name, "--out", tmp_path / "out")
-        assert told.returncode == 1
-        assert "error J101" in told.stderr
-        assert "Traceback" not in told.stderr
+        reported = pkm_post("post", tmp_path / name, "--out", tmp_path / "out")
+        assert reported.returncode == 1
+        assert "error J101" in reported.stderr
+        assert "Traceback" not in reported.stderr
 
 
 @pytest.mark.parametrize("arguments", [(), ("post",), ("post", "x.FCStd", "--tip-tolerance", "-1"), ("nonsense",)])
 def test_arguments_that_make_no_sense_end_with_two(arguments):
-    told = pkm_post(*arguments)
-    assert told.returncode == 2
-    assert "usage:" in told.stderr
+    reported = pkm_post(*arguments)
+    assert reported.returncode == 2
+    assert "usage:" in reported.stderr
 
 
 def test_arcs_are_posted(tmp_path):
     meshes = ("--part", "none", "--stock", "none")  # the path begins by a rapid move through the box
-    told = pkm_post("post", saved_job(tmp_path / "arc.FCStd", ARC), "--out", tmp_path, *REACHED, *meshes)
-    assert told.returncode == 0, told.stderr
+    reported = pkm_post("post", saved_job(tmp_path / "arc.FCStd", ARC), "--out", tmp_path, *REACHED, *meshes)
+    assert reported.returncode == 0, reported.stderr
 
 
 def test_machine_list_and_check(tmp_path):
@@ -191,16 +193,16 @@ def test_machine_list_and_check(tmp_path):
 
 def test_reach_of_what_is_no_document_is_refused(tmp_path):
     (tmp_path / "part.FCStd").write_text("no document")
-    told = pkm_post("reach", tmp_path / "part.FCStd")
-    assert told.returncode == 1
-    assert "error J101" in told.stderr
-    assert "Traceback" not in told.stderr
+    reported = pkm_post("reach", tmp_path / "part.FCStd")
+    assert reported.returncode == 1
+    assert "error J101" in reported.stderr
+    assert "Traceback" not in reported.stderr
 
 
 def test_reach_of_a_document_tells_where_it_could_lie_better(tmp_path):
     part = saved_job(tmp_path / "part.FCStd")
-    told = pkm_post("reach", part, "--place", "xy", "--json", *REACHED)
-    assert told.returncode == 0, told.stderr
-    (study,) = json.loads(told.stdout)
+    reported = pkm_post("reach", part, "--place", "xy", "--json", *REACHED)
+    assert reported.returncode == 0, reported.stderr
+    (study,) = json.loads(reported.stdout)
     assert [stage["stage"] for stage in study["left"]] == ["as it is, zero torsion", "moved in x, y"]
     assert "spindle and part" in [check["name"] for check in study["checks"]]

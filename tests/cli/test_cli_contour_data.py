@@ -75,9 +75,9 @@ def test_a_macro_and_the_command_line_write_the_same_bytes(capsys, tmp_path, poi
 
 
 def test_two_readings_are_refused_and_nothing_is_written(capsys, tmp_path):
-    code, told = corner(capsys, tmp_path, NEITHER)
+    code, reported = corner(capsys, tmp_path, NEITHER)
     assert code == 1
-    assert "line 11:1: error L429" in told and "--contour-data contour or --contour-data centre" in told
+    assert "line 11:1: error L429" in reported and "--contour-data contour or --contour-data centre" in reported
     assert [path.name for path in tmp_path.iterdir()] == ["part.cls"]
 
 
@@ -92,9 +92,9 @@ def test_all_commands_take_the_option(capsys, tmp_path, command, choice):
         "convert": ["--to=gcode:3axis", f"--out={tmp_path / 'out.nc'}"],
     }
     code = main([command, str(file), *more[command], *choice])
-    told = capsys.readouterr()
+    reported = capsys.readouterr()
     assert code == (0 if choice else 1)
-    assert ("L429" in told.err + told.out) == (not choice)
+    assert ("L429" in reported.err + reported.out) == (not choice)
     if command == "convert" and choice:
         assert ("G41" in (tmp_path / "out.nc").read_text()) == (choice == ["--contour-data=contour"])
 
@@ -109,7 +109,7 @@ def test_check_says_how_the_points_were_taken(capsys, tmp_path):
     assert json.loads(capsys.readouterr().out)[0]["reading"] == [said]
 
 
-def test_wear_of_g_code_is_told(capsys, tmp_path):
+def test_wear_of_g_code_is_reported(capsys, tmp_path):
     file = tmp_path / "part.ngc"
     file.write_text("G21 G0 X0 Y0 Z5\nG1 X5 F100\nM2\n")
     assert main(["check", str(file), "--wear=1=0.1"]) == 1

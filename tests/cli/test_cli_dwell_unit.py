@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The unit of dwells by the command line and from a macro: what is told, and what is posted."""
+"""The unit of dwells by the command line and from a macro: what is reported, and what is posted."""
 
 import numpy as np
 import pytest
@@ -26,10 +26,10 @@ def dwells(program):
     return [word.removeprefix("DWELL") for word in words if word != "DWELL0"]
 
 
-@pytest.mark.parametrize(("arguments", "told"), [((), 2), (("--dwell-unit", "ms"), 0), (("--dwell-unit=s",), 2)])
-def test_check_tells_long_dwells(file, capsys, arguments, told):
+@pytest.mark.parametrize(("arguments", "reported"), [((), 2), (("--dwell-unit", "ms"), 0), (("--dwell-unit=s",), 2)])
+def test_check_tells_long_dwells(file, capsys, arguments, reported):
     assert main(["check", str(file), *arguments]) == 0
-    assert capsys.readouterr().out.count("warning G428") == told
+    assert capsys.readouterr().out.count("warning G428") == reported
 
 
 @pytest.mark.parametrize(

@@ -121,7 +121,7 @@ def odd(text):
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
-def test_a_name_that_the_terminal_cannot_show_is_told_by_codes(tmp_path, jobs):
+def test_a_name_that_the_terminal_cannot_show_is_reported_by_codes(tmp_path, jobs):
     files = [tmp_path / f"{name}.ngc" for name in "日b"]
     for file in files:
         file.write_text(PART, encoding="ascii")

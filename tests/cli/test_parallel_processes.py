@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Many files are posted at the same time, told in their order, and none stops the others."""
+"""Many files are posted at the same time, reported in their order, and none stops the others."""
 
 import os
 import re
@@ -42,9 +42,9 @@ def test_outputs_are_in_order_whatever_ends_first(capfd):
 @pytest.mark.parametrize("at_a_time", [1, 2])
 def test_a_failure_does_not_stop_the_others_and_decides_the_code(capfd, at_a_time):
     assert run_parallel([says("one"), says("two", "no", 2), says("three")], at_a_time, "said") == 1
-    told = capfd.readouterr()
-    assert told.out.split() == ["one", "two", "three"]
-    assert told.err.split() == ["no"]
+    reported = capfd.readouterr()
+    assert reported.out.split() == ["one", "two", "three"]
+    assert reported.err.split() == ["no"]
 
 
 def test_at_most_so_many_at_a_time(tmp_path):
@@ -52,7 +52,7 @@ def test_at_most_so_many_at_a_time(tmp_path):
         "import pathlib, sys, time; here = pathlib.Path(sys.argv[1]); mine = here / sys.argv[2]; mine.touch();"
         "print(len(list(here.iterdir()))); time.sleep(0.2); mine.unlink()"
     )
-    told = subprocess.run(
+    reported = subprocess.run(
         [PYTHON, "-c", f"""
 import sys
 from pkm_post.cli.processes import run_parallel
@@ -61,7 +61,7 @@ sys.exit(run_parallel(commands, 2, "counted"))
 """],
         env=os.environ | {"PYTHONPATH": str(ADDON)}, capture_output=True, text=True, check=True,
     )  # fmt: skip
-    assert {int(count) for count in told.stdout.split()} <= {1, 2}
+    assert {int(count) for count in reported.stdout.split()} <= {1, 2}
 
 
 def post(*arguments, **more):
@@ -84,11 +84,11 @@ def programs(tmp_path):
     return files
 
 
-def test_batch_is_told_file_by_file(programs, tmp_path):
+def test_batch_is_reported_file_by_file(programs, tmp_path):
     programs[1].write_text(G_CODE.replace("F600", "F0"))
-    told = post(*programs, *REACHED, "--out", tmp_path / "out", "--jobs", 3)
-    printed, errors = told.communicate(timeout=120)
-    assert told.returncode == 1
+    reported = post(*programs, *REACHED, "--out", tmp_path / "out", "--jobs", 3)
+    printed, errors = reported.communicate(timeout=120)
+    assert reported.returncode == 1
     written = [Path(line).name for line in printed.splitlines() if line.startswith(str(tmp_path))]
     assert written == [
         f"{name}{end}"
@@ -101,18 +101,18 @@ def test_batch_is_told_file_by_file(programs, tmp_path):
 
 def test_batch_gives_the_bytes_that_one_process_gives(programs, tmp_path):
     for jobs in (1, 2):
-        told = post(*programs, *REACHED, "--out", tmp_path / str(jobs), "--jobs", jobs)
-        told.communicate(timeout=120)
-        assert told.returncode == 0
+        reported = post(*programs, *REACHED, "--out", tmp_path / str(jobs), "--jobs", jobs)
+        reported.communicate(timeout=120)
+        assert reported.returncode == 0
     one, two = ({path.name: path.read_bytes() for path in (tmp_path / str(jobs)).iterdir()} for jobs in (1, 2))
     assert one == two
 
 
 @pytest.mark.parametrize("jobs", ["0", "-1", "many"])
 def test_number_of_processes_that_makes_no_sense(programs, jobs):
-    told = post(*programs, "--jobs", jobs)
-    told.communicate(timeout=60)
-    assert told.returncode == 2
+    reported = post(*programs, "--jobs", jobs)
+    reported.communicate(timeout=60)
+    assert reported.returncode == 2
 
 
 def test_an_interrupt_ends_all(tmp_path):

@@ -58,7 +58,7 @@ def test_nothing_is_written_when_the_source_has_errors(tmp_path):
     assert not (tmp_path / "out.nc").exists()
 
 
-def test_a_folder_that_cannot_be_made_is_told(tmp_path):
+def test_a_folder_that_cannot_be_made_is_reported(tmp_path):
     source = saved(tmp_path / "part.ngc", "G0 X0 Y0 Z0\nM2\n")
     (tmp_path / "taken").write_text("")
     assert [one.code for one in convert(source, "gcode:vector", tmp_path / "taken" / "out.nc")] == ["F101"]
@@ -128,12 +128,12 @@ def test_check_tells_line_and_caret_and_fails(tmp_path, capsys):
     good = saved(tmp_path / "good.ngc", "G0 X0 Y0 Z0\nG1 X10 F100\nG2 X20 I5 J0\nM2\n")
     bad = saved(tmp_path / "bad.ngc", "G0 X0 Y0 Z0\nG1 X1..5 F100\n")
     assert main(["check", str(good), str(bad)]) == 1
-    told = capsys.readouterr().out.splitlines()
-    assert told[0] == f"{good}: flavour rs274: nothing in the program speaks for another"
-    assert told[1].startswith(f"{bad}: line 2:")
-    assert " G102: " in told[1]
-    assert told[2:4] == ["    G1 X1..5 F100", "        ^"]
-    assert told[4].split() == [
+    reported = capsys.readouterr().out.splitlines()
+    assert reported[0] == f"{good}: flavour rs274: nothing in the program speaks for another"
+    assert reported[1].startswith(f"{bad}: line 2:")
+    assert " G102: " in reported[1]
+    assert reported[2:4] == ["    G1 X1..5 F100", "        ^"]
+    assert reported[4].split() == [
         "file",
         "blocks",
         "arcs",
@@ -148,8 +148,8 @@ def test_check_tells_line_and_caret_and_fails(tmp_path, capsys):
         "Y",
         "Z",
     ]
-    assert told[5].split() == [str(good), "3", "1", "25.708", "0.000", "0.000", "0.000", "20.000", "5.000", "0.000"]
-    assert told[6].split() == [str(bad), "-", "-", "-", "-", "-"]
+    assert reported[5].split() == [str(good), "3", "1", "25.708", "0.000", "0.000", "0.000", "20.000", "5.000", "0.000"]
+    assert reported[6].split() == [str(bad), "-", "-", "-", "-", "-"]
 
 
 def test_check_writes_json(tmp_path, capsys):
@@ -157,8 +157,8 @@ def test_check_writes_json(tmp_path, capsys):
     assert main(["check", "--json", str(file)]) == 1
     (entry,) = json.loads(capsys.readouterr().out)
     assert entry["size"] is None
-    (told,) = entry["diagnostics"]
-    assert (told["code"], told["severity"], told["line"], told["column"]) == ("G102", "error", 2, 5)
+    (reported,) = entry["diagnostics"]
+    assert (reported["code"], reported["severity"], reported["line"], reported["column"]) == ("G102", "error", 2, 5)
 
 
 def test_check_of_a_clean_file_succeeds(tmp_path, capsys):
@@ -193,5 +193,5 @@ def test_convert_from_the_command_line(tmp_path, capsys):
 def test_help_names_every_form(capsys):
     with pytest.raises(SystemExit):
         main(["convert", "--help"])
-    told = capsys.readouterr().out
-    assert all(target in told for target in TARGETS)
+    reported = capsys.readouterr().out
+    assert all(target in reported for target in TARGETS)

@@ -239,8 +239,8 @@ def test_the_command_sends_nothing_that_is_not_certified(program, action, capsys
     program.write_text(next(mutants(program.read_text(), seed=5)))
     with served(made) as port:
         assert main(["pmac", action, "--port", port, "--machine", "example_6tps", str(program)]) == 1
-    told = capsys.readouterr().err
-    assert "error C109" in told and "--uncertified" in told
+    reported = capsys.readouterr().err
+    assert "error C109" in reported and "--uncertified" in reported
     assert made.memory.programs == before
 
 

@@ -42,11 +42,11 @@ def program(tmp_path_factory):
 @pytest.mark.parametrize("kind", ["tcp", "serial"])
 def test_the_tool_keeps_to_the_programmed_path_within_the_certificate(program, kind):
     report = json.loads(program.with_name("upper-report.json").read_text())
-    told = {finding["what"]: finding["value"] for finding in report["certificate"]["findings"]}
+    reported = {finding["what"]: finding["value"] for finding in report["certificate"]["findings"]}
     followed = follow(program, kind)
     assert followed.part > 0.99 and followed.samples > 1000 and followed.words == ()
     assert followed.off < LAST_BITS
-    assert followed.tip <= told["deviation of the tool tip"] <= report["tolerances"]["tip_mm"]
-    assert followed.axis <= told["deviation of the tool axis"] <= report["tolerances"]["axis_deg"]
-    assert followed.tip > 0.9 * told["deviation of the tool tip"]  # it is the path that was measured
+    assert followed.tip <= reported["deviation of the tool tip"] <= report["tolerances"]["tip_mm"]
+    assert followed.axis <= reported["deviation of the tool axis"] <= report["tolerances"]["axis_deg"]
+    assert followed.tip > 0.9 * reported["deviation of the tool tip"]  # it is the path that was measured
     assert followed.end < COUNT

@@ -48,8 +48,8 @@ def test_poses_lift_the_tip(interpolation, turn, off):
 
 
 def test_the_table_of_the_documents_is_what_the_script_prints(interpolation):
-    told = (ROOT / "docs" / "planning.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| (\d+) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$", told, re.MULTILINE)
+    reported = (ROOT / "docs" / "planning.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (\d+) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$", reported, re.MULTILINE)
     made = interpolation.table(*interpolation.first_quadrant())
     assert [[float(number) for number in row] for row in rows] == [
         [step, round(turn, 3), round(axis, 5), round(platform, 5), round(tip, 5)]

@@ -23,7 +23,7 @@ def load_example():
 
 
 def job_on(document, shape, bit="ballend.fcstd", **sizes):
-    """A job on a part of this shape, with a ball end mill D10 unless another cutter is told."""
+    """A job on a part of this shape, with a ball end mill D10 unless another cutter is given."""
     part = document.addObject("Part::Feature", "Part")
     part.Shape = shape
     job = CamJob.Create("Job", [part], None)

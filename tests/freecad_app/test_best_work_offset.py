@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The reach of a job from a macro: what is told, and the work offset that is set."""
+"""The reach of a job from a macro: what is reported, and the work offset that is set."""
 
 import pytest
 from cam_jobs import add_operation, new_job
@@ -61,7 +61,7 @@ def test_a_job_that_cannot_be_read_is_refused(job):
 def test_the_model_of_the_job_is_the_part(job):
     # The box of the job is 20 mm high; with a tool of 15 mm the holder would be in it.
     job.PostProcessorArgs = "--work-offset=0,0,250 --tool-length 1=15"
-    told = [fault for fault in study_job(job).reach.faults() if fault.code == "K117"]
-    assert told
+    reported = [fault for fault in study_job(job).reach.faults() if fault.code == "K117"]
+    assert reported
     job.PostProcessorArgs = "--work-offset=0,0,250 --tool-length 1=120"
     assert "K117" not in [fault.code for fault in study_job(job).reach.faults()]

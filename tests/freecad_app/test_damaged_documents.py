@@ -94,9 +94,9 @@ def test_cut_off_at_every_member_and_anywhere(part, intact, capsys):
     for length in [*ends, *(chance.randrange(len(intact)) for _ in range(TRUNCATIONS))]:
         part.write_bytes(intact[:length])
         assert main(["post", str(part), "--out", str(part.with_name("out"))]) == 1, length
-        told = capsys.readouterr().err
-        assert "error J129" in told or "error J101" in told, length
-        assert "Traceback" not in told
+        reported = capsys.readouterr().err
+        assert "error J129" in reported or "error J101" in reported, length
+        assert "Traceback" not in reported
     assert not part.with_name("out").exists()
 
 

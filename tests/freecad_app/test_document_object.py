@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is refused is told without the way through the code; what is our own fault is told with it."""
+"""What is refused is reported without the way through the code; what is our own fault is reported with it."""
 
 from types import SimpleNamespace
 
@@ -15,7 +15,7 @@ REFUSED = Refused([Diagnostic("J121", Place("part.FCStd", "Mirror"), "no directi
 
 
 @pytest.mark.parametrize(("fault", "last"), [(REFUSED, "brief"), (ValueError("expected 3, got 2"), "deep")])
-def test_only_what_is_refused_is_told_briefly(fault, last):
+def test_only_what_is_refused_is_reported_briefly(fault, last):
     def deep():
         raise fault
 
@@ -23,13 +23,13 @@ def test_only_what_is_refused_is_told_briefly(fault, last):
     def execute(proxy, obj):
         deep()
 
-    with pytest.raises(type(fault)) as told:
+    with pytest.raises(type(fault)) as reported:
         execute(None, SimpleNamespace(Label="Mirror"))
-    assert told.traceback[-1].name == last
-    assert told.value is fault
+    assert reported.traceback[-1].name == last
+    assert reported.value is fault
 
 
-def test_a_machine_that_is_not_there_is_told_at_the_object(job):
+def test_a_machine_that_is_not_there_is_reported_at_the_object(job):
     job.PostProcessor, job.PostProcessorArgs = "hexapod_pmac", "--machine no_such_machine"
     reach = create_reach(job)
     job.Document.recompute()
@@ -37,7 +37,7 @@ def test_a_machine_that_is_not_there_is_told_at_the_object(job):
     assert "M101" in reach.getStatusString()
 
 
-def test_a_plane_without_a_direction_is_told_at_the_object(job):
+def test_a_plane_without_a_direction_is_reported_at_the_object(job):
     copy = create_mirror(add_operation(job), (0, 0, 0))
     job.Document.recompute()
     assert not copy.isValid()

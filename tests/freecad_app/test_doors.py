@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One job posted through every door: what the job says holds everywhere, what is typed goes before it, and it is told.
+"""One job posted through every door: what the job says holds everywhere, what is typed goes before it, with a warning.
 
 The other opinion is the pipeline itself, called with options that were put together here.
 """
@@ -125,11 +125,11 @@ def test_every_option_at_every_door(job, tmp_path, flag, where, capsys):
         folder = made(tmp_path / door.__name__)
         door(job, over_it, folder)
         assert contents(folder) == wanted, door.__name__
-    told = capsys.readouterr().err
+    reported = capsys.readouterr().err
     replaced = {"both": flag not in ADDED, "job": flag == "--tool-length", "command line": flag in SAID_BY_EVERY_JOB}[
         where
     ]
-    assert (f"warning J125: an option overrides a value of the job or the program: {flag} " in told) == replaced
+    assert (f"warning J125: an option overrides a value of the job or the program: {flag} " in reported) == replaced
 
 
 @pytest.mark.parametrize("flag", sorted(FOR_PART_PROGRAMS))
@@ -196,22 +196,22 @@ def test_no_text_depends_on_the_folder_of_the_document(job):
     assert "(machine: slow.toml)" in text
 
 
-def test_a_machine_object_of_another_machine_is_told(job, monkeypatch):
-    told = []
-    monkeypatch.setattr(App.Console, "PrintWarning", told.append)
+def test_a_machine_object_of_another_machine_is_reported(job, monkeypatch):
+    reported = []
+    monkeypatch.setattr(App.Console, "PrintWarning", reported.append)
     says(job, "--work-offset=2,1,255,10 --machine slow.toml")
     machine = create_machine(job.Document, job=job)
     job.Document.recompute()
     placed_job(job, machine)
-    assert told == []
+    assert reported == []
     machine.MachineFile = "example_6tps"
     job.Document.recompute()
     placed_job(job, machine)
-    assert ["--machine example_6tps instead of" in each for each in told] == [True]
+    assert ["--machine example_6tps instead of" in each for each in reported] == [True]
     machine.Job, machine.WorkOffset = None, App.Placement(App.Vector(0, 0, 240), App.Rotation())
     job.Document.recompute()
     placed_job(job, machine)
-    assert "--work-offset 0,0,240,0 instead of 2,1,255,10" in told[-1]
+    assert "--work-offset 0,0,240,0 instead of 2,1,255,10" in reported[-1]
 
 
 def test_a_machine_file_lies_beside_the_document_wherever_freecad_was_started(job, tmp_path, monkeypatch):

@@ -91,4 +91,4 @@ def test_drilling_is_posted(job, tmp_path):
     offset[2, 3] = 250.0
     posted = post_job(job, "example_6tps", tmp_path, Options(work_offset=offset))
     assert posted.report["certificate"]["holds"]
-    assert [told.code for told in posted.diagnostics] == ["J125"], "the offset stands in for the job's fixture"
+    assert [reported.code for reported in posted.diagnostics] == ["J125"], "the offset stands in for the job's fixture"

@@ -223,12 +223,12 @@ def test_point_on_the_axis_gets_the_foot_of_opencascade():
     assert normals[0] == pytest.approx(-feet[0] / 20 * [1, 1, 0], abs=ANGLE)
 
 
-def test_progress_rises_to_one_and_stops_the_work_when_told():
+def test_progress_rises_to_one_and_stops_the_work_when_reported():
     face = wavy()
     points, _, _, _ = around(face, 45_000, seed=5)
-    told = []
-    project(face, points, progress=told.append)
-    assert told == pytest.approx([20 / 45, 40 / 45, 1.0])
+    reported = []
+    project(face, points, progress=reported.append)
+    assert reported == pytest.approx([20 / 45, 40 / 45, 1.0])
     with pytest.raises(Stopped, match="44 % of the points"):
         project(face, points, progress=lambda done: False)
 

@@ -43,7 +43,7 @@ def test_tool_is_in_use_while_an_active_operation_takes_it(two):
     assert [row.in_use for row in tool_rows(two)] == [False, False]
 
 
-def test_unknown_length_is_told_as_posting_tells_it(two):
+def test_unknown_length_is_reported_as_posting_tells_it(two):
     two.Operations.Group[0].ToolController = two.Tools.Group[1]
     two.Document.recompute()
     _, row = tool_rows(two)

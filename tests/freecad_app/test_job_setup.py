@@ -50,17 +50,17 @@ def test_the_setup_is_what_the_job_has(document):
 def test_a_holder_that_goes_into_the_part_is_refused_and_one_that_clears_is_posted(document, tmp_path, gap):
     job = job_beside_a_wall(document, gap)
     add_operation(job, PASS)
-    told = {fault.code for fault in study_job(job).reach.faults()}
+    reported = {fault.code for fault in study_job(job).reach.faults()}
     if gap > CLEARANCE:
         posted = post_job(job, out=tmp_path)
-        assert posted.files and told == set() and posted.diagnostics == ()
+        assert posted.files and reported == set() and posted.diagnostics == ()
         rows = {row["what"]: row["extent"] for row in posted.report["certificate"]["coverage"]}
         assert rows["spindle and holder against the part"] == rows["shanks against the part"] == "proven"
     else:
         with pytest.raises(Refused) as refused:
             post_job(job, out=tmp_path)
         assert (
-            {fault.code for fault in refused.value.diagnostics} - {"K134"} == {"K117"} == told
+            {fault.code for fault in refused.value.diagnostics} - {"K134"} == {"K117"} == reported
         )  # the wall is stock too
         assert "tool holder" in str(refused.value) and f"by {CLEARANCE - gap:.2f}" in str(refused.value)
         assert list(tmp_path.iterdir()) == []

@@ -61,7 +61,7 @@ def test_a_leaning_pose_in_a_turned_work_frame_is_the_same_pose_in_the_machine(d
     np.testing.assert_allclose(struts(machine), expected, atol=NANOMETRE)
 
 
-def test_what_is_out_of_limits_is_told_and_told_no_more(document, machine):
+def test_what_is_out_of_limits_is_reported_and_reported_no_more(document, machine):
     machine.Tip = App.Vector(0, 0, -400)
     document.recompute()
     assert any(line.startswith("longest struts: strut ") for line in machine.OutOfLimits)
@@ -132,13 +132,13 @@ def test_a_machine_that_is_not_there_is_refused_and_nothing_is_added(document):
     assert document.Objects == []
 
 
-def test_a_reference_without_a_placement_is_told_at_the_object(document, machine):
+def test_a_reference_without_a_placement_is_reported_at_the_object(document, machine):
     machine.Reference = document.addObject("App::DocumentObjectGroup", "Group")
     document.recompute()
     assert not machine.isValid()
 
 
-def test_a_machine_file_that_went_away_is_told_at_the_object(document, machine):
+def test_a_machine_file_that_went_away_is_reported_at_the_object(document, machine):
     machine.MachineFile = "/nowhere/machine.toml"
     document.recompute()
     assert not machine.isValid()

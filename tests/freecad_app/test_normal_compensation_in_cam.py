@@ -139,7 +139,7 @@ def test_posted_under_a_mirror(document, tmp_path):
         tmp_path,
         Options(work_offset=np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 250], [0, 0, 0, 1.0]])),
     )
-    assert [told.code for told in posted.diagnostics] == ["J125"], "the offset stands in for the job's fixture"
+    assert [reported.code for reported in posted.diagnostics] == ["J125"], "the offset stands in for the job's fixture"
     assert posted.program.stat().st_size > 0
 
 

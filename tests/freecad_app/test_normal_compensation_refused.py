@@ -31,7 +31,7 @@ def box_job(document):
     return job_on(document, Part.makeBox(20, 20, 20))
 
 
-def test_point_off_the_faces_is_told_with_its_place_and_distance(box_job):
+def test_point_off_the_faces_is_reported_with_its_place_and_distance(box_job):
     text = refused(dressed(box_job, lines([(5, 5, 20), (15, 5, 20.5), (15, 8, 20)])))
     assert "N111" in text
     assert f"part: Cut: line {COMMENTS + 3}" in text
@@ -68,13 +68,13 @@ def test_point_beyond_the_edge_within_the_tolerance_is_on_the_face(document):
     assert "is 0.012 mm from" in refused(dressup)
 
 
-def test_nearer_one_of_two_faces_is_told_first(box_job):
+def test_nearer_one_of_two_faces_is_reported_first(box_job):
     name = box_job.Model.Group[0].Label
     text = refused(dressed(box_job, lines([(5, 5, 20), (19.995, 5, 20)])))
     assert f"is on {name}.Face6 and on {name}.Face2" in text
 
 
-def test_point_at_an_edge_is_told_unless_its_face_is_chosen(box_job):
+def test_point_at_an_edge_is_reported_unless_its_face_is_chosen(box_job):
     dressup = dressed(box_job, lines([(5, 5, 20), (20, 5, 20)]))
     text = refused(dressup)
     assert "N112" in text
@@ -94,7 +94,7 @@ def test_smooth_edge_is_no_edge(document):
     assert poses(dressup)[0] == pytest.approx(np.array([(15, 0, 10), (15, 0, 5), (15, 0, 0)]), abs=SIX_DECIMALS)
 
 
-def test_cut_round_an_edge_without_a_point_on_it_is_told(box_job):
+def test_cut_round_an_edge_without_a_point_on_it_is_reported(box_job):
     """The centre of the ball would cut the corner by 5 (1 - cos 45) = 1.46 mm."""
     text = refused(dressed(box_job, lines([(19.9, 5, 20), (20, 5, 19.9)])))
     assert "N113" in text
@@ -151,7 +151,7 @@ def test_operation_of_rapid_moves_stays_as_it_is(box_job):
     assert poses(dressup, "G0")[0] == pytest.approx(np.array([(5, 5, 60), (15, 5, 60)]))
 
 
-def test_undercut_is_told_at_its_command(document):
+def test_undercut_is_reported_at_its_command(document):
     """Below its equator a sphere looks away from an upright tool."""
     angle = np.arange(1.0, 2.0, 0.05)
     points = SPHERE_RADIUS * np.column_stack([np.sin(angle), np.zeros(len(angle)), np.cos(angle)])
@@ -166,7 +166,7 @@ def test_lone_point_has_no_direction_to_lean(box_job):
     assert poses(valid(dressed(box_job, code, ToolAxis=FROM_NORMAL)))[1] == pytest.approx(Z[None])
 
 
-def test_face_that_is_gone_is_told(box_job):
+def test_face_that_is_gone_is_reported(box_job):
     dressup = dressed(box_job, lines(ACROSS_THE_TOP))
     dressup.Faces = [(box_job.Model.Group[0], ("Face6",))]
     box_job.Proxy.baseObject(box_job, box_job.Model.Group[0]).Shape = Part.makeSphere(10)

@@ -78,7 +78,7 @@ def test_work_offset_is_the_fixture_of_the_job(ready, tmp_path):
     assert post_job(ready, MACHINE, tmp_path, dataclasses.replace(AT_FIXTURE, work_offset="G54")).files
 
 
-def test_faults_of_job_and_machine_are_told_together_and_nothing_is_written(ready, tmp_path):
+def test_faults_of_job_and_machine_are_reported_together_and_nothing_is_written(ready, tmp_path):
     ready.Tools.Group[0].GaugeLength = 0
     assert refusal(post_job, ready, "no_such_machine", tmp_path / "out") == ["M101", "J113"]
     assert not (tmp_path / "out").exists()
@@ -89,7 +89,7 @@ def test_warnings_of_the_job_are_handed_on(job, tmp_path):
     assert [fault.code for fault in post_job(job, MACHINE, tmp_path, AT_FIXTURE).diagnostics] == ["J118"]
 
 
-def test_warnings_of_the_job_are_told_when_it_is_refused(job, tmp_path):
+def test_warnings_of_the_job_are_reported_when_it_is_refused(job, tmp_path):
     add_operation(job, ["G0 X0 Y0 Z30", "G1 X1000 I0 J0 K2 F10"])
     codes = refusal(post_job, job, MACHINE, tmp_path, AT_FIXTURE)
     assert codes[0] == "J118"
@@ -276,15 +276,15 @@ def in_parts(folder):
     return machine
 
 
-def test_cam_gets_the_first_part_and_the_user_is_told_of_the_others(job, cam_post_of, tmp_path, monkeypatch):
-    told = []
-    monkeypatch.setattr(App.Console, "PrintMessage", told.append)
+def test_cam_gets_the_first_part_and_the_user_is_reported_of_the_others(job, cam_post_of, tmp_path, monkeypatch):
+    reported = []
+    monkeypatch.setattr(App.Console, "PrintMessage", reported.append)
     add_operation(job, [*FIVE_AXIS, "G4 P0.5", *FIVE_AXIS])
     ((_, text),) = cam_post_of(job, f"--machine {in_parts(tmp_path)}").export()
     others = sorted(path.name for path in tmp_path.glob("made by cam-part*"))
     assert others
     assert f"; part 1 of {len(others) + 1}" in text
-    assert ", ".join(["made by cam.ngc", *others]) in "".join(told)
+    assert ", ".join(["made by cam.ngc", *others]) in "".join(reported)
 
 
 def test_a_stopped_post_gives_cam_nothing(job, cam_post_of, tmp_path, monkeypatch):

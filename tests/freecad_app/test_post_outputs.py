@@ -49,12 +49,12 @@ def test_trajectory_is_written_beside_a_text_that_names_it(job, tmp_path):
     assert trajectory.tip == pytest.approx(program.position + [0, 0, 250], abs=1e-9)  # mm; a shift and no turn
 
 
-def test_results_that_are_beside_another_trajectory_are_told(job, tmp_path, monkeypatch):
+def test_results_that_are_beside_another_trajectory_are_reported(job, tmp_path, monkeypatch):
     exported(job, "hexapod_pmac")
-    told = []
-    monkeypatch.setattr(App.Console, "PrintWarning", told.append)
+    reported = []
+    monkeypatch.setattr(App.Console, "PrintWarning", reported.append)
     exported(job, "hexapod_trajectory")
-    (warning,) = [line for line in told if "F104" in line]
+    (warning,) = [line for line in reported if "F104" in line]
     assert "made (by cam)-report.html, made (by cam)-report.json, made (by cam)-setup.pmc;" in warning
 
 

@@ -128,8 +128,8 @@ END-OF-PATH
 """
 
 
-def code_of(told):
-    return re.search(r"(?:error|warning) (\w+):", told)[1]
+def code_of(reported):
+    return re.search(r"(?:error|warning) (\w+):", reported)[1]
 
 
 def test_what_cl_data_leaves_open_is_said_by_properties(document, tmp_path):
@@ -222,25 +222,25 @@ def test_decoded_with_the_controller_of_its_tool(document, tmp_path):
 @pytest.mark.parametrize(
     ("code", "lost"), [("G61.1", "exact stops"), ("G61", "exact paths"), ("G64 P0.05", "tolerances of the path")]
 )
-def test_what_an_operation_cannot_say_is_told(document, tmp_path, monkeypatch, code, lost):
-    told = []
-    monkeypatch.setattr("pkm_post.freecad_app.program_object.print_diagnostics", told.extend)
+def test_what_an_operation_cannot_say_is_reported(document, tmp_path, monkeypatch, code, lost):
+    reported = []
+    monkeypatch.setattr("pkm_post.freecad_app.program_object.print_diagnostics", reported.extend)
     obj = create_program(document, written(tmp_path, "a.ngc", GCODE.replace("G17", f"{code}\nG17", 1)))
     decode(obj, new_job(document))
-    assert [each.code for each in told] == ["J120"]
-    assert lost in told[0].found
+    assert [each.code for each in reported] == ["J120"]
+    assert lost in reported[0].found
 
 
 def test_a_program_without_an_end_has_no_path_unless_it_may(document, tmp_path):
     file = written(tmp_path, "a.ngc", GCODE.replace("M2\n", ""))
     obj = create_program(document, file)
-    assert [code_of(told) for told in obj.Found] == ["G430"]
+    assert [code_of(reported) for reported in obj.Found] == ["G430"]
     assert obj.Path.Commands == []
     with pytest.raises(Refused, match="G430"):
         decode(obj, new_job(document))
     obj.OpenEnd = True
     document.recompute()
-    assert [code_of(told) for told in obj.Found] == ["V130"]
+    assert [code_of(reported) for reported in obj.Found] == ["V130"]
     assert moves(obj) == moves(create_program(document, file, allow_open_end=True)) != []
 
 

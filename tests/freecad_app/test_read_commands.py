@@ -72,7 +72,7 @@ def test_rounded_tool_axes_are_made_unit_again_without_a_word():
     np.testing.assert_allclose(np.linalg.norm(program.tool_axis, axis=1), 1.0, atol=1e-15)
 
 
-def test_long_tool_axis_is_made_unit_and_told_once():
+def test_long_tool_axis_is_made_unit_and_reported_once():
     program, faults = read(FIRST, "G1 X1 I0 J3 K4 F1", "G1 X2 I0 J6 K8")
     np.testing.assert_allclose(program.tool_axis[1:], [[0, 0.6, 0.8]] * 2, atol=1e-15)
     assert [(fault.code, fault.place.line) for fault in faults] == [("J118", 2)]
@@ -153,7 +153,7 @@ def test_no_commands_give_no_rows():
         ("G0 C90", "J115"),
     ],
 )
-def test_faults_are_told_with_their_place(line, code):
+def test_faults_are_reported_with_their_place(line, code):
     program, faults = read("(Cut)", FIRST, line)
     assert program is None
     assert [(fault.code, fault.place.line) for fault in faults] == [(code, 3)]
@@ -181,7 +181,7 @@ def test_cutting_move_without_the_tool_axis_that_others_have():
     assert "and 1 more" in faults[0].found
 
 
-def test_a_dwell_of_more_than_a_minute_is_told():
+def test_a_dwell_of_more_than_a_minute_is_reported():
     """CAM has seconds: its Drilling writes the property DwellTime as P, and its linuxcnc post hands that on."""
     program, faults = read(FIRST, "G82 X1 Z-1 R1 P500 F1", "G4 P60", "G4 P61")
     assert [(fault.code, fault.place.line, fault.found) for fault in faults] == [
@@ -199,7 +199,7 @@ def test_numbers_that_are_none(letter, number):
     assert [(fault.code, fault.place.line) for fault in faults] == [("J119", 1)]
 
 
-def test_all_faults_are_told_in_one_run_in_order():
+def test_all_faults_are_reported_in_one_run_in_order():
     assert faults_of(FIRST, "G1 X1", "G86 Z1", "G2 X9", "G1 B1", "G86 Z2", "G1 X1 I0 J0 K0") == [
         ("J105", 2),
         ("J109", 2),

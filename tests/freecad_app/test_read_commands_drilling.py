@@ -127,7 +127,7 @@ def test_a_cycle_needs_to_know_where_it_begins():
         assert [(fault.code, fault.found) for fault in faults] == [("J122", "G81: it is not known where the tool is")]
 
 
-def test_each_cycle_fault_is_told_once():
+def test_each_cycle_fault_is_reported_once():
     _, faults = read(FIRST, *(f"G81 X{x} Z-1 F1" for x in range(5)))
     assert [(fault.code, fault.place.line, fault.found) for fault in faults] == [
         ("J122", 2, "G81 without R, and 4 more like it")

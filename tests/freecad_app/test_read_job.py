@@ -178,7 +178,7 @@ def test_job_with_nothing_but_inactive_operations(job):
     assert faults_of(job) == [("J103", "Job", 0)]
 
 
-def test_faults_of_all_operations_are_told_together(job):
+def test_faults_of_all_operations_are_reported_together(job):
     add_operation(job, [*FIVE_AXIS, "G86 X1"], "First")
     add_operation(job, ["G0 X0 Y0 Z0", "G1 X1"], "Second")
     assert faults_of(job) == [("J104", "First", 7), ("J105", "Second", 4)]

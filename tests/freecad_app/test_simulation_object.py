@@ -40,9 +40,9 @@ def test_figures_are_quantities_of_the_planned_motion(job, made):
     # looked at closely, no strut is faster than it is said to be, and one is as fast to within a thousandth
     _, speeds = plan.struts_at(np.linspace(0.0, plan.duration, 200_000))
     fastest = np.abs(speeds).max(axis=0)
-    told = made.GreatestStrutSpeed.getValueAs("mm/s").Value
-    assert fastest.max() <= told + NANOMETRE
-    assert fastest[made.FastestStrut - 1] == pytest.approx(told, rel=1e-3)
+    reported = made.GreatestStrutSpeed.getValueAs("mm/s").Value
+    assert fastest.max() <= reported + NANOMETRE
+    assert fastest[made.FastestStrut - 1] == pytest.approx(reported, rel=1e-3)
 
 
 def test_the_way_is_as_long_as_its_lines_and_arcs(made, job):
@@ -136,7 +136,7 @@ def test_one_undo_takes_it_back(job):
     assert document.getObject("Simulation") is None
 
 
-def test_it_is_told_from_other_objects(job, made):
+def test_it_is_reported_from_other_objects(job, made):
     assert is_simulation(made)
     assert not is_operation(made)
     assert not any(is_simulation(item) for item in job.Document.Objects if item != made)

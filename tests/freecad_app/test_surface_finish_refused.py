@@ -42,7 +42,7 @@ def test_fault_is_shown_at_the_operation_and_its_path_is_empty(job, fault):
     assert [each.code for each in read_job(job)[1]] == ["J116"]
 
 
-def test_tool_controller_that_lacks_something_is_told(job):
+def test_tool_controller_that_lacks_something_is_reported(job):
     operation = valid(finish(job))
     job.Tools.Group[0].HorizFeed = 0
     job.Document.recompute()
@@ -53,7 +53,7 @@ def test_tool_controller_that_lacks_something_is_told(job):
     assert moves(operation) == []
 
 
-def test_operation_without_faces_is_told(job):
+def test_operation_without_faces_is_reported(job):
     operation = valid(finish(job))
     operation.Base = []
     job.Document.recompute()
@@ -94,7 +94,7 @@ def test_machine_limits_the_tilt(job):
     assert operation.UsedConeLimit.Value == pytest.approx(3.0)
 
 
-def test_machine_that_cannot_be_used_is_told(job):
+def test_machine_that_cannot_be_used_is_reported(job):
     operation = valid(finish(job, Machine="example_6tps"))
     for change, code in (
         (lambda: setattr(operation, "ConeAxis", App.Vector(1, 0, 1)), "N309"),
@@ -109,7 +109,7 @@ def test_machine_that_cannot_be_used_is_told(job):
         operation.ConeAxis = App.Vector(0, 0, 1)
 
 
-def test_part_out_of_reach_is_told(document):
+def test_part_out_of_reach_is_reported(document):
     far = Part.makeBox(10, 10, 10, App.Vector(3000, 0, 0))
     operation = finish(job_on(document, far), lambda face: face.BoundBox.ZMin > 9.9, Machine="example_6tps")
     assert "N310" in operation.getStatusString()

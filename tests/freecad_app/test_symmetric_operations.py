@@ -88,7 +88,7 @@ def test_turns_of_a_mirror_image(base):
     np.testing.assert_allclose(poses(copy)[0], tips, atol=SIX_DECIMALS)
 
 
-def test_a_number_of_copies_below_one_is_told_at_the_object(base):
+def test_a_number_of_copies_below_one_is_reported_at_the_object(base):
     copy = create_rotation(base, (0, 0, 1), np.pi)
     copy.Copies = 0
     copy.Document.recompute()
@@ -194,7 +194,7 @@ def test_deleted_base_leaves_an_empty_copy_that_is_refused(job, base):
     assert len(read_job(job)[0]) == 8
 
 
-def test_fault_in_the_base_is_told_at_both_and_leaves_no_old_path(job, base):
+def test_fault_in_the_base_is_reported_at_both_and_leaves_no_old_path(job, base):
     copy = recomputed(create_mirror(base, (0, 1, 0)))
     base.Gcode = [*FIVE_AXIS, "G86 X1"]
     job.Document.recompute()
@@ -206,7 +206,7 @@ def test_fault_in_the_base_is_told_at_both_and_leaves_no_old_path(job, base):
     assert "J104" in faults[1].found
 
 
-def test_normal_without_direction_is_told_at_the_copy(job, base):
+def test_normal_without_direction_is_reported_at_the_copy(job, base):
     copy = create_mirror(base, (0, 0, 0))
     job.Document.recompute()
     assert "direction" in copy.getStatusString()

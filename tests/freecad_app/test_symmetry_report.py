@@ -108,7 +108,7 @@ def test_what_operations_say_of_themselves(quarter, words, found):
     assert recomputed(create_rotation(quarter, (0, 0, 1), np.pi)).CutOfBase == found
 
 
-def test_a_pass_that_cannot_be_reversed_is_told_at_the_object_with_no_path_left(quarter):
+def test_a_pass_that_cannot_be_reversed_is_reported_at_the_object_with_no_path_left(quarter):
     copy = create_mirror(quarter, (0, 1, 0), keep_climb=True)
     quarter.Gcode = ["G0 X0 Y0 Z5", "G1 X20 F5", "G0 X30", "G1 X40"]
     quarter.Document.recompute()
@@ -243,14 +243,14 @@ def test_axis_of_a_round_face_and_of_a_round_edge(quarter):
         assert (turn.Point.x, turn.Point.y, abs(turn.Axis.z)) == pytest.approx((7, 8, 1))
 
 
-@pytest.mark.parametrize(("name", "told"), [("Face1", "round"), ("Edge1", "edge"), ("", "whole")])
-def test_what_is_no_plane_is_told_at_the_object(quarter, name, told):
+@pytest.mark.parametrize(("name", "reported"), [("Face1", "round"), ("Edge1", "edge"), ("", "whole")])
+def test_what_is_no_plane_is_reported_at_the_object(quarter, name, reported):
     post = quarter.Document.addObject("Part::Cylinder", "Post")
     quarter.Document.recompute()
     copy = create_mirror(quarter, (0, 1, 0))
     copy.Plane = (post, [name])
     quarter.Document.recompute()
-    assert not copy.isValid(), told
+    assert not copy.isValid(), reported
     assert f"got Post {name}".strip() in copy.getStatusString()
 
 

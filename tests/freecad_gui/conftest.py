@@ -50,8 +50,8 @@ def scene(tmp_path_factory):
         assert window and shutil.which("xvfb-run"), "FreeCAD's window program and xvfb-run are needed"
         script = Path(__file__).with_name(f"scene_{name}.py")
         command = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", window, "-M", str(ADDON), str(script)]
-        told = {"env": os.environ | {"PKM_FOLDER": str(folder)}, "capture_output": True, "text": True}
-        ran = subprocess.run(command, timeout=180, check=False, **told)
+        how = {"env": os.environ | {"PKM_FOLDER": str(folder)}, "capture_output": True, "text": True}
+        ran = subprocess.run(command, timeout=180, check=False, **how)
         result = folder / "result.json"
         assert result.exists(), ran.stdout + ran.stderr
         found = json.loads(result.read_text())

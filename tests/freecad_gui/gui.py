@@ -81,18 +81,18 @@ def picture_of_all(name):
     return picture(name)
 
 
-def answer(told):
+def answer(reported):
     """Read the message box that will open, and close it."""
-    QtCore.QTimer.singleShot(0, lambda: _close_message(told))
+    QtCore.QTimer.singleShot(0, lambda: _close_message(reported))
 
 
-def _close_message(told):
+def _close_message(reported):
     box = QtWidgets.QApplication.activeModalWidget()
     if isinstance(box, QtWidgets.QMessageBox):
-        told.append(box.text())
+        reported.append(box.text())
         box.accept()
     else:
-        QtCore.QTimer.singleShot(50, lambda: _close_message(told))
+        QtCore.QTimer.singleShot(50, lambda: _close_message(reported))
 
 
 def new_document(name):

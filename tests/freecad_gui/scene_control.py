@@ -42,7 +42,7 @@ def panel_opens_without_a_connection():
 
 
 @step
-def names_that_are_wrong_are_told():
+def names_that_are_wrong_are_reported():
     panel = the_panel()
     page = panel.panel.connecting
     page.port.setText("usb:1")
@@ -50,11 +50,11 @@ def names_that_are_wrong_are_told():
     page.machine.setEditText("no_such_machine")
     click(page.train)
     page.machine.setEditText("example_6tps")
-    told = messages()
+    reported = messages()
     page.port.setText("tcp:127.0.0.1:1")
     click(page.connect)
     until(lambda: not panel.console.waits, 60)
-    return {"told": told, "refused": messages()[-1], "connected": panel.console.connection is not None}
+    return {"reported": reported, "refused": messages()[-1], "connected": panel.console.connection is not None}
 
 
 @step
@@ -87,7 +87,7 @@ def a_simulated_machine_is_connected_to_and_homed():
     found["homing"] = newest().homing.phase.name
     idle()
     settle()
-    found["told"] = face.homing.status.text()
+    found["reported"] = face.homing.status.text()
     found["homed"] = [face.struts.item(row, 2).text() for row in range(6)]
     found["tip"] = list(newest().pose.tip)
     return found
@@ -133,7 +133,7 @@ def a_jog_out_of_reach_sends_nothing():
     control.execute = execute
     panel.panel.jog.step.setProperty("rawValue", 2.0)
     moved = float(np.abs(newest().status.commanded - before).max())
-    return {"told": messages()[-2:], "executed": len(executed), "moved": moved}
+    return {"reported": messages()[-2:], "executed": len(executed), "moved": moved}
 
 
 @step

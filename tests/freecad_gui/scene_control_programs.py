@@ -158,7 +158,7 @@ def a_program_goes_on_after_its_stop():
         until(lambda: newest().status.running)
         idle()
         out.append(float((newest().status.commanded - HOME_MM).mean()))
-    return found | {"out": out, "told": messages()[-1]}
+    return found | {"out": out, "reported": messages()[-1]}
 
 
 @step

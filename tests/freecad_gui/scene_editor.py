@@ -118,9 +118,9 @@ def editor_colours_the_lines_in_sight_of_a_large_file():
     until(lambda: last.layout().formats())
     in_sight = len(last.layout().formats())
     until(lambda: not editor.widget.checker.busy())
-    told = {"out_of_sight": out_of_sight, "in_sight": in_sight, "size": editor.widget.size.text()}
-    told["back"] = editor.open_file(before)
-    return told
+    reported = {"out_of_sight": out_of_sight, "in_sight": in_sight, "size": editor.widget.size.text()}
+    reported["back"] = editor.open_file(before)
+    return reported
 
 
 def _widest_gap(call, done):
@@ -150,14 +150,14 @@ def editor_leaves_the_window_its_turns_in_100000_lines():
     large.write_text("\n".join([*heading, *moves]), encoding="ascii")
     body.find_bar.wanted.setText("G1 X7.0 ")
     body.find_bar.instead.setText("G1 X7.5 ")
-    told, busy = {}, {}
+    reported, busy = {}, {}
 
     def timed(name, call):
         def begin():
             call()
             busy[name] = body.text.edits.busy()
 
-        told[name] = _widest_gap(begin, lambda: name in busy and not body.busy())
+        reported[name] = _widest_gap(begin, lambda: name in busy and not body.busy())
         return body.text.toPlainText().split("\n")
 
     lines = {"opened": timed("open", lambda: editor.open_file(large))}
@@ -173,7 +173,7 @@ def editor_leaves_the_window_its_turns_in_100000_lines():
     saved, size = large.read_text(encoding="ascii").split("\n"), body.size.text()
     editor.open_file(before)
     return {
-        "gaps": told,
+        "gaps": reported,
         "in slices": [name for name, is_busy in busy.items() if is_busy],
         "opened": lines["opened"] == [*heading, *moves],
         "replaced": [lines["replaced"].count("G1 X7.5 Y0.0"), lines["replaced"][5 + 70]],
@@ -208,11 +208,11 @@ def editor_asks_what_cl_data_leaves_open():
     offered = [[reading.axis_words.isHidden(), reading.contour_data.isHidden()]]
     editor.open_file(file)
     offered.append([reading.axis_words.isHidden(), reading.contour_data.isHidden()])
-    told = [_codes(editor)]
+    reported = [_codes(editor)]
     reading.unit.setCurrentIndex(reading.unit.findData("mm"))
-    told.append(_codes(editor))
+    reported.append(_codes(editor))
     reading.contour_data.setCurrentIndex(reading.contour_data.findData("contour"))
-    told.append(_codes(editor))
+    reported.append(_codes(editor))
     ended, messages = [], []
     editor.posting.ended.connect(lambda: ended.append(True))
     answer(messages)
@@ -223,7 +223,7 @@ def editor_asks_what_cl_data_leaves_open():
     after = reading.chosen()
     return {
         "offered": offered,
-        "codes": told,
+        "codes": reported,
         "reading": report["program"]["reading"],
         "after": [after.unit, after.contour_data],
     }
@@ -247,9 +247,9 @@ def editor_asks_who_wrote_cl_data():
     reading, before, file = editor.widget.reading, editor.widget.file, editor.widget.file.with_name("cycle.apt")
     file.write_text(CYCLE, encoding="ascii")
     editor.open_file(file)
-    told = [_codes(editor)]
+    reported = [_codes(editor)]
     reading.cl_dialect.setCurrentIndex(reading.cl_dialect.findData("nx"))
-    told.append(_codes(editor))
+    reported.append(_codes(editor))
     ended, messages = [], []
     editor.posting.ended.connect(lambda: ended.append(True))
     answer(messages)
@@ -257,7 +257,7 @@ def editor_asks_who_wrote_cl_data():
     until(lambda: ended, 60)
     editor.open_file(before)
     return {
-        "codes": told,
+        "codes": reported,
         "posted": file.with_name("cycle-report.json").exists(),
         "after": reading.chosen().cl_dialect,
     }
@@ -273,11 +273,11 @@ def editor_asks_whether_a_program_may_have_no_end():
     reading, before, file = editor.widget.reading, editor.widget.file, editor.widget.file.with_name("cut.ngc")
     file.write_text(PROGRAM.replace("M2\n", ""), encoding="ascii")
     editor.open_file(file)
-    told, size = [_codes(editor)], editor.widget.size.text()
+    reported, size = [_codes(editor)], editor.widget.size.text()
     reading.allow_open_end.setChecked(True)
-    told.append(_codes(editor))
+    reported.append(_codes(editor))
     editor.open_file(before)
-    return {"codes": told, "size": size, "after": reading.chosen().allow_open_end}
+    return {"codes": reported, "size": size, "after": reading.chosen().allow_open_end}
 
 
 @step
@@ -307,9 +307,9 @@ def editor_decodes_and_posts():
     editor, program, document = _editor(), FreeCAD.ActiveDocument, new_document("gui")
     operations = document.getObject("Job").Operations
     before, operation = len(operations.Group), editor.decode()
-    told = [operation.Label, len(operations.Group) - before]
+    reported = [operation.Label, len(operations.Group) - before]
     document.undo()
-    told.append(len(operations.Group) - before)
+    reported.append(len(operations.Group) - before)
     messages, ended = [], []
     editor.posting.ended.connect(lambda: ended.append(True))
     answer(messages)
@@ -318,7 +318,7 @@ def editor_decodes_and_posts():
     files = sorted(file.name for file in FOLDER.glob("program*"))
     FreeCAD.closeDocument(program.Name)
     editor.hide()
-    return {"decoded": told, "messages": messages, "files": files}
+    return {"decoded": reported, "messages": messages, "files": files}
 
 
 main()

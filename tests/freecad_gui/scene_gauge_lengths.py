@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Gauge lengths in the post panel: typed with units, kept in one step of undo, told where they are missing."""
+"""Gauge lengths in the post panel: typed with units, kept in one step of undo, reported where they are missing."""
 
 import FreeCAD
 import FreeCADGui
@@ -52,7 +52,7 @@ class Panel:
         click(self.buttons["Post"])
         until(self.buttons["Post"].isEnabled, 60)
 
-    def told(self):
+    def reported(self):
         listed = self.outcome.diagnostics
         return [listed.item(row).text() for row in range(listed.count())]
 
@@ -90,13 +90,13 @@ def close():
 
 
 @step
-def missing_length_is_told_as_posting_tells_it():
+def missing_length_is_reported_as_posting_tells_it():
     document, panel = opened("missing")
     found = {"cells": panel.cells(), "texts": panel.texts(), "notes": panel.notes()}
     found["hint"] = panel.field(0).placeholderText()
     found["drawn"] = picture("missing.png")
     panel.post()
-    found |= {"told": panel.told(), "files": files(document), "lengths": lengths(document)}
+    found |= {"reported": panel.reported(), "files": files(document), "lengths": lengths(document)}
     close()
     return found
 
@@ -144,7 +144,7 @@ def number_alone_has_the_unit_of_the_window():
 
 
 @step
-def what_is_no_length_is_told_and_not_kept():
+def what_is_no_length_is_reported_and_not_kept():
     document, panel = opened("senseless")
     job, found = document.getObject("Job"), {}
     before = job.PostProcessorArgs
@@ -154,9 +154,9 @@ def what_is_no_length_is_told_and_not_kept():
         panel.type(0, text)
         notes = panel.notes()
         panel.post()
-        found[text] = {"text": panel.texts()[0], "notes": notes, "told": panel.told()}
+        found[text] = {"text": panel.texts()[0], "notes": notes, "reported": panel.reported()}
         click(panel.apply)
-        found[text]["applied"] = panel.told()
+        found[text]["applied"] = panel.reported()
     found["document"] = [lengths(document), document.UndoCount, job.PostProcessorArgs == before, files(document)]
     close()
     return found
@@ -169,7 +169,7 @@ def lengths_are_kept_without_posting():
     panel.type(1, "")
     click(panel.apply)
     settle()
-    found = {"lengths": lengths(document), "steps": document.UndoCount, "told": panel.outcome.verdict.text()}
+    found = {"lengths": lengths(document), "steps": document.UndoCount, "reported": panel.outcome.verdict.text()}
     found |= {"files": files(document), "machine": document.getObject("Job").PostProcessorArgs}
     click(panel.apply)
     found["again"] = document.UndoCount

@@ -64,12 +64,12 @@ def operations_have_menus():
     }
     made["compensation"] = create_normal_compensation(base)
     made["finish"].Active = made["compensation"].Active = False  # no faces are chosen for them
-    told = {name: _texts(obj) for name, obj in made.items()}
+    reported = {name: _texts(obj) for name, obj in made.items()}
     _choose(made["mirror"], "Edit")
-    told["edited"] = SymmetryPanel.opened.obj.Name == made["mirror"].Name
+    reported["edited"] = SymmetryPanel.opened.obj.Name == made["mirror"].Name
     SymmetryPanel.opened.reject()
     settle()
-    return told
+    return reported
 
 
 @step
@@ -99,18 +99,18 @@ def objects_of_a_job_have_menus():
     machine = create_machine(document, job=job)
     reach, simulation = create_reach(job, machine), create_simulation(job, machine)
     document.recompute()
-    told = {"machine": _texts(machine), "reach": _texts(reach), "simulation": _texts(simulation)}
-    told["alone"] = _texts(create_machine(document))
+    reported = {"machine": _texts(machine), "reach": _texts(reach), "simulation": _texts(simulation)}
+    reported["alone"] = _texts(create_machine(document))
     _choose(reach, "Open the findings")
-    told["findings"] = FreeCADGui.Control.activeDialog() is not False
+    reported["findings"] = FreeCADGui.Control.activeDialog() is not False
     FreeCADGui.getDocument("job").resetEdit()
     settle()
     _choose(reach, "Simulate")
-    told["plays"] = [dock.subject.Name for dock in _docks("PkmPlayer")]
+    reported["plays"] = [dock.subject.Name for dock in _docks("PkmPlayer")]
     for dock in _docks("PkmPlayer"):
         dock.close()
     settle()
-    return told
+    return reported
 
 
 def _docks(name):
@@ -138,12 +138,12 @@ def program_has_a_menu():
     file.write_text(PROGRAM, encoding="ascii")
     part = create_program(document, str(file))
     document.recompute()
-    told = {"texts": _texts(part), "before": len(document.getObject("Job").Operations.Group)}
+    reported = {"texts": _texts(part), "before": len(document.getObject("Job").Operations.Group)}
     _choose(part, "Open in the editor")
-    told["opened"] = [dock.widget.file.name for dock in _docks("PKM_Editor")]
+    reported["opened"] = [dock.widget.file.name for dock in _docks("PKM_Editor")]
     _choose(part, "Decode into a job")
-    told["after"] = len(document.getObject("Job").Operations.Group)
-    return told
+    reported["after"] = len(document.getObject("Job").Operations.Group)
+    return reported
 
 
 @step
@@ -157,10 +157,10 @@ def command_of_a_menu_takes_its_object():
     FreeCADGui.Selection.clearSelection()
     _choose(rotation, "Mirror operation")
     made = SymmetryPanel.opened.obj
-    told = {"base": made.Base.Name, "rotation": rotation.Name}
+    reported = {"base": made.Base.Name, "rotation": rotation.Name}
     SymmetryPanel.opened.accept()
     settle()
-    return told
+    return reported
 
 
 main()

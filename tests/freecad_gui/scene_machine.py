@@ -31,7 +31,7 @@ def machine_from_its_button():
         machine.Tip = FreeCAD.Vector(0, 0, height)
         document.recompute()
         tops.append(_highest(view.scene._platform))
-    told = {
+    reported = {
         "alone": alone,
         "undone": undone,
         "job": machine.Job.Name,
@@ -41,13 +41,13 @@ def machine_from_its_button():
     }
     machine.Tip = FreeCAD.Vector(600, 0, -300)
     document.recompute()
-    told["red"] = [tuple(strut._rod.diffuseColor[0].getValue()) for strut in view.scene._struts]
+    reported["red"] = [tuple(strut._rod.diffuseColor[0].getValue()) for strut in view.scene._struts]
     machine.MachineFile = "no_such_machine"
-    told["scene_without_machine"] = view.scene is not None
+    reported["scene_without_machine"] = view.scene is not None
     machine.MachineFile, machine.Tip = "example_6tps", FreeCAD.Vector(0, 0, 60)
     document.recompute()
-    told["scene"] = view.scene is not None
-    return told
+    reported["scene"] = view.scene is not None
+    return reported
 
 
 def _highest(transform):
@@ -61,27 +61,27 @@ def reach_from_its_button():
     press("PKM_Reach", document.getObject("Job"))
     found = document.getObject("Reach")
     view = found.ViewObject.Proxy
-    told = {"machine": found.Machine.Name, "reachable": found.Reachable, "nodes": view._root.getNumChildren()}
+    reported = {"machine": found.Machine.Name, "reachable": found.Reachable, "nodes": view._root.getNumChildren()}
     view.doubleClicked(found.ViewObject)
     settle()
     (table,) = FreeCADGui.getMainWindow().findChildren(QtWidgets.QTableWidget, "PkmReachTable")
     row = list(found.Checks).index("base joints")
     table.cellClicked.emit(row, 0)
     settle()
-    told |= {
+    reported |= {
         "rows": [table.item(line, 0).text() for line in range(table.rowCount())] == list(found.Checks),
         "colour_by": found.ColourBy,
         "selected": [item.Label for item in FreeCADGui.Selection.getSelection()] == [found.WorstOperations[row]],
     }
     found.Machine.ViewObject.Visibility = False
-    told["saved"] = picture_of_all("reach.png")
+    reported["saved"] = picture_of_all("reach.png")
     found.Machine.ViewObject.Visibility = True
     FreeCADGui.getDocument("hexapod").resetEdit()
     settle()
-    told["panel_is_left_open"] = bool(FreeCADGui.Control.activeDialog())
+    reported["panel_is_left_open"] = bool(FreeCADGui.Control.activeDialog())
     document.undo()
-    told["after_undo"] = found.ColourBy
-    return told
+    reported["after_undo"] = found.ColourBy
+    return reported
 
 
 main()

@@ -83,7 +83,7 @@ def surface_finish_from_its_button():
     press("PKM_SurfaceFinish")
     (operation,) = job.Operations.Group
     view = operation.ViewObject.Proxy
-    told = {
+    reported = {
         "active": active,
         "view": type(view).__name__,
         "icon": os.path.basename(view.getIcon()),
@@ -91,21 +91,21 @@ def surface_finish_from_its_button():
         "valid": operation.isValid(),
         "panel_is_open": view.panel is not None,
     }
-    told["stepover_shown"] = _change_stepover(view.panel, 2.0)
+    reported["stepover_shown"] = _change_stepover(view.panel, 2.0)
     view.panel.accept()
     document.recompute()
-    told["accepted"], told["passes"] = operation.Stepover.Value, operation.PassCount
+    reported["accepted"], reported["passes"] = operation.Stepover.Value, operation.PassCount
     operation.ViewObject.Document.setEdit(operation.ViewObject, 0)
     settle()
     _change_stepover(view.panel, 5.0)
     view.panel.reject()
     settle()
-    told["rejected"], told["panel_is_left_open"] = operation.Stepover.Value, FreeCADGui.Control.activeDialog()
+    reported["rejected"], reported["panel_is_left_open"] = operation.Stepover.Value, FreeCADGui.Control.activeDialog()
     while document.UndoCount and job.Operations.Group:
         document.undo()
-    told["after_undo"] = len(job.Operations.Group)
+    reported["after_undo"] = len(job.Operations.Group)
     FreeCAD.closeDocument("finish")
-    return told
+    return reported
 
 
 def _change_stepover(panel, to):
@@ -145,9 +145,9 @@ def escape_stops_a_long_computation():
     document.recompute()
     inside = item.Label2
     item.Proxy.execute(item)
-    told = {"inside a recompute": inside, "alone": item.Label2}
+    reported = {"inside a recompute": inside, "alone": item.Label2}
     FreeCAD.closeDocument("waiting")
-    return told
+    return reported
 
 
 main()

@@ -144,14 +144,14 @@ def job_keeps_what_was_chosen():
 
 
 @step
-def refused_job_is_told_and_leaves_nothing():
+def refused_job_is_reported_and_leaves_nothing():
     document, folder = saved("refused")
     document.getObject("Custom").Gcode = ["G0 X0 Y0 Z30", "G1 X10 F0"]
     document.recompute()
     panel = open_panel(document)
     panel.post()
     place = clicked(panel.outcome.diagnostics, panel.outcome.diagnostics.item(0))
-    found = {"files": names_in(folder), "told": panel.rows(), "clicked": place, "drawn": picture("refused.png")}
+    found = {"files": names_in(folder), "reported": panel.rows(), "clicked": place, "drawn": picture("refused.png")}
     close()
     return found
 
@@ -161,32 +161,32 @@ def lacking(*_, **__):
 
 
 @step
-def lack_of_memory_is_told_and_leaves_nothing():
+def lack_of_memory_is_reported_and_leaves_nothing():
     from pkm_post.freecad_gui import command, post_panel
     from pkm_post.planning import motion
 
     document, folder = saved("lacking")
-    panel, told, boxes = open_panel(document), [], []
+    panel, reported, boxes = open_panel(document), [], []
     with mock.patch.object(post_panel, "prepared_job", lacking):  # in the thread of the window
         panel.post()
-    told.append(panel.rows())
+    reported.append(panel.rows())
     with mock.patch.object(motion, "tool_path", lacking):  # beside it
         panel.post()
-    told.append(panel.rows())
+    reported.append(panel.rows())
     close()
     shown = mock.patch.object(command.QtWidgets.QMessageBox, "warning", lambda *what: boxes.append(what[2]))
-    with shown, command.memory_or_told("Mirror"):
+    with shown, command.show_lack_of_memory("Mirror"):
         lacking()
-    return {"files": names_in(folder), "told": told, "boxes": boxes}
+    return {"files": names_in(folder), "reported": reported, "boxes": boxes}
 
 
 @step
-def arguments_without_a_meaning_are_told():
+def arguments_without_a_meaning_are_reported():
     document, folder = saved("meaningless")
     panel = open_panel(document)
     panel.choices.more.setText("--no-such-argument 'and a quote")
     panel.post()
-    found = {"files": names_in(folder), "told": panel.rows(), "kept": document.getObject("Job").PostProcessorArgs}
+    found = {"files": names_in(folder), "reported": panel.rows(), "kept": document.getObject("Job").PostProcessorArgs}
     close()
     return found
 
@@ -203,7 +203,7 @@ def cancelled_job_leaves_nothing():
     ended = panel.wait()
     found = {
         "files": names_in(folder),
-        "told": panel.outcome.verdict.text(),
+        "reported": panel.outcome.verdict.text(),
         "ended": ended,
         "could": enabled,
         "can": panel.buttons["Cancel"].isEnabled(),
@@ -217,7 +217,7 @@ def editor_asks_in_the_same_fields():
     from pkm_post.freecad_gui.editor import open_editor
     from pkm_post.freecad_gui.post_fields import PostChoices
 
-    file, ended, told = FOLDER / "lines" / "lines.ngc", [], []
+    file, ended, reported = FOLDER / "lines" / "lines.ngc", [], []
     file.parent.mkdir()
     file.write_text("T1 M6 G43 H1\nG21 G90 G94 S8000 M3\nG0 X0 Y0 Z30\nG1 X10 F600\nM5\nM30\n")
 
@@ -226,7 +226,7 @@ def editor_asks_in_the_same_fields():
         (fields,) = [each for each in dialog.findChildren(QtWidgets.QWidget) if isinstance(each, PostChoices)]
         fields.work_offset.setEditText("0,0,250")
         fields.folder.setText(str(FOLDER / "lines" / "out"))
-        answer(told)
+        answer(reported)
         dialog.accept()
 
     editor = open_editor()
@@ -236,7 +236,7 @@ def editor_asks_in_the_same_fields():
     editor.post()
     until(lambda: ended, 60)
     editor.close()
-    return {"files": names_in(FOLDER / "lines" / "out"), "told": told}
+    return {"files": names_in(FOLDER / "lines" / "out"), "reported": reported}
 
 
 @step

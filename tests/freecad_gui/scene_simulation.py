@@ -27,11 +27,15 @@ def simulation_from_its_button():
     opened = _player() is not None
     document.undo()
     settle()
-    told = {"opened": opened, "undone": document.getObject("Simulation") is None, "closed_by_undo": _player() is None}
+    reported = {
+        "opened": opened,
+        "undone": document.getObject("Simulation") is None,
+        "closed_by_undo": _player() is None,
+    }
     press("PKM_Simulate", job)
     press("PKM_Simulate", job)  # one is there now: it is shown
     made = document.getObject("Simulation")
-    told |= {
+    reported |= {
         "machine": made.Machine.Name,
         "icon": os.path.basename(made.ViewObject.Proxy.getIcon()),
         "count": len([item for item in document.Objects if item.Name.startswith("Simulation")]),
@@ -43,34 +47,34 @@ def simulation_from_its_button():
     settle()
     made.ViewObject.Proxy.doubleClicked(made.ViewObject)
     settle()
-    told["opened_by_double_click"] = _player() is not None
-    return told
+    reported["opened_by_double_click"] = _player() is not None
+    return reported
 
 
 @step
 def player_plays():
     player = _player()
     machine = FreeCAD.getDocument("hexapod").getObject("Machine")
-    told = {"told": player.controls.text()}
+    reported = {"reported": player.controls.text()}
     player.controls.factor.setCurrentText("2x")
     player.toggle()
     end = time.monotonic() + 1.0
     while time.monotonic() < end:
         settle()
     player.toggle()
-    told["played"] = player.seconds
+    reported["played"] = player.seconds
     player.step()
-    told["stepped"] = player.simulation.next_block(told["played"]) == player.seconds
+    reported["stepped"] = player.simulation.next_block(reported["played"]) == player.seconds
     player.step_back()
-    told["stepped_back"] = (
-        player.simulation.block_before(player.simulation.next_block(told["played"])) == player.seconds
+    reported["stepped_back"] = (
+        player.simulation.block_before(player.simulation.next_block(reported["played"])) == player.seconds
     )
     player.widget().slider.setValue(4000)
-    told["scrubbed"] = player.seconds
+    reported["scrubbed"] = player.seconds
     tip = player.simulation.pose_at([4.0])[0][0]
-    told["machine_is_there"] = bool(abs(tip[2] + 120 + 80 - _highest(machine)) < 1.0)
-    told["saved"] = picture_of_all("simulation.png")
-    return told
+    reported["machine_is_there"] = bool(abs(tip[2] + 120 + 80 - _highest(machine)) < 1.0)
+    reported["saved"] = picture_of_all("simulation.png")
+    return reported
 
 
 @step
@@ -80,13 +84,13 @@ def override_scales_time_and_speeds():
     before = player.widget().plot.grab().toImage()
     player.controls.override.setValue(50)
     settle()
-    told = {"pace": player.controls.pace(), "curves_change": player.widget().plot.grab().toImage() != before}
+    reported = {"pace": player.controls.pace(), "curves_change": player.widget().plot.grab().toImage() != before}
     player.controls.override.setValue(200)
-    told["told"] = player.controls.text()
-    told["limit"] = player.simulation.machine.strut_speed
-    told["greatest"] = float(player.simulation.greatest_speeds.max())
+    reported["reported"] = player.controls.text()
+    reported["limit"] = player.simulation.machine.strut_speed
+    reported["greatest"] = float(player.simulation.greatest_speeds.max())
     player.controls.override.setValue(100)
-    return told
+    return reported
 
 
 @step
@@ -122,7 +126,7 @@ def player_follows_the_job():
     settle()
     player.go_to(0.0)
     player.advance(1e6)
-    told = {
+    reported = {
         "follows": player.simulation is not before and player.simulation is made.Proxy.plan,
         "problem": player.problem.text,
         "stopped_at": player.seconds == player.problem.time,
@@ -131,13 +135,13 @@ def player_follows_the_job():
     last = made.ProblemCount - 1
     player.lists.problems.itemClicked.emit(player.lists.problems.item(last))
     settle()
-    told |= {
+    reported |= {
         "at_its_worst": player.seconds == made.WorstTimes[last],
         "selected": [item.Label for item in FreeCADGui.Selection.getSelection()] == [made.WorstOperations[last]],
         "marked": made.ViewObject.Proxy._root.getNumChildren(),
         "saved": picture_of_all("problems.png"),
     }
-    return told
+    return reported
 
 
 @step
@@ -149,7 +153,7 @@ def cam_simulates_the_same_job():
     opened.append(bool(FreeCADGui.Control.activeDialog()))
     boxes = FreeCADGui.getMainWindow().findChildren(QtWidgets.QComboBox, "comboJobs")
     jobs = [box.currentText() for box in boxes]
-    player.controls.removal.emit()  # the panel is taken: this is told, and nothing else happens
+    player.controls.removal.emit()  # the panel is taken: this is reported, and nothing else happens
     settle()
     FreeCADGui.Control.closeDialog()
     settle()
@@ -165,27 +169,27 @@ def nothing_is_left_open():
     _player().go_to(4.0)
     _player().close()
     settle()
-    told = {"machine_is_back": abs(_highest(machine) - _shown_height(machine)) < 1e-3}
+    reported = {"machine_is_back": abs(_highest(machine) - _shown_height(machine)) < 1e-3}
     made = document.getObject("Simulation")
     press("PKM_Simulate", made)
     document.removeObject("Machine")
     settle()
-    told["closed_with_its_machine"] = _player() is None
+    reported["closed_with_its_machine"] = _player() is None
     refused = []
     # as after a restart: the plan has gone, and is asked for
     made.Active, made.Proxy.plan, job.PostProcessorArgs = False, None, "--machine no_such_machine"
     answer(refused)
     press("PKM_Simulate", job)
     until(lambda: refused)
-    told |= {"refused": refused, "no_player": _player() is None}
+    reported |= {"refused": refused, "no_player": _player() is None}
     made.Active, job.PostProcessorArgs = True, ARGUMENTS.format("0,0,250")
     document.recompute()
     press("PKM_Simulate", job)
-    told["without_machine"] = _player() is not None
+    reported["without_machine"] = _player() is not None
     FreeCAD.closeDocument("hexapod")
     settle()
-    told["closed_with_its_document"] = _player() is None
-    return told
+    reported["closed_with_its_document"] = _player() is None
+    return reported
 
 
 def _player():

@@ -47,7 +47,7 @@ def mirror_from_its_button():
     press("PKM_Mirror", base)
     made = document.getObject("Job").Operations.Group[-1]
     panel = panel_of()
-    told = {
+    reported = {
         "open": opened(document),
         "choices": [panel.place.choice.itemText(index) for index in range(panel.place.choice.count())],
         "chosen": panel.place.choice.currentText(),
@@ -58,12 +58,12 @@ def mirror_from_its_button():
     panel.place.point.fields[0].editingFinished.emit()
     panel.side.setCurrentIndex(1)
     panel.keep_climb.setChecked(True)
-    told["computed later"] = until(lambda: made.ReversedPasses == 1 and "1" in panel.report.text())
-    told["live report"] = panel.report.text()
-    told["picture"] = picture("mirror_panel.png")
+    reported["computed later"] = until(lambda: made.ReversedPasses == 1 and "1" in panel.report.text())
+    reported["live report"] = panel.report.text()
+    reported["picture"] = picture("mirror_panel.png")
     panel.accept()
     settle()
-    told |= {
+    reported |= {
         "closed": not opened(document),
         "normal": list(made.Normal),
         "point": list(made.Point),
@@ -73,11 +73,11 @@ def mirror_from_its_button():
     }
     document.undo()
     document.recompute()
-    told["after undo"] = labels(document)
+    reported["after undo"] = labels(document)
     document.redo()
     document.recompute()
-    told["after redo"] = [labels(document), document.getObject("Job").Operations.Group[-1].KeepClimb]
-    return told
+    reported["after redo"] = [labels(document), document.getObject("Job").Operations.Group[-1].KeepClimb]
+    return reported
 
 
 @step
@@ -107,7 +107,7 @@ def edit_by_double_click():
     inside = list(made.Normal)
     panel_of().reject()
     settle()
-    told = {"inside": inside, "rejected": list(made.Normal), "undo": document.UndoCount - before}
+    reported = {"inside": inside, "rejected": list(made.Normal), "undo": document.UndoCount - before}
     view.Proxy.doubleClicked(view)
     settle()
     panel_of().place.choice.setCurrentIndex(4)
@@ -117,12 +117,12 @@ def edit_by_double_click():
         if not any(values):
             panel_of().apply()
             panel_of().compute()
-            told["no direction"] = list(made.Normal)
+            reported["no direction"] = list(made.Normal)
     panel_of().accept()
     settle()
-    told |= {"accepted": list(made.Normal), "undo steps": document.UndoCount - before}
+    reported |= {"accepted": list(made.Normal), "undo steps": document.UndoCount - before}
     document.undo()
-    return told | {"undone": list(made.Normal), "open": opened(document)}
+    return reported | {"undone": list(made.Normal), "open": opened(document)}
 
 
 @step
@@ -139,29 +139,29 @@ def plane_by_a_picked_face_and_a_datum_plane():
     settle()
     panel = panel_of()
     panel.place.choice.setCurrentIndex(3)
-    told = {"hint": panel.place.picked.text()}
+    reported = {"hint": panel.place.picked.text()}
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(document.getObject("Stock"), "Edge1")
-    told["unfit"] = panel.place.picked.text()
+    reported["unfit"] = panel.place.picked.text()
     FreeCADGui.Selection.addSelection(document.getObject("Stock"), "Face2")
-    told["face"] = panel.place.picked.text()
+    reported["face"] = panel.place.picked.text()
     panel.compute()
-    told["plane of face"] = [list(made.Point), list(made.Normal)]
+    reported["plane of face"] = [list(made.Point), list(made.Normal)]
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(body, "Datum.")
     panel.compute()
-    told["datum"] = panel.place.picked.text()
-    told["plane of datum"] = [list(made.Point), [abs(round(each, 9)) for each in made.Normal]]
+    reported["datum"] = panel.place.picked.text()
+    reported["plane of datum"] = [list(made.Point), [abs(round(each, 9)) for each in made.Normal]]
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(made)
-    told["itself"] = panel.place.picked.text()
+    reported["itself"] = panel.place.picked.text()
     panel.accept()
     settle()
-    told["link"] = made.Plane[0].Label
+    reported["link"] = made.Plane[0].Label
     datum.Placement.Base = FreeCAD.Vector(0, 9, 0)
     document.recompute()
-    told["follows"] = round(made.Point.y, 9)
-    return told
+    reported["follows"] = round(made.Point.y, 9)
+    return reported
 
 
 @step
@@ -176,13 +176,13 @@ def another_edit_leaves_nothing_behind():
     panel = panel_of()
     FreeCADGui.getDocument(document.Name).resetEdit()
     settle()
-    told = {"panel": panel_of() is not None, "dialog": bool(FreeCADGui.Control.activeDialog())}
+    reported = {"panel": panel_of() is not None, "dialog": bool(FreeCADGui.Control.activeDialog())}
     picks = []
     panel.place.pick = lambda *args: picks.append(args)
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(base)
     settle()
-    return told | {"picks": len(picks), "open": opened(document)}
+    return reported | {"picks": len(picks), "open": opened(document)}
 
 
 @step
@@ -190,30 +190,30 @@ def turns_with_their_report():
     document, base = quadrant("turns")
     press("PKM_Rotate", base)
     made, panel = document.getObject("Job").Operations.Group[-1], panel_of()
-    told = {"half turn": panel.report.text()}
+    reported = {"half turn": panel.report.text()}
     panel.angle.setProperty("rawValue", 90.0)
     panel.copies.setValue(3)
     panel.compute()
-    told["three quarters"] = panel.report.text()
-    told["picture"] = picture("rotation_panel.png")
+    reported["three quarters"] = panel.report.text()
+    reported["picture"] = picture("rotation_panel.png")
     panel.angles.setText("90; 100 deg; no angle")
     panel.angles.editingFinished.emit()
-    told["no list"] = list(made.Angles)
+    reported["no list"] = list(made.Angles)
     panel.angles.setText("90; 1 rad")
     panel.angles.editingFinished.emit()
-    told["list"] = list(np.round(made.Angles, 6))
+    reported["list"] = list(np.round(made.Angles, 6))
     panel.compute()
-    told["list report"] = panel.report.text()
+    reported["list report"] = panel.report.text()
     panel.angles.setText("")
     panel.angles.editingFinished.emit()
     panel.place.choice.setCurrentIndex(3)
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(document.getObject("Stock"), "Edge1")
     panel.compute()
-    told["axis of edge"] = [abs(each) for each in made.Axis]
+    reported["axis of edge"] = [abs(each) for each in made.Axis]
     panel.accept()
     settle()
-    return told | {"moves": len(made.Path.Commands), "copies": made.Copies, "angle": made.Angle.Value}
+    return reported | {"moves": len(made.Path.Commands), "copies": made.Copies, "angle": made.Angle.Value}
 
 
 @step
@@ -225,15 +225,15 @@ def mirror_of_a_rotation_and_the_whole_family():
     across = create_mirror(base, (0, 1, 0))
     document.recompute()
     press("PKM_Mirror", half)
-    told = {"report": panel_of().report.text(), "label": document.getObject("Job").Operations.Group[-1].Label}
+    reported = {"report": panel_of().report.text(), "label": document.getObject("Job").Operations.Group[-1].Label}
     panel_of().accept()
     settle()
     across.ViewObject.Proxy.doubleClicked(across.ViewObject)
     settle()
-    told["other"] = panel_of().report.text()
+    reported["other"] = panel_of().report.text()
     panel_of().reject()
     settle()
-    return told
+    return reported
 
 
 main()

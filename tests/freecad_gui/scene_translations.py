@@ -31,25 +31,25 @@ def panel_is_chinese():
     document = new_document("gui")
     press("PKM_Mirror", document.getObject("Custom"))
     panel = SymmetryPanel.opened
-    told = {"labels": _labels(panel.form), "undo": list(document.UndoNames), "drawn": picture("panel.png")}
-    told["climb"] = panel.keep_climb.text()
+    reported = {"labels": _labels(panel.form), "undo": list(document.UndoNames), "drawn": picture("panel.png")}
+    reported["climb"] = panel.keep_climb.text()
     panel.accept()
     settle()
-    told["undo"] = list(document.UndoNames)
+    reported["undo"] = list(document.UndoNames)
     (made,) = document.getObject("Job").Operations.Group[1:]
     said = made.getDocumentationOfProperty("KeepClimb")
-    told["said"] = QtCore.QCoreApplication.translate("App::Property", said)
-    return told
+    reported["said"] = QtCore.QCoreApplication.translate("App::Property", said)
+    return reported
 
 
 @step
 def post_panel_is_chinese():
     press("PKM_Post", FreeCAD.getDocument("gui").getObject("Job"))
     panel = FreeCADGui.getMainWindow().findChild(QtWidgets.QWidget, "PkmPostPanel")
-    told = {"labels": _labels(panel), "drawn": picture("post.png")}
+    reported = {"labels": _labels(panel), "drawn": picture("post.png")}
     FreeCADGui.Control.closeDialog()
     settle()
-    return told
+    return reported
 
 
 @step

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The steps of docs/tutorial.md in their order, through the buttons and panels that it names.
 
-What comes of each step is told, and a picture of it is kept. With the folder docs/pictures in PKM_PICTURES the test of
-this scene puts them there.
+What comes of each step is written down, and a picture of it is kept. With the folder docs/pictures in PKM_PICTURES the
+test of this scene puts them there.
 """
 
 import json
@@ -288,7 +288,7 @@ def quarter_is_covered():
 def the_other_quadrants_are_copies():
     from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
 
-    first, told = job().Operations.Group[0], {}
+    first, reported = job().Operations.Group[0], {}
     for label, command, choice in (
         ("Quadrant 4", "PKM_Mirror", "XZ"),
         ("Quadrant 2", "PKM_Mirror", "YZ"),
@@ -299,7 +299,7 @@ def the_other_quadrants_are_copies():
         place = panel.form.findChildren(QtWidgets.QComboBox)[0]
         place.setCurrentIndex(place.findText(choice))
         panel.compute()
-        told[label] = panel.report.text()
+        reported[label] = panel.report.text()
         if label == "Quadrant 4":
             keep("mirror", panel.form)
         panel.accept()
@@ -308,7 +308,7 @@ def the_other_quadrants_are_copies():
     for item in (job().Stock, job().Tools.Group[0].Tool):
         item.ViewObject.Visibility = False
     keep_view("quadrants")
-    return told
+    return reported
 
 
 @step

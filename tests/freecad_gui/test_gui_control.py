@@ -36,9 +36,9 @@ def test_panel_opens_without_a_connection(session):
     assert found["tool"] == pytest.approx(120.0)  # of the example at rest
 
 
-def test_names_that_are_wrong_are_told(session):
-    found = session["names_that_are_wrong_are_told"]
-    port, machine = found["told"]
+def test_names_that_are_wrong_are_reported(session):
+    found = session["names_that_are_wrong_are_reported"]
+    port, machine = found["reported"]
     assert port.startswith("port: expected serial:DEVICE") and "M101" in machine
     assert "port 1" in found["refused"] and not found["connected"]
 
@@ -51,7 +51,7 @@ def test_a_simulated_machine_is_homed_after_a_question(session):
     (asked,) = found["asked"]
     assert "#1HM" in asked and found["homing before"]
     assert found["trigger"].startswith("trigger: expected ENABLE PLC n")
-    assert (found["homing"], found["told"]) == ("DONE", "all struts have found their homes")
+    assert (found["homing"], found["reported"]) == ("DONE", "all struts have found their homes")
     assert found["tip"] == pytest.approx([0, 0, 300], abs=NEAR_MM)  # home_tip of the example
 
 
@@ -67,7 +67,7 @@ def test_jogs_move_the_tool_by_the_step(session):
 
 def test_a_jog_out_of_reach_sends_nothing(session):
     found = session["a_jog_out_of_reach_sends_nothing"]
-    assert "K103" in found["told"][0] and found["told"][1] == "Not sent: the jog is refused"
+    assert "K103" in found["reported"][0] and found["reported"][1] == "Not sent: the jog is refused"
     assert (found["executed"], found["moved"]) == (0, 0.0)
 
 
@@ -97,8 +97,8 @@ def test_the_machine_of_the_document_shows_its_own_pose_again(session):
 
 def test_a_program_is_loaded_held_and_resumed(programs):
     found = programs["a_program_is_loaded_held_and_resumed"]
-    told, no_job, can_load = found["not certified"]
-    assert "error C110" in "".join(told) and no_job and not can_load
+    reported, no_job, can_load = found["not certified"]
+    assert "error C110" in "".join(reported) and no_job and not can_load
     assert (found["name"], found["start before"]) == ("two.pmc, 2.0 s", False)
     assert found["loaded"].startswith("Program 10:") and found["loaded"].endswith("listed back as sent")
     assert found["bar"] and found["override"] == 40.0

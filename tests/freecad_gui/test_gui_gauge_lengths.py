@@ -18,13 +18,13 @@ def session(scene):
     return scene("gauge_lengths")
 
 
-def test_missing_length_is_told_before_and_by_posting(session):
-    found = session["missing_length_is_told_as_posting_tells_it"]
+def test_missing_length_is_reported_before_and_by_posting(session):
+    found = session["missing_length_is_reported_as_posting_tells_it"]
     assert [(number, bit) for number, _, bit in found["cells"]] == [("1", "50 mm"), ("2", "50 mm")]
     assert found["cells"][1][1] == "TC2"
     assert (found["texts"], found["hint"]) == (["", "102 mm"], "unknown")
     assert "J113" in found["notes"] and "Gauge lengths" in found["notes"]
-    assert found["told"] == [found["notes"]]
+    assert found["reported"] == [found["notes"]]
     assert (found["files"], found["lengths"]) == ([], [None, 102])
     assert session.drew("missing.png")
 
@@ -50,22 +50,22 @@ def test_number_alone_has_the_unit_of_the_window(session):
 
 
 @pytest.mark.parametrize("text", SENSELESS)
-def test_what_is_no_length_is_told_and_left_to_be_corrected(session, text):
-    found = session["what_is_no_length_is_told_and_not_kept"][text]
+def test_what_is_no_length_is_reported_and_left_to_be_corrected(session, text):
+    found = session["what_is_no_length_is_reported_and_not_kept"][text]
     assert found["text"] == text
     assert f"T1, {text!r} is no length above zero" in found["notes"]
-    assert found["told"] == found["applied"] == [found["notes"]]
+    assert found["reported"] == found["applied"] == [found["notes"]]
 
 
 def test_nothing_is_kept_beside_what_is_no_length(session):
-    assert session["what_is_no_length_is_told_and_not_kept"]["document"] == [[None, 102], 0, True, []]
+    assert session["what_is_no_length_is_reported_and_not_kept"]["document"] == [[None, 102], 0, True, []]
 
 
 def test_lengths_are_kept_and_taken_back_without_posting(session):
     found = session["lengths_are_kept_without_posting"]
     assert found["lengths"] == [118.75, 0]
     assert (found["steps"], found["again"]) == (1, 1)
-    assert found["told"].startswith("Kept")
+    assert found["reported"].startswith("Kept")
     assert found["files"] == []
     assert "--machine=example_6tps" in shlex.split(found["machine"])
 
@@ -75,7 +75,7 @@ def test_simulation_has_what_was_typed(session):
     assert found == {"lengths": [110, 102], "followable": True, "valid": True}
 
 
-def test_arguments_go_before_the_field_and_that_is_told(session):
+def test_arguments_go_before_the_field_and_that_is_reported(session):
     found = session["arguments_go_before_the_field"]
     assert "T1: 130 mm" in found["notes"] and "J113" not in found["notes"]
     assert found["verdict"].startswith("Certified")

@@ -14,14 +14,14 @@ def session(scene):
 def test_every_command_says_what_it_does(session):
     commands = session["commands_have_tips_and_keys"]["commands"]
     assert len(commands) > 8
-    for told in commands.values():
-        assert len(told["status"]) > 20
-        assert told["status"] in told["tip"]
+    for reported in commands.values():
+        assert len(reported["status"]) > 20
+        assert reported["status"] in reported["tip"]
 
 
 def test_every_command_has_keys_of_its_own(session):
     found = session["commands_have_tips_and_keys"]
-    keys = [told["keys"] for told in found["commands"].values()]
+    keys = [reported["keys"] for reported in found["commands"].values()]
     assert all(key.startswith("P,K,") for key in keys)
     assert len(set(keys)) == len(keys)
     # another command with the beginning of these keys would make both ambiguous

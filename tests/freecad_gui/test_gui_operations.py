@@ -42,6 +42,6 @@ def test_surface_finish_is_made_of_selected_faces_and_edited_in_cams_panel(sessi
 
 def test_escape_stops_a_long_computation_in_a_recompute_and_outside(session):
     found = session["escape_stops_a_long_computation"]
-    for told in (found["inside a recompute"], found["alone"]):
-        assert told.startswith("Waiting")
-        assert 20 <= int(told.split()[-1]) < 100
+    for reported in (found["inside a recompute"], found["alone"]):
+        assert reported.startswith("Waiting")
+        assert 20 <= int(reported.split()[-1]) < 100

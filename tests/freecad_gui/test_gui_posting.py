@@ -23,9 +23,9 @@ def test_panel_writes_and_shows_the_certificate(session):
     assert found["findings"] >= 11  # rows of the certificate
     assert found["report"]
     assert found["steps to undo"] == 1
-    selected, told = found["clicked"]
+    selected, reported = found["clicked"]
     operation, line = found["where"].split(": ")
-    assert selected == ["Custom"] and told.startswith(f"{operation}, {line}: ")
+    assert selected == ["Custom"] and reported.startswith(f"{operation}, {line}: ")
     assert session.drew("posted.png")
 
 
@@ -40,43 +40,43 @@ def test_job_keeps_what_was_chosen_and_cam_posts_the_same(session):
     assert found["undone"] == "--work-offset=0,0,250"
 
 
-def test_refused_job_is_told_and_leaves_nothing(session):
-    found = session["refused_job_is_told_and_leaves_nothing"]
+def test_refused_job_is_reported_and_leaves_nothing(session):
+    found = session["refused_job_is_reported_and_leaves_nothing"]
     assert found["files"] == ["refused.FCStd"]
-    assert "J105" in found["told"][0]
-    selected, told = found["clicked"]
+    assert "J105" in found["reported"][0]
+    selected, reported = found["clicked"]
     assert selected == ["Custom"]
-    assert told.startswith("Cut, 4: G1")
+    assert reported.startswith("Cut, 4: G1")
 
 
-def test_lack_of_memory_is_told_and_leaves_nothing(session):
-    found = session["lack_of_memory_is_told_and_leaves_nothing"]
+def test_lack_of_memory_is_reported_and_leaves_nothing(session):
+    found = session["lack_of_memory_is_reported_and_leaves_nothing"]
     assert found["files"] == ["lacking.FCStd"]
-    (in_the_window,), (beside_it,) = found["told"]
+    (in_the_window,), (beside_it,) = found["reported"]
     assert "F130" in in_the_window
     assert "in the step reach and feed plan" in beside_it
     (box,) = found["boxes"]
     assert box.startswith("Mirror: error F130: ")
 
 
-def test_arguments_without_a_meaning_are_told_and_not_kept(session):
-    found = session["arguments_without_a_meaning_are_told"]
+def test_arguments_without_a_meaning_are_reported_and_not_kept(session):
+    found = session["arguments_without_a_meaning_are_reported"]
     assert found["files"] == ["meaningless.FCStd"]
-    assert "J117" in found["told"][0]
+    assert "J117" in found["reported"][0]
     assert found["kept"] == "--work-offset=0,0,250"
 
 
 def test_cancelled_job_leaves_nothing(session):
     found = session["cancelled_job_leaves_nothing"]
     assert found["files"] == ["cancelled.FCStd"]
-    assert found["told"].startswith("Stopped")
+    assert found["reported"].startswith("Stopped")
     assert (found["could"], found["ended"], found["can"]) == (True, True, False)
 
 
 def test_editor_asks_in_the_same_fields(session):
     found = session["editor_asks_in_the_same_fields"]
     assert {"lines.pmc", "lines.pkmt"} <= set(found["files"])
-    assert "lines.pmc" in found["told"][0]
+    assert "lines.pmc" in found["reported"][0]
 
 
 def test_preferences_are_what_a_new_job_is_offered_and_nothing_else(session):

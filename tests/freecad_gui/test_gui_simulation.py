@@ -19,7 +19,7 @@ def test_the_command_adds_one_object_in_one_step_and_opens_its_player(session):
 
 def test_the_player_plays_steps_and_scrubs(session):
     found = session["player_plays"]
-    assert "Arcs, line" in found["told"]
+    assert "Arcs, line" in found["reported"]
     assert 0.5 < found["played"] <= session["simulation_from_its_button"]["duration"]
     assert (found["stepped"], found["stepped_back"]) == (True, True)
     assert found["scrubbed"] == 4.0
@@ -31,7 +31,7 @@ def test_an_override_scales_time_and_speeds_and_tells_of_struts_too_slow_for_it(
     found = session["override_scales_time_and_speeds"]
     assert found["pace"] == 0.5
     assert found["curves_change"]
-    assert ("At this override strut" in found["told"]) == (2 * found["greatest"] > found["limit"])
+    assert ("At this override strut" in found["reported"]) == (2 * found["greatest"] > found["limit"])
 
 
 def test_film_is_written_as_pictures_and_as_one(session):

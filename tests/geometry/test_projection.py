@@ -138,7 +138,7 @@ def test_seam_of_a_closed_surface_is_no_border():
     assert surface.points(*at.T) == pytest.approx(points * [RADIUS / 22, RADIUS / 22, 1], abs=NANOMETRE)
 
 
-def test_foot_on_a_crease_is_told_as_not_found():
+def test_foot_on_a_crease_is_reported_as_not_found():
     # Two planes that meet in a ridge along y: above the ridge neither has a foot.
     poles = np.array([[[-10, 0, 0], [-10, 20, 0]], [[0, 0, 10], [0, 20, 10]], [[10, 0, 0], [10, 20, 0.0]]])
     roof = NurbsSurface((1, 1), (np.array([0, 0, 1, 2, 2.0]), np.array([0, 0, 1, 1.0])), poles, np.ones((3, 2)))

@@ -33,7 +33,7 @@ def placed(machine, offset):
     return place(cone(120), machine, offset)[0]
 
 
-def test_what_is_told_is_what_the_new_work_offset_gives(machine):
+def test_what_is_reported_is_what_the_new_work_offset_gives(machine):
     trajectory = placed(machine, shifted([120.0, -60.0, 40.0]))
     found = best_position(trajectory, machine)
     assert found.before == pytest.approx(least_shares(trajectory, machine))

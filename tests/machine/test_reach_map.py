@@ -103,7 +103,7 @@ def test_a_map_of_more_places_than_fit_is_refused(capsys):
         (["--widest", "180"], "expected an angle above 0 and below 180, got '180'"),
     ],
 )
-def test_arguments_without_sense_are_told(arguments, message, capsys):
+def test_arguments_without_sense_are_reported(arguments, message, capsys):
     with pytest.raises(SystemExit):
         main(["reach-map", "example_6tps", *arguments])
     assert message in capsys.readouterr().err

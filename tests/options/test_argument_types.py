@@ -29,9 +29,9 @@ TEN = whole(1, 10)
 
 def refused(convert, text):
     """What the user reads."""
-    with pytest.raises(argparse.ArgumentTypeError) as told:
+    with pytest.raises(argparse.ArgumentTypeError) as reported:
         convert(text)
-    return str(told.value)
+    return str(reported.value)
 
 
 @given(FINITE)
@@ -90,7 +90,7 @@ def test_a_count_begins_at_one():
     assert refused(count, "0") == "expected a whole number above 0, got '0'"
 
 
-def test_ranges_can_be_told_in_other_words():
+def test_ranges_can_be_reported_in_other_words():
     assert refused(whole(0, 65_535, "a port"), "65536") == "expected a port from 0 to 65535, got '65536'"
     assert refused(whole_from(1000, "1000 words or more"), "999") == "expected 1000 words or more, got '999'"
     even = validated(TEN, lambda value: value % 2 == 0, "an even number")
@@ -113,7 +113,7 @@ def test_what_is_no_pair_is_refused(text):
     ("value", "expected"),
     [("", "a number"), ("5=6", "a number"), ("inf", "a number"), ("0", "a number above 0"), ("-5", "a number above 0")],
 )
-def test_the_value_of_a_pair_is_told_by_itself(value, expected):
+def test_the_value_of_a_pair_is_reported_by_itself(value, expected):
     assert refused(numbered(positive, "NUMBER=MM"), f"1={value}") == f"expected {expected}, got {value!r}"
 
 

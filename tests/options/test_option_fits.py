@@ -27,9 +27,9 @@ def files(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_files_are_told_apart_by_their_names():
-    told = [input_kind(Path(name)) for name in ("a.NGC", "a.mpf", "a.cls", "a.CL", "a.FCStd", "a")]
-    assert told == [InputKind.GCODE] * 2 + [InputKind.CLDATA] * 2 + [InputKind.JOB] * 2
+def test_files_are_reported_apart_by_their_names():
+    reported = [input_kind(Path(name)) for name in ("a.NGC", "a.mpf", "a.cls", "a.CL", "a.FCStd", "a")]
+    assert reported == [InputKind.GCODE] * 2 + [InputKind.CLDATA] * 2 + [InputKind.JOB] * 2
 
 
 @pytest.mark.parametrize("flag", FLAGS)
@@ -58,8 +58,8 @@ def test_each_option_fits_or_is_named(flag, source):
 def test_an_option_for_another_kind_of_file_is_refused(files, capsys, command, file, option, found):
     more = {"convert": ["--to=gcode:3axis", "--out=out.nc"], "post": ["--out=out", *REACHED], "reach": REACHED}
     assert main([command, file, option, *more.get(command, [])]) == 2
-    told = capsys.readouterr()
-    assert (told.out, told.err) == (
+    reported = capsys.readouterr()
+    assert (reported.out, reported.err) == (
         "",
         f"{file}: error L442: an option does not apply to this input: {found}; leave it out\n",
     )
@@ -88,7 +88,7 @@ def test_in_a_batch_each_option_is_for_the_files_that_it_fits(files, capsys):
     assert capsys.readouterr().err.startswith("arguments: error L442: ")
 
 
-def test_macros_are_told_with_what_else_is_wrong(files):
+def test_macros_are_reported_with_what_else_is_wrong(files):
     with pytest.raises(Refused) as refused:
         post_file("a.ngc", out="out", arguments="--contour-data centre --work-offset 0,0,250")
     assert [each.code for each in refused.value.diagnostics] == ["L442", "J113"]

@@ -86,8 +86,8 @@ def test_one_option_goes_before_and_all_others_stay(flag):
     mixed = vars(overridden(job, given))
     assert mixed[name] == vars(parse_text(shlex.join(words(flag, 1))))[name]
     assert {each for each in mixed if mixed[each] != vars(job)[each]} == {name, "given"}
-    (told,) = overrides(explicit_values(job), given)
-    assert told.flag == flag
+    (reported,) = overrides(explicit_values(job), given)
+    assert reported.flag == flag
     assert list(overrides(explicit_values(job), explicit_values(job))) == []
 
 
@@ -100,8 +100,8 @@ def test_what_is_said_of_one_tool_leaves_the_others():
 
 def test_options_in_place_of_all_take_back_what_they_do_not_say():
     job = explicit_values(parse_text("--actual-tool 3=9.5,1 --also csv --surface-speed 120"))
-    told = [str(each) for each in overrides(job, argument_values(Options()), whole=True)]
-    assert sorted(told) == [
+    reported = [str(each) for each in overrides(job, argument_values(Options()), whole=True)]
+    assert sorted(reported) == [
         "--actual-tool none instead of 3=9.5,1",
         "--also none instead of csv",
         "--surface-speed none instead of 120",

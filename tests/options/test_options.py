@@ -146,7 +146,7 @@ def test_the_numbers_of_the_spin():
         (["--tool-length", "1=2000000000"], "expected a number above 0 and up to 10000, got '2000000000'"),
     ],
 )
-def test_what_makes_no_sense_is_told(arguments, message, capsys):
+def test_what_makes_no_sense_is_reported(arguments, message, capsys):
     with pytest.raises(SystemExit):
         parsed(*arguments)
     assert message in capsys.readouterr().err

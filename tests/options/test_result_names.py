@@ -61,9 +61,9 @@ LOST = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("files", "told"), LOST.values(), ids=LOST)
-def test_what_would_be_lost_is_told(files, told):
-    assert lost(files) == [told]
+@pytest.mark.parametrize(("files", "reported"), LOST.values(), ids=LOST)
+def test_what_would_be_lost_is_reported(files, reported):
+    assert lost(files) == [reported]
 
 
 @pytest.mark.parametrize(
@@ -138,7 +138,7 @@ def test_jobs_of_documents_are_counted_in_a_batch(tmp_path, capsys):
     assert not (tmp_path / "out").exists()
 
 
-def test_two_jobs_of_a_document_with_one_name_are_told(tmp_path, capsys):
+def test_two_jobs_of_a_document_with_one_name_are_reported(tmp_path, capsys):
     file = document(tmp_path / "a.FCStd", JOBS)
     assert main(["post", str(file), "--out", str(tmp_path / "out")]) == 2
     assert f"Op 1 of {file} and Op_1 of {file} would both be posted as a-Op_1.pmc" in capsys.readouterr().err

@@ -115,7 +115,7 @@ def difference(expected, found):
 
 
 def as_rs274(text):
-    """A program of CAM commands with what rs274 has to be told."""
+    """A program of CAM commands with what rs274 has to be given."""
     return f"G21 G90 G17 G98 F300\n{text}"
 
 

@@ -42,7 +42,7 @@ CLOSE
 
 
 class Talk:
-    """The client, and what it was told."""
+    """The client, and what it was sent."""
 
     def __init__(self, port):
         self.client = PmacEthernetInterface()
@@ -70,9 +70,9 @@ def talk_to(port):
         talk.say(f"&1#{motor}->10000{letter}", "\x06")
         talk.client.jogStop(motor)
         print("home:", talk.client.homeCommand(motor))
-    told = list(talk.client.sendSeries(list(enumerate(PROGRAM.splitlines(), start=1))))
-    print(f"download: {sum(good for good, *_ in told)} of {len(told)} lines taken")
-    assert all(good for good, *_ in told)
+    reported = list(talk.client.sendSeries(list(enumerate(PROGRAM.splitlines(), start=1))))
+    print(f"download: {sum(good for good, *_ in reported)} of {len(reported)} lines taken")
+    assert all(good for good, *_ in reported)
     listing = talk.say("LIST PROG 10", "(?s).*RET\r\x06")
     assert "A0.1625:3.125B0.1625:3.125" in listing
     # More than the 1400 bytes of one answer. Lines of 11 bytes, for the client takes an answer whose last byte is a

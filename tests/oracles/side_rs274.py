@@ -110,7 +110,7 @@ def difference(expected, moves):
 
 
 def compare(count):
-    """Compare so many contours; what rs274 and the product refuse is told by the codes of the product."""
+    """Compare so many contours; what rs274 and the product refuse is reported by the codes of the product."""
     refused, worst, same = {}, 0.0, 0
     for seed in range(count):
         text = program(seed)

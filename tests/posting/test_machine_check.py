@@ -62,10 +62,10 @@ def test_presets_can_stand_at_home(name):
         ({"clearance": 100.0}, "strut and strut: "),
     ],
 )
-def test_a_home_out_of_reach_is_told(changes, found):
-    told = home_faults(machine(**changes), "m.toml")
-    assert {item.code for item in told} == {"M108"}
-    assert any(found in item.found for item in told)
+def test_a_home_out_of_reach_is_reported(changes, found):
+    reported = home_faults(machine(**changes), "m.toml")
+    assert {item.code for item in reported} == {"M108"}
+    assert any(found in item.found for item in reported)
 
 
 def test_a_singular_home_has_no_condition():
@@ -77,19 +77,19 @@ def test_a_singular_home_has_no_condition():
 
 def test_the_command_prints_figures_and_ends_well(capsys):
     assert main(["machine", "check", "example_6tps"]) == 0
-    told = capsys.readouterr()
-    assert told.err == ""
-    assert "Example 6-TPS: complete" in told.out
-    assert "1007.8869 mm" in told.out
-    assert "platform, spindle, tool holder" in told.out
+    reported = capsys.readouterr()
+    assert reported.err == ""
+    assert "Example 6-TPS: complete" in reported.out
+    assert "1007.8869 mm" in reported.out
+    assert "platform, spindle, tool holder" in reported.out
 
 
 def test_the_command_says_what_a_template_needs(capsys):
     assert main(["machine", "check", "vamt1y"]) == 1
-    told = capsys.readouterr()
-    assert told.out == ""
-    assert all("error M107" in line for line in told.err.splitlines())
-    assert "struts.stroke: expected 2 numbers" in told.err
+    reported = capsys.readouterr()
+    assert reported.out == ""
+    assert all("error M107" in line for line in reported.err.splitlines())
+    assert "struts.stroke: expected 2 numbers" in reported.err
 
 
 def test_the_list_tells_machines_from_templates(capsys):
@@ -124,10 +124,12 @@ def test_a_file_is_complete_only_where_a_program_can_be_written_for_it(capsys, t
     with pytest.raises(Refused) as refused:
         post(programs.square_with_arc(), one, tmp_path / "x.pmc")
     assert main(["machine", "check", str(path)]) == 1
-    told = capsys.readouterr()
-    assert told.out == ""
-    assert f"{path}: error M104" in told.err and found in told.err
-    assert [item.found for item in refused.value.diagnostics] == [told.err.split("form: ")[1].rsplit("; correct", 1)[0]]
+    reported = capsys.readouterr()
+    assert reported.out == ""
+    assert f"{path}: error M104" in reported.err and found in reported.err
+    assert [item.found for item in refused.value.diagnostics] == [
+        reported.err.split("form: ")[1].rsplit("; correct", 1)[0]
+    ]
 
 
 def test_figures_of_the_drives_are_those_of_the_home_pose():
@@ -144,7 +146,7 @@ def test_figures_of_the_drives_are_those_of_the_home_pose():
     assert silent["velocity gains"].startswith("none stated") and silent["points"].endswith("no rate stated")
 
 
-def test_a_job_that_is_out_of_reach_is_told_of_a_home_that_is(tmp_path):
+def test_a_job_that_is_out_of_reach_is_reported_of_a_home_that_is(tmp_path):
     far = machine(home_tip=np.array([0.0, 0.0, 900.0]))
     for one, codes in ((far, {"M108"}), (machine(), set())):
         with pytest.raises(Refused) as refused:

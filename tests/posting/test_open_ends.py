@@ -108,8 +108,8 @@ WITHOUT_MEANING = re.compile(rb"\([^()\n]*\)|;[^\n]*|\$\$[^\n]*|[\s%]")
 
 def written(program):
     """What a program is, as bytes of G-code."""
-    text, told = write(program, GcodeDialect.VECTOR)
-    assert not errors(told)
+    text, reported = write(program, GcodeDialect.VECTOR)
+    assert not errors(reported)
     return text
 
 
@@ -123,13 +123,13 @@ def cuts(content):
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_program_that_is_cut_is_refused_or_the_same(name):
     content = PROGRAMS[name]
-    whole, told = read_content(content, name, AS_WRITTEN)
-    assert not errors(told)
+    whole, reported = read_content(content, name, AS_WRITTEN)
+    assert not errors(reported)
     refused = 0
     for place in cuts(content):
-        program, told = read_content(content[:place], name, AS_WRITTEN)
+        program, reported = read_content(content[:place], name, AS_WRITTEN)
         if program is None:
-            assert errors(told), place
+            assert errors(reported), place
             refused += 1
         elif content[:place].rstrip().endswith(b"END-OF-PATH"):  # a tool path of NX, whole by itself
             continue
@@ -146,8 +146,8 @@ def test_the_option_takes_what_is_there(tmp_path, name, code, reading):
     file = tmp_path / name
     file.write_text(text, encoding="ascii")
     checked = check_file(file, reading)
-    told = [each.code for each in checked.diagnostics if each.code != "L411"]
-    assert (told, checked.is_clean) == ((["V130"], True) if reading.allow_open_end else ([code], False))
+    reported = [each.code for each in checked.diagnostics if each.code != "L411"]
+    assert (reported, checked.is_clean) == ((["V130"], True) if reading.allow_open_end else ([code], False))
     assert (checked.size is not None) == reading.allow_open_end
     assert {each.place.line for each in checked.diagnostics if each.code in (code, "V130")} == {3}
 

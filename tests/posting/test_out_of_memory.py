@@ -71,7 +71,7 @@ def left_in(folder):
     return [path.name for path in folder.rglob("*")]
 
 
-def told(errors):
+def reported(errors):
     """The diagnostic that is all that was said of a lack of memory."""
     (line,) = errors.splitlines()
     assert "error F130: there is not enough memory: " in line
@@ -94,7 +94,7 @@ def test_memory_runs_out_in_each_module_once(files, tmp_path, capsys):
             if not met:  # its value was kept from the first time
                 continue
             found += 1
-            assert WHAT in told(capsys.readouterr().err), place
+            assert WHAT in reported(capsys.readouterr().err), place
             assert not left_in(out) or place.startswith(RESULTS_ARE_THERE), place
         done.update(places.values())
     assert found > 150
@@ -121,7 +121,7 @@ def test_the_step_that_lacked_memory_is_named(files, tmp_path, capsys, monkeypat
 
     monkeypatch.setattr(f"pkm_post.posting.steps.{STEPS[step]}", lack)
     assert main(command("post", files, tmp_path / "out")) == 1
-    assert f"{WHAT}, in the step {step}" in told(capsys.readouterr().err)
+    assert f"{WHAT}, in the step {step}" in reported(capsys.readouterr().err)
     assert left_in(tmp_path / "out") == []
 
 
@@ -143,7 +143,7 @@ def test_memory_runs_out_while_files_get_their_names(files, tmp_path, capsys, mo
         assert code == 0
         return
     assert code == 1
-    assert WHAT in told(capsys.readouterr().err)
+    assert WHAT in reported(capsys.readouterr().err)
     assert left_in(tmp_path / "out") == []
 
 
@@ -207,7 +207,7 @@ def test_other_faults_pass(fault):
     assert passed.value is fault
 
 
-def test_what_was_held_is_free_when_it_is_told():
+def test_what_was_held_is_free_when_it_is_reported():
     held = []
 
     def hold():
@@ -275,5 +275,5 @@ def test_memory_runs_out_in_earnest(long_program, tmp_path, loaded, megabytes):
     """Before the threads have their memory, and in one step after the other."""
     run = limited(loaded, megabytes, ["post", str(long_program), "--tool-length", "1=120", "--out", "out"], tmp_path)
     assert run.returncode == 1, run.stderr
-    assert told(run.stderr)
+    assert reported(run.stderr)
     assert left_in(tmp_path) in ([], ["out"])

@@ -27,8 +27,8 @@ def machine():
 
 
 def test_everything_is_written_and_certified(machine, tmp_path):
-    told = []
-    posted = post(cone(), machine, tmp_path / "cone.pmc", log=told.append)
+    reported = []
+    posted = post(cone(), machine, tmp_path / "cone.pmc", log=reported.append)
     names = ["cone-manifest.json", "cone-report.html", "cone-report.json", "cone-setup.pmc", "cone.pkmt", "cone.pmc"]
     assert sorted(path.name for path in tmp_path.iterdir()) == names
     assert sorted(path.name for path in posted.files) == names
@@ -38,8 +38,8 @@ def test_everything_is_written_and_certified(machine, tmp_path):
     steps = [
         "trajectory", "reach and feed plan", "collisions", "interpolation", "motion program", "certificate", "report",
     ]  # fmt: skip
-    assert [line.split("  ")[0] for line in told[:7]] == steps
-    assert told[7:] == posted.report["certificate"]["meaning"] and len(told[7:]) == 5
+    assert [line.split("  ")[0] for line in reported[:7]] == steps
+    assert reported[7:] == posted.report["certificate"]["meaning"] and len(reported[7:]) == 5
     settings = pmac.PmacSettings.of(machine.controller)
     played, faults = pmac.read_program((tmp_path / "cone.pmc").read_text(), settings, "cone.pmc")
     assert not faults
@@ -68,14 +68,14 @@ def test_the_machining_time_is_that_of_the_program(machine, tmp_path):
         events=(Event(0, EventKind.TOOL_CHANGE, 1), Event(2, EventKind.DWELL, 0.75)),
     )
     posted = post(made, machine, tmp_path / "job.pmc")
-    told = posted.report["machining_time"]
+    reported = posted.report["machining_time"]
     settings = pmac.PmacSettings.of(machine.controller)
     milliseconds = pmac.read_program(posted.program.read_text(), settings, "job.pmc")[0].time_ms[-1]
-    (operation,) = told["operations"]
+    (operation,) = reported["operations"]
     assert operation["name"] == "Finish"
     assert operation["cutting_s"] + operation["rapid_s"] == pytest.approx(milliseconds / 1000, abs=2e-3)
     assert operation["dwell_s"] == 0.75
-    assert told["total_s"] == pytest.approx(milliseconds / 1000 + 0.75, abs=1e-3)
+    assert reported["total_s"] == pytest.approx(milliseconds / 1000 + 0.75, abs=1e-3)
 
 
 def test_work_offset_by_name_and_by_matrix(machine, tmp_path):
@@ -136,7 +136,7 @@ def test_a_refused_job_leaves_nothing_and_keeps_what_was_there(machine, tmp_path
     assert (tmp_path / "job.pmc").read_text() == "older program"
 
 
-def test_a_machine_whose_codes_cannot_be_told_apart(machine, tmp_path):
+def test_a_machine_whose_codes_cannot_be_reported_apart(machine, tmp_path):
     codes = machine.controller["codes"] | {"coolant_flood": "M9"}
     same = dataclasses.replace(machine, controller=machine.controller | {"codes": codes})
     with pytest.raises(Refused) as refused:
@@ -157,14 +157,14 @@ def test_warnings_do_not_stop_the_job(machine, tmp_path):
     assert [fault.code for fault in posted.diagnostics] == ["K110"]
 
 
-def test_tables_of_an_earlier_result_are_told(machine, tmp_path):
+def test_tables_of_an_earlier_result_are_reported(machine, tmp_path):
     made = cone(60, turns=0.3)
     post(made, machine, tmp_path / "cone.pmc", Options(also=("csv",)))
     (warning,) = post(made, machine, tmp_path / "cone.pmc").diagnostics
     assert warning.code == "F104" and ".csv" in warning.found
 
 
-def test_a_program_of_another_suffix_beside_the_new_report_is_told(machine, tmp_path):
+def test_a_program_of_another_suffix_beside_the_new_report_is_reported(machine, tmp_path):
     post(cone(), machine, tmp_path / "cone.ngc")
     (warning,) = post(cone(60, turns=0.3), machine, tmp_path / "cone.pmc").diagnostics
     assert (warning.code, warning.found) == ("F104", "cone.ngc")
@@ -233,10 +233,10 @@ GONE = ConnectionError("nobody listens")
 """What a watcher raises that is elsewhere, and what printing raises when the terminal is closed: no fault of files."""
 
 
-def test_progress_is_told_in_the_order_of_the_steps_and_ends_with_all(machine, tmp_path):
-    told, options = [], Options(also=("linuxcnc", "csv"))
-    post(cone(60, turns=0.3), machine, tmp_path / "cone.pmc", options, progress=lambda *each: told.append(each))
-    names, shares = zip(*told, strict=True)
+def test_progress_is_reported_in_the_order_of_the_steps_and_ends_with_all(machine, tmp_path):
+    reported, options = [], Options(also=("linuxcnc", "csv"))
+    post(cone(60, turns=0.3), machine, tmp_path / "cone.pmc", options, progress=lambda *each: reported.append(each))
+    names, shares = zip(*reported, strict=True)
     assert names == (*step_names(options), "")
     assert list(shares) == sorted(set(shares))
     assert (shares[0], shares[-1]) == (0.0, 1.0)

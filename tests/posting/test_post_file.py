@@ -187,14 +187,14 @@ def test_all_files_carry_the_stem(tmp_path):
         ("a.ngc", G_CODE, {"reading": ReadingOptions("vector"), "options": Options(work_offset="G59")}, ["K108"]),
     ],
 )
-def test_what_is_wrong_is_told_and_nothing_is_written(tmp_path, name, text, choices, codes):
+def test_what_is_wrong_is_reported_and_nothing_is_written(tmp_path, name, text, choices, codes):
     with pytest.raises(Refused) as refused:
         posted(tmp_path, name, text, **choices)
     assert [fault.code for fault in refused.value.diagnostics] == codes
     assert not list((tmp_path / "out").glob("*"))
 
 
-def test_faults_of_machine_and_file_are_told_together(tmp_path):
+def test_faults_of_machine_and_file_are_reported_together(tmp_path):
     (tmp_path / "a.cls").write_text("GOTO/1,2\nFINI\n")
     with pytest.raises(Refused) as refused:
         post_file(tmp_path / "a.cls", "no_such_machine", tmp_path)
@@ -214,7 +214,7 @@ def test_the_command_line_needs_no_freecad_for_part_programs(tmp_path):
     (tmp_path / "a.cls").write_text(CL_DATA)
     arguments = ["post", "a.cls", "--out", "made", "--work-offset=0,0,250", "--tool-length", "1=60"]
     script = "import sys; sys.modules['FreeCAD'] = None; from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))"
-    told = subprocess.run(
+    reported = subprocess.run(
         [PYTHON, "-c", script, *arguments],
         cwd=tmp_path,
         env={"PYTHONPATH": str(ADDON), "PATH": "/usr/bin:/bin", "MPLBACKEND": "Agg"},
@@ -223,7 +223,7 @@ def test_the_command_line_needs_no_freecad_for_part_programs(tmp_path):
         timeout=120,
         check=False,
     )
-    assert told.returncode == 0, told.stderr
+    assert reported.returncode == 0, reported.stderr
     assert (tmp_path / "made" / "a.pmc").exists()
 
 
@@ -249,14 +249,14 @@ def test_a_length_for_a_tool_that_is_not_there_is_refused(tmp_path, name, text):
     assert not list((tmp_path / "out").glob("*"))
 
 
-def test_the_length_of_the_file_is_replaced_and_that_is_told(tmp_path):
+def test_the_length_of_the_file_is_replaced_and_that_is_reported(tmp_path):
     own = posted(tmp_path, "a.cls", WITH_A_LENGTH, tool_lengths={})
     assert own.diagnostics == ()
     same = posted(tmp_path, "a.cls", WITH_A_LENGTH, tool_lengths={1: 60.0})
     assert same.diagnostics == ()
     other = posted(tmp_path, "a.cls", WITH_A_LENGTH, tool_lengths={1: 75.0})
-    (told,) = other.diagnostics
-    assert (told.code, told.found) == ("J125", "--tool-length 1=75 instead of 60 of T1")
+    (reported,) = other.diagnostics
+    assert (reported.code, reported.found) == ("J125", "--tool-length 1=75 instead of 60 of T1")
     assert trajectory_file.read(other.program.with_suffix(".pkmt"))[0].tools[1].length == 75.0
 
 

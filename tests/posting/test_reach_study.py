@@ -40,13 +40,13 @@ def off_centre():
 
 def test_the_checks_are_those_of_the_way(machine):
     options = Options(work_offset=ON_PALLET)
-    found, told = study(cone(60), machine, options)
-    assert not told
+    found, reported = study(cone(60), machine, options)
+    assert not reported
     assert found.reach.as_dict() == check_reach(trajectory_of(cone(60), machine, options)[0], machine).as_dict()
     assert [name for name, _ in found.stages] == ["as it is, zero torsion"]
 
 
-def test_every_choice_is_told_with_what_it_leaves(machine):
+def test_every_choice_is_reported_with_what_it_leaves(machine):
     options = Options(work_offset=off_centre(), spin=SpinPolicy(SpinRule.OPTIMISED))
     found, _ = study(cone(60), machine, options, free="xyz")
     assert [name for name, _ in found.stages] == ["as it is, zero torsion", "moved in x, y, z", "spin optimise"]
@@ -66,7 +66,7 @@ def test_the_spin_of_the_program_is_what_is_checked(machine):
     assert not np.array_equal(found.stages[0][1], found.stages[1][1])
 
 
-def test_a_work_offset_is_told_as_the_option_takes_it():
+def test_a_work_offset_is_reported_as_the_option_takes_it():
     turn = np.radians(30)
     offset = np.array(
         [[np.cos(turn), -np.sin(turn), 0, 1.5], [np.sin(turn), np.cos(turn), 0, -2], [0, 0, 1, 3], [0, 0, 0, 1]]
@@ -85,17 +85,17 @@ def test_the_command(tmp_path, capsys):
     assert main([*arguments, "--work-offset=400,0,200"]) == 1
     assert "error K102" in capsys.readouterr().err
     assert main([*arguments, "--work-offset=400,0,200", "--place", "--spin", "optimise", "--json"]) == 0
-    (told,) = json.loads(capsys.readouterr().out)
-    assert [stage["stage"] for stage in told["left"]][1:] == ["moved in x, y, z, c", "spin optimise"]
+    (reported,) = json.loads(capsys.readouterr().out)
+    assert [stage["stage"] for stage in reported["left"]][1:] == ["moved in x, y, z, c", "spin optimise"]
 
 
-def test_what_cannot_be_read_is_told(tmp_path, capsys):
+def test_what_cannot_be_read_is_reported(tmp_path, capsys):
     part = tmp_path / "part.ngc"
     part.write_text("G1 X1\n")
     assert main(["reach", str(part), "--machine", "no_such_machine"]) == 1
-    told = capsys.readouterr().err
-    assert "M101" in told
-    assert "G4" in told
+    reported = capsys.readouterr().err
+    assert "M101" in reported
+    assert "G4" in reported
 
 
 def test_the_pose_of_tool_changes_does_not_move_with_the_part(machine):

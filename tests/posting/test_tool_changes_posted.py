@@ -150,10 +150,10 @@ def test_the_simulated_controller_stands_at_the_pose_whenever_a_tool_is_asked_fo
 def test_from_a_file_by_the_command_line_and_verified_again(tmp_path, capsys):
     made = tool_change_file(tmp_path)
     assert main(["machine", "check", str(made)]) == 0
-    told = capsys.readouterr()
-    assert "spindle nose at (90, -60, 460) mm, tips free from z 270 mm upwards" in told.out
-    assert "diameter up to 40 mm" in told.out and "2 s to the highest speed, 3 s to rest" in told.out
-    assert told.err == ""
+    reported = capsys.readouterr()
+    assert "spindle nose at (90, -60, 460) mm, tips free from z 270 mm upwards" in reported.out
+    assert "diameter up to 40 mm" in reported.out and "2 s to the highest speed, 3 s to rest" in reported.out
+    assert reported.err == ""
     source = tmp_path / "two.ngc"
     source.write_text(
         "G21 G90 G94\nT1 M6\nS6000 M3\nG0 X0 Y0 Z60\nG1 Z50 F600\nG1 X20\nG0 Z60\nT2 M6\nS8000 M3\nG0 X-20\nG1 Z52\n"
@@ -198,10 +198,10 @@ def test_what_a_machine_file_may_not_say_of_it(tmp_path, old, new, code, found):
     ("old", "new"),
     [("nose = [90.0,", "nose = [690.0,"), ("axis = [0.1, 0.06, 1.0]", "axis = [1.5, 0.0, 1.0]"), ("7.0", "75.0")],
 )
-def test_a_pose_out_of_reach_is_told(tmp_path, capsys, old, new):
+def test_a_pose_out_of_reach_is_reported(tmp_path, capsys, old, new):
     made = tool_change_file(tmp_path)
     table = made.read_text().partition("[tool_change]")
     made.write_text(table[0] + table[1] + table[2].replace(old, new, 1))
     assert main(["machine", "check", str(made)]) == 0
-    told = capsys.readouterr().err
-    assert "M115" in told and "M108" not in told
+    reported = capsys.readouterr().err
+    assert "M115" in reported and "M108" not in reported

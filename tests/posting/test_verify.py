@@ -127,7 +127,7 @@ def test_another_machine_is_found(machine, posted, change):
     ("program", "trajectory", "code"),
     [("cone.pmc", "cone-setup.pmc", "T101"), ("cone.pkmt", "cone.pkmt", "C108"), ("no.pmc", "cone.pkmt", "F103")],
 )
-def test_files_that_are_something_else_are_told(machine, posted, program, trajectory, code):
+def test_files_that_are_something_else_are_reported(machine, posted, program, trajectory, code):
     folder = posted.program.parent
     with pytest.raises(Refused) as refused:
         verify(folder / program, folder / trajectory, machine)
@@ -189,17 +189,17 @@ def refused_command(folder, capsys):
 
 def test_files_of_two_postings_are_refused_by_name(copied, capsys):
     (copied / "cone-report.json").write_text("{}")
-    assert "error F106" in (told := refused_command(copied, capsys)) and "cone-report.json has changed" in told
+    assert "error F106" in (reported := refused_command(copied, capsys)) and "cone-report.json has changed" in reported
 
 
-def test_what_is_measured_is_told_beside_what_has_changed(posted, copied, capsys):
+def test_what_is_measured_is_reported_beside_what_has_changed(posted, copied, capsys):
     (copied / "cone.pmc").write_text(next(changed_digits(posted.program.read_text())))
-    told = refused_command(copied, capsys)
-    assert "cone.pmc has changed" in told and "error V1" in told
+    reported = refused_command(copied, capsys)
+    assert "cone.pmc has changed" in reported and "error V1" in reported
 
 
 def test_results_of_earlier_versions_have_no_manifest_and_are_measured(copied, capsys):
     (copied / "cone-manifest.json").unlink()
     assert main(["verify", str(copied / "cone.pmc"), "--against", str(copied / "cone.pkmt"), "--json"]) == 0
-    told = capsys.readouterr().err
-    assert told.count("warning F107") == 2
+    reported = capsys.readouterr().err
+    assert reported.count("warning F107") == 2

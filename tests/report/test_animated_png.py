@@ -89,12 +89,12 @@ def test_pictures_that_do_not_belong_together_are_refused(tmp_path, film):
     text = tmp_path / "text.png"
     text.write_text("no picture")
     target = tmp_path / "film.png"
-    for files, told in (
+    for files, reported in (
         ([], "none"),
         ([one, other], "other.png: expected a picture of the size"),
         ([one, palette], "palette.png: expected a PNG file without a palette"),
         ([text], "text.png: expected a PNG file"),
     ):
-        with pytest.raises(ValueError, match=told):
+        with pytest.raises(ValueError, match=reported):
             animate(files, target, 30.0)
         assert not target.exists()

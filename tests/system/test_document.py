@@ -209,9 +209,9 @@ BAD_XML = {
 
 @pytest.mark.parametrize(("old", "new", "found"), BAD_XML.values(), ids=BAD_XML)
 def test_content_that_contradicts_itself(file, old, new, found):
-    code, told = with_xml(file, old, new)
+    code, reported = with_xml(file, old, new)
     assert code == "J130"
-    assert found in told
+    assert found in reported
 
 
 SMALL = {

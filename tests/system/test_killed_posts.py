@@ -31,9 +31,9 @@ def started(folder, *words):
 
 def test_no_kill_leaves_a_mixture(tmp_path):
     process = started(tmp_path, KILLS)
-    told, _ = process.communicate(timeout=120)
+    reported, _ = process.communicate(timeout=120)
     assert process.returncode == 0
-    found = json.loads(told)
+    found = json.loads(reported)
     assert {"earlier ones", "refused, earlier ones", "refused, none", "refused, new ones", "new ones"} == set(
         found["at every step"]
     )
@@ -52,7 +52,7 @@ def test_two_that_post_at_once_end_one_after_the_other(tmp_path):
     assert sorted(os.listdir(tmp_path)) == RESULTS
 
 
-def test_a_process_that_does_not_end_moving_is_told(tmp_path, monkeypatch):
+def test_a_process_that_does_not_end_moving_is_reported(tmp_path, monkeypatch):
     post(tmp_path, "earlier")
     monkeypatch.setattr(importlib.import_module("pkm_post.system.staged"), "_PATIENCE", 0.02)
     with try_lock(tmp_path / ".staged-lock"), pytest.raises(BusyError, match="another process has been moving files"):

@@ -188,7 +188,7 @@ def test_a_folder_among_the_files_is_refused(tmp_path):
     assert names(tmp_path) == []
 
 
-def test_a_file_in_place_of_the_folder_is_told(tmp_path):
+def test_a_file_in_place_of_the_folder_is_reported(tmp_path):
     (tmp_path / "out").write_text("a file")
     with pytest.raises(OSError, match="out"), staged(tmp_path / "out"):
         raise AssertionError("the block must not run")

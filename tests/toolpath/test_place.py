@@ -41,7 +41,7 @@ def test_arc_and_helix_have_their_sweep_and_length():
     np.testing.assert_allclose(trajectory.length[arcs], [10 * np.pi, np.hypot(10 * np.pi, 4)])
 
 
-def test_smooth_joints_are_told_from_corners():
+def test_smooth_joints_are_reported_from_corners():
     # From home straight down, then on down; and the half circle meets its lines without a corner; the rest are corners.
     trajectory, _ = place(square_with_arc(), example(), ON_PALLET)
     assert trajectory.smooth.tolist() == [True, False, True, True, False, False, False]

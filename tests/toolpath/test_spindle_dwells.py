@@ -40,10 +40,10 @@ def waits(*happens, machine=MACHINE, kind=None):
     ],
 )
 def test_a_change_of_speed_is_waited_for(speeds, expected):
-    told, faults = waits(*(Event(1, SPINDLE, float(speed)) for speed in speeds))
-    assert [value for kind, value in told if kind is DWELL] == pytest.approx(list(expected), abs=1e-12)
+    reported, faults = waits(*(Event(1, SPINDLE, float(speed)) for speed in speeds))
+    assert [value for kind, value in reported if kind is DWELL] == pytest.approx(list(expected), abs=1e-12)
     assert not faults
-    for before, after in zip(told, told[1:], strict=False):
+    for before, after in zip(reported, reported[1:], strict=False):
         assert after[0] is not DWELL or (before[0] is SPINDLE and before[1] != 0)
 
 
@@ -51,13 +51,13 @@ def test_the_spindle_comes_to_rest_before_a_tool_is_changed():
     stops, starts = Event(1, SPINDLE, 0.0), Event(2, SPINDLE, 6000.0)
     runs = Event(0, SPINDLE, 12000.0)
     rapid = [Kind.RAPID, Kind.RAPID, Kind.LINE]
-    told, faults = waits(runs, Event(1, CHANGE, 2), starts, kind=rapid)
-    assert told == [
+    reported, faults = waits(runs, Event(1, CHANGE, 2), starts, kind=rapid)
+    assert reported == [
         (SPINDLE, 12000.0), (DWELL, 2.0), (SPINDLE, 0.0), (DWELL, 1.0), (CHANGE, 2), (SPINDLE, 6000.0), (DWELL, 1.0),
     ]  # fmt: skip
     assert not faults
-    told, _ = waits(runs, stops, Event(1, CHANGE, 2), starts)
-    assert told[2:5] == [(SPINDLE, 0.0), (DWELL, 1.0), (CHANGE, 2)]
+    reported, _ = waits(runs, stops, Event(1, CHANGE, 2), starts)
+    assert reported[2:5] == [(SPINDLE, 0.0), (DWELL, 1.0), (CHANGE, 2)]
     assert waits(Event(0, CHANGE, 1), Event(1, CHANGE, 2))[0] == [(CHANGE, 1), (CHANGE, 2)]
 
 
@@ -71,8 +71,8 @@ def test_a_cut_after_a_change_needs_a_spindle_that_was_started():
 
 
 def test_nothing_waits_where_no_time_is_stated():
-    told, faults = waits(Event(0, SPINDLE, 12000.0), Event(1, CHANGE, 2), machine=example())
-    assert told == [(SPINDLE, 12000.0), (CHANGE, 2)] and not faults
+    reported, faults = waits(Event(0, SPINDLE, 12000.0), Event(1, CHANGE, 2), machine=example())
+    assert reported == [(SPINDLE, 12000.0), (CHANGE, 2)] and not faults
 
 
 def test_one_time_serves_both_ways():

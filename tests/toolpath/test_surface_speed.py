@@ -36,8 +36,8 @@ def speeds(made):
 
 def test_without_normals_the_diameter_of_the_tool_counts():
     # 200 m/min on 12 mm: S = 1000 * 200 / (pi 12) = 5305 per minute.
-    made, told = with_surface_speed(two_cuts(), SurfaceSpeed(200_000 / 60), WIDE)
-    assert not told
+    made, reported = with_surface_speed(two_cuts(), SurfaceSpeed(200_000 / 60), WIDE)
+    assert not reported
     assert speeds(made) == [(0, 5305), (8, 0)]
 
 
@@ -100,12 +100,14 @@ def test_an_unknown_corner_matters_only_where_normals_say_where_it_touches():
     unknown = dataclasses.replace(BALL, corner_radius=0.0, corner_known=False)
     wanted = SurfaceSpeed(200_000 / 60)
     assert with_surface_speed(two_cuts(tool=unknown), wanted, WIDE)[0] is not None
-    made, told = with_surface_speed(two_cuts([[0.5, 0.0, np.sqrt(0.75)], [1.0, 0.0, 0.0]], tool=unknown), wanted, WIDE)
+    made, reported = with_surface_speed(
+        two_cuts([[0.5, 0.0, np.sqrt(0.75)], [1.0, 0.0, 0.0]], tool=unknown), wanted, WIDE
+    )
     assert made is None
-    assert [fault.code for fault in told] == ["N117"]
+    assert [fault.code for fault in reported] == ["N117"]
 
 
 def test_a_tool_of_unknown_diameter_is_refused():
-    made, told = with_surface_speed(two_cuts(tool=dataclasses.replace(BALL, diameter=0.0)), SurfaceSpeed(1.0), WIDE)
+    made, reported = with_surface_speed(two_cuts(tool=dataclasses.replace(BALL, diameter=0.0)), SurfaceSpeed(1.0), WIDE)
     assert made is None
-    assert [fault.code for fault in told] == ["N109"]
+    assert [fault.code for fault in reported] == ["N109"]

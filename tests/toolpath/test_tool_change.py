@@ -192,7 +192,7 @@ def test_what_stands_against_a_tool_change(code, changed, machine):
     assert {fault.code for fault in faults} == {code}
 
 
-def test_a_tool_of_unknown_diameter_is_told_where_the_largest_one_is_stated():
+def test_a_tool_of_unknown_diameter_is_reported_where_the_largest_one_is_stated():
     made = program([[0, 0, 60], [10, 0, 60]], tools={1: dataclasses.replace(BALL, diameter=0.0)})
     limited = dataclasses.replace(example(), largest_tool_diameter=12.0)
     trajectory, faults = place(made, limited, ON_PALLET)

@@ -73,17 +73,25 @@ def machine(tmp_path):
 
 
 def test_help_names_every_setting(machine):
-    told = machine.run("--help")
-    assert told.returncode == 0
+    reported = machine.run("--help")
+    assert reported.returncode == 0
     for setting in ("FREECADCMD", "PKM_FREECAD", "PKM_FREECAD_NO_ROOT", "PKM_MODULES"):
-        assert f"\n  {setting} " in told.stdout
+        assert f"\n  {setting} " in reported.stdout
 
 
 def test_arguments_reach_freecad_as_they_are(machine):
     machine.install("1.0.2")
-    told = machine.run("-M", ".", "a script.py", "--pass", "--help", "*")
-    assert told.stdout.splitlines() == ["FreeCAD 1.0.2", "<-M>", "<.>", "<a script.py>", "<--pass>", "<--help>", "<*>"]
-    assert told.stderr == ""
+    reported = machine.run("-M", ".", "a script.py", "--pass", "--help", "*")
+    assert reported.stdout.splitlines() == [
+        "FreeCAD 1.0.2",
+        "<-M>",
+        "<.>",
+        "<a script.py>",
+        "<--pass>",
+        "<--help>",
+        "<*>",
+    ]
+    assert reported.stderr == ""
 
 
 def test_exit_code_is_that_of_the_command(machine):
@@ -107,26 +115,26 @@ def test_signal_reaches_the_command(machine):
 def test_exec_finds_what_is_beside_freecad(machine):
     freecad = machine.install("1.1.0", "app/FreeCADCmd")
     (freecad.parent / "freecad").symlink_to(shutil.which("env"))
-    told = machine.run("--exec", "freecad", FREECADCMD=str(freecad))
-    assert f"FREECADCMD={freecad}" in told.stdout.splitlines()
+    reported = machine.run("--exec", "freecad", FREECADCMD=str(freecad))
+    assert f"FREECADCMD={freecad}" in reported.stdout.splitlines()
     assert machine.run("--exec", "freecadcmd", "x", FREECADCMD=str(freecad)).stdout == "FreeCAD 1.1.0\n<x>\n"
 
 
 @pytest.mark.parametrize("name", ["freecadcmd", "FreeCADCmd"])
 def test_provide_prints_which_one(machine, name):
     program = machine.install("1.2.3", f"bin/{name}")
-    told = machine.run("--provide")
-    assert told.returncode == 0
-    assert told.stdout.startswith("FreeCAD 1.2.3, Python 3.")
-    assert told.stdout.endswith(f": {program}\n")
+    reported = machine.run("--provide")
+    assert reported.returncode == 0
+    assert reported.stdout.startswith("FreeCAD 1.2.3, Python 3.")
+    assert reported.stdout.endswith(f": {program}\n")
 
 
 def test_old_freecad_is_refused(machine):
     program = machine.install("0.21.2")
-    told = machine.run("script.py")
-    assert told.returncode == NO_FREECAD
-    assert told.stdout == ""
-    assert f"{program} is FreeCAD 0.21.2, too old: 1.0 or newer is needed" in told.stderr
+    reported = machine.run("script.py")
+    assert reported.returncode == NO_FREECAD
+    assert reported.stdout == ""
+    assert f"{program} is FreeCAD 0.21.2, too old: 1.0 or newer is needed" in reported.stderr
 
 
 def test_a_second_name_is_tried(machine):
@@ -137,18 +145,18 @@ def test_a_second_name_is_tried(machine):
 
 def test_missing_module_is_named(machine):
     program = machine.install("1.0.0")
-    told = machine.run("script.py", PKM_MODULES="json no_such_module")
-    assert told.returncode == NO_FREECAD
-    assert f"{program} is FreeCAD 1.0.0, but its Python 3." in told.stderr
-    assert "cannot import: no_such_module\n" in told.stderr
+    reported = machine.run("script.py", PKM_MODULES="json no_such_module")
+    assert reported.returncode == NO_FREECAD
+    assert f"{program} is FreeCAD 1.0.0, but its Python 3." in reported.stderr
+    assert "cannot import: no_such_module\n" in reported.stderr
 
 
 def test_freecad_that_does_not_start_is_refused(machine):
     program = machine.install("1.0.0")
     program.write_text("#!/bin/bash\necho no library >&2\nexit 1\n")
-    told = machine.run("script.py")
-    assert told.returncode == NO_FREECAD
-    assert f"{program} did not start" in told.stderr
+    reported = machine.run("script.py")
+    assert reported.returncode == NO_FREECAD
+    assert f"{program} did not start" in reported.stderr
 
 
 def test_freecadcmd_variable_wins_over_path(machine):
@@ -160,34 +168,36 @@ def test_freecadcmd_variable_wins_over_path(machine):
 def test_freecadcmd_variable_is_never_overruled(machine):
     machine.install("1.0.0")
     chosen = machine.install("0.20.2", "elsewhere/freecadcmd")
-    told = machine.run("script.py", FREECADCMD=str(chosen))
-    assert told.returncode == NO_FREECAD
-    assert told.stdout == ""
-    assert "FREECADCMD: " in told.stderr
-    assert "too old" in told.stderr
+    reported = machine.run("script.py", FREECADCMD=str(chosen))
+    assert reported.returncode == NO_FREECAD
+    assert reported.stdout == ""
+    assert "FREECADCMD: " in reported.stderr
+    assert "too old" in reported.stderr
     missing = machine.run("script.py", FREECADCMD="/no/such/freecadcmd")
     assert missing.returncode == NO_FREECAD
     assert "FREECADCMD names no command: /no/such/freecadcmd" in missing.stderr
 
 
 def test_forbidden_root_is_said(machine):
-    told = machine.run("script.py")
-    assert told.returncode == NO_FREECAD
-    assert "there is no freecadcmd that fits on PATH, and PKM_FREECAD_NO_ROOT forbids the private root" in told.stderr
+    reported = machine.run("script.py")
+    assert reported.returncode == NO_FREECAD
+    assert (
+        "there is no freecadcmd that fits on PATH, and PKM_FREECAD_NO_ROOT forbids the private root" in reported.stderr
+    )
     assert not (machine.folder / ".cache").exists()
 
 
 def test_pkm_freecad_asks_for_the_private_root_whatever_is_there(machine):
     machine.install("1.0.0")
-    told = machine.run("script.py", PKM_FREECAD="1.1")
-    assert told.returncode == NO_FREECAD
-    assert "PKM_FREECAD=1.1 asks for the private root" in told.stderr
+    reported = machine.run("script.py", PKM_FREECAD="1.1")
+    assert reported.returncode == NO_FREECAD
+    assert "PKM_FREECAD=1.1 asks for the private root" in reported.stderr
 
 
 def test_unknown_version_is_refused(machine):
-    told = machine.run("script.py", PKM_FREECAD="2.0")
-    assert told.returncode == NO_FREECAD
-    assert "PKM_FREECAD is '2.0'; it can be 1.0 or 1.1" in told.stderr
+    reported = machine.run("script.py", PKM_FREECAD="2.0")
+    assert reported.returncode == NO_FREECAD
+    assert "PKM_FREECAD is '2.0'; it can be 1.0 or 1.1" in reported.stderr
 
 
 def test_locale_is_set_only_where_there_is_none(machine):

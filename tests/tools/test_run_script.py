@@ -33,9 +33,9 @@ def script(tmp_path):
 
 def test_script_is_main_and_gets_its_arguments(script):
     path = script("import sys, FreeCAD\nif __name__ == '__main__':\n    print(sys.argv[1:], FreeCAD.Version()[0])\n")
-    told = freecad(path, "-k", "no such.FCStd", "--out", "-c", "--help", "*")
-    assert told.returncode == 0
-    assert told.stdout.splitlines()[-1] == "['-k', 'no such.FCStd', '--out', '-c', '--help', '*'] 1"
+    reported = freecad(path, "-k", "no such.FCStd", "--out", "-c", "--help", "*")
+    assert reported.returncode == 0
+    assert reported.stdout.splitlines()[-1] == "['-k', 'no such.FCStd', '--out', '-c', '--help', '*'] 1"
 
 
 @pytest.mark.parametrize(
@@ -43,18 +43,18 @@ def test_script_is_main_and_gets_its_arguments(script):
     [("", 0), ("sys.exit()", 0), ("sys.exit(3)", 3), ("sys.exit('a reason')", 1), ("raise KeyboardInterrupt", 130)],
 )
 def test_exit_code_is_the_scripts_and_no_text_is_lost(script, end, code):
-    told = freecad(script(f"import sys\nprint('before the end')\n{end}\n"))
-    assert told.returncode == code
-    assert told.stdout.splitlines()[-1] == "before the end"
-    assert ("a reason" in told.stderr) == ("a reason" in end)
+    reported = freecad(script(f"import sys\nprint('before the end')\n{end}\n"))
+    assert reported.returncode == code
+    assert reported.stdout.splitlines()[-1] == "before the end"
+    assert ("a reason" in reported.stderr) == ("a reason" in end)
 
 
 @pytest.mark.parametrize("fault", ["1 / 0", "assert False", "def", "import no_such_module"])
 def test_exception_fails_with_a_traceback(script, fault):
-    told = freecad(script(f"{fault}\n"))
-    assert told.returncode == 1
-    assert "Traceback" in told.stderr
-    assert "a script.py" in told.stderr
+    reported = freecad(script(f"{fault}\n"))
+    assert reported.returncode == 1
+    assert "Traceback" in reported.stderr
+    assert "a script.py" in reported.stderr
 
 
 def test_missing_script_fails(tmp_path):
@@ -62,15 +62,15 @@ def test_missing_script_fails(tmp_path):
 
 
 def test_only_the_scripts_own_text_and_freecads_errors_are_shown(script):
-    told = freecad(
+    reported = freecad(
         script(
             "import FreeCAD\nprint('one')\nFreeCAD.Console.PrintMessage('progress\\n')\n"
             "FreeCAD.Console.PrintError('a fault\\n')\nprint('two')\n"
         )
     )
-    assert told.stdout.splitlines()[-2:] == ["one", "two"]
-    assert "progress" not in told.stdout + told.stderr
-    assert "a fault" in told.stderr
+    assert reported.stdout.splitlines()[-2:] == ["one", "two"]
+    assert "progress" not in reported.stdout + reported.stderr
+    assert "a fault" in reported.stderr
 
 
 @pytest.mark.parametrize(
@@ -83,13 +83,13 @@ def test_only_the_scripts_own_text_and_freecads_errors_are_shown(script):
 )
 def test_suite_fails_where_no_test_was_executed(script, body, code, closing):
     path = script(f"def test_it():\n    {body}\n", "test_it.py")
-    told = freecad(TOOLS / "run_tests.py", f"--rootdir={path.parent}", "-p", "no:cacheprovider", path)
-    assert told.returncode == code
-    assert closing in told.stdout.splitlines()[-1]
+    reported = freecad(TOOLS / "run_tests.py", f"--rootdir={path.parent}", "-p", "no:cacheprovider", path)
+    assert reported.returncode == code
+    assert closing in reported.stdout.splitlines()[-1]
 
 
 def test_suite_without_tests_fails(script):
     path = script("", "test_none.py")
-    told = freecad(TOOLS / "run_tests.py", f"--rootdir={path.parent}", "-p", "no:cacheprovider", path)
-    assert told.returncode == 5
-    assert "No test was executed" in told.stderr
+    reported = freecad(TOOLS / "run_tests.py", f"--rootdir={path.parent}", "-p", "no:cacheprovider", path)
+    assert reported.returncode == 5
+    assert "No test was executed" in reported.stderr

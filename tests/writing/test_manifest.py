@@ -110,7 +110,7 @@ def test_the_manifest_with_the_longer_stem_is_that_of_a_file(folder, tmp_path_fa
         (b'{"format": 1, "files": {"../part.pmc": "%s"}}' % (b"0" * 64), "not names with fingerprints"),
     ],
 )
-def test_a_damaged_manifest_is_told(folder, content, words):
+def test_a_damaged_manifest_is_reported(folder, content, words):
     (folder / "part-manifest.json").write_bytes(content)
     code, found = refusal(folder / "part.pmc")
     assert code == "F108" and words in found

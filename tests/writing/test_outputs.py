@@ -13,8 +13,10 @@ from pkm_post.writing.outputs import left_over, linuxcnc_text
 
 def test_stops_and_tolerances_of_the_trajectory_are_in_the_program_for_linuxcnc():
     made = program([[0, 0, 60], [9, 0, 60], [9, 9, 60], [0, 9, 60], [0, 0, 60]])
-    told = dataclasses.replace(made, exact_path=[False, True, False, False, False], tip_tolerance=[0, 0, 0, 0.05, 0])
-    trajectory, _ = place(told, example(), ON_PALLET)
+    reported = dataclasses.replace(
+        made, exact_path=[False, True, False, False, False], tip_tolerance=[0, 0, 0, 0.05, 0]
+    )
+    trajectory, _ = place(reported, example(), ON_PALLET)
     assert trajectory.exact_stop.tolist() == [True, True, False, False, True]
     text, faults = linuxcnc_text(trajectory, 0.001)
     assert not faults

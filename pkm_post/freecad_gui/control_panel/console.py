@@ -37,7 +37,7 @@ translate = FreeCAD.Qt.translate
 Call = Callable[[NumericalControl], Any]
 
 _LOOK_MS = 100
-_TOLD = (PmacError, OSError, UnicodeError, ImportError, Refused)
+_REPORTED = (PmacError, OSError, UnicodeError, ImportError, Refused)
 """Faults of machine, link and files, and missing packages: reported to the user. All others are our own errors."""
 
 
@@ -64,7 +64,7 @@ class Console(QtCore.QObject):
         self.connection: Connection | None = None
         self.take_job(None)
         self._under_way: list[tuple[Future[Any], Then | None]] = []
-        self.calls = CallQueue(self, lambda fault: self.message.emit(str(fault), True), _TOLD)
+        self.calls = CallQueue(self, lambda fault: self.message.emit(str(fault), True), _REPORTED)
         self.calls.changed.connect(self.refreshed)
         self._cancelled, self._homing, self._is_wanted = threading.Event(), False, True
         self._timer = QtCore.QTimer(self)
@@ -212,7 +212,7 @@ class Console(QtCore.QObject):
             self.message.emit(translate("ControlPanel", "Not carried out: a stop came first"), False)
             return
         fault = future.exception()
-        if isinstance(fault, _TOLD):
+        if isinstance(fault, _REPORTED):
             self.message.emit(str(fault), True)
         elif fault is not None:
             raise fault

@@ -130,19 +130,19 @@ def calibrate_file(machine_file: str, measurements: Path, out: Path) -> tuple[st
     if machine is None or measured is None or path is None:
         return None, faults + wrong
     found = calibrate(machine, measured)
-    told = _diagnostics(found, str(measurements))
-    if errors(told):
-        return None, told
+    diagnostics = _diagnostics(found, str(measurements))
+    if errors(diagnostics):
+        return None, diagnostics
     text, faults = _calibrated_text(path, found, len(measured), measurements.name, str(out))
-    told += faults
+    diagnostics += faults
     if text is None:
-        return None, told
+        return None, diagnostics
     try:
         with staged(out.parent) as folder:
             (folder / out.name).write_text(text, encoding="utf-8", newline="")
     except OSError as fault:
-        return None, (*told, write_fault(out, fault))
-    return report(machine, found, len(measured)), told
+        return None, (*diagnostics, write_fault(out, fault))
+    return report(machine, found, len(measured)), diagnostics
 
 
 def report(machine: Machine, found: Calibration, poses: int) -> str:

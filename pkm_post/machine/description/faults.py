@@ -75,7 +75,7 @@ def fault_diagnostics(
     """Convert faults to diagnostics in line order; beyond the limit, report only how many more."""
     lines = entry_lines(text, document)
     placed = sorted(((_line(fault.name, lines), fault) for fault in faults), key=lambda pair: pair[0])
-    told = [
+    shown = [
         Diagnostic(
             fault.code, Place(file, line=line), f"{'.'.join(fault.name)}: {fault.found or _suggestion(fault.name)}"
         )
@@ -83,8 +83,8 @@ def fault_diagnostics(
     ]
     if len(placed) > MOST_SHOWN:
         line, _ = placed[MOST_SHOWN]
-        told.append(Diagnostic("M208", Place(file, line=line), f"{len(placed) - MOST_SHOWN} more from here on"))
-    return tuple(told)
+        shown.append(Diagnostic("M208", Place(file, line=line), f"{len(placed) - MOST_SHOWN} more from here on"))
+    return tuple(shown)
 
 
 def _suggestion(name: Name) -> str:

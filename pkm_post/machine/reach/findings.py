@@ -30,18 +30,18 @@ class CheckedLimit:
         code: diagnostic code of a violation.
         unit: of the margin, a key of ``DISPLAY_UNITS``.
         parts: what may have the least margin: struts, pairs of bodies.
-        told: message template of a violation, with {part} and {by}.
+        violation: message template of a violation, with {part} and {by}.
     """
 
     name: str
     code: str
     unit: str
     parts: tuple[str, ...]
-    told: str
+    violation: str
 
     def tell(self, part: int, margin: float) -> str:
         """Format a violation."""
-        return self.told.format(part=self.parts[part], by=-margin * DISPLAY_UNITS[self.unit][1])
+        return self.violation.format(part=self.parts[part], by=-margin * DISPLAY_UNITS[self.unit][1])
 
 
 @dataclass(frozen=True)

@@ -47,15 +47,15 @@ def strut_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Chec
     lever = rod_speed_ratio(machine, shortest)
     reach = max((body_reach(machine, way.tool_length, body) for body in machine.bodies), default=0.0)
     bodies, boxes = (_names(other.name for other in others) for others in (machine.bodies, machine.fixtures))
-    told, told_of_two = "strut {part} by {by:.3f} mm", "struts {part} by {by:.3f} mm"
+    violation, violation_of_two = "strut {part} by {by:.3f} mm", "struts {part} by {by:.3f} mm"
     rows = (
-        ("strut and strut", "K113", _PAIRS, told_of_two, _strut_to_strut, 2 * lever, 2 * lever * arm),
-        ("strut and platform", "K114", bodies, told, _strut_to_bodies, 1 + lever, lever * arm + reach),
-        ("strut and fixture", "K115", boxes, told, _strut_to_fixtures, lever, lever * arm),
+        ("strut and strut", "K113", _PAIRS, violation_of_two, _strut_to_strut, 2 * lever, 2 * lever * arm),
+        ("strut and platform", "K114", bodies, violation, _strut_to_bodies, 1 + lever, lever * arm + reach),
+        ("strut and fixture", "K115", boxes, violation, _strut_to_fixtures, lever, lever * arm),
     )
     return tuple(
-        Check(name, code, "mm", parts, told, margins, by_travel, by_turn, HUNDREDTH, COMFORT)
-        for name, code, parts, told, margins, by_travel, by_turn in rows
+        Check(name, code, "mm", parts, violation, margins, by_travel, by_turn, HUNDREDTH, COMFORT)
+        for name, code, parts, violation, margins, by_travel, by_turn in rows
         if parts
     )
 

@@ -57,11 +57,11 @@ def stroke_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Che
     by_travel = 1.0 + per_turn / shortest
     by_turn = lever_arms(machine, way.tool_length).max() * by_travel + per_turn
 
-    def check(name: str, code: str, told: str, sign: float, limit: float) -> Check:
+    def check(name: str, code: str, violation: str, sign: float, limit: float) -> Check:
         def margins(placed: PlacedMachine) -> Array:
             return sign * (placed.lengths() - limit)
 
-        return Check(name, code, "mm", STRUTS, told, margins, by_travel, by_turn, HUNDREDTH)
+        return Check(name, code, "mm", STRUTS, violation, margins, by_travel, by_turn, HUNDREDTH)
 
     return (
         check("shortest struts", "K101", f"strut {{part}} by {{by:.3f}} mm; it shortens to {low:g} mm", 1.0, low),
@@ -80,10 +80,10 @@ def joint_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Chec
     def platform(placed: PlacedMachine) -> Array:
         return machine.platform_cone - joint_swing(placed.in_platform(), -machine.platform_rest)
 
-    told = "joint {part} by {by:.3f} degrees"
+    violation = "joint {part} by {by:.3f} degrees"
     return (
-        Check("base joints", "K103", "rad", STRUTS, told, base, by_travel, by_turn, ANGLE),
-        Check("platform joints", "K104", "rad", STRUTS, told, platform, by_travel, by_turn + 1.0, ANGLE),
+        Check("base joints", "K103", "rad", STRUTS, violation, base, by_travel, by_turn, ANGLE),
+        Check("platform joints", "K104", "rad", STRUTS, violation, platform, by_travel, by_turn + 1.0, ANGLE),
     )
 
 
@@ -111,8 +111,10 @@ def singularity_check(machine: Machine, way: PosePath, shortest: float) -> Check
     swing_by_turn = lever_arms(machine, way.tool_length) / shortest
     by_travel = float(np.sqrt(np.sum(1 + arm**2)) / shortest)
     by_turn = float(np.sqrt(np.sum(swing_by_turn**2 + ((1 + swing_by_turn) * arm) ** 2)))
-    told = f"smallest singular value below {least:g} by {{by:.4f}}"
-    return Check("singular poses", "K105", "", ("",), told, margins, by_travel, by_turn, SINGULAR, _WELL_CONDITIONED)
+    violation = f"smallest singular value below {least:g} by {{by:.4f}}"
+    return Check(
+        "singular poses", "K105", "", ("",), violation, margins, by_travel, by_turn, SINGULAR, _WELL_CONDITIONED
+    )
 
 
 _REGULAR = 1e-6

@@ -76,9 +76,9 @@ def all_checks(machine: Machine, way: PosePath, shortest: float, part: Collision
 
 
 def _stiffness_finding(machine: Machine, way: PosePath, normal: Array, least: float) -> ReachFinding:
-    told = f"below {least:g} N/mm by {{by:.1f}}"
+    violation = f"below {least:g} N/mm by {{by:.1f}}"
     margin = stiffness_along(machine, way.rows(slice(None)), normal) - least
-    subject = CheckedLimit("stiffness along the normal", "K119", "N/mm", ("",), told)
+    subject = CheckedLimit("stiffness along the normal", "K119", "N/mm", ("",), violation)
     return ReachFinding(subject, margin, np.zeros(len(way), dtype=np.int32), -np.inf)
 
 

@@ -57,8 +57,8 @@ def with_spin(
         machine: geometry and limits, for a search.
         policy: rule of the spin and its parameters.
     """
-    turned, told = _by_policy(trajectory, machine, policy)
-    return (None if turned is None else _as_tools_change(turned, machine)), told
+    turned, diagnostics = _by_policy(trajectory, machine, policy)
+    return (None if turned is None else _as_tools_change(turned, machine)), diagnostics
 
 
 def _as_tools_change(trajectory: Trajectory, machine: Machine) -> Trajectory:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A simulated Power PMAC behind a shell: bytes in, bytes out, as clients of others and digests of the manual have it.
 
-It has variables, six motors that stand, and a program that runs until it is told to stop; nothing else.
+It has variables, six motors that stand, and a program that runs until it is stopped; nothing else.
 """
 
 import re
@@ -57,7 +57,7 @@ class Shell:
             self._in_gpascii = line == "gpascii -2"
             return LISTENS + b"\x06\r\n" if self._in_gpascii else b"sh: not found\r\n" + PROMPT
         self.said.append(line)
-        told = []
+        reported = []
         for word in line.split(" "):
             found = next(((match, act) for form, act in ORDERS if (match := re.fullmatch(form, word.lower()))), None)
             if found is None:
@@ -65,8 +65,8 @@ class Shell:
                 return error + (b"\x06\r\n" if self.acknowledges_refusals else b"")
             value = found[1](self, found[0])
             if value is not None:
-                told.append(value if self._values_alone else f"{word}={value}")
-        return "".join(f"{text}\r\n" for text in told).encode("ascii") + b"\x06\r\n"
+                reported.append(value if self._values_alone else f"{word}={value}")
+        return "".join(f"{text}\r\n" for text in reported).encode("ascii") + b"\x06\r\n"
 
     def echo(self, match):
         self._values_alone = match[1] == "7"

@@ -12,7 +12,7 @@ def talk():
     return GpasciiProtocol(silence=0.5)
 
 
-def test_gpascii_is_started_and_told_to_answer_with_values(talk):
+def test_gpascii_is_started_and_reported_to_answer_with_values(talk):
     talk.reset(0.0)
     assert talk.outgoing() == b"gpascii -2\n" and talk.deadline == START_S
     talk.receive(b"Welcome\r\nroot@ppmac# gpascii -2\r\nSTDIN Open for ASCII Input\r\n", 1.0)

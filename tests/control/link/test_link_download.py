@@ -29,13 +29,13 @@ def reference(program):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_program_is_loaded(kind, program, reference):
-    told = []
+    reported = []
     wire = Wire(controller(), kind)
     with wire.session() as session:
-        loaded = download(session, program, lambda done, lines: told.append((done, lines)))
+        loaded = download(session, program, lambda done, lines: reported.append((done, lines)))
     assert (loaded.program, loaded.lines, loaded.digest) == (10, len(program.lines), program.digest)
     assert loaded.resumptions == 0
-    assert told[-1] == (len(program.lines), len(program.lines)) and told == sorted(told)
+    assert reported[-1] == (len(program.lines), len(program.lines)) and reported == sorted(reported)
     # The reference is what this very way gives; here are two lines of it as one reads them in the manual.
     assert reference[:2] == ["ABS", "FRAX(A,B,C,U,V,W)"]
     assert [line for line in listed(wire.controller) if line != "RETURN"] == reference

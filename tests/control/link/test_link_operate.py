@@ -228,14 +228,14 @@ def test_the_struts_move_as_the_program_says(wire):
     text = program_text(StrutMotion(time_ms, length, speed, ()), SETTINGS, ["test"])
     job, faults = read_job(text, SETTINGS, "test.pmc")
     assert not faults and np.allclose(job.first, 500.0)
-    told = []
+    reported = []
     with wire.session() as session:
         download(session, job.program)
         operate.start_program(session, SETTINGS, job.program, job.first)
         while (status := read_status(session, SETTINGS)).running:
-            told.append(status.length + status.following_error)
+            reported.append(status.length + status.following_error)
             wire.sleep(0.02)
-    way = (np.array(told) - 500.0) / reach
+    way = (np.array(reported) - 500.0) / reach
     assert np.ptp(way, axis=1).max() < MICRON
     assert way.max() == pytest.approx(1.0, abs=MICRON) and abs(way[-1]).max() < 10 * MICRON
     assert np.allclose(status.length, 500.0, atol=MICRON)

@@ -97,11 +97,11 @@ with socket.create_server(("127.0.0.1", 0)) as server:
         print("lost")
 """
     root = Path(__file__).parents[3]
-    told = subprocess.run(
+    reported = subprocess.run(
         ["python3", "-c", code], env=os.environ | {"PYTHONPATH": str(root)}, capture_output=True, text=True, timeout=60
     )
-    assert told.returncode != -signal.SIGPIPE
-    assert told.stdout == "lost\n", told.stderr
+    assert reported.returncode != -signal.SIGPIPE
+    assert reported.stdout == "lost\n", reported.stderr
 
 
 @pytest.fixture

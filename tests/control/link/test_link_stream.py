@@ -22,7 +22,7 @@ KINDS = pytest.mark.parametrize("kind", ["serial", "tcp"])
 @KINDS
 def test_a_program_larger_than_its_buffer_runs_to_its_end(kind):
     wire, way = wired(kind), []
-    told = []
+    reported = []
 
     def sleep(seconds, passed=wire.sleep):
         for _ in range(round(1000 * seconds)):
@@ -31,10 +31,10 @@ def test_a_program_larger_than_its_buffer_runs_to_its_end(kind):
 
     wire.sleep = sleep
     with wire.session() as session:
-        done = streamed(session, wire, progress=lambda *lines: told.append(lines))
+        done = streamed(session, wire, progress=lambda *lines: reported.append(lines))
     assert JOB.program.words > WORDS
     assert (done.lines, done.segments, done.resumptions) == (len(JOB.program.lines), len(RESTS) - 1, 0)
-    assert told == sorted(told) and told[-1] == (done.lines,) * 3
+    assert reported == sorted(reported) and reported[-1] == (done.lines,) * 3
     # All six struts share one course, so they are in step at every millisecond and reach both of its ends.
     assert np.ptp(way, axis=1).max() < MICRON
     assert np.max(way) == pytest.approx(1.0, abs=MICRON) and abs(way[-1]).max() < MICRON
@@ -191,7 +191,7 @@ def test_a_fault_of_the_caller_leaves_nothing_behind():
 
 
 @KINDS
-def test_without_a_rotary_buffer_it_is_told(kind):
+def test_without_a_rotary_buffer_it_is_reported(kind):
     wire = wired(kind)
     assert not wire.line.refusal("&1DELETE ROT")
     session = wire.session()
@@ -202,7 +202,7 @@ def test_without_a_rotary_buffer_it_is_told(kind):
     assert not wire.controller.runs_program()
 
 
-def test_a_smaller_buffer_than_was_said_is_told():
+def test_a_smaller_buffer_than_was_said_is_reported():
     wire = wired("tcp")
     for line in ("&1DELETE ROT", "&1DEFINE ROT 100"):
         assert not wire.line.refusal(line)
@@ -249,16 +249,16 @@ def test_who_connects_meanwhile_takes_no_line_from_a_running_program(kind, open_
     ],
 )
 def test_who_loads_or_starts_is_refused_meanwhile(order):
-    wire, told = wired("tcp"), []
+    wire, reported = wired("tcp"), []
     other = Wire(wire.controller, "tcp", line=wire.line)
 
     def progress(done, sent, total):
-        if not told and wire.controller.memory.rotaries[1].lines:
+        if not reported and wire.controller.memory.rotaries[1].lines:
             with other.session() as session, pytest.raises(NotOwnerError, match="C210.*stream") as refused:
                 order(session)
-            told.append(refused)
+            reported.append(refused)
 
-    assert tried(wire, progress=progress) == "streamed 0" and told
+    assert tried(wire, progress=progress) == "streamed 0" and reported
 
 
 @pytest.mark.parametrize("seed", range(100, 104))

@@ -190,8 +190,8 @@ def test_variables_of_somebody_else_are_named(value):
 
 def test_an_answer_without_sense_is_a_link_that_is_lost():
     with two("tcp") as (_, one, __):
-        for told in ((), ("1",), ("a", "b", "c", "d", "e"), ("nan",) * 5):
-            one.query = lambda text, most=0, told=told: told
+        for reported in ((), ("1",), ("a", "b", "c", "d", "e"), ("nan",) * 5):
+            one.query = lambda text, most=0, reported=reported: reported
             with pytest.raises((LinkLostError, DiagnosedError)):
                 read_record(one)
 

@@ -77,7 +77,7 @@ def test_from_the_first_word_to_the_end_of_a_job(simulator, job, capsys, monkeyp
     assert pmac("abort", port) == 0 and not made.runs_program()
     capsys.readouterr()
     assert pmac("status", port) == 0
-    assert "strut 6:" in (told := capsys.readouterr().out) and "no program runs" in told
+    assert "strut 6:" in (reported := capsys.readouterr().out) and "no program runs" in reported
 
 
 def test_bytes_that_do_not_belong_are_named_before_anything_is_sent(simulator, job, tmp_path, capsys):
@@ -113,9 +113,9 @@ def test_a_program_too_large_is_streamed(simulator, machine, tmp_path, capsys, m
 def test_the_readout(simulator, capsys):
     _, port = simulator
     assert pmac("monitor", port, "--seconds", 0.2) == 0
-    told = capsys.readouterr().out
+    reported = capsys.readouterr().out
     # The motors stand where the lengths are those of home_tip with the tool of the rest pose, rounded to 0.1 um.
-    assert "Z300.000 mm, axis I0.00000 J" in told.replace("-0.", "0.") and "0.000 deg from upright" in told
+    assert "Z300.000 mm, axis I0.00000 J" in reported.replace("-0.", "0.") and "0.000 deg from upright" in reported
 
 
 def test_another_set_up_is_not_loaded_into(simulator, job, capsys, monkeypatch):
@@ -159,10 +159,10 @@ def test_one_client_has_the_machine_and_the_others_watch_and_stop(simulator, job
         for order in (*orders, ("resume",), ("override", 50), ("home", "--trigger", "#1HM")):
             capsys.readouterr()
             assert pmac(order[0], port, *order[1:]) == 1
-            told = capsys.readouterr().err
+            reported = capsys.readouterr().err
             if order[0] not in ("jog", "mdi"):  # they see first that the machine moves, and plan nothing
                 owner = "process 4711 of anna, jog, since"
-                assert f"{name}: error C210: another client controls the machine: {owner}" in told
+                assert f"{name}: error C210: another client controls the machine: {owner}" in reported
         monkeypatch.setattr("sys.stdin", io.StringIO("#1P\nP5=1\n&1H\n"))
         assert pmac("terminal", port, machine=None) == 1
         assert "error C210" in capsys.readouterr().out and made.variables.read("P", 5) == 0

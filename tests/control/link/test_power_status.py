@@ -51,7 +51,7 @@ def session(shell):
         yield session
 
 
-def test_struts_are_told_in_mm(shell, session):
+def test_struts_are_reported_in_mm(shell, session):
     shell.positions = [1000.0 * strut for strut in range(6)]
     status = read_status(session, SETTINGS)
     assert np.allclose(status.length, 500.0 + np.arange(6), atol=NANOMETRE)

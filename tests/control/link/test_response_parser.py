@@ -71,7 +71,7 @@ def test_what_programs_say_is_put_aside():
         "06 11",
     ],
 )
-def test_no_sense_is_told(transcript):
+def test_no_sense_is_reported(transcript):
     assert isinstance(read(transcript, b"P1..3", summed=True)[0], Lost)
 
 

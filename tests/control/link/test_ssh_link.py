@@ -108,9 +108,9 @@ def test_a_file_of_host_keys_that_is_damaged_is_named_with_its_line(server, port
     name = f"ssh:{USER}@127.0.0.1:{server.number}"
     arguments = ["--known-hosts", str(file)] if named else []
     assert main(["pmac", "probe", "--port", name, *arguments]) == 1
-    told = capsys.readouterr().err
-    assert f"{file}: " in told and "error C215: the file with the known host keys cannot be read" in told
-    assert "line 2: error" in told or line.startswith(b"|1|a|b")
+    reported = capsys.readouterr().err
+    assert f"{file}: " in reported and "error C215: the file with the known host keys cannot be read" in reported
+    assert "line 2: error" in reported or line.startswith(b"|1|a|b")
     assert server.tried == []
 
 

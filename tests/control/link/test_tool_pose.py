@@ -39,7 +39,7 @@ def test_poses_from_lengths(status):
         assert np.allclose(pose.tip, tip[0], atol=NANOMETRE) and np.allclose(pose.axis, axis[0], atol=1e-9)
 
 
-def test_lengths_without_a_pose_are_told_and_got_over(status):
+def test_lengths_without_a_pose_are_reported_and_got_over(status):
     machine = example()
     readout = ToolPoseReadout(machine, 120.0)
     assert readout.pose(dataclasses.replace(status, length=np.full(6, 10.0))) is None
@@ -73,19 +73,19 @@ def test_bits_are_where_the_manual_has_them():
 
 
 def test_counts_become_lengths():
-    told = [GOOD, "12345.5", "-20"] * 6 + ["0" * 18, "50"]
-    state = _turbo_status(tuple(told), SETTINGS)
+    reported = [GOOD, "12345.5", "-20"] * 6 + ["0" * 18, "50"]
+    state = _turbo_status(tuple(reported), SETTINGS)
     assert isinstance(state, Status)
     assert state.length[0] == pytest.approx(501.23455) and state.following_error[5] == pytest.approx(-0.002)
 
 
 @pytest.mark.parametrize(
-    "told", [["1"] * 20, ["0" * 12, "1", "1"] * 6 + ["0" * 18], ["0" * 12, "x", "1"] * 6 + ["0" * 18, "1"]]
+    "reported", [["1"] * 20, ["0" * 12, "1", "1"] * 6 + ["0" * 18], ["0" * 12, "x", "1"] * 6 + ["0" * 18, "1"]]
 )
-def test_an_answer_without_sense_is_told(told):
+def test_an_answer_without_sense_is_reported(reported):
     class Session:
         def query(self, query):
-            return tuple(told)
+            return tuple(reported)
 
     with pytest.raises(LinkLostError):
         read_status(Session(), SETTINGS)

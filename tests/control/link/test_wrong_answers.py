@@ -61,14 +61,14 @@ def lying(made, choice, share):
 
     execute = line.execute
 
-    def told(session, text):
+    def reported(session, text):
         said = execute(session, text)
         if text == "SIZE" or re.match("I3", text):
             return said  # or nobody would get to know it
         lies = [choice.choice(JUNK) if choice.random() < share else each for each in said]
         return lies if choice.random() > share else lies[:-1]
 
-    return told
+    return reported
 
 
 @pytest.mark.parametrize("action", ACTIONS)
@@ -81,10 +81,10 @@ def test_every_action_ends_in_words(action, machine, capsys, monkeypatch):
         for share in (0.02, 0.05, 0.2, 1.0, 1.0):
             monkeypatch.setattr("pkm_post.control.simulator.serial_port.execute", lying(made, choice, share))
             code = main(["pmac", action, "--port", port, "--machine", MACHINE, "--patience", "0.5", *ACTIONS[action]])
-            told = capsys.readouterr()
+            reported = capsys.readouterr()
             monkeypatch.undo()
-            assert code == 0 or (code == 1 and told.err.strip()), (share, told)
-            assert "Traceback" not in told.err
+            assert code == 0 or (code == 1 and reported.err.strip()), (share, reported)
+            assert "Traceback" not in reported.err
 
 
 ASKING = {
@@ -103,8 +103,12 @@ def test_every_question_ends_in_a_fault_of_the_link_or_of_the_machine(what):
         for share in [0.05, 0.2, 0.5, 1.0] * 10:
 
             def ask(text, most=1 << 16, share=share):
-                told = tuple(choice.choice(JUNK) if choice.random() < share else each for each in honest(text, most))
-                return told if choice.random() > share / 4 else (told[:-1], (*told, "1"))[choice.randrange(2)]
+                reported = tuple(
+                    choice.choice(JUNK) if choice.random() < share else each for each in honest(text, most)
+                )
+                return (
+                    reported if choice.random() > share / 4 else (reported[:-1], (*reported, "1"))[choice.randrange(2)]
+                )
 
             session.query = ask
             try:

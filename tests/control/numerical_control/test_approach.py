@@ -47,14 +47,14 @@ def in_folder(folder):
     """A job that was posted, and its blocks."""
     program = post(cone(40, turns=0.2), MACHINE, folder / "cone.pmc").program
     made, faults = read_job(program.read_text(), SETTINGS, program.name)
-    blocks, told = read_blocks(program, MACHINE)
-    assert not faults and not told
+    blocks, reported = read_blocks(program, MACHINE)
+    assert not faults and not reported
     return made, blocks
 
 
 def jog(station, **how):
-    plan, told = station.control.plan_jog(CartesianJog(**how), 20.0)
-    assert plan is not None, told
+    plan, reported = station.control.plan_jog(CartesianJog(**how), 20.0)
+    assert plan is not None, reported
     station.control.execute(plan)
     return station.to_rest()
 
@@ -75,8 +75,8 @@ def test_a_program_does_not_start_from_elsewhere_and_does_after_the_planned_appr
     with pytest.raises(NotReadyError, match="the tool is away from the start of the program: tip .* approach"):
         station.control.start(posted)
     assert not station.wire.controller.runs_program()
-    plan, told = station.control.plan_approach(posted, 50.0)
-    assert told == () and plan.certificate.holds
+    plan, reported = station.control.plan_approach(posted, 50.0)
+    assert reported == () and plan.certificate.holds
     station.control.execute(plan)
     assert np.allclose(station.to_rest().status.commanded, posted.first, atol=2 * COUNT)
     assert station.control.start(posted).running
@@ -88,8 +88,8 @@ def test_it_tells_how_far_away_the_tool_is(station, posted):
     jog(station, shift=(3.0, 0.0, -4.0), tilt=(0.0, np.radians(2.0)))
     with pytest.raises(NotReadyError) as refused:
         station.control.start(posted)
-    told = next(reason for reason in refused.value.reasons if reason.startswith("the tool is away"))
-    assert "tip 5.000 mm, axis 2.0000 degrees, spin " in told
+    reported = next(reason for reason in refused.value.reasons if reason.startswith("the tool is away"))
+    assert "tip 5.000 mm, axis 2.0000 degrees, spin " in reported
 
 
 def test_the_stream_and_single_block_begin_at_the_start_as_well(station, tmp_path):
@@ -123,13 +123,13 @@ def test_a_machine_at_the_start_has_no_way_to_go(station, posted):
     plan, _ = station.control.plan_approach(posted)
     assert plan is None or np.abs(plan.job.motion.length - posted.first).max() < COUNT
     at_start = ToolPose(np.array([0.0, 0.0, 300.0]), UP, 0.0)
-    trajectory, told = moves.approach_trajectory(MACHINE, at_start, at_start, TOOL, 20.0)
-    assert trajectory is None and [fault.code for fault in told] == ["C201"]
+    trajectory, reported = moves.approach_trajectory(MACHINE, at_start, at_start, TOOL, 20.0)
+    assert trajectory is None and [fault.code for fault in reported] == ["C201"]
 
 
 def way(here, start, machine=MACHINE):
-    trajectory, told = moves.approach_trajectory(machine, here, start, TOOL, 20.0)
-    assert trajectory is not None, told
+    trajectory, reported = moves.approach_trajectory(machine, here, start, TOOL, 20.0)
+    assert trajectory is not None, reported
     return trajectory
 
 
@@ -163,14 +163,16 @@ def test_a_way_out_of_reach_is_no_plan(station, posted):
     narrow = dataclasses.replace(MACHINE, strut_stroke=(1007.5, 1250.0))
     jog(station, shift=(30.0, 0.0, -40.0))
     control = NumericalControl(station.wire.session(), narrow, SETTINGS, TOOL)
-    plan, told = control.plan_approach(posted)
-    assert plan is None and "K101" in {fault.code for fault in told}
+    plan, reported = control.plan_approach(posted)
+    assert plan is None and "K101" in {fault.code for fault in reported}
 
 
 def test_a_tool_that_lies_flat_is_not_retracted():
     flat = ToolPose(np.array([0.0, 0.0, 200.0]), np.array([np.sqrt(1 - 0.0081), 0.0, 0.09]), 0.0)
-    trajectory, told = moves.approach_trajectory(MACHINE, flat, ToolPose(np.array([0.0, 0, 300]), UP, 0.0), TOOL, 20.0)
-    assert trajectory is None and [fault.code for fault in told] == ["K142"]
+    trajectory, reported = moves.approach_trajectory(
+        MACHINE, flat, ToolPose(np.array([0.0, 0, 300]), UP, 0.0), TOOL, 20.0
+    )
+    assert trajectory is None and [fault.code for fault in reported] == ["K142"]
 
 
 def test_how_far_away_is_a_matter_of_poses():
@@ -192,8 +194,8 @@ def test_a_line_by_hand_goes_straight_whatever_the_safe_height(station):
     pose = ToolChange(np.array([0.0, 0.0, 500.0]), UP, 0.0, 290.0)
     machine = dataclasses.replace(MACHINE, tool_change=pose, spin_up_time=2.0, largest_tool_diameter=40.0)
     here = ToolPose(np.array([0.0, 0.0, 200.0]), UP, 0.0)
-    trajectory, told = mdi_trajectory("G0 X10", machine, here, TOOL)
-    assert told == () and len(trajectory) == 1 and trajectory.operations == ("",)
+    trajectory, reported = mdi_trajectory("G0 X10", machine, here, TOOL)
+    assert reported == () and len(trajectory) == 1 and trajectory.operations == ("",)
     np.testing.assert_allclose(trajectory.tip, [[10.0, 0.0, 200.0]], atol=1e-6)
     started, _ = mdi_trajectory("S12000 M3 G0 X10", machine, here, TOOL)
     assert [event.value for event in started.events] == [12000.0, 1.0]

@@ -54,8 +54,10 @@ def test_the_readout_at_home(station):
 )
 def test_a_jog_leads_where_it_says(station, jog, tip, axis, spin):
     """The lengths that are reached are those of inverse kinematics for the pose that was asked for."""
-    plan, told = station.control.plan_jog(jog, FEED)
-    assert told == () and np.allclose(plan.end.tip, tip, atol=MICRON) and np.allclose(plan.end.axis, axis, atol=1e-5)
+    plan, reported = station.control.plan_jog(jog, FEED)
+    assert (
+        reported == () and np.allclose(plan.end.tip, tip, atol=MICRON) and np.allclose(plan.end.axis, axis, atol=1e-5)
+    )
     station.control.execute(plan)
     state = station.to_rest()
     assert np.allclose(state.status.commanded, lengths_at(station.machine, tip, axis, spin), atol=2 * MICRON)
@@ -66,8 +68,8 @@ def test_a_jog_leads_where_it_says(station, jog, tip, axis, spin):
 @pytest.mark.parametrize(("strut", "by"), [(1, 5.0), (4, -8.0)])
 def test_a_jog_of_one_strut_leaves_the_others(station, strut, by):
     before = station.control.poll().status.commanded
-    plan, told = station.control.plan_jog(StrutJog(strut, by), FEED)
-    assert told == ()
+    plan, reported = station.control.plan_jog(StrutJog(strut, by), FEED)
+    assert reported == ()
     station.control.execute(plan)
     furthest = np.zeros(6)
     while (state := station.wait(0.02)).status.running:
@@ -101,15 +103,15 @@ def test_jogs_follow_each_other(station):
     ],
 )
 def test_what_the_checks_refuse_is_not_sent(station, jog, codes):
-    plan, told = station.control.plan_jog(jog, FEED)
-    assert plan is None and told and {fault.code for fault in told} <= codes
-    assert all(isinstance(fault, Diagnostic) for fault in told)
+    plan, reported = station.control.plan_jog(jog, FEED)
+    assert plan is None and reported and {fault.code for fault in reported} <= codes
+    assert all(isinstance(fault, Diagnostic) for fault in reported)
     assert b"OPEN" not in station.sent() and b"R" not in station.sent().replace(b"PR", b"")
 
 
 def test_a_line_of_gcode(station):
-    plan, told = station.control.plan_line("G1 X30 Y20 F1200")
-    assert told == ()
+    plan, reported = station.control.plan_line("G1 X30 Y20 F1200")
+    assert reported == ()
     station.control.execute(plan)
     state = station.to_rest()
     assert np.allclose(state.pose.tip, [30, 20, 300], atol=5 * MICRON)  # G54 is 150 mm up, and Z was not said
@@ -145,8 +147,8 @@ def test_a_line_begins_where_the_tool_is_and_keeps_its_axis(station):
     ],
 )
 def test_a_line_that_is_refused_is_not_sent(station, line, code):
-    plan, told = station.control.plan_line(line)
-    assert plan is None and code in {fault.code for fault in told}
+    plan, reported = station.control.plan_line(line)
+    assert plan is None and code in {fault.code for fault in reported}
     assert b"OPEN" not in station.sent()
 
 
@@ -160,8 +162,8 @@ def test_a_line_that_switches_alone(station, line, variable, value, axis_words):
     before = station.control.poll().status.commanded
     variables = station.wire.controller.variables
     variables.write("P", variable, 9.0)
-    plan, told = station.control.plan_line(line, MdiSettings(axis_words=axis_words))
-    assert told == ()
+    plan, reported = station.control.plan_line(line, MdiSettings(axis_words=axis_words))
+    assert reported == ()
     station.control.execute(plan)
     furthest = np.zeros(6)
     while (state := station.wait(0.02)).status.running:
@@ -178,8 +180,8 @@ def test_a_line_of_a_dwell_alone_takes_its_time(station):
 
 
 def test_an_unknown_work_offset(station):
-    plan, told = station.control.plan_line("G1 X1 F100", MdiSettings("G59"))
-    assert plan is None and [fault.code for fault in told] == ["K108"]
+    plan, reported = station.control.plan_line("G1 X1 F100", MdiSettings("G59"))
+    assert plan is None and [fault.code for fault in reported] == ["K108"]
 
 
 def test_two_lines_are_none(station):
@@ -251,7 +253,7 @@ def test_overrides_beyond_the_plan_are_refused(station, percent):
     assert station.sent() == b""
 
 
-def test_an_override_that_does_not_come_is_told(station):
+def test_an_override_that_does_not_come_is_reported(station):
     station.control.poll()
     assert not station.wire.line.refusal("I5194=0")  # the time base stays as it is
     with pytest.raises(PmacError, match="the time base stays at 100 %"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""When people are told what to do, and in which order."""
+"""When people are shown what to do, and in which order."""
 
 import dataclasses
 

@@ -43,14 +43,16 @@ def test_struts_are_homed_one_by_one(station):
         seen.append(station.wait(0.1).homing)
     assert seen[-1] == Homing(HomingPhase.DONE, (), ())
     assert str(seen[-1]) == "all struts have found their homes"
-    assert station.control.poll().homing == seen[-1]  # it is told until the next one
+    assert station.control.poll().homing == seen[-1]  # it is reported until the next one
 
 
 def test_struts_without_home_are_named():
     watch = HomingWatch(0.0)
-    told = watch.see(state([STANDING | HOMED] * 4 + [STANDING, STANDING | HOMING]), 1.0)
-    assert told.phase is HomingPhase.SEARCHING and told.missing == (5, 6)
-    assert str(told).startswith("the struts look for their homes; no home yet: strut 5, 6\nstrut 6: searching its home")
+    reported = watch.see(state([STANDING | HOMED] * 4 + [STANDING, STANDING | HOMING]), 1.0)
+    assert reported.phase is HomingPhase.SEARCHING and reported.missing == (5, 6)
+    assert str(reported).startswith(
+        "the struts look for their homes; no home yet: strut 5, 6\nstrut 6: searching its home"
+    )
 
 
 def test_a_pause_between_two_struts_is_not_the_end():
@@ -86,8 +88,8 @@ def test_a_fault_ends_it(fault):
 
 def test_a_limit_does_not_end_it():
     """The home may be at a limit."""
-    told = HomingWatch(0.0).see(state([HOMING] * 5 + [HOMING | 1 << 46]), 1.0)
-    assert told.phase is HomingPhase.SEARCHING and "strut 6: on its lower limit" in told.words
+    reported = HomingWatch(0.0).see(state([HOMING] * 5 + [HOMING | 1 << 46]), 1.0)
+    assert reported.phase is HomingPhase.SEARCHING and "strut 6: on its lower limit" in reported.words
 
 
 def test_it_is_not_started_beside_a_program_or_with_a_fault(station):

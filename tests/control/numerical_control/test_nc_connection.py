@@ -33,8 +33,8 @@ def until(holds):
 
 
 def test_names_become_a_target():
-    target, told = connection_target("tcp:127.0.0.1:1025", "example_6tps")
-    assert (target.port, target.watch_only, told) == (Port("tcp", "127.0.0.1", 1025), False, ())
+    target, reported = connection_target("tcp:127.0.0.1:1025", "example_6tps")
+    assert (target.port, target.watch_only, reported) == (Port("tcp", "127.0.0.1", 1025), False, ())
     assert (target.machine.fingerprint, target.settings) == (MACHINE.fingerprint, SETTINGS)
 
 
@@ -42,17 +42,17 @@ def test_a_power_pmac_is_watched_alone(tmp_path):
     text = find_machine("example_6tps").read_text(encoding="utf-8")
     file = tmp_path / "power.toml"
     file.write_text(text.replace('kind = "turbo_pmac"', 'kind = "power_pmac"'), encoding="utf-8")
-    target, told = connection_target("ssh:me@host", str(file))
-    assert target.watch_only and not told
-    other, told = connection_target("tcp:host", str(file))
-    assert other is None and [fault.code for fault in told] == ["M104"]
+    target, reported = connection_target("ssh:me@host", str(file))
+    assert target.watch_only and not reported
+    other, reported = connection_target("tcp:host", str(file))
+    assert other is None and [fault.code for fault in reported] == ["M104"]
 
 
 def test_what_is_wrong_with_names():
     with pytest.raises(ValueError, match="port: expected"):
         connection_target("usb:1", "example_6tps")
-    target, told = connection_target(None, "no_such_machine")
-    assert target is None and [fault.code for fault in told] == ["M101"]
+    target, reported = connection_target(None, "no_such_machine")
+    assert target is None and [fault.code for fault in reported] == ["M101"]
 
 
 def test_nobody_answers():
@@ -74,8 +74,10 @@ def test_a_simulated_machine_is_homed_and_jogged():
         # where the struts of this machine are counted from is its home, within a count of 0.1 um
         assert worker.state.pose.tip == pytest.approx(MACHINE.home_tip, abs=1e-3)
         before = worker.state.pose.tip[0]
-        plan, told = worker.submit(lambda control: control.plan_jog(CartesianJog((2, 0, 0)), 10.0)).result(LONGEST_S)
-        assert not told
+        plan, reported = worker.submit(lambda control: control.plan_jog(CartesianJog((2, 0, 0)), 10.0)).result(
+            LONGEST_S
+        )
+        assert not reported
         worker.submit(lambda control: control.execute(plan)).result(LONGEST_S)
         # struts stand within a count of 0.1 um, which moves the tip by no more than some of them
         until(lambda: worker.state.pose.tip[0] - before == pytest.approx(2.0, abs=1e-3))
@@ -92,8 +94,8 @@ def test_it_goes_home_where_struts_are_counted_from_the_end_of_their_stroke():
         worker.submit(lambda control: control.home(SIMULATED_HOMING)).result(LONGEST_S)
         until(lambda: worker.state.homing is not None and worker.state.homing.phase is not HomingPhase.SEARCHING)
         assert worker.state.pose.tip == pytest.approx(target.machine.home_tip, abs=1e-2)
-        plan, told = worker.submit(lambda control: control.plan_jog(CartesianJog((1, 0, 0)), 5.0)).result(LONGEST_S)
-        assert plan is not None and not told
+        plan, reported = worker.submit(lambda control: control.plan_jog(CartesianJog((1, 0, 0)), 5.0)).result(LONGEST_S)
+        assert plan is not None and not reported
     finally:
         connection.close()
 

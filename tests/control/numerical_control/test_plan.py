@@ -21,8 +21,8 @@ def way(jog=CartesianJog((15, 0, 0), (0.1, 0.0))):  # noqa: B008 - frozen
 
 
 def test_a_plan_is_certified_and_ends_where_it_was_asked_to():
-    plan, told = planned(way(), MACHINE, SETTINGS, TOLERANCES)
-    assert told == () and plan.certificate.holds and plan.job.program.number == 999
+    plan, reported = planned(way(), MACHINE, SETTINGS, TOLERANCES)
+    assert reported == () and plan.certificate.holds and plan.job.program.number == 999
     assert np.allclose(plan.end.tip, [25, -20, 280], atol=MICRON) and plan.end.spin == pytest.approx(0.02, abs=1e-5)
     assert plan.seconds >= 1.5  # 15 mm at 10 mm/s
     assert not plan.job.motion.speed[[0, -1]].any() and not plan.job.motion.events
@@ -33,8 +33,8 @@ def test_the_poses_of_the_lengths_are_looked_at_by_themselves():
     trajectory = way()
     plan, _ = planned(trajectory, MACHINE, SETTINGS, TOLERANCES)
     narrow = dataclasses.replace(MACHINE, platform_cone=np.full(6, np.radians(1.0)))
-    end, told = _end_pose(plan.job.motion, trajectory, narrow)
-    assert end is not None and {fault.code for fault in told} == {"K104"}
+    end, reported = _end_pose(plan.job.motion, trajectory, narrow)
+    assert end is not None and {fault.code for fault in reported} == {"K104"}
 
 
 def test_lengths_that_lead_nowhere_are_refused():
@@ -42,8 +42,8 @@ def test_lengths_that_lead_nowhere_are_refused():
     motion = planned(trajectory, MACHINE, SETTINGS, TOLERANCES)[0].job.motion
     length = motion.length.copy()
     length[-1] = [750.0, 1250, 750, 1250, 750, 1250]
-    end, told = _end_pose(dataclasses.replace(motion, length=length), trajectory, MACHINE)
-    assert end is None and [fault.code for fault in told] == ["V107"]
+    end, reported = _end_pose(dataclasses.replace(motion, length=length), trajectory, MACHINE)
+    assert end is None and [fault.code for fault in reported] == ["V107"]
 
 
 def test_the_feed_is_kept_and_limited():
@@ -68,14 +68,14 @@ def test_there_are_six_struts(strut):
 
 def test_a_plan_is_one_program():
     line = "G91 G82 X5 Y0 Z-8 R-2 P0.1 L3 F600"  # three holes, a dwell in each: it could be cut there
-    trajectory, told = mdi_trajectory(line, MACHINE, HERE, TOOL)
-    assert trajectory is not None and not told
+    trajectory, reported = mdi_trajectory(line, MACHINE, HERE, TOOL)
+    assert trajectory is not None and not reported
     assert planned(trajectory, MACHINE, SETTINGS, TOLERANCES)[0] is not None
     small = dataclasses.replace(SETTINGS, memory_words=1200)
-    plan, told = planned(trajectory, MACHINE, small, TOLERANCES)
-    assert plan is None and [fault.code for fault in told] == ["C204"]
+    plan, reported = planned(trajectory, MACHINE, small, TOLERANCES)
+    assert plan is None and [fault.code for fault in reported] == ["C204"]
 
 
 def test_a_plan_without_room():
-    plan, told = planned(way(), MACHINE, dataclasses.replace(SETTINGS, memory_words=100), TOLERANCES)
-    assert plan is None and [fault.code for fault in told] == ["C102"]
+    plan, reported = planned(way(), MACHINE, dataclasses.replace(SETTINGS, memory_words=100), TOLERANCES)
+    assert plan is None and [fault.code for fault in reported] == ["C102"]

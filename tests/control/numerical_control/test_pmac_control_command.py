@@ -41,15 +41,17 @@ def pmac(action, port, *arguments):
     return main(["pmac", action, "--port", port, *named, *map(str, arguments)])
 
 
-def tip(told):
-    return [float(number) for number in re.search(r"tip X(\S+) Y(\S+) Z(\S+) mm", told).groups()]
+def tip(reported):
+    return [float(number) for number in re.search(r"tip X(\S+) Y(\S+) Z(\S+) mm", reported).groups()]
 
 
 def test_jogs_and_lines(simulator, capsys):
     made, port = simulator
     assert pmac("jog", port, "--x", 3, "--z", "-2", "--feed", 3000) == 0
-    told = capsys.readouterr().out
-    assert np.allclose(tip(told), [3, 0, 298], atol=2e-3) and "arrived; no strut is off by more than 0.000" in told
+    reported = capsys.readouterr().out
+    assert (
+        np.allclose(tip(reported), [3, 0, 298], atol=2e-3) and "arrived; no strut is off by more than 0.000" in reported
+    )
     assert pmac("mdi", port, "G91 G1 Y4 F3000") == 0
     assert np.allclose(tip(capsys.readouterr().out), [3, 4, 298], atol=2e-3)
     assert pmac("jog", port, "--strut", 2, "--by", 1.5, "--feed", 3000, "--number", 77) == 0
@@ -119,18 +121,20 @@ def test_line_by_line(simulator, capsys, monkeypatch, tmp_path):
     file = tmp_path / "part.pmc"
     monkeypatch.setattr("sys.stdin", io.StringIO("\n\n\n"))
     assert pmac("step", port, file) == 0
-    told = capsys.readouterr().out
-    begun = [line for line in told.splitlines() if line.startswith("block")]
+    reported = capsys.readouterr().out
+    begun = [line for line in reported.splitlines() if line.startswith("block")]
     assert begun == [
         f"block {number} of 3, line {number + 1}: {line}; Enter starts it, the end of the input ends here"
         for number, line in enumerate(LINES, 1)
     ]
-    assert told.count("arrived; no strut is off by more than 0.000") == 3 and told.endswith("the program has ended\n")
+    assert reported.count("arrived; no strut is off by more than 0.000") == 3 and reported.endswith(
+        "the program has ended\n"
+    )
     assert pmac("approach", port, file, "--feed", 6000) == 0
     monkeypatch.setattr("sys.stdin", io.StringIO("\n"))
     assert pmac("step", port, file) == 0
-    told = capsys.readouterr().out
-    assert "the program has ended" not in told and "block 2 of 3, line 3" in told
+    reported = capsys.readouterr().out
+    assert "the program has ended" not in reported and "block 2 of 3, line 3" in reported
     monkeypatch.setattr("sys.stdin", io.StringIO("\n"))
     assert pmac("step", port, file, "--block", 2) == 0
     assert "block 3 of 3, line 4" in capsys.readouterr().out
@@ -191,9 +195,9 @@ def test_arguments_without_sense_by_hand(arguments):
 
 
 @pytest.mark.parametrize(
-    ("name", "connected", "told"),
+    ("name", "connected", "reported"),
     [("hold", False, True), ("run", False, False), ("run", True, True), ("status", True, False)],
 )
-def test_when_people_are_told_what_to_do(name, connected, told, capsys):
+def test_when_people_are_shown_what_to_do(name, connected, reported, capsys):
     print_emergency_steps(name, connected)
-    assert ("EMERGENCY STOP" in capsys.readouterr().err) == told
+    assert ("EMERGENCY STOP" in capsys.readouterr().err) == reported

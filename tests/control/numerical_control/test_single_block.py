@@ -58,8 +58,8 @@ def post(folder, source, *tools):
 
 
 def blocks_in(folder):
-    blocks, told = read_blocks(folder / "part.pmc", MACHINE)
-    assert blocks is not None and not told
+    blocks, reported = read_blocks(folder / "part.pmc", MACHINE)
+    assert blocks is not None and not reported
     return blocks
 
 
@@ -101,8 +101,8 @@ def test_each_start_runs_one_line_and_rests_at_its_end(posted, kind):
     spindle, coolant = {}, {}
     for number, (line, end) in enumerate(ENDS.items(), 1):
         assert control.poll().block.line == line
-        plan, told = control.plan_step()
-        assert not told and plan.job.program.number == 999
+        plan, reported = control.plan_step()
+        assert not reported and plan.job.program.number == 999
         control.execute(plan)
         state = station.to_rest()
         assert not state.status.running and state.block.number == number + 1
@@ -189,9 +189,9 @@ def test_a_source_that_is_not_the_one_that_was_posted_is_not_shown(tmp_path):
 
 
 def refused(folder, machine=MACHINE):
-    blocks, told = read_blocks(folder / "part.pmc", machine)
+    blocks, reported = read_blocks(folder / "part.pmc", machine)
     assert blocks is None
-    return [each.code for each in told]
+    return [each.code for each in reported]
 
 
 def test_a_program_whose_lines_are_not_known_is_refused_by_name(tmp_path):

@@ -152,17 +152,17 @@ def test_people_are_called_while_a_stop_is_not_confirmed_and_it_goes_on_trying(m
         forget, made.systems[0].forget = made.systems[0].forget, lambda: None
         ended = threading.Thread(target=lambda: said.append(main(["pmac", "hold", *target])))
         ended.start()
-        told = []
-        until(lambda: told.append(capsys.readouterr().err) or NOT_AT_REST[0] in "".join(told))
+        reported = []
+        until(lambda: reported.append(capsys.readouterr().err) or NOT_AT_REST[0] in "".join(reported))
         made.systems[0].hold, made.systems[0].forget = hold, forget
         ended.join(LONGEST_S)
         assert said == [0] and not is_moving(made)
 
 
-def test_whoever_ends_the_trying_is_told_what_to_do():
+def test_whoever_ends_the_trying_is_shown_what_to_do():
     process = started("hold", "tcp:127.0.0.1:1")
-    told = "".join(iter(process.stderr.readline, NOT_AT_REST[-1] + "\n"))
-    assert NOT_AT_REST[0] in told
+    reported = "".join(iter(process.stderr.readline, NOT_AT_REST[-1] + "\n"))
+    assert NOT_AT_REST[0] in reported
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=LONGEST_S)
     assert process.returncode == 1 and EMERGENCY_STEPS[1] in said
@@ -176,8 +176,8 @@ def test_a_stop_waits_for_a_controller_that_does_not_answer_yet(made, capsys):
     command = ["pmac", "hold", "--port", f"tcp:127.0.0.1:{number}", "--machine", "example_6tps"]
     hold = threading.Thread(target=lambda: said.append(main(command)))
     hold.start()
-    told = []
-    until(lambda: told.append(capsys.readouterr().err) or NOT_AT_REST[0] in "".join(told))
+    reported = []
+    until(lambda: reported.append(capsys.readouterr().err) or NOT_AT_REST[0] in "".join(reported))
     server, ended = Server(made), threading.Event()
     server.add_tcp(number)
     serving = threading.Thread(target=server.run, args=(ended.is_set,))

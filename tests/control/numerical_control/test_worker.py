@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The thread that talks to the controller: nothing waits for it, stops come first, faults are told."""
+"""The thread that talks to the controller: nothing waits for it, stops come first, faults are reported."""
 
 import threading
 import time
@@ -98,7 +98,7 @@ def test_a_stop_comes_first_and_cancels_what_waits(worker, stub):
             order.result(LONGEST_S)
 
 
-def test_what_is_being_done_is_told_that_a_stop_waits(worker, stub):
+def test_what_is_being_done_is_informed_that_a_stop_waits(worker, stub):
     begun = threading.Event()
 
     def long(control):
@@ -139,7 +139,7 @@ def test_a_stop_that_is_being_done_does_not_give_way_to_the_end(stub):
     assert ends.wait(LONGEST_S)
 
 
-def test_an_order_that_ends_the_thread_is_told_as_well(stub):
+def test_an_order_that_ends_the_thread_is_reported_as_well(stub):
     worker = Worker(stub, period=0.005)
 
     def ends(control):
@@ -176,9 +176,9 @@ def test_it_ends(stub):
 def test_a_fault_of_ours_is_not_hidden(worker, stub):
     stub.polls = -2
     until(lambda: worker.failure is not None)
-    with pytest.raises(RuntimeError) as told:
+    with pytest.raises(RuntimeError) as reported:
         worker.submit(lambda control: 1)
-    assert isinstance(told.value.__cause__, ZeroDivisionError)
+    assert isinstance(reported.value.__cause__, ZeroDivisionError)
     with pytest.raises(RuntimeError, match="ended by a fault"):
         worker.close()
 
@@ -186,8 +186,10 @@ def test_a_fault_of_ours_is_not_hidden(worker, stub):
 def test_a_machine_is_operated(station):
     worker = Worker(station.control, period=0.01)
     try:
-        plan, told = worker.submit(lambda control: control.plan_jog(CartesianJog((2, 0, 0)), 10.0)).result(LONGEST_S)
-        assert not told
+        plan, reported = worker.submit(lambda control: control.plan_jog(CartesianJog((2, 0, 0)), 10.0)).result(
+            LONGEST_S
+        )
+        assert not reported
         worker.submit(lambda control: control.execute(plan)).result(LONGEST_S)
         worker.submit(lambda control: station.to_rest()).result(LONGEST_S)
         until(lambda: worker.state.pose is not None and worker.state.pose.tip[0] == pytest.approx(2.0, abs=1e-3))

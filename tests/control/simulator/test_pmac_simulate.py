@@ -38,7 +38,7 @@ def test_a_set_up_file_is_carried_out_first(interrupted, tmp_path):
     assert interrupted[0]._controller.systems[1].axes.definitions[1].text() == "10000A-5000000"
 
 
-def test_a_line_that_is_refused_is_told_with_its_place(interrupted, tmp_path, capsys):
+def test_a_line_that_is_refused_is_reported_with_its_place(interrupted, tmp_path, capsys):
     file = tmp_path / "setup.pmc"
     file.write_text("&1\nFOO=1\n")
     assert main(["pmac", "simulate", "--tcp", "0", "--setup", str(file)]) == 1
@@ -48,7 +48,7 @@ def test_a_line_that_is_refused_is_told_with_its_place(interrupted, tmp_path, ca
     assert not interrupted
 
 
-def test_a_port_that_is_taken_is_told(capsys):
+def test_a_port_that_is_taken_is_reported(capsys):
     from pkm_post.control.simulator import Controller
 
     server = Server(Controller())
@@ -59,7 +59,7 @@ def test_a_port_that_is_taken_is_told(capsys):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "reported"),
     [
         ([], "one of the arguments --pty --tcp is required"),
         (["--pty", "--tcp", "1"], "not allowed with argument --pty"),
@@ -70,11 +70,11 @@ def test_a_port_that_is_taken_is_told(capsys):
         (["--pty", "--memory", "999"], "expected 1000 words or more, got '999'"),
     ],
 )
-def test_arguments_without_sense_are_refused(arguments, told, capsys):
+def test_arguments_without_sense_are_refused(arguments, reported, capsys):
     with pytest.raises(SystemExit) as ended:
         main(["pmac", "simulate", *arguments])
     assert ended.value.code == 2
-    assert told in capsys.readouterr().err
+    assert reported in capsys.readouterr().err
 
 
 def test_a_set_up_that_has_changed_since_it_was_posted_is_refused(tmp_path, capsys):
@@ -83,4 +83,4 @@ def test_a_set_up_that_has_changed_since_it_was_posted_is_refused(tmp_path, caps
     manifest.write(tmp_path, "part")
     file.write_text("I15=1\n")
     assert main(["pmac", "simulate", "--tcp", "0", "--setup", str(file)]) == 1
-    assert "error F106" in (told := capsys.readouterr().err) and "part-setup.pmc has changed" in told
+    assert "error F106" in (reported := capsys.readouterr().err) and "part-setup.pmc has changed" in reported

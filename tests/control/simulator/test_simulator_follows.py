@@ -70,10 +70,10 @@ def test_the_simulated_machine_keeps_to_the_programmed_path(posted, followed):
     ruler = TrajectoryRuler(trajectory, tolerances)
     tip, axis = deviation_from_any(ruler, pose.tip, pose.axis, motion.segment[knot], motion.segment[knot + 1])
 
-    told = {finding["what"]: finding["value"] for finding in made.report["certificate"]["findings"]}
-    assert tip.max() <= told["deviation of the tool tip"] + LAST_BITS
-    assert np.degrees(axis.max()) <= told["deviation of the tool axis"] + np.degrees(LAST_BITS / 200)
-    assert tip.max() > 0.5 * told["deviation of the tool tip"]
+    reported = {finding["what"]: finding["value"] for finding in made.report["certificate"]["findings"]}
+    assert tip.max() <= reported["deviation of the tool tip"] + LAST_BITS
+    assert np.degrees(axis.max()) <= reported["deviation of the tool axis"] + np.degrees(LAST_BITS / 200)
+    assert tip.max() > 0.5 * reported["deviation of the tool tip"]
 
 
 def test_it_ends_where_the_program_ends(posted, followed):

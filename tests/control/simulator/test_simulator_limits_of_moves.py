@@ -103,7 +103,7 @@ def test_all_programs_are_run_held_and_ended_by_control_characters(machine):
     assert not machine.runs() and machine.position()[0] == 503
 
 
-def test_what_hinders_a_program_is_told_also_when_all_are_started(machine):
+def test_what_hinders_a_program_is_reported_also_when_all_are_started(machine):
     machine.lines("OPEN PROG 1\nCLEAR\nDWELL1\nCLOSE\nB1\n#1K")
     assert machine.bytes(b"\x12") == b"\x07ERR012\r"
 

@@ -33,7 +33,7 @@ def test_the_handshake_is_that_of_i3(pmac, handshake):
         (3, 3, b"\x07\r\nERR003\r"),
     ],
 )
-def test_errors_are_told_as_i6_says(pmac, form, handshake, answer):
+def test_errors_are_reported_as_i6_says(pmac, form, handshake, answer):
     pmac.bytes(f"I3={handshake} I6={form}\r".encode())
     assert pmac.bytes(b"FOO\r") == answer
 

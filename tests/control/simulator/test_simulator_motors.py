@@ -11,7 +11,7 @@ from simulated import make, ready_machine
 ACTIVATED, ENABLED, OPEN_LOOP, STANDS, HOMING = (1 << bit for bit in (23, 19, 18, 13, 10))
 IN_SYSTEM, HOMED, IN_POSITION = (1 << bit for bit in (15, 10, 0))
 COUNT = 0.1
-"""Positions are told to a tenth of a count."""
+"""Positions are reported to a tenth of a count."""
 
 
 def test_motors_wait_for_their_loops_to_be_closed(pmac):
@@ -32,7 +32,7 @@ def test_the_coordinate_system_of_a_motor(pmac):
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "reported"),
     [
         ("10000A-5000000", "10000A-5000000"),
         ("A", "A"),
@@ -42,9 +42,9 @@ def test_the_coordinate_system_of_a_motor(pmac):
         ("0", "0"),
     ],
 )
-def test_axis_definitions_are_told_back(pmac, text, told):
+def test_axis_definitions_are_reported_back(pmac, text, reported):
     pmac.say(f"#4->{text}")
-    assert pmac.say("#4->") == told
+    assert pmac.say("#4->") == reported
 
 
 def test_a_jog_goes_to_its_position_and_back(machine):

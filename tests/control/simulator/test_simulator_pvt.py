@@ -69,7 +69,7 @@ def test_a_written_program_is_played_as_the_cubics_between_its_knots(machine):
     assert machine.controller.systems[0].path.abrupt_stops == 0
 
 
-def test_the_actual_position_is_told_in_counts(machine):
+def test_the_actual_position_is_reported_in_counts(machine):
     machine.lines(program_text(curved_motion(), PROGRAM_SETTINGS, []))
     machine.say("&1B10R")
     machine.wait(10_000)

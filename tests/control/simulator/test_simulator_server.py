@@ -153,11 +153,11 @@ def test_a_server_without_file_descriptors_goes_on_and_takes_clients_again():
             waiting.close()
         finally:
             child.send_signal(signal.SIGINT)
-            _, told = child.communicate(timeout=DEADLINE_S)
-    assert child.returncode == 0 and told == b""
+            _, reported = child.communicate(timeout=DEADLINE_S)
+    assert child.returncode == 0 and reported == b""
 
 
-def test_no_descriptor_at_all_is_told(capsys, monkeypatch):
+def test_no_descriptor_at_all_is_reported(capsys, monkeypatch):
     def none_left():
         raise OSError(24, "Too many open files")
 
@@ -190,7 +190,7 @@ def test_time_that_the_computer_cannot_keep_up_with_keeps_no_client_waiting():
         server.close()
 
 
-def test_a_port_that_is_taken_is_told(serving):
+def test_a_port_that_is_taken_is_reported(serving):
     server, start = serving
     port = server.add_tcp(0)
     start()

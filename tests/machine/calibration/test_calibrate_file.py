@@ -39,8 +39,8 @@ def measurements(tmp_path, machine, count=30, tilt_deg=20.0):
 def test_the_new_file_is_the_real_machine(tmp_path):
     real = preset("nategh_agheli_calibrated")
     out = tmp_path / "new" / "mine.toml"
-    report, told = calibrate_file("nategh_agheli_nominal", measurements(tmp_path, real), out)
-    assert told == ()
+    report, reported = calibrate_file("nategh_agheli_nominal", measurements(tmp_path, real), out)
+    assert reported == ()
     assert "rank 42 of 42" in report
     machine, faults = read_machine(out)
     assert faults == ()
@@ -56,16 +56,16 @@ def test_an_inch_file_stays_an_inch_file(tmp_path):
     real = dataclasses.replace(nominal, base_joints=nominal.base_joints + rng.normal(0, 0.5, (6, 3)))
     path = measurements(tmp_path, real)
     out = tmp_path / "mine.toml"
-    _, told = calibrate_file("linuxcnc_genhexkins", path, out)
-    assert told == ()
+    _, reported = calibrate_file("linuxcnc_genhexkins", path, out)
+    assert reported == ()
     assert 'length = "inch"' in out.read_text(encoding="utf-8")
     assert np.abs(parameters(read_machine(out)[0]) - parameters(real)).max() < MICRON
 
 
 def test_poses_that_tell_too_little_are_a_warning(tmp_path):
     path = measurements(tmp_path, preset("nategh_agheli_calibrated"), tilt_deg=0.0)
-    report, (told,) = calibrate_file("nategh_agheli_nominal", path, tmp_path / "mine.toml")
-    assert (told.code, told.found) == ("M205", "rank 24 of 42")
+    report, (reported,) = calibrate_file("nategh_agheli_nominal", path, tmp_path / "mine.toml")
+    assert (reported.code, reported.found) == ("M205", "rank 24 of 42")
     assert report.count("not determined: strut") == 18
     assert (tmp_path / "mine.toml").exists()
 
@@ -76,19 +76,19 @@ def test_nothing_is_written_when_no_machine_fits(tmp_path):
     rng = np.random.default_rng(3)
     wrong = [",".join([*row.split(",")[:8], *map(str, rng.uniform(1, 5e5, 6))]) for row in rows[1:]]
     path.write_text("\n".join([rows[0], *wrong]))
-    report, told = calibrate_file("nategh_agheli_nominal", path, tmp_path / "mine.toml")
+    report, reported = calibrate_file("nategh_agheli_nominal", path, tmp_path / "mine.toml")
     assert report is None
-    assert {item.severity.value for item in told} == {"error"}
+    assert {item.severity.value for item in reported} == {"error"}
     assert not (tmp_path / "mine.toml").exists()
 
 
-def test_faults_of_both_files_are_told(tmp_path):
-    report, told = calibrate_file("vamt1y", tmp_path / "none.csv", tmp_path / "mine.toml")
+def test_faults_of_both_files_are_reported(tmp_path):
+    report, reported = calibrate_file("vamt1y", tmp_path / "none.csv", tmp_path / "mine.toml")
     assert report is None
-    assert {item.code for item in told} == {"M107", "M201"}
+    assert {item.code for item in reported} == {"M107", "M201"}
 
 
-def test_entries_that_cannot_be_replaced_are_told(tmp_path):
+def test_entries_that_cannot_be_replaced_are_reported(tmp_path):
     path = measurements(tmp_path, preset("nategh_agheli_calibrated"))
     text = find_machine("nategh_agheli_nominal").read_text(encoding="utf-8")
     start, end = text.index("[base]"), text.index("# On a circle of 125")
@@ -96,25 +96,25 @@ def test_entries_that_cannot_be_replaced_are_told(tmp_path):
     machine = tmp_path / "inline.toml"
     machine.write_text(f"base = {{ joints = {rows} }}\n{text[:start]}{text[end:]}", encoding="utf-8")
     assert read_machine(machine)[1] == ()
-    report, (told,) = calibrate_file(str(machine), path, tmp_path / "mine.toml")
+    report, (reported,) = calibrate_file(str(machine), path, tmp_path / "mine.toml")
     assert report is None
-    assert told.code == "M204"
+    assert reported.code == "M204"
 
 
-def test_a_folder_that_cannot_be_written_is_told(tmp_path):
+def test_a_folder_that_cannot_be_written_is_reported(tmp_path):
     path = measurements(tmp_path, preset("nategh_agheli_calibrated"))
-    report, (told,) = calibrate_file("nategh_agheli_nominal", path, path / "mine.toml")
+    report, (reported,) = calibrate_file("nategh_agheli_nominal", path, path / "mine.toml")
     assert report is None
-    assert told.code == "F101"
+    assert reported.code == "F101"
 
 
 def test_the_command_reports_and_names_the_file(tmp_path, capsys):
     path, out = measurements(tmp_path, preset("nategh_agheli_calibrated")), tmp_path / "mine.toml"
     assert main(["machine", "calibrate", "nategh_agheli_nominal", str(path), "--out", str(out)]) == 0
-    told = capsys.readouterr()
-    assert told.err == ""
-    assert told.out.splitlines()[-1] == str(out)
-    assert "strut 6" in told.out
+    reported = capsys.readouterr()
+    assert reported.err == ""
+    assert reported.out.splitlines()[-1] == str(out)
+    assert "strut 6" in reported.out
     assert main(["machine", "check", str(out)]) == 0
     assert main(["machine", "calibrate", "nategh_agheli_nominal", "none.csv", "--out", str(out)]) == 1
     with pytest.raises(SystemExit) as stopped:

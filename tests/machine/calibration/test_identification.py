@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Calibration: the published hexapod measured by a simulated laser tracker, and rows against differences.
 
-The nominal machine is told to go somewhere; the real one, with joints off by millimetres, goes where its own geometry
-takes it. There its pose is measured with noise, and the counted lengths are those that were sent.
+The nominal machine is sent somewhere; the real one, with joints off by millimetres, goes where its own geometry takes
+it. There its pose is measured with noise, and the counted lengths are those that were sent.
 """
 
 import dataclasses
@@ -47,11 +47,11 @@ def reached(real, sent, near):
     return found.tip, *axis_and_spin_of(found.rotation), near[3]
 
 
-def measured(nominal, real, told, rng=None):
+def measured(nominal, real, reported, rng=None):
     """What tracker and controller say; exactly so without a generator of random numbers."""
     rng, noise = (rng, 1.0) if rng else (np.random.default_rng(0), 0.0)
-    sent = strut_lengths(nominal, *told)
-    tip, axis, spin, tool_length = reached(real, sent, told)
+    sent = strut_lengths(nominal, *reported)
+    tip, axis, spin, tool_length = reached(real, sent, reported)
     tip = tip + noise * rng.normal(0, TIP_NOISE, tip.shape)
     axis = axis + noise * rng.normal(0, AXIS_NOISE, axis.shape)
     axis = axis / np.linalg.norm(axis, axis=1, keepdims=True)
@@ -59,8 +59,8 @@ def measured(nominal, real, told, rng=None):
     return MeasuredPoses(tip, axis, spin, tool_length, sent + noise * rng.normal(0, LENGTH_NOISE, sent.shape))
 
 
-def tip_errors(believed, real, told):
-    return np.linalg.norm(reached(real, strut_lengths(believed, *told), told)[0] - told[0], axis=1)
+def tip_errors(believed, real, reported):
+    return np.linalg.norm(reached(real, strut_lengths(believed, *reported), reported)[0] - reported[0], axis=1)
 
 
 def parameters(machine):
@@ -96,8 +96,8 @@ def test_deviations_are_those_of_many_calibrations():
     """Forty machines measured anew: the spread of each parameter is what its standard deviation says."""
     nominal, real = machines()
     rng = np.random.default_rng(3)
-    told = poses(rng, 40)
-    found = [calibrate(nominal, measured(nominal, real, told, rng)) for _ in range(40)]
+    reported = poses(rng, 40)
+    found = [calibrate(nominal, measured(nominal, real, reported, rng)) for _ in range(40)]
     spread = np.std([parameters(one.machine) for one in found], axis=0)
     said = np.mean([one.deviation for one in found], axis=0)
     # A spread of 40 is known to about 11 %; the noise of a pose is not quite the same for all struts.
@@ -158,7 +158,7 @@ def test_poses_without_a_turn_leave_base_and_platform_apart():
     )
 
 
-def test_combinations_are_told_by_name():
+def test_combinations_are_reported_by_name():
     assert combination_text(2, np.array([0.6, 0, 0, 0, 0, -0.8, 0])) == "strut 3: +0.60 base x -0.80 platform z"
 
 
@@ -194,8 +194,8 @@ def test_machine_with_a_screw_is_found_again():
         believed, base_joints=believed.base_joints + rng.normal(0, 1, (6, 3)),
         platform_joints=believed.platform_joints + rng.normal(0, 1, (6, 3)), length_offset=rng.normal(0, 1, 6),
     )  # fmt: skip
-    told = poses(rng, 20)
-    found = calibrate(believed, MeasuredPoses(*told, strut_lengths(real, *told)))
+    reported = poses(rng, 20)
+    found = calibrate(believed, MeasuredPoses(*reported, strut_lengths(real, *reported)))
     assert found.converged
     assert np.abs(parameters(found.machine) - parameters(real)).max() < MICRON
 

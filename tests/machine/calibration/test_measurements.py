@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Files of measurements are read, or every row that is wrong is told with its line."""
+"""Files of measurements are read, or every row that is wrong is reported with its line."""
 
 import numpy as np
 import pytest
@@ -53,20 +53,20 @@ def test_axes_of_four_decimals_are_made_units(tmp_path):
         (f"{HEAD}\n{ROW.replace(',0,0,1,', ',0,0,-1,')}\n", 2, "one that points down"),
     ],
 )
-def test_a_wrong_row_is_told_with_its_line(tmp_path, text, line, found):
+def test_a_wrong_row_is_reported_with_its_line(tmp_path, text, line, found):
     measured, (fault,) = read(tmp_path, text)
     assert measured is None
     assert (fault.code, fault.place.line) == ("M202", line)
     assert found in fault.found
 
 
-def test_all_wrong_rows_are_told(tmp_path):
+def test_all_wrong_rows_are_reported(tmp_path):
     _, faults = read(tmp_path, f"{HEAD}\n1\n{ROW}\n2\n")
     assert [fault.place.line for fault in faults] == [2, 4]
 
 
 @pytest.mark.parametrize("content", [None, b"\xff\xfe"])
-def test_files_that_cannot_be_read_are_told(tmp_path, content):
+def test_files_that_cannot_be_read_are_reported(tmp_path, content):
     _, (fault,) = read_measurements(tmp_path / "none.csv") if content is None else read(tmp_path, content)
     assert fault.code == "M201"
 

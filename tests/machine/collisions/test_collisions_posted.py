@@ -35,7 +35,7 @@ def wall(gap):
 
 
 def posted(folder, capsys, *arguments, program=SLOT):
-    """Exit code, what was written, and what was told."""
+    """Exit code, what was written, and what was reported."""
     (folder / "slot.ngc").write_text(program)
     out = folder / "out"
     flags = ["--machine", "example_6tps", "--out", str(out), "--tool-length", "1=120", "--tool", "1=10,0"]
@@ -52,15 +52,15 @@ def stored(folder, name, mesh):
 @pytest.mark.parametrize("name", ["binary.stl", "ascii.stl"])
 def test_a_holder_that_goes_into_the_part_is_refused_and_one_that_clears_is_posted(tmp_path, capsys, gap, code, name):
     part = stored(tmp_path, name, np.concatenate([PLATE, wall(gap)]))
-    found, files, told = posted(tmp_path, capsys, "--part", part)
-    assert (found, bool(files)) == (code, code == 0), told
-    assert bool(re.search(r"line [89]: error K117.*tool holder", told)) == bool(code)
+    found, files, reported = posted(tmp_path, capsys, "--part", part)
+    assert (found, bool(files)) == (code, code == 0), reported
+    assert bool(re.search(r"line [89]: error K117.*tool holder", reported)) == bool(code)
 
 
 def test_what_was_checked_is_in_the_report(tmp_path, capsys):
     part, stock = stored(tmp_path, "part.stl", PLATE), stored(tmp_path, "stock.stl", box([-40, -40, 0], [40, 40, 20]))
-    code, _, told = posted(tmp_path, capsys, "--part", part, "--stock", stock)
-    assert code == 0, told
+    code, _, reported = posted(tmp_path, capsys, "--part", part, "--stock", stock)
+    assert code == 0, reported
     certificate = json.loads((tmp_path / "out/slot-report.json").read_text())["certificate"]
     rows = {row["what"]: row for row in certificate["coverage"] if row["topic"] == "collisions"}
     held = rows["spindle and holder against the part"]
@@ -80,7 +80,7 @@ def test_nothing_known_is_said(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("flag", "mesh", "change", "told"),
+    ("flag", "mesh", "change", "reported"),
     [
         # A rapid move through a post of the part, which is clear of the holder
         ("--part", POST, ("G0 Z60", "G0 Z12\nG0 X60"), "line 10: error K131"),
@@ -92,42 +92,44 @@ def test_nothing_known_is_said(tmp_path, capsys):
         ("--fixture", box([20, -30, 0], [24, -20, 120]), ("", ""), "error K133"),
     ],
 )  # fmt: skip
-def test_each_kind_of_collision_is_refused(tmp_path, capsys, flag, mesh, change, told):
+def test_each_kind_of_collision_is_refused(tmp_path, capsys, flag, mesh, change, reported):
     mesh = stored(tmp_path, "mesh.stl", mesh)
     code, files, errors = posted(tmp_path, capsys, flag, mesh, program=SLOT.replace(*change, 1) if change[0] else SLOT)
-    assert code == 1 and not files and told in errors, errors
+    assert code == 1 and not files and reported in errors, errors
 
 
 def test_a_cutter_that_gouges_is_posted_with_a_warning(tmp_path, capsys):
-    code, files, told = posted(tmp_path, capsys, "--part", stored(tmp_path, "p.stl", box([-40, -40, 0], [40, 40, 11])))
-    assert code == 0 and files and "warning K132" in told
-    code, _, told = posted(tmp_path, capsys, "--part", stored(tmp_path, "p.stl", PLATE))
-    assert code == 0 and "K132" not in told
+    code, files, reported = posted(
+        tmp_path, capsys, "--part", stored(tmp_path, "p.stl", box([-40, -40, 0], [40, 40, 11]))
+    )
+    assert code == 0 and files and "warning K132" in reported
+    code, _, reported = posted(tmp_path, capsys, "--part", stored(tmp_path, "p.stl", PLATE))
+    assert code == 0 and "K132" not in reported
 
 
 def test_a_rapid_move_back_through_what_was_cut_is_posted(tmp_path, capsys):
     stock = stored(tmp_path, "stock.stl", box([-40, -40, 0], [40, 40, 20]))
     back = SLOT.replace("G0 Z60\nM5", "G0 Y0\nG0 X-30\nG0 Z60\nM5")
-    code, _, told = posted(tmp_path, capsys, "--stock", stock, program=back)
-    assert code == 0 and not told, told
+    code, _, reported = posted(tmp_path, capsys, "--stock", stock, program=back)
+    assert code == 0 and not reported, reported
 
 
 @pytest.mark.parametrize(
-    ("name", "content", "told"),
+    ("name", "content", "reported"),
     [
         ("part.obj", b"v 0 0 0", "expected a name that ends in .stl or .step or .stp"),
         ("part.stl", b"solid x\nfacet normal 0 0 1\nouter lop", "part.stl: line 3: error K138"),
         ("part.stl", None, "F103"),
     ],
 )
-def test_files_that_cannot_be_read_are_refused_by_name(tmp_path, capsys, name, content, told):
+def test_files_that_cannot_be_read_are_refused_by_name(tmp_path, capsys, name, content, reported):
     if content is not None:
         (tmp_path / name).write_bytes(content)
     code, files, errors = posted(tmp_path, capsys, "--part", str(tmp_path / name))
-    assert code == 1 and not files and told in errors, errors
+    assert code == 1 and not files and reported in errors, errors
 
 
-def test_an_open_mesh_of_the_stock_is_told(tmp_path, capsys):
+def test_an_open_mesh_of_the_stock_is_reported(tmp_path, capsys):
     stock = stored(tmp_path, "stock.stl", box([-40, -40, 0], [40, 40, 20])[1:])
-    code, _, told = posted(tmp_path, capsys, "--stock", stock)
-    assert code == 0 and "stock.stl: warning K139" in told
+    code, _, reported = posted(tmp_path, capsys, "--stock", stock)
+    assert code == 0 and "stock.stl: warning K139" in reported

@@ -84,7 +84,7 @@ def test_bad_machine_gives_exactly_the_stated_faults(path):
 
 
 @pytest.mark.parametrize("path", BAD_MACHINES, ids=lambda path: path.stem)
-def test_faults_are_told_in_the_order_of_the_text(path):
+def test_faults_are_reported_in_the_order_of_the_text(path):
     _, diagnostics = read_machine(path)
     lines = [item.place.line for item in diagnostics]
     assert lines == sorted(lines)
@@ -152,13 +152,13 @@ def test_value_of_wrong_form_is_named(tmp_path, old, new, entry):
         ("home_tip =", "rapid_feed = 1\nhome_tip =", "tool_path.rapid_speed"),
     ],
 )
-def test_unknown_entry_is_told_with_the_nearest_known_one(tmp_path, old, new, nearest):
+def test_unknown_entry_is_reported_with_the_nearest_known_one(tmp_path, old, new, nearest):
     (diagnostic,) = read_changed(tmp_path, old, new)
     assert diagnostic.code == "M105"
     assert diagnostic.found.endswith(nearest)
 
 
-def test_entry_like_no_other_is_told_without_a_suggestion(tmp_path):
+def test_entry_like_no_other_is_reported_without_a_suggestion(tmp_path):
     (diagnostic,) = read_changed(tmp_path, 'name = "Example', 'xyzzy = 1\nname = "Example')
     assert diagnostic.found == "xyzzy: no known entry is like it"
 

@@ -269,8 +269,8 @@ def test_twist_at_rest_is_that_of_the_kinematics(tmp_path):
     assert np.ptp(counted) > 0.1
     path = tmp_path / "machine.toml"
     path.write_text(text.replace("stroke = [750.0, 1250.0]", "stroke = [750.0, 900.0]"), encoding="utf-8")
-    told = read_machine(path)[1]
-    found = [float(number) for number in re.findall(r"is (\d+\.\d{4}) mm long", told[0].found)]
+    reported = read_machine(path)[1]
+    found = [float(number) for number in re.findall(r"is (\d+\.\d{4}) mm long", reported[0].found)]
     assert found == pytest.approx(counted, abs=PRINTED_COORDINATE)
 
 

@@ -51,7 +51,7 @@ def test_no_margin_changes_faster_than_its_slope(machine):
         fastest = np.abs(np.diff(margins, axis=1)).max(axis=(1, 2)) / step
         exact = check.code != "K116"  # planes are lower bounds of a distance: these may have steps as well
         assert not exact or np.all(fastest <= change[1:] * (1 + 1e-6) + ROUNDING / step), check.name
-        assert fastest.max() > 0 or check.name == "spindle and part"  # too far away to be told
+        assert fastest.max() > 0 or check.name == "spindle and part"  # too far away to be reported
 
 
 @pytest.mark.parametrize("code", ["K101", "K102", "K103", "K104", "K105", "K113", "K114", "K115", "K117", "K121"])

@@ -108,7 +108,7 @@ def body_points(machine, pose, body):
     return tip + (machine.spindle_nose + length) * axis + local @ rotation.T
 
 
-def test_bodies_are_never_nearer_than_told():
+def test_bodies_are_never_nearer_than_reported():
     machine, way = bodied(), wandering(np.random.default_rng(3), 30, tilt_deg=35)
     parts, margins = margins_of(machine, way, "K116")
     lost = []
@@ -131,7 +131,7 @@ def lathe(rows, columns):
     return np.concatenate([np.stack(half, axis=-2).reshape(-1, 3, 3) for half in halves])
 
 
-def test_a_mesh_is_never_nearer_than_told_and_groups_do_not_show():
+def test_a_mesh_is_never_nearer_than_reported_and_groups_do_not_show():
     machine, way = bodied(), wandering(np.random.default_rng(4), 30, tilt_deg=35)
     triangles = lathe(40, 60)
     parts, margins = margins_of(machine, way, "K117", CollisionMesh.of(triangles))
@@ -152,7 +152,7 @@ def test_struts_are_as_far_from_a_part_as_from_a_fixture():
     way = wandering(np.random.default_rng(6), 60, tilt_deg=35)
     _, as_fixture = margins_of(machine, way, "K115")
     _, as_part = margins_of(machine, way, "K121", CollisionMesh.of(boxes=[box]))
-    # A fixture is not told to be nearer than touching, and the ends of a strut are round there, flat here.
+    # A fixture is never reported nearer than touching, and the ends of a strut are round there, flat here.
     near = (as_fixture > 0) & (as_fixture < 45)
     assert near.sum() > 20
     assert np.median(np.abs(as_part - as_fixture)[near]) < 0.01

@@ -71,14 +71,14 @@ def test_a_good_job_holds_all_checks_and_the_report_says_so(machine):
         "strut and platform", "strut and fixture", "platform and fixture", "spindle and fixture",
         "tool holder and fixture", "strut speed",
     ]  # fmt: skip
-    told = report.as_dict()
-    assert json.loads(json.dumps(told)) == told
-    for check in told["checks"]:
+    reported = report.as_dict()
+    assert json.loads(json.dumps(reported)) == reported
+    for check in reported["checks"]:
         assert check["first_violation"] is None and check["cure"] is None
         assert 0 < check["proven_margin"] <= check["margin"]
         assert check["name"] in report.text()
     joints = finding(report, "platform joints")
-    assert told["checks"][3]["margin"] == pytest.approx(np.degrees(joints.margin.min()))
+    assert reported["checks"][3]["margin"] == pytest.approx(np.degrees(joints.margin.min()))
     assert len(report.column("strut and strut")) == len(report.tip) == len(report.segment)
     with pytest.raises(ValueError, match="expected one of"):
         report.column("hoses")
@@ -91,14 +91,14 @@ def test_places_of_violations_are_those_of_the_program(machine):
     longest = finding(report, "longest struts")
     over = lengths.max(axis=1) > lengths.max() - 5.0
     trajectory = report.trajectory
-    told = report.as_dict()["checks"][1]
+    reported = report.as_dict()["checks"][1]
     assert longest.first_bad_row == np.flatnonzero(over)[0]
-    assert told["first_violation"]["line"] == trajectory.line[report.segment[np.flatnonzero(over)[0]]]
-    assert told["worst"]["line"] == trajectory.line[report.segment[np.argmax(lengths.max(axis=1))]]
-    assert told["part"] == str(np.argmax(lengths.max(axis=0)) + 1)
-    assert told["margin"] == pytest.approx(-5.0)
+    assert reported["first_violation"]["line"] == trajectory.line[report.segment[np.flatnonzero(over)[0]]]
+    assert reported["worst"]["line"] == trajectory.line[report.segment[np.argmax(lengths.max(axis=1))]]
+    assert reported["part"] == str(np.argmax(lengths.max(axis=0)) + 1)
+    assert reported["margin"] == pytest.approx(-5.0)
     (fault,) = report.faults()
-    assert (fault.code, fault.place.line) == ("K102", told["worst"]["line"])
+    assert (fault.code, fault.place.line) == ("K102", reported["worst"]["line"])
     assert fault.place.operation == "Finish" and "by 5.000 mm" in fault.found
     assert "longest struts: move or turn the part" in report.text()
 

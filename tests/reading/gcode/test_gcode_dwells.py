@@ -41,7 +41,7 @@ def test_the_same_time_in_both_units_is_the_same_program():
 
 @pytest.mark.parametrize(("unit", "just", "more"), [("s", "60", "60.001"), ("ms", "60000", "60001")])
 @pytest.mark.parametrize("block", ["G4 P{}", "G82 X1 Z-1 R1 P{}"])
-def test_more_than_a_minute_is_told_with_both_readings(unit, just, more, block):
+def test_more_than_a_minute_is_reported_with_both_readings(unit, just, more, block):
     assert dwells(block.format(just), unit)[1] == []
     found, diagnostics = dwells(block.format(more), unit)
     assert len(found) == 1 and diagnostics == [("G428", 3)]

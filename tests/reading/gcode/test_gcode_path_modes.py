@@ -46,7 +46,7 @@ def test_the_tolerance_has_the_unit_that_holds_where_it_is_said():
     ["G64 P0", "G64 P-0.1", "G64 G4 P0.5", "G64 G2 X2 I0.5 P2", "G64 G82 X1 Z-1 R1 P0.5"],
     ids=["zero", "negative", "dwell", "turns of an arc", "cycle"],
 )
-def test_a_p_that_is_no_tolerance_is_told(block):
+def test_a_p_that_is_no_tolerance_is_reported(block):
     program, codes = taken(f"G1 X0 F60\nG64 P0.05 X1\n{block}\nG1 X3\n")
     assert codes == ["G417"]
     assert program.tip_tolerance[2] == 0.05

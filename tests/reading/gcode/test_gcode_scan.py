@@ -67,7 +67,7 @@ def test_lines_that_say_nothing_are_no_rows():
     assert blocks.line.tolist() == [7]
 
 
-def test_block_delete_is_told():
+def test_block_delete_is_reported():
     assert scanned("/N10 G1 X1\nG1 X2\n/ #1=2\n").deleted.tolist() == [True, False, True]
 
 
@@ -166,7 +166,7 @@ def test_the_longest_line_is_a_block():
     assert_same(scan(f"X1 {comment}\nX2", "f"), scan_by_block(f"X1 {comment}\nX2", "f"))
 
 
-def test_a_hundred_faults_are_told_and_the_others_counted():
+def test_a_hundred_faults_are_reported_and_the_others_counted():
     _, diagnostics = scan("X\n" * 130, "part.ngc")
     assert [fault.code for fault in diagnostics] == ["G201"] * 100 + ["G199"]
     assert diagnostics[-1].found == "and 30 more"
@@ -298,7 +298,7 @@ def test_blocks_after_the_end_are_reported_and_not_read(way, after):
 
 
 @WAYS
-def test_nothing_is_told_of_an_empty_trailer(way):
+def test_nothing_is_reported_of_an_empty_trailer(way):
     assert way(f"{PROGRAM}M2\n%\n\n(end of tape)\n%\n", "part.ngc")[1] == ()
 
 

@@ -36,16 +36,16 @@ def test_a_program_that_asks_for_nothing_is_left_alone():
 
 def test_contours_are_offset():
     made = dataclasses.replace(program([[-20, 20, 0], [0, 0, 0], [30, 0, 0], [50, 20, 0]]), side_offset=[0, 5, 5, 0])
-    moved, told = compensate(made, CONTOURS, {})
-    assert not told
+    moved, reported = compensate(made, CONTOURS, {})
+    assert not reported
     assert not moved.side_offset.any()
     assert moved.position[1:3] == pytest.approx(np.array([[0.0, 5.0, 0.0], [30.0, 5.0, 0.0]]))
 
 
-def test_a_smaller_cutter_goes_nearer_and_is_told_as_the_tool():
+def test_a_smaller_cutter_goes_nearer_and_is_reported_as_the_tool():
     # A ball of radius 6 and one of 5 that touch the same plane: the tips differ by (r2 - r1) (n - k).
-    moved, told = compensate(with_normals(), CONTOURS, {1: Tool(1, "", 10.0, 5.0, 0.0)})
-    assert not told
+    moved, reported = compensate(with_normals(), CONTOURS, {1: Tool(1, "", 10.0, 5.0, 0.0)})
+    assert not reported
     assert moved.position[1] - with_normals().position[1] == pytest.approx([0.0, -0.6, 0.2])
     assert moved.tools[1] == dataclasses.replace(BALL, diameter=10.0, corner_radius=5.0)
 
@@ -62,15 +62,15 @@ def test_a_smaller_cutter_goes_nearer_and_is_told_as_the_tool():
     ids=["another number", "a corner that does not fit", "unknown diameter", "unknown corner", "unknown corner now"],
 )
 def test_a_cutter_that_is_not_known_is_refused(nominal, actual, code):
-    moved, told = compensate(dataclasses.replace(with_normals(), tools={1: nominal}), CONTOURS, actual)
+    moved, reported = compensate(dataclasses.replace(with_normals(), tools={1: nominal}), CONTOURS, actual)
     assert moved is None
-    assert [fault.code for fault in told] == [code]
+    assert [fault.code for fault in reported] == [code]
 
 
 def test_a_program_without_normals_cannot_be_compensated_for_a_cutter():
-    moved, told = compensate(program([[0, 0, 30], [10, 0, 30]]), CONTOURS, {1: BALL})
+    moved, reported = compensate(program([[0, 0, 30], [10, 0, 30]]), CONTOURS, {1: BALL})
     assert moved is None
-    assert [fault.code for fault in told] == ["N108"]
+    assert [fault.code for fault in reported] == ["N108"]
 
 
 ROUNDING = 1e-7
@@ -137,7 +137,7 @@ def program_text(tips, normals, axes):
 
 
 def compensated(file, *arguments):
-    """The program of a file as the command line reads it, and what was told."""
+    """The program of a file as the command line reads it, and what was reported."""
     parser = argparse.ArgumentParser()
     add_options(parser)
     add_reading(parser)
@@ -161,8 +161,8 @@ def test_random_cutters_touch_where_the_nominal_ones_did(tmp_path, surface, kind
         (d1, d2) = np.round(rng.uniform(6, 16, 2), 3)
         r1, r2 = CORNERS[kind](rng, d1), CORNERS[kind](rng, d2)
         file.write_text(program_text(tips_of(points, normals, axes, d1, r1), normals, axes))
-        moved, told = compensated(file, f"--tool=1={d1},{r1}", f"--actual-tool=1={d2},{r2}")
-        assert not told
+        moved, reported = compensated(file, f"--tool=1={d1},{r1}", f"--actual-tool=1={d2},{r2}")
+        assert not reported
         tips = moved.position[1:]
         assert tips == pytest.approx(tips_of(points, normals, axes, d2, r2), abs=ROUNDING)
         # and without any formula: points all over the cutter, the nearest on the tangent plane and none behind it
@@ -209,9 +209,9 @@ def test_what_is_not_said_of_a_cutter_is_asked_for(tmp_path, capsys, cutters, co
     file = tmp_path / "part.ngc"
     file.write_text(LN)
     assert main(["post", str(file), *POST, *cutters, "--out", str(tmp_path / "out")]) == 1
-    told = capsys.readouterr().err
-    assert code in told
-    assert "--tool NUMBER=D,R" in told or "--actual-tool with the number" in told
+    reported = capsys.readouterr().err
+    assert code in reported
+    assert "--tool NUMBER=D,R" in reported or "--actual-tool with the number" in reported
     assert not any((tmp_path / "out").glob("*"))
 
 

@@ -23,9 +23,9 @@ X, Y, Z = np.eye(3)
 HALF = np.sqrt(0.5)
 
 
-def tips(points, normals, axes, cutter, told=()):
+def tips(points, normals, axes, cutter, reported=()):
     found, diagnostics = tip_from_contact(points, normals, axes, cutter)
-    assert tuple(item.code for item in diagnostics) == told
+    assert tuple(item.code for item in diagnostics) == reported
     return found
 
 
@@ -150,7 +150,7 @@ def test_on_a_flat_top_the_tool_stays_on_the_side_it_came_from():
 
 def test_carried_direction_is_turned_into_the_plane_across_a_leaning_axis():
     lean = np.array([np.sin(0.3), 0.0, np.cos(0.3)])
-    found = tips(np.outer([0.0, 1.0], Y), [(X + Z) * HALF, lean], [Z, lean], FLAT, told=("N106",))
+    found = tips(np.outer([0.0, 1.0], Y), [(X + Z) * HALF, lean], [Z, lean], FLAT, reported=("N106",))
     assert found[1] == pytest.approx(Y + 5.0 * np.array([np.cos(0.3), 0.0, -np.sin(0.3)]), abs=ROUNDING)
 
 
@@ -161,7 +161,7 @@ def test_path_that_begins_on_a_flat_top_lies_along_its_travel():
 
 
 def test_carried_direction_along_the_new_axis_gives_way_to_the_travel():
-    found = tips([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [(X + Z) * HALF, X], [Z, X], FLAT, told=("N106",))
+    found = tips([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [(X + Z) * HALF, X], [Z, X], FLAT, reported=("N106",))
     assert found[1] == pytest.approx([0.0, 6.0, 0.0], abs=ROUNDING)
 
 
@@ -185,7 +185,7 @@ def test_undercut_is_refused_row_by_row():
     assert refusal(np.zeros((3, 3)), [X, overhang, -Z], [Z, Z, Z]) == [("N102", 2), ("N102", 3)]
 
 
-def test_range_of_the_corner_is_told_on_both_sides():
+def test_range_of_the_corner_is_reported_on_both_sides():
     def leaning(cosines):
         return [np.sqrt(1.0 - c * c) * X + c * Z for c in cosines]
 
@@ -201,7 +201,7 @@ def test_many_faulty_rows_are_counted():
     assert diagnostics[-1].found == "0 0 -1 0 0 1, and 450 rows more"
 
 
-def test_tip_that_jumps_over_a_ridge_is_told_with_its_size():
+def test_tip_that_jumps_over_a_ridge_is_reported_with_its_size():
     sine = 0.01
     normals = [[-sine, 0.0, np.sqrt(1 - sine**2)], [sine, 0.0, np.sqrt(1 - sine**2)]]
     _, diagnostics = tip_from_contact([[-0.1, 0.0, 0.0], [0.1, 0.0, 0.0]], normals, [Z, Z], BULL_NOSE)
@@ -255,8 +255,8 @@ def contacts(count, seed):
 def test_shift_is_the_difference_of_the_tips_at_one_contact(nominal, actual):
     points, normals, axes = contacts(100, seed=1)
     before, after = (tip_from_contact(points, normals, axes, cutter)[0] for cutter in (nominal, actual))
-    shift, told = tip_shift(normals, axes, nominal, actual, points)
-    assert told == ()
+    shift, reported = tip_shift(normals, axes, nominal, actual, points)
+    assert reported == ()
     assert before + shift == pytest.approx(after, abs=ROUNDING)
 
 
@@ -269,9 +269,9 @@ def test_worn_ball_comes_nearer_along_normal_and_axis():
 def test_corner_of_both_cutters_has_to_touch():
     place = Place("part.h", "LN")
     for pair in ((BALL, TAPERED), (TAPERED, BALL)):
-        found, told = tip_shift([X], [Z], *pair, place=place)
+        found, reported = tip_shift([X], [Z], *pair, place=place)
         assert found is None
-        assert [(item.code, item.place) for item in told] == [("N102", Place("part.h", "LN", 1))]
+        assert [(item.code, item.place) for item in reported] == [("N102", Place("part.h", "LN", 1))]
 
 
 def test_points_give_the_direction_where_normal_and_axis_are_parallel():
@@ -300,8 +300,8 @@ def passes():
 
 def test_rows_without_a_normal_keep_their_distance_to_the_contact_they_leave_or_approach():
     before = passes()
-    after, told = compensate_tips(before, BALL, SMALLER_BALL)
-    assert told == ()
+    after, reported = compensate_tips(before, BALL, SMALLER_BALL)
+    assert reported == ()
     first, second = (tip_shift([n], [Z], BALL, SMALLER_BALL)[0][0] for n in (before.normal[2], before.normal[8]))
     # The first rapid after a pass retracts; what follows it approaches the next pass.
     assert after.position - before.position == pytest.approx(np.array([first] * 6 + [second] * 4), abs=ROUNDING)
@@ -339,24 +339,24 @@ def test_arc_on_a_plane_is_shifted_as_it_is_and_one_on_a_wall_is_refused():
     moved, _ = compensate_tips(flat, BALL, SMALLER_BALL)
     shift = moved.position[1] - flat.position[1]
     assert moved.arc_centre[2] == pytest.approx(flat.arc_centre[2] + shift, abs=ROUNDING)
-    found, told = compensate_tips(arc_program([NAN, -X + Z, X + Z]), BALL, SMALLER_BALL)
+    found, reported = compensate_tips(arc_program([NAN, -X + Z, X + Z]), BALL, SMALLER_BALL)
     assert found is None
-    assert [(item.code, item.place, item.found) for item in told] == [
+    assert [(item.code, item.place, item.found) for item in reported] == [
         ("N107", Place("part.FCStd", "Finish", 3), "its ends would move 1.414 mm apart")
     ]
 
 
 def test_faults_name_the_row_of_the_program():
     made = dataclasses.replace(passes(), normal=[NAN] * 8 + [-Z, NAN])
-    found, told = compensate_tips(made, BALL, SMALLER_BALL)
+    found, reported = compensate_tips(made, BALL, SMALLER_BALL)
     assert found is None
-    assert [(item.code, item.place.line) for item in told] == [("N102", 9)]
+    assert [(item.code, item.place.line) for item in reported] == [("N102", 9)]
 
 
 def test_program_without_normals_is_refused():
-    found, told = compensate_tips(program(np.zeros((2, 3))), BALL, SMALLER_BALL)
+    found, reported = compensate_tips(program(np.zeros((2, 3))), BALL, SMALLER_BALL)
     assert found is None
-    assert [item.code for item in told] == ["N108"]
+    assert [item.code for item in reported] == ["N108"]
 
 
 def test_rows_of_other_tools_stay():

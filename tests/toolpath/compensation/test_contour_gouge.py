@@ -54,8 +54,8 @@ def test_what_lies_lower_than_the_tip_is_not_touched(height, touched):
     given = contour((0.0, 30.0, 0.0), pieces, 5.0)
     rapid = np.isin(np.arange(len(given)), (0, 4, 5, 6, 7))
     given = replace(given, kind=np.where(rapid, Kind.RAPID, given.kind), feed=np.where(rapid, np.nan, 10.0))
-    told = [item for item in codes(offset_contours(given)[1]) if item[0] != "N205"]
-    assert told == ([("N204", 3)] if touched else [])
+    reported = [item for item in codes(offset_contours(given)[1]) if item[0] != "N205"]
+    assert reported == ([("N204", 3)] if touched else [])
 
 
 @pytest.mark.parametrize("radius", [6.0, 8.0, 15.0])
@@ -99,8 +99,8 @@ def test_arcs_are_measured_within_the_tolerance():
             (0.0, 30.0), (0.0, 60.0),
         ]  # fmt: skip
         given = contour((0.0, 20.0), pieces, 5.0)
-        told = {fault.code for fault in offset_contours(given)[1]}
-        assert ("N204" not in told) == passes
+        reported = {fault.code for fault in offset_contours(given)[1]}
+        assert ("N204" not in reported) == passes
 
 
 def test_each_contour_has_its_own_walls_and_its_own_diagnostic():

@@ -80,11 +80,11 @@ def test_what_is_refused_would_cut_into_the_part(options):
     for seed in range(100):
         rng, offset, plane = chance(seed)
         given = random_contour(rng, offset, plane)
-        told = {fault.code for fault in errors(offset_contours(given, options)[1])}
-        if not told:
+        reported = {fault.code for fault in errors(offset_contours(given, options)[1])}
+        if not reported:
             continue
-        assert told in ({"N202"}, {"N204"})
-        if told == {"N204"}:
+        assert reported in ({"N202"}, {"N204"})
+        if reported == {"N204"}:
             moved, _, _ = moved_and_source(given, options)
             rows = range(2, len(moved) - 1)
             nearest = min(clearance(samples(moved, row, 300), given, cutting_rows(given), plane).min() for row in rows)
@@ -253,7 +253,7 @@ def test_the_side_may_change_where_the_path_comes_back():
     np.testing.assert_allclose(moved.position[:, :2], [(0, 20), (0, 5), (40, 5), (0, 5), (0, 20)], atol=ROUNDING)
 
 
-def test_a_side_that_changes_elsewhere_is_told():
+def test_a_side_that_changes_elsewhere_is_reported():
     given = contour((0.0, 20.0), [(0.0, 0.0), (40.0, 0.0), (80.0, 0.0), (80.0, -20.0)], 5.0)
     moved, faults = offset_contours(replace(given, side_offset=np.array([0, 5.0, 5.0, -5.0, 0])))
     np.testing.assert_allclose(moved.position[2:5, :2], [(40, 5), (40, -5), (80, -5)], atol=ROUNDING)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How contours begin and end: leads of type A and B, what is refused, and what is told of leads that cut."""
+"""How contours begin and end: leads of type A and B, what is refused, and what is reported of leads that cut."""
 
 import numpy as np
 import pytest
@@ -103,7 +103,7 @@ def test_leads_are_straight(pieces, line):
     assert [(fault.code, fault.place.line) for fault in faults] == [("N201", line)]
 
 
-def test_a_lead_that_cuts_is_told():
+def test_a_lead_that_cuts_is_reported():
     """Along the contour's own line the tool sinks in before its begin: R (1 - cos a), with tan a = R / L."""
     moved, faults = offset_contours(begins(0, 5.0))
     assert moved is not None

@@ -166,7 +166,7 @@ def test_turning_and_shifting_everything_changes_nothing():
     assert moved.left == pytest.approx(still.left, abs=TOLERANCE)
 
 
-def test_progress_is_told_and_may_stop_the_work():
+def test_progress_is_reported_and_may_stop_the_work():
     class StopError(Exception):
         pass
 
@@ -174,10 +174,10 @@ def test_progress_is_told_and_may_stop_the_work():
         raise StopError
 
     points, normals = plane(np.linspace(-4, 4, 9), np.linspace(-4, 4, 9))
-    told = []
-    stock_left([np.zeros(3)], [Z], BALL, points, normals, progress=told.append)
-    assert told[0] > 0.0
-    assert max(told) == 1.0
+    reported = []
+    stock_left([np.zeros(3)], [Z], BALL, points, normals, progress=reported.append)
+    assert reported[0] > 0.0
+    assert max(reported) == 1.0
     with pytest.raises(StopError):
         stock_left([np.zeros(3)], [Z], BALL, points, normals, progress=stop)
 
@@ -187,7 +187,7 @@ def test_no_points_give_nothing():
 
 
 @pytest.mark.parametrize(
-    ("tips", "points", "tolerance", "told"),
+    ("tips", "points", "tolerance", "reported"),
     [
         (np.zeros((1, 2)), np.zeros((1, 3)), 1e-3, r"tips and axes \(N, 3\), got \(1, 2\) and \(1, 3\)"),
         (np.zeros((1, 3)), np.zeros((2, 3)), 1e-3, r"points and normals \(N, 3\), got \(2, 3\) and \(1, 3\)"),
@@ -195,8 +195,8 @@ def test_no_points_give_nothing():
         (np.zeros((1, 3)), np.zeros((1, 3)), 0.0, "expected tips, tolerance and reach, got 1, 0.0"),
     ],
 )
-def test_what_makes_no_sense_is_the_callers_fault(tips, points, tolerance, told):
-    with pytest.raises(ValueError, match=told):
+def test_what_makes_no_sense_is_the_callers_fault(tips, points, tolerance, reported):
+    with pytest.raises(ValueError, match=reported):
         stock_left(tips, [Z], BALL, points, [Z], tolerance=tolerance)
 
 

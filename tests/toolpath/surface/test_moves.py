@@ -112,6 +112,6 @@ def refused(surface, rule=AxisRule(), **chosen):  # noqa: B008 - frozen
     return {fault.code for fault in faults}
 
 
-def test_tool_that_cannot_be_lifted_is_told():
+def test_tool_that_cannot_be_lifted_is_reported():
     assert refused(cylinder()) == {"N304"}
     assert refused(plate(), safe_height=-1.0, clearance_height=-1.0) == {"N307"}

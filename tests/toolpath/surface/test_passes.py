@@ -280,7 +280,7 @@ def fault(surface, cutter=BALL, **chosen):
     return {each.code for each in faults}
 
 
-def test_what_cannot_be_covered_is_told():
+def test_what_cannot_be_covered_is_reported():
     assert fault(plate(), order=PassOrder.SPIRAL) == {"N301"}
     assert fault(cylinder(), order=PassOrder.SPIRAL, lines=PassLines.PLANES) == {"N301"}
     assert fault(plate(inside=lambda u, v: np.zeros(len(u), dtype=bool))) == {"N302"}
@@ -289,7 +289,7 @@ def test_what_cannot_be_covered_is_told():
     assert "N102" in fault(bowl, rule=AxisRule(cone=0.1))
 
 
-def test_undercut_is_told_once_with_its_place():
+def test_undercut_is_reported_once_with_its_place():
     poses, (only,) = surface_poses(
         sphere(25.0, lowest=-1.2, highest=0.0), BALL, settings(rule=AxisRule(cone=0.1)), PLACE
     )
@@ -305,11 +305,11 @@ def test_cutters_of_other_shapes_are_the_callers_fault():
         surface_poses(plate(), Cutter.apt(10.0, 1.0, b=0.1), settings(), PLACE)
 
 
-def test_progress_is_told_and_may_stop_the_work():
-    told = []
-    surface_poses(torus(), BALL, settings(), PLACE, told.append)
-    assert told == sorted(told)
-    assert 0.0 <= told[0] <= told[-1] <= 1.0
+def test_progress_is_reported_and_may_stop_the_work():
+    reported = []
+    surface_poses(torus(), BALL, settings(), PLACE, reported.append)
+    assert reported == sorted(reported)
+    assert 0.0 <= reported[0] <= reported[-1] <= 1.0
 
     def stop(share):
         raise InterruptedError

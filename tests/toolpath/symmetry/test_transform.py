@@ -254,10 +254,15 @@ def test_programs_of_other_operations_are_a_fault_of_the_caller():
 def test_every_column_of_each_program_is_there():
     rows = np.arange(3)
     first = program([[0, 0, 30], [1, 2, 0], [3, 4, 0]])
-    told = {"exact_stop": rows == 1, "exact_path": rows == 2, "tip_tolerance": 0.01 * rows, "side_offset": 1.0 * rows}
-    told |= {"plane": [0, 1, 2], "normal": np.eye(3), "spin": 0.1 * rows, "smaller_tool": rows == 0}
-    assert set(told) == set(OPTIONAL_COLUMNS)
-    second = dataclasses.replace(first, **told)
+    reported = {
+        "exact_stop": rows == 1,
+        "exact_path": rows == 2,
+        "tip_tolerance": 0.01 * rows,
+        "side_offset": 1.0 * rows,
+    }
+    reported |= {"plane": [0, 1, 2], "normal": np.eye(3), "spin": 0.1 * rows, "smaller_tool": rows == 0}
+    assert set(reported) == set(OPTIONAL_COLUMNS)
+    second = dataclasses.replace(first, **reported)
     both = concatenate([first, second, first])
     for name in (*MOTION_COLUMNS, *OPTIONAL_COLUMNS, "position", "tool_axis"):
         for begin, made in enumerate([first, second, first]):

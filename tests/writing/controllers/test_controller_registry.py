@@ -35,7 +35,7 @@ def test_a_machine_has_the_controller_of_its_kind(machine, kind):
 
 
 @pytest.mark.parametrize("kind", [None, "siemens"])
-def test_a_machine_of_no_known_kind_is_told(machine, kind):
+def test_a_machine_of_no_known_kind_is_reported(machine, kind):
     other = dataclasses.replace(machine, controller=machine.controller | {"kind": kind})
     controller, faults = controller_of(other)
     assert controller is None

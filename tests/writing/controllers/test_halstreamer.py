@@ -132,10 +132,10 @@ def test_no_straight_line_between_rows_is_farther_from_the_cubic_than_the_bound(
 
 def test_the_distance_from_the_cubics_is_measured_from_the_text():
     motion = moving([Event(15, EventKind.DWELL, 0.0125)])
-    told, faults = measured(named(texts(motion, ["x"])), motion)
+    reported, faults = measured(named(texts(motion, ["x"])), motion)
     assert faults == ()
-    assert told.endswith(" mm from the cubics")
-    worst = float(told.split(" mm")[0].split()[-1])
+    assert reported.endswith(" mm from the cubics")
+    worst = float(reported.split(" mm")[0].split()[-1])
     assert 0 < worst <= chord_error(motion) + HALF_DIGIT
 
 
@@ -167,7 +167,7 @@ def test_a_table_that_is_not_that_of_the_motion_is_found():
         ("# period 1 ms\n", "# period 1 ms\n1.0  2.0 3.0 4.0 5.0 6.0\n"),
     ],
 )
-def test_a_malformed_table_is_told(old, new):
+def test_a_malformed_table_is_reported(old, new):
     (text,) = texts(moving(), [])
     assert old in text
     read, faults = read_stream(text.replace(old, new), "t")
@@ -175,7 +175,7 @@ def test_a_malformed_table_is_told(old, new):
     assert [fault.code for fault in faults] == ["C106"]
 
 
-def test_a_table_cut_off_within_a_row_is_told_with_its_line():
+def test_a_table_cut_off_within_a_row_is_reported_with_its_line():
     (text,) = texts(moving(), [])
     faults = read_stream(text[:-2], "t")[1]
     assert [(fault.code, fault.place.line) for fault in faults] == [("C106", text.count("\n"))]

@@ -53,5 +53,5 @@ def test_no_time_is_lost_between_sections(seed):
     assert sum(piece.clock_ms[-1] for piece in pieces) == 50 + dwells
     ends = [piece.motion_ms[-1] for piece in pieces[:-1]]
     assert ends == [piece.motion_ms[0] for piece in pieces[1:]]
-    told = [event for piece in pieces for event in piece.before] + list(pieces[-1].after)
-    assert told == [event for event in made.events if event.kind == EventKind.STOP]
+    reported = [event for piece in pieces for event in piece.before] + list(pieces[-1].after)
+    assert reported == [event for event in made.events if event.kind == EventKind.STOP]

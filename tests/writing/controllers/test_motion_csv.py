@@ -60,7 +60,7 @@ def test_any_program_for_tables_can_read_it(job):
         ("\n1040,", "\n40,", 5),
     ],
 )
-def test_a_table_that_was_changed_is_told_to_the_line(job, old, new, line):
+def test_a_table_that_was_changed_is_reported_to_the_line(job, old, new, line):
     (text,) = texts(job, [])
     assert old in text
     read, faults = read_table(text.replace(old, new, 1), "job.csv")
@@ -69,7 +69,7 @@ def test_a_table_that_was_changed_is_told_to_the_line(job, old, new, line):
 
 
 @pytest.mark.parametrize("text", ["", "\n", "time_ms\n"])
-def test_what_is_no_table_is_told(text):
+def test_what_is_no_table_is_reported(text):
     assert read_table(text, "job.csv")[1][0].code == "C106"
 
 
@@ -81,8 +81,8 @@ def test_a_table_cut_off_within_a_line_is_a_fault(job):
 
 def test_a_digit_that_was_changed_is_measured(job):
     (text,) = texts(job, [])
-    told, faults = measured([("job.csv", text.replace("512.0625", "512.0626"))], job)
-    assert (told, [fault.code for fault in faults]) == ("", ["C107"])
+    reported, faults = measured([("job.csv", text.replace("512.0625", "512.0626"))], job)
+    assert (reported, [fault.code for fault in faults]) == ("", ["C107"])
 
 
 def test_numbers_that_are_not_finite_are_refused(job):

@@ -91,10 +91,10 @@ def test_a_motion_without_a_rest_that_is_near_enough_is_refused(settings):
     assert memory_faults(motion, replace(settings, memory_words=700), "job") == ()
 
 
-def test_a_memory_that_does_not_take_one_knot_is_told(settings):
+def test_a_memory_that_does_not_take_one_knot_is_reported(settings):
     (fault,) = memory_faults(at_rest(1), replace(settings, memory_words=31), "job")
-    told = "about 32 words for 1 knots without a rest from 0 s on, the controller has 31"
-    assert (fault.code, fault.found) == ("C102", told)
+    reported = "about 32 words for 1 knots without a rest from 0 s on, the controller has 31"
+    assert (fault.code, fault.found) == ("C102", reported)
 
 
 def test_the_estimate_is_not_below_the_numbers_and_words_of_the_text(job, settings):

@@ -57,7 +57,7 @@ def test_a_job_with_every_kind_of_event(job, settings):
     assert program_text(job, settings, ["job"]) == JOB
 
 
-def test_the_time_is_told_where_it_changes_and_after_every_interruption(settings):
+def test_the_time_is_reported_where_it_changes_and_after_every_interruption(settings):
     dwell = Event(2, EventKind.DWELL, 1.0)
     body = _body(program_text(_at_rest([0, 20, 40, 60, 65, 70], (dwell,)), settings, []))
     assert body == [

@@ -122,7 +122,7 @@ FAULTS = {
 
 
 @pytest.mark.parametrize("name", FAULTS)
-def test_a_malformed_program_is_told_to_the_column(job, name):
+def test_a_malformed_program_is_reported_to_the_column(job, name):
     old, new, line, column = FAULTS[name]
     text = _program(job)
     assert old in text
@@ -133,12 +133,12 @@ def test_a_malformed_program_is_told_to_the_column(job, name):
 
 
 @pytest.mark.parametrize("name", ["missing CLEAR", "wrong letter", "no interval", "PVT before OPEN", "unknown code"])
-def test_one_mistake_is_told_once(job, name):
+def test_one_mistake_is_reported_once(job, name):
     old, new, _, _ = FAULTS[name]
     assert len(read_program(_program(job).replace(old, new, 1), SETTINGS, FILE)[1]) == 1
 
 
-def test_every_mistake_is_told(job):
+def test_every_mistake_is_reported(job):
     text = _program(job).replace("PVT20", "PVT20.5").replace("M7", "M77").replace("W516.500000:", "W516.5OOOOO:")
     faults = read_program(text, SETTINGS, FILE)[1]
     assert [(fault.place.line, fault.place.column) for fault in faults] == [(15, 6), (19, 3), (26, 102)]
@@ -147,7 +147,7 @@ def test_every_mistake_is_told(job):
     assert faults[2].found == "'OOOOO:0.0000', expected ':'"
 
 
-def test_a_line_that_is_too_long_is_told(job):
+def test_a_line_that_is_too_long_is_reported(job):
     longest = max(map(len, _program(job).splitlines()))
     assert read_program(_program(job), replace(SETTINGS, line_limit=longest), FILE)[1] == ()
     read, faults = read_program(_program(job), replace(SETTINGS, line_limit=longest - 1), FILE)

@@ -110,14 +110,14 @@ def test_a_later_part_alone_is_not_the_program(in_parts):
 
 
 def test_tables_are_written_beside_the_program(machine, tmp_path):
-    told = []
-    posted = post(job(), machine, tmp_path / "job.pmc", Options(also=tuple(TABLES)), log=told.append)
+    reported = []
+    posted = post(job(), machine, tmp_path / "job.pmc", Options(also=tuple(TABLES)), log=reported.append)
     names = {path.name for path in posted.files}
     assert {"job.csv", "job-halstreamer.txt", "job-halstreamer-part2.txt", "job-halstreamer-part3.txt"} <= names
     motion, faults = read_table((tmp_path / "job.csv").read_text(), "job.csv")
     assert not faults
     assert motion.time_ms[-1] == pytest.approx(1000 * posted.report["motion"]["duration_s"])
-    assert [line.split("  ")[0] for line in told[-2:]] == ["also csv", "also halstreamer"]
+    assert [line.split("  ")[0] for line in reported[-2:]] == ["also csv", "also halstreamer"]
     first = (tmp_path / "job-halstreamer.txt").read_text()
     assert f"at most {chord_error(motion):.3g} mm" in first
     assert "# before: tool_change 1\n" in first

@@ -97,7 +97,7 @@ def test_what_was_written_reads_back_to_the_printed_decimals():
         ("linear\nclose\n", "linear\n", 28, 1),
     ],
 )
-def test_a_malformed_program_is_told_to_the_column(old, new, line, column):
+def test_a_malformed_program_is_reported_to_the_column(old, new, line, column):
     assert old in JOB
     back, found = read(JOB.replace(old, new, 1))
     assert back is None
@@ -125,12 +125,12 @@ def test_no_changed_character_goes_unnoticed():
         assert found or not same or back.events != original.events, (place, other)
 
 
-def test_lines_that_are_too_long_are_told():
+def test_lines_that_are_too_long_are_reported():
     found = read(JOB, replace(SETTINGS, line_limit=112))[1]
     assert {fault.code for fault in found} == {"C103"}
 
 
-def test_an_event_without_code_is_told_before_writing(job):
+def test_an_event_without_code_is_reported_before_writing(job):
     wrong = replace(job, events=(Event(0, EventKind.COOLANT, 3.0),))
     assert [fault.code for fault in faults(wrong, SETTINGS, "job")] == ["C104"]
     assert faults(job, SETTINGS, "job") == ()

@@ -37,11 +37,11 @@ def test_a_carriage_return_alone_is_no_line_end(content):
     assert [fault.code for fault in text_of(content, "job.pmc")[1]] == ["C108"]
 
 
-def test_of_many_characters_the_first_are_told():
+def test_of_many_characters_the_first_are_reported():
     assert len(text_of(bytes(1000), "job.pmc")[1]) == 20
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path):
+def test_a_file_that_is_not_there_is_reported(tmp_path):
     assert [fault.code for fault in read_text(tmp_path / "no.pmc")[1]] == ["F103"]
 
 

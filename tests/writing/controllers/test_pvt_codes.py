@@ -110,7 +110,7 @@ def test_every_kind_of_event_but_the_dwell_has_a_code():
         (EventKind.DWELL, float("nan"), "dwell nan: a dwell lasts 0 to 8388.607 s"),
     ],
 )
-def test_an_event_without_code_is_told_before_writing(kind, value, found):
+def test_an_event_without_code_is_reported_before_writing(kind, value, found):
     event = Event(0, kind, value)
     motion = StrutMotion(np.array([0]), np.full((1, 6), 500.0), np.zeros((1, 6)), (event,))
     assert [(fault.code, fault.found) for fault in event_faults(motion, CODES, "job")] == [("C104", found)]

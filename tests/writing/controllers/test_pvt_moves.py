@@ -40,8 +40,8 @@ def assert_as_one_by_one(text, _grammar):
         *(bool(move and in_full(move.groups())) for move in moves),
         *(False for _ in rest),
     ]
-    told = [int(interval[1]) if interval else 0 for interval in intervals]
-    assert lines.interval.tolist() == [*(ms if ms <= LONGEST else 0 for ms in told), *(0 for _ in rest)]
+    reported = [int(interval[1]) if interval else 0 for interval in intervals]
+    assert lines.interval.tolist() == [*(ms if ms <= LONGEST else 0 for ms in reported), *(0 for _ in rest)]
     expected = [[float(number) for number in move.groups()] for move in moves if move and in_full(move.groups())]
     np.testing.assert_array_equal(lines.values.reshape(-1, 12), np.array(expected).reshape(-1, 12))
 
@@ -156,7 +156,7 @@ def test_lines_to_be_read_by_themselves_are_all_but_moves_behind_a_move(letters,
     assert [end for _, end in runs] == [*alone[1:], len(letters)][: len(alone)]
 
 
-def test_each_move_takes_the_time_told_last():
+def test_each_move_takes_the_time_reported_last():
     values, intervals = pattern("mmimmjm").moves(1, 7, 7)
     assert intervals.tolist() == [7, 20, 20, 30]
     assert values.shape == (4, 6, 2)

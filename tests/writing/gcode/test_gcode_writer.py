@@ -280,7 +280,7 @@ def test_a_program_without_rows_is_a_heading_and_an_end():
     assert text.splitlines()[-3:] == ["G21 G17 G90 G94 G40 G49 G80 G64", "G43.5", "M2"]
 
 
-def test_normals_that_are_left_out_are_told():
+def test_normals_that_are_left_out_are_reported():
     given = square_with_arc()
     _, diagnostics = write(replace(given, normal=np.tile([0, 0, 1.0], (7, 1))), GcodeDialect.PLAIN)
     assert [one.code for one in diagnostics] == ["G504"]
@@ -323,13 +323,13 @@ def test_a_head_that_tilts_alone_stays_on_the_great_circle(form):
     np.testing.assert_allclose(axis_deviation(axis, np.zeros(len(axis)), form), 0.0, atol=1e-12)
 
 
-def test_swings_of_cutting_moves_are_told():
+def test_swings_of_cutting_moves_are_reported():
     axis = leaning(np.radians(np.full(4, 20.0)), np.radians([0.0, 1.0, 31.0, 61.0]))
     given = program(np.zeros((4, 3)), axis, kind=[Kind.RAPID, Kind.LINE, Kind.LINE, Kind.RAPID])
-    (told,) = write(given, GcodeDialect.BC)[1]
-    assert (told.code, told.place.line) == ("G505", 3)
+    (reported,) = write(given, GcodeDialect.BC)[1]
+    assert (reported.code, reported.place.line) == ("G505", 3)
     swing = axis_deviation(axis, np.zeros(4), GcodeDialect.BC)
-    assert told.found == f"by up to {np.degrees(swing[2]):.2f} deg in 1 cutting moves, this is the first"
+    assert reported.found == f"by up to {np.degrees(swing[2]):.2f} deg in 1 cutting moves, this is the first"
     assert swing[1] < MAX_AXIS_DEVIATION < swing[2]
     assert write(given, GcodeDialect.VECTOR)[1] == ()
 

@@ -38,7 +38,7 @@ def test_the_file_does_not_depend_on_the_size_of_the_parts(tmp_path, monkeypatch
     assert (tmp_path / "whole.pkmt").read_bytes() == (tmp_path / "parted.pkmt").read_bytes()
 
 
-def test_a_fault_is_told_with_its_place_in_the_whole(tmp_path, monkeypatch):
+def test_a_fault_is_reported_with_its_place_in_the_whole(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "SEGMENTS_PER_CHUNK", 7)
     feed = TRAJECTORY.feed.copy()
     feed[[40, 41, 90]] = 0.0

@@ -37,7 +37,7 @@ def program(compiler, tmp_path_factory):
     return made
 
 
-def told(program, *arguments):
+def reported(program, *arguments):
     """What the program prints, by line."""
     run = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=True, timeout=60)
     assert run.stderr == ""
@@ -48,7 +48,7 @@ def told(program, *arguments):
 def test_every_field_is_the_same(program, tmp_path, seed):
     path = tmp_path / "part.pkmt"
     write(random_trajectory(seed, count=(0, 1, 30, 300)[seed], events=9 * seed), path)
-    found = [line for line in told(program, path) if not line.startswith("middle ")]
+    found = [line for line in reported(program, path) if not line.startswith("middle ")]
     assert found == list(lines_of(path.read_bytes()))
 
 
@@ -56,7 +56,7 @@ def test_every_field_is_the_same(program, tmp_path, seed):
 def test_the_tool_is_in_the_middle_of_segments_where_the_planner_has_it(program, tmp_path, part):
     trajectory = placed(part)
     write(trajectory, tmp_path / "part.pkmt")
-    found = [line.split() for line in told(program, tmp_path / "part.pkmt") if line.startswith("middle ")]
+    found = [line.split() for line in reported(program, tmp_path / "part.pkmt") if line.startswith("middle ")]
     words = np.array(found)
     assert words.shape == (len(trajectory), 11)
     assert {*words[:, 1]} == {"tip"} and {*words[:, 5]} == {"axis"} and {*words[:, 9]} == {"spin"}
@@ -76,7 +76,7 @@ def test_the_segment_of_a_line_is_found_by_halving(program, tmp_path):
     for key in asked:
         behind = [one for one in keys if one >= key]
         expected = keys.index(min(behind)) if behind else len(keys)
-        assert told(program, tmp_path / "part.pkmt", *key) == [str(expected)]
+        assert reported(program, tmp_path / "part.pkmt", *key) == [str(expected)]
 
 
 def test_a_newer_minor_version_is_read_without_what_it_adds(program, tmp_path):
@@ -84,7 +84,7 @@ def test_a_newer_minor_version_is_read_without_what_it_adds(program, tmp_path):
     write(random_trajectory(7), path)
     older, lines = list(lines_of(path.read_bytes())), slice(1, None)
     path.write_bytes(newer(path.read_bytes()))
-    found = [line for line in told(program, path) if not line.startswith("middle ")]
+    found = [line for line in reported(program, path) if not line.startswith("middle ")]
     assert " minor 2 " in found[0]
     assert found[lines] == older[lines]
 

@@ -59,7 +59,7 @@ def in_header(table, field):
     return offset_of(HEADER, table) + offset_of(HEADER[table], field)
 
 
-def test_what_is_no_file_is_told(tmp_path):
+def test_what_is_no_file_is_reported(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     found = {}
     for name in ("missing", ".", "pipe", "nul\0name"):
@@ -72,7 +72,7 @@ def test_what_is_no_file_is_told(tmp_path):
     assert "null" in found["nul\0name"]
 
 
-def test_other_files_are_told(path):
+def test_other_files_are_reported(path):
     assert refusal(path, b"") == "T101 it is empty"
     assert refusal(path, b"%\nO1000 G54\n") == "T101 it begins with b'%\\nO1000 '"
     assert refusal(path, MAGIC[:7]).startswith("T101")
@@ -84,7 +84,7 @@ def test_a_file_sent_as_text_is_not_taken(path, sound):
 
 
 @pytest.mark.parametrize("major", [0, 2, 65535])
-def test_another_major_version_is_told_whatever_follows(path, sound, major):
+def test_another_major_version_is_reported_whatever_follows(path, sound, major):
     assert refusal(path, changed(sound, 8, "<H", major)[:12]) == f"T102 it has version {major}.1, known is 1.1"
 
 
@@ -108,7 +108,7 @@ def test_this_minor_version_has_no_additions(path, sound):
     assert f"header size is {HEADER.itemsize + 8}" in refusal(path, sealed(changed(newer(sound), 10, "<H", MINOR)))
 
 
-def test_every_truncation_is_told(path, sound):
+def test_every_truncation_is_reported(path, sound):
     for length in range(len(MAGIC), len(sound)):
         trajectory, (diagnostic,) = decode(sound[:length], "part.pkmt")
         assert trajectory is None and diagnostic.code == "T103"
@@ -116,12 +116,12 @@ def test_every_truncation_is_told(path, sound):
         assert refusal(path, sound[:length]).startswith("T103")
 
 
-def test_bytes_behind_the_end_are_told(path, sound):
+def test_bytes_behind_the_end_are_reported(path, sound):
     size = len(sound)
     assert refusal(path, sound + b"\0") == f"T103 the file has {size + 1} bytes, its header says {size}"
 
 
-def test_every_flipped_bit_is_told(sound):
+def test_every_flipped_bit_is_reported(sound):
     for bit in range(8 * len(sound)):
         if bit // 8 % 5 == bit % 5 or bit < 8 * HEADER.itemsize:
             damaged = bytearray(sound)
@@ -133,7 +133,7 @@ def test_every_flipped_bit_is_told(sound):
 HUGE = (2**32, 2**63 - 1, 2**63, 2**64 - 8, 2**64 - 1)
 
 
-def test_empty_tables_of_huge_records_are_told(path, sound):
+def test_empty_tables_of_huge_records_are_reported(path, sound):
     content = changed(newer(sound), in_header("instructions", "count"), "<QQ", 0, 2**64 - 8)
     assert f"a record of the table instructions has {2**64 - 8} bytes" in refusal(path, sealed(content))
 
@@ -153,7 +153,7 @@ def test_lies_about_tables_cost_no_memory(path, sound, table, field, value):
     assert peak < 3 * len(sound) + BUFFERS
 
 
-def test_tables_upon_each_other_are_told(path, sound):
+def test_tables_upon_each_other_are_reported(path, sound):
     begin = int(header_of(sound)["tools"]["offset"])
     assert "tables operations and tools overlap" in refusal(
         path, sealed(changed(sound, in_header("operations", "offset"), "<Q", begin))
@@ -163,12 +163,12 @@ def test_tables_upon_each_other_are_told(path, sound):
     )
 
 
-def test_a_table_at_an_odd_place_is_told(path, sound):
+def test_a_table_at_an_odd_place_is_reported(path, sound):
     at = in_header("tools", "offset")
     assert "does not fit the file" in refusal(path, sealed(changed(sound, at, "<Q", HEADER.itemsize + 4)))
 
 
-def test_strings_that_lie_are_told(path, sound):
+def test_strings_that_lie_are_reported(path, sound):
     machine, source = offset_of(HEADER, "machine"), offset_of(HEADER, "source")
     text = int(header_of(sound)["text"]["count"])
     for lie in ((0, text + 1), (text + 1, 0), (text, 2**64 - 1), (2**64 - 1, 1), (2**63, 2**63)):
@@ -198,7 +198,7 @@ def test_strings_cannot_multiply_the_file(path, sound):
     assert peak < 10 * len(header + body)
 
 
-def test_text_that_is_not_unicode_is_told(path, sound):
+def test_text_that_is_not_unicode_is_reported(path, sound):
     at = int(header_of(sound)["text"]["offset"])
     assert "is not UTF-8" in refusal(path, sealed(changed(sound, at, "B", 0xFF)))
 
@@ -236,7 +236,7 @@ BAD_VALUES = [
 
 
 @pytest.mark.parametrize(("table", "field", "form", "value", "found"), BAD_VALUES)
-def test_values_without_sense_are_told(path, sound, table, field, form, value, found):
+def test_values_without_sense_are_reported(path, sound, table, field, form, value, found):
     path.write_bytes(sealed(changed(sound, in_table(sound, table, field, record=2), form, value)))
     trajectory, diagnostics = read(path)
     assert trajectory is None
@@ -266,11 +266,11 @@ BAD_HEADER = [
 
 
 @pytest.mark.parametrize(("field", "value", "found"), BAD_HEADER)
-def test_a_header_without_sense_is_told(path, sound, field, value, found):
+def test_a_header_without_sense_is_reported(path, sound, field, value, found):
     assert refusal(path, sealed(changed(sound, offset_of(HEADER, field), "<d", value))).startswith(f"T103 {found}")
 
 
-def test_all_wrong_columns_are_told_at_once(path, sound):
+def test_all_wrong_columns_are_reported_at_once(path, sound):
     content = sound
     for field in ("tip", "feed", "length"):
         for record in (4, 6):
@@ -280,7 +280,7 @@ def test_all_wrong_columns_are_told_at_once(path, sound):
     assert [diagnostic.found.split(":")[0] for diagnostic in diagnostics] == 3 * ["segment 4 and 1 more"]
 
 
-def test_lines_that_are_left_out_of_the_blocks_are_told(path, sound):
+def test_lines_that_are_left_out_of_the_blocks_are_reported(path, sound):
     count = int(header_of(sound)["blocks"]["count"])
     content = sealed(changed(sound, in_header("blocks", "count"), "<Q", count - 1))
     assert "the table blocks does not have" in refusal(path, content)
@@ -318,7 +318,7 @@ MUTATIONS = 2500
 
 
 @pytest.mark.parametrize(("damage", "seal"), DAMAGES)
-def test_thousands_of_damaged_files_of_each_sort_are_told_or_sound(path, sound, damage, seal):
+def test_thousands_of_damaged_files_of_each_sort_are_reported_or_sound(path, sound, damage, seal):
     """All in all 15,000: without the right checksums none is taken, and with them only what violates no invariant."""
     rng = np.random.default_rng(DAMAGES.index((damage, seal)))
     outcomes = []
