@@ -86,7 +86,7 @@ COMMANDS = (
         "PKM_Editor",
         "program.svg",
         QT_TRANSLATE_NOOP("PKM_Editor", "Program editor"),
-        QT_TRANSLATE_NOOP("PKM_Editor", "Edit G-code or CL data, with its faults told while it is typed"),
+        QT_TRANSLATE_NOOP("PKM_Editor", "Edit G-code or CL data, with its faults shown while it is typed"),
         lambda item: True,
         command_actions.edit,
         "P, K, E",

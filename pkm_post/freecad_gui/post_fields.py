@@ -92,6 +92,7 @@ _ALSO = {
     "csv": QT_TRANSLATE_NOOP("PostChoices", "Table of the strut motion (CSV)"),
     "halstreamer": QT_TRANSLATE_NOOP("PostChoices", "Table for LinuxCNC's halstreamer"),
     "linuxcnc": QT_TRANSLATE_NOOP("PostChoices", "G-code for LinuxCNC's hexapod, not certified"),
+    "picture": QT_TRANSLATE_NOOP("PostChoices", "Picture of the report (PNG)"),
 }
 
 

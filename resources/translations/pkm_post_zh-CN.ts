@@ -1160,7 +1160,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>程序编辑器</translation>
     </message>
     <message>
-        <source>Edit G-code or CL data, with its faults told while it is typed</source>
+        <source>Edit G-code or CL data, with its faults shown while it is typed</source>
         <translation>编辑 G 代码或刀位文件，输入时即提示其中的错误</translation>
     </message>
     <message>
@@ -1773,6 +1773,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>G-code for LinuxCNC&apos;s hexapod, not certified</source>
         <translation>LinuxCNC 六杆机床的 G 代码，未经验证</translation>
+    </message>
+    <message>
+        <source>Picture of the report (PNG)</source>
+        <translation>报告图片 (PNG)</translation>
     </message>
     <message>
         <source>Machine</source>
