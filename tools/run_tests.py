@@ -2,9 +2,10 @@
 """Run pytest with the arguments given, on all cores, and take a run in which no test was executed for a failure.
 
 Each process collects all tests and claims one file after the other, so that none waits while another still has work.
-Tests with a window share a session of FreeCAD: they count as one file. ``PKM_TEST_PROCESSES`` says how many processes
-there are; by default one more than cores, since tests with windows and links wait most of their time. Inside FreeCAD
-(``make test``) this is run by run_script.py.
+Tests with a window count as two files, so that no more than two windows are open at a time: that of the control panel,
+which waits for its simulated machine, and all others. ``PKM_TEST_PROCESSES`` says how many processes there are; by
+default one more than cores, since tests with windows and links wait most of their time. Inside FreeCAD (``make test``)
+this is run by run_script.py.
 """
 
 import mmap
@@ -19,6 +20,7 @@ from pathlib import Path
 import pytest
 
 WITH_A_WINDOW = "freecad_gui"
+CONTROL_PANEL = "test_gui_control"
 _MOST_PROCESSES = 4
 
 
@@ -69,8 +71,7 @@ class ClaimedFiles:
         """Take the place of pytest's own loop, but for runs that execute nothing."""
         if session.testsfailed or session.config.option.collectonly:
             return None
-        files = sorted(_by_file(session.items), key=lambda items: not _has_window(items[0]))
-        claimed = self._claimed(files)
+        claimed = self._claimed(_by_file(session.items))
         item = next(claimed, None)
         while item is not None:
             following = next(claimed, None)
@@ -89,13 +90,15 @@ class ClaimedFiles:
 
 
 def _by_file(items):
-    """The tests of each file; those with a window are one."""
-    ordered = sorted(items, key=lambda item: (not _has_window(item), item.path))
-    return [list(group) for _, group in groupby(ordered, lambda item: _has_window(item) or item.path)]
+    """The tests of each file, those with a window first."""
+    return [list(group) for _, group in groupby(sorted(items, key=_file_of), _file_of)]
 
 
-def _has_window(item):
-    return WITH_A_WINDOW in item.path.parts
+def _file_of(item):
+    """What is claimed as one file."""
+    if WITH_A_WINDOW not in item.path.parts:
+        return 1, str(item.path)
+    return 0, CONTROL_PANEL if item.path.stem == CONTROL_PANEL else WITH_A_WINDOW
 
 
 def in_processes(count, arguments):

@@ -12,6 +12,7 @@ import pytest
 from pictures import painted
 
 ADDON = Path(__file__).parents[2]
+_XVFB_RUN = ("xvfb-run", "-a", "-s", "-screen 0 1600x1000x24")
 
 
 class Scene:
@@ -39,6 +40,11 @@ class Scene:
                 shutil.copy(picture, ADDON / folder)
 
 
+def _first_display():
+    """The number at which to look for a free display: two processes that looked at the same one could both take it."""
+    return str(100 + os.getpid() % 800)
+
+
 @pytest.fixture(scope="session")
 def scene(tmp_path_factory):
     """Runs a scene by its name, once for all tests; no step of it may end in an exception."""
@@ -49,7 +55,7 @@ def scene(tmp_path_factory):
         window = shutil.which("freecad") or shutil.which("FreeCAD")
         assert window and shutil.which("xvfb-run"), "FreeCAD's window program and xvfb-run are needed"
         script = Path(__file__).with_name(f"scene_{name}.py")
-        command = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", window, "-M", str(ADDON), str(script)]
+        command = [*_XVFB_RUN, "-n", _first_display(), window, "-M", str(ADDON), str(script)]
         how = {"env": os.environ | {"PKM_FOLDER": str(folder)}, "capture_output": True, "text": True}
         ran = subprocess.run(command, timeout=180, check=False, **how)
         result = folder / "result.json"
