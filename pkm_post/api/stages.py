@@ -225,7 +225,7 @@ def post(
         arguments: options as on the command line; not together with ``options``.
         job_name: the only job of a document to post.
         log: callback, receives a line for each step.
-        progress: callback at the start of each step; an exception from it aborts the run.
+        progress: callback, a few times a second; an exception from it aborts the run.
 
     Returns:
         What was posted: one, or one for each job of a document.

@@ -39,6 +39,7 @@ from pkm_post.model import (
     StrutMotion,
     Tolerances,
     Trajectory,
+    checkpoint,
 )
 
 
@@ -89,6 +90,7 @@ def findings(
 
 def figures(task: Task, trajectory: Trajectory) -> tuple[Figure, ...]:
     """Measured quantities without a limit."""
+    checkpoint()
     machine, struts, knots = task.machine, task.struts, _at_knots(task)
     rows = [
         ("step of strut acceleration at a knot", "mm/s^2", acceleration_steps(struts), knots),
@@ -98,6 +100,7 @@ def figures(task: Task, trajectory: Trajectory) -> tuple[Figure, ...]:
     counts = machine.controller.get("counts_per_mm")
     if counts is not None:
         rows.append(("tip moved by one count of each strut", "um", count_at_tip(task, counts), knots))
+    checkpoint()
     if machine.velocity_gain is not None:
         cuts = trajectory.kind[task.motion.segment[1:]] != Kind.RAPID
         error = np.where(cuts, contour_error(task, machine.velocity_gain), 0.0)

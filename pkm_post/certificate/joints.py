@@ -16,7 +16,7 @@ from pkm_post.certificate.tool_states import Task
 from pkm_post.geometry import Array, angle_between, hermite_lengths, norm
 from pkm_post.machine import forward
 from pkm_post.model import Trajectory
-from pkm_post.system import workers
+from pkm_post.system import in_workers
 
 _SETTLED = 0.005
 """Share of the tolerances by which the tool's cubics may miss a joint; the error is added to the reported deviation."""
@@ -49,7 +49,7 @@ def measure_joints(task: Task, trajectory: Trajectory) -> JointDeviations:
     def part(first: int) -> tuple[Array, ...]:
         return _passed(task, trajectory, np.arange(first, min(first + _AT_ONCE, len(trajectory))))
 
-    parts = list(workers().map(part, range(0, len(trajectory), _AT_ONCE)))
+    parts = list(in_workers(part, range(0, len(trajectory), _AT_ONCE)))
     return JointDeviations(*(np.concatenate(columns, axis=-1) for columns in zip(*parts, strict=True)))
 
 

@@ -18,7 +18,7 @@ from pkm_post.certificate.joints import JointDeviations
 from pkm_post.certificate.struts import extremes
 from pkm_post.certificate.tool_states import Task, ToolStates, states_by_kinematics, states_on_spline
 from pkm_post.geometry import Array, length_of
-from pkm_post.system import workers
+from pkm_post.system import in_workers
 
 _ROOM = 1.1
 """Margin for the error of second differences, as a cubic motion of the struts is not exactly cubic for the tool."""
@@ -218,7 +218,7 @@ def _resample(task: Task, seen: Samples, peaks: _JointPeaks, rows: Array, instan
     if not len(rows):
         return
     blocks = _blocks(rows, _AT_ONCE // instants)
-    played = workers().map(lambda some: sample(task, some, instants, closely), blocks)
+    played = in_workers(lambda some: sample(task, some, instants, closely), blocks)
     for some, again in zip(blocks, played, strict=True):
         _keep(seen, peaks, some, again)
 

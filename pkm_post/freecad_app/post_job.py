@@ -45,7 +45,7 @@ def post_job(
         options: replace everything that ``Options`` holds; a work offset ``"job"`` is the fixture of the job.
         tool_lengths: gauge lengths by tool number that override those of the tool controllers, mm.
         log: callback for a line per step.
-        progress: callback at the start of each step; if it raises, the work ends and nothing is written.
+        progress: callback, a few times a second; if it raises, the work ends and nothing is written.
         arguments: options that override those of the job one by one, as typed, or parsed.
         other_jobs: jobs to which the gauge lengths also apply.
 

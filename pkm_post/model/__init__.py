@@ -11,6 +11,7 @@ from pkm_post.model.certificate import (
     Topic,
     coverage_summary,
 )
+from pkm_post.model.checkpoint import checkpoint, checkpoints
 from pkm_post.model.columns import (
     Array,
     ColumnBuilder,
@@ -87,6 +88,8 @@ __all__ = [
     "errors",
     "freeze",
     "gauge_lengths",
+    "checkpoint",
+    "checkpoints",
     "in_pieces",
     "is_uniform",
     "largest_corner_radius",

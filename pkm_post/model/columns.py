@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
+from pkm_post.model.checkpoint import checkpoint
+
 RowType = tuple[DTypeLike, tuple[int, ...]]
 Array = np.ndarray[Any, np.dtype[Any]]
 
@@ -31,6 +33,7 @@ def freeze(table: Any, rows: int, columns: dict[str, RowType]) -> None:
         ValueError: a column has a wrong shape.
     """
     for name, (dtype, row_shape) in columns.items():
+        checkpoint()
         column = np.asarray(getattr(table, name))
         if column.shape != (rows, *row_shape):
             raise ValueError(f"{type(table).__name__}.{name}: expected {(rows, *row_shape)}, got {column.shape}")
@@ -77,8 +80,9 @@ def _all_equal(one: Array, rows: Array) -> bool:
 
 
 def pieces(rows: int, at_once: int) -> Iterator[slice]:
-    """Yield slices of this many rows, in order; one empty slice if there are none."""
+    """Yield slices of this many rows, in order, with a checkpoint before each; one empty slice if there are none."""
     for first in range(0, max(rows, 1), at_once):
+        checkpoint()
         yield slice(first, min(first + at_once, rows))
 
 
@@ -152,6 +156,7 @@ def map_rows(function: Callable[[Array], Array], column: Array) -> Array:
         function: from rows to as many rows.
         column: the rows.
     """
+    checkpoint()
     if is_uniform(column) and len(column):
         return uniform(function(column[:1])[0], len(column))
     return function(column)
@@ -159,6 +164,7 @@ def map_rows(function: Callable[[Array], Array], column: Array) -> Array:
 
 def map_row_pairs(function: Callable[[Array, Array], Array], left: Array, right: Array) -> Array:
     """Apply a function to each pair of rows, computed once where all pairs are equal."""
+    checkpoint()
     if is_uniform(left) and is_uniform(right) and len(left):
         return uniform(function(left[:1], right[:1])[0], len(left))
     return function(left, right)

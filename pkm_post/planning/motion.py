@@ -36,7 +36,7 @@ from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.speed_limits import feed_at, limited_quantities, limits, limits_at
 from pkm_post.planning.speed_profile import Stations, cell_times, speed_profile, stations
 from pkm_post.planning.tool_path import ToolPath
-from pkm_post.system import workers
+from pkm_post.system import in_workers
 
 _FOR_CORNERS = 0.4
 """Share of the tolerances that rounding the corners may use."""
@@ -239,7 +239,7 @@ def _interpolated(feed_plan: FeedPlan) -> tuple[Motion, Array]:
         times = knots(stretch, schedule.edges_ms, cubics.error, shortest)
         return times[:-1], _too_coarse(times, cubics, shortest)
 
-    times, coarse = zip(*workers().map(knots_of, stretches), strict=True)
+    times, coarse = zip(*in_workers(knots_of, stretches), strict=True)
     time_ms = read_only(np.concatenate([*times, marks[-1:]]))
     motion = _motion(feed_plan, time_ms)
     return motion, _slower(motion, np.concatenate(coarse, axis=1), machine.block_rate)

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pkm_post.machine import machine_named
-from pkm_post.model import Diagnostic, Machine, Place, Program, Refused, Trajectory, errors
+from pkm_post.model import Diagnostic, Machine, Place, Program, Refused, Trajectory, checkpoints, errors
 from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
     READING_STEP,
@@ -34,7 +34,7 @@ from pkm_post.options import (
     tool_lengths_from,
 )
 from pkm_post.posting.placement import trajectory_of
-from pkm_post.posting.run import Findings, Log, Posted, Progress, no_log, no_progress
+from pkm_post.posting.run import Findings, Log, Posted, Progress, beat, no_log, no_progress
 from pkm_post.posting.steps import SUFFIX, post
 from pkm_post.reading import AS_WRITTEN, ReadingOptions, read_part_program
 
@@ -112,7 +112,7 @@ def post_file(
         tool_lengths: gauge lengths by tool number that override those of the file, mm.
         reading: what the file does not state itself.
         log: receives a line for each step.
-        progress: called at the start of each step; an exception from it aborts the run, and nothing is written.
+        progress: called a few times a second; an exception from it aborts the run, and nothing is written.
         arguments: options as typed, or parsed.
 
     Raises:
@@ -120,7 +120,8 @@ def post_file(
         ValueError: the suffix of the file is not known, or there are both options and arguments.
     """
     progress(READING_STEP, 0.0)
-    prepared = prepared_file(file, machine, options, tool_lengths, reading, arguments)
+    with checkpoints(beat(lambda _: progress(READING_STEP, 0.0))):
+        prepared = prepared_file(file, machine, options, tool_lengths, reading, arguments)
     return prepared.post(Path(out) / f"{Path(file).stem}{SUFFIX}", log, progress)
 
 

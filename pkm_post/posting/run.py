@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pkm_post.model import Diagnostic, Machine, Refused, Tolerances, errors
+from pkm_post.model import Diagnostic, Machine, Refused, Tolerances, checkpoints, errors
 from pkm_post.options import Options
 from pkm_post.writing import Controller
 
@@ -24,8 +24,13 @@ Findings = tuple[Diagnostic, ...]
 Log = Callable[[str], None]
 """Receives a line."""
 Progress = Callable[[str, float], None]
-"""Receives the name of the step that begins, and the completed share of the work, 0 to 1; at the end an empty name and
-1. An exception from it stops the run, and no files remain."""
+"""Receives the name of the step and the completed share of the work, 0 to 1: when a step begins, and a few times a
+second while it goes on; at the end an empty name and 1. An exception from it stops the run, and no files remain."""
+_BETWEEN_CALLS = 0.1
+"""s: least time between two calls of progress within a step."""
+_HALF_OF_A_STEP = 1.0
+"""s: within a step the share approaches that of its end, as its duration is not known: half of the way in this time,
+two thirds in twice the time."""
 
 
 def no_log(line: str) -> None:
@@ -72,11 +77,14 @@ class Run:
     def step(self, name: str) -> Iterator[list[str]]:
         """Report the start of a step; at its end log its time and the notes added to the list."""
         give_back_memory()
-        self._call(self.progress, name, self._done_before(name))
+        done = self._done_before(name)
+        self._call(self.progress, name, done)
         notes: list[str] = []
         begin = time.perf_counter()
+        weight = self.shares[name] / sum(self.shares.values())
         try:
-            yield notes
+            with checkpoints(beat(lambda within: self._call(self.progress, name, done + weight * within))):
+                yield notes
         except MemoryError as fault:
             fault.add_note(f"in the step {name}")
             raise
@@ -102,6 +110,20 @@ class Run:
         names = list(self.shares)
         done = sum(self.shares[before] for before in names[: names.index(name)])
         return done / sum(self.shares.values())
+
+
+def beat(progress: Callable[[float], None]) -> Callable[[], None]:
+    """What a checkpoint does: call progress a few times a second with the estimated share of a step that is done."""
+    begin = last = time.monotonic()
+
+    def visit() -> None:
+        nonlocal last
+        now = time.monotonic()
+        if now - last >= _BETWEEN_CALLS:
+            last = now
+            progress((now - begin) / (now - begin + _HALF_OF_A_STEP))
+
+    return visit
 
 
 def give_back_memory() -> None:

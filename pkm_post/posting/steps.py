@@ -69,7 +69,7 @@ def post(
         options: the user's choices.
         log: receives a line for each step.
         found: diagnostics from reading these; returned with those found here.
-        progress: called at the start of each step; an exception from it aborts the run, and nothing is written.
+        progress: called a few times a second; an exception from it aborts the run, and nothing is written.
 
     Raises:
         Refused: the input has an error, or the folder cannot be written; nothing was written.

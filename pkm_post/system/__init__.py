@@ -12,7 +12,7 @@ from pkm_post.system.document_archive import DamagedDocument
 from pkm_post.system.lock import Lock, OwnerRecord, lock_owner, try_lock
 from pkm_post.system.out_of_memory import MEMORY_FAULTS, memory_diagnostic, memory_guard
 from pkm_post.system.staged import staged, write_fault
-from pkm_post.system.workers import workers
+from pkm_post.system.workers import in_workers, workers
 
 if TYPE_CHECKING:
     from pkm_post.system.decimals import DecimalReader
@@ -32,6 +32,7 @@ __all__ = [
     "result_files",
     "staged",
     "try_lock",
+    "in_workers",
     "workers",
     "write_fault",
 ]

@@ -11,7 +11,12 @@ from __future__ import annotations
 import functools
 import os
 import threading
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from typing import TypeVar
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
 _FOR_EACH = 112 << 20
 """Bytes of address space that a thread may take: 64 MB to allocate in, 32 for OpenBLAS, and its stack."""
@@ -43,3 +48,17 @@ def workers() -> ThreadPoolExecutor:
         pool.shutdown()
         raise
     return pool
+
+
+def in_workers(function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:
+    """The results of a function for items, in order, computed by the pool, with a checkpoint before each.
+
+    Args:
+        function: must not submit work to the pool.
+        items: what it is called with.
+    """
+    from pkm_post.model import checkpoint
+
+    for result in workers().map(function, items):
+        checkpoint()
+        yield result

@@ -26,6 +26,7 @@ from pkm_post.model import (
     Place,
     Program,
     Trajectory,
+    checkpoint,
     errors,
     gauge_lengths,
 )
@@ -68,7 +69,9 @@ def place(
         return None, (Diagnostic("K109", Place(machine.name), "the work offset is a mirror"),)
     placed, added = with_tool_changes(placed, machine)
     placed, waits = with_spindle_waits(placed, machine)
+    checkpoint()
     way = _path_columns(placed, machine)
+    checkpoint()
     keep = (way["length"] > _NO_MOVE) | (way["angle"] > _NO_MOVE)
     faults = (*_faults(placed, machine, way, keep), *added, *waits)
     if errors(faults):

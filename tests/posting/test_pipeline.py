@@ -233,15 +233,6 @@ GONE = ConnectionError("nobody listens")
 """What a watcher raises that is elsewhere, and what printing raises when the terminal is closed: no fault of files."""
 
 
-def test_progress_is_reported_in_the_order_of_the_steps_and_ends_with_all(machine, tmp_path):
-    reported, options = [], Options(also=("linuxcnc", "csv"))
-    post(cone(60, turns=0.3), machine, tmp_path / "cone.pmc", options, progress=lambda *each: reported.append(each))
-    names, shares = zip(*reported, strict=True)
-    assert names == (*step_names(options), "")
-    assert list(shares) == sorted(set(shares))
-    assert (shares[0], shares[-1]) == (0.0, 1.0)
-
-
 @pytest.mark.parametrize("raised", [Cancelled("enough"), GONE])
 @pytest.mark.parametrize("at", [*step_names(Options(also=("csv",))), ""])
 def test_what_the_progress_raises_stops_the_run_and_leaves_nothing(machine, tmp_path, at, raised):

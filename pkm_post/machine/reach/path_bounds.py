@@ -25,7 +25,7 @@ from pkm_post.machine.kinematics.placed_machine import PlacedMachine
 from pkm_post.machine.reach.findings import CheckedLimit, ReachFinding
 from pkm_post.machine.reach.pose_path import PosePath, turn_between
 from pkm_post.model import Machine
-from pkm_post.system import workers
+from pkm_post.system import in_workers
 
 _AT_ONCE = 2048
 """Poses per pass: the working arrays of one pass stay in the processor's cache."""
@@ -68,7 +68,7 @@ def check_path(
     turn = way.turn()
     if faults_alone:
         surveys = [_PathCheck(machine, way, replace(check, comfort=0.0), turn) for check in checks]
-        return tuple(workers().map(lambda one: one.strided(_STRIDE_FOR_FAULTS, 0.0), surveys))
+        return tuple(in_workers(lambda one: one.strided(_STRIDE_FOR_FAULTS, 0.0), surveys))
     surveys = [_PathCheck(machine, way, check, turn) for check in checks]
     thorough = [one for one in surveys if one.check.comfort == np.inf]
     if thorough:

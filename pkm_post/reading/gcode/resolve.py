@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Kind, Program, Tool, is_uniform, map_rows, read_only, uniform
+from pkm_post.model import Array, Diagnostic, Kind, Program, Tool, checkpoint, is_uniform, map_rows, read_only, uniform
 from pkm_post.reading.gcode.adapt import adapted
 from pkm_post.reading.gcode.arcs import arc_geometry, path_lengths, split_turns, with_known_ends
 from pkm_post.reading.gcode.blocks import Blocks
@@ -106,7 +106,9 @@ class _BlockStates:
 
 def _block_states(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> _BlockStates:
     tools = tools_in_spindle(blocks, modal, options, faults)
+    checkpoint()
     axes = tool_axes(blocks, modal, options, faults)
+    checkpoint()
     check_cycles(modal, axes, faults)
     return _BlockStates(
         tools=tools,
@@ -120,14 +122,18 @@ def _block_states(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
 
 def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> Program | None:
     states = _block_states(blocks, modal, options, faults)
+    checkpoint()
     modes = path_modes(blocks, modal, faults)
+    checkpoint()
     dwells = dwell_words(blocks, modal, options)
     tracker = PositionTracker(blocks, modal, states.tools, states.spindle, dwells, options, faults)
     motions = tracker.motions()
+    checkpoint()
     centre, axis = arc_geometry(blocks, modal, motions, faults)
     if faults.has_errors():
         return None
     motions, centre, axis = split_turns(blocks, modal, motions, centre, axis)
+    checkpoint()
     path_length = _path_lengths(modal, motions, centre, axis)
     motions, (centre, axis, path_length) = with_known_ends(motions, [centre, axis, path_length])
     if not len(motions):

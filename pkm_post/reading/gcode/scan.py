@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Place
+from pkm_post.model import Array, Diagnostic, Place, checkpoint
 from pkm_post.reading.gcode.block_builders import BlocksBuilder
 from pkm_post.reading.gcode.blocks import Block, Blocks
 from pkm_post.reading.gcode.lexer import EMPTY, PARSED_ALONE, Lexed, Patterns, lex
@@ -59,6 +59,7 @@ def scan(text: bytes | str, file: str) -> Scanned:
     part = _up_to_percent(whole)
     faults, patterns, builder = SyntaxFaults(file), Patterns(), BlocksBuilder(part.text.count(b"\n"))
     for piece in _pieces(part.text):
+        checkpoint()
         _scan_piece(piece, patterns, builder, faults)
     return _scanned(whole, part, builder, faults, file)
 

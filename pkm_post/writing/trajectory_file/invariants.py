@@ -28,6 +28,7 @@ from pkm_post.model import (
     Kind,
     Tool,
     Trajectory,
+    checkpoint,
     gauge_lengths,
 )
 
@@ -41,6 +42,7 @@ def chunks(trajectory: Trajectory) -> Iterator[tuple[int, Trajectory]]:
     Work on the columns of a chunk takes little memory. Events and names are those of the whole trajectory.
     """
     for begin in range(0, len(trajectory), SEGMENTS_PER_CHUNK):
+        checkpoint()
         rows = slice(begin, begin + SEGMENTS_PER_CHUNK)
         columns = {name: getattr(trajectory, name)[rows] for name in TRAJECTORY_COLUMNS}
         yield begin, dataclasses.replace(trajectory, **columns, **_start_pose(trajectory, begin))

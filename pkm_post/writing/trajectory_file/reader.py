@@ -30,6 +30,7 @@ from pkm_post.model import (
     Tolerances,
     Tool,
     Trajectory,
+    checkpoint,
 )
 from pkm_post.writing.trajectory_file.interpolation import blocks, deviating_columns
 from pkm_post.writing.trajectory_file.invariants import (
@@ -54,6 +55,9 @@ from pkm_post.writing.trajectory_file.layout import (
 
 Content = bytes | memoryview
 """The bytes of a file."""
+
+
+_BYTES_AT_ONCE = 1 << 24
 
 
 class DamageError(Exception):
@@ -86,9 +90,17 @@ def opened(content: Content) -> tuple[np.void, dict[str, Records]]:
     _check_size(header, len(content))
     _check_header(header, content)
     _check_tables(header, len(content))
-    if zlib.crc32(memoryview(content)[int(header["header_size"]) :]) != header["body_crc"]:
+    if _checksum(memoryview(content)[int(header["header_size"]) :]) != header["body_crc"]:
         raise DamageError("the checksum of the body is wrong")
     return header, {name: _table(header, name, content) for name in TABLES}
+
+
+def _checksum(content: memoryview) -> int:
+    checksum = 0
+    for begin in range(0, len(content), _BYTES_AT_ONCE):
+        checkpoint()
+        checksum = zlib.crc32(content[begin : begin + _BYTES_AT_ONCE], checksum)
+    return checksum
 
 
 def _content(path: Path) -> memoryview:
@@ -266,6 +278,7 @@ def _columns(segments: Records) -> dict[str, Any]:
     """
     columns = {name: ColumnBuilder(len(segments)) for name in TRAJECTORY_COLUMNS}
     for begin in range(0, max(len(segments), 1), SEGMENTS_PER_CHUNK):
+        checkpoint()
         part = segments[begin : begin + SEGMENTS_PER_CHUNK]
         for name, (dtype, _) in TRAJECTORY_COLUMNS.items():
             if dtype == np.bool_ and np.any(part[name] > 1):

@@ -13,7 +13,7 @@ from decimal import Decimal
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Event, EventKind, Place, StrutMotion, read_only
+from pkm_post.model import Array, Diagnostic, Event, EventKind, Place, StrutMotion, checkpoint, read_only
 from pkm_post.writing.controllers.pvt.moves import Lines, lines_of
 from pkm_post.writing.controllers.pvt.parts import join_motions, part_faults
 from pkm_post.writing.controllers.pvt.settings import PvtSettings
@@ -220,6 +220,7 @@ def read_program(
     number = 1
     too_long: list[Diagnostic] = []
     for chunk in _chunks(text):
+        checkpoint()
         lines = reading.lines_of(chunk)
         too_long += _too_long(number, lines, settings, file)
         reading.take(number, chunk, lines)
