@@ -8,8 +8,8 @@ and x the distance from the joint,
 
     p = p_line + D H(-x) before the joint, p_line - D H(-x) after it,    p' = t + D W(-x)
 
-as H(x) - x = H(-x) and W(x) = 1 - W(-x). Tool axis and spin follow the same formulas. Places near an arc are left to
-``ToolPath.within``, which extends both segments.
+as H(x) - x = H(-x) and W(x) = 1 - W(-x). Tool axis and spin follow the same formulas. Places near an arc or a smooth
+curve are left to ``ToolPath.within``, which extends both segments.
 """
 
 from __future__ import annotations
@@ -60,6 +60,9 @@ def fast_poses_within(path: ToolPath, segment: Array, u: Array) -> FastPoses:
     joint = segment + nearer_end
     side = np.where(nearer_end, 1.0, -1.0)
     other = np.clip(np.where(nearer_end, joint, segment - 1), 0, len(seg) - 1)
+    curved = _curved(seg, segment, other)
+    if len(curved) == len(u):
+        return _exact(path, segment, u)
     half, distance = path.blend[joint], np.maximum(np.where(nearer_end, to_end, u), 0.0)
     wide = np.maximum(2 * half, _NO_WIDTH)
     share = np.maximum(half - distance, 0.0) / wide
@@ -77,10 +80,23 @@ def fast_poses_within(path: ToolPath, segment: Array, u: Array) -> FastPoses:
     else:
         axis, spin, tool_length = (np.broadcast_to(one, (len(u), *one.shape[1:])) for one in path.attitude)
     poses = FastPoses(tip.T, axis, spin, tip_1.T, tool_length, segment)
-    curved = np.union1d(*(seg.arcs.among(one)[0] for one in (segment, other)))
     if len(curved):
         _overwrite(poses, curved, path, u)
     return poses
+
+
+def _curved(seg: Segments, segment: Array, other: Array) -> Array:
+    """Places on or beside an arc or a curve, ascending."""
+    curved = np.zeros(len(segment), dtype=np.bool_)
+    for kind in (seg.arcs, seg.splines):
+        for one in (segment, other):
+            curved[kind.among(one)[0]] = True
+    return np.flatnonzero(curved)
+
+
+def _exact(path: ToolPath, segment: Array, u: Array) -> FastPoses:
+    poses = path.within(segment, u)
+    return FastPoses(poses.tip, poses.axis, poses.spin, poses.tip_1, poses.tool_length, segment)
 
 
 def _columns(vectors: Array, rows: Array) -> Array:

@@ -28,6 +28,8 @@ _ROUNDING = 1e-9
 """Tolerance on a number of gaps, so that rounding does not add one."""
 _SHARE_OF_TOLERANCES = 0.4
 """Share for the controller's cubics; corners get the same, decimals and the gaps between check points get the rest."""
+_SHARE_ON_CURVES = 0.25
+"""The same where a curve stands for short lines, and is off by up to 0.6."""
 _SPEED_SWING = 0.005
 """Share of the feed by which the controller's cubics may exceed it."""
 _GAPS = 8
@@ -77,10 +79,13 @@ class InterpolationCheck:
             tolerances: the requested tolerances.
             marks: (K,) whole ms; the stretch runs from the first to the last.
         """
-        self._path, self._schedule, self._machine, self._tolerances = path, schedule, machine, tolerances
+        self._path, self._schedule, self._machine = path, schedule, machine
         programmed = path.tip_tolerance  # the program may tighten the tolerance, not widen it
-        self._tip_tolerance = np.where(programmed > 0, np.minimum(programmed, tolerances.tip), tolerances.tip)
-        self._negligible_drift = _NEGLIGIBLE_DRIFT * _SHARE_OF_TOLERANCES * self._tip_tolerance.min()
+        tip = np.where(programmed > 0, np.minimum(programmed, tolerances.tip), tolerances.tip)
+        share = np.full(len(tip), _SHARE_OF_TOLERANCES)
+        share[path.segments.splines.row] = _SHARE_ON_CURVES
+        self._allowed = np.stack([share * tip, share * tolerances.axis])
+        self._negligible_drift = _NEGLIGIBLE_DRIFT * self._allowed[0].min()
         self._first = marks[0]
         self._row = np.full(marks[-1] - marks[0] + 1, -1)
         self._place = self._rate = np.empty((7 if path.attitude is None else 3, 0))
@@ -148,27 +153,27 @@ class InterpolationCheck:
         """Largest deviation at joints by tolerance, (N,), with drifts of tip and axis, (2, N)."""
         joints = intervals.at_joints(self._schedule.joint_time)
         plan = self._at_joint[:, joints.segment - self._first_joint]
-        tolerance = np.minimum(*(self._tip_tolerance[joints.segment + side] for side in (0, 1)))
-        return joints.maximum(self._deviation(joints, cubics, plan, tolerance, drift), len(intervals))
+        allowed = np.minimum(*(self._allowed[:, joints.segment + side] for side in (0, 1)))
+        return joints.maximum(self._deviation(joints, cubics, plan, allowed, drift), len(intervals))
 
     def _deviation_between(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
         """The same between the joints."""
         points = intervals.between_joints(self._schedule.joint_time, _GAPS)
         s, _, _ = self._schedule.at(points.time)
         plan = self._plan(points.segment, s - self._path.starts[points.segment])
-        tolerance = self._tip_tolerance[points.segment]
-        return points.maximum(self._deviation(points, cubics, plan, tolerance, drift), len(intervals))
+        allowed = self._allowed[:, points.segment]
+        return points.maximum(self._deviation(points, cubics, plan, allowed, drift), len(intervals))
 
-    def _deviation(self, points: CheckPoints, cubics: ToolCubics, plan: Array, tolerance: Array, drift: Array) -> Array:
-        """Deviation of the tool from the plan at check points by tolerance, (M,)."""
+    def _deviation(self, points: CheckPoints, cubics: ToolCubics, plan: Array, allowed: Array, drift: Array) -> Array:
+        """Deviation of the tool from the plan at check points, (M,), by what cubics may be off there, (2, M)."""
         tool = cubics[points.row].at(points.share)
         tip_drift, axis_drift = drift[:, points.row]
-        worst = (length_of(*(tool[:3] - plan[:3])) + tip_drift) / tolerance
+        worst = (length_of(*(tool[:3] - plan[:3])) + tip_drift) / allowed[0]
         if self._path.attitude is None:
             (k, m, n), (x, y, z) = plan[3:], tool[3:6]
             across = length_of(y * n - z * m, z * k - x * n, x * m - y * k)
-            worst = np.maximum(worst, (across + axis_drift) / self._tolerances.axis)
-        return np.asarray(worst / _SHARE_OF_TOLERANCES)
+            worst = np.maximum(worst, (across + axis_drift) / allowed[1])
+        return np.asarray(worst)
 
     def _plan(self, segment: Array, u: Array) -> Array:
         """Tip, and axis unless the attitude is constant, at path lengths u of segments, (3, M) or (6, M)."""

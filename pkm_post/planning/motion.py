@@ -37,9 +37,12 @@ from pkm_post.planning.speed_limits import feed_at, limited_quantities, limits, 
 from pkm_post.planning.speed_profile import Stations, cell_times, speed_profile, stations
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import in_workers
+from pkm_post.toolpath import Segments, compress
 
 _FOR_CORNERS = 0.4
 """Share of the tolerances that rounding the corners may use."""
+_FOR_CURVES = 0.6
+"""Share of the tolerances that curves may use in place of short lines."""
 _WINDOWS_MS = (4, 8, 16, 32, 64, 128)
 """Averaging windows to try for a plan with a jerk limit; the one with the shortest motion is used."""
 LONGEST_MOTION = 7 * 86_400.0
@@ -104,7 +107,10 @@ def plan(
 
 def tool_path(trajectory: Trajectory, tolerances: Tolerances) -> ToolPath:
     """The path with rounded corners that the tool follows."""
-    return ToolPath.of(trajectory, _for_corners(trajectory, tolerances.tip), _FOR_CORNERS * tolerances.axis)
+    segments = Segments.of(trajectory)
+    for_curves = _FOR_CURVES * trajectory.tip_tolerances(tolerances.tip)
+    segments = segments.smoothed(compress(trajectory, segments, for_curves, _FOR_CURVES * tolerances.axis))
+    return ToolPath.of(trajectory, _for_corners(trajectory, tolerances.tip), _FOR_CORNERS * tolerances.axis, segments)
 
 
 def _for_corners(trajectory: Trajectory, asked: float) -> Array:

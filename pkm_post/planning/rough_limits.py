@@ -10,7 +10,7 @@ derivations. Units: mm, s, rad.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -29,7 +29,7 @@ from pkm_post.planning.speed_limits import (
 )
 from pkm_post.planning.speed_profile import speed_profile
 from pkm_post.planning.tool_path import OFFSET, ToolPath
-from pkm_post.toolpath import Segments
+from pkm_post.toolpath import Segments, SplineBounds
 
 _STEP = 0.75
 """Largest slope of the cubic step from one segment to the next, per half width."""
@@ -71,19 +71,42 @@ class DerivativeBounds:
         """The bounds of a path."""
         width, blended = path.blend[1:-1], path.blend[1:-1] > 0
         steepness = np.divide(_STEP, width, out=np.zeros_like(width), where=blended)
-        return cls(
+        bounds = cls(
             *_of_tip(path.segments, width, blended, steepness),
             *_of_axis(path.segments, width, blended, steepness),
             *_of_spin(path.segments, blended, steepness),
         )
+        return bounds._with_curves(path) if len(path.segments.splines) else bounds
+
+    def _with_curves(self, path: ToolPath) -> DerivativeBounds:
+        """The bounds with those of smooth curves; blends at their ends have none."""
+        splines = path.segments.splines
+        row, of_row = splines.row, SplineBounds.of(splines)
+        columns = {field.name: np.array(getattr(self, field.name)) for field in fields(self)}
+        for field in fields(of_row):
+            columns[field.name][row] = getattr(of_row, field.name)
+        if splines.turns:
+            ends = (tilt(path.segments.axis_at(row, u)[0]) for u in (0 * splines.extent, splines.extent))
+            columns["half_tilt"][row] = turn_by_tilt(np.maximum(*ends) + of_row.axis_1 * splines.extent / 2)
+        ended = np.zeros(len(path.feed) + 1, dtype=np.bool_)
+        joints = path.blend > 0
+        ended[row] |= joints[row]
+        ended[row + 1] |= joints[row + 1]
+        touched = ended[1:] | ended[:-1]
+        for field in fields(of_row):
+            columns[field.name][touched] = _NO_BOUND
+        return DerivativeBounds(**columns)
 
 
 def deviates_in_blends(path: ToolPath, bounds: DerivativeBounds) -> Array:
     """Segments whose blends deviate too far for the path to count as straight between its joints, (N,).
 
-    A blend of half width d and curvature c at its joint leaves the segments by c d^2 / 4.
+    A blend of half width d and curvature c at its joint leaves the segments by c d^2 / 4; a curve over the length l
+    leaves its chord by c l^2 / 8.
     """
     square = np.maximum(path.blend[1:], path.blend[:-1]) ** 2 / 4
+    splines = path.segments.splines
+    square[splines.row] += splines.extent**2 / 8
     tip, axis = _STRAIGHT
     return np.asarray((bounds.tip_2 * square > tip) | (bounds.axis_2 * square > axis))
 
@@ -131,9 +154,9 @@ def _of_tip(seg: Segments, width: Array, blended: Array, steepness: Array) -> tu
     radius, scale = norm(arcs.radius), 1 + np.abs(arcs.growth) * _BEYOND * seg.extent[arcs.row]
     first[arcs.row] = np.hypot(first[arcs.row], np.hypot(arcs.growth * radius, arcs.turn * radius * scale))
     bend[arcs.row] = radius * np.hypot(2 * arcs.growth * arcs.turn, scale * arcs.turn**2)
-    before = np.arange(len(seg) - 1)
-    tangents = seg.tip_at(before, seg.extent[:-1])[1], seg.tip_at(before + 1, 0 * width)[1]
-    corner = norm(tangents[1] - tangents[0])
+    before, corner = np.flatnonzero(blended), np.zeros(len(seg) - 1)
+    tangents = seg.tip_at(before, seg.extent[before])[1], seg.tip_at(before + 1, np.zeros(len(before)))[1]
+    corner[before] = norm(tangents[1] - tangents[0])
     bends = np.where(blended, bend[1:] + bend[:-1], 0.0)
     return (
         _with_joints(first, np.maximum(first[1:], first[:-1]) + _PARTING_1 * bends * width, blended),

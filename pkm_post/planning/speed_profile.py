@@ -61,10 +61,13 @@ def stations(path: ToolPath, close: Array | None = None) -> Stations:
     entry, leave = np.where(close, path.blend[:-1], 0.0), np.where(close, path.blend[1:], 0.0)
     middle = extent - entry - leave
     turn = path.segments.turn() * middle
+    least = 1 + close
+    first, last = path.segments.splines.pieces_of_rows()
+    least[path.segments.splines.row] *= 1 + last - first
     cells = np.column_stack(
         [
             np.where(entry > 0, _CELLS_IN_HALF_BLEND, 0),
-            np.maximum(1 + close, np.ceil(np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL))).astype(np.int64),
+            np.maximum(least, np.ceil(np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL))).astype(np.int64),
             np.where(leave > 0, _CELLS_IN_HALF_BLEND, 0),
         ]
     ).ravel()

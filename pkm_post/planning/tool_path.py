@@ -15,13 +15,14 @@ whose second derivative is also zero at both ends.
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from pkm_post.geometry import Array, along_rates, norm
 from pkm_post.model import Poses, Trajectory
-from pkm_post.toolpath import Segments
+from pkm_post.toolpath import Segments, direction
 
 OFFSET = 3 / 16
 """Deviation at the joint per half width and change of direction."""
@@ -35,6 +36,10 @@ _SHARE = 0.45
 """Share of the shorter neighbour that a blend may use; two blends on one segment never meet."""
 _INSIDE = 1 - 1e-9
 """Share of the half width that counts as the blend: at its very end the segment is exact despite rounding."""
+
+
+Triple = tuple[Array, Array, Array]
+"""A quantity with first and second derivative."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +65,13 @@ class ToolPath:
     tip_tolerance: Array
 
     @classmethod
-    def of(cls, trajectory: Trajectory, tip_tolerance: Array | float, axis_tolerance: float) -> ToolPath:
+    def of(
+        cls,
+        trajectory: Trajectory,
+        tip_tolerance: Array | float,
+        axis_tolerance: float,
+        segments: Segments | None = None,
+    ) -> ToolPath:
         """The path of a trajectory.
 
         Args:
@@ -68,8 +79,9 @@ class ToolPath:
             tip_tolerance: largest deviation of the tip from the segments at corners, mm; a number, or (N,) by segment.
                 At a joint the lower tolerance of its two segments applies.
             axis_tolerance: largest deviation of the tool axis, rad.
+            segments: its segments, if some are smoothed; by default as programmed.
         """
-        segments = Segments.of(trajectory)
+        segments = segments or Segments.of(trajectory)
         rests = np.concatenate([[True], trajectory.exact_stop])
         return cls(
             segments=segments,
@@ -98,8 +110,7 @@ class ToolPath:
     def within(self, segment: Array, u: Array) -> Poses:
         """Poses at path lengths u, (M,), of the given segments, with derivatives by path length."""
         tip, axis = self.segments.tip_at(segment, u), self.segments.axis_at(segment, u)
-        rate = self.segments.spin_rate[segment]
-        spin = [self.segments.spin[segment] + u * rate, rate.copy(), np.zeros_like(rate)]
+        spin = self.segments.spin_at(segment, u)
         distance_to_end = self.segments.extent[segment] - u
         for joint, x in ((segment, u), (segment + 1, -distance_to_end)):
             rows = np.flatnonzero(np.abs(x) < _INSIDE * self.blend[joint])
@@ -107,62 +118,77 @@ class ToolPath:
                 self._round(joint[rows], x[rows], rows, tip, axis, spin)
         return Poses(*tip, *axis, spin[0], spin[1], spin[2], self.tool_length[segment], segment)
 
-    def _round(
-        self, joint: Array, x: Array, rows: Array, tip: tuple[Array, ...], axis: tuple[Array, ...], spin: list[Array]
-    ) -> None:
+    def _round(self, joint: Array, x: Array, rows: Array, tip: Triple, axis: Triple, spin: Triple) -> None:
         """Overwrite the rows in blends, at distances x from the joints at the starts of segments ``joint``.
 
         With p1, p2 the two extended segments, D the change of tangent and H the integral of W:
         p = p1 + D H + S (p2 - p1 - D x); where both are lines this is p1 + D H.
         """
         before, seg = joint - 1, self.segments
-        at_end = seg.extent[before]
-        h, w, w1 = (value[:, None] for value in step(x, self.blend[joint]))
-        s, s1, s2 = (value[:, None] for value in smooth_step(x, self.blend[joint]))
-        change = seg.tip_at(joint, 0 * x)[1] - seg.tip_at(before, at_end)[1]
-        one, two = seg.tip_at(before, at_end + x), seg.tip_at(joint, x)
-        apart, parting = two[0] - one[0] - change * x[:, None], two[1] - one[1] - change
-        tip[0][rows] = one[0] + change * h + s * apart
-        tip[1][rows] = one[1] + change * w + s * parting + s1 * apart
-        tip[2][rows] = one[2] + change * w1 + s * (two[2] - one[2]) + 2 * s1 * parting + s2 * apart
-
+        at_end, blend = seg.extent[before], _Blend.of(x, self.blend[joint])
+        _overwrite(tip, rows, blend.rounded(*_Ways(joint, x, at_end).of(seg.tip_at)))
         rate, rate_after = seg.axis_at(before, at_end)[1], seg.axis_rate[joint]
         if rate.any() or rate_after.any():
-            change = rate_after - rate
-            tangent = along_rates(seg.axis[joint], x[:, None] * rate + h * change, rate + w * change, w1 * change)
-            for value, rounded in zip(axis, tangent, strict=True):
-                value[rows] = rounded
-
+            h, w, w1, change = blend.step, blend.step_1, blend.step_2, rate_after - rate
+            tangent = x[:, None] * rate + h * change, rate + w * change, w1 * change
+            _overwrite(axis, rows, along_rates(seg.axis[joint], *tangent))
         turn = seg.spin_rate[before]
         change = seg.spin_rate[joint] - turn
-        spin[0][rows] = seg.spin[joint] + turn * x + change * h[:, 0]
-        spin[1][rows] = turn + change * w[:, 0]
-        spin[2][rows] = change * w1[:, 0]
+        h, w, w1 = (one[:, 0] for one in (blend.step, blend.step_1, blend.step_2))
+        _overwrite(spin, rows, (seg.spin[joint] + turn * x + change * h, turn + change * w, change * w1))
+        self._round_curves(joint, x, rows, axis, spin)
+
+    def _round_curves(self, joint: Array, x: Array, rows: Array, axis: Triple, spin: Triple) -> None:
+        """Overwrite axis and spin in blends beside smooth curves, where these are no great circles."""
+        seg = self.segments
+        curved = np.flatnonzero(seg.is_curve(joint - 1) | seg.is_curve(joint)) if seg.splines.turns else joint[:0]
+        if len(curved):
+            joint, x, rows = joint[curved], x[curved], rows[curved]
+            blend, ways = _Blend.of(x, self.blend[joint]), _Ways(joint, x, seg.extent[joint - 1])
+            k, k1, k2 = (one.T for one in blend.rounded(*ways.of(seg.axis_at)))
+            k, k1, k2 = direction((k, k1, k2))
+            _overwrite(axis, rows, (k.T, k1.T, k2.T))
+            turn, turn_1, turn_2 = blend.rounded(*ways.of(_as_vectors(seg.spin_at)))
+            _overwrite(spin, rows, (turn[:, 0], turn_1[:, 0], turn_2[:, 0]))
+
+
+def _overwrite(values: Triple, rows: Array, others: Triple) -> None:
+    for value, other in zip(values, others, strict=True):
+        value[rows] = other
+
+
+def _as_vectors(at: Callable[[Array, Array], Triple]) -> Callable[[Array, Array], Triple]:
+    """Numbers as vectors of one coordinate."""
+
+    def vectors(segment: Array, u: Array) -> Triple:
+        value, first, second = at(segment, u)
+        return value[:, None], first[:, None], second[:, None]
+
+    return vectors
 
 
 def _blends(segments: Segments, rests: Array, tip_tolerance: Array | float, axis_tolerance: float) -> Array:
     blend = np.zeros(len(segments) + 1)
-    joint = np.arange(1, len(segments))
-    before, at_end, at_start = joint - 1, segments.extent[:-1], np.zeros(len(joint))
+    joint = 1 + np.flatnonzero(~(rests[1:-1] | segments.in_one_curve()))
+    before, at_start = joint - 1, np.zeros(len(joint))
+    at_end = segments.extent[before]
     _, tangent_end, bend_end = segments.tip_at(before, at_end)
     _, tangent_start, bend_start = segments.tip_at(joint, at_start)
-    axis_change = segments.axis_rate[1:] - segments.axis_at(before, at_end)[1]
-    neighbour = np.where(rests[1:-1], 0.0, np.minimum(segments.extent[1:], segments.extent[:-1]))
-    blend[1:-1] = half_widths(
+    blend[joint] = half_widths(
         norm(tangent_start - tangent_end),
         norm(bend_start - bend_end),
         np.maximum(norm(bend_start), norm(bend_end)),
-        norm(axis_change),
-        neighbour,
-        _of_joints(np.broadcast_to(tip_tolerance, len(segments))),
+        norm(segments.axis_at(joint, at_start)[1] - segments.axis_at(before, at_end)[1]),
+        np.minimum(at_end, segments.extent[joint]),
+        _at_joints(np.broadcast_to(tip_tolerance, len(segments)), joint),
         axis_tolerance,
     )
     return blend
 
 
-def _of_joints(tolerance: Array) -> Array:
-    """The lower tolerance of the two segments at each joint, (N - 1,)."""
-    return np.minimum(tolerance[:-1], tolerance[1:])
+def _at_joints(tolerance: Array, joint: Array) -> Array:
+    """The lower tolerance of the two segments at joints."""
+    return np.minimum(tolerance[joint - 1], tolerance[joint])
 
 
 def half_widths(
@@ -213,3 +239,46 @@ def smooth_step(x: Array, half_width: Array) -> tuple[Array, Array, Array]:
         30 * (v * (1 - v)) ** 2 / width,
         60 * v * (1 - v) * (1 - 2 * v) / width**2,
     )
+
+
+@dataclass(frozen=True)
+class _Blend:
+    """Both steps at M places of blends, with derivatives, (M, 1) each: H, W, W'; S, S', S''; and the distances x."""
+
+    x: Array
+    step: Array
+    step_1: Array
+    step_2: Array
+    smooth: Array
+    smooth_1: Array
+    smooth_2: Array
+
+    @classmethod
+    def of(cls, x: Array, half_width: Array) -> _Blend:
+        columns = x, *step(x, half_width), *smooth_step(x, half_width)
+        return cls(*(column[:, None] for column in columns))
+
+    def rounded(self, one: Triple, two: Triple, change: Array) -> Triple:
+        """The way from one to the other, (M, C) each, with the change of the first derivative at the joint."""
+        s, s1, s2 = self.smooth, self.smooth_1, self.smooth_2
+        apart, parting = two[0] - one[0] - change * self.x, two[1] - one[1] - change
+        return (
+            one[0] + change * self.step + s * apart,
+            one[1] + change * self.step_1 + s * parting + s1 * apart,
+            one[2] + change * self.step_2 + s * (two[2] - one[2]) + 2 * s1 * parting + s2 * apart,
+        )
+
+
+@dataclass(frozen=True)
+class _Ways:
+    """The two segments at joints, each extended beyond it: the joints, distances x from them, and the ends before."""
+
+    joint: Array
+    x: Array
+    at_end: Array
+
+    def of(self, at: Callable[[Array, Array], Triple]) -> tuple[Triple, Triple, Array]:
+        """A quantity on both extended segments, and the change of its first derivative at the joint."""
+        before, after = self.joint - 1, self.joint
+        change = at(after, 0 * self.x)[1] - at(before, self.at_end)[1]
+        return at(before, self.at_end + self.x), at(after, self.x), change

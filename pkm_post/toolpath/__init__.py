@@ -7,6 +7,9 @@ from pkm_post.toolpath.compensation.contact import tip_from_contact
 from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.compensation.swept_volume import SweptVolume, stock_left
+from pkm_post.toolpath.compressor.bounds import SplineBounds
+from pkm_post.toolpath.compressor.compress import compress
+from pkm_post.toolpath.compressor.splines import Splines, direction
 from pkm_post.toolpath.place import place
 from pkm_post.toolpath.segments import Segments
 from pkm_post.toolpath.surface.moves import program_from_poses
@@ -52,7 +55,11 @@ __all__ = [
     "ToolPose",
     "mirror_gap",
     "pose_columns",
+    "SplineBounds",
+    "Splines",
     "compensate",
+    "compress",
+    "direction",
     "surface_poses",
     "coverage",
     "cut_lengths",

@@ -8,12 +8,13 @@ beyond its ends, which the blends need. Units: mm, rad.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pkm_post.geometry import Array, across, along_rates, cross, dot, norm, towards
 from pkm_post.model import Kind, Trajectory, is_uniform, map_row_pairs, map_rows, select_rows
+from pkm_post.toolpath.compressor.splines import Splines, direction
 
 _TURNING_IN_PLACE = 0.01
 """mm of tip travel per degree of axis turn below which a segment counts as a turn in place."""
@@ -74,6 +75,7 @@ class Segments:
         axis_rate: (N, 3) tangent of its great circle there, rad by path length.
         spin: (N,) spin at the start.
         spin_rate: (N,) by path length.
+        splines: smooth curves in place of some of the lines; the columns above are those of the chords then.
     """
 
     extent: Array
@@ -84,10 +86,11 @@ class Segments:
     axis_rate: Array
     spin: Array
     spin_rate: Array
+    splines: Splines
 
     @classmethod
     def of(cls, trajectory: Trajectory) -> Segments:
-        """The segments of a trajectory."""
+        """The segments of a trajectory as programmed."""
         start, axis, spin = trajectory.tip_before(), trajectory.axis_before(), trajectory.spin_before()
         degrees = np.degrees(np.maximum(trajectory.angle, np.abs(trajectory.spin - spin)))
         extent = np.where(trajectory.length > _TURNING_IN_PLACE * degrees, trajectory.length, degrees)
@@ -105,10 +108,30 @@ class Segments:
             axis_rate=_by_length(map_row_pairs(towards, axis, trajectory.axis), extent[:, None]),
             spin=spin,
             spin_rate=_by_length(map_row_pairs(np.subtract, trajectory.spin, spin), extent),
+            splines=Splines.none(),
         )
+
+    def smoothed(self, splines: Splines) -> Segments:
+        """The segments with curves in place of lines."""
+        extent = self.extent.copy()
+        extent[splines.row] = splines.extent
+        return replace(self, extent=extent, splines=splines)
+
+    def in_one_curve(self) -> Array:
+        """Joints at which the curve of a run goes on, (N - 1,)."""
+        within, row = np.zeros(len(self) - 1, dtype=np.bool_), self.splines.row
+        same = (np.diff(row) == 1) & (np.diff(self.splines.first) == 0)
+        within[row[:-1][same]] = True
+        return within
 
     def __len__(self) -> int:
         return len(self.extent)
+
+    def is_curve(self, segment: Array) -> Array:
+        """Which of the given segments, (M,), are part of a smooth curve."""
+        curve = np.zeros(len(segment), dtype=np.bool_)
+        curve[self.splines.among(segment)[0]] = True
+        return curve
 
     def turn(self) -> Array:
         """The larger rate of turn of tool axis or arc, by path length, (N,)."""
@@ -127,6 +150,12 @@ class Segments:
             turned = self._turned(arcs, u[rows])
             for value, addition in zip((tip, first, second), turned, strict=True):
                 value[rows] += addition
+        rows, curves = self.splines.among(segment)
+        if len(rows):
+            for value, smooth in zip(
+                (tip, first, second), self.splines.at(curves, u[rows], self.splines.tip), strict=True
+            ):
+                value[rows] = smooth.T
         return tip, first, second
 
     def _turned(self, arc: Array, u: Array) -> tuple[Array, Array, Array]:
@@ -148,7 +177,23 @@ class Segments:
         axis, rate = select_rows(self.axis, segment), select_rows(self.axis_rate, segment)
         if not rate.any():  # as in all three-axis work
             return axis, rate, np.zeros_like(rate)
-        return along_rates(axis, u[:, None] * rate, rate, np.zeros_like(rate))
+        turned = along_rates(axis, u[:, None] * rate, rate, np.zeros_like(rate))
+        if self.splines.turns:
+            rows, curves = self.splines.among(segment)
+            smoothed = direction(self.splines.at(curves, u[rows], self.splines.axis))
+            for value, smooth in zip(turned, smoothed, strict=True):
+                value[rows] = smooth.T
+        return turned
+
+    def spin_at(self, segment: Array, u: Array) -> tuple[Array, Array, Array]:
+        """Spin with first and second derivative, (M,) each."""
+        rate = np.take(self.spin_rate, segment)
+        turned = np.take(self.spin, segment) + u * rate, rate, np.zeros_like(rate)
+        if self.splines.turns:
+            rows, curves = self.splines.among(segment)
+            for value, smooth in zip(turned, self.splines.at(curves, u[rows], self.splines.spin), strict=True):
+                value[rows] = smooth[0]
+        return turned
 
 
 def _by_length(change: Array, extent: Array) -> Array:

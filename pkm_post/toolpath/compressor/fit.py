@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Fit: smooth curves of runs as pieces, the place of each row on them, and how far each row is off.
+
+Enters: polylines of tip, tool axis and spin, and what curves may be off. Leaves: pieces that join with continuous
+second derivatives, and for each row the largest deviation by what is allowed. Where that is above 1, the curve is of no
+use. A curve is shorter than a polyline with noise, so the parameter is scaled to the length of the curve.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pkm_post.geometry import Array, length_of
+from pkm_post.toolpath.compressor.deviation import Allowed, by_allowed, deviation
+from pkm_post.toolpath.compressor.levels import Curves, fitted_curves
+from pkm_post.toolpath.compressor.polylines import Places, Polylines
+from pkm_post.toolpath.compressor.splines import Splines, quintic_powers
+from pkm_post.toolpath.compressor.uniform_splines import at_nodes
+
+_CHECKED = np.array([0.25, 0.5, 0.75, 1.0])
+"""Shares of each row at which the result is measured."""
+_NEWTON_STEPS = 2
+_LONGER = 0.3
+"""Share by which the curve of a row may be longer or shorter than the row; else it is of no use."""
+
+
+def fit(point: Array, extent: Array, count: Array, allowed: Allowed) -> tuple[Splines, Array]:
+    """Curves of R runs, with rows numbered from 0 on; and the deviation of each row by what is allowed, (n,).
+
+    Args:
+        point: (7, n + R) vertices: tip, tool axis, spin; or (3, n + R), the tip alone.
+        extent: (n,) path length of each row, mm.
+        count: (R,) number of rows of each run.
+        allowed: (n,) deviations on each row.
+    """
+    polyline = Polylines.of(point, extent, count)
+    splines = _placed(polyline, fitted_curves(polyline, allowed))
+    for _ in range(_NEWTON_STEPS):
+        splines = _nearer(splines, polyline)
+    off = _off(splines, polyline, allowed)
+    off[np.abs(splines.extent / extent - 1) > _LONGER] = np.inf
+    return _scaled(splines, polyline), off
+
+
+def _placed(polyline: Polylines, curves: Curves) -> Splines:
+    """The curves as pieces between nodes; each row ends at its path length."""
+    grids = curves.grids
+    run, number = grids.numbers(np.unique(curves.nodes))
+    s = number * grids.width[run]
+    state = at_nodes(grids, curves.coefficients, run, number)
+    begin = np.flatnonzero(run[1:] == run[:-1])
+    width = s[begin + 1] - s[begin]
+    before = np.cumsum(polyline.length) - polyline.length
+    pieces = np.bincount(run) - 1
+    last = np.cumsum(pieces) - 1
+    start = polyline.starts
+    of_row = polyline.run[start]
+    return Splines(
+        row=np.arange(len(start)),
+        place=polyline.s[start] + before[of_row],
+        extent=polyline.s[start + 1] - polyline.s[start],
+        first=(last - pieces + 1)[of_row],
+        last=last[of_row],
+        begin=(s + before[run])[begin],
+        width=width,
+        powers=quintic_powers(state[..., begin], state[..., begin + 1], width),
+    )
+
+
+def _nearer(splines: Splines, polyline: Polylines) -> Splines:
+    """The curves with rows that end nearer to their programmed points: one step of Newton's method."""
+    end = polyline.starts + 1
+    value, slope, _ = splines.at(splines.row, splines.extent, splines.powers)
+    _, ahead = deviation(polyline.point[:, end], value, slope)
+    ahead = np.where(polyline.inner[end], ahead, 0.0)  # the ends of runs are met exactly
+    shift = np.concatenate([[0.0], ahead[:-1]])
+    return replace(splines, place=splines.place + shift, extent=splines.extent + ahead - shift)
+
+
+def _scaled(splines: Splines, polyline: Polylines) -> Splines:
+    """The curves with path lengths that are, from end to end of each run, those of the tip."""
+    row, run = splines.row, polyline.run[polyline.starts]
+    _, slope, _ = splines.at(row, splines.extent / 2, splines.tip)
+    travel = np.bincount(run, length_of(*slope) * splines.extent)
+    scale, start = travel / polyline.length, np.cumsum(polyline.length) - polyline.length
+    begin = np.cumsum(travel) - travel
+    piece_run = np.searchsorted(splines.last[polyline.begin - np.arange(len(travel))], np.arange(len(splines.begin)))
+    return replace(
+        splines,
+        place=begin[run] + (splines.place - start[run]) * scale[run],
+        extent=splines.extent * scale[run],
+        begin=begin[piece_run] + (splines.begin - start[piece_run]) * scale[piece_run],
+        width=splines.width * scale[piece_run],
+    )
+
+
+def _off(splines: Splines, polyline: Polylines, allowed: Allowed) -> Array:
+    """The largest deviation on each row by what is allowed, (n,)."""
+    places = Places.of(polyline, _CHECKED)
+    u = (splines.extent[:, None] * _CHECKED).ravel()
+    value, slope, _ = splines.at(places.row, u, splines.powers)
+    off, _ = deviation(places.point, value, slope)
+    worst = np.maximum(*by_allowed(off, allowed[places.row]))
+    return np.asarray(worst.reshape(-1, len(_CHECKED)).max(axis=1))

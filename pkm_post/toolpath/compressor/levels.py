@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Levels: the coefficients of the curves of runs, from a coarse grid to as fine ones as the tolerance needs.
+
+Enters: polylines and what the curve may be off. Leaves: coefficients on the finest grid, and the nodes between which
+the curve is one polynomial. On the coarsest grid the curve averages the polyline. On each finer one it follows the
+polyline more closely where much is off by too much, and elsewhere takes away only what is too much at single places: a
+vertex off by noise bends the curve no more than it must. Where nothing is off, the curve of the coarser grid remains.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.toolpath.compressor.deviation import Allowed, by_allowed, deviation
+from pkm_post.toolpath.compressor.polylines import Places, Polylines
+from pkm_post.toolpath.compressor.uniform_splines import (
+    SUPPORT,
+    Grids,
+    basis,
+    end_bends,
+    quasi_interpolant,
+    refined,
+    reflected,
+    values,
+)
+
+_ROWS_IN_CELL = 8
+"""Rows in a cell of the coarsest grid, on average."""
+_LEVELS = 5
+"""Grids, each with cells half as wide as the one before: down to two cells for a row."""
+_AVERAGED = 4
+"""Grids, of these, whose cells hold enough places for an average."""
+_PASSES = 2
+"""Corrections of single places on each grid."""
+_AIM = 0.9
+"""Deviation by what is allowed above which the curve is corrected."""
+_LEFT = 0.5
+"""Deviation by what is allowed that a correction of a single place leaves."""
+_SHARES = np.array([0.5, 1.0])
+"""Shares of each row at which the curve is compared."""
+_NEAR = 4
+"""Cells about a node, half of them on either side."""
+_DENSE = 0.25
+"""Share of the places in these cells that are off, from which on the curve follows the polyline there."""
+_CELLS_AT_END = 2
+"""Cells over which the curvature at the end of a run is averaged."""
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Splines of runs on a grid.
+
+    Attributes:
+        grids: even grids.
+        coefficients: (C, size).
+        bend: (2, C, R) second derivatives at both ends of each run.
+        nodes: (K,) columns of the coefficients at whose nodes pieces begin or end, in any order.
+    """
+
+    grids: Grids
+    coefficients: Array
+    bend: Array
+    nodes: Array
+
+    def refined(self) -> Curves:
+        """The same curves on grids with cells half as wide."""
+        run, number = self.grids.numbers(self.nodes)
+        grids, coefficients = refined(self.grids, self.coefficients, self.bend)
+        return Curves(grids, coefficients, self.bend, grids.first[run] + 2 * number)
+
+    def changed(self, coefficients: Array, where: Array, bend: Array) -> Curves:
+        """With other coefficients in the columns ``where``: the cells that they reach become pieces."""
+        run, number = self.grids.nodes()
+        node = self.grids.first[run] + number
+        begin = node[(number < self.grids.cells[run]) & reached(where)[node - SUPPORT // 2 + 1]]
+        return Curves(self.grids, coefficients, bend, np.concatenate([self.nodes, begin, begin + 1]))
+
+
+def fitted_curves(polyline: Polylines, allowed: Allowed) -> Curves:
+    """The smoothest curves within what is allowed on each row of the polylines, as far as they were found."""
+    count = polyline.end - polyline.begin
+    search = _Search(
+        polyline, allowed, Grids(polyline.length, np.maximum(1, np.rint(count / _ROWS_IN_CELL).astype(int)))
+    )
+    for level in range(1, _LEVELS):
+        if not search.off().any():
+            break
+        search.refine()
+        if level < _AVERAGED:
+            search.follow()
+        for _ in range(_PASSES):
+            search.correct()
+    return search.curves
+
+
+class _Search:
+    """The curves of one level, and their places and slopes at each place of the polylines."""
+
+    def __init__(self, polyline: Polylines, allowed: Allowed, grids: Grids) -> None:
+        self._polyline, self._places = polyline, Places.of(polyline, _SHARES)
+        self._allowed = allowed[self._places.row]
+        bend = _ends(polyline, grids)
+        self.curves = Curves(
+            grids, quasi_interpolant(grids, polyline, bend), bend, grids.first[grids.nodes()[0]] + grids.nodes()[1]
+        )
+        places = self._places
+        self._state = np.stack(values(grids, self.curves.coefficients, places.run, places.s))
+        self._compare(np.arange(len(places.s)))
+
+    def _compare(self, at: Array) -> None:
+        """Find out which of these places are off by too much, and by what."""
+        off, _ = deviation(self._places.point[:, at], *self._state[:, :, at])
+        by = by_allowed(off, self._allowed[at])
+        wrong = np.flatnonzero(np.maximum(*by) > _AIM)
+        self._wrong, self._off, self._by = at[wrong], off[:, wrong], [one[wrong] for one in by]
+
+    def off(self) -> Array:
+        """The places that are off by too much."""
+        return self._wrong
+
+    def refine(self) -> None:
+        """Go to the next grid."""
+        self.curves = self.curves.refined()
+        self._column, _ = self.curves.grids.locate(self._places.run, self._places.s)
+
+    def follow(self) -> None:
+        """Average the polyline on this grid where much is off."""
+        curves, polyline, column = self.curves, self._polyline, self._column
+        grids = curves.grids
+        every, wrong = (_about_nodes(grids, at) for at in (column, column[self._wrong]))
+        where = _with_ends(grids, wrong > _DENSE * every)
+        if where.any():
+            ends = where[np.stack([grids.first, grids.first + grids.cells])]
+            bend = np.where(ends[:, None], _ends(polyline, grids), curves.bend)
+            new = np.where(where, quasi_interpolant(grids, polyline, bend), curves.coefficients)
+            self._replace(reflected(grids, new, bend), where, bend)
+
+    def correct(self) -> None:
+        """Take away what is too much at single places."""
+        if not len(self._wrong):
+            return
+        excess = self._off * 1.0
+        for columns, by in zip((slice(0, 3), slice(3, None)), self._by, strict=True):
+            excess[columns] *= np.where(by > _AIM, 1 - _LEFT / np.maximum(by, _AIM), 0.0)
+        curves, at = self.curves, self._wrong
+        change = _spread(curves.grids, self._places.run[at], self._places.s[at], excess)
+        self._replace(curves.coefficients + change, (change != 0).any(axis=0), curves.bend)
+
+    def _replace(self, coefficients: Array, where: Array, bend: Array) -> None:
+        self.curves = self.curves.changed(coefficients, where, bend)
+        changed = reached(where)[self._column]
+        at = np.flatnonzero(changed)
+        self._state[:, :, at] = values(self.curves.grids, coefficients, self._places.run[at], self._places.s[at])
+        changed[self._wrong] = True
+        self._compare(np.flatnonzero(changed))
+
+
+def _ends(polyline: Polylines, grids: Grids) -> Array:
+    return end_bends(polyline, np.minimum(_CELLS_AT_END * grids.width, polyline.length))
+
+
+def _about_nodes(grids: Grids, column: Array) -> Array:
+    """The number of places in the cells about each node, from the first of their six columns; (size,)."""
+    in_cell = np.bincount(column + SUPPORT // 2 - 1, minlength=grids.size + _NEAR)
+    until = np.cumsum(np.concatenate([np.zeros(_NEAR // 2, dtype=np.int64), in_cell]))
+    return np.asarray(until[_NEAR // 2 - 1 + _NEAR // 2 :] - until[: len(until) - _NEAR + 1])[: grids.size]
+
+
+def _with_ends(grids: Grids, where: Array) -> Array:
+    """The columns on runs only; the end of a run goes with its neighbour, and with all beyond it."""
+    run, number = grids.nodes()
+    node = grids.first[run] + number
+    inner = np.zeros(grids.size, dtype=np.bool_)
+    inner[node[(number > 0) & (number < grids.cells[run])]] = True
+    found = where & inner
+    for at, inwards in ((grids.first, 1), (grids.first + grids.cells, -1)):
+        for out in range(SUPPORT // 2):
+            found[at - inwards * out] = found[at + inwards]
+    return found
+
+
+def _spread(grids: Grids, run: Array, s: Array, excess: Array) -> Array:
+    """Coefficients of the least curves that pass through excesses at places, (C, size); means where these overlap.
+
+    A single excess e at weights w_k is met by c_k = w_k e / sum of w^2; where several ask for one coefficient, it is
+    their mean, weighted by w_k^2 [Lee1997].
+    """
+    column, share = grids.locate(run, s)
+    weights = basis(share)
+    at = (column + np.arange(SUPPORT)[:, None]).ravel()
+    wanted, weight = weights**3 / np.square(weights).sum(axis=0), np.square(weights)
+    total = np.bincount(at, weight.ravel(), grids.size)
+    coefficients = np.stack([np.bincount(at, (wanted * one).ravel(), grids.size) for one in excess])
+    np.divide(coefficients, total, out=coefficients, where=total > 0)
+    coefficients[:, np.concatenate([grids.first, grids.first + grids.cells])] = 0.0
+    return reflected(grids, coefficients)
+
+
+def reached(where: Array) -> Array:
+    """Whether any of the six columns from each one on is meant."""
+    some = np.cumsum(np.concatenate([[0], where]))
+    last = np.minimum(np.arange(len(where)) + SUPPORT, len(where))
+    return np.asarray(some[last] > some[:-1])

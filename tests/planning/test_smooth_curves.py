@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Paths of short lines with smooth curves in their place: smooth all over, within bounds, certified, and fast."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from machines import example
+from programs import ON_PALLET, program
+
+from pkm_post.certificate import certify
+from pkm_post.geometry import norm
+from pkm_post.model import Kind, Tolerances
+from pkm_post.planning import interpolate, plan_feed
+from pkm_post.planning.motion import tool_path
+from pkm_post.planning.rough_limits import DerivativeBounds
+from pkm_post.toolpath.place import place
+
+MICRON = 1e-3
+THOUSANDTH = np.radians(1e-3)
+F6000 = 100.0
+SHARES = np.linspace(0.0, 1.0, 41)
+
+
+def scan(passes=4, noise=0.0, chord=0.2, feed=F6000, lean=0.0, seed=1):
+    """Passes of 60 mm to and fro over a surface of waves, with even noise of the heights."""
+    on_a_pass = int(60 / chord) + 1
+    there = np.linspace(-30, 30, on_a_pass)
+    x = np.concatenate([there if number % 2 == 0 else there[::-1] for number in range(passes)])
+    y = np.repeat(np.arange(passes) * 1.0, on_a_pass)
+    z = 60 + 4 * np.sin(x / 15) * np.cos(y / 20) + np.random.default_rng(seed).uniform(-noise, noise, len(x))
+    angle = lean * np.sin(x / 20)
+    axis = np.column_stack([np.sin(angle), 0 * angle, np.cos(angle)])
+    made = program(np.column_stack([x, y, z]), axis, feed=feed)
+    return place(made, example(), ON_PALLET)[0]
+
+
+def planned(trajectory, tolerances, machine=None):
+    machine = machine or example()
+    feed_plan, faults = plan_feed(trajectory, machine, tolerances)
+    assert not faults
+    made = interpolate(feed_plan)
+    certificate, faults = certify(made.struts, "x.pmc", trajectory, machine, made.motion, tolerances)
+    assert not faults
+    assert certificate.holds
+    return feed_plan, made
+
+
+def duration(feed_plan):
+    return feed_plan.schedule.rests_ms[-1] / 1000
+
+
+def test_noise_within_the_tolerance_costs_at_most_five_percent():
+    """5 um of noise on chords of 0.2 mm at F6000, under a tolerance of 10 um; corners alone took 1.8 times as long."""
+    tolerances = Tolerances(0.01, THOUSANDTH)
+    smooth, noisy = (planned(scan(noise=noise), tolerances)[0] for noise in (0.0, 0.005))
+    assert duration(noisy) < 1.05 * duration(smooth)
+
+
+def test_noise_bends_the_struts_of_five_axes_little():
+    tolerances = Tolerances(0.01, 10 * THOUSANDTH)
+    smooth, noisy = (planned(scan(noise=noise, lean=0.2), tolerances)[0] for noise in (0.0, 0.005))
+    assert duration(noisy) < 1.05 * duration(smooth)
+
+
+@pytest.mark.parametrize("noise", [0.0005, 0.005])
+def test_noise_of_the_tolerance_and_beyond_is_followed(noise):
+    feed_plan, _ = planned(scan(2, noise=noise, lean=0.1), Tolerances(MICRON, THOUSANDTH))
+    assert len(feed_plan.path.segments.splines) > 20
+
+
+def test_a_smooth_path_has_few_points():
+    """A third of those that the corners of its lines need."""
+    trajectory = scan(2, feed=40.0)
+    tolerances = Tolerances(MICRON, THOUSANDTH)
+    _, made = planned(trajectory, tolerances)
+    apart = trajectory.feed * (1 + 0.2 * (np.arange(len(trajectory)) % 2))  # every change of the feed ends a run
+    alone, corners = planned(dataclasses.replace(trajectory, feed=apart), tolerances)
+    assert not len(alone.path.segments.splines)
+    assert len(made.motion) < len(corners.motion) / 3
+
+
+def test_noise_costs_little_where_jerk_is_limited():
+    machine = dataclasses.replace(example(), strut_jerk=100_000.0, tip_jerk=100_000.0)
+    tolerances = Tolerances(0.01, THOUSANDTH)
+    smooth, noisy = (planned(scan(2, noise=noise, feed=40.0), tolerances, machine)[0] for noise in (0.0, 0.005))
+    assert duration(noisy) < 1.05 * duration(smooth)
+
+
+@pytest.mark.parametrize("lean", [0.0, 0.2])
+def test_the_path_is_smooth_all_over(lean):
+    """Across pieces, rows, and the blends at ends of runs: derivatives agree with differences of finite steps."""
+    path = tool_path(scan(2, noise=0.003, lean=lean), Tolerances(0.02, 0.01))
+    splines = path.segments.splines
+    assert len(splines) > 500
+    joints = np.flatnonzero(path.blend)
+    width = path.blend[joints].min()
+    edges = np.concatenate([path.starts[joints] - path.blend[joints], path.starts[joints] + path.blend[joints]])
+    inside = np.random.default_rng(2).uniform(1, path.starts[-1] - 1, 2000)
+    s = np.sort(np.concatenate([inside, path.starts[1:-1], edges]))
+    rounding = np.where(np.isin(s, edges), 5e-3, 5e-4)  # the slope of the cubic step begins at its edges
+    step = 1e-4 * width
+    here, after, before = (path.at(s + by) for by in (0, step, -step))
+    for name in ("tip", "axis"):
+        value, first, second = (getattr(here, name + order) for order in ("", "_1", "_2"))
+        by_difference = (getattr(after, name) - getattr(before, name)) / (2 * step)
+        np.testing.assert_allclose(first, by_difference, atol=1e-3 + 0 * value[0, 0])
+        change = (getattr(after, name + "_1") - getattr(before, name + "_1")) / (2 * step)
+        assert (norm(second - change) <= 0.01 * norm(second) + rounding).all()
+
+
+@pytest.mark.parametrize("lean", [0.0, 0.2])
+def test_no_derivative_is_larger_than_its_bound(lean):
+    path = tool_path(scan(2, noise=0.003, lean=lean), Tolerances(0.01, 0.001))
+    bounds, count = DerivativeBounds.of(path), len(path.feed)
+    poses = path.within(np.repeat(np.arange(count), len(SHARES)), np.outer(path.segments.extent, SHARES).ravel())
+    half_tilt = np.tan(np.arccos(poses.axis[:, 2].clip(-1, 1)) / 2)
+    for name, found in (
+        *((name, norm(getattr(poses, name))) for name in ("tip_1", "tip_2", "axis_1", "axis_2")),
+        ("half_tilt", half_tilt),
+    ):
+        assert (found.reshape(count, -1).max(axis=1) <= getattr(bounds, name) * (1 + 1e-6) + 1e-7).all(), name
+
+
+def test_a_wider_tolerance_of_the_program_smooths_more():
+    trajectory = scan(2, noise=0.005, feed=60.0)
+    wide = dataclasses.replace(trajectory, tip_tolerance=np.full(len(trajectory), 0.02))
+    narrow, smooth = (planned(one, Tolerances(MICRON, THOUSANDTH))[0] for one in (trajectory, wide))
+    assert len(smooth.path.segments.splines) > 590
+    assert duration(smooth) < 0.7 * duration(narrow)
+
+
+def test_rapid_moves_are_no_curves():
+    trajectory = scan(2)
+    rapid = dataclasses.replace(trajectory, kind=np.full(len(trajectory), Kind.RAPID))
+    assert not len(tool_path(rapid, Tolerances(0.01, THOUSANDTH)).segments.splines)
