@@ -150,7 +150,10 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
         "set it with G10 L2; for G53 give the place of the machine's zero with --machine-zero X,Y,Z",
     ),
     "G413": error("the reference point is unknown", "give it with --machine-zero X,Y,Z, or set it with G28.1 or G30.1"),
-    "G414": error("rotary words have no meaning here", "give the rotary axes with --axis-words, and write G43.4 first"),
+    "G414": error(
+        "rotary words have no meaning here",
+        "give the rotary axes with --axis-words, and write G43.4 before cuts with a tilted tool",
+    ),
     "G415": error("the tool axis is unknown", "write I, J and K, not all zero, after G43.5"),
     "G416": error("the position of the tool is not yet known", "first move to X, Y and Z"),
     "G417": warning("the path tolerance of the program is not used", "write G64 with a P above zero, alone"),
@@ -191,6 +194,10 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
         "get the complete file; if it is complete, add M2 or M30 at its end, give --allow-open-end, or set OpenEnd"
         " of the"
         " program object",
+    ),
+    "G431": warning(
+        "the tool is tilted before G43.4, where the place of its tip depends on another machine",
+        "check the way there: the next move goes straight to the first place with G43.4; or write G43.4 first",
     ),
     # G5: writing G-code
     "G501": error("the tool axis tilts, and this form of G-code cannot express it", "choose a form with five axes"),

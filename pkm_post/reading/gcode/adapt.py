@@ -44,7 +44,9 @@ def adapted(blocks: Blocks, flavour: Flavour, left_out: Collection[str]) -> tupl
         The adapted blocks, and what was left out, as lines of text.
     """
     blocks = _with_equivalents(blocks, flavour)
-    g, m = _left_out(blocks, flavour, left_out)
+    g, m = np.zeros(len(blocks.g), np.bool_), np.zeros(len(blocks.m), np.bool_)
+    if left_out:
+        g, m = _left_out(blocks, flavour, left_out)
     requests = np.isin(blocks.g, [*flavour.requests])
     notes = [
         *_notes(blocks, "G", g, lambda _: ", left out as chosen"),
@@ -73,7 +75,7 @@ def _left_out(blocks: Blocks, flavour: Flavour, names: Collection[str]) -> tuple
 
 def _named(codes: Array, names: Collection[str], letter: str) -> list[int]:
     """The codes that some names stand for."""
-    return [code for code in np.unique(codes).tolist() if name_of(code, letter) in names] if names else []
+    return [code for code in np.unique(codes).tolist() if name_of(code, letter) in names]
 
 
 def _with_equivalents(blocks: Blocks, flavour: Flavour) -> Blocks:
@@ -129,6 +131,8 @@ def _taken(blocks: Blocks, row: int, flavour: Flavour) -> Iterable[str]:
 def _with_further_offsets(blocks: Blocks) -> Blocks:
     """Give each work offset of G54.1 P a code of its own, and G54.1 with a P that does not exist its own code."""
     found = np.flatnonzero(blocks.g == 541)
+    if not len(found):
+        return blocks
     number = blocks.word("P")[blocks.g_row[found]]
     exist = (number == np.round(number)) & (number >= 1) & (number <= MOST_FURTHER_OFFSETS)
     if not exist.any():

@@ -106,7 +106,9 @@ def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
             if unused.any():
                 unused[_rows_that_use(letter, blocks, modal.flavour)] = False
                 useless[letter] = unused
-    _report_words("G414", {letter: blocks.has(letter) for letter in blocks.words if letter in rotary}, blocks, faults)
+    # A rotary axis at zero leaves the tool upright, whatever carries it.
+    turned = {name: blocks.has(name) & (word != 0) for name, word in blocks.words.items() if name in rotary}
+    _report_words("G414", turned, blocks, faults)
     _report_words("G404", useless, blocks, faults)
 
 

@@ -22,7 +22,8 @@ from pkm_post.reading.gcode.codes import Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
 from pkm_post.reading.gcode.flavours import RS274, Flavour
 from pkm_post.reading.gcode.frames import PLANES, Frame
-from pkm_post.reading.gcode.modal import Modal, PositionWords, is_cycle
+from pkm_post.reading.gcode.modal import Modal, is_cycle
+from pkm_post.reading.gcode.polar import PolarWords
 
 PECK_CLEARANCE = 0.254
 """Clearance above the depth reached at which a peck resumes feed, and retract distance of G73, mm."""
@@ -57,8 +58,10 @@ class Cycle:
         code: 810 for G81.
         retract: R, the height at which the feed starts.
         bottom: word of the coordinate normal to the plane.
-        peck: Q.
+        peck: Q, or I where pecks grow smaller.
         dwell: P, s.
+        reduction: J, by how much each peck is smaller than the one before.
+        least: K, the smallest peck.
     """
 
     code: int
@@ -66,11 +69,15 @@ class Cycle:
     bottom: float = math.nan
     peck: float = math.nan
     dwell: float = math.nan
+    reduction: float = 0.0
+    least: float = math.nan
 
     def with_words(self, retract: float, bottom: float, peck: float, dwell: float) -> Cycle:
         """Update the cycle with the words that are given."""
         new, old = (retract, bottom, peck, dwell), (self.retract, self.bottom, self.peck, self.dwell)
-        return Cycle(self.code, *(before if math.isnan(word) else word for word, before in zip(new, old, strict=True)))
+        kept = (before if math.isnan(word) else word for word, before in zip(new, old, strict=True))
+        retract, bottom, peck, dwell = kept
+        return replace(self, retract=retract, bottom=bottom, peck=peck, dwell=dwell)
 
 
 @dataclass(frozen=True)
@@ -161,13 +168,19 @@ def cycle_fault(
         return "G418", (name, " ", Word("Q", cycle.peck))
     if not 1 <= repeats <= MOST_STROKES or repeats != round(repeats):
         return "G418", (name, f" repeated {repeats:g} times")
-    if cycle.code in _PECKS and repeats * (hole.top - hole.bottom) / cycle.peck > MOST_STROKES:
+    if cycle.code in _PECKS and cycle.reduction and not 0 < cycle.least <= cycle.peck:
+        return "G418", (name, " with J: K is the smallest peck, above 0 and up to I")
+    if cycle.code in _PECKS and repeats * (hole.top - hole.bottom) / _smallest(cycle) > MOST_STROKES:
         return "G418", (name, f": more than {MOST_STROKES} pecks")
     if cycle.code == _STOPS_SPINDLE and not spindle:
         return "G418", (name, " while the spindle stands still")
     if not cycle.dwell >= 0 and not math.isnan(cycle.dwell):
         return "G418", (name, " ", Word("P", cycle.dwell))
     return None
+
+
+def _smallest(cycle: Cycle) -> float:
+    return cycle.least if cycle.reduction else cycle.peck
 
 
 def cycle_strokes(
@@ -203,10 +216,12 @@ def cycle_strokes(
 
 
 def _pecks(cycle: Cycle, hole: Hole) -> Iterator[float]:
-    depth = hole.top - cycle.peck
+    peck = cycle.peck
+    depth = hole.top - peck
     while depth > hole.bottom:
         yield depth
-        depth -= cycle.peck
+        peck = max(peck - cycle.reduction, min(cycle.least, peck)) if cycle.reduction else peck
+        depth -= peck
 
 
 def _drill_down(cycle: Cycle, hole: Hole, normal: int, strokes: Strokes) -> None:
@@ -237,13 +252,13 @@ class CycleTracker:
         self,
         blocks: Blocks,
         modal: Modal,
-        words: PositionWords,
+        polar: PolarWords,
         spindle: Array,
         dwells: Array,
         faults: BlockDiagnostics,
     ) -> None:
-        self._modal, self._words = modal, words
-        self._cycle_words = {letter: blocks.word(letter) for letter in "RQ" + _REPEATS}
+        self._modal, self._polar, self._words = modal, polar, polar.words
+        self._cycle_words = {letter: blocks.word(letter) for letter in "RQIJ" + _REPEATS}
         self._spindle, self._dwells, self._faults = spindle, dwells, faults
         self._series: CycleSeries | None = None
         self._row, self._level = 0, np.zeros(3)
@@ -305,13 +320,27 @@ class CycleTracker:
         retract, peck = (scale * float(self._cycle_words[letter][row]) for letter in "RQ")
         words = (retract, float(self._words.columns[normal][row]), peck, float(self._dwells[row]))
         before = self._series if self._series_number[row] == self._series_number[self._row] else None
-        self._series = CycleSeries.after(before, code, float(position[normal]), words, self._modal.flavour)
+        self._series = self._with_smaller_pecks(
+            row, CycleSeries.after(before, code, float(position[normal]), words, self._modal.flavour)
+        )
         self._row = row
         if before is None:
             self._level, self._plane = frame.to_work(position), int(self._modal.active[Group.PLANE][row])
         if before is None or not (math.isnan(words[0]) or math.isnan(words[1])):
             self._distance, self._scale = int(self._modal.active[Group.DISTANCE][row]), scale
         return self._series
+
+    def _shrinks(self, row: int) -> bool:
+        """Whether I of a block is the first of pecks that grow smaller: J is by how much, K the smallest [Haas]."""
+        return self._modal.flavour.pecks_by_i and not math.isnan(self._cycle_words["I"][row])
+
+    def _with_smaller_pecks(self, row: int, series: CycleSeries) -> CycleSeries:
+        if not self._shrinks(row):
+            return series
+        scale = float(self._modal.scale[row])
+        first, less, least = (scale * float(self._cycle_words[letter][row]) for letter in "IJK")
+        reduction = 0.0 if math.isnan(less) else less
+        return replace(series, cycle=replace(series.cycle, peck=first, reduction=reduction, least=least))
 
     def _mode_conflict(self, row: int, series: CycleSeries, needs_level: bool, frame: Frame) -> Found:
         """What has changed since the modal words were programmed and may alter their meaning."""
@@ -330,13 +359,17 @@ class CycleTracker:
 
     def _repeats(self, row: int) -> float:
         """Repeat count of the hole; NaN where two words specify it."""
-        words = [float(self._cycle_words[letter][row]) for letter in _REPEATS]
+        letters = "L" if self._shrinks(row) else _REPEATS
+        words = [float(self._cycle_words[letter][row]) for letter in letters]
         given = [word for word in words if not math.isnan(word)]
         return 1.0 if not given else given[0] if len(given) == 1 else math.nan
 
     def _centres(self, row: int, position: Array, axes: tuple[int, int, int], relative: bool, repeats: int) -> Array:
         """Hole positions, (n, 2)."""
         words, here = self._words.at(row)[list(axes[:2])], position[list(axes[:2])]
+        around = self._polar.repeated(row, here, repeats) if relative and axes[:2] == (0, 1) else None
+        if around is not None:
+            return around
         if relative:
             return here + np.arange(1, repeats + 1)[:, None] * np.nan_to_num(words)
         return np.tile(np.where(np.isnan(words), here, words), (repeats, 1))

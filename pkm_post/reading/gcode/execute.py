@@ -51,7 +51,7 @@ def execute(
     if not blocks.special and not np.isin(blocks.m, _SUBPROGRAM_CODES).any():
         return blocks, ()
     skipped = blocks.deleted if block_delete else np.zeros(len(blocks), dtype=np.bool_)
-    statements, faults = _statements(blocks, skipped)
+    statements, faults = _statements(blocks, skipped, block_delete)
     jumps, unlinked = link_o_words({row: word for row, word in statements.items() if isinstance(word, OWord)})
     faults.extend(unlinked)
     if faults:
@@ -73,7 +73,9 @@ def _ended(blocks: Blocks, interpreter: _Interpreter) -> Blocks:
     return replace(blocks, closed=True, restarts=True) if interpreter.restarts else blocks
 
 
-def _statements(blocks: Blocks, skipped: Array) -> tuple[dict[int, Statement], list[tuple[int, ExecutionFault]]]:
+def _statements(
+    blocks: Blocks, skipped: Array, block_delete: bool
+) -> tuple[dict[int, Statement], list[tuple[int, ExecutionFault]]]:
     """Compile the special blocks, by row in program order, and collect the invalid ones."""
     statements: dict[int, Statement] = {}
     faults: list[tuple[int, ExecutionFault]] = []
@@ -81,7 +83,7 @@ def _statements(blocks: Blocks, skipped: Array) -> tuple[dict[int, Statement], l
         if skipped[row]:
             continue
         try:
-            statements[row] = statement_of(tree)
+            statements[row] = statement_of(tree, block_delete)
         except ExecutionFault as fault:
             faults.append((row, fault))
     return statements, faults

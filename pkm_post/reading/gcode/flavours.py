@@ -39,6 +39,7 @@ class Flavour:
         needs_dwell: whether these need P.
         feeds_to_r: cycles that come out with feed as far as R, and rapidly from there; other ones go on with feed.
         stores_cycle: whether a cycle repeated 0 times only stores its words.
+        pecks_by_i: whether I, J and K of G73 and G83 are the first peck, how much smaller the next is, and the least.
         moves_beside_reference: whether G0 or G1 may stand beside G28 and G30, which take the axis words.
         g53_is_rapid: whether G53 moves rapidly whatever motion is in force.
         counts_in_p: whether P of M98 above four digits begins with how often the subprogram runs.
@@ -63,6 +64,7 @@ class Flavour:
     needs_dwell: bool
     feeds_to_r: tuple[int, ...]
     stores_cycle: bool
+    pecks_by_i: bool
     moves_beside_reference: bool
     g53_is_rapid: bool
     counts_in_p: bool
@@ -93,6 +95,7 @@ RS274 = Flavour(
     needs_dwell=True,
     feeds_to_r=(850,),
     stores_cycle=False,
+    pecks_by_i=False,
     moves_beside_reference=False,
     g53_is_rapid=False,
     counts_in_p=False,
@@ -117,6 +120,7 @@ _FANUC_CODES: dict[int, Code] = {
     541: Code(Group.SYSTEM, "P", "P"),
     **{FURTHER_OFFSET - number: Code(Group.SYSTEM) for number in range(1, MOST_FURTHER_OFFSETS + 1)},
     **{code: Code(Group.MOTION, "XYZRLKPQ") for code in CYCLES},
+    **{code: Code(Group.MOTION, "XYZRLKPQIJ") for code in (730, 830)},
 }
 _FANUC_REFUSED: dict[str, str] = {
     **{code: why for code, why in UNSUPPORTED.items() if code not in ("G5", "G5.1", "G15", "G16", "G50", "M50", "M51")},
@@ -148,6 +152,7 @@ FANUC = replace(
     needs_dwell=False,
     feeds_to_r=(850, 890),
     stores_cycle=True,
+    pecks_by_i=True,
     moves_beside_reference=True,
     g53_is_rapid=True,
     counts_in_p=True,

@@ -71,10 +71,11 @@ def _first_of_each(blocks: Blocks, found: _Found) -> Iterator[str]:
 def _for_fanuc(blocks: Blocks) -> _Found:
     yield from _o_words(blocks, lambda keyword: not keyword)
     yield from _codes(blocks.g, blocks.g_row, _FANUC_G, "G")
-    here = np.isin(blocks.g, _WITHOUT_PLACE) & ~(blocks.has("X") | blocks.has("Y"))[blocks.g_row]
+    here = np.flatnonzero(np.isin(blocks.g, _WITHOUT_PLACE))
+    here = here[~(blocks.has("X") | blocks.has("Y"))[blocks.g_row[here]]] if len(here) else here
     yield from _codes(blocks.g[here], blocks.g_row[here], _WITHOUT_PLACE, "G")
     yield from _codes(blocks.m, blocks.m_row, (29,), "M")
-    yield from _word_beside(blocks, (40,), "X", "G4 X")
+    yield from _word_beside(blocks, (40,), "X", "G4 X", without="P")
     yield from _word_beside(blocks, CYCLES, "K", "K in a cycle")
     yield from _after_g80(blocks)
 
@@ -94,11 +95,11 @@ def _codes(codes: Array, rows: Array, wanted: tuple[int, ...], letter: str) -> _
         yield name_of(int(codes[index]), letter), int(rows[index])
 
 
-def _word_beside(blocks: Blocks, codes: tuple[int, ...], letter: str, name: str) -> _Found:
-    """The first block with one of some codes and a word."""
+def _word_beside(blocks: Blocks, codes: tuple[int, ...], letter: str, name: str, without: str = "") -> _Found:
+    """The first block with one of some codes and a word, and without another word."""
     if letter in blocks.words:
         rows = blocks.g_row[np.isin(blocks.g, codes)]
-        rows = rows[blocks.has(letter)[rows]]
+        rows = rows[blocks.has(letter)[rows] & ~blocks.has(without)[rows]]
         if len(rows):
             yield name, int(rows[0])
 
@@ -106,7 +107,7 @@ def _word_beside(blocks: Blocks, codes: tuple[int, ...], letter: str, name: str)
 def _after_g80(blocks: Blocks) -> _Found:
     """The first block with X, Y or Z after G80 and without a motion code, which RS274NGC refuses."""
     blocks = without_idle_g80(blocks)
-    if not (blocks.g == CANCEL_CYCLE).any():
+    if CANCEL_CYCLE not in blocks.g:
         return
     here = np.isin(blocks.g, [code for code, meaning in G_CODES.items() if meaning.group is Group.MOTION])
     active = forward_fill(blocks.g_row[here], blocks.g[here], 0, len(blocks))

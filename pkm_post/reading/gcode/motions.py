@@ -138,6 +138,10 @@ def _joined(columns: list[Array]) -> Array:
     return columns[0] if len(columns) == 1 else np.concatenate(columns)
 
 
+_ROTARY = "ABC"
+"""Axes of other machines: G28 with them alone moves no other one."""
+KEPT, OTHERS_LOST, LOST = 0, 1, 2
+"""What a block leaves known of the place of the tip: all, the coordinates that it gives, nothing."""
 _SECOND = 2
 """P of G30 for the second reference point; those beyond are not known."""
 _SPECIAL_CODES = (280, 281, 300, 301, 530, *SETS_OFFSETS)
@@ -153,16 +157,17 @@ class PositionTracker:
         tools: Array,
         spindle: Array,
         dwells: Array,
+        lost: Array,
         options: ReadOptions,
         faults: BlockDiagnostics,
     ):
         self.blocks, self.modal, self.options, self.faults = blocks, modal, options, faults
-        self.tools, self.spindle = tools, spindle
+        self.tools, self.spindle, self.lost = tools, spindle, lost
         self.polar = PolarWords(blocks, modal, PositionWords.of(blocks, modal), faults)
         self.words, self._is_polar = self.polar.words, self.polar.rows()
         self.relative = modal.active[Group.DISTANCE] == 910
         self.offset_codes = OffsetCodes(blocks, modal, self.words, tools, options, faults)
-        self.drilling = CycleTracker(blocks, modal, self.words, spindle, dwells, faults)
+        self.drilling = CycleTracker(blocks, modal, self.polar, spindle, dwells, faults)
         zero = options.machine_zero
         self.home = {280: options.home or zero, 300: options.second_home or zero}
         self.in_cycles: list[CycleEvent] = []
@@ -183,6 +188,10 @@ class PositionTracker:
             self._add_ordinary(moves[done:until])
             done = until
             self._change_frame(row)
+            if self.lost[row]:
+                self._lose_place(row)
+                done += 1
+                continue
             if self._is_polar[row]:
                 self.polar.resolve(row, self.position, self.known)
             if self._special_motion(row):
@@ -202,7 +211,7 @@ class PositionTracker:
             special = special | (programmed[group] != NONE)
         if not is_uniform(programmed[Group.LENGTH]):
             special = special | ((programmed[Group.LENGTH] != NONE) & ~self._repeats_length_code())
-        return section_ends | special | self._is_polar
+        return section_ends | special | self._is_polar | (self.lost != KEPT)
 
     def _repeats_length_code(self) -> Array:
         """Mask of blocks that repeat the active tip control, (N,): every LN block does."""
@@ -257,6 +266,13 @@ class PositionTracker:
         if not (np.array_equal(frame.turn, self.frame.turn) and np.array_equal(frame.shift, self.frame.shift)):
             self.frame = frame
             self.frames.append(frame)
+
+    def _lose_place(self, row: int) -> None:
+        """A rapid block that turns the tool: of its tip only coordinates given to the upright tool are known."""
+        words, upright = self.words.at(row), self.lost[row] == OTHERS_LOST
+        given = ~np.isnan(words) & upright & (not self.relative[row])
+        self.position = np.where(given, words, self.position)
+        self.known = given
 
     # special motions
 
@@ -319,6 +335,8 @@ class PositionTracker:
             return
         words = self.words.at(row)
         given = ~np.isnan(words)
+        if not given.any() and any(self.blocks.has(letter)[row] for letter in _ROTARY):
+            return
         if given.any():
             self._uses_work_offset |= not self.relative[row]
             from_here = words + self.position if self.relative[row] else words

@@ -60,9 +60,11 @@ def _block_of(tree: Tree[Token]) -> Block:
     block = Block()
     seen: set[str] = set()
     special = False
-    for child in tree.children:
+    for place, child in enumerate(tree.children):
         if isinstance(child, str):
-            block.deleted |= child.type == "DELETE"
+            is_delete = child.type == "DELETE"
+            block.deleted |= is_delete and place == 0
+            special |= is_delete and place > 0
             block.g.extend(dialect_codes(child))
         elif child.data in ("word", "named_word", "surface_word"):
             special |= not _add_word(block, child, seen)

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from pkm_post.model import Array
+from pkm_post.model import Array, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import Group, Word
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
@@ -39,6 +39,8 @@ class PolarWords:
 
     def rows(self) -> Array:
         """Whether each block has polar words, (N,)."""
+        if not (set(POLAR_WORDS) & set(self._blocks.words) or _ON in self._blocks.g):
+            return uniform(False, len(self._blocks))
         of_word = self._blocks.has(POLAR_WORDS[0]) | self._blocks.has(POLAR_WORDS[1])
         mode = self._modal.active[Group.POLAR] == _ON
         return (of_word | mode) & self._modal.moves & (self._modal.programmed[Group.ONCE] != _DIRECTLY)
@@ -66,6 +68,26 @@ class PolarWords:
         place = _place(radius, angle, here, relative)
         for axis, target in zip(axes, place - here * relative, strict=True):
             self.words.columns[axis][row] = target
+
+    def repeated(self, row: int, here: Array, count: int) -> Array | None:
+        """Places of a block that is repeated under G91: each as far from the one before, in radius and angle.
+
+        Args:
+            row: the block.
+            here: (2,) X and Y of the tool.
+            count: how often it is carried out.
+
+        Returns:
+            (count, 2) places, or None where the block has no polar words.
+        """
+        radius, angle = self._polar(row, _XY, by_mode=False)
+        if math.isnan(radius) and math.isnan(angle):
+            return None
+        places = []
+        for _ in range(count):
+            here = _place(radius, angle, here, relative=True)
+            places.append(here)
+        return np.array(places).reshape(-1, 2)
 
     def _polar(self, row: int, axes: tuple[int, ...], by_mode: bool) -> tuple[float, float]:
         """Radius in mm and angle in degrees, NaN where absent."""

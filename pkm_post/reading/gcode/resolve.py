@@ -92,6 +92,7 @@ class _BlockStates:
         spindle: (N,) signed spindle speed, 1/min.
         sides: (N,) radius of the 2D compensation, mm.
         axes: (N, 3) unit tool axis in program coordinates.
+        lost: (N,) what is known of the place of the tip after each block, as of ``tool_axes``.
         normals: (N, 3) unit surface normal likewise, or NaN.
         spins: (N,) rotation of the platform about the tool axis, rad, or NaN.
     """
@@ -100,6 +101,7 @@ class _BlockStates:
     spindle: Array
     sides: Array
     axes: Array
+    lost: Array
     normals: Array
     spins: Array
 
@@ -107,7 +109,7 @@ class _BlockStates:
 def _block_states(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> _BlockStates:
     tools = tools_in_spindle(blocks, modal, options, faults)
     checkpoint()
-    axes = tool_axes(blocks, modal, options, faults)
+    axes, lost = tool_axes(blocks, modal, options, faults)
     checkpoint()
     check_cycles(modal, axes, faults)
     return _BlockStates(
@@ -115,6 +117,7 @@ def _block_states(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
         spindle=spindle_speeds(blocks, modal),
         sides=side_offsets(blocks, modal, tools, options, faults),
         axes=axes,
+        lost=lost,
         normals=surface_normals(blocks, faults),
         spins=spins(blocks, modal, options),
     )
@@ -126,9 +129,10 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
     modes = path_modes(blocks, modal, faults)
     checkpoint()
     dwells = dwell_words(blocks, modal, options)
-    tracker = PositionTracker(blocks, modal, states.tools, states.spindle, dwells, options, faults)
+    tracker = PositionTracker(blocks, modal, states.tools, states.spindle, dwells, states.lost, options, faults)
     motions = tracker.motions()
     checkpoint()
+    _check_lost_places(motions, states.lost, faults)
     centre, axis = arc_geometry(blocks, modal, motions, faults)
     if faults.has_errors():
         return None
@@ -162,6 +166,15 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
         reading=(),
         length_offsets=frozenset(tracker.offset_codes.length_offsets),
     )
+
+
+def _check_lost_places(motions: Motions, lost: Array, faults: BlockDiagnostics) -> None:
+    """Report cuts to places that are not known again after the tool was turned where its tip is not known."""
+    if not lost.any():
+        return
+    first = int(np.flatnonzero(lost)[0])
+    for block in np.unique(motions.block[~motions.known & (motions.motion != 0) & (motions.block > first)]).tolist():
+        faults.add("G416", block, "a cut after the tool was turned without control of its tip")
 
 
 def _frames(motions: Motions) -> RowFrames:

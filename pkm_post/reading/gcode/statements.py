@@ -102,18 +102,21 @@ class OWord:
 Statement = Words | OWord
 
 
-def statement_of(tree: Tree[Token]) -> Statement:
+def statement_of(tree: Tree[Token], block_delete: bool = False) -> Statement:
     """Compile a block.
 
     Args:
         tree: parse tree of the block.
+        block_delete: whether to skip what follows a ``/`` within the block.
 
     Raises:
         ExecutionFault: the block is invalid.
     """
     words = Words()
-    for child in tree.children:
+    for place, child in enumerate(tree.children):
         if isinstance(child, str):
+            if child.type == "DELETE" and place > 0 and block_delete:
+                break
             words.codes += dialect_codes(child)
         elif child.data == "o_word":
             return _o_word_of(child)

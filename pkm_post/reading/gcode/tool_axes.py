@@ -14,11 +14,11 @@ import numpy as np
 from pkm_post.geometry import torsion
 from pkm_post.model import Array, read_only, uniform
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import Group, Word, word_of
+from pkm_post.reading.gcode.codes import NONE, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.frames import normal_coordinate
 from pkm_post.reading.gcode.modal import Modal, forward_fill, is_arc, is_cycle, track_coordinate
-from pkm_post.reading.gcode.motions import as_slice
+from pkm_post.reading.gcode.motions import KEPT, LOST, OTHERS_LOST, as_slice
 from pkm_post.reading.gcode.options import AXIS_WORDS, NORMAL_WORDS, VECTOR_WORDS, ReadOptions
 
 _BY_ANGLES, _BY_VECTOR = 434, 435
@@ -31,18 +31,52 @@ _LENGTH_ERROR = 1e-3
 """A normal whose length differs more from 1 is reported; less is rounding."""
 
 
-def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> Array:
-    """Unit tool axis at the end of each block, (N, 3)."""
+def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> tuple[Array, Array]:
+    """Tool axes, and blocks that turn the tool where X, Y and Z are places of slides rather than of the tip.
+
+    Returns:
+        (N, 3) unit tool axis at the end of each block, and (N,) ``KEPT``, ``OTHERS_LOST`` or ``LOST``.
+    """
     if options.axis_words == "none":
-        return uniform(_UPRIGHT, len(blocks))
+        return uniform(_UPRIGHT, len(blocks)), uniform(KEPT, len(blocks), np.uint8)
     find, code = (_vectors, _BY_VECTOR) if options.axis_words == "vector" else (_angles, _BY_ANGLES)
     axes, given = find(blocks, modal, options, faults)
+    lost = uniform(KEPT, len(blocks), np.uint8)
     if options.axis_words != "RPY":
         # Without tip control, X Y Z are slide positions, and the tip position depends on the machine.
-        idle = modal.moves & (modal.active[Group.LENGTH] != code) & ~given
-        idle &= (np.abs(axes[:, 0]) > _TILTED) | (np.abs(axes[:, 1]) > _TILTED) | (axes[:, 2] < 0)
-        faults.add_where("G424", idle, lambda row: f"({axes[row, 0]:.6f}, {axes[row, 1]:.6f}, {axes[row, 2]:.6f})")
-    return read_only(axes)
+        idle = modal.moves & (modal.active[Group.LENGTH] != code)
+        if find is _angles and idle.any():
+            lost = _places_lost(modal, axes, given, idle, faults)
+            idle &= lost == KEPT
+        faults.add_where("G424", idle & ~given & _tilted(axes), lambda row: _shown(axes[row]))
+    return read_only(axes), lost
+
+
+def _tilted(axes: Array) -> Array:
+    """Whether each tool axis is other than upright, (N,)."""
+    tilted: Array = (np.abs(axes[:, 0]) > _TILTED) | (np.abs(axes[:, 1]) > _TILTED) | (axes[:, 2] < 0)
+    return tilted
+
+
+def _shown(axis: Array) -> str:
+    return f"({axis[0]:.6f}, {axis[1]:.6f}, {axis[2]:.6f})"
+
+
+def _places_lost(modal: Modal, axes: Array, given: Array, idle: Array, faults: BlockDiagnostics) -> Array:
+    """What rapid moves without tip control leave known, (N,): where they tilt the tool, or bring it upright again.
+
+    A head turns about its own axes then, and the tip goes where a machine brings it that is not this one. The next
+    places with tip control are those of the tip again.
+    """
+    tilted = _tilted(axes)
+    before = np.append(False, tilted[:-1])[: len(tilted)]
+    # A tool that was tilted with tip control and moves on without it is another fault: its place was known.
+    words = np.flatnonzero(given)
+    by_idle = forward_fill(words, idle[words].astype(np.uint8), 0, len(given)) == 1
+    turns = idle & (modal.active[Group.MOTION] == 0) & (modal.programmed[Group.ONCE] == NONE) & by_idle
+    turns &= tilted | (before & given)
+    faults.add_where("G431", turns & tilted & ~before, lambda row: f"tool axis {_shown(axes[row])}")
+    return np.select([turns & tilted, turns], [LOST, OTHERS_LOST], KEPT).astype(np.uint8)
 
 
 def check_cycles(modal: Modal, axes: Array, faults: BlockDiagnostics) -> None:
@@ -118,12 +152,14 @@ def surface_normals(blocks: Blocks, faults: BlockDiagnostics) -> Array:
 def _angles(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> tuple[Array, Array]:
     """Tool axes, (N, 3), and the blocks with words for them, (N,)."""
     words = _rotary_words(blocks, modal, options)
+    axes = axis_of(_in_rad(modal, words))
     given: Array = np.any([~np.isnan(word) for word in words.values()], axis=0)
     if options.axis_words != "RPY":
         # Without G43.4 a machine with such a head takes X Y Z as slide positions, not as the tip position.
-        inactive = given & (modal.active[Group.LENGTH] != _BY_ANGLES)
+        inactive = given & (modal.active[Group.LENGTH] != _BY_ANGLES) & (modal.active[Group.MOTION] != 0)
+        inactive &= _tilted(axes)
         faults.add_where("G414", inactive, lambda row: (_first(words, row), " without ", word_of(_BY_ANGLES)))
-    return axis_of(_in_rad(modal, words)), given
+    return axes, given
 
 
 def spins(blocks: Blocks, modal: Modal, options: ReadOptions) -> Array:

@@ -253,6 +253,7 @@ def test_another_program_is_only_entered_by_a_call():
         ("G81 X1 Z-1 R1\nG0 G80\nZ5", "rs274", ()),
         ("G80\nG0 Z5\nG80 G28 Z0", "rs274", ()),
         ("G4 X1", "fanuc", ("G4 X in line 1",)),
+        ("G4 P.001 G0 X1", "rs274", ()),
         ("G81 X1 Z-1 R1 K3", "fanuc", ("K in a cycle in line 1",)),
         ("o10 sub\no10 endsub\n#<a>=1\nG64 P0.1", "rs274", ("O10 sub in line 1", "#<a> in line 3", "G64 P in line 4")),
         ("G92.2\nO1\nG15\nG1 X1", "fanuc", ("O1 in line 2", "G15 in line 3")),

@@ -45,6 +45,14 @@ def test_distance_and_angle_are_those_of_rs274(text, expected):
     np.testing.assert_allclose(ends(text), expected, rtol=0, atol=PRINTED)
 
 
+def test_repeated_holes_go_round_as_those_of_rs274():
+    # rs274: six times STRAIGHT_FEED down, at these X and Y; then X and Y on from there by 1 in radius
+    text = "G21 F100\nG0 X15 Y0 Z3\nG91 G81 ^60 R-2 Z-1 L6\n@1 L2\nG80\n"
+    bottoms = ends(text)
+    around = [[7.5, 12.9904], [-7.5, 12.9904], [-15, 0], [-7.5, -12.9904], [7.5, -12.9904], [15, 0], [16, 0], [17, 0]]
+    np.testing.assert_allclose(bottoms[bottoms[:, 2] == 0, :2], around, rtol=0, atol=PRINTED)
+
+
 def test_the_centre_of_a_polar_arc_is_that_of_rs274():
     program, _ = taken(MOVES)
     np.testing.assert_allclose(program.arc_centre[-1], [-14.9992, 19.8413, 0], rtol=0, atol=PRINTED)

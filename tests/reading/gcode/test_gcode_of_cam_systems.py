@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What programs of CAM systems for controls of Fanuc's kind have in their headings, cycles and ends.
+
+Made here after the form of posts for Mastercam, Fusion and others; the pecks are from the manual of Haas mills, G83.
+"""
+
+import numpy as np
+import pytest
+
+from pkm_post.model import Tool
+from pkm_post.reading.gcode import ReadOptions, read
+
+ANY = Tool(0, "any", 6.0, 0.0, 50.0)
+ZERO = (0.0, 100.0, 300.0)
+
+
+def taken(text, **options):
+    return read(text, "part.nc", ReadOptions(default_tool=ANY, machine_zero=ZERO, **options))
+
+
+def ends(text, **options):
+    program, faults = taken(text, **options)
+    assert program is not None, [str(fault) for fault in faults]
+    rows = np.append(0, np.flatnonzero(np.any(np.diff(program.position, axis=0), axis=1)) + 1)
+    return program.position[rows]
+
+
+HEADED = """O8651( WEDGE )
+( DATE - NOV. 15 )
+G21
+G0 G17 G40 G80 G90 G94 G98
+/M31
+G0 G28 G91 Z0.
+T17 M6
+M01
+G0 G90 G54 X-5. Y4. B0. A0. S6000 M3
+T1
+G43 H17 Z10. /M8
+G83 G99 Z-6. R2. I4. J1. K2. F80.
+X5.
+G80 /M9
+M5
+G0 G28 G91 Z0.
+G0 G28 Y0.
+M30
+%
+"""
+
+
+def test_a_whole_program_is_read():
+    program, faults = taken(HEADED, left_out=("M31",), needs_end=True)
+    assert faults == ()
+    assert program.reading == (
+        "flavour fanuc, by O8651 in line 1, K in a cycle in line 12",
+        "M31, left out as chosen (line 5)",
+    )
+    bottoms = ends(HEADED, left_out=("M31",))
+    assert bottoms[-2:].tolist() == [[5, 4, 300], [5, 100, 300]]
+
+
+def test_pecks_grow_smaller_down_to_k():
+    # R 2, pecks of 4, 3, 2, 2 and so on: to -2, -5, -6
+    drilled = ends(HEADED, left_out=("M31",))
+    depths = drilled[(drilled[:, 0] == -5) & (drilled[:, 2] < 2), 2].round(9).tolist()
+    assert depths == [-2, -2 + 0.254, -5, -5 + 0.254, -6]
+
+
+@pytest.mark.parametrize(
+    ("words", "code"), [("I4. J1.", "G418"), ("I4. J1. K5.", "G418"), ("I4.", None), ("Q4. K2", None)]
+)
+def test_words_of_pecks(words, code):
+    text = f"G21\nG0 X0 Y0 Z10\nG83 G99 X1 Z-6. R2. {words} F80.\n"
+    assert [fault.code for fault in taken(text, flavour="fanuc")[1]] == ([code] if code else [])
+    assert taken(text.replace(words, "I4. Q4"), flavour="rs274")[1][0].code == "G404"
+
+
+def test_what_follows_a_stroke_within_a_block_is_left_out_as_a_deleted_block_is():
+    text = "G21\nG0 X0 Y0 Z10\nG0 X1 /Y2\n/X3\nZ[4/2] /Y7\n"
+    assert ends(text)[-1].tolist() == [3, 7, 2]
+    assert ends(text, block_delete=True)[-1].tolist() == [1, 0, 2]
+    assert [fault.code for fault in taken("G0 X1 /Y2 X3\n")[1]] == ["G202"]
+
+
+def test_rotary_words_of_zero_leave_the_tool_upright():
+    assert ends("G0 X1 Y2 Z3 A0. B0.\nC0\nX2\n")[-1].tolist() == [2, 2, 3]
+    assert [fault.code for fault in taken("G0 X1 Y2 Z3 A0. B1.\n")[1]] == ["G414"]
+
+
+def test_the_reference_point_of_rotary_axes_moves_nothing():
+    assert ends("G0 X1 Y2 Z3\nG91 G28 B0.\nG28 A0 Z0\n")[-1].tolist() == [1, 2, 300]
+
+
+TILTED = """G21
+G0 G54 X0 Y0 Z100 A0. C0. S900 M3
+G0 A30. C90.
+G0 X9
+G43.4 H1 X5. Y6. Z50.
+G1 Z0 F200
+G0 Z50
+G49
+G91 G28 Z0
+G90 G0 A0 C0 X7
+Y1
+Z100
+X8
+"""
+
+
+def test_rapid_moves_may_tilt_the_tool_before_the_control_of_its_tip():
+    program, faults = taken(TILTED, axis_words="AC", flavour="fanuc")
+    assert [(fault.code, fault.place.line) for fault in faults] == [("G431", 3)]
+    assert program.line.tolist() == [2, 5, 6, 7, 9, 9, 12, 13]
+    np.testing.assert_allclose(program.position[[1, -2, -1]], [[5, 6, 50], [7, 1, 100], [8, 1, 100]])
+    np.testing.assert_allclose(
+        program.tool_axis[[0, 1, -1]], [[0, 0, 1], [0.5, 0, np.sqrt(0.75)], [0, 0, 1]], atol=1e-9
+    )
+
+
+def test_cuts_do_not_tilt_it_there():
+    text = TILTED.replace("G0 A30. C90.", "G1 F100 A30. C90.")
+    codes = [fault.code for fault in taken(text, axis_words="AC", flavour="fanuc")[1]]
+    assert codes[0] == "G414"
+
+
+def test_cuts_need_all_of_the_place():
+    faults = taken(TILTED.replace("X5. Y6. Z50.", "X5. Z50."), axis_words="AC", flavour="fanuc")[1]
+    assert [(fault.code, fault.place.line) for fault in faults] == [("G431", 3), ("G416", 6)]
