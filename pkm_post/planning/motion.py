@@ -29,11 +29,11 @@ from pkm_post.model import (
 )
 from pkm_post.planning.fast_poses import fast_poses_within
 from pkm_post.planning.interpolation import InterpolationCheck, poses_at
-from pkm_post.planning.jerk_limits import Ceilings, lowered_for_jerk
+from pkm_post.planning.jerk_limits import jerk_limited
 from pkm_post.planning.knots import SLOWDOWN, block_rate_factors, even_marks, knots, slower_feed
 from pkm_post.planning.rough_limits import DerivativeBounds, below_feed, deviates_in_blends, rough_limits
 from pkm_post.planning.schedule import Schedule
-from pkm_post.planning.speed_limits import feed_at, limited_quantities, limits, limits_at
+from pkm_post.planning.speed_limits import limits_at
 from pkm_post.planning.speed_profile import Stations, cell_times, speed_profile, stations
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import in_workers
@@ -43,8 +43,6 @@ _FOR_CORNERS = 0.4
 """Share of the tolerances that rounding the corners may use."""
 _FOR_CURVES = 0.6
 """Share of the tolerances that curves may use in place of short lines."""
-_WINDOWS_MS = (4, 8, 16, 32, 64, 128)
-"""Averaging windows to try for a plan with a jerk limit; the one with the shortest motion is used."""
 LONGEST_MOTION = 7 * 86_400.0
 """s: a week, which amounts to five million points and more."""
 _MOST_ROUNDS = 8
@@ -192,26 +190,11 @@ def _way(path: ToolPath, marks: Stations) -> tuple[PosePath, Array]:
 def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
     """The schedule for a machine with jerk limits."""
     marks = stations(path)
-    poses = path.within(marks.segment, marks.u)
-    bounded = limited_quantities(machine, poses)
-    square, along = limits(feed_at(path, poses, marks.u), bounded)
-    square[marks.rest] = 0.0
-    ceilings = Ceilings(marks.s, marks.rest, square, along)
-    _, window_ms, course = min(
-        (_averaged(lowered_for_jerk(ceilings, bounded, ms / 1000), ms) for ms in _WINDOWS_MS),
-        key=lambda tried: tried[0],
+    motion = jerk_limited(path, marks, machine)
+    _check_duration(motion.s, motion.square, marks)
+    return Schedule.of(
+        marks, motion.s, motion.rest, motion.square, motion.acceleration, shortest_ms=machine.shortest_interval
     )
-    s, _, slowest = course
-    _check_duration(s, slowest, marks)
-    return Schedule.of(marks, *course, window_ms, machine.shortest_interval)
-
-
-def _averaged(ceilings: Ceilings, window_ms: int) -> tuple[float, int, tuple[Array, Array, Array]]:
-    """The duration of the motion under ceilings made for a window, s; the window; and the feed profile."""
-    square = speed_profile(ceilings.s, ceilings.square, ceilings.along)
-    runs = int(ceilings.rest.sum()) - 1
-    duration = float(cell_times(ceilings.s, square).sum()) + runs * window_ms / 1000
-    return duration, window_ms, (ceilings.s, ceilings.rest, square)
 
 
 def interpolate(feed_plan: FeedPlan) -> Plan:

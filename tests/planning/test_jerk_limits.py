@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plans whose acceleration does not jump: limits of jerk, at every moment, and what they cost."""
+"""Plans with jerk limits: kept at every moment, and what they cost beside the shortest times."""
 
 import dataclasses
 
@@ -12,17 +12,17 @@ from pkm_post.machine import strut_rates
 from pkm_post.model import Event, EventKind
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import plan_feed
-from pkm_post.planning.jerk_limits import Ceilings, _least_of_covers, lowered_for_jerk
-from pkm_post.planning.schedule import MotionLaw, by_time
-from pkm_post.planning.speed_profile import speed_profile, stations
+from pkm_post.planning.schedule import by_time
 from pkm_post.toolpath.place import place
 
 NANOMETRE = 1e-6
 JERK = 1e5
+BETWEEN_PLACES = 1.005
+"""Factor of a jerk between the places and middles at which it is limited."""
 
 
-def planned(made, jerk=JERK, tolerance=1e-2):
-    machine = dataclasses.replace(example(), strut_jerk=jerk)
+def planned(made, jerk=JERK, tolerance=1e-2, **limits):
+    machine = dataclasses.replace(example(), strut_jerk=jerk, **limits)
     trajectory, _ = place(made, machine, ON_PALLET)
     feed_plan, faults = plan_feed(trajectory, machine, Tolerances(tolerance, np.radians(tolerance)))
     assert not faults
@@ -38,31 +38,41 @@ def square_wave():
 JOBS = pytest.mark.parametrize("made", [cone(80, turns=0.5), square_wave()], ids=["cone", "corners"])
 
 
-def strut_jerks(machine, path, schedule, step=1e-4):
-    """Third differences of the strut lengths over a tenth of a millisecond, (N, 6)."""
+def by_differences(path, schedule, step=1e-4):
+    """Poses by time every tenth of a millisecond."""
     time = np.arange(0, schedule.rests_ms[-1] / 1000, step)
     s, speed, acceleration = schedule.at(time)
-    _, _, second = strut_rates(machine, by_time(path.at(s), speed, acceleration))
-    return np.diff(second, axis=0) / step
+    return by_time(path.at(s), speed, acceleration)
+
+
+def strut_jerks(machine, path, schedule, step=1e-4):
+    """Third differences of the strut lengths over a tenth of a millisecond, (N, 6)."""
+    return np.diff(strut_rates(machine, by_differences(path, schedule, step))[2], axis=0) / step
 
 
 @JOBS
 def test_the_jerk_of_every_strut_keeps_its_limit(made):
     machine, path, schedule = planned(made)
-    assert np.abs(strut_jerks(machine, path, schedule)).max() <= JERK
+    assert np.abs(strut_jerks(machine, path, schedule)).max() <= BETWEEN_PLACES * JERK
 
 
 @JOBS
 def test_the_jerk_of_the_tip_keeps_its_limit(made):
-    machine = dataclasses.replace(example(), tip_jerk=5e4)
-    trajectory, _ = place(made, machine, ON_PALLET)
-    feed_plan, _ = plan_feed(trajectory, machine, Tolerances(1e-2, 1e-3))
-    path, schedule = feed_plan.path, feed_plan.schedule
+    machine, path, schedule = planned(made, np.inf, tip_jerk=5e4)
     step = 1e-4
-    time = np.arange(0, schedule.rests_ms[-1] / 1000, step)
-    s, speed, acceleration = schedule.at(time)
-    jerk = np.linalg.norm(np.diff(by_time(path.at(s), speed, acceleration).tip_2, axis=0), axis=1) / step
-    assert jerk.max() <= machine.tip_jerk
+    jerk = np.linalg.norm(np.diff(by_differences(path, schedule, step).tip_2, axis=0), axis=1) / step
+    assert 0.9 * machine.tip_jerk < jerk.max() <= BETWEEN_PLACES * machine.tip_jerk
+
+
+@JOBS
+def test_accelerations_keep_their_limits_without_a_jump(made):
+    machine, path, schedule = planned(made, tip_jerk=JERK)
+    poses = by_differences(path, schedule)
+    _, _, struts = strut_rates(machine, poses)
+    assert np.abs(struts).max() <= machine.strut_acceleration
+    assert 0.9 * machine.tip_acceleration < np.linalg.norm(poses.tip_2, axis=1).max() <= machine.tip_acceleration
+    assert np.abs(np.diff(struts, axis=0)).max() <= BETWEEN_PLACES * JERK * 1e-4
+    np.testing.assert_allclose(struts[0], 0, atol=1e-6)
 
 
 @JOBS
@@ -79,7 +89,7 @@ def test_speed_and_acceleration_are_the_derivatives_of_the_way(made):
     s, speed, acceleration = schedule.at(time)
     late, early = schedule.at(time + step), schedule.at(time - step)
     np.testing.assert_allclose((late[0] - early[0]) / (2 * step), speed, atol=1e-3)
-    np.testing.assert_allclose((late[1] - early[1]) / (2 * step), acceleration, atol=JERK * step)
+    np.testing.assert_allclose((late[1] - early[1]) / (2 * step), acceleration, atol=10 * JERK * step)
     assert (np.diff(schedule.at(np.sort(time))[0]) >= 0).all()
 
 
@@ -89,7 +99,7 @@ def test_rests_are_whole_milliseconds_at_rest(made):
     s, speed, acceleration = schedule.at(schedule.rests_ms / 1000)
     np.testing.assert_allclose(s, path.starts[schedule.rest_joints], atol=NANOMETRE)
     assert not speed.any()
-    np.testing.assert_allclose(acceleration, 0, atol=1e-3)
+    np.testing.assert_allclose(acceleration, 0, atol=1e-6)
 
 
 @JOBS
@@ -105,59 +115,59 @@ def test_the_feed_is_not_exceeded(made):
     s, speed, _ = schedule.at(time)
     segment = np.clip(np.searchsorted(path.starts, s) - 1, 0, len(path.feed) - 1)
     highest = np.maximum(path.feed[segment], path.feed[np.maximum(segment - 1, 0)])
-    assert (speed <= highest + 1e-9).all()
+    assert (speed <= highest * (1 + 1e-6)).all()
 
 
-def test_a_looser_limit_is_never_slower_and_comes_near_to_none():
-    times = [planned(square_wave(), jerk)[2].rests_ms[-1] for jerk in (1e4, 1e5, 1e6, 1e9, np.inf)]
+def test_a_looser_limit_is_never_slower():
+    times = [planned(square_wave(), jerk)[2].rests_ms[-1] for jerk in (1e4, 1e5, 1e6)]
     assert times == sorted(times, reverse=True)
-    assert times[-2] <= times[-1] + 5 * len(planned(square_wave())[2].rests_ms)
 
 
-def test_the_mean_of_a_motion_law_against_a_sum():
-    random = np.random.default_rng(9)
-    speed = np.concatenate([[0.0], random.uniform(1, 20, 8), [0.0]])
-    s = np.concatenate([[0.0], np.cumsum(random.uniform(0.1, 3, 9))])
-    time = np.concatenate([[0.0], np.cumsum(2 * np.diff(s) / (speed[1:] + speed[:-1]))])
-    law = MotionLaw(s, time, speed)
-    for moment in (0.3, 0.5 * time[-1]):
-        fine = moment + (np.arange(200000) + 0.5) / 200000 * 0.05 - 0.025
-        means = [values.mean() for values in law.at(fine)]
-        np.testing.assert_allclose(np.ravel(law.mean(np.array([moment]), 0.05)), means, rtol=1e-4)
+def s_curve(distance, speed, acceleration, jerk):
+    """Shortest time from rest to rest over a distance, from the seven phases of an S-curve [Biagiotti2012], s."""
+    ramp = acceleration / jerk if speed * jerk >= acceleration**2 else np.sqrt(speed / jerk)
+    rise = ramp + max(speed / acceleration, ramp)
+    if distance >= speed * rise:
+        return distance / speed + rise
+    ramp = acceleration / jerk
+    if distance >= 2 * acceleration * ramp**2:
+        root = np.sqrt(acceleration**4 + 4 * distance * jerk**2 * acceleration) / jerk
+        return ramp + root / acceleration
+    return 4 * np.cbrt(distance / (2 * jerk))
 
 
-def test_limits_are_carried_to_all_places_of_a_window():
-    # A place that allows 1 mm/s in the middle of a way that allows 100: for a tenth of a second around it, no more.
-    s = np.linspace(0, 10, 11)
-    square, along = np.full(11, 1e4), np.full(11, 500.0)
-    square[5], along[5] = 1.0, 20.0
-    ends = np.zeros(11, dtype=bool)
-    ends[[0, -1]] = True
-    square[ends] = 0.0
-    made = lowered_for_jerk(Ceilings(s, ends, square, along), [], 0.1)
-    near = (made.s >= 4.9 - 1e-12) & (made.s <= 5.1 + 1e-12)
-    assert near.sum() >= 3
-    assert (made.square[near] <= 1.0).all()
-    assert (made.along[near] <= 20.0).all()
-    assert np.isin(s, made.s).all()
-    law = MotionLaw(made.s, np.zeros(0), np.sqrt(speed_profile(made.s, made.square, made.along)))
-    assert law.speed[near].max() <= 1.0
+SINGLE = [(0.01, 20), (1, 100), (5, 20), (20, 100), (60, 200), (120, 30)]
 
 
-def test_least_of_covers_against_a_loop():
-    random = np.random.default_rng(4)
-    for size in (1, 2, 7, 64, 100):
-        first, second = random.integers(0, size, (2, 40))
-        first, last, value = np.minimum(first, second), np.maximum(first, second), random.uniform(size=40)
-        slow = [min([value[k] for k in range(40) if first[k] <= i <= last[k]], default=np.inf) for i in range(size)]
-        np.testing.assert_array_equal(_least_of_covers(first, last, value, size), slow)
+@pytest.mark.parametrize("jerk", [1e4, 1e5, 1e6])
+@pytest.mark.parametrize("distance, feed", SINGLE)
+def test_a_single_move_takes_little_more_than_its_s_curve(distance, feed, jerk):
+    events = (Event(0, EventKind.TOOL_CHANGE, 1), Event(1, EventKind.DWELL, 0.1))
+    made = program([[0, 0, 60], [distance, 0, 60]], feed=feed, events=events)
+    machine, _, schedule = planned(made, np.inf, tip_jerk=jerk)
+    time = np.diff(schedule.rests_ms)[-1] / 1000
+    shortest = s_curve(distance, feed, (0.98 - 2 / 27 * jerk * 1e-3 / 1960) * 0.98 * machine.tip_acceleration, jerk)
+    assert shortest <= time <= 1.05 * shortest + 1e-3  # whole milliseconds
 
 
-def test_stations_stay_among_the_places():
-    _, path, _ = planned(square_wave())
-    marks = stations(path)
-    made = lowered_for_jerk(
-        Ceilings(marks.s, marks.rest, np.where(marks.rest, 0.0, 100.0), np.full(len(marks.s), 50.0)), [], 0.02
-    )
-    assert np.isin(marks.s, made.s).all()
-    assert made.rest.sum() == marks.rest.sum()
+def test_what_the_s_curve_of_the_test_says():
+    # 4 phases of 0.1 s at the jerk 1000: 2 j t^3 = 2 mm
+    np.testing.assert_allclose(s_curve(2.0, 1e9, 1e9, 1000.0), 0.4)
+    # 10 mm/s reached in two phases of 0.1 s, on 1 mm, and the same at the end; 10 mm in between take 1 s more
+    np.testing.assert_allclose(s_curve(12.0, 10.0, 1e9, 1000.0), 1.4)
+    # 100 mm/s^2 for 0.1 s between two phases of 0.1 s: 20 mm/s after 0.3 s, on 3 mm
+    np.testing.assert_allclose(s_curve(6.0, 20.0, 100.0, 1000.0), 0.6)
+    np.testing.assert_allclose(s_curve(6.0, 1e9, 100.0, 1000.0), 0.6)
+
+
+def test_a_run_of_one_short_segment_after_another_with_rests():
+    events = tuple(Event(row, EventKind.DWELL, 0.1) for row in range(4))
+    made = program([[0, 0, 60], [1e-3, 0, 60], [1e-3, 2, 60], [0, 2, 60]], feed=50.0, events=events)
+    machine, path, schedule = planned(made)
+    assert len(schedule.rests_ms) == 5
+    assert np.abs(strut_jerks(machine, path, schedule)).max() <= BETWEEN_PLACES * JERK
+
+
+def test_the_same_path_gives_the_same_bytes():
+    first, again = (planned(square_wave())[2].law for _ in range(2))
+    assert first.time.tobytes() == again.time.tobytes()

@@ -1,0 +1,263 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Interior point: the fastest speed spline under limits, by Newton's method for all unknowns at once.
+
+Minimised is the sum of w / sqrt(c) over the unknowns c of a ``SpeedSpline``, the time of the motion. A limit holds one
+or more numbers p, each a weighted sum of change of acceleration k, acceleration a and speed squared x:
+
+    kind            p                         limit
+    speed           x / X                     |p| <= 1
+    acceleration    (y' a + y'' x) / A        |p| <= 1
+    jerk            (y' k + 3 y'' a + y''' x) / J,   sqrt(x) |p| <= 1
+
+Speeds and accelerations are convex limits. For the jerk |p| <= 1 / sqrt(x) has a convex right side, so its tangent is
+on the safe side: that makes every step one of a convex problem, and successive steps a sequential convex programme
+[Debrouwere2013]. Slacks start positive and need not fit; predictor and corrector are Mehrotra's [Mehrotra1992]. The
+matrix of a step has two diagonals on either side, as only three unknowns count at a place (``banded``).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.planning.banded import BandedFactor
+from pkm_post.planning.speed_spline import CellEnds, SpeedSpline
+
+_MOST_STEPS = 60
+_LEAST_SLACK = 0.1
+"""Slack at the start where a limit leaves less, or is broken."""
+_FIRST_GAP = 0.1
+"""Share of the time that the gap of optimality takes at the start."""
+_OFF = 0.1
+"""Share by which unknowns are taken to be off while the forces of limits are not in balance."""
+_TO_BOUNDARY = 0.95
+"""Share of the way to the nearest bound that a step goes."""
+_LEAST_CENTRING = 1e-4
+_STIFFENING = 1e-13
+"""Relative addition to the main diagonal, which keeps rounding from making the matrix indefinite."""
+_PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+"""The six different entries of a symmetric 3 x 3 matrix."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of one kind at E ends of cells: G groups of numbers p, of which each group has one bound.
+
+    Attributes:
+        ends: where they apply.
+        weights: (3, R, E) of k, a and x for each of R numbers, divided by the bound.
+        each: whether each number has the bound for itself, G = R; else they are one vector, G = 1.
+        jerk: whether |p| is bounded by 1 / sqrt(x), rather than by 1.
+    """
+
+    ends: CellEnds
+    weights: Array
+    each: bool
+    jerk: bool
+
+    def numbers(self, values: Array) -> Array:
+        """The numbers p, (R, E), from values at the ends, (3, E)."""
+        k, a, x = self.weights
+        return np.asarray(k * values[0] + a * values[1] + x * values[2])
+
+    def by_group(self, of_numbers: Array) -> Array:
+        """Sums over the numbers of each group, (..., G, E) from (..., R, E)."""
+        return of_numbers if self.each else of_numbers.sum(axis=-2, keepdims=True)
+
+    def use(self, values: Array) -> Array:
+        """Share of each bound that is in use, (G, E); above 1 it is broken."""
+        size = np.sqrt(self.by_group(self.numbers(values) ** 2))
+        return size * np.sqrt(values[2]) if self.jerk else size
+
+
+@dataclass(frozen=True)
+class _State:
+    """Slacks and multipliers of one set of limits, (G, E) each."""
+
+    slack: Array
+    multiplier: Array
+
+
+@dataclass(frozen=True)
+class _Linear:
+    """A set of limits at the present unknowns.
+
+    Attributes:
+        limits: the limits.
+        state: slacks and multipliers.
+        room: (G, E) what each limit leaves: (1 - p^2) / 2.
+        slope: (3, G, E) of ``room`` by k, a and x.
+        factor: (E,) of the square of p: x for jerk, else 1.
+    """
+
+    limits: Limits
+    state: _State
+    room: Array
+    slope: Array
+    factor: Array
+
+    @classmethod
+    def of(cls, limits: Limits, state: _State | None, unknowns: Array, barrier: float) -> _Linear:
+        values = limits.ends.values(unknowns)
+        numbers = limits.numbers(values)
+        factor = values[2] if limits.jerk else np.ones_like(values[2])
+        room = (1 - factor * limits.by_group(numbers**2)) / 2
+        slope = -factor * limits.by_group(numbers * limits.weights)
+        if limits.jerk:
+            slope[2] -= 0.5 / values[2]
+        if state is None:
+            slack = np.maximum(room, _LEAST_SLACK)
+            state = _State(slack, barrier / slack)
+        return cls(limits, state, room, slope, factor)
+
+    def curvature(self) -> list[Array]:
+        """The six entries of the second derivatives by k, a and x at each end, (E,) each."""
+        stiffness = self.state.multiplier / self.state.slack
+        weights = self.limits.weights
+        share = np.broadcast_to(self.factor * self.state.multiplier, weights.shape[1:])
+        return [
+            np.einsum("ge,ge,ge->e", stiffness, self.slope[i], self.slope[j])
+            + np.einsum("re,re,re->e", share, weights[i], weights[j])
+            for i, j in _PAIRS
+        ]
+
+    def moved(self, step: Array) -> Array:
+        """Change of the slacks with a step of the unknowns, (G, E)."""
+        along = self.limits.ends.values(step)
+        return np.asarray(np.einsum("bge,be->ge", self.slope, along) + self.room - self.state.slack)
+
+
+def fastest(spline: SpeedSpline, limits: tuple[Limits, ...], unknowns: Array, enough: float) -> Array:
+    """The unknowns of the fastest motion, (N,).
+
+    Args:
+        spline: the places.
+        limits: the limits at them.
+        unknowns: (N,) above 0, to begin with; they may break limits.
+        enough: gap of optimality at which to stop, and the most by which a limit may be broken, relative.
+    """
+    count = sum(one.weights[0].size if one.each else one.weights.shape[2] for one in limits)
+    time = _time(spline, unknowns)
+    barrier = _FIRST_GAP * time / count
+    states: list[_State | None] = [None] * len(limits)
+    for _ in range(_MOST_STEPS):
+        linear = [_Linear.of(one, state, unknowns, barrier) for one, state in zip(limits, states, strict=True)]
+        gap = sum(float((one.state.slack * one.state.multiplier).sum()) for one in linear)
+        broken = -min(float(one.room.min()) for one in linear)
+        time, within = _time(spline, unknowns), broken <= enough
+        if within and gap + _imbalance(spline, linear, unknowns) <= enough * time:
+            break
+        unknowns, states = _stepped(spline, linear, unknowns, gap / count, count)
+    return unknowns
+
+
+def _time(spline: SpeedSpline, unknowns: Array) -> float:
+    return float((spline.weight / np.sqrt(unknowns)).sum())
+
+
+def _imbalance(spline: SpeedSpline, linear: list[_Linear], unknowns: Array) -> float:
+    """What unknowns that are not in balance with their limits can cost, s, where they are off by a share."""
+    left = _downhill(spline, unknowns) + _gathered(linear, [one.state.multiplier for one in linear], len(unknowns))
+    return _OFF * float(np.abs(left * unknowns).sum())
+
+
+def _downhill(spline: SpeedSpline, unknowns: Array) -> Array:
+    """How much the time goes down with each unknown, (N,)."""
+    return np.asarray(0.5 * spline.weight * unknowns**-1.5)
+
+
+def _stepped(
+    spline: SpeedSpline, linear: list[_Linear], unknowns: Array, mean_gap: float, count: int
+) -> tuple[Array, list[_State | None]]:
+    """One step of predictor and corrector: the unknowns, and the slacks and multipliers."""
+    size = len(unknowns)
+    band = _band(linear, size)
+    band[0] += 0.75 * spline.weight * unknowns**-2.5
+    scale = 1 / np.sqrt(band[0])
+    for d in range(3):
+        band[d, : size - d] *= scale[d:] * scale[: size - d]
+    band[0] += _STIFFENING
+    factor = BandedFactor(band)
+    downhill = _downhill(spline, unknowns)
+
+    def step(pushes: list[Array]) -> tuple[Array, list[Array]]:
+        """The change of the unknowns, and of the slacks, for right sides of the limits (G, E)."""
+        right = downhill + _gathered(linear, pushes, size)
+        change = scale * factor.solve(scale * right)
+        return change, [one.moved(change) for one in linear]
+
+    still = [one.state.multiplier * (one.state.slack - one.room) / one.state.slack for one in linear]
+    _, slacks = step(still)
+    multipliers = [
+        -one.state.multiplier * (1 + moved / one.state.slack) for one, moved in zip(linear, slacks, strict=True)
+    ]
+    centring = _centring(linear, slacks, multipliers, mean_gap, count)
+    targets = [
+        (centring * mean_gap - a * b) / one.state.slack for one, a, b in zip(linear, slacks, multipliers, strict=True)
+    ]
+    change, slacks = step([a + b for a, b in zip(still, targets, strict=True)])
+    multipliers = [
+        target - one.state.multiplier * (1 + moved / one.state.slack)
+        for one, target, moved in zip(linear, targets, slacks, strict=True)
+    ]
+    primal, dual = (_TO_BOUNDARY * share for share in _shares(linear, slacks, multipliers))
+    primal = min(primal, _TO_BOUNDARY * _reach(unknowns, change))
+    states: list[_State | None] = [
+        _State(one.state.slack + primal * a, one.state.multiplier + dual * b)
+        for one, a, b in zip(linear, slacks, multipliers, strict=True)
+    ]
+    return unknowns + primal * change, states
+
+
+def _centring(
+    linear: list[_Linear], slacks: list[Array], multipliers: list[Array], mean_gap: float, count: int
+) -> float:
+    """Share of the gap to aim for: little where the step without centring would close most of it."""
+    primal, dual = _shares(linear, slacks, multipliers)
+    after = sum(
+        float(((one.state.slack + primal * a) * (one.state.multiplier + dual * b)).sum())
+        for one, a, b in zip(linear, slacks, multipliers, strict=True)
+    )
+    return max((after / count / mean_gap) ** 3, _LEAST_CENTRING)
+
+
+def _shares(linear: list[_Linear], slacks: list[Array], multipliers: list[Array]) -> tuple[float, float]:
+    """The longest steps, at most 1, with which all slacks and all multipliers stay positive."""
+    return (
+        min(_reach(one.state.slack, change) for one, change in zip(linear, slacks, strict=True)),
+        min(_reach(one.state.multiplier, change) for one, change in zip(linear, multipliers, strict=True)),
+    )
+
+
+def _reach(value: Array, change: Array) -> float:
+    """The longest step, at most 1, with which positive values stay so."""
+    least = float((change / value).min())
+    return min(1.0, -1 / least) if least < 0 else 1.0
+
+
+def _band(linear: list[_Linear], size: int) -> Array:
+    """The matrix of second derivatives by the unknowns, as a lower band (3, N)."""
+    band = np.zeros((3, size + 2))
+    for one in linear:
+        basis, unknown, entry = one.limits.ends.basis, one.limits.ends.unknown, {}
+        for pair, value in zip(_PAIRS, one.curvature(), strict=True):
+            entry[pair] = entry[pair[::-1]] = value
+        for m in range(3):
+            column = [sum(entry[i, j] * basis[j, m] for j in range(3)) for i in range(3)]
+            for n in range(m, 3):
+                value = sum(basis[i, n] * column[i] for i in range(3))
+                band[n - m] += np.bincount(unknown + m, value, minlength=size + 2)
+    return band[:, 1:-1]
+
+
+def _gathered(linear: list[_Linear], pushes: list[Array], size: int) -> Array:
+    """Sums over all limits of a push (G, E) times the slope by each unknown, (N,)."""
+    found = np.zeros(size + 2)
+    for one, push in zip(linear, pushes, strict=True):
+        along = np.einsum("bge,ge->be", one.slope, push)
+        for m in range(3):
+            value = (one.limits.ends.basis[:, m] * along).sum(axis=0)
+            found += np.bincount(one.limits.ends.unknown + m, value, minlength=size + 2)
+    return found[1:-1]
