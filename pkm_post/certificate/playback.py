@@ -140,7 +140,7 @@ def _measured(task: Task, rows: Array, instants: int, closely: bool) -> _Measure
     return _Measured(tool, time, segment, off[2], (off[0] / off[2], off[1], length_of(*tool.velocity)))
 
 
-_INSTANTS = (9, 17, 33, 65, 129, 257)
+_INSTANTS = (9, 17, 33, 65, 129, 257, 513, 1025)
 """Sampled instants of each interval, including its two knots; then of intervals that may have the worst undetected:
 each step halves the spacing and quarters the undetected part."""
 _REMAINDER = np.array([0.005, 0.005, 0.001])[:, None]

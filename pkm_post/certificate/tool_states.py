@@ -19,7 +19,7 @@ from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_s
 from pkm_post.machine import ToolPoses, forward, linearise, map_to_tool, refine_poses
 from pkm_post.model import Machine, Motion, StrutMotion
 
-_SPEED_MISSED = 2e-4
+_SPEED_MISSED = 1.3e-3
 """Relative error of a speed from the mean of two inverse Jacobians; see ``knots``."""
 
 

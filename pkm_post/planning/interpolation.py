@@ -13,19 +13,18 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.geometry import Array, expand_counts, length_of, unit
-from pkm_post.machine import Demand, KnotState, ToolCubics, ToolPoses, bounded_demand, measured_demand
+from pkm_post.geometry import Array, length_of, unit
+from pkm_post.machine import DRIFT_SHARES, Demand, KnotState, ToolCubics, ToolPoses, bounded_demand, measured_demand
 from pkm_post.model import Machine, Poses, Tolerances
+from pkm_post.planning.check_points import CheckPoints, Intervals
 from pkm_post.planning.fast_poses import fast_poses, fast_poses_within
 from pkm_post.planning.schedule import Schedule, by_time
 from pkm_post.planning.tool_path import ToolPath
 
-_ROUNDING = 1e-9
-"""Tolerance on a number of gaps, so that rounding does not add one."""
 _SHARE_OF_TOLERANCES = 0.4
 """Share for the controller's cubics; corners get the same, decimals and the gaps between check points get the rest."""
 _SHARE_ON_CURVES = 0.25
@@ -33,20 +32,30 @@ _SHARE_ON_CURVES = 0.25
 _SPEED_SWING = 0.005
 """Share of the feed by which the controller's cubics may exceed it."""
 _GAPS = 8
-"""Places are no farther apart than this many even gaps of an interval."""
+"""Places are no farther apart than this many even gaps of an interval ..."""
+_WIDEST_GAP = 0.064
+"""... and no farther than so many s."""
+_LATE = 0.005
+"""Share of an interval by which the controller's cubics may pass a place of the plan too early or too late ..."""
+_LATE_S = 0.0005
+"""... and s that are added."""
 _NEGLIGIBLE_DRIFT = 0.1
 """Share of the cubics' tolerance: a drift bounded below it is left to the remaining tolerance."""
 _POINTS_AT_ONCE = 16384
 """Places in one pass: the working arrays of one pass stay in the processor's cache."""
-_Deviation = Callable[["Intervals", ToolCubics, Array], Array]
+_Deviation = Callable[[Intervals, ToolCubics, Array], Array]
 
 
 def poses_at(path: ToolPath, schedule: Schedule, ms: Array) -> Poses:
     """Poses by time at whole ms, (N,); on a path with constant attitude second derivatives are omitted (zero)."""
-    s, speed, acceleration = schedule.at(ms / 1000)
+    return _poses(path, *schedule.at(ms / 1000))
+
+
+def _poses(path: ToolPath, s: Array, speed: Array, acceleration: Array) -> Poses:
+    """The same at path lengths, with speeds and accelerations along the path, (N,) each."""
     if path.attitude is None:
         return by_time(path.at(s), speed, acceleration)
-    poses, still = fast_poses(path, s), np.zeros((len(ms), 3))
+    poses, still = fast_poses(path, s), np.zeros((len(s), 3))
     zero = still[:, 0]
     rate = poses.tip_1 * speed[:, None]
     return Poses(
@@ -89,7 +98,7 @@ class InterpolationCheck:
         self._first = marks[0]
         self._row = np.full(marks[-1] - marks[0] + 1, -1)
         self._place = self._rate = np.empty((7 if path.attitude is None else 3, 0))
-        self._tool_length = np.empty(0)
+        self._tool_length, self._along = np.empty(0), np.empty((2, 0))
         whole = Intervals.of(schedule.joint_time, marks[:1], marks[-1:])
         joints = whole.at_joints(schedule.joint_time).segment
         self._first_joint = whole.first[0]
@@ -101,8 +110,10 @@ class InterpolationCheck:
         For an interval that is too long it is the value at which the check stopped.
         """
         intervals = Intervals.of(self._schedule.joint_time, start, end)
-        cubics = self._tool_cubics(self._rows(start), self._rows(end), intervals.duration)
+        first, last = self._rows(start), self._rows(end)
+        cubics = self._tool_cubics(first, last, intervals.duration)
         worst = self._in_passes(self._deviation_at_joints, intervals, cubics, np.zeros((2, len(start))))
+        worst = np.maximum(worst, self._backward(first, last, intervals.duration))
         within = np.flatnonzero(worst <= 1)
         if len(within):
             worst[within] = np.maximum(worst[within], self._closely(intervals[within], cubics[within]))
@@ -123,7 +134,7 @@ class InterpolationCheck:
 
     def _in_passes(self, deviation: _Deviation, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
         """Deviations of intervals, (N,), computed in blocks."""
-        worst, points = np.empty(len(intervals)), np.cumsum(intervals.last - intervals.first + _GAPS)
+        worst, points = np.empty(len(intervals)), np.cumsum(intervals.most_points(_GAPS, _WIDEST_GAP))
         bounds = np.flatnonzero(np.diff(points // _POINTS_AT_ONCE, prepend=-1, append=-1))
         for begin, end in itertools.pairwise(bounds):
             rows = np.arange(begin, end)
@@ -140,13 +151,14 @@ class InterpolationCheck:
         return known.but(rows, self._measured(intervals[rows], cubics[rows])) if len(rows) else known
 
     def _measured(self, intervals: Intervals, cubics: ToolCubics) -> Demand:
-        """The same, from the kinematics of both ends and of the middle."""
+        """The same, from the kinematics of both ends and of places between them."""
         ms, row = np.unique(np.concatenate([intervals.start, intervals.end]), return_inverse=True)
         poses = poses_at(self._path, self._schedule, ms)
         ends, (first, last) = KnotState.of(self._machine, poses), np.split(row, 2)
-        middle = cubics.at(0.5)
-        attitude = self._path.attitude or (unit(middle[3:6].T), middle[6], poses.tool_length[last])
-        inside = ToolPoses(middle[:3].T, *attitude)
+        places = np.stack([cubics.at(share) for share in DRIFT_SHARES], axis=2).reshape(cubics.powers.shape[1], -1)
+        tool_length = np.repeat(poses.tool_length[last], len(DRIFT_SHARES))
+        attitude = self._path.attitude or (unit(places[3:6].T), places[6], tool_length)
+        inside = ToolPoses(places[:3].T, *attitude)
         return measured_demand(self._machine, ends[first], ends[last], cubics, inside, intervals.duration)
 
     def _deviation_at_joints(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
@@ -158,27 +170,54 @@ class InterpolationCheck:
 
     def _deviation_between(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
         """The same between the joints."""
-        points = intervals.between_joints(self._schedule.joint_time, _GAPS)
+        points = intervals.between_joints(self._schedule.joint_time, _GAPS, _WIDEST_GAP)
         s, _, _ = self._schedule.at(points.time)
         plan = self._plan(points.segment, s - self._path.starts[points.segment])
         allowed = self._allowed[:, points.segment]
         return points.maximum(self._deviation(points, cubics, plan, allowed, drift), len(intervals))
 
     def _deviation(self, points: CheckPoints, cubics: ToolCubics, plan: Array, allowed: Array, drift: Array) -> Array:
-        """Deviation of the tool from the plan at check points, (M,), by what cubics may be off there, (2, M)."""
-        tool = cubics[points.row].at(points.share)
-        tip_drift, axis_drift = drift[:, points.row]
-        worst = (length_of(*(tool[:3] - plan[:3])) + tip_drift) / allowed[0]
+        """Deviation of the tool from the plan at check points, (M,), by what cubics may be off there, (2, M).
+
+        Where it is large it is that across the path.
+        """
+        here, drift = cubics[points.row], drift[:, points.row]
+        worst = self._off(here.at(points.share), plan, allowed, drift)
+        rows = np.flatnonzero(worst > 1)
+        if len(rows):
+            here, plan, allowed, duration = here[rows], plan[:, rows], allowed[:, rows], points.duration[rows]
+            share = self._nearest(here, points.share[rows], plan, allowed, duration)
+            worst[rows] = self._off(here.at(share), plan, allowed, drift[:, rows])
+        return worst
+
+    def _nearest(self, cubics: ToolCubics, share: Array, plan: Array, allowed: Array, duration: Array) -> Array:
+        """Shares near the given ones at which cubics fit places of the plan best, (M,)."""
+        most = _LATE + _LATE_S / duration
+        by_tip, by_axis = 1 / allowed
+        return cubics.nearest(plan, by_tip, by_axis, share, most)
+
+    def _off(self, tool: Array, plan: Array, allowed: Array, drift: Array) -> Array:
+        """Deviation of tools from places of the plan, (M,), by what they may be off, (2, M)."""
+        worst = (length_of(*(tool[:3] - plan[:3])) + drift[0]) / allowed[0]
         if self._path.attitude is None:
             (k, m, n), (x, y, z) = plan[3:], tool[3:6]
             across = length_of(y * n - z * m, z * k - x * n, x * m - y * k)
-            worst = np.maximum(worst, (across + axis_drift) / allowed[1])
+            worst = np.maximum(worst, (across + drift[1]) / allowed[1])
         return np.asarray(worst)
 
     def _plan(self, segment: Array, u: Array) -> Array:
         """Tip, and axis unless the attitude is constant, at path lengths u of segments, (3, M) or (6, M)."""
         poses = fast_poses_within(self._path, segment, u)
         return np.asarray(poses.tip.T if self._path.attitude else np.concatenate([poses.tip.T, poses.axis.T]))
+
+    def _backward(self, first: Array, last: Array, duration: Array) -> Array:
+        """Above 1 where a cubic of the path length runs backward, (N,): a deviation across the path does not show it.
+
+        Its speed is nowhere negative while its mean is at least (v0 + v1 - sqrt(v0 v1)) / 3.
+        """
+        (s0, v0), (s1, v1) = self._along[:, first], self._along[:, last]
+        least, way = (v0 + v1 - np.sqrt(v0 * v1)) * duration / 3, s1 - s0
+        return np.divide(least, way, out=np.zeros(len(way)), where=way > 0)
 
     def _tool_cubics(self, first: Array, last: Array, duration: Array) -> ToolCubics:
         """Cubics between known places, given their rows."""
@@ -187,94 +226,36 @@ class InterpolationCheck:
             begin[:3] += (self._tool_length[first] - self._tool_length[last]) * begin[3:6]
         return ToolCubics.between(begin, self._rate[:, first], end, self._rate[:, last], duration)
 
+    def joint_times(self, time_ms: Array) -> tuple[Array, Array]:
+        """Joints inside the intervals between knots, (J,), and the times at which the cubics pass them, (J,) s.
+
+        Args:
+            time_ms: (K,) whole ms of the knots, increasing.
+        """
+        start, end = time_ms[:-1], time_ms[1:]
+        intervals = Intervals.of(self._schedule.joint_time, start, end)
+        joints = intervals.at_joints(self._schedule.joint_time)
+        if not len(joints.row):
+            return joints.segment, joints.time
+        cubics = self._tool_cubics(self._rows(start), self._rows(end), intervals.duration)
+        plan = self._at_joint[:, joints.segment - self._first_joint]
+        allowed = self._allowed[:, joints.segment]
+        share = self._nearest(cubics[joints.row], joints.share, plan, allowed, joints.duration)
+        time = start[joints.row] / 1000 + share * joints.duration
+        return joints.segment, np.maximum.accumulate(time)
+
     def _rows(self, ms: Array) -> Array:
         """Rows of cached places at unique whole ms; missing ones are computed."""
         unknown = ms[self._row[ms - self._first] < 0]
         if len(unknown):
             self._row[unknown - self._first] = len(self._tool_length) + np.arange(len(unknown))
-            poses = poses_at(self._path, self._schedule, unknown)
+            along = self._schedule.at(unknown / 1000)
+            poses = _poses(self._path, *along)
             what = 3 if self._path.attitude is None else 1  # tip, axis and spin, or the tip alone
             place = np.concatenate([poses.tip.T, poses.axis.T, poses.spin[None]][:what])
             rate = np.concatenate([poses.tip_1.T, poses.axis_1.T, poses.spin_1[None]][:what])
             self._place = np.concatenate([self._place, place], axis=1)
             self._rate = np.concatenate([self._rate, rate], axis=1)
+            self._along = np.concatenate([self._along, along[:2]], axis=1)
             self._tool_length = np.append(self._tool_length, poses.tool_length)
         return self._row[ms - self._first]
-
-
-@dataclass(frozen=True)
-class Intervals:
-    """N intervals of a motion.
-
-    Attributes:
-        start: (N,) whole ms.
-        end: (N,) whole ms.
-        first: (N,) the segment on which it begins.
-        last: (N,) the segment on which it ends.
-    """
-
-    start: Array
-    end: Array
-    first: Array
-    last: Array
-
-    @classmethod
-    def of(cls, joint_time: Array, start: Array, end: Array) -> Intervals:
-        """The intervals between whole ms, (N,) each, on a path that passes the ends of its segments at times in s."""
-        first = np.searchsorted(joint_time, start / 1000, side="right")
-        return cls(start, end, first, np.searchsorted(joint_time, end / 1000))
-
-    def __getitem__(self, rows: Array | slice) -> Intervals:
-        return Intervals(*(getattr(self, field.name)[rows] for field in fields(self)))
-
-    def __len__(self) -> int:
-        return len(self.start)
-
-    @property
-    def duration(self) -> Array:
-        """(N,) s."""
-        return np.asarray((self.end - self.start) / 1000)
-
-    def at_joints(self, joint_time: Array) -> CheckPoints:
-        """The joints inside the intervals."""
-        row, number = expand_counts(self.last - self.first)
-        joint = self.first[row] + number
-        return self._points(row, joint_time[joint], joint)
-
-    def between_joints(self, joint_time: Array, gaps: int) -> CheckPoints:
-        """At least one place on each segment; with the joints, no gap exceeds 1 / ``gaps`` of the interval."""
-        row, number = expand_counts(self.last - self.first + 1)
-        segment = self.first[row] + number
-        begin = np.where(number > 0, joint_time[segment - 1], (self.start / 1000)[row])
-        way = np.minimum(joint_time[segment], (self.end / 1000)[row]) - begin
-        parts = np.maximum(2, np.ceil(gaps * way / self.duration[row] - _ROUNDING).astype(np.int64))
-        piece, number = expand_counts(parts - 1)
-        time = begin[piece] + way[piece] * ((number + 1) / parts[piece])
-        return self._points(row[piece], time, segment[piece])
-
-    def _points(self, row: Array, time: Array, segment: Array) -> CheckPoints:
-        return CheckPoints(row, (time - (self.start / 1000)[row]) / self.duration[row], time, segment)
-
-
-@dataclass(frozen=True)
-class CheckPoints:
-    """M instants in N intervals, ordered by interval.
-
-    Attributes:
-        row: (M,) the interval.
-        share: (M,) elapsed share of the duration of the interval.
-        time: (M,) s.
-        segment: (M,) the segment of the path at that time; at a joint the one before it.
-    """
-
-    row: Array
-    share: Array
-    time: Array
-    segment: Array
-
-    def maximum(self, values: Array, count: int) -> Array:
-        """The maximum of values at the points, (M,), for each of ``count`` intervals; 0 where there is no place."""
-        maximum, first = np.zeros(count), np.flatnonzero(np.diff(self.row, prepend=-1))
-        if len(first):
-            maximum[self.row[first]] = np.maximum.reduceat(values, first)
-        return maximum

@@ -17,8 +17,8 @@ import numpy as np
 
 from pkm_post.geometry import Array, expand_counts
 
-LONGEST_MS = 128
-"""The initial width: the narrower, the less error goes unnoticed between the places where it is measured."""
+LONGEST_MS = 4095
+"""Longest interval: the most whole ms that the time word of a PMAC takes [TurboPMAC, PVT]."""
 _SECOND_MS = 1000
 _ROOM = 0.95
 """Share of the block rate to aim for, so that few rounds are needed."""
@@ -26,27 +26,29 @@ SLOWDOWN = 0.7
 """Feed factor where even the shortest interval is out of tolerance."""
 
 
-def even_marks(rests_ms: Array) -> Array:
-    """Whole ms, (R + more,): the rests, with even intervals of at most ``LONGEST_MS`` between them."""
-    start, _ = _even(rests_ms)
-    return np.append(start, rests_ms[-1])
+def even_marks(rests_ms: Array, longest_ms: int = LONGEST_MS) -> Array:
+    """Whole ms, (R + more,): the rests, with even intervals of at most ``longest_ms`` between them."""
+    span = np.diff(rests_ms)
+    pieces = -(-span // longest_ms)
+    run, number = expand_counts(pieces)
+    return np.append(rests_ms[run] + number * span[run] // pieces[run], rests_ms[-1])
 
 
-def knots(rests_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Array], shortest: int = 1) -> Array:
-    """Times of the knots, (K,) whole ms, from the first rest to the last; every rest is a knot.
+def knots(marks_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Array], shortest: int = 1) -> Array:
+    """Times of the knots, (K,) whole ms, from the first mark to the last; every mark is a knot.
 
-    Knots of one piece do not depend on other pieces: a long motion may be cut at its even marks and each piece
-    processed separately.
+    Knots of one piece do not depend on other pieces: a long motion may be cut at its marks and each piece processed
+    separately.
 
     Args:
-        rests_ms: (R,) whole ms of rests, or of other marks that must be knots.
+        marks_ms: (R,) whole ms that must be knots: ``even_marks`` of the rests.
         edges_ms: (E,) whole ms of preferred cuts, increasing.
         error: maps starts and ends of intervals, (N,) whole ms each, to error / tolerance; 1 is just within tolerance.
         shortest: least width of a cut piece, ms.
     """
-    start, end = _even(rests_ms)
-    edges_ms = edges_ms[slice(*np.searchsorted(edges_ms, rests_ms[[0, -1]]))]
-    times = [start, rests_ms[-1:]]
+    start, end = marks_ms[:-1], marks_ms[1:]
+    edges_ms = edges_ms[slice(*np.searchsorted(edges_ms, marks_ms[[0, -1]]))]
+    times = [marks_ms]
     while len(start):
         wide = end - start >= 2 * shortest
         start, end = start[wide], end[wide]
@@ -56,15 +58,6 @@ def knots(rests_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Arra
         times.append(cut)
         start, end = np.column_stack([start, cut]).ravel(), np.column_stack([cut, end]).ravel()
     return np.sort(np.concatenate(times))
-
-
-def _even(rests_ms: Array) -> tuple[Array, Array]:
-    """Even intervals of at most ``LONGEST_MS`` between the rests."""
-    span = np.diff(rests_ms)
-    pieces = -(-span // LONGEST_MS)
-    run, number = expand_counts(pieces)
-    start = rests_ms[run] + number * span[run] // pieces[run]
-    return start, rests_ms[run] + (number + 1) * span[run] // pieces[run]
 
 
 def _cut(start: Array, end: Array, edges_ms: Array, shortest: int) -> Array:

@@ -9,6 +9,7 @@ kinematics is independent of the feed. Units: mm, s, rad.
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,7 +31,7 @@ from pkm_post.model import (
 from pkm_post.planning.fast_poses import fast_poses_within
 from pkm_post.planning.interpolation import InterpolationCheck, poses_at
 from pkm_post.planning.jerk_limits import jerk_limited
-from pkm_post.planning.knots import SLOWDOWN, block_rate_factors, even_marks, knots, slower_feed
+from pkm_post.planning.knots import LONGEST_MS, SLOWDOWN, block_rate_factors, even_marks, knots, slower_feed
 from pkm_post.planning.rough_limits import DerivativeBounds, below_feed, deviates_in_blends, rough_limits
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.speed_limits import limits_at
@@ -51,8 +52,8 @@ _STATIONS_AT_ONCE = 4096
 """Stations in one pass: their working arrays stay in the processor's cache."""
 _KNOTS_AT_ONCE = 4096
 """Knots in one pass: the derivatives of their poses take more memory than the result."""
-_MARKS_AT_ONCE = 512
-"""Marks in a stretch of the motion, about a minute, whose knots are determined separately."""
+_STRETCH_MS = 65_536
+"""Stretches of the motion, about a minute or a little more, whose knots are determined separately."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ class Plan:
 
 
 def plan(
-    trajectory: Trajectory, machine: Machine, tolerances: Tolerances
+    trajectory: Trajectory, machine: Machine, tolerances: Tolerances, longest_ms: int = LONGEST_MS
 ) -> tuple[Plan | None, tuple[Diagnostic, ...]]:
     """Plan the feed and interpolate it; None with diagnostics if a pose is out of reach or the motion takes too long.
 
@@ -96,11 +97,12 @@ def plan(
         trajectory: the programmed trajectory, at least one segment.
         machine: geometry and limits.
         tolerances: the requested tolerances.
+        longest_ms: longest interval between two knots, whole ms.
     """
     feed_plan, diagnostics = plan_feed(trajectory, machine, tolerances)
     if feed_plan is None or errors(diagnostics):
         return None, diagnostics
-    return interpolate(feed_plan), diagnostics
+    return interpolate(feed_plan, longest_ms), diagnostics
 
 
 def tool_path(trajectory: Trajectory, tolerances: Tolerances) -> ToolPath:
@@ -197,12 +199,12 @@ def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
     )
 
 
-def interpolate(feed_plan: FeedPlan) -> Plan:
-    """The motion of tool and struts at the knots.
+def interpolate(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> Plan:
+    """The motion of tool and struts at the knots, which are at most ``longest_ms`` apart.
 
     Where points exceed the block rate of the controller, the motion is replanned with a lower feed.
     """
-    motion, factor = _interpolated(feed_plan)
+    motion, factor = _interpolated(feed_plan, longest_ms)
     for _ in range(_MOST_ROUNDS):
         if (factor == 1).all():
             break
@@ -213,29 +215,33 @@ def interpolate(feed_plan: FeedPlan) -> Plan:
         except _TooLongError:
             break
         feed_plan = replace(feed_plan, path=path, schedule=schedule)
-        motion, factor = _interpolated(feed_plan)
+        motion, factor = _interpolated(feed_plan, longest_ms)
     return Plan(motion, strut_motion(motion, feed_plan.machine))
 
 
-def _interpolated(feed_plan: FeedPlan) -> tuple[Motion, Array]:
+def _interpolated(feed_plan: FeedPlan, longest_ms: int) -> tuple[Motion, Array]:
     """The motion of the tool; and the speed factors of segments that the controller requires, (N,)."""
     path, schedule, machine = feed_plan.path, feed_plan.schedule, feed_plan.machine
-    marks, shortest = even_marks(schedule.rests_ms), machine.shortest_interval
-    stretches = [marks[first : first + _MARKS_AT_ONCE + 1] for first in range(0, len(marks) - 1, _MARKS_AT_ONCE)]
+    marks, shortest = even_marks(schedule.rests_ms, longest_ms), machine.shortest_interval
+    ends = np.flatnonzero(np.diff(marks[:-1] // _STRETCH_MS, prepend=-1, append=-1))
+    stretches = [marks[first : last + 1] for first, last in itertools.pairwise(ends)]
 
-    def knots_of(stretch: Array) -> tuple[Array, Array]:
+    def knots_of(stretch: Array) -> tuple[Array, Array, tuple[Array, Array]]:
         cubics = InterpolationCheck(path, schedule, machine, feed_plan.tolerances, stretch)
         times = knots(stretch, schedule.edges_ms, cubics.error, shortest)
-        return times[:-1], _too_coarse(times, cubics, shortest)
+        return times[:-1], _too_coarse(times, cubics, shortest), cubics.joint_times(times)
 
-    times, coarse = zip(*in_workers(knots_of, stretches), strict=True)
+    times, coarse, passed = zip(*in_workers(knots_of, stretches), strict=True)
     time_ms = read_only(np.concatenate([*times, marks[-1:]]))
-    motion = _motion(feed_plan, time_ms)
+    joint_time = schedule.joint_time.copy()
+    for joints, time in passed:
+        joint_time[joints] = time
+    motion = _motion(feed_plan, time_ms, read_only(joint_time))
     return motion, _slower(motion, np.concatenate(coarse, axis=1), machine.block_rate)
 
 
-def _motion(feed_plan: FeedPlan, time_ms: Array) -> Motion:
-    """Tool poses and their rates at whole ms."""
+def _motion(feed_plan: FeedPlan, time_ms: Array, joint_time: Array) -> Motion:
+    """Tool poses and their rates at whole ms; and the times, (N,) s, at which the program passes the joints."""
     path, schedule = feed_plan.path, feed_plan.schedule
 
     def columns(rows: slice) -> tuple[Array, ...]:
@@ -256,7 +262,7 @@ def _motion(feed_plan: FeedPlan, time_ms: Array) -> Motion:
         spin_rate=spin_rate,
         tool_length=tool_length,
         segment=segment,
-        joint_time=schedule.joint_time,
+        joint_time=joint_time,
         events=_by_knot(feed_plan.events, schedule, time_ms),
     )
 

@@ -18,7 +18,7 @@ DENSE = 1001
 """Instants of an interval: four for each one of the certificate."""
 NEARLY = 0.99
 """Part of the worst of these that there is at the moment told: looks are as far apart as four of these instants."""
-FIGURE = 0.03
+FIGURE = 0.1
 """Part by which the figure may differ from that: it has what can hide, and counts programmed points at joints."""
 
 

@@ -12,8 +12,9 @@ from pkm_post.machine import KnotState, ToolPoses, strut_rates
 from pkm_post.machine.kinematics.strut_cubics import tool_deviation
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import interpolate, interpolation, motion, plan_feed
-from pkm_post.planning.interpolation import InterpolationCheck, Intervals, poses_at
-from pkm_post.planning.knots import even_marks, knots
+from pkm_post.planning.check_points import Intervals
+from pkm_post.planning.interpolation import InterpolationCheck, poses_at
+from pkm_post.planning.knots import LONGEST_MS, even_marks, knots
 from pkm_post.planning.schedule import by_time
 from pkm_post.toolpath.place import place
 
@@ -24,9 +25,11 @@ ROUNDING = 1e-9
 SHARE_OF_TOLERANCES = 0.4
 HIDDEN = 1.25
 """The most that dense instants may find where cubics hold: half as much again is left for it in the tolerances."""
+LATE, LATE_S = 0.005, 0.0005
+"""Share of an interval, and s, by which a place may be passed too early or too late."""
 LITTLE = 0.1
 """Of what cubics may use: a drift that is bounded by it is not added."""
-DENSE = np.linspace(0, 1, 203)[1:-1]
+DENSE = np.linspace(0, 1, 103)[1:-1]
 STROKED = dataclasses.replace(example(), strut_stroke=(600.0, 2000.0))
 GAPS = 8
 END_MS = 3000
@@ -59,24 +62,39 @@ def cubics_of(machine, path, schedule, marks):
 
 
 def intervals(schedule, count=600):
-    """Intervals of 1 to 128 ms all over the motion, short ones more often."""
+    """Intervals of 1 to 1024 ms all over the motion, short ones more often."""
     rng = np.random.default_rng(21)
-    duration = np.rint(np.exp2(rng.uniform(0, 7, count))).astype(np.int64)
+    duration = np.rint(np.exp2(rng.uniform(0, 10, count))).astype(np.int64)
     start = rng.integers(0, schedule.rests_ms[-1] - duration)
     return start, start + duration
 
 
 def dense(machine, path, schedule, start, end):
-    """How far the struts' cubics take tip and axis off the plan at dense instants, by what cubics may use, (N,)."""
-    time, duration = (start[:, None] + (end - start)[:, None] * DENSE) / 1000, (end - start) / 1000
-    poses = path.at(schedule.at(time.ravel())[0])
-    ends = (
+    """How far the struts' cubics take tip and axis off the plan at dense instants, by what cubics may use, (N,).
+
+    Each instant is compared with the place of the plan, at most ``LATE`` away in time, that fits best: the square of
+    the deviation is a parabola by that time, known from three values of it.
+    """
+    duration = (end - start) / 1000
+    time, most = (start[:, None] + (end - start)[:, None] * DENSE) / 1000, (LATE * duration + LATE_S)[:, None]
+    ends = [
         KnotState.of(machine, by_time(path.at(s), v, a)) for s, v, a in (schedule.at(ms / 1000) for ms in (start, end))
-    )
-    found = tool_deviation(
-        machine, *ends, ToolPoses(poses.tip, poses.axis, poses.spin, poses.tool_length), duration, DENSE
-    )
-    return np.maximum(found.tip / TOLERANCES.tip, found.axis / TOLERANCES.axis).max(axis=1) / SHARE_OF_TOLERANCES
+    ]
+
+    def off(shift):
+        at = np.clip(time + shift, start[:, None] / 1000, end[:, None] / 1000)
+        poses = path.at(schedule.at(at.ravel())[0])
+        inside = ToolPoses(poses.tip, poses.axis, poses.spin, poses.tool_length)
+        found = tool_deviation(machine, *ends, inside, duration, DENSE)
+        return found.tip / TOLERANCES.tip, found.axis / TOLERANCES.axis
+
+    def by_least_squares(shift, step):
+        early, here, late = (np.square(np.stack(off(shift + by))).sum(axis=0) for by in (-step, 0.0, step))
+        bend = np.maximum(early - 2 * here + late, 1e-12)
+        return np.clip(shift + np.clip(step / 2 * (early - late) / bend, -most, most), -most, most)
+
+    shift = by_least_squares(by_least_squares(np.zeros_like(time), most / 4), most / 64)
+    return np.minimum(np.maximum(*off(0.0)), np.maximum(*off(shift))).max(axis=1) / SHARE_OF_TOLERANCES
 
 
 @pytest.mark.parametrize("make", JOBS.values(), ids=JOBS)
@@ -85,8 +103,8 @@ def test_dense_instants_find_little_more_than_was_seen(make, singular):
     machine, path, schedule = planned(make, dataclasses.replace(STROKED, least_singular_value=singular))
     start, end = intervals(schedule, 1500)
     error, there_is = cubics_of(machine, path, schedule, schedule.rests_ms).error(start, end), np.zeros(len(start))
-    for first in range(0, len(start), 100):
-        rows = slice(first, first + 100)
+    for first in range(0, len(start), 50):
+        rows = slice(first, first + 50)
         there_is[rows] = dense(machine, path, schedule, start[rows], end[rows])
     held = error <= 1
     assert 100 < held.sum() < len(start) - 100
@@ -157,11 +175,11 @@ def test_what_is_kept_of_ends_does_not_matter():
 
 
 @pytest.mark.parametrize("make", PATHS.values(), ids=PATHS)
-@pytest.mark.parametrize("at_once", [1, 3, 10**6])
-def test_stretches_of_other_lengths_give_the_same_motion(monkeypatch, make, at_once):
+@pytest.mark.parametrize("stretch_ms", [1, 3000, 10**6])
+def test_stretches_of_other_lengths_give_the_same_motion(monkeypatch, make, stretch_ms):
     feed_plan = feed_plan_of(make, example())
     expected = interpolate(feed_plan).motion
-    monkeypatch.setattr(motion, "_MARKS_AT_ONCE", at_once)
+    monkeypatch.setattr(motion, "_STRETCH_MS", stretch_ms)
     found = interpolate(feed_plan).motion
     for field in dataclasses.fields(found):
         np.testing.assert_array_equal(getattr(found, field.name), getattr(expected, field.name))
@@ -170,25 +188,25 @@ def test_stretches_of_other_lengths_give_the_same_motion(monkeypatch, make, at_o
 @pytest.mark.parametrize("workers", [1, 5])
 def test_the_number_of_threads_does_not_matter(monkeypatch, workers):
     feed_plan = feed_plan_of(cone, example())
-    monkeypatch.setattr(motion, "_MARKS_AT_ONCE", 4)
+    monkeypatch.setattr(motion, "_STRETCH_MS", 1000)
     expected = interpolate(feed_plan).motion
-    monkeypatch.setattr(motion, "workers", lambda: ThreadPoolExecutor(workers))
+    monkeypatch.setattr(motion, "in_workers", lambda call, items: ThreadPoolExecutor(workers).map(call, items))
     found = interpolate(feed_plan).motion
     np.testing.assert_array_equal(found.time_ms, expected.time_ms)
     np.testing.assert_array_equal(found.tip, expected.tip)
 
 
 def test_even_marks_cut_a_motion_without_a_trace():
-    rests, edges = np.array([0, 1000, 1003, 5000]), np.array([77, 400, 2000])
+    rests, edges = np.array([0, 1000, 1003, 9000]), np.array([77, 400, 2000])
 
     def error(start, end):
         return (end - start) / (10 + start % 50)
 
     marks = even_marks(rests)
     assert np.isin(rests, marks).all()
-    assert np.diff(marks).max() <= 128
-    whole = knots(rests, edges, error)
-    pieces = [knots(marks[first : first + 5], edges, error) for first in range(0, len(marks) - 1, 4)]
+    assert np.diff(marks).max() <= LONGEST_MS < np.diff(rests).max()
+    whole = knots(marks, edges, error)
+    pieces = [knots(marks[first : first + 2], edges, error) for first in range(len(marks) - 1)]
     np.testing.assert_array_equal(np.unique(np.concatenate(pieces)), whole)
 
 

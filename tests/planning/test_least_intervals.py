@@ -38,7 +38,7 @@ def test_no_interval_is_shorter_than_the_controller_takes(seed, shortest, tolera
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.parametrize("rate", [60.0, 25.0])
+@pytest.mark.parametrize("rate", [50.0, 20.0])
 def test_no_second_has_more_blocks_than_the_controller_takes(seed, rate):
     _, _, free, *_ = of(on(), job(seed), NARROW)
     _, _, motion, _, certificate, faults = of(on(rate=rate), job(seed), NARROW)
@@ -52,7 +52,7 @@ def test_no_second_has_more_blocks_than_the_controller_takes(seed, rate):
 
 
 def test_the_jobs_have_seconds_with_more_blocks_than_that():
-    assert max(blocks_of_busiest_second(of(on(), job(seed), NARROW)[2].time_ms) for seed in SEEDS) > 60
+    assert max(blocks_of_busiest_second(of(on(), job(seed), NARROW)[2].time_ms) for seed in SEEDS) > 50
 
 
 def test_a_path_that_needs_closer_points_is_refused_for_that():

@@ -20,14 +20,14 @@ from pkm_post.control.link.program import Job, PmacProgram, read_job
 from pkm_post.control.link.run import check_setup, check_start, read_number
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import Array, Status, read_status
+from pkm_post.control.numerical_control.plan import LONGEST_MOVE_MS
 from pkm_post.model import EventKind, Machine, StrutMotion
 from pkm_post.options import START_TOLERANCE_MM
-from pkm_post.planning import LONGEST_MS
 from pkm_post.writing import PmacSettings, program_text, split_motion
 
 CREDIT_MS = 600
 """Time a program may run after a renewal: several readings over a serial line."""
-_AHEAD_MS = 2 * LONGEST_MS
+_AHEAD_MS = 2 * LONGEST_MOVE_MS
 """Moves beyond the credit: those the controller computes ahead, and those that one watchdog line covers."""
 _FULL_SLEW = 1644.0
 """Isx95 at which a hold takes one second [TurboPMAC, Isx95]."""
@@ -83,7 +83,7 @@ def with_watchdog(lines: Sequence[str], variable: int, coordinate_system: int) -
     """Insert the lines of a watchdog into those of a program.
 
     Args:
-        lines: of a program whose moves are no longer than ``feed.knots.LONGEST_MS``.
+        lines: of a program whose moves are no longer than ``plan.LONGEST_MOVE_MS``.
         variable: number of the P-variable.
         coordinate_system: to hold.
     """
@@ -106,7 +106,7 @@ def _groups(lines: Sequence[str]) -> Iterator[tuple[int, list[str]]]:
         stated = _INTERVAL.fullmatch(line)
         interval = int(stated[1]) if stated else interval
         ms = interval if _MOVE.fullmatch(line) else 0
-        if ms and total + ms > LONGEST_MS:
+        if ms and total + ms > LONGEST_MOVE_MS:
             yield total, group
             total, group = 0, []
         total += ms

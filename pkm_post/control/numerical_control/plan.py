@@ -34,6 +34,8 @@ from pkm_post.writing import pmac
 
 Findings = tuple[Diagnostic, ...]
 
+LONGEST_MOVE_MS = 128
+"""Longest interval of a manual move: a watchdog counts them, so they add to the time from silence to standstill."""
 _SHARES = np.linspace(0.0, 1.0, 9)[1:]
 
 
@@ -107,7 +109,7 @@ def planned(
 def _program(
     trajectory: Trajectory, machine: Machine, settings: pmac.PmacSettings, tolerances: Tolerances
 ) -> tuple[str | None, Motion | None, Findings]:
-    made, diagnostics = plan(trajectory, machine, tolerances)
+    made, diagnostics = plan(trajectory, machine, tolerances, LONGEST_MOVE_MS)
     if made is None:
         return None, None, diagnostics
     diagnostics += pmac.faults(made.struts, settings, trajectory.source)

@@ -53,7 +53,7 @@ class Field:
 MOST_DECIMALS = 9
 MOST_WORDS = 2**24
 LONGEST_SHORTEST = 50
-"""ms: intervals of up to 128 ms can be split evenly into pieces no shorter than that."""
+"""ms: intervals can be split evenly into pieces no shorter than that."""
 JOINT_KIND = forms.choice("universal", "spherical")
 
 FIELDS: tuple[Field, ...] = (

@@ -14,7 +14,8 @@ cubic's derivatives by x and d for the shortest strut, the fourth derivative of 
     M <= (3 A^2 + 4 V J) / d + 12 V^2 A / d^2 + 3 V^4 / d^3
 
 and the inverse Jacobian maps that to the tip: by at most 1 / s for a platform that comes no nearer to a singular pose
-than s, and by the lever of the tool. Where the attitude moves, the drift is measured in the middle, x = 1/2.
+than s, and by the lever of the tool. Where the attitude moves, the drift is measured at a quarter, a half and three
+quarters: it is x^2 (1 - x)^2 q(x), with a q that over a long way is no constant, and may be zero in the middle.
 """
 
 from __future__ import annotations
@@ -37,9 +38,13 @@ from pkm_post.model import Machine
 ROUNDED_SHARE = 0.99
 """Share of the tip acceleration available to cubics: rounding lengths to six decimals adds up to 0.7 % where an
 interval is 1 ms."""
-_MIDDLE = np.array([0.5])
+_STEPS = 3
+"""Newton steps to the best fit: each squares the relative error of the first, some hundredths."""
+DRIFT_SHARES = np.array([0.25, 0.5, 0.75])
+"""Shares of the duration at which the drift is measured."""
+_BUMP = 16 * (DRIFT_SHARES * (1 - DRIFT_SHARES)) ** 2
 _ROOM = 1.1
-"""Allowance for a drift that deviates from x^2 (1 - x)^2."""
+"""Allowance for a drift that is larger between the measured shares."""
 _STEEPEST = 16 / np.sqrt(27)
 """Highest slope of 16 x^2 (1 - x)^2."""
 _CURVED = 32.0
@@ -74,6 +79,32 @@ class ToolCubics:
             found *= share
         found += place
         return np.asarray(found)
+
+    def nearest(self, place: Array, by_tip: Array, by_axis: Array, share: Array, most: Array) -> Array:
+        """Shares of the duration at which the tool fits given places best, (N,), by Newton's method.
+
+        The best fit has the least sum of squares of the deviations of tip and axis, each by its tolerance: tip and
+        axis move in step along the path.
+
+        Args:
+            place: (3, N) or (6, N) tips, and axes where the attitude moves.
+            by_tip: (N,) weight of the tip, 1/mm.
+            by_axis: (N,) weight of the axis, 1/rad.
+            share: (N,) shares to start from.
+            most: (N,) by which a share may change.
+        """
+        weight = np.stack([*3 * [by_tip], *(len(place) - 3) * [by_axis]])
+        at, begin, square, cube = (power[: len(place)] * weight for power in self.powers)
+        at = at - place * weight
+        least, largest = np.maximum(share - most, 0.0), np.minimum(share + most, 1.0)
+        for _ in range(_STEPS):
+            off = at + share * (begin + share * (square + share * cube))
+            rate = begin + share * (2 * square + 3 * share * cube)
+            bend = 2 * square + 6 * share * cube
+            steep = np.square(rate).sum(axis=0) + np.maximum((off * bend).sum(axis=0), 0.0)
+            step = np.divide((off * rate).sum(axis=0), steep, out=np.zeros(len(share)), where=steep > 0)
+            share = np.clip(share - step, least, largest)
+        return share
 
     def sizes(self) -> tuple[Array, Array, Array]:
         """Maxima of first, second and third derivative of the tip by the share, (N,) mm each."""
@@ -152,26 +183,27 @@ def bounded_demand(machine: Machine, tool_length: float, cubics: ToolCubics, dur
 def measured_demand(
     machine: Machine, first: KnotState, last: KnotState, cubics: ToolCubics, inside: ToolPoses, duration: Array
 ) -> Demand:
-    """The same, with the drift measured in the middle.
+    """The same, with the drift measured at ``DRIFT_SHARES``.
 
     Args:
         machine: the geometry and the limits.
         first: N knots.
         last: N knots.
         cubics: N of them.
-        inside: their tool poses in the middle of their durations.
+        inside: 3 N tool poses of theirs at these shares of their durations, interval by interval.
         duration: (N,) s.
     """
-    found = tool_deviation(machine, first, last, inside, duration, _MIDDLE)
-    tip, axis = _ROOM * found.tip[:, 0], _ROOM * found.axis[:, 0]
+    found = tool_deviation(machine, first, last, inside, duration, DRIFT_SHARES)
+    tip, axis = _ROOM * found.tip.max(axis=1), _ROOM * found.axis.max(axis=1)
+    tip_bump, axis_bump = (_ROOM * (one / _BUMP).max(axis=1) for one in (found.tip, found.axis))
     speed, bend, _ = cubics.sizes()
     by_limit = (
         max_strut_speed(first, last, duration) / machine.strut_speed,
         max_strut_acceleration(first, last, duration) / machine.strut_acceleration,
-        (bend + _CURVED * tip) / duration**2 / (ROUNDED_SHARE * machine.tip_acceleration),
-        (cubics.turn() + _STEEPEST * axis) / duration / machine.axis_speed,
+        (bend + _CURVED * tip_bump) / duration**2 / (ROUNDED_SHARE * machine.tip_acceleration),
+        (cubics.turn() + _STEEPEST * axis_bump) / duration / machine.axis_speed,
     )
-    return Demand(tip, axis, (speed + _STEEPEST * tip) / duration, np.maximum.reduce(by_limit))
+    return Demand(tip, axis, (speed + _STEEPEST * tip_bump) / duration, np.maximum.reduce(by_limit))
 
 
 def _fastest(begin: Array, middle: Array, end: Array) -> Array:

@@ -9,7 +9,7 @@ from pkm_post.control.link.errors import NotReadyError
 from pkm_post.control.numerical_control.control import NumericalControl
 from pkm_post.control.numerical_control.execute import CREDIT_MS, with_watchdog
 from pkm_post.control.numerical_control.manual_moves import CartesianJog, StrutJog
-from pkm_post.planning.knots import LONGEST_MS
+from pkm_post.control.numerical_control.plan import LONGEST_MOVE_MS
 
 LONG = CartesianJog(shift=(100.0, 0.0, 0.0))
 FEED = 5.0
@@ -48,7 +48,7 @@ def test_the_lines_of_the_program_are_untouched(station):
     assert tuple(line for line in with_dog if "P77" not in line) == lines
     assert own[0] == f"P77={CREDIT_MS}" and own[2::2] == ['IF(P77<0)COMMAND"&2H"'] * (len(own) // 2)
     taken = [int(line.rpartition("-")[2]) for line in own[1::2]]
-    assert sum(taken) == plan.job.motion.time_ms[-1] and max(taken) <= LONGEST_MS
+    assert sum(taken) == plan.job.motion.time_ms[-1] and max(taken) <= LONGEST_MOVE_MS
 
 
 @pytest.mark.parametrize("kind", ["tcp", "serial"])

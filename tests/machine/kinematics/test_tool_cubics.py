@@ -14,7 +14,7 @@ from pkm_post.machine.kinematics.forward import forward
 from pkm_post.machine.kinematics.inverse import ToolPoses
 from pkm_post.machine.kinematics.jacobian import jacobian_of_tip, scaled_jacobian
 from pkm_post.machine.kinematics.strut_cubics import KnotState
-from pkm_post.machine.kinematics.tool_cubics import ToolCubics, bounded_demand, measured_demand
+from pkm_post.machine.kinematics.tool_cubics import DRIFT_SHARES, ToolCubics, bounded_demand, measured_demand
 from pkm_post.model import Poses
 
 SHARE = np.linspace(0, 1, 41)
@@ -132,15 +132,15 @@ def test_what_has_no_bound_says_so(machine):
     assert all(np.isinf(getattr(bound, field.name)).all() for field in dataclasses.fields(bound))
 
 
-@pytest.mark.parametrize("long", [0.02, 0.1, 0.3])
+@pytest.mark.parametrize("long", [0.02, 0.1, 0.3, 0.6])
 @pytest.mark.parametrize("machine", [example(), screwed(example())], ids=["keyed", "screwed"])
-def test_the_drift_in_the_middle_stands_for_the_whole_interval(machine, long):
+def test_the_drift_at_three_shares_stands_for_the_whole_interval(machine, long):
     # the tip of the wandering poses runs at some 90 mm by unit of time while the platform turns: 2 to 27 mm
     time, duration = np.random.default_rng(5).uniform(0, 6, 300), np.full(300, long)
     start, end = wandering_poses(time), wandering_poses(time + long)
     cubics = cubics_between(start, end, duration)
-    middle = cubics.at(0.5)
-    inside = ToolPoses(middle[:3].T, unit(middle[3:6].T), middle[6], start.tool_length)
+    places = np.stack([cubics.at(share) for share in DRIFT_SHARES], axis=2).reshape(7, -1)
+    inside = ToolPoses(places[:3].T, unit(places[3:6].T), places[6], np.repeat(start.tool_length, len(DRIFT_SHARES)))
     found = measured_demand(machine, KnotState.of(machine, start), KnotState.of(machine, end), cubics, inside, duration)
     tip, axis, speed, struts = played(machine, start, end, cubics, duration)
     for most, told in ((tip, found.tip), (axis, found.axis)):

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Check points: the intervals of a motion, and the instants at which it is compared with its plan.
+
+Enters: starts and ends of intervals in whole ms, and the times at which the path passes its joints, s. Leaves: the
+joints inside each interval, and places between them that leave no wide gap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from pkm_post.geometry import Array, expand_counts
+
+_ROUNDING = 1e-9
+"""Tolerance on a number of gaps, so that rounding does not add one."""
+
+
+@dataclass(frozen=True)
+class Intervals:
+    """N intervals of a motion.
+
+    Attributes:
+        start: (N,) whole ms.
+        end: (N,) whole ms.
+        first: (N,) the segment on which it begins.
+        last: (N,) the segment on which it ends.
+    """
+
+    start: Array
+    end: Array
+    first: Array
+    last: Array
+
+    @classmethod
+    def of(cls, joint_time: Array, start: Array, end: Array) -> Intervals:
+        """The intervals between whole ms, (N,) each, on a path that passes the ends of its segments at times in s."""
+        first = np.searchsorted(joint_time, start / 1000, side="right")
+        return cls(start, end, first, np.searchsorted(joint_time, end / 1000))
+
+    def __getitem__(self, rows: Array | slice) -> Intervals:
+        return Intervals(*(getattr(self, field.name)[rows] for field in fields(self)))
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+    @property
+    def duration(self) -> Array:
+        """(N,) s."""
+        return np.asarray((self.end - self.start) / 1000)
+
+    def most_points(self, gaps: int, widest: float) -> Array:
+        """At most so many places between the joints, and not much more than there are, (N,)."""
+        return np.asarray(self.last - self.first + np.maximum(gaps, np.ceil(self.duration / widest)))
+
+    def at_joints(self, joint_time: Array) -> CheckPoints:
+        """The joints inside the intervals."""
+        row, number = expand_counts(self.last - self.first)
+        joint = self.first[row] + number
+        return self._points(row, joint_time[joint], joint)
+
+    def between_joints(self, joint_time: Array, gaps: int, widest: float = np.inf) -> CheckPoints:
+        """At least one place on each segment; with the joints, no gap exceeds 1 / ``gaps`` of the interval.
+
+        Args:
+            joint_time: (J,) s, when the joints of the path are passed.
+            gaps: least number of even gaps of an interval.
+            widest: s, widest gap.
+        """
+        row, number = expand_counts(self.last - self.first + 1)
+        segment = self.first[row] + number
+        begin = np.where(number > 0, joint_time[segment - 1], (self.start / 1000)[row])
+        way = np.minimum(joint_time[segment], (self.end / 1000)[row]) - begin
+        parts = np.maximum(2, np.ceil(way / np.minimum(self.duration / gaps, widest)[row] - _ROUNDING).astype(np.int64))
+        piece, number = expand_counts(parts - 1)
+        time = begin[piece] + way[piece] * ((number + 1) / parts[piece])
+        return self._points(row[piece], time, segment[piece])
+
+    def _points(self, row: Array, time: Array, segment: Array) -> CheckPoints:
+        duration = self.duration[row]
+        return CheckPoints(row, (time - (self.start / 1000)[row]) / duration, time, segment, duration)
+
+
+@dataclass(frozen=True)
+class CheckPoints:
+    """M instants in N intervals, ordered by interval.
+
+    Attributes:
+        row: (M,) the interval.
+        share: (M,) elapsed share of the duration of the interval.
+        time: (M,) s.
+        segment: (M,) the segment of the path at that time; at a joint the one before it.
+        duration: (M,) s of the interval.
+    """
+
+    row: Array
+    share: Array
+    time: Array
+    segment: Array
+    duration: Array
+
+    def maximum(self, values: Array, count: int) -> Array:
+        """The maximum of values at the points, (M,), for each of ``count`` intervals; 0 where there is no place."""
+        maximum, first = np.zeros(count), np.flatnonzero(np.diff(self.row, prepend=-1))
+        if len(first):
+            maximum[self.row[first]] = np.maximum.reduceat(values, first)
+        return maximum
