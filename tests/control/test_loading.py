@@ -41,8 +41,8 @@ from pkm_post.writing.controllers import (
     program_files,
 )
 
-MUTANTS = int(os.environ.get("MUTANTS", "60"))
-"""Of each program; ``MUTANTS=3000`` for a long series."""
+MUTANTS = int(os.environ.get("PKM_MUTANTS", "60"))
+"""Of each program; ``PKM_MUTANTS=3000`` for a long series."""
 STOPS = (Event(0, EventKind.TOOL_CHANGE, 1), Event(6, EventKind.STOP, 0.0), Event(9, EventKind.SPINDLE, 900.0))
 
 
