@@ -28,6 +28,8 @@ from pkm_post.planning.speed_spline import CellEnds, SpeedSpline
 _MOST_STEPS = 60
 _LEAST_SLACK = 0.1
 """Slack at the start where a limit leaves less, or is broken."""
+_LIFT = 1e-2
+"""Least slack at the start of a search that goes on from another one."""
 _FIRST_GAP = 0.1
 """Share of the time that the gap of optimality takes at the start."""
 _OFF = 0.1
@@ -79,6 +81,18 @@ class _State:
     slack: Array
     multiplier: Array
 
+    def lifted(self) -> _State:
+        """The same without slacks that would hold a search with other limits where it begins."""
+        return _State(np.maximum(self.slack, _LIFT), self.multiplier)
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Where a search is: the unknowns (N,), and what it knows of each set of limits; nothing at the start."""
+
+    unknowns: Array
+    states: tuple[_State, ...] = ()
+
 
 @dataclass(frozen=True)
 class _Linear:
@@ -114,13 +128,11 @@ class _Linear:
 
     def curvature(self) -> list[Array]:
         """The six entries of the second derivatives by k, a and x at each end, (E,) each."""
-        stiffness = self.state.multiplier / self.state.slack
-        weights = self.limits.weights
-        share = np.broadcast_to(self.factor * self.state.multiplier, weights.shape[1:])
+        weights, slope = self.limits.weights, self.slope
+        stiff = self.state.multiplier / self.state.slack * slope
+        shared = np.broadcast_to(self.factor * self.state.multiplier, weights.shape[1:]) * weights
         return [
-            np.einsum("ge,ge,ge->e", stiffness, self.slope[i], self.slope[j])
-            + np.einsum("re,re,re->e", share, weights[i], weights[j])
-            for i, j in _PAIRS
+            np.einsum("ge,ge->e", stiff[i], slope[j]) + np.einsum("re,re->e", shared[i], weights[j]) for i, j in _PAIRS
         ]
 
     def moved(self, step: Array) -> Array:
@@ -129,28 +141,28 @@ class _Linear:
         return np.asarray(np.einsum("bge,be->ge", self.slope, along) + self.room - self.state.slack)
 
 
-def fastest(spline: SpeedSpline, limits: tuple[Limits, ...], unknowns: Array, enough: float) -> Array:
-    """The unknowns of the fastest motion, (N,).
+def fastest(spline: SpeedSpline, limits: tuple[Limits, ...], start: Solution, enough: float) -> Solution:
+    """The fastest motion.
 
     Args:
         spline: the places.
         limits: the limits at them.
-        unknowns: (N,) above 0, to begin with; they may break limits.
+        start: unknowns above 0, which may break limits; or the end of a search with nearly the same limits.
         enough: gap of optimality at which to stop, and the most by which a limit may be broken, relative.
     """
     count = sum(one.weights[0].size if one.each else one.weights.shape[2] for one in limits)
-    time = _time(spline, unknowns)
-    barrier = _FIRST_GAP * time / count
-    states: list[_State | None] = [None] * len(limits)
+    barrier = _FIRST_GAP * _time(spline, start.unknowns) / count
+    now = Solution(start.unknowns, tuple(one.lifted() for one in start.states))
     for _ in range(_MOST_STEPS):
-        linear = [_Linear.of(one, state, unknowns, barrier) for one, state in zip(limits, states, strict=True)]
+        states = now.states or (None,) * len(limits)
+        linear = [_Linear.of(one, state, now.unknowns, barrier) for one, state in zip(limits, states, strict=True)]
         gap = sum(float((one.state.slack * one.state.multiplier).sum()) for one in linear)
         broken = -min(float(one.room.min()) for one in linear)
-        time, within = _time(spline, unknowns), broken <= enough
-        if within and gap + _imbalance(spline, linear, unknowns) <= enough * time:
+        balanced = gap + _imbalance(spline, linear, now.unknowns) <= enough * _time(spline, now.unknowns)
+        if balanced and broken <= enough:
             break
-        unknowns, states = _stepped(spline, linear, unknowns, gap / count, count)
-    return unknowns
+        now = _stepped(spline, linear, now.unknowns, gap / count, count)
+    return now
 
 
 def _time(spline: SpeedSpline, unknowns: Array) -> float:
@@ -168,10 +180,8 @@ def _downhill(spline: SpeedSpline, unknowns: Array) -> Array:
     return np.asarray(0.5 * spline.weight * unknowns**-1.5)
 
 
-def _stepped(
-    spline: SpeedSpline, linear: list[_Linear], unknowns: Array, mean_gap: float, count: int
-) -> tuple[Array, list[_State | None]]:
-    """One step of predictor and corrector: the unknowns, and the slacks and multipliers."""
+def _stepped(spline: SpeedSpline, linear: list[_Linear], unknowns: Array, mean_gap: float, count: int) -> Solution:
+    """One step of predictor and corrector."""
     size = len(unknowns)
     band = _band(linear, size)
     band[0] += 0.75 * spline.weight * unknowns**-2.5
@@ -204,11 +214,11 @@ def _stepped(
     ]
     primal, dual = (_TO_BOUNDARY * share for share in _shares(linear, slacks, multipliers))
     primal = min(primal, _TO_BOUNDARY * _reach(unknowns, change))
-    states: list[_State | None] = [
+    states = (
         _State(one.state.slack + primal * a, one.state.multiplier + dual * b)
         for one, a, b in zip(linear, slacks, multipliers, strict=True)
-    ]
-    return unknowns + primal * change, states
+    )
+    return Solution(unknowns + primal * change, tuple(states))
 
 
 def _centring(

@@ -17,7 +17,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, expand_counts
 from pkm_post.model import Machine
-from pkm_post.planning.interior_point import Limits, fastest
+from pkm_post.planning.interior_point import Limits, Solution, fastest
 from pkm_post.planning.jerk_demands import Demands
 from pkm_post.planning.speed_limits import NO_LIMIT
 from pkm_post.planning.speed_profile import Stations, speed_profile
@@ -64,33 +64,37 @@ def jerk_limited(path: ToolPath, marks: Stations, machine: Machine) -> Motion:
     s, rest = _first_places(marks)
     demands = Demands.at(path, machine, marks, _with_middles(s))
     spline, slower = SpeedSpline.of(s, rest), np.ones(len(s) - 1)
-    unknowns = _start(spline, demands.limits(spline, slower))
+    now = Solution(_start(spline, demands.limits(spline, slower)))
     for _ in range(_ROUNDS):
         limits = demands.limits(spline, slower)
-        unknowns = fastest(spline, limits, unknowns, _COARSE)
-        square, acceleration = spline.at_places(unknowns)
-        cut = _too_wide(spline, limits, unknowns, durations(np.diff(spline.s), square, acceleration))
+        now = fastest(spline, limits, now, _COARSE)
+        square, acceleration = spline.at_places(now.unknowns)
+        cut = _too_wide(spline, limits, now.unknowns, durations(np.diff(spline.s), square, acceleration))
         if not cut.any():
             break
-        slower = np.repeat(slower * _too_fast(demands, spline, limits, unknowns, slower), 1 + cut)
+        slower = np.repeat(slower * _too_fast(demands, spline, limits, now.unknowns, slower), 1 + cut)
         new = SpeedSpline.of(*_inserted(spline, demands.s[1::2][cut], cut))
         demands = demands.joined(Demands.at(path, machine, marks, _new_middles(new.s, cut)))
-        unknowns, spline = _carried_over(spline, square, acceleration, new), new
+        now, spline = Solution(_carried_over(spline, square, acceleration, new)), new
     for _ in range(_ROUNDS):
         limits = demands.limits(spline, slower)
-        unknowns = fastest(spline, limits, unknowns, _FINE)
-        too_fast = _too_fast(demands, spline, limits, unknowns, slower)
+        now = fastest(spline, limits, now, _FINE)
+        too_fast = _too_fast(demands, spline, limits, now.unknowns, slower)
         if too_fast.max() <= 1 + _FINE:
             break
         slower = slower * too_fast
-    return _slowed(spline, *spline.at_places(unknowns), too_fast)
+    return _slowed(spline, *spline.at_places(now.unknowns), too_fast)
 
 
 def _first_places(marks: Stations) -> tuple[Array, Array]:
-    """The stations, and places between them so that cells grow by steps only; and which are rests."""
-    apart = np.append(True, np.diff(marks.s) > _NARROWEST)
-    s = marks.s[apart]
-    rest = np.logical_or.reduceat(marks.rest, np.flatnonzero(apart))
+    """The stations but for those inside half blends, and places by which cells grow in steps; and which are rests."""
+    after = np.searchsorted(marks.edges, marks.s - _NARROWEST)
+    inside = (after % 2 == 1) & (after == np.searchsorted(marks.edges, marks.s + _NARROWEST))
+    joint = np.append(np.diff(marks.segment) > 0, True)
+    marked = np.flatnonzero(joint | ~inside)
+    apart = np.append(True, np.diff(marks.s[marked]) > _NARROWEST)
+    s = marks.s[marked][apart]
+    rest = np.logical_or.reduceat(marks.rest[marked], np.flatnonzero(apart))
     width = np.diff(s)
     to_left = np.where(rest[:-1], _AT_REST * width, np.append(np.inf, width[:-1]))
     to_right = np.where(rest[1:], _AT_REST * width, np.append(width[1:], np.inf))
