@@ -64,20 +64,20 @@ def test_noise_bends_the_struts_of_five_axes_little():
 
 
 @pytest.mark.parametrize("noise", [0.0005, 0.005])
-def test_noise_of_the_tolerance_and_beyond_is_followed(noise):
+def test_noise_beyond_the_tolerance_is_followed(noise):
     feed_plan, _ = planned(scan(2, noise=noise, lean=0.1), Tolerances(MICRON, THOUSANDTH))
-    assert len(feed_plan.path.segments.splines) > 20
+    assert (len(feed_plan.path.segments.splines) > 500) == (noise < MICRON)
 
 
 def test_a_smooth_path_has_few_points():
-    """A third of those that the corners of its lines need."""
+    """Less than half of those that the corners of its lines need."""
     trajectory = scan(2, feed=40.0)
     tolerances = Tolerances(MICRON, THOUSANDTH)
     _, made = planned(trajectory, tolerances)
     apart = trajectory.feed * (1 + 0.2 * (np.arange(len(trajectory)) % 2))  # every change of the feed ends a run
     alone, corners = planned(dataclasses.replace(trajectory, feed=apart), tolerances)
     assert not len(alone.path.segments.splines)
-    assert len(made.motion) < len(corners.motion) / 3
+    assert len(made.motion) < len(corners.motion) / 2
 
 
 def test_noise_costs_little_where_jerk_is_limited():

@@ -7,12 +7,14 @@ lines, and the rest of their run is tried again without them.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 
 import numpy as np
 
 from pkm_post.geometry import Array, expand_counts
 from pkm_post.model import Trajectory, uniform
+from pkm_post.system import in_workers
 from pkm_post.toolpath.compressor.deviation import Allowed
 from pkm_post.toolpath.compressor.fit import fit
 from pkm_post.toolpath.compressor.runs import divided, runs
@@ -23,6 +25,8 @@ _ROWS_AT_ONCE = 8192
 """Rows of runs in one pass: the working arrays of one pass stay in the processor's cache."""
 _ATTEMPTS = 3
 """Attempts to fit a run; in each next one without the rows where the one before failed."""
+_WORTH = 0.5
+"""Share of a run that may fail; if more does, its noise is beyond the tolerance, and all of it remains lines."""
 
 
 def compress(trajectory: Trajectory, segments: Segments, tip: Array, axis: float) -> Splines:
@@ -36,10 +40,12 @@ def compress(trajectory: Trajectory, segments: Segments, tip: Array, axis: float
     """
     begin, count = runs(trajectory, segments.extent, tip, axis)
     turns = _turn(segments, begin, count)
-    parts: list[Splines] = []
-    for group in _groups(begin, count):
-        parts += _fitted(trajectory, segments, Allowed(tip, uniform(axis, len(tip))), group, turns)
-    return Splines.joined(parts)
+    allowed = Allowed(tip, uniform(axis, len(tip)))
+
+    def part(group: tuple[Array, Array]) -> list[Splines]:
+        return list(_fitted(trajectory, segments, allowed, group, turns))
+
+    return Splines.joined(list(itertools.chain(*in_workers(part, _groups(begin, count)))))
 
 
 def _turn(segments: Segments, begin: Array, count: Array) -> bool:
@@ -79,12 +85,13 @@ def _fitted(
 
 
 def _without(rows: Array, bad: Array, run: Array) -> tuple[Array, Array]:
-    """The runs that remain without bad rows and their neighbours."""
+    """The runs that remain without bad rows and their neighbours, if these are not too many."""
     same = run[1:] == run[:-1]
     near = bad.copy()
     near[1:] |= bad[:-1] & same
     near[:-1] |= bad[1:] & same
-    good = ~near
+    many = np.bincount(run, near) < _WORTH * np.bincount(run)
+    good = ~near & many[run]
     on = good[1:] & good[:-1] & same
     first = np.flatnonzero(good & ~np.concatenate([[False], on]))
     last = np.flatnonzero(good & ~np.concatenate([on, [False]]))

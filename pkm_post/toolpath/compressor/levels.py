@@ -29,12 +29,12 @@ from pkm_post.toolpath.compressor.uniform_splines import (
 
 _ROWS_IN_CELL = 8
 """Rows in a cell of the coarsest grid, on average."""
-_LEVELS = 5
-"""Grids, each with cells half as wide as the one before: down to two cells for a row."""
-_AVERAGED = 4
-"""Grids, of these, whose cells hold enough places for an average."""
-_PASSES = 2
-"""Corrections of single places on each grid."""
+_AVERAGED = 3
+"""Of these grids the number whose cells hold enough places for an average."""
+_PASSES = 3, 3, 3, 8
+"""Corrections of single places on each grid after the coarsest, with cells half as wide each: down to half a row."""
+_PATIENCE, _HOPELESS = 2, 0.6
+"""After so many of these grids, a run of which this share is off is given up: its tolerance is too tight for it."""
 _AIM = 0.9
 """Deviation by what is allowed above which the curve is corrected."""
 _LEFT = 0.5
@@ -85,19 +85,21 @@ def fitted_curves(polyline: Polylines, allowed: Allowed) -> Curves:
     search = _Search(
         polyline, allowed, Grids(polyline.length, np.maximum(1, np.rint(count / _ROWS_IN_CELL).astype(int)))
     )
-    for level in range(1, _LEVELS):
-        if not search.off().any():
+    for level in range(1, len(_PASSES) + 1):
+        if level > _PATIENCE:
+            search.give_up()
+        if not len(search.wrong):
             break
         search.refine()
-        if level < _AVERAGED:
+        if level <= _AVERAGED:
             search.follow()
-        for _ in range(_PASSES):
+        for _ in range(_PASSES[level - 1]):
             search.correct()
     return search.curves
 
 
 class _Search:
-    """The curves of one level, and their places and slopes at each place of the polylines."""
+    """The curves of one level, and which places of the polylines are off from them by too much: ``wrong``."""
 
     def __init__(self, polyline: Polylines, allowed: Allowed, grids: Grids) -> None:
         self._polyline, self._places = polyline, Places.of(polyline, _SHARES)
@@ -115,11 +117,14 @@ class _Search:
         off, _ = deviation(self._places.point[:, at], *self._state[:, :, at])
         by = by_allowed(off, self._allowed[at])
         wrong = np.flatnonzero(np.maximum(*by) > _AIM)
-        self._wrong, self._off, self._by = at[wrong], off[:, wrong], [one[wrong] for one in by]
+        self.wrong, self._off, self._by = at[wrong], off[:, wrong], [one[wrong] for one in by]
 
-    def off(self) -> Array:
-        """The places that are off by too much."""
-        return self._wrong
+    def give_up(self) -> None:
+        """Leave runs as they are of which too much is off."""
+        run = self._places.run
+        hopeless = np.bincount(run[self.wrong], minlength=run[-1] + 1) > _HOPELESS * np.bincount(run)
+        kept = np.flatnonzero(~hopeless[run[self.wrong]])
+        self.wrong, self._off, self._by = self.wrong[kept], self._off[:, kept], [one[kept] for one in self._by]
 
     def refine(self) -> None:
         """Go to the next grid."""
@@ -130,7 +135,7 @@ class _Search:
         """Average the polyline on this grid where much is off."""
         curves, polyline, column = self.curves, self._polyline, self._column
         grids = curves.grids
-        every, wrong = (_about_nodes(grids, at) for at in (column, column[self._wrong]))
+        every, wrong = (_about_nodes(grids, at) for at in (column, column[self.wrong]))
         where = _with_ends(grids, wrong > _DENSE * every)
         if where.any():
             ends = where[np.stack([grids.first, grids.first + grids.cells])]
@@ -140,12 +145,12 @@ class _Search:
 
     def correct(self) -> None:
         """Take away what is too much at single places."""
-        if not len(self._wrong):
+        if not len(self.wrong):
             return
         excess = self._off * 1.0
         for columns, by in zip((slice(0, 3), slice(3, None)), self._by, strict=True):
             excess[columns] *= np.where(by > _AIM, 1 - _LEFT / np.maximum(by, _AIM), 0.0)
-        curves, at = self.curves, self._wrong
+        curves, at = self.curves, self.wrong
         change = _spread(curves.grids, self._places.run[at], self._places.s[at], excess)
         self._replace(curves.coefficients + change, (change != 0).any(axis=0), curves.bend)
 
@@ -154,7 +159,7 @@ class _Search:
         changed = reached(where)[self._column]
         at = np.flatnonzero(changed)
         self._state[:, :, at] = values(self.curves.grids, coefficients, self._places.run[at], self._places.s[at])
-        changed[self._wrong] = True
+        changed[self.wrong] = True
         self._compare(np.flatnonzero(changed))
 
 
