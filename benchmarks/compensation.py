@@ -130,7 +130,8 @@ def main():
     fewer = max(1, count // 100)
     path_points, path_normals, path_axes = contacts(fewer)
     tips, _ = tip_from_contact(path_points, path_normals, path_axes, BULL_NOSE)
-    some, their_normals = waves(*np.random.default_rng(2).uniform(1.0, 0.9 * path_points[:, 0].max(), (2, fewer)))
+    within = path_points[:, 0].max() * np.random.default_rng(2).uniform(0.1, 0.9, (2, fewer))
+    some, their_normals = waves(*within)
     report(
         f"material left by {fewer:,} moves of a bull nose",
         fewer,

@@ -121,7 +121,7 @@ def print_speed(blocks):
 
 
 def lines_to(count):
-    """A trajectory of so many short lines, all from other lines of a source."""
+    """A trajectory of so many short lines, all from other lines of a source, at rest at its end."""
     here = np.zeros((count, 3))
     here[:, 0] = np.arange(1, count + 1)
     no_arc = np.full((count, 3), np.nan)
@@ -129,6 +129,7 @@ def lines_to(count):
     columns = dict.fromkeys(TRAJECTORY_COLUMNS, np.zeros(count))
     columns |= {"kind": np.full(count, Kind.LINE), "tip": here, "axis": np.tile([0.0, 0.0, 1.0], (count, 1))}
     columns |= {"feed": ones, "length": ones, "line": np.arange(count), "arc_centre": no_arc, "arc_axis": no_arc}
+    columns["exact_stop"] = np.arange(count) == count - 1
     tool = OPTIONS.default_tool
     pose = {"start_tip": np.zeros(3), "start_axis": np.array([0.0, 0.0, 1.0]), "start_spin": 0.0}
     machine = {"machine_from_work": np.eye(4), "machine": "none", "machine_fingerprint": "0" * 64}

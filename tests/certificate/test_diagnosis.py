@@ -29,10 +29,10 @@ def with_decimals(name, decimals):
 
 def advised(fault, decimals):
     """The decimals that a diagnostic asks for."""
-    told = dict(zip(("length", "speed"), decimals, strict=True)) | {
+    reported = dict(zip(("length", "speed"), decimals, strict=True)) | {
         name: int(digits) for name, digits in ADVICE.findall(fault.found)
     }
-    return told["length"], told["speed"]
+    return reported["length"], reported["speed"]
 
 
 SERIES = [

@@ -17,7 +17,7 @@ LOOKED_FOR = "V101", "V102", "V108"
 DENSE = 1001
 """Instants of an interval: four for each one of the certificate."""
 NEARLY = 0.99
-"""Part of the worst of these that there is at the moment told: looks are as far apart as four of these instants."""
+"""Part of the worst of these that there is at the moment reported: looks are as far apart as four of these instants."""
 FIGURE = 0.1
 """Part by which the figure may differ from that: it has what can hide, and counts programmed points at joints."""
 
@@ -68,7 +68,7 @@ def under_way(motion, time):
 
 
 @pytest.mark.parametrize("job", JOBS)
-def test_the_line_told_is_that_of_the_program_at_the_time_told(job):
+def test_the_line_reported_is_that_of_the_program_at_the_time_reported(job):
     _, trajectory, motion, _, certificate = certified_or_skipped(job)
     for finding in certificate.findings:
         assert finding.place.line in executed(trajectory, motion, finding.time), finding
@@ -79,7 +79,7 @@ def test_intervals_of_short_chords_have_many_lines():
     assert np.diff(motion.segment).max() > 10
 
 
-def test_what_is_known_of_an_interval_as_a_whole_is_told_at_its_start_with_what_comes_next():
+def test_what_is_known_of_an_interval_as_a_whole_is_reported_at_its_start_with_what_comes_next():
     _, trajectory, motion, struts, certificate = certified("short chords")
     whole = [finding for finding in certificate.findings if finding.code in ("V103", "V104", "V106", "V107")]
     assert len(whole) == 5
@@ -109,7 +109,7 @@ def at_times(job, knot, time, segment):
 
 
 @pytest.mark.parametrize("job", JOBS)
-def test_no_moment_of_the_interval_is_worse_than_the_one_told(job):
+def test_no_moment_of_the_interval_is_worse_than_the_one_reported(job):
     _, _, motion, struts, certificate = certified_or_skipped(job)
     for finding in certificate.findings:
         if finding.code in LOOKED_FOR:
@@ -117,8 +117,8 @@ def test_no_moment_of_the_interval_is_worse_than_the_one_told(job):
             times = apart_from_joints(motion, *struts.time_ms[[knot, knot + 1]] / 1000)
             segments = np.array([under_way(motion, time)[0] for time in times])
             elsewhere = at_times(job, knot, times, segments)[finding.code].max()
-            told = under_way(motion, finding.time)
-            there = at_times(job, knot, np.full(len(told), finding.time), told)[finding.code].max()
+            reported = under_way(motion, finding.time)
+            there = at_times(job, knot, np.full(len(reported), finding.time), reported)[finding.code].max()
             assert there >= NEARLY * elsewhere, finding
             assert finding.value <= (1 + FIGURE) * there, finding
             if finding.time in apart_from_joints(motion, *struts.time_ms[[knot, knot + 1]] / 1000, finding.time):

@@ -57,7 +57,7 @@ def scene(tmp_path_factory):
         script = Path(__file__).with_name(f"scene_{name}.py")
         command = [*_XVFB_RUN, "-n", _first_display(), window, "-M", str(ADDON), str(script)]
         how = {"env": os.environ | {"PKM_FOLDER": str(folder)}, "capture_output": True, "text": True}
-        ran = subprocess.run(command, timeout=180, check=False, **how)
+        ran = subprocess.run(command, timeout=600, check=False, **how)
         result = folder / "result.json"
         assert result.exists(), ran.stdout + ran.stderr
         found = json.loads(result.read_text())

@@ -139,7 +139,7 @@ def test_the_tip_is_not_faster_than_the_feed_by_more_than_the_swing():
 
 @pytest.mark.parametrize("limit", ["strut_speed", "strut_acceleration"])
 @pytest.mark.parametrize("make", JOBS.values(), ids=JOBS)
-def test_a_strut_beyond_its_limit_is_told(make, limit):
+def test_a_strut_beyond_its_limit_is_reported(make, limit):
     machine, path, schedule = planned(make)
     start, end = intervals(schedule)
     slow = dataclasses.replace(machine, **{limit: 10.0})

@@ -18,8 +18,8 @@ FEED = 5.0
 
 def begun(station, jog=LONG, feed=FEED):
     """A jog that has begun, and its plan."""
-    plan, told = station.control.plan_jog(jog, feed)
-    assert plan is not None and not told
+    plan, reported = station.control.plan_jog(jog, feed)
+    assert plan is not None and not reported
     station.control.execute(plan)
     until_it_moves(station)
     return plan

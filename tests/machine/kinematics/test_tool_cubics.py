@@ -97,8 +97,8 @@ def test_no_derivative_is_larger_than_its_bound():
         sizes = np.linalg.norm(np.diff(tip, order, axis=0), axis=1).max(axis=0) * 1000**order
         rounding = 2**order * 1e-13 * 1000**order
         assert np.all(sizes <= bound + rounding)
-        told = bound > 100 * rounding
-        assert np.median(sizes[told] / bound[told]) > 0.9
+        reported = bound > 100 * rounding
+        assert np.median(sizes[reported] / bound[reported]) > 0.9
 
 
 def test_nothing_exceeds_the_bounds_where_the_attitude_stays():
@@ -115,9 +115,9 @@ def test_nothing_exceeds_the_bounds_where_the_attitude_stays():
     assert np.all(drift <= bound.tip + FORWARD)
     assert np.all(speed <= bound.tip_speed * (1 + 1e-4) + FORWARD / duration)  # by the Jacobian beside the drift
     assert np.all(struts <= bound.limits * (1 + 1e-9))
-    told = drift > 100 * FORWARD
-    assert told.sum() > 50
-    assert np.median(bound.tip[told] / drift[told]) < 40
+    reported = drift > 100 * FORWARD
+    assert reported.sum() > 50
+    assert np.median(bound.tip[reported] / drift[reported]) < 40
     assert np.median(struts / bound.limits) > 0.3
 
 
@@ -143,10 +143,10 @@ def test_the_drift_at_three_shares_stands_for_the_whole_interval(machine, long):
     inside = ToolPoses(places[:3].T, unit(places[3:6].T), places[6], np.repeat(start.tool_length, len(DRIFT_SHARES)))
     found = measured_demand(machine, KnotState.of(machine, start), KnotState.of(machine, end), cubics, inside, duration)
     tip, axis, speed, struts = played(machine, start, end, cubics, duration)
-    for most, told in ((tip, found.tip), (axis, found.axis)):
-        assert np.mean(most > told + FORWARD) < 0.05
-        assert np.all(most <= told + 0.2 * told.max() + FORWARD)
-        assert np.median(most) > 0.8 * np.median(told)
+    for most, reported in ((tip, found.tip), (axis, found.axis)):
+        assert np.mean(most > reported + FORWARD) < 0.05
+        assert np.all(most <= reported + 0.2 * reported.max() + FORWARD)
+        assert np.median(most) > 0.8 * np.median(reported)
     assert np.all(speed <= found.tip_speed * (1 + 1e-3))
     assert np.all(struts <= found.limits * (1 + 1e-9))
 

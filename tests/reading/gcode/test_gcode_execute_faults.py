@@ -128,7 +128,7 @@ def test_every_fault_of_execution_is_shown_here():
     assert {fault[1] for fault in FAULTS} | by_limit | of_meaning == {code for code in RULES if code.startswith("G3")}
 
 
-def test_faults_of_structure_are_told_at_once():
+def test_faults_of_structure_are_reported_at_once():
     faults = faults_of("o1 endif\no2 while [1]\no1.5 call\no3 break\n")
     assert [fault[:2] for fault in faults] == [("G307", 1), ("G308", 2), ("G311", 3), ("G307", 4)]
 
@@ -225,5 +225,5 @@ def test_o_words_within_each_other_are_linked_in_linear_work(close):
     flow, faults = link_o_words(dict(enumerate(words)))
     assert Label.looked_up < 50 * len(words)
     assert len(flow.last_row) == (count if close == "with jumps" else 0)
-    told = {"closed": 0, "outer closed": 1, "open": count, "with jumps": 0}
-    assert [fault.code for _, fault in faults] == ["G308"] * told[close]
+    reported = {"closed": 0, "outer closed": 1, "open": count, "with jumps": 0}
+    assert [fault.code for _, fault in faults] == ["G308"] * reported[close]

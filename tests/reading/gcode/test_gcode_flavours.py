@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Flavours of G-code: what words mean on controls of Fanuc's kind and in RS274NGC, and how the two are told apart.
+"""Flavours of G-code: what words mean on controls of Fanuc's kind and in RS274NGC, and how the two are distinguished.
 
 What Fanuc's controls do is from Fanuc, Series 15i/150i-MA Operator's Manual (Programming), B-63324EN, the chapters that
 each test names; what RS274NGC does from LinuxCNC and its rs274.
