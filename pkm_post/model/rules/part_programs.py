@@ -103,6 +103,10 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
     ),
     "G211": error("an expression is nested too deeply", "split it, with parameters for its parts"),
     "G212": warning("blocks after the percent sign that ends the file are not read", "remove them, or the sign"),
+    "G213": error(
+        "the program is in another language than G-code",
+        "post it again from the CAM system for a control that reads G-code, such as LinuxCNC or Fanuc's",
+    ),
     # G3: the execution of a G-code program
     "G301": error("a parameter has no value", "assign a value first"),
     "G302": error("the parameter does not exist", "use whole numbers from 1 to 5601, or a name"),

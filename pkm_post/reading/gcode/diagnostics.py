@@ -15,12 +15,12 @@ from functools import cached_property
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, DiagnosticLog, Place
+from pkm_post.model import RULES, Array, Diagnostic, DiagnosticLog, Place, Severity
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import Word
 
 _MOST_REPORTED = 50
-"""Faults per code that are reported with their own place."""
+"""Faults of a kind that are reported with their own place."""
 
 _WORD = re.compile(
     r"([ABC][ \t]*3(?=[ \t]*=)|[NT][ \t]*[XYZ]|[A-Z@^])[ \t]*=?[ \t]*([+-]?(?:\d+\.?\d*|\.\d+))", re.IGNORECASE
@@ -39,20 +39,24 @@ class BlockDiagnostics:
     Attributes:
         blocks: the program.
         text: its source text, empty if unknown: without it diagnostics have no columns.
+        faulty: rows with an error.
     """
 
     blocks: Blocks
     text: bytes | str = ""
+    faulty: set[int] = field(default_factory=set)
     _log: DiagnosticLog = field(default_factory=lambda: DiagnosticLog(_MOST_REPORTED))
 
-    def add(self, code: str, row: int, found: Found) -> None:
-        """Add a diagnostic of one block, or of the whole file if there are no blocks."""
-        if not self._log.keeps(code):
-            self._log.count(1, code)
+    def add(self, code: str, row: int, found: Found, kind: str = "") -> None:
+        """Add a diagnostic of one block, or of the whole file if there are no blocks; kinds are counted apart."""
+        if RULES[code].severity is Severity.ERROR:
+            self.faulty.add(row)
+        if not self._log.keeps((code, kind)):
+            self._log.count(1, (code, kind))
             return
         parts = found if isinstance(found, tuple) and not isinstance(found, Word) else (found,)
         words = [part for part in parts if isinstance(part, Word)]
-        self._log.add(Diagnostic(code, self._place(row, words), "".join(map(str, parts))), code)
+        self._log.add(Diagnostic(code, self._place(row, words), "".join(map(str, parts))), (code, kind))
 
     def add_where(self, code: str, wrong: Array, found: Callable[[int], Found]) -> None:
         """Add a diagnostic for every faulty block.
@@ -63,9 +67,12 @@ class BlockDiagnostics:
             found: returns what was found in a row.
         """
         rows = np.flatnonzero(wrong)
+        kind = str(found(int(rows[0]))) if len(rows) else ""
         for row in rows[:_MOST_REPORTED].tolist():
-            self.add(code, row, found(row))
-        self._log.count(len(rows[_MOST_REPORTED:]), code)
+            self.add(code, row, found(row), kind)
+        if RULES[code].severity is Severity.ERROR:
+            self.faulty.update(rows[_MOST_REPORTED:].tolist())
+        self._log.count(len(rows[_MOST_REPORTED:]), (code, kind))
 
     def source_line(self, row: int) -> str | None:
         """The line of a block, without comments; None if it is unknown."""
@@ -91,7 +98,7 @@ class BlockDiagnostics:
         return self._log.has_errors()
 
     def in_order(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics in line order; the last one of a code states how many more there are."""
+        """The diagnostics in line order; the last one of a kind states how many more there are."""
         return self._log.in_order(lambda fault: (fault.place.line, fault.code))
 
 

@@ -48,14 +48,38 @@ def execute(
         Plain blocks, or None if there are faults; and the faults: all those found before execution, or else the one
         that stopped it.
     """
+    executed, faults = execute_as_far_as_possible(blocks, limits, block_delete, flavour)
+    return None if faults else executed, faults
+
+
+def execute_as_far_as_possible(
+    blocks: Blocks,
+    limits: ExecutionLimits = DEFAULT_LIMITS,
+    block_delete: bool = False,
+    flavour: Flavour = RS274,
+    is_whole: bool = True,
+) -> tuple[Blocks, tuple[Diagnostic, ...]]:
+    """Execute a program up to its first fault.
+
+    Args:
+        blocks: the scanned blocks.
+        limits: bounds of the execution.
+        block_delete: whether to skip blocks that begin with ``/``.
+        flavour: whose subprogram calls they are.
+        is_whole: whether no block is missing; otherwise nothing is executed, and only invalid blocks are reported.
+
+    Returns:
+        Plain blocks and the faults. If there are any: the blocks before the one that stopped the execution, or all
+        plain blocks of a program that cannot be executed.
+    """
     if not blocks.special and not np.isin(blocks.m, _SUBPROGRAM_CODES).any():
         return blocks, ()
     skipped = blocks.deleted if block_delete else np.zeros(len(blocks), dtype=np.bool_)
     statements, faults = _statements(blocks, skipped, block_delete)
     jumps, unlinked = link_o_words({row: word for row, word in statements.items() if isinstance(word, OWord)})
-    faults.extend(unlinked)
-    if faults:
-        return None, _diagnostics(blocks, faults)
+    faults.extend(unlinked if is_whole else ())
+    if faults or not is_whole:
+        return replace(blocks, special={}), _diagnostics(blocks, faults)
     special = skipped.copy()
     special[blocks.m_row[np.isin(blocks.m, (*_SUBPROGRAM_CODES, *_PROGRAM_END))]] = True
     special[list(statements)] = True
@@ -64,7 +88,7 @@ def execute(
     try:
         interpreter.run(np.flatnonzero(special).tolist())
     except ExecutionFault as fault:
-        return None, _diagnostics(blocks, [(interpreter.row, fault)])
+        return executed.blocks(), _diagnostics(blocks, [(interpreter.row, fault)])
     return _ended(executed.blocks(), interpreter), ()
 
 

@@ -1,22 +1,24 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Read: convert the text of a G-code program to motions, in three independent steps.
 
-Enters: the content of a file, in its own units. Leaves: a ``Program`` in mm, rad and mm/s, or all faults of the first
-step that fails: a block that cannot be parsed cannot be processed further.
+Enters: the content of a file, in its own units. Leaves: a ``Program`` in mm, rad and mm/s, or all faults. Where a step
+fails, the next ones look at what is left of the program for faults that are not consequences of the first.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from pkm_post.model import Diagnostic, Program
+from pkm_post.model import Diagnostic, Place, Program, errors
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.execute import execute
+from pkm_post.reading.gcode.execute import execute_as_far_as_possible
 from pkm_post.reading.gcode.flavours import FLAVOURS, Flavour
+from pkm_post.reading.gcode.foreign import foreign_language
 from pkm_post.reading.gcode.guess import guessed_flavour
 from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, ExecutionLimits, ReadOptions
+from pkm_post.reading.gcode.recovery import first_line, merged, own_faults
 from pkm_post.reading.gcode.resolve import resolve
-from pkm_post.reading.gcode.scan import scan
+from pkm_post.reading.gcode.scan import scan_recovering
 
 _RESTARTS = ("M99 ends the main program, which a control would begin again: it is carried out once",)
 
@@ -41,18 +43,31 @@ def read(
     Raises:
         ImportError: lark is not installed.
     """
-    scanned, syntax = scan(text, file)
-    if scanned is None:
-        return None, syntax
+    scanned, syntax = scan_recovering(text, file)
     flavour, why = _flavour(scanned, options)
-    executed, execution = execute(scanned, limits, options.block_delete, flavour)
-    if executed is None:
-        return None, syntax + execution
-    program, meaning = resolve(executed, replace(options, flavour=flavour.name), text)
-    diagnostics = syntax + execution + meaning
+    options = replace(options, flavour=flavour.name)
+    is_whole = not errors(syntax)
+    executed, execution = execute_as_far_as_possible(scanned, limits, options.block_delete, flavour, is_whole)
+    if not is_whole or execution:
+        return None, _all_faults(text, file, executed, syntax + execution, options)
+    program, meaning = resolve(executed, options, text)
+    diagnostics = syntax + merged(meaning)
     if program is None:
         return None, diagnostics
     return replace(program, reading=(why, *program.reading, *_RESTARTS[: executed.restarts])), diagnostics
+
+
+def _all_faults(
+    text: bytes | str, file: str, blocks: Blocks, faults: tuple[Diagnostic, ...], options: ReadOptions
+) -> tuple[Diagnostic, ...]:
+    """The faults of a text that cannot be executed as a whole, and those of its blocks behind them; or its language."""
+    raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else bytes(text)
+    language = foreign_language(raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n"))
+    if language is not None:
+        return (Diagnostic("G213", Place(file, line=language[1]), language[0]),)
+    _, meaning = resolve(blocks, replace(options, needs_end=False), text)
+    own = own_faults(meaning, first_line(faults), options)
+    return merged(sorted((*faults, *own), key=lambda fault: (fault.place.line, fault.place.column)))
 
 
 def _flavour(blocks: Blocks, options: ReadOptions) -> tuple[Flavour, str]:

@@ -27,6 +27,7 @@ from pkm_post.reading.gcode.frames import RowFrames, normal_coordinate
 from pkm_post.reading.gcode.modal import Modal, modal_state
 from pkm_post.reading.gcode.motions import Motions, PositionTracker
 from pkm_post.reading.gcode.options import UNITS, ReadOptions, axis_names
+from pkm_post.reading.gcode.recovery import first_line, own_faults
 from pkm_post.reading.gcode.tool_axes import check_cycles, spins, surface_normals, tool_axes
 from pkm_post.reading.gcode.tools import side_offsets, spindle_speeds, tools_in_spindle
 
@@ -64,11 +65,32 @@ def resolve(
     check(blocks, modal, options, faults)
     check_dwells(blocks, modal, options, faults)
     program = None if faults.has_errors() else _program(blocks, modal, options, faults)
+    behind = _faults_behind(blocks, modal, options, faults) if program is None else ()
     if options.needs_end and not ended:
         faults.add("G430", len(blocks) - 1, "no M2, M30 or % after it")
     if program is None or faults.has_errors():
-        return None, faults.in_order()
+        return None, tuple(sorted((*faults.in_order(), *behind), key=lambda fault: (fault.place.line, fault.code)))
     return replace(program, reading=notes), faults.in_order()
+
+
+def _faults_behind(
+    blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics
+) -> tuple[Diagnostic, ...]:
+    """Faults of the motions of a program, without its faulty blocks, that are not consequences of these.
+
+    Nothing if the rest is faulty for want of them, or has no motion.
+    """
+    rest = np.setdiff1d(np.arange(len(blocks)), [*faults.faulty])
+    if len(rest) in (0, len(blocks)):
+        return ()
+    blocks = blocks.selected(rest)
+    modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), modal.flavour)
+    others = BlockDiagnostics(blocks, faults.text)
+    check(blocks, modal, options, others)
+    if others.has_errors():
+        return ()
+    _program(blocks, modal, options, others)
+    return own_faults(others.in_order(), first_line(faults.in_order()), options)
 
 
 def _up_to_end(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:

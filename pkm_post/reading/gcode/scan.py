@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Place, checkpoint
+from pkm_post.model import Array, Diagnostic, Place, checkpoint, errors
 from pkm_post.reading.gcode.block_builders import BlocksBuilder
 from pkm_post.reading.gcode.blocks import Block, Blocks
 from pkm_post.reading.gcode.lexer import EMPTY, PARSED_ALONE, Lexed, Patterns, lex
@@ -55,6 +55,19 @@ def scan(text: bytes | str, file: str) -> Scanned:
     Raises:
         ImportError: lark is not installed.
     """
+    return _none_if_faulty(scan_recovering(text, file))
+
+
+def scan_recovering(text: bytes | str, file: str) -> tuple[Blocks, tuple[Diagnostic, ...]]:
+    """Scan a G-code program to the blocks of all lines without a fault, and report the others.
+
+    Args:
+        text: content of the file.
+        file: its name, for the diagnostics.
+
+    Raises:
+        ImportError: lark is not installed.
+    """
     whole = _normalized(text)
     part = _up_to_percent(whole)
     faults, patterns, builder = SyntaxFaults(file), Patterns(), BlocksBuilder(part.text.count(b"\n"))
@@ -62,6 +75,11 @@ def scan(text: bytes | str, file: str) -> Scanned:
         checkpoint()
         _scan_piece(piece, patterns, builder, faults)
     return _scanned(whole, part, builder, faults, file)
+
+
+def _none_if_faulty(scanned: tuple[Blocks, tuple[Diagnostic, ...]]) -> Scanned:
+    blocks, diagnostics = scanned
+    return None if errors(diagnostics) else blocks, diagnostics
 
 
 def scan_by_block(text: bytes | str, file: str) -> Scanned:
@@ -87,7 +105,7 @@ def scan_by_block(text: bytes | str, file: str) -> Scanned:
         else:
             faults.add(builder.next_line, line, block)
             builder.add(Block())
-    return _scanned(whole, part, builder, faults, file)
+    return _none_if_faulty(_scanned(whole, part, builder, faults, file))
 
 
 def _scan_piece(piece: bytes, patterns: Patterns, builder: BlocksBuilder, faults: SyntaxFaults) -> None:
@@ -140,10 +158,12 @@ def _lines_at(offsets: Array, line_start: Array) -> Array:
     return np.searchsorted(line_start, offsets, side="right") - 1
 
 
-def _scanned(whole: bytes, part: _Extent, builder: BlocksBuilder, faults: SyntaxFaults, file: str) -> Scanned:
-    """The blocks if there are no faults; report any block after the end of the file."""
+def _scanned(
+    whole: bytes, part: _Extent, builder: BlocksBuilder, faults: SyntaxFaults, file: str
+) -> tuple[Blocks, tuple[Diagnostic, ...]]:
+    """The blocks and the faults; report any block after the end of the file as well."""
     diagnostics = faults.diagnostics()
-    blocks = None if diagnostics else builder.blocks(file, part.closed)
+    blocks = builder.blocks(file, part.closed)
     if part.after >= 0:
         line = whole.count(b"\n", 0, part.after) + 1
         diagnostics += (Diagnostic("G212", Place(file, line=line, column=1), _beginning(whole, part.after)),)

@@ -26,7 +26,7 @@ def test_text_becomes_a_program():
     assert program.line.tolist() == [3, 4, 6]
 
 
-def test_a_program_that_is_not_understood_stops_at_the_scan():
+def test_faults_of_the_text_are_all_reported():
     program, diagnostics = read("G21\nG1 X\nG1 Y1.2.3\n", "part.ngc", OPTIONS)
     assert program is None
     assert codes(diagnostics) == ["G201", "G102"]

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Foreign languages: part programs that are not G-code of RS274NGC or ISO, recognised by what they alone have.
+
+Enters: the text of a program that cannot be read. Leaves: the name of its language and where it shows, or nothing. Two
+kinds of evidence are needed: one may be a slip of the pen.
+"""
+
+from __future__ import annotations
+
+import re
+
+_LEAST = 2
+_MOST_SHOWN = 3
+_BLOCK = r"^[ \t]*(?:N?\d+[ \t]+)?"
+
+LANGUAGES: dict[str, dict[str, str]] = {
+    "Heidenhain klartext": {
+        "BEGIN PGM": _BLOCK + r"BEGIN[ \t]+PGM\b",
+        "TOOL CALL": _BLOCK + r"TOOL[ \t]+(?:CALL|DEF)\b",
+        "CYCL DEF": _BLOCK + r"CYCL[ \t]+(?:DEF|CALL)\b",
+        "BLK FORM": _BLOCK + r"BLK[ \t]+FORM\b",
+        "L X+": _BLOCK + r"L[ \t]+[XYZABC][+-]",
+        "CC X+": _BLOCK + r"(?:CC|CR|CT|CP)[ \t]+[XYZI][+-]",
+        "FMAX": r"\bFMAX\b",
+    },
+    "Siemens's language (Sinumerik)": {
+        'MSG("")': r"\bMSG[ \t]*\([ \t]*\"",
+        "CYCLE": r"\bCYCLE\d{2,4}[ \t]*\(",
+        'T=""': r"\bT[ \t]*=[ \t]*\"",
+        "R parameters": _BLOCK + r"R\d+[ \t]*=",
+        "=IC()": r"=[ \t]*(?:IC|AC|DC|ACP|ACN)[ \t]*\(",
+        "CR=": r"\bCR[ \t]*=",
+        "%_N_": r"^%_N_",
+        "system variables": r"\$(?:P|TC|AA|MN|MA)_",
+        "DEF REAL": _BLOCK + r"DEF[ \t]+(?:REAL|INT|BOOL|AXIS|STRING)\b",
+        "ORIWKS": r"\b(?:ORIWKS|ORIAXES|ORIMKS|STOPRE|SUPA|FFWON|SOFT|COMPCAD|CUT2D|WORKPIECE)\b",
+    },
+}
+"""By language, what only its programs have, as regular expressions."""
+
+_COMPILED = {
+    name: {what: re.compile(pattern.encode(), re.MULTILINE | re.IGNORECASE) for what, pattern in evidence.items()}
+    for name, evidence in LANGUAGES.items()
+}
+
+
+def foreign_language(text: bytes) -> tuple[str, int] | None:
+    """The language of a program with its evidence, and the line where that begins; None if it is no other one.
+
+    Args:
+        text: with a line feed at the end of each line.
+    """
+    shown = {
+        name: [(what, text.count(b"\n", 0, found.start()) + 1) for what, found in _found(text, patterns)]
+        for name, patterns in _COMPILED.items()
+    }
+    name = max(shown, key=lambda each: len(shown[each]))
+    if len(shown[name]) < _LEAST:
+        return None
+    evidence = sorted(shown[name], key=lambda each: each[1])[:_MOST_SHOWN]
+    return f"{name}: {', '.join(f'{what} in line {line}' for what, line in evidence)}", evidence[0][1]
+
+
+def _found(text: bytes, patterns: dict[str, re.Pattern[bytes]]) -> list[tuple[str, re.Match[bytes]]]:
+    return [(what, found) for what, pattern in patterns.items() if (found := pattern.search(text))]

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Recovery: which faults stand behind another one, and which of them are its consequences.
+
+Enters: diagnostics found in a program from which faulty blocks were left out. Leaves: those that are faults of their
+own: all before the first faulty block, and behind it those that a block shows by itself, whatever came before. Equal
+faults become one with their number and the first of their lines.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+
+from pkm_post.model import Diagnostic, Severity
+from pkm_post.reading.gcode.options import ReadOptions
+
+_BY_ITSELF = frozenset(["G401", "G402", "G403", "G406", "G411", "G413", "G417", "G422", "G423", "G425", "G427", "G428"])
+"""Faults of a block that no other block can cause."""
+_OF_THE_WHOLE = ("G420", "G430")
+"""Faults of a program as a whole, of which a part says nothing: no motion, and no end."""
+_MOST_EQUAL = 3
+"""Equal faults that are reported each by itself."""
+_MOST_OF_A_CODE, _MOST_SHOWN = 10, 5
+"""Faults of a code that are reported each by itself, and how many if there are more."""
+_LINES_SHOWN = 5
+_LAST = 1 << 60
+"""Behind every line."""
+_MORE = re.compile(r", and (\d+) more like it$")
+
+
+def own_faults(found: Iterable[Diagnostic], first: int, options: ReadOptions) -> tuple[Diagnostic, ...]:
+    """The faults that are not consequences of another one.
+
+    Args:
+        found: in a program without its faulty blocks.
+        first: line of the first of these.
+        options: read options.
+    """
+    # Without a notation of the tool axis a rotary word is a fault wherever it stands.
+    by_itself = _BY_ITSELF | ({"G414"} if options.axis_words == "none" else set())
+    kept = (fault for fault in found if fault.code not in _OF_THE_WHOLE)
+    return tuple(fault for fault in kept if fault.place.line < first or fault.code in by_itself)
+
+
+def first_line(found: Iterable[Diagnostic]) -> int:
+    """The line of the first error."""
+    return min(fault.place.line for fault in found if fault.severity is Severity.ERROR)
+
+
+def merged(found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Diagnostics by line, each once; many equal ones, and many of a code, as one with their number."""
+    equal: dict[tuple[str, str], list[Diagnostic]] = {}
+    for fault in dict.fromkeys(found):
+        equal.setdefault((fault.code, _MORE.sub("", fault.found)), []).append(fault)
+    by_code: dict[str, list[_Counted]] = {}
+    for (code, _), group in equal.items():
+        by_code.setdefault(code, []).extend(_counted(group))
+    each = [fault for group in by_code.values() for fault in _first_of_many(group)]
+    return tuple(sorted(each, key=lambda fault: (fault.place.line or _LAST, fault.place.column)))
+
+
+_Counted = tuple[Diagnostic, int]
+"""A diagnostic, and how many it stands for."""
+
+
+def _counted(group: list[Diagnostic]) -> list[_Counted]:
+    """Equal faults: each by itself if they are few, otherwise as one."""
+    each = [(fault, 1 + int(more[1]) if (more := _MORE.search(fault.found)) else 1) for fault in group]
+    number = sum(count for _, count in each)
+    if len(group) == 1 or number <= _MOST_EQUAL:
+        return each
+    found = f"{_MORE.sub('', group[0].found)} ({number} times, in {_lines(group)})"
+    return [(replace(group[0], found=found), number)]
+
+
+def _first_of_many(group: list[_Counted]) -> list[Diagnostic]:
+    """The faults of a code; if they are many the first ones, of which the last says how many more there are."""
+    if len(group) <= _MOST_OF_A_CODE:
+        return [fault for fault, _ in group]
+    shown, rest = [fault for fault, _ in group[:_MOST_SHOWN]], group[_MOST_SHOWN:]
+    number = sum(count for _, count in rest)
+    found = f"{shown[-1].found}, and {number} more like it, in {_lines([fault for fault, _ in rest])}"
+    return [*shown[:-1], replace(shown[-1], found=found)]
+
+
+def _lines(group: list[Diagnostic]) -> str:
+    lines = list(dict.fromkeys(fault.place.line for fault in group))
+    return f"lines {', '.join(map(str, lines[:_LINES_SHOWN]))}" + " and others" * (len(lines) > _LINES_SHOWN)
