@@ -86,7 +86,7 @@ GCODE: tuple[Row, ...] = (
         ("LOGIC", "COMPARISON", "PRODUCT", "POWER"),
         r"and|x?or|mod|(?:eq|ne|[gl][te])(?!xp|xists|an)|\*\*|[*/]",
     ),
-    Row(Colour.KEYWORD, ("LN", "_O", "PERCENT"), r"LN|O|%"),
+    Row(Colour.KEYWORD, ("LN", "_O", "PERCENT"), r"LN|O|:|%"),
     Row(Colour.OPERATOR, ("DELETE", "EQUAL", "LSQB", "RSQB"), r"[][/=]"),
     Row(Colour.WORD, ("NAMED", "SURFACE", "LETTER"), r"[ABC]\s*3(?=\s*=)|[NT]\s*[XYZ]|[A-MP-Z@^]"),
     Row(Colour.LINE_NUMBER, ("_N",), r"N(?:\s*\d+\.?\d*)?"),  # with its number

@@ -107,6 +107,10 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
         "the program is in another language than G-code",
         "post it again from the CAM system for a control that reads G-code, such as LinuxCNC or Fanuc's",
     ),
+    "G214": warning(
+        "a length has no decimal point, and is taken in whole units",
+        "write a point; some controls take such a number for thousandths, others for whole mm or inches as here",
+    ),
     # G3: the execution of a G-code program
     "G301": error("a parameter has no value", "assign a value first"),
     "G302": error("the parameter does not exist", "use whole numbers from 1 to 5601, or a name"),

@@ -44,6 +44,7 @@ class Flavour:
         g53_is_rapid: whether G53 moves rapidly whatever motion is in force.
         counts_in_p: whether P of M98 above four digits begins with how often the subprogram runs.
         programs_apart: whether an O number begins another program, which only a call enters.
+        counts_thousandths: whether some controls take lengths without a point for thousandths.
         restarts: whether M99 ends the main program, to begin it again.
         equivalents: codes, in tenths, that mean the same as another one.
         without_motion: codes that change nothing here: switches of what this reader never switches on.
@@ -69,6 +70,7 @@ class Flavour:
     g53_is_rapid: bool
     counts_in_p: bool
     programs_apart: bool
+    counts_thousandths: bool
     restarts: bool
     equivalents: Mapping[int, int]
     without_motion: Mapping[int, str]
@@ -100,6 +102,7 @@ RS274 = Flavour(
     g53_is_rapid=False,
     counts_in_p=False,
     programs_apart=False,
+    counts_thousandths=False,
     restarts=False,
     equivalents={},
     without_motion={},
@@ -157,6 +160,7 @@ FANUC = replace(
     g53_is_rapid=True,
     counts_in_p=True,
     programs_apart=True,
+    counts_thousandths=True,
     restarts=True,
     equivalents={2340: 434},
     without_motion={

@@ -27,7 +27,7 @@ _MARK = b"\x01"
 _BLANK = 0x20
 _NUMERIC = b"+-.0123456789"
 _BLANKS = b" \t\f\v"
-_MEANT = b"\nABCDEFGHIJKLMNOPQRSTUVWXYZ/%#=[]<>*_@^" + _NUMERIC + _BLANKS  # leftover parentheses are faults
+_MEANT = b"\nABCDEFGHIJKLMNOPQRSTUVWXYZ/%#=[]<>*_@^:" + _NUMERIC + _BLANKS  # leftover parentheses are faults
 
 
 def _byte_table(of: Callable[[int], int]) -> bytes:

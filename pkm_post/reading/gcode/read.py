@@ -7,6 +7,7 @@ fails, the next ones look at what is left of the program for faults that are not
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 from pkm_post.model import Diagnostic, Place, Program, errors
@@ -20,6 +21,9 @@ from pkm_post.reading.gcode.recovery import first_line, merged, own_faults
 from pkm_post.reading.gcode.resolve import resolve
 from pkm_post.reading.gcode.scan import scan_recovering
 
+_COMMENT = re.compile(rb"\([^()\n]*\)|;[^\n]*")
+_WITHOUT_A_POINT = re.compile(rb"(?<![A-Za-z#\]])[XYZIJxyzij][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])")
+"""A coordinate that is a whole number other than 0, without a point."""
 _RESTARTS = ("M99 ends the main program, which a control would begin again: it is carried out once",)
 
 
@@ -51,10 +55,25 @@ def read(
     if not is_whole or execution:
         return None, _all_faults(text, file, executed, syntax + execution, options)
     program, meaning = resolve(executed, options, text)
-    diagnostics = syntax + merged(meaning)
+    points = _lengths_without_a_point(text, file) if flavour.counts_thousandths else ()
+    diagnostics = syntax + merged((*meaning, *points))
     if program is None:
         return None, diagnostics
     return replace(program, reading=(why, *program.reading, *_RESTARTS[: executed.restarts])), diagnostics
+
+
+def _lengths_without_a_point(text: bytes | str, file: str) -> tuple[Diagnostic, ...]:
+    """A warning about whole numbers as coordinates, at the first of them."""
+    raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else bytes(text)
+    plain = _COMMENT.sub(lambda comment: b" " * len(comment[0]), raw) if b"(" in raw or b";" in raw else raw
+    found = _WITHOUT_A_POINT.search(plain)
+    if found is None:
+        return ()
+    number = len(_WITHOUT_A_POINT.findall(plain))
+    line = plain.count(b"\n", 0, found.start()) + 1
+    column = found.start() - plain.rfind(b"\n", 0, found.start())
+    more = f", and {number - 1} more like it" if number > 1 else ""
+    return (Diagnostic("G214", Place(file, line=line, column=column), found[0].decode("latin-1") + more),)
 
 
 def _all_faults(

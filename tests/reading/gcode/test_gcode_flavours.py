@@ -35,7 +35,8 @@ def fanuc(text, **options):
 
 
 def codes(text, **options):
-    return [fault.code for fault in taken(text, **options)[1]]
+    """The codes of the faults, but for the warning about numbers without a point."""
+    return [fault.code for fault in taken(text, **options)[1] if fault.code != "G214"]
 
 
 def moves(program):
@@ -81,7 +82,7 @@ def test_g0_beside_g80_is_in_force_in_every_flavour(flavour):
 
 
 def test_without_a_motion_before_g80_there_is_none_after_it():
-    program, faults = read("G80\nX1 Y1 Z1\nM30\n", "part.nc", ReadOptions(default_tool=ANY, flavour="fanuc"))
+    program, faults = read("G80\nX1. Y1. Z1.\nM30\n", "part.nc", ReadOptions(default_tool=ANY, flavour="fanuc"))
     assert (program, [fault.code for fault in faults]) == (None, ["G407"])
 
 
@@ -173,10 +174,10 @@ def test_a_third_reference_point_is_not_known():
 
 
 def test_the_way_to_the_reference_point_uses_no_work_offset():
-    text = "G21\nG91 G28 Z0\nG90 G54.1 P7\nG0 X1 Y2 Z3\nM30\n"
+    text = "G21\nG91 G28 Z0\nG90 G54.1 P7\nG0 X1. Y2. Z3.\nM30\n"
     program, _ = read(text, "part.nc", ReadOptions(default_tool=ANY, flavour="fanuc", machine_zero=ZERO))
     assert program.position[-1].tolist() == [1, 2, 3]
-    text = text.replace("M30", "G54.1 P8\nX5\nM30")
+    text = text.replace("M30", "G54.1 P8\nX5.\nM30")
     faults = read(text, "part.nc", ReadOptions(default_tool=ANY, flavour="fanuc", machine_zero=ZERO))[1]
     assert [(fault.code, fault.found) for fault in faults] == [("G412", "G54.1 P8")]
 
@@ -237,6 +238,29 @@ def test_m99_ends_the_main_program_and_it_is_carried_out_once():
 def test_another_program_is_only_entered_by_a_call():
     assert codes("M98 P7\nO7\nG1 X5\nM99\n", flavour="fanuc", needs_end=True) == ["G430"]
     assert codes("M98 P7\nM30\nO7\nG1 X5\nO8\nM99\n", flavour="fanuc") == ["G308"]
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("G1 X10. Y0 Z-0\nX.5 (X5) ;X5\n", []),
+        ("G1 X10\n", [(3, 4, "X10")]),
+        ("G1 X1.\nY 20 I 3.5\nz-007\n", [(4, 1, "Y 20, and 1 more like it")]),
+        ("G4 P1\nN10 G1 X1.5 Y2. F300\n", []),
+    ],
+)
+def test_lengths_without_a_point_are_reported(text, found):
+    text = text.replace("I 3.5", "")
+    program, faults = read("G21 F100\nG0 X0 Y0 Z50.\n" + text, "p", ReadOptions(default_tool=ANY, flavour="fanuc"))
+    assert [(fault.place.line, fault.place.column, fault.found) for fault in faults] == found
+    assert program is not None
+    assert read("G21\nG0 X1 Y1 Z1\n", "p", ReadOptions(default_tool=ANY))[1] == ()
+
+
+def test_a_colon_is_an_o():
+    assert fanuc("M98 P0020020\nM30\n:20\nG91 G1 X1\nG90\nM99\n").position[-1].tolist() == [2, 0, 50]
+    program, _ = read(":1001\nG21\nG0 X1. Y1. Z1.\nM30\n", "p", ReadOptions(default_tool=ANY))
+    assert program.reading[0] == "flavour fanuc, by O1001 in line 1"
 
 
 # the guess

@@ -14,7 +14,7 @@ from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.parse import LONGEST_LINE
 from pkm_post.reading.gcode.scan import scan, scan_by_block
 
-PROGRAM = "G0 X0 Y0 Z5\nG1 Z-1 F100\n"
+PROGRAM = "G0 X0 Y0 Z5.\nG1 Z-1. F100\n"
 WAYS = pytest.mark.parametrize("way", [scan, scan_by_block])
 
 
@@ -314,8 +314,8 @@ def test_nothing_is_reported_of_an_empty_trailer(way):
         ("o1 if [1]\nM2\no1 endif\n", True),
         ("o1 if [0]\nM2\no1 endif\n", False),
         ("#1=2\nM#1\n", True),
-        ("M98 P7\nO7\nG0 Z5\nM99\n", False),
-        ("M98 P7\nM30\nO7\nG0 Z5\nM99\n", True),
+        ("M98 P7\nO7\nG0 Z5.\nM99\n", False),
+        ("M98 P7\nM30\nO7\nG0 Z5.\nM99\n", True),
         ("#1=1\nG0 Z[#1]\n%\n", True),
     ],
 )
