@@ -109,7 +109,9 @@ def _faults(namespace: argparse.Namespace) -> list[str]:
 def _items(file: Path, wanted: str | None, also: tuple[str, ...]) -> list[PostItem]:
     """Items of a file: a part program, or the jobs of a document, with their own optional outputs."""
     if file.suffix.lower() != _DOCUMENT:
-        return [PostItem(str(file), file.stem, also)]
+        from pkm_post.reading import program_stem
+
+        return [PostItem(str(file), program_stem(file), also)]
     jobs = _jobs_in(file)
     if len(jobs) < 2:
         return [PostItem(str(file), job_stem(file.stem, "", 1))]

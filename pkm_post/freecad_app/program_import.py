@@ -15,11 +15,12 @@ import FreeCAD as App
 
 from pkm_post.freecad_app.document import transaction
 from pkm_post.freecad_app.program_object import create_program
+from pkm_post.reading import program_stem
 
 
 def open(filename: str) -> Any:  # noqa: A001 - FreeCAD wants this name
     """Show a part program in a new document."""
-    document = App.newDocument(FilePath(filename).stem)
+    document = App.newDocument(program_stem(FilePath(filename)))
     insert(filename, document.Name)
     return document
 

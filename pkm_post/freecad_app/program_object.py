@@ -33,6 +33,7 @@ from pkm_post.reading import (
     UNITS,
     ReadingOptions,
     is_part_program,
+    program_stem,
     read_part_program,
 )
 from pkm_post.toolpath import OffsetOptions, compensate
@@ -217,7 +218,7 @@ def decode(obj: Any, job: Any) -> Any:
     print_diagnostics(_left_out(program))
     with preselected(controller):
         operation = Path.Op.Custom.Create("Decoded", parentJob=job)
-    operation.Label = FilePath(obj.File).stem
+    operation.Label = program_stem(FilePath(obj.File))
     operation.ToolController = controller
     operation.Gcode = [command.toGCode() for command in commands]
     job.Document.recompute()

@@ -36,7 +36,7 @@ from pkm_post.options import (
 from pkm_post.posting.placement import trajectory_of
 from pkm_post.posting.run import Findings, Log, Posted, Progress, beat, no_log, no_progress
 from pkm_post.posting.steps import SUFFIX, post
-from pkm_post.reading import AS_WRITTEN, ReadingOptions, read_part_program
+from pkm_post.reading import AS_WRITTEN, ReadingOptions, program_stem, read_part_program
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def post_file(
     progress(READING_STEP, 0.0)
     with checkpoints(beat(lambda _: progress(READING_STEP, 0.0))):
         prepared = prepared_file(file, machine, options, tool_lengths, reading, arguments)
-    return prepared.post(Path(out) / f"{Path(file).stem}{SUFFIX}", log, progress)
+    return prepared.post(Path(out) / f"{program_stem(Path(file))}{SUFFIX}", log, progress)
 
 
 def prepared_file(

@@ -12,14 +12,11 @@ from pkm_post.reading.gcode.flavours import FLAVOURS
 from pkm_post.reading.gcode.options import AXIS_WORDS, DWELL_UNITS, FLAVOUR_NAMES
 from pkm_post.reading.gcode.tool_axes import axis_of
 from pkm_post.reading.highlighting import Colour, coloured_spans, underlined
+from pkm_post.reading.language import SUFFIXES, VERSIONED, Language, is_part_program, language_of, program_stem
 from pkm_post.reading.mesh_file import MESH_READERS, STEP_SUFFIXES, mesh_of_triangles, read_mesh
 from pkm_post.reading.part_program import (
     AS_WRITTEN,
-    SUFFIXES,
-    Language,
     ReadingOptions,
-    is_part_program,
-    language_of,
     read_part_program,
 )
 from pkm_post.reading.preview import CheckedText, check_text, tip_paths_of_line
@@ -39,6 +36,7 @@ __all__ = [
     "STEP_SUFFIXES",
     "SUFFIXES",
     "UNITS",
+    "VERSIONED",
     "CheckedText",
     "Colour",
     "CycleSeries",
@@ -58,6 +56,7 @@ __all__ = [
     "is_part_program",
     "language_of",
     "mesh_of_triangles",
+    "program_stem",
     "read_mesh",
     "read_part_program",
     "renumbered",

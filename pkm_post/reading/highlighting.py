@@ -15,7 +15,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from pkm_post.reading.part_program import Language
+from pkm_post.reading.language import Language
 
 LONGEST = 10_000
 """Maximum number of coloured characters of a line."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Part program: read a file of G-code or CL data by its suffix, and check the state in which it leaves the machine.
+"""Part program: read a file of G-code or CL data, and check the state in which it leaves the machine.
 
 Enters: a path and the tool data of the user. Leaves: a ``Program`` in {C}, mm, or the faults of the file, and warnings
 about a spindle left running and a tool left low. Truncated programs end like this, and so do programs that leave both
@@ -12,7 +12,6 @@ move, the approach.
 
 from __future__ import annotations
 
-import enum
 import hashlib
 import math
 import os
@@ -25,6 +24,7 @@ import numpy as np
 from pkm_post.geometry import dot
 from pkm_post.model import Diagnostic, EventKind, Kind, Place, Program, Tool
 from pkm_post.reading import cldata, gcode
+from pkm_post.reading.language import Language, language_of
 
 _Result = tuple[Program | None, tuple[Diagnostic, ...]]
 
@@ -32,20 +32,6 @@ _HEIGHT = 1e-3
 """mm; smaller height differences are rounding errors."""
 _SAME_AXIS = 1 - 1e-9
 """Cosine above which two tool axes are the same."""
-
-
-class Language(enum.Enum):
-    """Language of a part program."""
-
-    GCODE = "G-code"
-    CLDATA = "CL data"
-
-
-SUFFIXES: dict[str, Language] = {
-    **dict.fromkeys((".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".eia", ".iso"), Language.GCODE),
-    **dict.fromkeys((".cls", ".clsf", ".ncl", ".cl", ".apt", ".aptsource", ".cldata"), Language.CLDATA),
-}
-"""Languages by file suffix in lower case."""
 
 
 @dataclass(frozen=True)
@@ -87,23 +73,6 @@ class ReadingOptions:
 AS_WRITTEN = ReadingOptions()
 
 
-def is_part_program(file: Path) -> bool:
-    """Whether a file has the suffix of a part program."""
-    return file.suffix.lower() in SUFFIXES
-
-
-def language_of(file: str | Path) -> Language:
-    """The language of a file.
-
-    Raises:
-        ValueError: the suffix is not that of a part program.
-    """
-    suffix = Path(file).suffix.lower()
-    if suffix not in SUFFIXES:
-        raise ValueError(f"suffix of {file}: expected one of {', '.join(SUFFIXES)}")
-    return SUFFIXES[suffix]
-
-
 def read_part_program(file: Path, reading: ReadingOptions) -> _Result:
     """Read a file.
 
@@ -138,7 +107,7 @@ def read_content(content: bytes, name: str, reading: ReadingOptions) -> _Result:
     Raises:
         ValueError: the suffix is not known.
     """
-    read = _read_gcode if language_of(name) is Language.GCODE else _read_cldata
+    read = _read_gcode if language_of(name, content) is Language.GCODE else _read_cldata
     program, diagnostics = read(content, name, reading)
     return program, diagnostics if program is None else (*diagnostics, *end_warnings(program))
 

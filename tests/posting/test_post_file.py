@@ -201,18 +201,19 @@ def test_faults_of_machine_and_file_are_reported_together(tmp_path):
     assert [fault.code for fault in refused.value.diagnostics] == ["M101", "L402"]
 
 
-def test_files_of_one_name_do_not_overwrite_each_others_results(tmp_path, capsys):
-    for suffix in ("ngc", "cls"):
-        (tmp_path / f"part.{suffix}").write_text(CL_DATA)
-    files = [str(tmp_path / "part.ngc"), str(tmp_path / "part.cls")]
+@pytest.mark.parametrize("names", [("part.ngc", "part.cls"), ("part.ncl.1", "part.ncl.2")])
+def test_files_of_one_name_do_not_overwrite_each_others_results(tmp_path, capsys, names):
+    files = [str(tmp_path / name) for name in names]
+    for file in files:
+        Path(file).write_text(CL_DATA)
     assert main(["post", *files, "--out", str(tmp_path / "out")]) == 2
     assert "would both be posted as part.pmc: post to different folders" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
 
 def test_the_command_line_needs_no_freecad_for_part_programs(tmp_path):
-    (tmp_path / "a.cls").write_text(CL_DATA)
-    arguments = ["post", "a.cls", "--out", "made", "--work-offset=0,0,250", "--tool-length", "1=60"]
+    (tmp_path / "a.ncl.7").write_text(CL_DATA)
+    arguments = ["post", "a.ncl.7", "--out", "made", "--work-offset=0,0,250", "--tool-length", "1=60"]
     script = "import sys; sys.modules['FreeCAD'] = None; from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))"
     reported = subprocess.run(
         [PYTHON, "-c", script, *arguments],

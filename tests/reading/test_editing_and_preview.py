@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from pkm_post.reading import gcode
 from pkm_post.reading.editing import TextFile, renumbered
 from pkm_post.reading.highlighting import underlined
-from pkm_post.reading.part_program import Language, ReadingOptions
+from pkm_post.reading.language import Language
+from pkm_post.reading.part_program import ReadingOptions
 from pkm_post.reading.preview import check_text, tip_paths_of_line
 
 # Text of a file
@@ -106,7 +107,7 @@ def test_what_the_user_says_of_the_text_is_used():
 
 def test_an_unknown_suffix_is_a_fault_of_the_caller():
     with pytest.raises(ValueError, match="expected one of"):
-        check_text("G1", "a.txt")
+        check_text("G1", "a.doc")
 
 
 def test_underlined():

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from pkm_post.reading.grammar import BLOCK, STATEMENT, parser_of
 from pkm_post.reading.highlighting import LONGEST, TABLES, Colour, coloured_spans
-from pkm_post.reading.part_program import Language, language_of
+from pkm_post.reading.language import Language
 
 BLANKS = {"BLANKS", "BLANK"}
 GRAMMARS = {Language.GCODE: BLOCK, Language.CLDATA: STATEMENT}
@@ -154,14 +154,3 @@ def test_lines_of_the_faulty_examples_do_not_matter_to_colours():
     for file in chosen:
         for line in re.split(r"\r?\n", file.read_bytes().decode("latin-1")):
             assert all(span.colour in Colour for span in coloured_spans(line, Language.GCODE))
-
-
-def test_language_by_suffix():
-    assert [language_of(name) for name in ("a.NGC", "b.tap", "c.cls", "d.aptsource")] == [
-        Language.GCODE,
-        Language.GCODE,
-        Language.CLDATA,
-        Language.CLDATA,
-    ]
-    with pytest.raises(ValueError, match=r"suffix of e\.txt"):
-        language_of("e.txt")

@@ -19,7 +19,7 @@ from pkm_post.freecad_gui.editor import program_link
 from pkm_post.freecad_gui.editor.editor_widget import EditorWidget, FileDrop
 from pkm_post.freecad_gui.editor.posting import Posting
 from pkm_post.model import Refused
-from pkm_post.reading import SUFFIXES, TextFile, is_part_program
+from pkm_post.reading import SUFFIXES, VERSIONED, TextFile, is_part_program
 from pkm_post.system import memory_guard, staged
 
 translate = FreeCAD.Qt.translate
@@ -170,7 +170,7 @@ def open_editor(item: Any = None) -> ProgramEditor:
 
 def _name_filter() -> str:
     kind = translate("PKM_Editor", "Part programs")  # lupdate does not read f-strings
-    return f"{kind} ({' '.join(f'*{suffix}' for suffix in SUFFIXES)})"
+    return f"{kind} ({' '.join(f'*{suffix}' for suffix in (*SUFFIXES, f'{VERSIONED}.*'))})"
 
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Language of a part program, G-code or CL data: by its name, and by the first line where the name does not tell.
+
+Enters: the name of a file. Leaves: its language, and the stem that its results take. Creo counts the versions of a file
+behind its suffix, ``part.ncl.3``. Text files (``.txt``) are of either language: CL data begin with a word of APT and
+a slash, or with a comment of APT.
+"""
+
+from __future__ import annotations
+
+import enum
+import re
+from pathlib import Path
+
+
+class Language(enum.Enum):
+    """Language of a part program."""
+
+    GCODE = "G-code"
+    CLDATA = "CL data"
+
+
+SUFFIXES: dict[str, Language | None] = {
+    **dict.fromkeys((".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".eia", ".iso"), Language.GCODE),
+    **dict.fromkeys((".cls", ".clsf", ".ncl", ".cl", ".apt", ".aptsource", ".cldata", ".as", ".clt"), Language.CLDATA),
+    ".txt": None,
+}
+"""Languages by file suffix in lower case; None where the content decides."""
+VERSIONED = ".ncl"
+"""Suffix behind which Creo counts versions."""
+
+_VERSION = re.compile(r"\.[0-9]{1,6}")
+_HEAD = 65536
+"""Bytes of a text file within which its first statement is."""
+_NO_STATEMENT = re.compile(r"(?:[\s\ufeff%]*|[ \t]*[(;][^\n]*)")
+"""Lines of either language that do not tell which it is: empty ones, and comments of G-code."""
+_APT = re.compile(
+    r"\s*(?:N[0-9]+[ \t]+)?(?:\$\$|(?:PARTNO|PPRINT|REMARK|MACHIN)\b|[A-Z]{2}[A-Z_, \t-]*+/)", re.IGNORECASE
+)
+"""A statement or comment of APT. No block of G-code has two letters in a row directly before a slash."""
+
+
+def is_part_program(file: Path) -> bool:
+    """Whether a file has the suffix of a part program."""
+    return _suffix(file) in SUFFIXES
+
+
+def program_stem(file: Path) -> str:
+    """The name of a file without its suffix, and without the version behind it: the stem of its results."""
+    return Path(file.stem).stem if _is_versioned(file) else file.stem
+
+
+def language_of(file: str | Path, content: bytes | None = None) -> Language:
+    """The language of a file.
+
+    Args:
+        file: its name.
+        content: of the file; if None it is read where the suffix does not tell. A file that cannot be read counts as
+            G-code.
+
+    Raises:
+        ValueError: the suffix is not that of a part program.
+    """
+    path = Path(file)
+    suffix = _suffix(path)
+    if suffix not in SUFFIXES:
+        raise ValueError(f"suffix of {file}: expected one of {', '.join(SUFFIXES)}")
+    return SUFFIXES[suffix] or _language_of_content(_head(path) if content is None else content[:_HEAD])
+
+
+def _suffix(file: Path) -> str:
+    """The suffix in lower case, without a version behind it."""
+    return VERSIONED if _is_versioned(file) else file.suffix.lower()
+
+
+def _is_versioned(file: Path) -> bool:
+    return _VERSION.fullmatch(file.suffix) is not None and Path(file.stem).suffix.lower() == VERSIONED
+
+
+def _head(file: Path) -> bytes:
+    """The first bytes of a file; none if it cannot be read, which whoever reads all of it reports."""
+    try:
+        with file.open("rb") as stream:
+            return stream.read(_HEAD)
+    except (OSError, ValueError):
+        return b""
+
+
+def _language_of_content(head: bytes) -> Language:
+    """The language of the first line that belongs to one."""
+    lines = head.decode("utf-8", "replace").splitlines()
+    first = next((line for line in lines if not _NO_STATEMENT.fullmatch(line)), "")
+    return Language.CLDATA if _APT.match(first) else Language.GCODE
