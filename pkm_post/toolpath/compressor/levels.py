@@ -73,7 +73,7 @@ class Curves:
 
     def changed(self, coefficients: Array, where: Array, bend: Array) -> Curves:
         """With other coefficients in the columns ``where``: the cells that they reach become pieces."""
-        run, number = self.grids.nodes()
+        run, number = self.grids.nodes
         node = self.grids.first[run] + number
         begin = node[(number < self.grids.cells[run]) & reached(where)[node - SUPPORT // 2 + 1]]
         return Curves(self.grids, coefficients, bend, np.concatenate([self.nodes, begin, begin + 1]))
@@ -106,7 +106,7 @@ class _Search:
         self._allowed = allowed[self._places.row]
         bend = _ends(polyline, grids)
         self.curves = Curves(
-            grids, quasi_interpolant(grids, polyline, bend), bend, grids.first[grids.nodes()[0]] + grids.nodes()[1]
+            grids, quasi_interpolant(grids, polyline, bend), bend, grids.first[grids.nodes[0]] + grids.nodes[1]
         )
         places = self._places
         self._state = np.stack(values(grids, self.curves.coefficients, places.run, places.s))
@@ -176,7 +176,7 @@ def _about_nodes(grids: Grids, column: Array) -> Array:
 
 def _with_ends(grids: Grids, where: Array) -> Array:
     """The columns on runs only; the end of a run goes with its neighbour, and with all beyond it."""
-    run, number = grids.nodes()
+    run, number = grids.nodes
     node = grids.first[run] + number
     inner = np.zeros(grids.size, dtype=np.bool_)
     inner[node[(number > 0) & (number < grids.cells[run])]] = True

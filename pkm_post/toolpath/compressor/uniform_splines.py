@@ -10,6 +10,7 @@ C coordinates of N places. [deBoor2001]
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,22 +57,23 @@ class Grids:
         """The grids with two cells for each one."""
         return Grids(self.length, 2 * self.cells)
 
-    @property
+    @functools.cached_property
     def width(self) -> Array:
         """(R,) of a cell, mm."""
         return np.asarray(self.length / self.cells)
 
-    @property
+    @functools.cached_property
     def first(self) -> Array:
         """(R,) column of the coefficient c_0 of each run."""
         stride = self.cells + 1 + 2 * _BEYOND
         return np.asarray(np.cumsum(stride) - stride + _BEYOND)
 
-    @property
+    @functools.cached_property
     def size(self) -> int:
         """Number of coefficients."""
         return int((self.cells + 1 + 2 * _BEYOND).sum())
 
+    @functools.cached_property
     def nodes(self) -> tuple[Array, Array]:
         """The run and the number in it of each node, (sum of M + 1,) each."""
         return expand_counts(self.cells + 1)
@@ -151,7 +153,7 @@ def at_nodes(grids: Grids, coefficients: Array, run: Array, number: Array) -> Ar
 def refined(grids: Grids, coefficients: Array, bend: Array) -> tuple[Grids, Array]:
     """The same curves on grids with two cells for each one."""
     fine = grids.halved()
-    run, number = grids.nodes()
+    run, number = grids.nodes
     old, new = grids.first[run] + number, fine.first[run] + 2 * number
     before, here, after = (coefficients[:, old + k] for k in (-1, 0, 1))
     found = np.zeros((len(coefficients), fine.size))
@@ -171,7 +173,7 @@ def quasi_interpolant(grids: Grids, polyline: Polylines, bend: Array) -> Array:
     times its curvature, and their mean by 2/3 of that; D_j c^2 / 48 (1 - |s_i - s_j| / h) / h takes a sixth away, so
     that the curve is halfway between vertices and chords.
     """
-    run, number = grids.nodes()
+    run, number = grids.nodes
     width, coefficient = grids.width, np.zeros((len(polyline.point), grids.size))
     node = grids.first[run] + number
     coefficient[:, node] = polyline.at(run, number * width[run])

@@ -66,7 +66,7 @@ def test_slopes_are_those_of_the_curve():
 
 def test_values_at_nodes_agree_with_those_between():
     coefficients, _ = some_curves()
-    run, number = GRIDS.nodes()
+    run, number = GRIDS.nodes
     s, step = number * GRIDS.width[run], 1e-4
     value, first, second = at_nodes(GRIDS, coefficients, run, number)
     np.testing.assert_allclose(value, values(GRIDS, coefficients, run, s)[0], atol=ROUNDING)
@@ -95,7 +95,7 @@ def test_a_finer_grid_has_the_same_curve():
 
 
 def test_columns_name_their_nodes():
-    run, number = GRIDS.nodes()
+    run, number = GRIDS.nodes
     again = GRIDS.numbers(GRIDS.first[run] + number)
     np.testing.assert_array_equal(again, [run, number])
 
