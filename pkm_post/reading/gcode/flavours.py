@@ -162,7 +162,7 @@ FANUC = replace(
     programs_apart=True,
     counts_thousandths=True,
     restarts=True,
-    equivalents={2340: 434},
+    equivalents={2340: 434, 1540: 541},
     without_motion={
         131: "end of interpolation in polar coordinates",
         220: "stroke check",
@@ -173,8 +173,7 @@ FANUC = replace(
         491: "end of a tool length",
         500: "end of scaling",
         670: "end of a modal macro",
-        1130: "end of interpolation in polar coordinates",
-        1500: "end of normal direction",
+        1030: "limit of the blocks read ahead",
         2550: "end of an offset of the work",
     },
     requests={50: _SMOOTHING, 51: _SMOOTHING, 80: _SMOOTHING, 611: _SMOOTHING, 620: "slower corners", 1870: _SMOOTHING},

@@ -174,7 +174,7 @@ def test_a_third_reference_point_is_not_known():
 
 
 def test_the_way_to_the_reference_point_uses_no_work_offset():
-    text = "G21\nG91 G28 Z0\nG90 G54.1 P7\nG0 X1. Y2. Z3.\nM30\n"
+    text = "G21\nG91 G28 Z0\nG90 G154 P7\nG0 X1. Y2. Z3.\nM30\n"
     program, _ = read(text, "part.nc", ReadOptions(default_tool=ANY, flavour="fanuc", machine_zero=ZERO))
     assert program.position[-1].tolist() == [1, 2, 3]
     text = text.replace("M30", "G54.1 P8\nX5.\nM30")
@@ -189,6 +189,12 @@ def test_ends_of_what_was_never_begun_change_nothing():
     text = "G15 G50 G69 G49 G67\nG13.1\nG22\nG25\nM29 S100\nG1 X1\n"
     assert moves(fanuc(text)) == [(L, 1, 0, 50)]
     assert codes("G15\n", flavour="rs274") == ["G402"]
+
+
+@pytest.mark.parametrize("code", ["G113", "G150"])
+def test_codes_that_another_make_moves_by_are_not_ends_of_something(code):
+    # Ends of modes on Fanuc's controls; a work offset and the milling of a pocket on those of Haas.
+    assert codes(f"{code}\n", flavour="fanuc") == ["G401"]
 
 
 def test_requests_for_smoothing_are_reported():
