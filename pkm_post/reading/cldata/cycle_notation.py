@@ -80,6 +80,8 @@ class CycleNotation:
         down: 1 where depths count positive downwards, -1 where they are heights above the point.
         initial: number after "return" that means the height before the cycle; None for none.
         excluded: words with a different meaning in one kind, which is not supported.
+        positions: meanings of numbers that follow the kind without words, in order, where the system defines them; a
+            step only where there are pecks.
     """
 
     system: str
@@ -88,10 +90,16 @@ class CycleNotation:
     down: float = 1.0
     initial: float | None = None
     excluded: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    positions: tuple[str, ...] = ()
 
     def known_words(self, kind: str) -> set[str]:
         """The words known in cycles of a kind."""
         return set(self.words) - self.excluded.get(kind, frozenset())
+
+    def positions_of(self, kind: str) -> tuple[str, ...]:
+        """Meanings of the numbers without words in cycles of a kind; none where the system does not define them."""
+        has_pecks = self.kinds[kind].pecks != "none"
+        return tuple(name for name in self.positions if name != "step" or has_pecks)
 
     def words_for(self, meaning: str) -> str:
         """The words with one meaning, for messages."""
@@ -107,11 +115,13 @@ NX = CycleNotation(
 )  # fmt: skip
 CREO = CycleNotation(
     "Creo",
-    {"DRILL": DRILL, "FACE": DRILL, "CSINK": DRILL, "DEEP": DEEP, "BRKCHP": BREAK_CHIP, "REAM": REAM},
+    {"DRILL": DRILL, "FACE": DRILL, "CSINK": DRILL, "DEEP": DEEP, "BRKCHP": BREAK_CHIP, "REAM": REAM,
+     "THRU": DRILL},
     {"DEPTH": "depth", "CLEAR": "clearance", "RAPTO": "advance", "RETURN": "return", "STEP": "step",
      "DWELL": "dwell", "REV": "turns"},
     initial=0.0,
     excluded={"BRKCHP": frozenset({"DWELL", "REV"})},
+    positions=("depth", "feed", "clearance", "step"),
 )  # fmt: skip
 CAMWORKS = CycleNotation(
     "CAMWorks",

@@ -2,8 +2,8 @@
 """CYCLE statements of any CAM system.
 
 Enters: a statement. Leaves: the active cycle, in mm and mm/s. Each number of a CYCLE is identified by its preceding
-word. For numbers without a word before the first one an option gives the meaning: CATIA writes them according to the
-post-processor table.
+word. For numbers without a word before the first one an option gives the meaning, or the CAM system: CATIA writes them
+according to the post-processor table, Creo always in one order.
 """
 
 from __future__ import annotations
@@ -78,7 +78,8 @@ def _interpret(state: ReaderState, statement: Statement) -> tuple[Cycle, str]:
     notation = known or notation_by_words(statement.words)
     guessed = known is None
     kind = _kind(statement, notation, guessed)
-    items = _CycleItems(notation, kind, guessed, state.options.cycle_values)
+    positions = state.options.cycle_values or (() if guessed else notation.positions_of(kind))
+    items = _CycleItems(notation, kind, guessed, positions)
     items.read(statement.items[len(kind.split(",")) :])
     _check_signs(items)
     cycle = _cycle(state, notation.kinds[kind], items)
@@ -91,8 +92,10 @@ def _interpret(state: ReaderState, statement: Statement) -> tuple[Cycle, str]:
 def _evidence(state: ReaderState, guessed: bool, items: _CycleItems) -> str:
     """Why the words of a cycle are attributed to a CAM system."""
     by = "by themselves" if guessed else "as the option says" if state.options.dialect else "by the dialect"
-    numbers = ", ".join(items.positions)
-    return f"{by}; numbers are {numbers}, as the option says" if items.by_position else by
+    if not items.by_position:
+        return by
+    source = "as the option says" if state.options.cycle_values else f"in the order of {items.notation.system}"
+    return f"{by}; numbers are {', '.join(items.positions)}, {source}"
 
 
 def _kind(statement: Statement, notation: CycleNotation, guessed: bool) -> str:

@@ -76,8 +76,8 @@ def _fini(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 HANDLERS: dict[str, _Handler] = {
-    "GOTO": goto, "FROM": from_or_godlta, "GODLTA": from_or_godlta, "TLAXIS": tlaxis,
-    "MULTAX": multax,
+    "GOTO": goto, "FROM": from_or_godlta, "GODLTA": from_or_godlta, "GOHOME": from_or_godlta,
+    "TLAXIS": tlaxis, "MULTAX": multax,
     "": numbers_only, "CIRCLE": circle, "CYLNDR": circle, "MOVARC": movarc,
     "_CIRCLE": commented_circle, "_CYLNDR": commented_circle,
     "INDIRV": indirv, "INDIRP": indirp, "PSIS": psis, "AUTOPS": autops,
@@ -109,7 +109,7 @@ IGNORED = frozenset({
 UNSUPPORTED = frozenset({
     "SPLINE", "BSPLINE", "NURBS",
     "POLYGON", "ROTABL", "ROTHED", "ROTATE", "PIVOT", "TURRET", "MIRROR", "COPY", "INDEX", "LOOPST", "LOOPND", "JUMPTO",
-    "MACRO", "CALL", "IF", "DO", "GO", "GOFWD", "GOBACK", "GOLFT", "GORGT", "GOUP", "GODOWN", "OFFSET", "GOHOME",
+    "MACRO", "CALL", "IF", "DO", "GO", "GOFWD", "GOBACK", "GOLFT", "GORGT", "GOUP", "GODOWN", "OFFSET",
     "TLLFT", "TLRGT", "TLON", "TLLFT,GOFWD", "TLRGT,GOFWD", "TLON,GOLFT", "TLON,GORGT", "THREAD", "PITCH", "REFSYS",
     "RETRCT", "CALSUB", "DEFSUB", "ENDSUB", "PIVOTZ", "PROBE", "DNTCUT",
 })  # fmt: skip

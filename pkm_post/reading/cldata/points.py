@@ -58,9 +58,12 @@ def numbers_only(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 def from_or_godlta(state: ReaderState, row: int, statement: Statement) -> None:
-    """FROM/x,y,z[,i,j,k]: the tool position; GODLTA/dx,dy,dz[,i,j,k]: an incremental move from it."""
+    """FROM/x,y,z[,i,j,k]: the tool position; GODLTA/dx,dy,dz[,i,j,k]: an incremental move from it; GOHOME: a move."""
     values = state.expect_values(row, statement, 3, 6)
     if not values:
+        return
+    if statement.word == "GOHOME" and _is_drilled(state, row):
+        state.report("L422", row, "GOHOME")
         return
     position, axis = np.array(values[:3]), tuple(values[3:]) or None
     if statement.word == "GODLTA":

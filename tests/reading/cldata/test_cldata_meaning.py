@@ -269,7 +269,7 @@ def test_numbers_without_words_are_what_an_option_says(names, cycle, z, feed, di
         cycle = cycle.replace("DEEP", "DRILL,DEEP")
     found, diagnostics = read(f"{HEAD}GOTO/0,0,30\nCYCLE/{cycle}\nGOTO/7,0,1\nCYCLE/OFF\n", "part.cl", options)
     if z is None:
-        assert [fault.code for fault in errors(diagnostics)] == ["L412" if names else "L420"]
+        assert [fault.code for fault in errors(diagnostics)] == ["L412" if names or dialect == "creo" else "L420"]
     else:
         assert found.position[2:, 2] == pytest.approx(z)
         assert found.feed[4] == pytest.approx(feed)
@@ -282,12 +282,15 @@ def test_numbers_without_words_are_what_an_option_says(names, cycle, z, feed, di
         ("nx", "DRILL,RAPTO,-2,FEDTO,-5", "L412"), ("nx", "DRILL,RAPTO,2,FEDTO,-5,CAM,3", "L412"),
         ("nx", "DRILL,RAPTO,2,FEDTO,-5,DWELL,ON", "L412"), ("nx", "BORE,BACK,RAPTO,2,FEDTO,-5", "L412"),
         ("nx", "DRILL,TEXT,RAPTO,2,FEDTO,-5", "L412"), ("nx", "TAP,RAPTO,2,FEDTO,-5", "L440"),
-        ("creo", "DRILL,DEPTH,5,CLEAR,2,RAPTO,3", "L412"), ("creo", "THRU,DEPTH,5,CLEAR,2", "L401"),
+        ("creo", "DRILL,DEPTH,5,CLEAR,2,RAPTO,3", "L412"), ("creo", "THRU,DEPTH,5,CLEAR,2,DEPTH,9", "L412"),
         ("creo", "BORE,DEPTH,5,CLEAR,2", "L401"), ("creo", "DRILL,DEPTH,-5,CLEAR,2", "L412"),
         ("creo", "BRKCHP,DEPTH,5,STEP,2,CLEAR,2,DWELL,1", "L412"),
         ("creo", "DEEP,DEPTH,5,STEP,2,STEP,1,CLEAR,2", "L412"),
         ("creo", "BRKCHP,DEPTH,5,STEP,2,CLEAR,2,TIMES,1", "L412"), ("creo", "DRILL,DEPTH,5,CLEAR,2,REV,3", "L412"),
         ("creo", "DRILL,DEPTH,5,CLEAR,2,DWELL,-1", "L412"), ("creo", "INIT", "L401"),
+        ("creo", "DRILL,5,60,MMPM", "L412"), ("creo", "DRILL,5,60,MMPM,2,3", "L412"),
+        ("creo", "BORE,5,60,MMPM,2", "L401"), ("creo", "TAP,5,60,MMPM,1.5,2", "L440"),
+        ("creo", "DRILL,-5,60,MMPM,2", "L412"), ("creo", "DEEP,5,60,MMPM,2", "L412"),
         ("solidworks", "BRKCHP,FEDTO,5,STEP,2,RAPTO,2", "L401"), ("solidworks", "DRILL,FEDTO,-5,RAPTO,2", "L412"),
         (None, "DRILL,FEDTO,-5,RAPTO,2", "L419"), (None, "DEEP,FEDTO,5,RAPTO,2,STEP,3", "L419"),
         (None, "DRILL,FEDTO,5,CLEAR,2", "L419"), (None, "DRILL,DEPTH,5,FEDTO,5,CLEAR,2", "L419"),
@@ -300,6 +303,53 @@ def test_cycles_that_are_refused(dialect, cycle, code):
     found, diagnostics = read(f"{HEAD}CYCLE/{cycle}\nGOTO/7,0,1\nCYCLE/OFF\n", "part.cl", ReadOptions(dialect=dialect))
     assert found is None
     assert [fault.code for fault in errors(diagnostics)] == [code]
+
+
+CREO_HEAD = "$$*   Pro/CLfile  Version 9.0\n" + HEAD
+
+
+@pytest.mark.parametrize(
+    "cycle, z, feed",
+    [  # [PTC holemaking], cycle_format fixed: CYCLE / type, z, f, units, t, r, i, t for TAP alone, i for DEEP alone
+        ("DRILL,5.,60.,MMPM,2.", [30, 3, -4, 3], 60),
+        ("FACE,5.,6.,IPM,2.", [30, 3, -4, 3], 152.4),
+        ("CSINK,1.5,60.,MMPM,2.", [30, 3, -0.5, 3], 60),
+        ("DEEP,5,60,MMPM,1,3", [30, 2, -2, 2, -1.5, -4, 2], 60),
+        ("THRU,5.,60.,MMPM,2.", [30, 3, -4, 3], 60),
+        ("THRU,DEPTH,5,MMPM,60,CLEAR,2", [30, 3, -4, 3], 60),
+        ("REAM,5.,60.,MMPM,2.", [30, 3, -4, 3], 60),
+    ],
+)
+def test_numbers_of_creo_have_one_order(cycle, z, feed):
+    text = f"{CREO_HEAD}GOTO/0,0,30\nCYCLE/{cycle}\nGOTO/7,0,1\nCYCLE/OFF\n"
+    found = program(text)
+    assert found.position[2:, 2] == pytest.approx(z)
+    assert found.feed[4] * 60 == pytest.approx(feed)
+    if "DEPTH" not in cycle:
+        assert found.reading[-1].endswith("in the order of Creo")
+
+
+def test_gohome_is_a_move_in_the_mode_in_force():
+    path = "FROM/0,0,10\nRAPID\nGOTO/1,2,3\nGOTO/1,2,0\n"
+    at_feed = program(f"{HEAD}{path}GOHOME/0,0,10\n")
+    rapid = program(f"{HEAD}{path}RAPID\nGOHOME/0,0,10,0,0.6,0.8\n")
+    assert at_feed.position[-1].tolist() == rapid.position[-1].tolist() == [0, 0, 10]
+    assert (at_feed.kind[-1], rapid.kind[-1]) == (Kind.LINE, Kind.RAPID)
+    assert at_feed.feed[-1] == at_feed.feed[-2]
+    assert rapid.tool_axis[-1].tolist() == [0, 0.6, 0.8]
+
+
+@pytest.mark.parametrize(
+    "statement, code",
+    [
+        ("GOHOME", "L402"),
+        ("GOHOME/1,2", "L402"),
+        ("CYCLE/DRILL,DEPTH,5,CLEAR,2\nGOTO/7,0,1\nGOHOME/0,0,9", "L422"),
+    ],
+)
+def test_gohome_that_is_refused(statement, code):
+    found, diagnostics = read(f"{HEAD}{statement}\n", "part.cl")
+    assert (found, [fault.code for fault in errors(diagnostics)]) == (None, [code])
 
 
 def test_words_may_follow_numbers():
