@@ -17,13 +17,13 @@ matrix of a step has two diagonals on either side, as only three unknowns count 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.planning.banded import BandedFactor
-from pkm_post.planning.speed_spline import CellEnds, SpeedSpline
+from pkm_post.planning.speed_spline import CellEnds
 
 _MOST_STEPS = 60
 _LEAST_SLACK = 0.1
@@ -75,23 +75,30 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class _State:
+class State:
     """Slacks and multipliers of one set of limits, (G, E) each."""
 
     slack: Array
     multiplier: Array
 
-    def lifted(self) -> _State:
+    def lifted(self) -> State:
         """The same without slacks that would hold a search with other limits where it begins."""
-        return _State(np.maximum(self.slack, _LIFT), self.multiplier)
+        return State(np.maximum(self.slack, _LIFT), self.multiplier)
 
 
 @dataclass(frozen=True)
 class Solution:
-    """Where a search is: the unknowns (N,), and what it knows of each set of limits; nothing at the start."""
+    """Where a search is.
+
+    Attributes:
+        unknowns: (N,)
+        states: what it knows of each set of limits; nothing at the start.
+        reached: whether it was found.
+    """
 
     unknowns: Array
-    states: tuple[_State, ...] = ()
+    states: tuple[State, ...] = ()
+    reached: bool = False
 
 
 @dataclass(frozen=True)
@@ -107,13 +114,13 @@ class _Linear:
     """
 
     limits: Limits
-    state: _State
+    state: State
     room: Array
     slope: Array
     factor: Array
 
     @classmethod
-    def of(cls, limits: Limits, state: _State | None, unknowns: Array, barrier: float) -> _Linear:
+    def of(cls, limits: Limits, state: State | None, unknowns: Array, barrier: float) -> _Linear:
         values = limits.ends.values(unknowns)
         numbers = limits.numbers(values)
         factor = values[2] if limits.jerk else np.ones_like(values[2])
@@ -123,7 +130,7 @@ class _Linear:
             slope[2] -= 0.5 / values[2]
         if state is None:
             slack = np.maximum(room, _LEAST_SLACK)
-            state = _State(slack, barrier / slack)
+            state = State(slack, barrier / slack)
         return cls(limits, state, room, slope, factor)
 
     def curvature(self) -> list[Array]:
@@ -137,60 +144,60 @@ class _Linear:
 
     def moved(self, step: Array) -> Array:
         """Change of the slacks with a step of the unknowns, (G, E)."""
-        along = self.limits.ends.values(step)
+        along = self.limits.ends.changes(step)
         return np.asarray(np.einsum("bge,be->ge", self.slope, along) + self.room - self.state.slack)
 
 
-def fastest(spline: SpeedSpline, limits: tuple[Limits, ...], start: Solution, enough: float) -> Solution:
+def fastest(weight: Array, limits: tuple[Limits, ...], start: Solution, enough: float) -> Solution:
     """The fastest motion.
 
     Args:
-        spline: the places.
-        limits: the limits at them.
+        weight: (N,) length of path for which each unknown stands.
+        limits: the limits.
         start: unknowns above 0, which may break limits; or the end of a search with nearly the same limits.
         enough: gap of optimality at which to stop, and the most by which a limit may be broken, relative.
     """
     count = sum(one.weights[0].size if one.each else one.weights.shape[2] for one in limits)
-    barrier = _FIRST_GAP * _time(spline, start.unknowns) / count
+    barrier = _FIRST_GAP * _time(weight, start.unknowns) / count
     now = Solution(start.unknowns, tuple(one.lifted() for one in start.states))
     for _ in range(_MOST_STEPS):
         states = now.states or (None,) * len(limits)
         linear = [_Linear.of(one, state, now.unknowns, barrier) for one, state in zip(limits, states, strict=True)]
         gap = sum(float((one.state.slack * one.state.multiplier).sum()) for one in linear)
         broken = -min(float(one.room.min()) for one in linear)
-        balanced = gap + _imbalance(spline, linear, now.unknowns) <= enough * _time(spline, now.unknowns)
+        balanced = gap + _imbalance(weight, linear, now.unknowns) <= enough * _time(weight, now.unknowns)
         if balanced and broken <= enough:
-            break
-        now = _stepped(spline, linear, now.unknowns, gap / count, count)
+            return replace(now, reached=True)
+        now = _stepped(weight, linear, now.unknowns, gap / count, count)
     return now
 
 
-def _time(spline: SpeedSpline, unknowns: Array) -> float:
-    return float((spline.weight / np.sqrt(unknowns)).sum())
+def _time(weight: Array, unknowns: Array) -> float:
+    return float((weight / np.sqrt(unknowns)).sum())
 
 
-def _imbalance(spline: SpeedSpline, linear: list[_Linear], unknowns: Array) -> float:
+def _imbalance(weight: Array, linear: list[_Linear], unknowns: Array) -> float:
     """What unknowns that are not in balance with their limits can cost, s, where they are off by a share."""
-    left = _downhill(spline, unknowns) + _gathered(linear, [one.state.multiplier for one in linear], len(unknowns))
+    left = _downhill(weight, unknowns) + _gathered(linear, [one.state.multiplier for one in linear], len(unknowns))
     return _OFF * float(np.abs(left * unknowns).sum())
 
 
-def _downhill(spline: SpeedSpline, unknowns: Array) -> Array:
+def _downhill(weight: Array, unknowns: Array) -> Array:
     """How much the time goes down with each unknown, (N,)."""
-    return np.asarray(0.5 * spline.weight * unknowns**-1.5)
+    return np.asarray(0.5 * weight * unknowns**-1.5)
 
 
-def _stepped(spline: SpeedSpline, linear: list[_Linear], unknowns: Array, mean_gap: float, count: int) -> Solution:
+def _stepped(weight: Array, linear: list[_Linear], unknowns: Array, mean_gap: float, count: int) -> Solution:
     """One step of predictor and corrector."""
     size = len(unknowns)
     band = _band(linear, size)
-    band[0] += 0.75 * spline.weight * unknowns**-2.5
+    band[0] += 0.75 * weight * unknowns**-2.5
     scale = 1 / np.sqrt(band[0])
     for d in range(3):
         band[d, : size - d] *= scale[d:] * scale[: size - d]
     band[0] += _STIFFENING
     factor = BandedFactor(band)
-    downhill = _downhill(spline, unknowns)
+    downhill = _downhill(weight, unknowns)
 
     def step(pushes: list[Array]) -> tuple[Array, list[Array]]:
         """The change of the unknowns, and of the slacks, for right sides of the limits (G, E)."""
@@ -215,7 +222,7 @@ def _stepped(spline: SpeedSpline, linear: list[_Linear], unknowns: Array, mean_g
     primal, dual = (_TO_BOUNDARY * share for share in _shares(linear, slacks, multipliers))
     primal = min(primal, _TO_BOUNDARY * _reach(unknowns, change))
     states = (
-        _State(one.state.slack + primal * a, one.state.multiplier + dual * b)
+        State(one.state.slack + primal * a, one.state.multiplier + dual * b)
         for one, a, b in zip(linear, slacks, multipliers, strict=True)
     )
     return Solution(unknowns + primal * change, tuple(states))

@@ -77,14 +77,15 @@ class Demands:
             ),
         )
 
-    def limits(self, spline: SpeedSpline, slower: Array) -> tuple[Limits, ...]:
+    def limits(self, spline: SpeedSpline, slower: Array, held: Array) -> tuple[Limits, ...]:
         """The limits at the ends of cells.
 
         Args:
             spline: its M places.
             slower: (M - 1,) by what factor each cell is to be slower than the limits allow.
+            held: (N,) value of each unknown that is held, NaN for the others.
         """
-        knots, ends = spline.ends.taken(spline.knots()), spline.ends
+        knots, ends = (one.where_free(held) for one in (spline.ends.taken(spline.knots()), spline.ends))
         at, factor = 2 * knots.place, np.maximum(slower[knots.place], slower[knots.place - 1]) ** 2
         ceiling = np.zeros((3, 1, len(at)))
         ceiling[2, 0] = factor / self.ceiling[at]

@@ -11,35 +11,32 @@ slows the whole run from rest to rest. docs/planning.md has the derivations. Uni
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import functools
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.geometry import Array, expand_counts
+from pkm_post.geometry import Array
 from pkm_post.model import Machine
-from pkm_post.planning.interior_point import Limits, Solution, fastest
+from pkm_post.planning.interior_point import Limits, Solution, State, fastest
 from pkm_post.planning.jerk_demands import Demands
-from pkm_post.planning.speed_limits import NO_LIMIT
-from pkm_post.planning.speed_profile import Stations, speed_profile
+from pkm_post.planning.jerk_start import first_places, long_held, start, with_middles
+from pkm_post.planning.speed_profile import Stations
 from pkm_post.planning.speed_spline import SpeedSpline, durations, within_cells
 from pkm_post.planning.tool_path import ToolPath
 
-_NARROWEST = 1e-9
-"""mm: places nearer to each other are one, as the third derivatives would be rounding."""
-_GROWTH = 4.0
-"""Cells are at first at most so many times as wide as their neighbours."""
-_AT_REST = 1e-3
-"""Width of the first cell after a rest, relative to that between the stations."""
 _ROUNDS = 4
 """Most rounds with narrower cells, and most with lower limits where the motion is too fast between places."""
 _COARSE, _FINE = 5e-2, 5e-3
 """Relative gap of optimality that is enough for the choice of places, and in the end."""
-_WASTE = 0.12
+_WASTE = 0.05
 """Share of the time from rest to rest that may pass without the full use of a limit."""
+_WORTH = 3.0
+"""A cell is halved that takes so many times its part of that."""
 _LEAST = 1e-3
 """An unknown is at least this share of the speed squared about it."""
-_START = 0.2
-"""Share of the highest speed squared without jerk limits at which the search starts."""
+_BESIDE = 8
+"""Cells on either side of one that is too fast that are on no plateau any more."""
 
 
 @dataclass(frozen=True)
@@ -59,108 +56,120 @@ class Motion:
     acceleration: Array
 
 
+@dataclass(frozen=True)
+class _Course:
+    """A motion under search.
+
+    Attributes:
+        spline: its M places.
+        demands: what the path demands at them.
+        slower: (M - 1,) factor by which each cell is to be slower than its limits allow.
+        held: (M - 1,) speed squared of cells on plateaus, NaN of others.
+        unknowns: (N,) of the spline.
+        states: what the last search knows of the limits, if it had the same unknowns.
+    """
+
+    spline: SpeedSpline
+    demands: Demands
+    slower: Array
+    held: Array
+    unknowns: Array
+    states: tuple[State, ...] = ()
+
+    @functools.cached_property
+    def limits(self) -> tuple[Limits, ...]:
+        """The limits at ends of cells where an unknown counts that is not held."""
+        return self.demands.limits(self.spline, self.slower, self.held[self.spline.left])
+
+    def searched(self, enough: float) -> _Course:
+        """The fastest motion with these places; without plateaus if it cannot be found between them."""
+        free = np.isnan(self.held[self.spline.left])
+        found = fastest(self.spline.weight[free], self.limits, Solution(self.unknowns[free], self.states), enough)
+        if not found.reached and not free.all():
+            return replace(self, held=np.full(len(self.held), np.nan), states=()).searched(enough)
+        unknowns = self.unknowns.copy()
+        unknowns[free] = found.unknowns
+        return replace(self, unknowns=unknowns, states=found.states)
+
+    def at_places(self) -> tuple[Array, Array]:
+        """Speed squared and acceleration, (M,) each."""
+        return self.spline.at_places(self.unknowns)
+
+    def too_fast(self) -> Array:
+        """The factor by which the motion is faster on each cell than it may be, at least 1, (M - 1,)."""
+        faster = self.demands.in_middle(*self.at_places())
+        for one in self.limits:
+            use = one.use(one.ends.values(self._free())).max(axis=0)
+            factor = (np.cbrt(use) if one.jerk else np.sqrt(use)) / self.slower[one.ends.cell]
+            np.maximum.at(faster, one.ends.cell, factor)
+        return np.maximum(faster, 1.0)
+
+    def too_wide(self) -> Array:
+        """Cells on which too much time passes without the full use of a limit, (M - 1,)."""
+        ends = next(one.ends for one in self.limits if one.jerk)
+        at_place, at_end = np.zeros(len(self.spline.s)), np.zeros(len(ends.place))
+        for one in self.limits:
+            use = one.use(one.ends.values(self._free())).max(axis=0)
+            if one.jerk:
+                at_end = np.maximum(at_end, use)
+            else:
+                np.maximum.at(at_place, one.ends.place, use)
+        least = np.ones(len(self.held))
+        np.minimum.at(least, ends.cell, np.maximum(at_end, at_place[ends.place]))
+        duration = durations(np.diff(self.spline.s), *self.at_places())
+        run, waste = np.cumsum(self.spline.rest)[:-1] - 1, duration * (1 - least)
+        allowed = _WASTE * np.bincount(run, duration)
+        share = np.where(np.bincount(run, waste) > allowed, _WORTH * allowed / np.bincount(run), np.inf)
+        return np.asarray(waste > share[run])
+
+    def _free(self) -> Array:
+        return self.unknowns[np.isnan(self.held[self.spline.left])]
+
+    def slowed(self, too_fast: Array) -> _Course:
+        """The same motion, with lower limits and no plateaus where it is too fast."""
+        held = long_held(np.where(_widened(too_fast > 1 + _FINE), np.nan, self.held))
+        slower = np.where(_widened(~np.isnan(held)), 1.0, too_fast)  # no lower limit beside what cannot change
+        same = np.array_equal(held, self.held, equal_nan=True)
+        return replace(self, slower=self.slower * slower, held=held, states=self.states if same else ())
+
+    def halved(self, cut: Array, path: ToolPath, marks: Stations, machine: Machine) -> _Course:
+        """The same motion with some cells cut into halves."""
+        spline = SpeedSpline.of(*_inserted(self.spline, self.demands.s[1::2][cut], cut))
+        demands = self.demands.joined(Demands.at(path, machine, marks, _new_middles(spline.s, cut)))
+        slower, held = (np.repeat(one, 1 + cut) for one in (self.slower, self.held))
+        return _Course(spline, demands, slower, held, _carried_over(self.spline, *self.at_places(), spline))
+
+
 def jerk_limited(path: ToolPath, marks: Stations, machine: Machine) -> Motion:
     """The fastest motion along a path; all of its joints and rests are among the places."""
-    s, rest = _first_places(marks)
-    demands = Demands.at(path, machine, marks, _with_middles(s))
-    spline, slower = SpeedSpline.of(s, rest), np.ones(len(s) - 1)
-    now = Solution(_start(spline, demands.limits(spline, slower)))
+    course = _begun(path, marks, machine)
     for _ in range(_ROUNDS):
-        limits = demands.limits(spline, slower)
-        now = fastest(spline, limits, now, _COARSE)
-        square, acceleration = spline.at_places(now.unknowns)
-        cut = _too_wide(spline, limits, now.unknowns, durations(np.diff(spline.s), square, acceleration))
+        course = course.searched(_COARSE)
+        cut = course.too_wide()
         if not cut.any():
             break
-        slower = np.repeat(slower * _too_fast(demands, spline, limits, now.unknowns, slower), 1 + cut)
-        new = SpeedSpline.of(*_inserted(spline, demands.s[1::2][cut], cut))
-        demands = demands.joined(Demands.at(path, machine, marks, _new_middles(new.s, cut)))
-        now, spline = Solution(_carried_over(spline, square, acceleration, new)), new
+        course = course.slowed(course.too_fast()).halved(cut, path, marks, machine)
     for _ in range(_ROUNDS):
-        limits = demands.limits(spline, slower)
-        now = fastest(spline, limits, now, _FINE)
-        too_fast = _too_fast(demands, spline, limits, now.unknowns, slower)
+        course = course.searched(_FINE)
+        too_fast = course.too_fast()
         if too_fast.max() <= 1 + _FINE:
             break
-        slower = slower * too_fast
-    return _slowed(spline, *spline.at_places(now.unknowns), too_fast)
+        course = course.slowed(too_fast)
+    return _from_rest_to_rest(course.spline, *course.at_places(), too_fast)
 
 
-def _first_places(marks: Stations) -> tuple[Array, Array]:
-    """The stations but for those inside half blends, and places by which cells grow in steps; and which are rests."""
-    after = np.searchsorted(marks.edges, marks.s - _NARROWEST)
-    inside = (after % 2 == 1) & (after == np.searchsorted(marks.edges, marks.s + _NARROWEST))
-    joint = np.append(np.diff(marks.segment) > 0, True)
-    marked = np.flatnonzero(joint | ~inside)
-    apart = np.append(True, np.diff(marks.s[marked]) > _NARROWEST)
-    s = marks.s[marked][apart]
-    rest = np.logical_or.reduceat(marks.rest[marked], np.flatnonzero(apart))
-    width = np.diff(s)
-    to_left = np.where(rest[:-1], _AT_REST * width, np.append(np.inf, width[:-1]))
-    to_right = np.where(rest[1:], _AT_REST * width, np.append(width[1:], np.inf))
-    added = []
-    for neighbour, origin, side in ((to_left, s[:-1], 1.0), (to_right, s[1:], -1.0)):
-        steps = np.floor(np.log(np.maximum(width / (2 * neighbour), 1.0)) / np.log(_GROWTH)).astype(np.int64)
-        cell, number = expand_counts(steps)
-        added.append(origin[cell] + side * neighbour[cell] * _GROWTH ** (number + 1.0))
-    new = np.concatenate(added)
-    row = np.searchsorted(s, new)
-    s, rest = np.insert(s, row, new), np.insert(rest, row, False)
-    order = np.argsort(s, kind="stable")
-    return s[order], rest[order]
+def _widened(cells: Array) -> Array:
+    """Cells that are marked, or have one near them that is."""
+    return np.asarray(np.convolve(cells, np.ones(2 * _BESIDE + 1))[_BESIDE:-_BESIDE] > 0)
 
 
-def _with_middles(s: Array) -> Array:
-    return np.insert(s, np.arange(1, len(s)), (s[1:] + s[:-1]) / 2)
-
-
-def _start(spline: SpeedSpline, limits: tuple[Limits, ...]) -> Array:
-    """Unknowns to begin with: a motion without jerk limits, and slower about slow places.
-
-    From a slow place without acceleration on v^(3/2) grows by 3/2 sqrt(2 j) ds under the jerk j, from a rest on exactly
-    so.
-    """
-    square, along = np.where(spline.rest, 0.0, np.inf), np.full(len(spline.s), NO_LIMIT)
-    growth = np.full(len(spline.s), NO_LIMIT)
-    with np.errstate(divide="ignore"):
-        for one in limits:
-            of_change, of_slope, of_square = (np.sqrt(one.by_group(w**2).max(axis=0)) for w in one.weights)
-            np.minimum.at(square, one.ends.place, of_square ** (-2 / 3 if one.jerk else -1.0))
-            lowered, bound = (growth, 1 / of_change) if one.jerk else (along, 1 / of_slope)
-            np.minimum.at(lowered, one.ends.place, bound)
-    fastest = speed_profile(spline.s, square, along)
-    fastest = speed_profile(spline.s, fastest**0.75, 0.75 * np.sqrt(2 * growth)) ** (4 / 3)
-    return np.asarray(_START * (fastest[spline.left] + fastest[spline.left + 1]) / 2)
-
-
-def _too_fast(
-    demands: Demands, spline: SpeedSpline, limits: tuple[Limits, ...], unknowns: Array, slower: Array
-) -> Array:
-    """The factor by which a motion is faster on each cell than it may be, at least 1, (M - 1,)."""
-    faster = demands.in_middle(*spline.at_places(unknowns))
-    for one in limits:
-        use = one.use(one.ends.values(unknowns)).max(axis=0)
-        factor = (np.cbrt(use) if one.jerk else np.sqrt(use)) / slower[one.ends.cell]
-        np.maximum.at(faster, one.ends.cell, factor)
-    return np.maximum(faster, 1.0)
-
-
-def _too_wide(spline: SpeedSpline, limits: tuple[Limits, ...], unknowns: Array, duration: Array) -> Array:
-    """Cells on which too much time passes without the full use of a limit, (M - 1,)."""
-    at_place, at_end = np.zeros(len(spline.s)), np.zeros(len(spline.ends.place))
-    for one in limits:
-        use = one.use(one.ends.values(unknowns)).max(axis=0)
-        if one.jerk:
-            at_end = np.maximum(at_end, use)
-        else:
-            np.maximum.at(at_place, one.ends.place, use)
-    least = np.ones(len(duration))
-    np.minimum.at(least, spline.ends.cell, np.maximum(at_end, at_place[spline.ends.place]))
-    run = np.cumsum(spline.rest)[:-1] - 1
-    waste = duration * (1 - least)
-    allowed = _WASTE * np.bincount(run, duration)
-    share = np.where(np.bincount(run, waste) > allowed, allowed / np.bincount(run), np.inf)
-    return np.asarray(waste > share[run])
+def _begun(path: ToolPath, marks: Stations, machine: Machine) -> _Course:
+    s, rest = first_places(marks)
+    demands = Demands.at(path, machine, marks, with_middles(s))
+    spline, slower = SpeedSpline.of(s, rest), np.ones(len(s) - 1)
+    nothing_held = np.full(len(spline.left), np.nan)
+    unknowns, held = start(spline, demands.limits(spline, slower, nothing_held))
+    return _Course(spline, demands, slower, held, unknowns)
 
 
 def _inserted(spline: SpeedSpline, middles: Array, cut: Array) -> tuple[Array, Array]:
@@ -181,7 +190,7 @@ def _carried_over(spline: SpeedSpline, square: Array, acceleration: Array, new: 
     return np.maximum(new.unknowns(x, a), least)
 
 
-def _slowed(spline: SpeedSpline, square: Array, acceleration: Array, too_fast: Array) -> Motion:
+def _from_rest_to_rest(spline: SpeedSpline, square: Array, acceleration: Array, too_fast: Array) -> Motion:
     """The motion, slower from rest to rest by as much as it is too fast anywhere on the way."""
     begin = np.flatnonzero(spline.rest)[:-1]
     factor = np.maximum.reduceat(too_fast, begin) ** -2.0

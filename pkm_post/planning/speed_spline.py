@@ -32,22 +32,48 @@ class CellEnds:
         unknown: (E,) the unknown of the cell, or of the cell beside it if it touches a rest.
         basis: (3, 3, E) change of acceleration by path length, acceleration and speed squared, for each by how much
             they grow with the unknown before, with this one, and with the one after it.
+        settled: (3, E) what unknowns that are settled add to them.
     """
 
     cell: Array
     place: Array
     unknown: Array
     basis: Array
+    settled: Array
 
     def values(self, unknowns: Array) -> Array:
         """Change of acceleration by path length, acceleration and speed squared, (3, E)."""
-        padded = np.concatenate([[0.0], unknowns, [0.0]])
+        return self.settled + self.changes(unknowns)
+
+    def changes(self, step: Array) -> Array:
+        """How much these change with a step of the unknowns, (3, E)."""
+        padded = np.concatenate([[0.0], step, [0.0]])
         before, own, after = (padded[self.unknown + m] for m in range(3))
         return np.asarray(self.basis[:, 0] * before + self.basis[:, 1] * own + self.basis[:, 2] * after)
 
     def taken(self, rows: Array) -> CellEnds:
         """Some of these ends."""
-        return CellEnds(self.cell[rows], self.place[rows], self.unknown[rows], self.basis[..., rows])
+        columns = self.basis[..., rows], self.settled[:, rows]
+        return CellEnds(self.cell[rows], self.place[rows], self.unknown[rows], *columns)
+
+    def where_free(self, held: Array) -> CellEnds:
+        """The ends at which an unknown counts that is not held, with these unknowns alone.
+
+        Args:
+            held: (N,) value of each unknown that is held, NaN for the others; three next to each other at least.
+        """
+        free, value = (np.concatenate([[end], one, [end]]) for one, end in ((np.isnan(held), False), (held, np.nan)))
+        number, value = np.cumsum(free) - 1, np.where(free, 0.0, np.nan_to_num(value))
+        counts = np.stack([free[self.unknown + m] for m in range(3)])
+        rows = np.flatnonzero(counts.any(axis=0))
+        ends, counts = self.taken(rows), counts[:, rows]
+        settled = sum(ends.basis[:, m] * value[ends.unknown + m] for m in range(3))
+        basis = ends.basis * counts
+        beside = np.flatnonzero(~counts[1])
+        basis[:, 1, beside] = basis[:, 0, beside] + basis[:, 2, beside]
+        basis[:, 0, beside] = basis[:, 2, beside] = 0.0
+        unknown = number[ends.unknown + np.where(counts[1], 1, np.where(counts[0], 0, 2))]
+        return CellEnds(ends.cell, ends.place, unknown, basis, ends.settled + settled)
 
 
 @dataclass(frozen=True)
@@ -79,7 +105,7 @@ class SpeedSpline:
         for basis in (at_left, at_right):
             _fold(basis, started, 0, own[started] / before[started])
             _fold(basis, ending, 2, own[ending] / after[ending])
-        number = np.arange(len(left))
+        number, more = np.arange(len(left)), len(started) + len(ending)
         return cls(
             s=s,
             rest=rest,
@@ -97,6 +123,7 @@ class SpeedSpline:
                     ],
                     axis=2,
                 ),
+                settled=np.zeros((3, 2 * len(left) + more)),
             ),
             weight=(before + own + after) / 3,
         )

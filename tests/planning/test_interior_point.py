@@ -43,7 +43,7 @@ def test_an_s_curve(length, shortest, level):
     # With 1000 mm/s^3, 100 mm/s^2 and 20 mm/s: 2 mm are 4 phases of 0.1 s; 6 mm are twice 0.1 s up, 0.1 s of even
     # acceleration, 0.1 s down; 20 mm/s are reached after 0.3 s on 3 mm, so 20 mm take 0.6 s and 14 mm at 20 mm/s.
     spline, limits = straight(graded(length), 20.0, 100.0, 1000.0)
-    unknowns = fastest(spline, limits, Solution(like_from_rests(spline, level)), 1e-4).unknowns
+    unknowns = fastest(spline.weight, limits, Solution(like_from_rests(spline, level)), 1e-4).unknowns
     square, acceleration = spline.at_places(unknowns)
     time = durations(np.diff(spline.s), square, acceleration).sum()
     assert shortest * (1 - 1e-3) <= time <= 1.02 * shortest
@@ -58,7 +58,7 @@ def test_a_vector_is_limited_by_its_length():
     parted = Limits(limits[1].ends, np.concatenate([0.6 * whole, 0.8 * whole], axis=1), each=False, jerk=False)
     start = Solution(like_from_rests(spline, 100.0))
     found, expected = (
-        fastest(spline, (limits[0], one, limits[2]), start, 1e-8).unknowns for one in (parted, limits[1])
+        fastest(spline.weight, (limits[0], one, limits[2]), start, 1e-8).unknowns for one in (parted, limits[1])
     )
     np.testing.assert_allclose(found, expected, rtol=1e-4)
 
@@ -66,6 +66,6 @@ def test_a_vector_is_limited_by_its_length():
 def test_the_time_does_not_depend_on_the_start():
     spline, limits = straight(graded(20.0), 20.0, 100.0, 1000.0)
     starts = (Solution(like_from_rests(spline, level)) for level in (100.0, 500.0))
-    found = (fastest(spline, limits, start, 1e-6).unknowns for start in starts)
+    found = (fastest(spline.weight, limits, start, 1e-6).unknowns for start in starts)
     times = [durations(np.diff(spline.s), *spline.at_places(unknowns)).sum() for unknowns in found]
     np.testing.assert_allclose(*times, rtol=1e-5)

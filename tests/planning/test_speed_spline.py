@@ -82,3 +82,20 @@ def test_the_inverse_tangent_across_zero():
     root = np.sqrt(z.astype(complex))
     expected = np.divide(np.arctanh(root), root, out=np.ones_like(root), where=z != 0).real
     np.testing.assert_allclose(inverse_tangent(z), expected, rtol=1e-12)
+
+
+def test_ends_at_which_only_free_unknowns_count_have_the_same_values():
+    spline, unknowns = made()
+    held = np.full(len(unknowns), np.nan)
+    held[4:7] = unknowns[4:7]
+    free = spline.ends.where_free(held)
+    few = unknowns[np.isnan(held)]
+    ends = zip(free.cell, free.place, strict=True)
+    rows = [np.flatnonzero((spline.ends.cell == c) & (spline.ends.place == p))[0] for c, p in ends]
+    np.testing.assert_allclose(free.values(few), spline.ends.values(unknowns)[:, rows], rtol=1e-12, atol=1e-12)
+    touched = np.isnan(np.concatenate([[0.0], held, [0.0]]))[spline.ends.unknown[:, None] + np.arange(3)].any(axis=1)
+    assert len(rows) == touched.sum() < len(spline.ends.cell)
+    step = np.random.default_rng(3).normal(size=len(few))
+    np.testing.assert_allclose(free.values(few + step) - free.values(few), free.changes(step), atol=1e-12)
+    nothing_held = spline.ends.where_free(np.full(len(unknowns), np.nan))
+    np.testing.assert_array_equal(nothing_held.values(unknowns), spline.ends.values(unknowns))

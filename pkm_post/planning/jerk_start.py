@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Jerk start: where the search for the fastest motion with jerk limits begins.
+
+Enters: the stations of a path, then limits at the ends of cells. Leaves: the first places of the spline, a motion to
+begin with, and plateaus: cells so far from anything that slows the motion that it is known to run at its highest speed
+there. The others are left to the search, which pays for each of them. Units: mm, s.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry import Array, expand_counts
+from pkm_post.planning.interior_point import Limits
+from pkm_post.planning.speed_limits import NO_LIMIT
+from pkm_post.planning.speed_profile import Stations, speed_profile
+from pkm_post.planning.speed_spline import SpeedSpline
+
+_NARROWEST = 1e-9
+"""mm: places nearer to each other are one, as the third derivatives would be rounding."""
+_GROWTH = 4.0
+"""Cells are at first at most so many times as wide as their neighbours."""
+_AT_REST = 1e-3
+"""Width of the first cell after a rest, relative to that between the stations."""
+_START = 0.2
+"""Share of the highest speed squared without jerk limits at which the search starts."""
+_EQUAL = 1e-9
+"""Relative difference of speeds squared that are the same but for rounding."""
+_FAR = 6.0
+"""Distance from which what slows a motion is not felt, by that on which it comes from a rest to its speed."""
+_LEAST_HELD = 3
+"""Cells that are held side by side, at least."""
+
+
+def first_places(marks: Stations) -> tuple[Array, Array]:
+    """The stations but for those inside half blends, and places by which cells grow in steps; and which are rests."""
+    after = np.searchsorted(marks.edges, marks.s - _NARROWEST)
+    inside = (after % 2 == 1) & (after == np.searchsorted(marks.edges, marks.s + _NARROWEST))
+    joint = np.append(np.diff(marks.segment) > 0, True)
+    marked = np.flatnonzero(joint | ~inside)
+    apart = np.append(True, np.diff(marks.s[marked]) > _NARROWEST)
+    s = marks.s[marked][apart]
+    rest = np.logical_or.reduceat(marks.rest[marked], np.flatnonzero(apart))
+    width = np.diff(s)
+    to_left = np.where(rest[:-1], _AT_REST * width, np.append(np.inf, width[:-1]))
+    to_right = np.where(rest[1:], _AT_REST * width, np.append(width[1:], np.inf))
+    added = []
+    for neighbour, origin, side in ((to_left, s[:-1], 1.0), (to_right, s[1:], -1.0)):
+        steps = np.floor(np.log(np.maximum(width / (2 * neighbour), 1.0)) / np.log(_GROWTH)).astype(np.int64)
+        cell, number = expand_counts(steps)
+        added.append(origin[cell] + side * neighbour[cell] * _GROWTH ** (number + 1.0))
+    new = np.concatenate(added)
+    row = np.searchsorted(s, new)
+    s, rest = np.insert(s, row, new), np.insert(rest, row, False)
+    order = np.argsort(s, kind="stable")
+    return s[order], rest[order]
+
+
+def start(spline: SpeedSpline, limits: tuple[Limits, ...]) -> tuple[Array, Array]:
+    """Unknowns to begin with, (N,): a motion without jerk limits, and slower about slow places; and plateaus.
+
+    From a slow place without acceleration on v^(3/2) grows by 3/2 sqrt(2 j) ds under the jerk j, from a rest on exactly
+    so. A plateau has the highest speed squared of each of its cells, (M - 1,); other cells have NaN.
+    """
+    square, along, growth = _bounds(spline, limits)
+    fastest = speed_profile(spline.s, square, along)
+    fastest = speed_profile(spline.s, fastest**0.75, 0.75 * np.sqrt(2 * growth)) ** (4 / 3)
+    held = _plateaus(spline, square, fastest, _rise(fastest, along, growth))
+    at_start = _START * (fastest[1:] + fastest[:-1]) / 2
+    return np.where(np.isnan(held), at_start, held)[spline.left], held
+
+
+def _bounds(spline: SpeedSpline, limits: tuple[Limits, ...]) -> tuple[Array, Array, Array]:
+    """Speed squared, acceleration and jerk along the path that each single term of the limits allows, (M,) each."""
+    square, along = np.where(spline.rest, 0.0, np.inf), np.full(len(spline.s), NO_LIMIT)
+    growth = np.full(len(spline.s), NO_LIMIT)
+    with np.errstate(divide="ignore"):
+        for one in limits:
+            of_change, of_slope, of_square = (np.sqrt(one.by_group(w**2).max(axis=0)) for w in one.weights)
+            np.minimum.at(square, one.ends.place, of_square ** (-2 / 3 if one.jerk else -1.0))
+            lowered, bound = (growth, 1 / of_change) if one.jerk else (along, 1 / of_slope)
+            np.minimum.at(lowered, one.ends.place, bound)
+    return square, along, growth
+
+
+def _rise(square: Array, along: Array, growth: Array) -> Array:
+    """Distance on which a motion comes from a rest to a speed with even jerk, acceleration and jerk, at most, (M,)."""
+    speed = np.sqrt(square)
+    return np.asarray(speed / 2 * (speed / along + along / growth + np.sqrt(speed / growth)))
+
+
+def _plateaus(spline: SpeedSpline, square: Array, fastest: Array, rise: Array) -> Array:
+    """Speed squared of cells far enough from every place at which it changes, (M - 1,); NaN for other cells."""
+    even = np.abs(np.diff(square)) <= _EQUAL * square[1:]
+    even &= fastest[1:] >= (1 - _EQUAL) * square[1:]
+    even &= fastest[:-1] >= (1 - _EQUAL) * square[:-1]
+    s = spline.s
+    before = np.maximum.accumulate(np.where(even, -np.inf, s[1:]))
+    after = np.minimum.accumulate(np.where(even, np.inf, s[:-1])[::-1])[::-1]
+    away = np.minimum(s[:-1] - before, after - s[1:])
+    return long_held(np.where(away > _FAR * np.maximum(rise[1:], rise[:-1]), square[1:], np.nan))
+
+
+def long_held(held: Array) -> Array:
+    """Values of cells that are held, without those with too few of them side by side."""
+    short = np.isnan(held)
+    begin = np.append(0, np.flatnonzero(short[1:] != short[:-1]) + 1)
+    length = np.diff(np.append(begin, len(held)))
+    return np.where(np.repeat(length < _LEAST_HELD, length), np.nan, held)
+
+
+def with_middles(s: Array) -> Array:
+    """Places, and the middles of the cells between them."""
+    return np.insert(s, np.arange(1, len(s)), (s[1:] + s[:-1]) / 2)
