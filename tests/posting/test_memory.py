@@ -25,7 +25,7 @@ from pkm_post.writing.trajectory_file import reader as trajectory_reader
 PIECES = (
     (motion, "_KNOTS_AT_ONCE"),
     (motion, "_STATIONS_AT_ONCE"),
-    (motion, "_MARKS_AT_ONCE"),
+    (motion, "_STRETCH_MS"),
     (speed_limits, "_STATIONS_AT_ONCE"),
     (speed_profile, "_AT_ONCE"),
     (schedule, "_AT_ONCE"),
