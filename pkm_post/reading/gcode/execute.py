@@ -8,6 +8,7 @@ returned unchanged. Semantics are those of RS274NGC as implemented by LinuxCNC, 
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -58,6 +59,7 @@ def execute_as_far_as_possible(
     block_delete: bool = False,
     flavour: Flavour = RS274,
     is_whole: bool = True,
+    text: bytes = b"",
 ) -> tuple[Blocks, tuple[Diagnostic, ...]]:
     """Execute a program up to its first fault.
 
@@ -66,6 +68,7 @@ def execute_as_far_as_possible(
         limits: bounds of the execution.
         block_delete: whether to skip blocks that begin with ``/``.
         flavour: whose subprogram calls they are.
+        text: of the program, where GOTO finds sequence numbers.
         is_whole: whether no block is missing; otherwise nothing is executed, and only invalid blocks are reported.
 
     Returns:
@@ -84,7 +87,7 @@ def execute_as_far_as_possible(
     special[blocks.m_row[np.isin(blocks.m, (*_SUBPROGRAM_CODES, *_PROGRAM_END))]] = True
     special[list(statements)] = True
     executed = ExecutedBlocksBuilder(blocks)
-    interpreter = _Interpreter(blocks, statements, jumps, skipped, limits, executed, flavour)
+    interpreter = _Interpreter(blocks, statements, jumps, skipped, limits, executed, flavour, text)
     try:
         interpreter.run(np.flatnonzero(special).tolist())
     except ExecutionFault as fault:
@@ -122,6 +125,25 @@ def _diagnostics(blocks: Blocks, faults: list[tuple[int, ExecutionFault]]) -> tu
     return tuple(sorted(dict.fromkeys(diagnostics), key=lambda item: (item.place.line, item.place.column)))
 
 
+_SEQUENCE_NUMBER = re.compile(rb"^[ \t]*/?[ \t]*N[ \t]*0*(\d+)", re.MULTILINE | re.IGNORECASE)
+
+
+def rows_of_sequence_numbers(text: bytes, line: Array) -> dict[str, list[int]]:
+    """Rows by sequence number, in order; of a number without a block the row after it.
+
+    Args:
+        text: of the program, lines ended by line feeds.
+        line: (N,) line of each row.
+    """
+    rows: dict[str, list[int]] = {}
+    start = number = 0
+    for found in _SEQUENCE_NUMBER.finditer(text):
+        number += text.count(b"\n", start, found.start())
+        start = found.start()
+        rows.setdefault(found[1].decode(), []).append(int(np.searchsorted(line, number + 1)))
+    return rows
+
+
 @dataclass
 class _Level:
     """A running subprogram.
@@ -152,6 +174,7 @@ class _Interpreter:
         limits: bounds of the execution.
         executed: collects the executed blocks.
         flavour: whose subprogram calls they are.
+        text: of the program, where GOTO finds sequence numbers.
     """
 
     def __init__(
@@ -163,10 +186,13 @@ class _Interpreter:
         limits: ExecutionLimits,
         executed: ExecutedBlocksBuilder,
         flavour: Flavour,
+        text: bytes,
     ) -> None:
         self.row = 0
         self._blocks, self._statements, self._jumps, self._skipped = blocks, statements, jumps, skipped
         self._limits, self._executed, self._flavour = limits, executed, flavour
+        self._text = text
+        self._rows_of_label: dict[str, list[int]] | None = None
         self.restarts = False
         """Whether M99 ended the main program."""
         self._blocks_left, self._operations_left = limits.blocks, limits.operations
@@ -315,6 +341,31 @@ class _Interpreter:
         self._parameters.leave(returned)
         return self._levels.pop().return_row
 
+    def _goto(self, row: int, word: OWord) -> int:
+        """To the next block with that sequence number, or else the first one of the same program [Fanuc]."""
+        if word.values and self._value(word) == 0:
+            return row + 1
+        first, end = self._program_of(row)
+        targets = [target for target in self._labels().get(str(word.label), []) if first <= target < end]
+        if not targets:
+            raise ExecutionFault("G309", f"GOTO {word.label}: no block N{word.label} in this program")
+        return next((target for target in targets if target > row), targets[0])
+
+    def _program_of(self, row: int) -> tuple[int, int]:
+        """The first row of the program that a row belongs to, and the row after its last."""
+        begins = sorted(self._jumps.programs.values())
+        index = bisect_left(begins, row + 1)
+        return begins[index - 1] if index else 0, begins[index] if index < len(begins) else len(self._blocks)
+
+    def _labels(self) -> dict[str, list[int]]:
+        """Rows by sequence number, from the text: a block does not keep its own."""
+        if self._rows_of_label is None:
+            self._rows_of_label = rows_of_sequence_numbers(self._text, self._blocks.line)
+        return self._rows_of_label
+
+    def _macro_while(self, row: int, word: OWord) -> int:
+        return row + 1 if self._value(word) != 0 else self._jumps.other_end[row] + 1
+
     def _after_other_end(self, row: int, _: OWord) -> int:
         return self._jumps.other_end[row] + 1
 
@@ -373,4 +424,7 @@ _STEPS: dict[str, Callable[[_Interpreter, int, OWord], int]] = {
     "endrepeat": _Interpreter._endrepeat,
     "break": _Interpreter._break,
     "continue": _Interpreter._continue,
+    "goto": _Interpreter._goto,
+    "macro while": _Interpreter._macro_while,
+    "macro end": _Interpreter._to_other_end,
 }

@@ -70,6 +70,7 @@ def _first_of_each(blocks: Blocks, found: _Found) -> Iterator[str]:
 
 def _for_fanuc(blocks: Blocks) -> _Found:
     yield from _o_words(blocks, lambda keyword: not keyword)
+    yield from _macro_jumps(blocks)
     yield from _codes(blocks.g, blocks.g_row, _FANUC_G, "G")
     here = np.flatnonzero(np.isin(blocks.g, _WITHOUT_PLACE))
     here = here[~(blocks.has("X") | blocks.has("Y"))[blocks.g_row[here]]] if len(here) else here
@@ -128,6 +129,16 @@ def _o_words(blocks: Blocks, wanted: Callable[[str], bool]) -> _Found:
                 if wanted(keyword):
                     yield f"O{label if isinstance(label, str) else ''} {keyword}".strip(), row
                     return
+
+
+def _macro_jumps(blocks: Blocks) -> _Found:
+    """The first GOTO, IF GOTO or WHILE DO."""
+    for row, tree in sorted(blocks.special.items()):
+        for child in tree.children:
+            if not isinstance(child, str) and child.data == "macro":
+                words = [leaf.upper() for leaf in child.children if isinstance(leaf, str) and leaf.type != "NUMBER"]
+                yield " ".join(words), row
+                return
 
 
 def _named_parameters(blocks: Blocks) -> _Found:

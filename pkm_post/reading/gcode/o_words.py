@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from pkm_post.reading.gcode.parameters import ExecutionFault
-from pkm_post.reading.gcode.statements import OWord
+from pkm_post.reading.gcode.statements import MACRO_JUMPS, OWord
 
 CLOSES: dict[str, str] = {
     "endsub": "sub",
@@ -70,6 +70,7 @@ class _Linker:
     def __init__(self) -> None:
         self.flow = JumpTargets()
         self.open: list[_Open] = []
+        self.macro_loops: list[tuple[int, str]] = []
         self._subs: list[int] = []
         """Indices of the subprograms in ``open``."""
         self._depths: dict[tuple[str, str], list[int]] = {}
@@ -82,7 +83,10 @@ class _Linker:
             ExecutionFault: the O word is unmatched.
         """
         keyword = word.keyword
-        if keyword == "call":
+        if keyword in ("call", "goto"):
+            return
+        if keyword in MACRO_JUMPS and isinstance(word.label, str):
+            self._link_macro_loop(row, keyword, word.label)
             return
         if not isinstance(word.label, str):
             raise ExecutionFault("G311", f"the label of {keyword} is computed", word.label.column)
@@ -95,6 +99,16 @@ class _Linker:
             self._close_or_divide(row, keyword, word.label)
         else:
             _BEGIN.get(keyword, _Linker._begin)(self, row, keyword, word.label)
+
+    def _link_macro_loop(self, row: int, keyword: str, label: str) -> None:
+        """WHILE DO n and END n, which may stand within each other."""
+        if keyword == "macro while":
+            self.macro_loops.append((row, label))
+            return
+        if not self.macro_loops or self.macro_loops[-1][1] != label:
+            raise ExecutionFault("G307", f"END {label} without WHILE DO {label}")
+        begin, _ = self.macro_loops.pop()
+        self.flow.other_end.update({begin: row, row: begin})
 
     def _begin_program(self, row: int, label: str) -> None:
         if self.open:
@@ -206,6 +220,8 @@ def link_o_words(words: Mapping[int, OWord]) -> tuple[JumpTargets, tuple[tuple[i
             faults.append((row, fault))
     for opened in linker.open:
         faults.append((opened.row, ExecutionFault("G308", f"O{_shown(opened.label)} {opened.keyword}")))
+    for row, label in linker.macro_loops:
+        faults.append((row, ExecutionFault("G308", f"WHILE DO {label}")))
     return linker.flow, tuple(faults)
 
 

@@ -19,7 +19,7 @@ from pkm_post.reading.gcode.guess import guessed_flavour
 from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, ExecutionLimits, ReadOptions
 from pkm_post.reading.gcode.recovery import first_line, merged, own_faults
 from pkm_post.reading.gcode.resolve import resolve
-from pkm_post.reading.gcode.scan import scan_recovering
+from pkm_post.reading.gcode.scan import scan_recovering, with_line_feeds
 
 _COMMENT = re.compile(rb"\([^()\n]*\)|;[^\n]*")
 _WITHOUT_A_POINT = re.compile(rb"(?<![A-Za-z#\]])[XYZIJxyzij][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])")
@@ -51,7 +51,9 @@ def read(
     flavour, why = _flavour(scanned, options)
     options = replace(options, flavour=flavour.name)
     is_whole = not errors(syntax)
-    executed, execution = execute_as_far_as_possible(scanned, limits, options.block_delete, flavour, is_whole)
+    executed, execution = execute_as_far_as_possible(
+        scanned, limits, options.block_delete, flavour, is_whole, with_line_feeds(text) if scanned.special else b""
+    )
     if not is_whole or execution:
         return None, _all_faults(text, file, executed, syntax + execution, options)
     program, meaning = resolve(executed, options, text)
@@ -80,8 +82,7 @@ def _all_faults(
     text: bytes | str, file: str, blocks: Blocks, faults: tuple[Diagnostic, ...], options: ReadOptions
 ) -> tuple[Diagnostic, ...]:
     """The faults of a text that cannot be executed as a whole, and those of its blocks behind them; or its language."""
-    raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else bytes(text)
-    language = foreign_language(raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n"))
+    language = foreign_language(with_line_feeds(text))
     if language is not None:
         return (Diagnostic("G213", Place(file, line=language[1]), language[0]),)
     _, meaning = resolve(blocks, replace(options, needs_end=False), text)

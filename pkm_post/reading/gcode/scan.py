@@ -68,7 +68,7 @@ def scan_recovering(text: bytes | str, file: str) -> tuple[Blocks, tuple[Diagnos
     Raises:
         ImportError: lark is not installed.
     """
-    whole = _normalized(text)
+    whole = with_line_feeds(text)
     part = _up_to_percent(whole)
     faults, patterns, builder = SyntaxFaults(file), Patterns(), BlocksBuilder(part.text.count(b"\n"))
     for piece in _pieces(part.text):
@@ -92,7 +92,7 @@ def scan_by_block(text: bytes | str, file: str) -> Scanned:
     Raises:
         ImportError: lark is not installed.
     """
-    whole = _normalized(text)
+    whole = with_line_feeds(text)
     part = _up_to_percent(whole)
     faults, builder = SyntaxFaults(file), BlocksBuilder(part.text.count(b"\n"))
     for line in part.text.split(b"\n")[:-1]:
@@ -206,7 +206,7 @@ def _up_to_percent(text: bytes) -> _Extent:
     return _Extent(text)
 
 
-def _normalized(text: bytes | str) -> bytes:
+def with_line_feeds(text: bytes | str) -> bytes:
     """Strip the byte order mark and end every line with a line feed."""
     raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else bytes(text)
     raw = raw.removeprefix(_BYTE_ORDER_MARK)

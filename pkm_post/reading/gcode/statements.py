@@ -120,6 +120,8 @@ def statement_of(tree: Tree[Token], block_delete: bool = False) -> Statement:
             words.codes += dialect_codes(child)
         elif child.data == "o_word":
             return _o_word_of(child)
+        elif child.data == "macro":
+            return _macro_of(child)
         elif child.data in _ADD:
             _ADD[child.data](words, child)
     return words
@@ -147,6 +149,19 @@ _ADD: dict[str, Callable[[Words, Tree[Token]], None]] = {
     "surface_word": _add_word,
     "assignment": _add_assignment,
 }
+
+
+MACRO_JUMPS = ("goto", "macro while", "macro end")
+"""Keywords of the jumps of Fanuc's macros, whose labels are sequence numbers and numbers of loops."""
+
+
+def _macro_of(tree: Tree[Token]) -> OWord:
+    *before, number = tree.children
+    condition = tuple(expression_of(node) for node in before if not isinstance(node, str) or node.type == "NUMBER")
+    kinds = {node.type for node in before if isinstance(node, str)}
+    keyword = "goto" if "GOTO" in kinds else "macro while" if "WHILE" in kinds else "macro end"
+    assert isinstance(number, str)  # in the grammar a jump ends with its number
+    return OWord(keyword, label_of_number(float(number), column_of_node(number)), condition)
 
 
 def _o_word_of(tree: Tree[Token]) -> OWord:
