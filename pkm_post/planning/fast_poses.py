@@ -18,7 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, along, distinct, take_rows
+from pkm_post.geometry import Array, along, distinct, length_of, take_rows
+from pkm_post.model import Poses, select_rows
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.toolpath import Segments
 
@@ -60,10 +61,10 @@ def fast_poses_within(path: ToolPath, segment: Array, u: Array) -> FastPoses:
     joint = segment + nearer_end
     side = np.where(nearer_end, 1.0, -1.0)
     other = np.clip(np.where(nearer_end, joint, segment - 1), 0, len(seg) - 1)
-    curved = _curved(seg, segment, other)
-    if len(curved) == len(u):
-        return _exact(path, segment, u)
     half, distance = path.blend[joint], np.maximum(np.where(nearer_end, to_end, u), 0.0)
+    smooth = np.flatnonzero(seg.is_curve(segment) & (distance >= half))
+    if len(smooth) == len(u):
+        return _on_curves(path, segment, u)
     wide = np.maximum(2 * half, _NO_WIDTH)
     share = np.maximum(half - distance, 0.0) / wide
     square = share * share
@@ -80,23 +81,34 @@ def fast_poses_within(path: ToolPath, segment: Array, u: Array) -> FastPoses:
     else:
         axis, spin, tool_length = (np.broadcast_to(one, (len(u), *one.shape[1:])) for one in path.attitude)
     poses = FastPoses(tip.T, axis, spin, tip_1.T, tool_length, segment)
-    if len(curved):
-        _overwrite(poses, curved, path, u)
+    curved = _beside(seg, segment, other)
+    curved[smooth] = False
+    for rows, poses_at in ((smooth, _on_curves), (np.flatnonzero(curved), ToolPath.within)):
+        if len(rows):
+            _overwrite(poses, rows, poses_at(path, segment[rows], u[rows]))
     return poses
 
 
-def _curved(seg: Segments, segment: Array, other: Array) -> Array:
-    """Places on or beside an arc or a curve, ascending."""
+def _beside(seg: Segments, segment: Array, other: Array) -> Array:
+    """Whether places are on or beside an arc or a curve, (M,)."""
     curved = np.zeros(len(segment), dtype=np.bool_)
     for kind in (seg.arcs, seg.splines):
         for one in (segment, other):
             curved[kind.among(one)[0]] = True
-    return np.flatnonzero(curved)
+    return curved
 
 
-def _exact(path: ToolPath, segment: Array, u: Array) -> FastPoses:
-    poses = path.within(segment, u)
-    return FastPoses(poses.tip, poses.axis, poses.spin, poses.tip_1, poses.tool_length, segment)
+def _on_curves(path: ToolPath, segment: Array, u: Array) -> FastPoses:
+    """Places on smooth curves, outside of blends."""
+    seg, splines = path.segments, path.segments.splines
+    _, row = splines.among(segment)
+    tip, tip_1 = splines.within(row, u, splines.tip)
+    if splines.turns:
+        vector, (spin,) = (splines.within(row, u, one)[0] for one in (splines.axis, splines.spin))
+        axis = (vector / length_of(*vector)).T
+    else:
+        axis, spin = select_rows(seg.axis, segment), select_rows(seg.spin, segment)
+    return FastPoses(tip.T, axis, spin, tip_1.T, select_rows(path.tool_length, segment), segment)
 
 
 def _columns(vectors: Array, rows: Array) -> Array:
@@ -115,8 +127,7 @@ def _axes(seg: Segments, joints: Array, at: Array, x: Array, rounding: Array) ->
     return along(take_rows(axis, at), tangent)
 
 
-def _overwrite(poses: FastPoses, rows: Array, path: ToolPath, u: Array) -> None:
-    exact = path.within(poses.segment[rows], u[rows])
-    poses.tip[rows], poses.tip_1[rows] = exact.tip, exact.tip_1
-    if path.attitude is None:
-        poses.axis[rows], poses.spin[rows] = exact.axis, exact.spin
+def _overwrite(poses: FastPoses, rows: Array, others: FastPoses | Poses) -> None:
+    poses.tip[rows], poses.tip_1[rows] = others.tip, others.tip_1
+    if poses.axis.flags.writeable:  # not one attitude for all
+        poses.axis[rows], poses.spin[rows] = others.axis, others.spin

@@ -12,6 +12,7 @@ from pkm_post.certificate import certify
 from pkm_post.geometry import norm
 from pkm_post.model import Kind, Tolerances
 from pkm_post.planning import interpolate, plan_feed
+from pkm_post.planning.fast_poses import fast_poses
 from pkm_post.planning.motion import tool_path
 from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.toolpath.place import place
@@ -134,3 +135,16 @@ def test_rapid_moves_are_no_curves():
     trajectory = scan(2)
     rapid = dataclasses.replace(trajectory, kind=np.full(len(trajectory), Kind.RAPID))
     assert not len(tool_path(rapid, Tolerances(0.01, THOUSANDTH)).segments.splines)
+
+
+@pytest.mark.parametrize("lean", [0.0, 0.2])
+def test_fast_poses_are_those_of_the_path(lean):
+    path = tool_path(scan(2, noise=0.003, lean=lean), Tolerances(0.01, 0.001))
+    joints = np.flatnonzero(path.blend)
+    edges = path.starts[joints, None] + path.blend[joints, None] * [-1.0, -0.5, 0.5, 1.0]
+    inside = np.random.default_rng(3).uniform(0, path.starts[-1], 3000)
+    s = np.sort(np.concatenate([inside, path.starts, edges.ravel()]))
+    for rows in (slice(None), path.segments.is_curve(path.at(s).segment)):
+        fast, poses = fast_poses(path, s[rows]), path.at(s[rows])
+        for name in ("tip", "tip_1", "axis", "spin", "tool_length"):
+            np.testing.assert_allclose(getattr(fast, name), getattr(poses, name), atol=1e-11)

@@ -137,17 +137,34 @@ class Splines:
 
     def at(self, row: Array, u: Array, powers: Array) -> tuple[Array, Array, Array]:
         """Columns with these coefficients, and first and second derivative, at parameters u of rows, (C, N) each."""
-        place = self.place[row] + u
-        piece = np.searchsorted(self.begin, place, side="right") - 1
-        piece = np.clip(piece, self.first[row], self.last[row])
-        width = self.width[piece]
-        ahead = (place - self.begin[piece]) / width
+        piece, width, ahead = self._located(row, u)
         share = np.clip(ahead, 0.0, 1.0)
         value, first, second = polynomial(np.take(powers, piece, axis=2), share)
         beyond = ahead - share
         value += beyond * (first + beyond / 2 * second)
         first += beyond * second
         return value, first / width, second / np.square(width)
+
+    def within(self, row: Array, u: Array, powers: Array) -> tuple[Array, Array]:
+        """The same columns and their first derivative at parameters u within rows, not beyond ends of runs."""
+        piece, width, share = self._located(row, u)
+        around = np.take(powers, piece, axis=2)
+        value, first = around[_DEGREE] * share, around[_DEGREE].copy()
+        for power in around[-2:0:-1]:
+            value += power
+            first *= share
+            first += value
+            value *= share
+        value += around[0]
+        return value, first / width
+
+    def _located(self, row: Array, u: Array) -> tuple[Array, Array, Array]:
+        """The piece at parameters u of rows, its width, and the share of it, outside 0 and 1 beyond ends of runs."""
+        place = self.place[row] + u
+        piece = np.searchsorted(self.begin, place, side="right") - 1
+        piece = np.clip(piece, self.first[row], self.last[row])
+        width = self.width[piece]
+        return piece, width, (place - self.begin[piece]) / width
 
 
 def polynomial(powers: Array, x: Array) -> tuple[Array, Array, Array]:
