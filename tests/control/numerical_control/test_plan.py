@@ -71,7 +71,7 @@ def test_a_plan_is_one_program():
     trajectory, reported = mdi_trajectory(line, MACHINE, HERE, TOOL)
     assert trajectory is not None and not reported
     assert planned(trajectory, MACHINE, SETTINGS, TOLERANCES)[0] is not None
-    small = dataclasses.replace(SETTINGS, memory_words=1200)
+    small = dataclasses.replace(SETTINGS, memory_words=700)
     plan, reported = planned(trajectory, MACHINE, small, TOLERANCES)
     assert plan is None and [fault.code for fault in reported] == ["C204"]
 
