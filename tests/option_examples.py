@@ -14,6 +14,7 @@ EXAMPLES = {
     "--swallowed": ("remove", "refuse"),
     "--tool": ("1=10,5", "1=12"),
     "--unit": ("inch", "mm"),
+    "--feed": ("300", "450.5"),
     "--flavour": ("fanuc", "rs274"),
     "--machine-zero": ("0,0,300", "10,-20,400"),
     "--leave-out": ("M21", "M21,G187"),

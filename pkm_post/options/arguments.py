@@ -211,6 +211,12 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "choices": ("mm", "inch"),
         "help": "unit of length of a part program: of CL data whatever it says itself, of G-code before G20 or G21",
     },
+    "--feed": {
+        "metavar": "MM/MIN",
+        "type": above_zero(1_000_000),
+        "help": "feed of the cutting moves of a part program before the first feed that it states (default: they are"
+        " refused)",
+    },
     "--flavour": {
         "choices": GCODE_FLAVOURS,
         "help": "whose G-code a part program is: rs274, that of LinuxCNC, or fanuc, that of controls of Fanuc's kind"
@@ -331,6 +337,7 @@ def add_part_program(parser: argparse.ArgumentParser) -> None:
         (
             "--tool",
             "--unit",
+            "--feed",
             "--flavour",
             "--machine-zero",
             "--leave-out",

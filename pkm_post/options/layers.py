@@ -172,6 +172,7 @@ _KINDS: dict[str, tuple[InputKind, ...]] = {
     "cycle_values": (InputKind.CLDATA,),
     "tools": _PART_PROGRAMS,
     "unit": _PART_PROGRAMS,
+    "feed": _PART_PROGRAMS,
     "allow_open_end": _PART_PROGRAMS,
     "wear": _PART_PROGRAMS,  # L432 names the alternative when it is given for G-code
     "job": (InputKind.JOB,),

@@ -51,6 +51,7 @@ class ReadingOptions:
         dwell_unit: unit of P of G4 and of cycles in G-code, a key of ``DWELL_UNITS``; that of the flavour if None.
         machine_zero: where G53 X0 Y0 Z0, and G28 and G30, bring the tool tip in {C}, mm.
         left_out: codes of G-code, such as "M21", to leave out where they are not understood.
+        feed: speed of cutting moves before the first feed of the file, mm/s; None refuses such moves.
         lengths: gauge lengths of tools, and values of length offsets (H), by number, mm.
         allow_open_end: whether a file may lack an end statement, such as M2 or FINI.
     """
@@ -68,6 +69,7 @@ class ReadingOptions:
     flavour: str | None = None
     machine_zero: tuple[float, float, float] | None = None
     left_out: tuple[str, ...] = ()
+    feed: float | None = None
 
 
 AS_WRITTEN = ReadingOptions()
@@ -129,6 +131,7 @@ def _read_gcode(content: bytes, file: str, reading: ReadingOptions) -> _Result:
         dwell_unit=reading.dwell_unit,
         machine_zero=reading.machine_zero,
         left_out=reading.left_out,
+        feed=reading.feed,
         needs_end=not reading.allow_open_end,
     )
     program, diagnostics = gcode.read(content, file, options)
@@ -157,6 +160,7 @@ def _read_cldata(content: bytes, file: str, reading: ReadingOptions) -> _Result:
         contour_data=reading.contour_data,
         wear=reading.wear,
         cycle_values=reading.cycle_values,
+        feed=reading.feed,
         needs_end=not reading.allow_open_end,
     )
     return cldata.read(content, file, options)

@@ -16,7 +16,7 @@ CLDATA = "UNITS/MM\nLOADTL/1\nRAPID\nGOTO/0,0,30\nFEDRAT/600,MMPM\nGOTO/10,0,20\
 REACHED = ("--tool-length=1=60", "--work-offset=0,0,250")
 FOR_CLDATA = ("--contour-data", "--cl-dialect", "--cycle-values")
 FOR_GCODE = ("--flavour", "--machine-zero", "--leave-out")
-FOR_PART_PROGRAMS = (*FOR_CLDATA, *FOR_GCODE, "--tool", "--unit", "--allow-open-end", "--wear")
+FOR_PART_PROGRAMS = (*FOR_CLDATA, *FOR_GCODE, "--tool", "--unit", "--feed", "--allow-open-end", "--wear")
 
 
 @pytest.fixture

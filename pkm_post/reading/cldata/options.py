@@ -97,6 +97,7 @@ class ReadOptions:
             "nx ny nz" the surface normal, "px py pz" the contact point, which is ignored.
         cycle_values: meanings of the numbers that follow the kind of a CYCLE statement without words, in order, out of
             ``CYCLE_VALUES``: depth down from the point, clearance and return height up from it.
+        feed: speed of cutting moves before the first FEDRAT, mm/s; None if unknown: such moves are refused.
         frame: "first": the work frame is the first machining frame of the file; "absolute": the frame those are defined
             in.
         tools: by number; they override the tool data of the file, except for a name and a length that they lack.
@@ -112,6 +113,7 @@ class ReadOptions:
     hand: str | None = None
     goto_values: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     cycle_values: tuple[str, ...] = ()
+    feed: float | None = None
     frame: str = "first"
     tools: Mapping[int, Tool] = field(default_factory=dict)
     contour_data: str | None = None
@@ -130,6 +132,8 @@ class ReadOptions:
         for name, allowed in tables.items():
             if getattr(self, name) not in allowed:
                 raise ValueError(f"{name}: expected one of {allowed}, got {getattr(self, name)!r}")
+        if self.feed is not None and not (math.isfinite(self.feed) and self.feed > 0):
+            raise ValueError(f"feed: expected a finite number above 0, got {self.feed}")
         for number, wear in self.wear.items():
             if not math.isfinite(wear):
                 raise ValueError(f"wear: expected finite lengths, got {wear} for tool {number}")

@@ -77,7 +77,8 @@ def _program(state: ReaderState, bulk: Array, names: ValueNames, file: str) -> P
     offsets, reading = cutcom_offsets(state, points, frames, arcs)
     if state.faults.any_errors():
         return None
-    return build_program(state, points, arcs, file, offsets, [*unit, *cycle_descriptions(state), *reading])
+    described = [*unit, *_describe_feed(state), *cycle_descriptions(state), *reading]
+    return build_program(state, points, arcs, file, offsets, described)
 
 
 def _describe_unit(state: ReaderState, points: Points) -> list[str]:
@@ -96,6 +97,12 @@ def _describe_unit(state: ReaderState, points: Points) -> list[str]:
         found = f"{unit.evidence}, and the path is {size / 25.4:.6g} inches = {size:.6g} mm wide"
         state.faults.add("L410", (0, 0), found)
     return [] if unit.stated else [f"lengths are in {unit.name}, by {unit.evidence}"]
+
+
+def _describe_feed(state: ReaderState) -> list[str]:
+    """Describe the feed that the options supply."""
+    feed = state.options.feed
+    return [] if feed is None else [f"the feed before the first FEDRAT is {feed * 60:.10g} mm/min, as the option says"]
 
 
 def _check_tool_lengths(state: ReaderState) -> None:

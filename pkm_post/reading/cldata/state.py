@@ -235,6 +235,8 @@ class ReaderState:
         self.unit = self.options.units or self.file_unit.name or "mm"
         self.scale = UNITS[self.unit]
         self.scales.append((-1, self.scale))
+        if self.options.feed is not None:
+            self.set_feed(-1, Feed(self.options.feed))
 
     def report(self, code: str, row: int, found: str) -> None:
         """Report a fault of a statement."""

@@ -7,6 +7,7 @@ missing option is a fault of the program. The limits let every execution end in 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -60,6 +61,8 @@ class ReadOptions:
         flavour: whose G-code it is, one of ``FLAVOUR_NAMES``; guessed from the program if None.
         dwell_unit: unit of P of G4 and of cycles, a key of ``DWELL_UNITS``; that of the flavour if None.
         left_out: codes, such as "M21", that are left out where the reader does not understand them.
+        feed: speed of cutting moves before the first F, mm/s, where F is per minute; None if unknown: such moves are
+            refused.
         needs_end: whether the text is a complete program, which must end with M2, M30 or a percent sign; an MDI line is
             not.
     """
@@ -77,9 +80,12 @@ class ReadOptions:
     flavour: str | None = None
     dwell_unit: str | None = None
     left_out: tuple[str, ...] = ()
+    feed: float | None = None
     needs_end: bool = False
 
     def __post_init__(self) -> None:
+        if self.feed is not None and not 0 < self.feed < math.inf:
+            raise ValueError(f"feed: expected a finite number above 0, got {self.feed}")
         for name, allowed in (
             ("axis_words", (*AXIS_WORDS,)),
             ("unit", (*UNITS,)),

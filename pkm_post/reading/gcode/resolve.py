@@ -70,6 +70,8 @@ def resolve(
         faults.add("G430", len(blocks) - 1, "no M2, M30 or % after it")
     if program is None or faults.has_errors():
         return None, tuple(sorted((*faults.in_order(), *behind), key=lambda fault: (fault.place.line, fault.code)))
+    if options.feed is not None:
+        notes = (*notes, f"the feed before the first F is {options.feed * 60:.10g} mm/min, as the option says")
     return replace(program, reading=notes), faults.in_order()
 
 
@@ -170,7 +172,7 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
     columns |= {
         "kind": _KIND[motions.motion],
         "position": _frames(motions).points(motions.end),
-        "feed": feeds(blocks, modal, states.spindle, motions, path_length, rotates, faults),
+        "feed": feeds(blocks, modal, states.spindle, motions, path_length, rotates, options.feed, faults),
         "arc_centre": _frames(motions).points(centre),
         "operation": uniform(0, len(motions), np.int32),
         "line": motions.of_blocks(blocks.line),
