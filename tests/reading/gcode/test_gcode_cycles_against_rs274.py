@@ -91,11 +91,11 @@ def test_the_initial_level_is_kept(name):
 
 def test_k_repeats_as_l_does():
     """Fanuc has K for the number of repeats; rs274 has L alone."""
-    head, hole = "G21 F100\nG90 G0 X0 Y0 Z50\n", "G91 G99 G81 X10 Z-20 R-48"
+    head, hole = "G21 F100\nG90 G0 X0 Y0 Z50.\n", "G91 G99 G81 X10. Z-20. R-48."
     assert ours(f"{head}{hole} K3\nM2")[0] == ours(f"{head}{hole} L3\nM2")[0] is not None
     assert [fault.code for fault in ours(f"{head}{hole} K3 L3\nM2")[1]] == ["G418"]
     assert [fault.code for fault in ours(f"{head}{hole} K2.5\nM2")[1]] == ["G418"]
-    assert [fault.code for fault in ours(f"{head}G1 X5 K3\nM2")[1]] == ["G404"]
+    assert [fault.code for fault in ours(f"{head}G1 X5. K3\nM2")[1]] == ["G404"]
 
 
 @pytest.mark.parametrize("block", ["G0 G80 X5", "G80 G0 X5", "G0 G17 G40 G49 G80 G90\nX5", "G80\nG0 X5"])
