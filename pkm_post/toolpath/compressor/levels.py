@@ -114,7 +114,7 @@ class _Search:
 
     def _compare(self, at: Array) -> None:
         """Find out which of these places are off by too much, and by what."""
-        off, _ = deviation(self._places.point[:, at], *self._state[:, :, at])
+        off, _ = deviation(np.take(self._places.point, at, axis=1), *np.take(self._state, at, axis=2))
         by = by_allowed(off, self._allowed[at])
         wrong = np.flatnonzero(np.maximum(*by) > _AIM)
         self.wrong, self._off, self._by = at[wrong], off[:, wrong], [one[wrong] for one in by]
