@@ -29,6 +29,7 @@ from pkm_post.reading.cldata.arc_statements import (
     report_unused_arcdat,
 )
 from pkm_post.reading.cldata.check_surface import autops, indirp, indirv, psis, tlon
+from pkm_post.reading.cldata.copies import MATRIX
 from pkm_post.reading.cldata.cutcom import cutcom, geometry_type, points_comment
 from pkm_post.reading.cldata.cycle_statement import cycle
 from pkm_post.reading.cldata.feeds import coolnt, delay, fedrat, rapid, spindl, stop
@@ -36,7 +37,15 @@ from pkm_post.reading.cldata.points import from_or_godlta, goto, multax, numbers
 from pkm_post.reading.cldata.state import ReaderState
 from pkm_post.reading.cldata.statements import Statement, Statements
 from pkm_post.reading.cldata.tools import cutter, insert, load, tldata
-from pkm_post.reading.cldata.units_and_frames import machining_frame, origin, trans, trntyp, units
+from pkm_post.reading.cldata.units_and_frames import (
+    copy_matrix,
+    machining_frame,
+    origin,
+    path_index,
+    trans,
+    trntyp,
+    units,
+)
 
 _LARGEST = 1e9
 """Numbers beyond this are not plausible lengths, feeds or speeds."""
@@ -93,6 +102,7 @@ HANDLERS: dict[str, _Handler] = {
     "CUTCOM": cutcom, "CUTCOM_GEOMETRY_TYPE": geometry_type, "_POINTS": points_comment,
     "UNITS": units, "UNIT": units, "MSYS": machining_frame, "CSYS": machining_frame, "CATIA0": machining_frame,
     "ORIGIN": origin, "TRANS": trans, "TRACUT": trans, "TRNTYP": trntyp,
+    "INDEX": path_index, MATRIX: copy_matrix,
     "TLCOMP": _tlcomp, "SYN": _syn,
     "TOOL PATH": _operation, "OPERATION NAME": _operation, "FEATNO": _operation, "FINI": _fini,
 }  # fmt: skip
@@ -108,7 +118,7 @@ IGNORED = frozenset({
 
 UNSUPPORTED = frozenset({
     "SPLINE", "BSPLINE", "NURBS",
-    "POLYGON", "ROTABL", "ROTHED", "ROTATE", "PIVOT", "TURRET", "MIRROR", "COPY", "INDEX", "LOOPST", "LOOPND", "JUMPTO",
+    "POLYGON", "ROTABL", "ROTHED", "ROTATE", "PIVOT", "TURRET", "MIRROR", "LOOPST", "LOOPND", "JUMPTO",
     "MACRO", "CALL", "IF", "DO", "GO", "GOFWD", "GOBACK", "GOLFT", "GORGT", "GOUP", "GODOWN", "OFFSET",
     "TLLFT", "TLRGT", "TLON", "TLLFT,GOFWD", "TLRGT,GOFWD", "TLON,GOLFT", "TLON,GORGT", "THREAD", "PITCH", "REFSYS",
     "RETRCT", "CALSUB", "DEFSUB", "ENDSUB", "PIVOTZ", "PROBE", "DNTCUT",

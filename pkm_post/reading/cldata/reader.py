@@ -11,6 +11,7 @@ import numpy as np
 
 from pkm_post.model import Array, Diagnostic, Program
 from pkm_post.reading.cldata.arcs import resolve_arcs
+from pkm_post.reading.cldata.copies import with_copies
 from pkm_post.reading.cldata.cutcom import cutcom_offsets
 from pkm_post.reading.cldata.cycle_statement import cycle_descriptions
 from pkm_post.reading.cldata.faults import Faults
@@ -51,7 +52,7 @@ def read(
         faults.add("L104", (line, 0), f"a line of {size} bytes, at most {LONGEST_LINE}")
     whole = decoded(text)
     dialect = DIALECTS[options.dialect] if options.dialect else detect_dialect(whole)
-    statements = scan(logical_lines(whole), faults)
+    statements = with_copies(scan(logical_lines(whole), faults), faults)
     bulk, names = bulk_rows(statements, options, dialect)
     unit = length_unit(statements, whole)
     state = ReaderState(statements, dialect, options, faults, np.flatnonzero(bulk), np.cumsum(bulk), unit)

@@ -165,7 +165,7 @@ class ReaderState:
         cycle: last cycle, also after CYCLE/OFF.
         cycle_return: INIT or CLEAR, the return height of the next cycles; empty before.
         machining_frame: (4, 4) active frame of the points, mm.
-        shift: (4, 4) of ORIGIN, TRANS or TRACUT, mm.
+        transforms: (4, 4) by word, those in force of ORIGIN, TRANS, TRACUT, TRACUT/LAST and COPY, mm.
         work_from_file: (4, 4) from the frame in which machining frames are defined to the work frame, mm.
         tangent: start direction of the next TLON,GOFWD.
         part_surface: of PSIS; None for the tool position.
@@ -207,7 +207,6 @@ class ReaderState:
     cycle: Cycle | None = None
     cycle_return: str = ""
     machining_frame: Array | None = None
-    shift: Array | None = None
     work_from_file: Array | None = None
     tangent: Vector | None = None
     part_surface: Plane | None = None
@@ -215,6 +214,7 @@ class ReaderState:
     arc_data: ArcData | None = None
     ended: bool = False
 
+    transforms: dict[str, Array] = field(default_factory=dict)
     tools: dict[int, Tool] = field(default_factory=dict)
     operations: list[str] = field(default_factory=lambda: [""])
     operation_starts: list[tuple[int, int]] = field(default_factory=list)

@@ -5,12 +5,15 @@ UNITS decides on the length unit. Without it the unit of the feeds applies, or a
 disagree or are absent, the unit is unknown.
 
 Enters: statements. Leaves: 4 x 4 matrices that transform points of the file, in mm, to the work frame. That is the
-first machining frame of the file, or the frame those are defined in: matrix = shift @ inverse(first) @ active.
+first machining frame of the file, or the frame those are defined in: matrix = TRANS @ ORIGIN @ inverse(first) @ active
+@ LAST @ COPY @ TRACUT. TRACUT and COPY change the path before a post-processor reads it, in the order of ANSI APT, or
+of CATIA, where the copies come first [ICAM]; ORIGIN and TRANS are words for the post-processor.
 """
 
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,6 +24,7 @@ from pkm_post.reading.units import UNITS
 
 _UNIT_WORDS: dict[str, str] = {"MM": "mm", "INCHES": "inch", "INCH": "inch", "IN": "inch"}
 """Operands of UNITS."""
+_LAST = "TRACUT/LAST"
 _FEED_UNITS: dict[str, str] = {
     **dict.fromkeys(("MMPM", "MMPR"), "mm"),
     **dict.fromkeys(("IPM", "IPR", "FPM", "FPR"), "inch"),
@@ -117,14 +121,17 @@ def origin(state: ReaderState, row: int, statement: Statement) -> None:
     matrix = _from_axes([*values[:3], *x, *np.cross(z, x)])
     if _is_rigid(state, row, statement, matrix):
         matrix[:3, 3] *= state.scale
-        state.shift = np.linalg.inv(matrix)
+        state.transforms["ORIGIN"] = np.linalg.inv(matrix)
         _record_frame(state, row)
 
 
 def trans(state: ReaderState, row: int, statement: Statement) -> None:
-    """TRANS/x,y,z, TRANS/three rows of four, and TRACUT likewise; NOMORE and OFF end it."""
+    """TRANS/x,y,z, TRANS/three rows of four, and TRACUT and TRACUT/LAST likewise; NOMORE and OFF end their own word."""
+    name = statement.word
+    if name == "TRACUT" and statement.items[:1] == ("LAST",):
+        name, statement = _LAST, replace(statement, items=statement.items[1:])
     if not statement.values and set(statement.words) & {"NOMORE", "OFF"}:
-        state.shift = None
+        state.transforms.pop(name, None)
         _record_frame(state, row)
         return
     values = state.expect_values(row, statement, 3, 12)
@@ -133,9 +140,25 @@ def trans(state: ReaderState, row: int, statement: Statement) -> None:
     matrix = np.eye(4) if len(values) == 3 else _from_rows(values)
     if len(values) == 3:
         matrix[:3, 3] = values
+    _set_transform(state, row, statement, name, matrix)
+
+
+def path_index(state: ReaderState, row: int, statement: Statement) -> None:
+    """INDEX/n: where the path of COPY/n begins; it moves nothing."""
+    if len(statement.values) != 1:
+        state.report_items(row, statement, "a number")
+
+
+def copy_matrix(state: ReaderState, row: int, statement: Statement) -> None:
+    """The matrix of a copy, three rows of four."""
+    _set_transform(state, row, replace(statement, word="COPY"), "COPY", _from_rows(statement.values))
+
+
+def _set_transform(state: ReaderState, row: int, statement: Statement, name: str, matrix: Array) -> None:
+    """Set the transform of a word from here on, with its translation as written; report one that is not rigid."""
     if _is_rigid(state, row, statement, matrix):
         matrix[:3, 3] *= state.scale
-        state.shift = matrix
+        state.transforms[name] = matrix
         _record_frame(state, row)
 
 
@@ -151,8 +174,10 @@ def _record_frame(state: ReaderState, row: int) -> None:
     local = eye if state.machining_frame is None else state.machining_frame
     if state.work_from_file is None and state.machining_frame is not None:
         state.work_from_file = eye if state.options.frame == "absolute" else np.linalg.inv(local)
-    matrix = local if state.work_from_file is None else state.work_from_file @ local
-    state.frames.append((row, matrix if state.shift is None else state.shift @ matrix))
+    to_work = eye if state.work_from_file is None else state.work_from_file
+    first, second = ("TRACUT", "COPY") if state.dialect.name == "catia" else ("COPY", "TRACUT")
+    given = [state.transforms.get(name, eye) for name in ("TRANS", "ORIGIN", _LAST, first, second)]
+    state.frames.append((row, np.linalg.multi_dot([*given[:2], to_work, local, *given[2:]])))
 
 
 def _from_rows(values: list[float]) -> Array:

@@ -174,7 +174,7 @@ def test_frames_take_points_to_the_first_one():
     "statement, position",
     [
         ("ORIGIN/1,1,1", [0, 1, 2]), ("ORIGIN/1,1,1,0,1,0,0,0,1", [1, 0, 2]), ("TRANS/1,1,1", [2, 3, 4]),
-        ("TRANS/0,-1,0,5,1,0,0,0,0,0,1,0", [3, 1, 3]), ("TRANS/1,1,1\nTRACUT/NOMORE", [1, 2, 3]),
+        ("TRANS/0,-1,0,5,1,0,0,0,0,0,1,0", [3, 1, 3]), ("TRANS/1,1,1\nTRANS/NOMORE", [1, 2, 3]),
     ],
 )  # fmt: skip
 def test_shifts_of_the_origin(statement, position):

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Copies: repeat the statements between INDEX and COPY, each time further translated or rotated.
+
+Enters: the table of statements. Leaves: a table in which each COPY is replaced by its copies; a statement ``_COPY``
+with a matrix, three rows of four as written, precedes each of them, and one with the unit matrix ends them.
+
+COPY/n,...,k stands behind a path that INDEX/n begins and that has been made once. It makes k copies, the last one moved
+by the k-th power of its matrix [aptos].
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from pkm_post.model import Array
+from pkm_post.reading.cldata.faults import Faults
+from pkm_post.reading.cldata.statements import Statement, Statements, Template
+
+MATRIX = "_COPY"
+"""Word of the statements with the matrix of a copy."""
+MOST_STATEMENTS = 10_000_000
+"""Statements of a file with all its copies."""
+
+_PLANES = {"XYROT": (0, 1), "YZROT": (1, 2), "ZXROT": (2, 0)}
+"""Rotations, and the axes that they turn one to the other."""
+_FORMS = "n,SAME,k, n,TRANSL,x,y,z,k, n,XYROT, YZROT or ZXROT,degrees,k, or n,MODIFY,three rows of four,k"
+_VALUES = {"SAME": 0, "TRANSL": 3, "MODIFY": 12, **dict.fromkeys(_PLANES, 1)}
+"""Number of values between the word and the number of copies."""
+
+
+def with_copies(statements: Statements, faults: Faults) -> Statements:
+    """Replace each COPY by its copies; the table itself if there is none.
+
+    Args:
+        statements: of the file.
+        faults: collects the COPY statements that are not understood, which are dropped.
+    """
+    copies = _rows(statements, "COPY")
+    if not copies:
+        return statements
+    begins, parts, done = _rows(statements, "INDEX"), list[_Part](), 0
+    for row in copies:
+        parts.append(np.arange(done, row))
+        done = row + 1
+        parts += _copies_at(statements, row, begins, copies, faults)
+    parts.append(np.arange(done, len(statements)))
+    return _table(statements, parts)
+
+
+_Part = Array | tuple[int, Array]
+"""Rows of the file, or a matrix (4, 4) with the row that states it."""
+
+
+def _rows(statements: Statements, word: str) -> list[int]:
+    """The statements with a major word."""
+    templates = [index for index, template in enumerate(statements.templates) if template.word == word]
+    rows: list[int] = np.flatnonzero(np.isin(statements.template, templates)).tolist()
+    return rows
+
+
+def _copies_at(statements: Statements, row: int, begins: list[int], copies: list[int], faults: Faults) -> list[_Part]:
+    """The copies of one COPY; none, with a fault, if it is not understood."""
+    statement, place = statements.statement(row), statements.place(row)
+    read = _matrix_and_count(statement)
+    if read is None:
+        faults.add("L402", place, f"COPY/{statement.items_text()}, expected {_FORMS}")
+        return []
+    matrix, count = read
+    mine = [begin for begin in begins if begin < row and statements.statement(begin).items == statement.items[:1]]
+    if len(mine) != 1:
+        found = f"COPY/{statement.items_text()} after {len(mine)} INDEX/{statement.numbers[0]:g}, expected one"
+        faults.add("L402", place, found)
+        return []
+    if any(mine[0] < other < row for other in copies):
+        faults.add("L401", place, f"COPY/{statement.items_text()} with another COPY after its INDEX")
+        return []
+    if count * (row - mine[0]) > MOST_STATEMENTS:
+        faults.add("L403", place, f"COPY/{statement.items_text()}: more than {MOST_STATEMENTS} statements")
+        return []
+    path, power, parts = np.arange(mine[0] + 1, row), np.eye(4), list[_Part]()
+    for _ in range(count):
+        power = matrix @ power
+        parts += [(row, power), path]
+    return [*parts, (row, np.eye(4))]
+
+
+def _matrix_and_count(statement: Statement) -> tuple[Array, int] | None:
+    """The matrix of a COPY, (4, 4), and the number of copies; None if its items are not understood."""
+    word = statement.items[1] if len(statement.items) > 1 else None
+    numbers = statement.numbers
+    if not isinstance(word, str) or len(numbers) != len(statement.items) - 1:
+        return None
+    if len(numbers) != _VALUES.get(word, -1) + 2 or numbers[-1] != int(numbers[-1]) or numbers[-1] < 1:
+        return None
+    matrix, values = np.eye(4), numbers[1:-1]
+    if word == "TRANSL":
+        matrix[:3, 3] = values
+    elif word == "MODIFY":
+        matrix[:3] = np.reshape(values, (3, 4))
+    elif word in _PLANES:
+        first, second = _PLANES[word]
+        cosine, sine = math.cos(math.radians(values[0])), math.sin(math.radians(values[0]))
+        matrix[first, first] = matrix[second, second] = cosine
+        matrix[second, first], matrix[first, second] = sine, -sine
+    return matrix, int(numbers[-1])
+
+
+def _table(statements: Statements, parts: list[_Part]) -> Statements:
+    """The table of some parts, in order."""
+    kind, size = len(statements.templates), np.diff(statements.number_start)
+    template, index, counts, numbers = [], [], [], []
+    for part in parts:
+        if isinstance(part, tuple):
+            row, matrix = part
+            template.append(np.array([kind]))
+            index.append(statements.index[row : row + 1])
+            counts.append(np.array([matrix[:3].size]))
+            numbers.append(matrix[:3].ravel())
+        elif len(part):
+            first, last = statements.number_start[part[0]], statements.number_start[part[-1] + 1]
+            template.append(statements.template[part])
+            index.append(statements.index[part])
+            counts.append(size[part])
+            numbers.append(statements.numbers[first:last])
+    return replace(
+        statements,
+        templates=(*statements.templates, Template(MATRIX, (float,) * 12)),
+        template=np.concatenate(template),
+        index=np.concatenate(index),
+        number_start=np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.int64),
+        numbers=np.concatenate(numbers),
+    )
