@@ -30,7 +30,7 @@ _LEAST_SLACK = 0.1
 """Slack at the start where a limit leaves less, or is broken."""
 _LIFT = 1e-2
 """Least slack at the start of a search that goes on from another one."""
-_FIRST_GAP = 0.1
+_FIRST_GAP = 1.0
 """Share of the time that the gap of optimality takes at the start."""
 _OFF = 0.1
 """Share by which unknowns are taken to be off while the forces of limits are not in balance."""

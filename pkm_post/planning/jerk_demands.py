@@ -23,6 +23,8 @@ from pkm_post.planning.tool_path import ToolPath
 
 _HIGHEST_SHARE = 0.98
 """Share of an acceleration limit that is planned at most; the rest is for decimals, and for what is between places."""
+_JERK_SHARE = 0.99
+"""Share of a jerk limit that is planned; the rest is for what is between places."""
 _SWITCH = 2 / 27
 """By how much a cubic over an interval h exceeds the highest acceleration of a motion with the jerk J, per J h: the
 maximum of the integral of (4 - 6 x) g(x), 0 < x < 1, for g <= 0 with slopes of at most 1 (docs/planning.md)."""
@@ -142,7 +144,7 @@ def _of_acceleration(item: LimitedQuantity, rows: Array) -> Array:
 
 def _of_jerk(item: LimitedQuantity, rows: Array, third: Array) -> Array:
     """The same in the jerk divided by the speed."""
-    return np.stack([item.first[rows].T, 3 * item.second[rows].T, third.T]) / item.jerk
+    return np.stack([item.first[rows].T, 3 * item.second[rows].T, third.T]) / (_JERK_SHARE * item.jerk)
 
 
 def _use(weights: Array, values: Array, each: bool) -> Array:

@@ -29,7 +29,7 @@ _ROUNDS = 4
 """Most rounds with narrower cells, and most with lower limits where the motion is too fast between places."""
 _COARSE, _FINE = 5e-2, 5e-3
 """Relative gap of optimality that is enough for the choice of places, and in the end."""
-_WASTE = 0.05
+_WASTE = 0.04
 """Share of the time from rest to rest that may pass without the full use of a limit."""
 _WORTH = 3.0
 """A cell is halved that takes so many times its part of that."""

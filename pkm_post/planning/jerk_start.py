@@ -22,7 +22,7 @@ _GROWTH = 4.0
 """Cells are at first at most so many times as wide as their neighbours."""
 _AT_REST = 1e-3
 """Width of the first cell after a rest, relative to that between the stations."""
-_START = 0.2
+_START = 0.35
 """Share of the highest speed squared without jerk limits at which the search starts."""
 _EQUAL = 1e-9
 """Relative difference of speeds squared that are the same but for rounding."""

@@ -36,8 +36,8 @@ from pkm_post.machine.kinematics.strut_cubics import (
 from pkm_post.model import Machine
 
 ROUNDED_SHARE = 0.99
-"""Share of the tip acceleration available to cubics: rounding lengths to six decimals adds up to 0.7 % where an
-interval is 1 ms."""
+"""Share of the accelerations of struts and tip available to cubics: rounding lengths to six decimals adds up to 0.7 %
+where an interval is 1 ms."""
 _STEPS = 3
 """Newton steps to the best fit: each squares the relative error of the first, some hundredths."""
 DRIFT_SHARES = np.array([0.25, 0.5, 0.75])
@@ -173,7 +173,7 @@ def bounded_demand(machine: Machine, tool_length: float, cubics: ToolCubics, dur
     tip_acceleration = (bend + gain * fourth / 12) / duration**2
     by_limit = (
         speed / duration / machine.strut_speed,
-        acceleration / machine.strut_acceleration,
+        acceleration / (ROUNDED_SHARE * machine.strut_acceleration),
         tip_acceleration / (ROUNDED_SHARE * machine.tip_acceleration),
     )
     drift = gain * fourth / 384
@@ -199,7 +199,7 @@ def measured_demand(
     speed, bend, _ = cubics.sizes()
     by_limit = (
         max_strut_speed(first, last, duration) / machine.strut_speed,
-        max_strut_acceleration(first, last, duration) / machine.strut_acceleration,
+        max_strut_acceleration(first, last, duration) / (ROUNDED_SHARE * machine.strut_acceleration),
         (bend + _CURVED * tip_bump) / duration**2 / (ROUNDED_SHARE * machine.tip_acceleration),
         (cubics.turn() + _STEEPEST * axis_bump) / duration / machine.axis_speed,
     )
