@@ -32,10 +32,11 @@ from pkm_post.planning.fast_poses import fast_poses_within
 from pkm_post.planning.interpolation import InterpolationCheck, poses_at
 from pkm_post.planning.jerk_limits import jerk_limited
 from pkm_post.planning.knots import LONGEST_MS, SLOWDOWN, block_rate_factors, even_marks, knots, slower_feed
+from pkm_post.planning.refinement import refined_profile
 from pkm_post.planning.rough_limits import DerivativeBounds, below_feed, deviates_in_blends, rough_limits
 from pkm_post.planning.schedule import Schedule
-from pkm_post.planning.speed_limits import limits_at
-from pkm_post.planning.speed_profile import Stations, cell_times, speed_profile, stations
+from pkm_post.planning.speed_limits import PLANNED_SHARE
+from pkm_post.planning.speed_profile import Stations, cell_times, stations
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import in_workers
 from pkm_post.toolpath import Segments, compress
@@ -44,6 +45,8 @@ _FOR_CORNERS = 0.4
 """Share of the tolerances that rounding the corners may use."""
 _FOR_CURVES = 0.6
 """Share of the tolerances that curves may use in place of short lines."""
+_AT_FEED = 0.95
+"""Share of the feed from which on a motion is limited by the feed."""
 LONGEST_MOTION = 7 * 86_400.0
 """s: a week, which amounts to five million points and more."""
 _MOST_ROUNDS = 8
@@ -63,6 +66,7 @@ class FeedPlan:
     Attributes:
         path: the path with rounded corners.
         schedule: position along the path by time.
+        share: (N,) share of the limits of acceleration that is planned on each segment.
         events: auxiliary instructions by trajectory row.
         machine: the machine to move.
         tolerances: the requested tolerances.
@@ -70,6 +74,7 @@ class FeedPlan:
 
     path: ToolPath
     schedule: Schedule
+    share: Array
     events: tuple[Event, ...]
     machine: Machine
     tolerances: Tolerances
@@ -138,7 +143,9 @@ def plan_feed(
     bounds = DerivativeBounds.of(path)
     faults = reach_faults(machine, trajectory, *_way(path, stations(path, deviates_in_blends(path, bounds))))
     try:
-        return FeedPlan(path, _schedule(path, machine, bounds), trajectory.events, machine, tolerances), faults
+        share = np.full(len(path.feed), PLANNED_SHARE)
+        schedule = _schedule(path, machine, bounds, share)
+        return FeedPlan(path, schedule, share, trajectory.events, machine, tolerances), faults
     except _TooLongError as fault:
         duration = f"{fault.seconds:.6g} s, at most {LONGEST_MOTION:g} s"
         return None, (*faults, Diagnostic("K145", trajectory.place(fault.segment), duration))
@@ -152,20 +159,23 @@ class _TooLongError(Exception):
         super().__init__(f"{seconds} s")
 
 
-def _schedule(path: ToolPath, machine: Machine, bounds: DerivativeBounds) -> Schedule:
-    """The schedule of a path with these bounds.
+def _schedule(path: ToolPath, machine: Machine, bounds: DerivativeBounds, share: Array) -> Schedule:
+    """The schedule of a path with these bounds, and shares of the limits of acceleration by segment, (N,).
 
     Raises:
         _TooLongError: the motion needs more points than fit into memory.
     """
-    if np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk):
+    if _limits_jerk(machine):
         return _without_jumps(path, machine)
     rough = rough_limits(path, machine, bounds)
-    close = below_feed(path, *rough)
-    marks = stations(path, close)
-    profile = speed_profile(marks.s, *limits_at(path, marks, close, rough, machine))
+    close = below_feed(path, *rough) | (share < PLANNED_SHARE)
+    marks, profile = refined_profile(path, machine, close, rough, share)
     _check_duration(marks.s, profile, marks)
     return Schedule.of(marks, marks.s, marks.rest, profile, shortest_ms=machine.shortest_interval)
+
+
+def _limits_jerk(machine: Machine) -> bool:
+    return bool(np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk))
 
 
 def _check_duration(s: Array, square: Array, marks: Stations) -> None:
@@ -204,23 +214,42 @@ def interpolate(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> Plan:
 
     Where points exceed the block rate of the controller, the motion is replanned with a lower feed.
     """
-    motion, factor = _interpolated(feed_plan, longest_ms)
+    motion, slower = _interpolated(feed_plan, longest_ms)
     for _ in range(_MOST_ROUNDS):
-        if (factor == 1).all():
+        if slower.is_none:
             break
         path, joint_time = feed_plan.path, feed_plan.schedule.joint_time
-        path = replace(path, feed=slower_feed(path.feed, path.segments.extent, joint_time, factor))
+        path = replace(path, feed=slower_feed(path.feed, path.segments.extent, joint_time, slower.feed))
+        share = feed_plan.share * slower.acceleration
         try:
-            schedule = _schedule(path, feed_plan.machine, DerivativeBounds.of(path))
+            schedule = _schedule(path, feed_plan.machine, DerivativeBounds.of(path), share)
         except _TooLongError:
             break
-        feed_plan = replace(feed_plan, path=path, schedule=schedule)
-        motion, factor = _interpolated(feed_plan, longest_ms)
+        feed_plan = replace(feed_plan, path=path, schedule=schedule, share=share)
+        motion, slower = _interpolated(feed_plan, longest_ms)
     return Plan(motion, strut_motion(motion, feed_plan.machine))
 
 
-def _interpolated(feed_plan: FeedPlan, longest_ms: int) -> tuple[Motion, Array]:
-    """The motion of the tool; and the speed factors of segments that the controller requires, (N,)."""
+@dataclass(frozen=True)
+class _Slower:
+    """What the controller requires of N segments.
+
+    Attributes:
+        feed: (N,) factors of the mean speed.
+        acceleration: (N,) factors of the share of accelerations.
+    """
+
+    feed: Array
+    acceleration: Array
+
+    @property
+    def is_none(self) -> bool:
+        """Whether nothing has to be slower."""
+        return bool((self.feed == 1).all() and (self.acceleration == 1).all())
+
+
+def _interpolated(feed_plan: FeedPlan, longest_ms: int) -> tuple[Motion, _Slower]:
+    """The motion of the tool; and what the controller requires."""
     path, schedule, machine = feed_plan.path, feed_plan.schedule, feed_plan.machine
     marks, shortest = even_marks(schedule.rests_ms, longest_ms), machine.shortest_interval
     ends = np.flatnonzero(np.diff(marks[:-1] // _STRETCH_MS, prepend=-1, append=-1))
@@ -237,7 +266,7 @@ def _interpolated(feed_plan: FeedPlan, longest_ms: int) -> tuple[Motion, Array]:
     for joints, time in passed:
         joint_time[joints] = time
     motion = _motion(feed_plan, time_ms, read_only(joint_time))
-    return motion, _slower(motion, np.concatenate(coarse, axis=1), machine.block_rate)
+    return motion, _slower(feed_plan, motion, np.concatenate(coarse, axis=1))
 
 
 def _motion(feed_plan: FeedPlan, time_ms: Array, joint_time: Array) -> Motion:
@@ -278,13 +307,24 @@ def _too_coarse(times: Array, cubics: InterpolationCheck, shortest: int) -> Arra
     return np.stack([start[rows], end[rows]])
 
 
-def _slower(motion: Motion, coarse: Array, block_rate: float) -> Array:
-    """Speed factors of segments for the controller, (N,)."""
-    factor = block_rate_factors(motion.time_ms, motion.segment, block_rate, len(motion.joint_time))
-    begin, end = (np.searchsorted(motion.joint_time, ms / 1000) for ms in coarse)
-    for first, last in zip(begin, np.minimum(end, len(factor) - 1), strict=True):
-        factor[first : last + 1] = np.minimum(factor[first : last + 1], SLOWDOWN)
-    return factor
+def _slower(feed_plan: FeedPlan, motion: Motion, coarse: Array) -> _Slower:
+    """What the controller requires, with the starts and ends of intervals that are too coarse, (2, R) ms.
+
+    In these, time is to run slower by ``SLOWDOWN``: the accelerations go down by the square of it, and the feed where
+    they are at the feed, or jerk is limited. Where there are too many points, both go down.
+    """
+    path, joint_time = feed_plan.path, motion.joint_time
+    feed = block_rate_factors(motion.time_ms, motion.segment, feed_plan.machine.block_rate, len(joint_time))
+    acceleration = feed**2
+    first, last = (np.minimum(np.searchsorted(joint_time, ms / 1000), len(feed) - 1) for ms in coarse)
+    speed = np.maximum(*(feed_plan.schedule.at(ms / 1000)[1] for ms in coarse))
+    at_feed = speed > _AT_FEED * np.minimum(path.feed[first], path.feed[last])
+    at_feed |= _limits_jerk(feed_plan.machine)
+    for begin, end, fast in zip(first, last, at_feed, strict=True):
+        acceleration[begin : end + 1] = np.minimum(acceleration[begin : end + 1], SLOWDOWN**2)
+        if fast:
+            feed[begin : end + 1] = np.minimum(feed[begin : end + 1], SLOWDOWN)
+    return _Slower(feed, acceleration)
 
 
 def _by_knot(events: tuple[Event, ...], schedule: Schedule, time_ms: Array) -> tuple[Event, ...]:

@@ -2,7 +2,7 @@
 """Rough limits: where a path demands so little of a machine that its limits are not computed at every station.
 
 The parameters of a segment and of its two blends bound its derivatives in closed form, without sampling, and these
-bound the demand on the machine. A plan under such rough limits is also valid under the exact ones of ``speed_limits``,
+bound the demand on the machine. A plan under such rough limits is also valid under the exact ones,
 so the exact plan is nowhere slower: where the rough plan runs at the feed, so does the exact one. Enters: a path and a
 machine. Leaves: bounds and limits by segment, and the segments that need exact limits. docs/planning.md has the
 derivations. Units: mm, s, rad.
@@ -114,7 +114,7 @@ def deviates_in_blends(path: ToolPath, bounds: DerivativeBounds) -> Array:
 def rough_limits(path: ToolPath, machine: Machine, bounds: DerivativeBounds) -> Pair:
     """Speeds squared and accelerations along the path that are allowed on the whole of each segment, (N,) each.
 
-    Neither exceeds those of ``speed_limits.limits`` anywhere on the segment: each term of the acceleration has a fixed
+    They keep the exact limits anywhere on the segment, in either direction: each term of the acceleration has a fixed
     share.
     """
     square, along = feed_of_path_length(path.feed, bounds.tip_1) ** 2, np.full(len(path.feed), NO_LIMIT)

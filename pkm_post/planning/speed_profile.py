@@ -28,6 +28,8 @@ _LONGEST_CELL = 5.0
 """mm"""
 _WIDEST_CELL = np.radians(1.0)
 """rad of axis turn, or of arc sweep"""
+_COARSER = 4
+"""Factor of both where a profile is refined afterwards."""
 
 
 @dataclass(frozen=True)
@@ -48,27 +50,44 @@ class Stations:
     rest: Array
     edges: Array
 
+    def some(self, rows: Array) -> Stations:
+        """Some of the stations."""
+        return Stations(self.segment[rows], self.u[rows], self.s[rows], self.rest[rows], self.edges)
 
-def stations(path: ToolPath, close: Array | None = None) -> Stations:
+    def inserted(self, row: Array, other: Stations) -> Stations:
+        """These stations with others, each before the station of a row, (K,)."""
+        segment, u, s, rest = (
+            np.insert(own, row, its)
+            for own, its in zip(
+                (self.segment, self.u, self.s, self.rest), (other.segment, other.u, other.s, other.rest), strict=True
+            )
+        )
+        return Stations(segment, u, s, rest, self.edges)
+
+
+def stations(path: ToolPath, close: Array | None = None, coarse: bool = False) -> Stations:
     """The stations of a path.
 
     Args:
         path: N segments.
         close: (N,) whether a segment gets all of its stations, including those in its blends; by default all do.
+        coarse: whether a half blend, and what is between blends, may be one cell.
     """
     extent = path.segments.extent
     close = np.ones(len(extent), dtype=bool) if close is None else close
     entry, leave = np.where(close, path.blend[:-1], 0.0), np.where(close, path.blend[1:], 0.0)
     middle = extent - entry - leave
     turn = path.segments.turn() * middle
-    least = 1 + close
-    first, last = path.segments.splines.pieces_of_rows()
-    least[path.segments.splines.row] *= 1 + last - first
+    in_half_blend, coarser = (1, _COARSER) if coarse else (_CELLS_IN_HALF_BLEND, 1)
+    stops = path.rests[:-1] & path.rests[1:]  # two rests need a station between them
+    least, (first, last_piece) = 1 + (close & (stops | (not coarse))), path.segments.splines.pieces_of_rows()
+    least[path.segments.splines.row] *= 1 + last_piece - first
+    widest = np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL) / coarser
     cells = np.column_stack(
         [
-            np.where(entry > 0, _CELLS_IN_HALF_BLEND, 0),
-            np.maximum(least, np.ceil(np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL))).astype(np.int64),
-            np.where(leave > 0, _CELLS_IN_HALF_BLEND, 0),
+            np.where(entry > 0, in_half_blend, 0),
+            np.maximum(least, np.ceil(widest)).astype(np.int64),
+            np.where(leave > 0, in_half_blend, 0),
         ]
     ).ravel()
     begin = np.column_stack([0 * entry, entry, extent - leave]).ravel()

@@ -180,7 +180,7 @@ def test_equal_gains_draw_a_smaller_circle():
 
 @pytest.mark.parametrize("gains", [30.0, [30, 33, 30, 30, 30, 30], [40, 30, 35, 45, 38, 50]])
 def test_six_loops_leave_the_circle_by_what_is_reported(gains):
-    machine, _, motion, struts, certificate, faults = of(with_gains(gains), circle(15.0, turns=1), WIDE)
+    machine, _, motion, struts, certificate, faults = of(with_gains(gains), circle(15.0, turns=2), WIDE)
     assert faults == ()
     asked, there = followed(machine, motion, struts)
     begin, end = (int(part * len(there)) for part in STEADY)

@@ -5,7 +5,8 @@
 
 Needs the packages toppra and scipy (the numbers in the repository are from toppra 0.6.10). Limited are the rates and
 accelerations of the six struts, and the rate of path length by the feed, with the whole limits of the machine; grid
-points are the stations of the planner. H. Pham, Q.-C. Pham, IEEE Transactions on Robotics 34 (2018), 645-659.
+points divide the cells of a coarse plan into 16 parts each. H. Pham, Q.-C. Pham, IEEE Transactions on Robotics 34
+(2018), 645-659.
 """
 
 import json
@@ -13,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import toppra
-from feed.time_optimal_paths import LIMITS, PATHS, stations_of
+from planning.time_optimal_paths import LIMITS, PATHS, stations_of
 from toppra.algorithm import TOPPRA
 from toppra.constraint import DiscretizationType, JointAccelerationConstraint, JointVelocityConstraint
 from toppra.interpolator import AbstractGeometricPath
@@ -21,6 +22,8 @@ from toppra.interpolator import AbstractGeometricPath
 from pkm_post.machine import strut_rates
 
 TARGET = Path(__file__).resolve().parents[1] / "data" / "time_optimal.json"
+PARTS = 16
+"""Parts of each cell of the plan."""
 
 
 class StrutPath(AbstractGeometricPath):
@@ -58,7 +61,8 @@ def shortest_time(machine, path, marks):
         JointVelocityConstraint(limits[0]),
         JointAccelerationConstraint(limits[1], DiscretizationType.Interpolation),
     ]
-    grid = np.unique(marks.s)
+    cells = np.unique(marks.s)
+    grid = np.unique(np.interp(np.arange(0, len(cells) - 1 + 1 / PARTS, 1 / PARTS), np.arange(len(cells)), cells))
     solved = TOPPRA(constraints, StrutPath(machine, path), gridpoints=grid, parametrizer="ParametrizeConstAccel")
     _, speeds, _ = solved.compute_parameterization(0.0, 0.0)
     return float(np.sum(2 * np.diff(grid) / (speeds[1:] + speeds[:-1])))

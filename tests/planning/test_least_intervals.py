@@ -56,9 +56,9 @@ def test_the_jobs_have_seconds_with_more_blocks_than_that():
 
 
 def test_a_path_that_needs_closer_points_is_refused_for_that():
-    *_, faults = of(on(50), job(2), NARROW)
+    *_, faults = of(on(100), job(2), NARROW)
     assert {fault.code for fault in faults} == {"V119"}
-    assert all("controller.shortest_interval is 50" in fault.found for fault in faults)
+    assert all("controller.shortest_interval is 100" in fault.found for fault in faults)
 
 
 def test_only_segments_of_a_crowded_second_are_slower():

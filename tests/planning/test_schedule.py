@@ -7,7 +7,6 @@ from pkm_post.model import Event, EventKind
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import plan_feed
 from pkm_post.planning.knots import LONGEST_MS, knots
-from pkm_post.planning.speed_profile import stations
 from pkm_post.toolpath.place import place
 
 NO_EDGES = np.array([], dtype=np.int64)
@@ -48,10 +47,8 @@ def test_rests_are_whole_milliseconds_at_rest():
 
 def test_feed_is_kept_and_reached():
     _, path, schedule = schedule_of(program([[0, 0, 60], [0, 0, 50], [100, 0, 50]], feed=30.0))
-    marks = stations(path)
-    cutting = marks.segment[1:] > 0
-    assert schedule.law.speed[1:][cutting].max() <= 30.0
-    assert schedule.law.speed[1:][cutting].max() > 29.9
+    cutting = schedule.law.s > path.starts[1]
+    assert 29.9 < schedule.law.speed[cutting].max() <= 30.0
 
 
 def test_knots_halve_until_the_error_holds():

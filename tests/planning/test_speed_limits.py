@@ -10,23 +10,22 @@ from programs import ON_PALLET, cone, program, random_job
 
 from pkm_post.geometry import hermite_accelerations
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import motion, plan_feed, speed_limits
+from pkm_post.planning import acceleration_limits, fastest_profile, motion, plan_feed
+from pkm_post.planning.acceleration_limits import limits_within
+from pkm_post.planning.cell_limits import demand
 from pkm_post.planning.motion import tool_path
+from pkm_post.planning.refinement import refined_profile
 from pkm_post.planning.rough_limits import DerivativeBounds, below_feed, deviates_in_blends, rough_limits
-from pkm_post.planning.speed_limits import (
-    PLANNED_SHARE,
-    LimitedQuantity,
-    _following,
-    feed_at,
-    limited_quantities,
-    limits,
-)
-from pkm_post.planning.speed_profile import cell_times, speed_profile, stations
+from pkm_post.planning.speed_limits import PLANNED_SHARE, following
+from pkm_post.planning.speed_profile import cell_times, stations
 from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 LONGER = 1e-3
 """Part of the time that a screened plan may take longer: it has no places between joints where it runs at the feed."""
+
+SINGLE = 1e-6
+"""Relative: derivatives are in single precision."""
 
 
 def wavy(feed):
@@ -65,12 +64,10 @@ def rough_limits_of(path, machine):
 
 
 def everywhere(path, machine):
-    """Stations, the ceiling of the speed squared at them, and the plan, with nothing left out."""
-    marks = stations(path)
-    poses = path.within(marks.segment, marks.u)
-    square, along = limits(feed_at(path, poses, marks.u), limited_quantities(machine, poses))
-    square[marks.rest] = 0.0
-    return marks, square, speed_profile(marks.s, square, along)
+    """Stations, the highest speed squared at them, and the plan, with nothing left out."""
+    close, share = np.ones(len(path.feed), dtype=bool), np.full(len(path.feed), PLANNED_SHARE)
+    marks, plan = refined_profile(path, machine, close, rough_limits_of(path, machine), share)
+    return marks, limits_within(path, machine, marks.segment, marks.u).speed, plan
 
 
 @pytest.mark.parametrize("name", JOBS)
@@ -98,11 +95,11 @@ def test_rough_limits_are_below_the_true_ones(name):
     path, _, machine = path_of(JOBS[name])
     rough = rough_limits_of(path, machine)
     marks = stations(path)
-    poses = path.within(marks.segment, marks.u)
-    true = limits(feed_at(path, poses, marks.u), limited_quantities(machine, poses))
-    following = _following(path, marks.segment, marks.u)
-    for below, above in zip(rough, true, strict=True):
-        assert np.all(np.minimum(below[marks.segment], below[following]) <= above * (1 + 1e-9))
+    after = following(path, marks.segment, marks.u)
+    square, along = (np.minimum(one[marks.segment], one[after]) for one in rough)
+    limits, share = limits_within(path, machine, marks.segment, marks.u), np.full(len(square), PLANNED_SHARE)
+    for part, acceleration in ((1.0, along), (1.0, -along), (0.0, along), (0.5, -along)):
+        assert np.all(demand(limits, acceleration, part * square, share) <= 1 + SINGLE)
 
 
 @pytest.mark.parametrize("block", [5, 64])
@@ -110,7 +107,8 @@ def test_blocks_do_not_show(block, monkeypatch):
     _, trajectory, machine = path_of(JOBS["slow machine"])
     whole = plan_feed(trajectory, machine, TOLERANCES)[0].schedule
     monkeypatch.setattr(motion, "_STATIONS_AT_ONCE", block)
-    monkeypatch.setattr(speed_limits, "_STATIONS_AT_ONCE", block)
+    monkeypatch.setattr(acceleration_limits, "_AT_ONCE", block)
+    monkeypatch.setattr(fastest_profile, "_CELLS_AT_ONCE", block)
     cut = plan_feed(trajectory, machine, TOLERANCES)[0].schedule
     np.testing.assert_array_equal(cut.law.s, whole.law.s)
     np.testing.assert_allclose(cut.law.speed, whole.law.speed, rtol=1e-9, atol=1e-9)
@@ -131,36 +129,6 @@ def test_between_the_joints_of_a_segment_that_is_not_bent_the_path_is_straight(t
         chord = tip[:, :1] + share[:, None] * (tip[:, -1:] - tip[:, :1])
         assert np.linalg.norm(tip - chord, axis=2).max(initial=0.0) <= 2 * 0.01
     assert (min(found) > 0.8) == (tolerance == 1e-3)  # bounds of both ends of a segment are taken together
-
-
-def test_limits_hold_for_every_speed_and_acceleration_they_allow():
-    rng = np.random.default_rng(61)
-    first, second = rng.normal(size=(500, 6)), rng.normal(size=(500, 6)) / 10
-    item = LimitedQuantity(first, second, speed=20.0, acceleration=300.0, each=True)
-    square, along = limits(np.full(500, 50.0), [item])
-    assert (np.sqrt(square)[:, None] * np.abs(first)).max() <= 20 + 1e-9
-    for share in (0.0, 0.3, 1.0):
-        for sign in (-1, 1):
-            total = first * sign * along[:, None] + second * share * square[:, None]
-            assert np.abs(total).max() <= PLANNED_SHARE * 300 + 1e-9
-
-
-def test_a_vector_is_limited_as_a_whole():
-    item = LimitedQuantity(np.array([[3.0, 4.0, 0.0]]), np.zeros((1, 3)), speed=10.0, acceleration=np.inf, each=False)
-    square, _ = limits(np.array([100.0]), [item])
-    np.testing.assert_allclose(square, 4.0)
-
-
-def test_a_rate_that_drops_to_nothing_keeps_its_limit_between_stations():
-    # From one station to the next v^2 is linear and, in a blend, y' at most linear: their product bulges in between.
-    size = np.array([2.0, 2.0, 1.0, 0.01, 0.01, 0.5, 3.0])[:, None]
-    square, _ = limits(np.full(7, 1e4), [LimitedQuantity(size, 0 * size, speed=5.0, acceleration=np.inf, each=False)])
-    share = np.linspace(0, 1, 101)[:, None]
-    squares = square[:-1] + share * np.diff(square)
-    sizes = size[:-1, 0] + share * np.diff(size[:, 0])
-    assert (sizes * np.sqrt(squares)).max() <= 5.0 * (1 + 1e-12)
-    at_station = (5.0 / size[:, 0]) ** 2
-    assert (sizes * np.sqrt(at_station[:-1] + share * np.diff(at_station))).max() > 3 * 5.0  # with none of that
 
 
 def test_planned_share_leaves_room_for_the_overshoot_of_a_cubic():

@@ -33,12 +33,16 @@ LIMITS = {"struts slow": (120.0, 5000.0), "struts weak": (500.0, 800.0), "struts
 """Strut speed in mm/s and strut acceleration in mm/s^2."""
 
 
-def stations_of(name, limits):
-    """Machine, path and stations; nothing but the struts and the feed is limited."""
+SPEED_SHARE = 0.95
+"""Share of the speeds of struts that is planned."""
+
+
+def stations_of(name, limits, speed_share=1.0):
+    """Machine, path and stations; nothing but the struts, at a share of their speed, and the feed is limited."""
     speed, acceleration = LIMITS[limits]
     machine = dataclasses.replace(
-        example(), strut_speed=speed, strut_acceleration=acceleration, tip_acceleration=np.inf, axis_speed=np.inf,
-        rapid_speed=200.0,
+        example(), strut_speed=speed * speed_share, strut_acceleration=acceleration, tip_acceleration=np.inf,
+        axis_speed=np.inf, rapid_speed=200.0,
     )  # fmt: skip
     made = PATHS[name]()
     trajectory, _ = place(

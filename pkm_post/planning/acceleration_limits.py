@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Acceleration limits: what struts, tip and tool axis demand of the motion along the path, at stations.
+
+Enters: a path and a machine. Leaves: the columns for ``fastest_profile``. On segments that need no exact limits
+(``rough_limits``) rough ones stand in. Units: mm, s.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.geometry import Array, dot
+from pkm_post.model import Machine, Poses, pieces
+from pkm_post.planning.cell_limits import StationLimits
+from pkm_post.planning.speed_limits import PLANNED_SHARE, Pair, feed_at, following, limited_quantities, lowered
+from pkm_post.planning.tool_path import ToolPath
+
+_AT_ONCE = 4096
+"""Stations in one pass: their working arrays stay in the processor's cache."""
+
+
+def station_limits(machine: Machine, poses: Poses, feed: Array) -> StationLimits:
+    """The limits at poses with derivatives by path length.
+
+    Args:
+        machine: the limits.
+        poses: M poses.
+        feed: (M,) highest speed by path length.
+    """
+    bounded = limited_quantities(machine, poses)
+    speed = feed**2
+    for item in bounded:
+        speed = lowered(speed, item.speed, item.rates(), 2)
+    struts, tip, _ = bounded
+    one, two = tip.first / tip.acceleration, tip.second / tip.acceleration
+    products = np.column_stack([dot(one, one), dot(one, two), dot(two, two)])
+    size = struts.acceleration
+    return StationLimits.of(speed, struts.first / size, struts.second / size, products)
+
+
+def rough_station_limits(square: Array, along: Array) -> StationLimits:
+    """The limits of stations that allow a speed squared and an acceleration along the path, (M,) each."""
+    still, products = np.zeros((len(square), 6)), np.zeros((len(square), 3))
+    products[:, 0] = (PLANNED_SHARE / along) ** 2  # as of a tip that reaches its limit there
+    return StationLimits.of(square, still, still, products)
+
+
+def limits_within(path: ToolPath, machine: Machine, segment: Array, u: Array) -> StationLimits:
+    """The limits at path lengths u, (M,), of the given segments."""
+    speed, table = np.empty(len(u)), np.empty((len(u), 15), dtype=np.float32)
+    for rows in pieces(len(u), _AT_ONCE):
+        poses = path.within(segment[rows], u[rows])
+        part = station_limits(machine, poses, feed_at(path, poses, u[rows]))
+        speed[rows], table[rows] = part.speed, part.table
+    return StationLimits(speed, table)
+
+
+def limits_at(path: ToolPath, segment: Array, u: Array, close: Array, rough: Pair, machine: Machine) -> StationLimits:
+    """The same, exact on close segments, else rough; where the two kinds meet, the rough ones hold.
+
+    Args:
+        path: N segments.
+        segment: (M,) segments of the stations.
+        u: (M,) path lengths of the stations on them.
+        close: (N,) which segments get exact limits.
+        rough: limits of speed squared and acceleration that hold on the whole of each segment, (N,) each.
+        machine: the limits.
+    """
+    after = following(path, segment, u)
+    near = np.flatnonzero(close[segment] & close[after])
+    found = rough_station_limits(*(np.minimum(one[segment], one[after]) for one in rough))
+    exact = limits_within(path, machine, segment[near], u[near])
+    found.speed[near], found.table[near] = exact.speed, exact.table
+    return found

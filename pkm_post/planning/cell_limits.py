@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Cell limits: what two-sided limits of acceleration allow between two stations of a path.
+
+With x = v^2, linear in path length within a cell of the width d, the acceleration along the path is a = dx / 2d, and a
+quantity y(s) of the path has the acceleration y' a + y'' x. Let x be that at the start of the cell. Then a limit is a
+strip |b a + c x| <= 1 of the plane of x and a, at either end of the cell; for a vector, the tip, it is an ellipse.
+Together they leave a highest speed of the cell, and at lower speeds a range of accelerations [Pham2018]. Enters:
+derivatives at stations, by their limits. Leaves: these ranges, and the speeds they lead to. Units: mm, s.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array
+
+_LEAST = 1e-150
+"""Stands for no derivative: keeps quotients, and quotients of squares, finite."""
+_ROUNDS = 24
+"""Rounds of regula falsi for the highest speed of a cell: what is missing then is mostly below a share of 1e-6."""
+_STARTS_AND_ENDS = slice(None, -1), slice(1, None)
+_OTHER_WAY = np.array([[1.0], [-1.0], [1.0]])
+"""Products of the tip on the way back."""
+_SURELY_WITHIN = 0.9
+"""Share of a limit up to which it needs no look, between stations neither."""
+
+
+@dataclass(frozen=True)
+class StationLimits:
+    """Limits at M stations.
+
+    The derivatives of C struts are by the limit of acceleration. Of the tip, a vector p(s), enter the products p'.p',
+    p'.p'' and p''.p'', by the square of its limit.
+
+    Attributes:
+        speed: (M,) highest speed squared by limits of speed.
+        table: (M, 2 C + 3) first derivatives of the struts, their second ones, and the three products of the tip; in
+            single precision, which is a ten-millionth of each limit.
+    """
+
+    speed: Array
+    table: Array
+
+    @classmethod
+    def of(cls, speed: Array, first: Array, second: Array, tip: Array) -> StationLimits:
+        """The limits from derivatives of struts, (M, C) each, and products of the tip, (M, 3)."""
+        return cls(speed, np.concatenate([first, second, tip], axis=1, dtype=np.float32))
+
+    @property
+    def columns(self) -> tuple[slice, slice, slice]:
+        """Columns of the first derivatives, of the second ones, and of the products."""
+        struts = (self.table.shape[1] - 3) // 2
+        return slice(0, struts), slice(struts, 2 * struts), slice(2 * struts, None)
+
+    def of_struts(self, struts: Array) -> StationLimits:
+        """The same of some of the struts, (C,), only."""
+        return StationLimits(self.speed, self.table[:, np.concatenate([struts, struts, np.ones(3, dtype=np.bool_)])])
+
+    def inserted(self, row: Array, other: StationLimits) -> StationLimits:
+        """These stations with others, each before the station of a row (K,)."""
+        return StationLimits(np.insert(self.speed, row, other.speed), np.insert(self.table, row, other.table, axis=0))
+
+    def struts_that_matter(self, share: float) -> Array:
+        """Struts that may be at their limits before the tip is at its own, (C,), where a share is planned.
+
+        With P, Q, R of the tip, b a + c x is b (a + x Q / P) + (c - b Q / P) x, and the tip keeps the first bracket
+        below 1 / sqrt(P) and x below 1 / sqrt(R - Q^2 / P).
+        """
+        first, second, tip = (self.table.T[rows].astype(np.float64) for rows in self.columns)
+        size, ratio = np.sqrt(np.maximum(tip[0], _LEAST)), tip[1] / np.maximum(tip[0], _LEAST)
+        highest = 1 / np.sqrt(np.maximum(tip[2] - tip[1] * ratio, _LEAST))
+        highest = np.minimum(highest, self.speed / share)
+        demand = np.abs(first) / size + np.abs(second - first * ratio) * highest
+        return np.asarray((demand > _SURELY_WITHIN).any(axis=1))
+
+
+@dataclass(frozen=True)
+class CellLimits:
+    """What K cells allow, by the speed squared x at their starts.
+
+    Attributes:
+        width: (K,) twice the path length of each cell: x at its end is x + width a.
+        slope: (2 C, K) b of each strip, not negative: of C struts at the starts, and at the ends.
+        offset: (2 C, K) c of each strip.
+        tips: two ellipses with the rows P, Q, R of P a^2 + 2 Q a x + R x^2 <= 1, (3, K) each.
+    """
+
+    width: Array
+    slope: Array
+    offset: Array
+    tips: tuple[Array, Array]
+
+    @classmethod
+    def of(cls, s: Array, limits: StationLimits, cell: Array | slice) -> CellLimits:
+        """The limits of cells, by path lengths and limits of all stations."""
+        width = 2 * (s[1:][cell] - s[:-1][cell])
+        table, after = (limits.table[rows][cell].T.astype(np.float64, order="C") for rows in _STARTS_AND_ENDS)
+        one, two, tip = limits.columns
+        slope = np.concatenate([table[one], after[one] + width * after[two]])
+        offset = np.concatenate([table[two], after[two]])
+        np.negative(offset, out=offset, where=slope < 0)
+        mixed = after[tip][1] + width * after[tip][2]
+        whole = np.maximum(after[tip][0] + width * (after[tip][1] + mixed), 0.0)
+        tips = table[tip], np.stack([whole, mixed, after[tip][2]])
+        return cls(width, np.abs(slope), offset, tips)
+
+    def bounds(self, square: Array, share: Array | float) -> tuple[Array, Array]:
+        """Least and greatest acceleration at a speed squared, (K,) each, under a share of the limits.
+
+        At a speed that is too high, the least one is above the greatest.
+        """
+        greatest = self.greatest(square, share)
+        turned = CellLimits(self.width, self.slope, -self.offset, tuple(tip * _OTHER_WAY for tip in self.tips))
+        return np.maximum(-turned.greatest(square, share), -square / self.width), greatest
+
+    def greatest(self, square: Array, share: Array | float) -> Array:
+        """Greatest acceleration at a speed squared, (K,), under a share of the limits."""
+        room = self.offset * square
+        np.subtract(share, room, out=room)
+        room /= np.maximum(self.slope, _LEAST)
+        greatest = functools.reduce(np.minimum, room, np.full(len(square), np.inf))
+        for one, both, two in self.tips:
+            size = np.maximum(one, _LEAST)
+            root = size * share**2 - square**2 * np.maximum(one * two - both**2, 0.0)
+            half = np.sqrt(np.abs(root)) * np.sign(root)  # negative: the ellipse ends below that speed
+            greatest = np.minimum(greatest, (half - both * square) / size)
+        return np.asarray(greatest)
+
+    def highest(self, ceiling: Array) -> Array:
+        """Highest speed squared that leaves any acceleration under whole limits, (K,); infinite above a ceiling."""
+        high = functools.reduce(np.minimum, map(_end, self.tips))
+        highest = np.where(high < ceiling, high, np.inf)
+        high = np.minimum(high, ceiling)
+        room = self._room(high)
+        rows = np.flatnonzero(room < 0)
+        if not len(rows):
+            return highest
+        tight, low, high, at_high = self[rows], np.zeros(len(rows)), high[rows], room[rows]
+        at_low = tight._room(low)
+        for _ in range(_ROUNDS):  # Illinois: an end that stays counts half
+            middle = low + (high - low) * (at_low / (at_low - at_high))
+            there = tight._room(middle)
+            inside = there >= 0
+            at_low, at_high = np.where(inside, there, at_low / 2), np.where(inside, at_high / 2, there)
+            low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+        highest[rows] = low
+        return highest
+
+    def _room(self, square: Array) -> Array:
+        """Greatest less least acceleration."""
+        least, greatest = self.bounds(square, 1.0)
+        return greatest - least
+
+    def before(self, square: Array, share: Array) -> Array:
+        """Greatest speed squared at the starts from which the ends can be met at one, (K,)."""
+        denominator = self.slope - self.width * self.offset
+        numerator = self.slope * square
+        numerator += self.width * share
+        bound = np.where(denominator > _LEAST, numerator / np.maximum(denominator, _LEAST), np.inf)
+        highest = functools.reduce(np.minimum, bound, np.full(len(square), np.inf))
+        for tip in self.tips:
+            highest = np.minimum(highest, _before(tip, square, self.width, share))
+        return np.asarray(highest)
+
+    def __getitem__(self, rows: Array) -> CellLimits:
+        first, second = self.tips
+        tips = first[:, rows], second[:, rows]
+        return CellLimits(self.width[rows], self.slope[:, rows], self.offset[:, rows], tips)
+
+
+def _end(tip: Array) -> Array:
+    """Where an ellipse ends: its greatest x, (K,)."""
+    one, both, two = tip
+    return np.asarray(1 / np.sqrt(np.maximum(two - both**2 / np.maximum(one, _LEAST), _LEAST)))
+
+
+def _before(tip: Array, square: Array, width: Array, share: Array) -> Array:
+    """The same by an ellipse: the greatest x for which a = (x1 - x) / w, or one below it, is inside.
+
+    With W = P - 2 w Q + w^2 R this is a quadratic equation in x. Where x1 is so great that its root would fall again,
+    the acceleration is less, and the root that of the x1 at which it is greatest.
+    """
+    one, both, two = tip
+    mixed = one - width * both
+    whole = np.maximum(mixed - width * (both - width * two), _LEAST)
+    apart = np.maximum(one * two - both**2, 0.0)
+    slow = np.maximum(mixed, 0.0) / np.sqrt(np.maximum(apart * (mixed**2 + width**2 * apart), _LEAST))
+    end = np.minimum(square, share * np.sqrt(whole) * slow)
+    left = np.sqrt(np.maximum(whole * share**2 - end**2 * apart, 0.0))
+    return np.asarray((end * mixed + width * left) / whole)
+
+
+def demand(limits: StationLimits, along: Array, square: Array, share: Array) -> Array:
+    """Largest demand of a motion at stations, (M,), by what is allowed; 1 is just within all limits.
+
+    Args:
+        limits: limits at M stations.
+        along: (M,) acceleration along the path.
+        square: (M,) speed squared.
+        share: (M,) share of the limits of acceleration.
+    """
+    first, second, tip = (limits.table.T[rows] for rows in limits.columns)
+    struts = functools.reduce(np.maximum, np.abs(first * along + second * square), np.zeros(len(along)))
+    one, both, two = tip
+    of_tip = np.sqrt(np.maximum(one * along**2 + 2 * both * along * square + two * square**2, 0.0))
+    return np.asarray(np.maximum(np.maximum(struts, of_tip) / share, square / limits.speed))

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Fastest profile: the greatest speed squared at the stations of a path, within what its cells allow.
+
+From the end of the path backwards follows the greatest speed from which the next one can still be met, then forwards
+the greatest that can be reached [Pham2018]. Both begin at the ceilings: where a cell is too steep, a front starts, and
+goes on from station to station until it changes nothing; all fronts of a path move at once. So the work is that of the
+ramps, and what runs at its ceiling costs one look. Units: mm, s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.model import pieces
+from pkm_post.planning.cell_limits import CellLimits, StationLimits
+
+_CELLS_AT_ONCE = 8192
+"""Cells in one pass: their working arrays stay in the processor's cache."""
+_CHANGED = 1e-9
+"""Share of a speed squared by which a front has to change it to go on."""
+
+
+@dataclass(frozen=True)
+class Steps:
+    """The limits from station to station of a motion.
+
+    Attributes:
+        s: (M,) path lengths, increasing.
+        rest: (M,) whether the motion stops there.
+        limits: limits at the stations.
+        ceiling: (M - 1,) highest speed squared at the start of each cell, at whole limits of acceleration.
+        share: (M - 1,) share of the limits of acceleration that each cell may use.
+    """
+
+    s: Array
+    rest: Array
+    limits: StationLimits
+    ceiling: Array
+    share: Array
+
+    def highest(self) -> Array:
+        """Highest speed squared at each station by itself, (M,), were it not for rests."""
+        return np.minimum(self.limits.speed, np.append(self.share * self.ceiling, np.inf))
+
+    def fastest_profile(self) -> Array:
+        """Greatest speed squared at stations, (M,)."""
+        square = np.where(self.rest, 0.0, self.highest())
+        return self.renewed(square, np.ones(len(square) - 1, dtype=np.bool_))
+
+    def renewed(self, square: Array, open_cells: Array) -> Array:
+        """The same, (M,), where only some cells, (M - 1,), may be too steep under known speeds squared, (M,)."""
+        for backward in (True, False):
+            before, square = square, square.copy()
+            _advance(self, square, before, np.flatnonzero(open_cells), backward)
+            changed = square != before
+            open_cells = open_cells | changed[1:] | changed[:-1]
+        return square
+
+    def reached(self, cell: Array | slice, square: Array, backward: bool) -> Array:
+        """Greatest speed squared at one side of cells by that at the other: at the starts, or at the ends, (K,)."""
+        limits, share = CellLimits.of(self.s, self.limits, cell), self.share[cell]
+        if backward:
+            return limits.before(square, share)
+        return np.asarray(square + limits.width * limits.greatest(square, share))
+
+    def reached_in_pieces(self, cell: Array, square: Array, backward: bool) -> Array:
+        """The same of many cells, (K,), by speeds squared at all stations, (M,)."""
+        known = square[1:] if backward else square[:-1]
+        parts = (cell[rows] for rows in _pieces(len(cell)))
+        return np.concatenate([self.reached(part, known[part], backward) for part in parts])
+
+
+def ceilings(s: Array, limits: StationLimits, cell: Array, share: Array) -> Array:
+    """Highest speeds squared at the starts of cells, (K,), for ``Steps``, with their shares, (K,)."""
+    parts = [CellLimits.of(s, limits, cell[k]).highest(limits.speed[cell[k]] / share[k]) for k in _pieces(len(cell))]
+    return np.concatenate(parts)
+
+
+def _pieces(cells: int) -> Iterator[slice]:
+    return pieces(cells, _CELLS_AT_ONCE)
+
+
+def _advance(steps: Steps, square: Array, highest: Array, cell: Array, backward: bool) -> None:
+    """Lower speeds squared, (M,) in place, to what can be met or reached, and no station above its highest, (M,)."""
+    known = square[:-1] if backward else square[1:]
+    steep = cell[steps.reached_in_pieces(cell, square, backward) < known[cell] * (1 - _CHANGED)]
+    while len(steep):
+        # A front starts in the first cell of each run of steep ones, and goes through the others itself.
+        _march(steps, square, highest, steep[_begins(steep, backward)], backward)
+        _, _, on = _step(steps, square, highest, steep, backward)
+        steep = steep[on]
+
+
+def _begins(cell: Array, backward: bool) -> Array:
+    """Which of some cells, in order, have no neighbour among them on the side where they begin."""
+    apart = np.diff(cell) > 1
+    return np.append(apart, True) if backward else np.append(True, apart)
+
+
+def _march(steps: Steps, square: Array, highest: Array, cell: Array, backward: bool) -> None:
+    """Move fronts that start in some cells."""
+    while len(cell):
+        far, found, on = _step(steps, square, highest, cell, backward)
+        square[far[on]] = found[on]
+        cell = cell[on] + (-1 if backward else 1)
+        cell = cell[(cell >= 0) & (cell < len(square) - 1)]
+
+
+def _step(steps: Steps, square: Array, highest: Array, cell: Array, backward: bool) -> tuple[Array, Array, Array]:
+    """The stations at the far sides of cells, their speeds squared, and whether these differ from the present ones."""
+    near, far = (cell + 1, cell) if backward else (cell, cell + 1)
+    found = np.minimum(steps.reached(cell, square[near], backward), highest[far])
+    return far, found, np.abs(found - square[far]) > _CHANGED * square[far]

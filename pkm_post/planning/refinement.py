@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Refinement: stations where the fastest profile bends, and where limits change too much from one to the next.
+
+A few stations of each segment come first. Then, in rounds, a cell gets stations
+
+* in its middle: once, and again if the station before had changed the profile, or found a limit exceeded or bent near
+  to what is allowed, by more than a share;
+* else where the ramps from its ends meet the ceiling, or each other, if that saves more than a share of its time: at
+  rests, at slow corners, and where speeding up turns into braking.
+
+Enters: a path, a machine, and rough limits of the segments that need no exact ones. Leaves: stations and speeds
+squared. Units: mm, s.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.model import Machine
+from pkm_post.planning.acceleration_limits import limits_at, limits_within
+from pkm_post.planning.cell_limits import StationLimits, demand
+from pkm_post.planning.fastest_profile import Steps, ceilings
+from pkm_post.planning.speed_limits import Pair, following
+from pkm_post.planning.speed_profile import Stations, cell_times, stations
+from pkm_post.planning.tool_path import ToolPath
+
+_MOST_ROUNDS = 10
+_WORTH = 2e-3
+"""Share of the time of a cell that new stations must save, and s for each of them."""
+_WORTH_SECONDS = 1e-6
+_CHANGED = 0.02
+"""Share of a speed squared, or of a limit, from which on the pieces of a cell are looked at again: the quarter of it is
+left, as the error of straight lines goes with the square of the width."""
+_SHAPE = 4.0
+"""How much more than at a new station limits may bend between it and the ends of its cell."""
+_BRIEF = 2.5e-4
+"""s: what happens within a cell of this time is no concern of a controller that takes a point each millisecond."""
+_NARROW = 1e-6
+"""Part of a cell that is no place for a station."""
+_AT_FEED = 1e-6
+"""Share of a speed squared by which rounding may put it below the feed."""
+_STEEPEST = 1e12
+"""mm^2/s^2: stands for what no limit bounds."""
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Stations with speeds.
+
+    Attributes:
+        marks: M stations.
+        steps: their limits.
+        square: (M,) speed squared.
+        look: (M - 1,) cells whose middle is of interest.
+        fresh: (M - 1,) cells whose speeds may have changed in the last round.
+        struts: (6,) struts whose limits matter.
+        close: (N,) which segments of the path have all of their stations.
+    """
+
+    marks: Stations
+    steps: Steps
+    square: Array
+    look: Array
+    fresh: Array
+    struts: Array
+    close: Array
+
+
+def refined_profile(
+    path: ToolPath, machine: Machine, close: Array, rough: Pair, share: Array
+) -> tuple[Stations, Array]:
+    """Stations, and the fastest speed squared at them, (M,).
+
+    Args:
+        path: N segments.
+        machine: the limits.
+        close: (N,) which segments get exact limits.
+        rough: limits of speed squared and acceleration that hold on the whole of each other segment, (N,) each.
+        share: (N,) share of the limits of acceleration that is planned on each segment.
+    """
+    marks = stations(path, close, coarse=True)
+    needed = close[marks.segment] | close[following(path, marks.segment, marks.u)] | marks.rest
+    first = marks.some(needed)
+    limits = limits_at(path, first.segment, first.u, close, rough, machine)
+    profile = _coarse(first, limits, share[first.segment[1:]], close)
+    for _ in range(_MOST_ROUNDS):
+        cell, part, waiting = _places(profile)
+        if not len(cell):
+            break
+        profile = _refined(path, machine, replace(profile, look=waiting), cell, part)
+    others = marks.some(~needed)
+    row = np.searchsorted(profile.marks.s, others.s)
+    return profile.marks.inserted(row, others), np.insert(profile.square, row, rough[0][others.segment])
+
+
+def _coarse(marks: Stations, limits: StationLimits, share: Array, close: Array) -> Profile:
+    """The profile at the first stations, with the share of each cell, (M - 1,)."""
+    limits.table[marks.rest] = 0.0  # derivatives there are those of one of two segments
+    struts = limits.struts_that_matter(float(share.min()))
+    limits, cells = limits.of_struts(struts), np.arange(len(marks.s) - 1)
+    steps = Steps(marks.s, marks.rest, limits, ceilings(marks.s, limits, cells, share), share)
+    square = steps.fastest_profile()
+    every = np.ones(len(cells), dtype=np.bool_)
+    return Profile(marks, steps, square, every, every, struts, close)
+
+
+def _places(profile: Profile) -> tuple[Array, Array, Array]:
+    """Places of new stations: their cells, not decreasing, and the parts of the cells before them, (K,) each.
+
+    And cells that still wait for a station in their middle, (M - 1,): they are too brief for one.
+    """
+    below = profile.square < profile.steps.highest()
+    with np.errstate(divide="ignore", over="ignore"):  # a speed squared may underflow
+        time = cell_times(profile.marks.s, profile.square)
+    first, second, saved = np.full((3, len(time)), [[1.0], [1.0], [0.0]])
+    near = profile.close[profile.marks.segment[1:]]  # other cells lead from one close segment to the next
+    rows = np.flatnonzero(near & profile.fresh & (below[1:] | below[:-1]))
+    first[rows], second[rows], saved[rows] = _bends(profile, rows, time[rows])
+    middle = near & profile.look & (time > _BRIEF)
+    worth = ~middle & (saved > np.maximum(_WORTH * time, _WORTH_SECONDS))
+    first, second = np.where(middle, 0.5, np.where(worth, first, 1.0)), np.where(worth, second, 1.0)
+    part = np.column_stack([first, second])
+    cell, number = np.nonzero((part > _NARROW) & (part < 1 - _NARROW))
+    part = part[cell, number]
+    other = np.ones(len(cell), dtype=np.bool_)
+    other[1:] = (cell[1:] != cell[:-1]) | (part[1:] > part[:-1] + _NARROW)
+    return cell[other], part[other], profile.look & ~middle
+
+
+def _bends(profile: Profile, cell: Array, time: Array) -> tuple[Array, Array, Array]:
+    """Where in cells the ramps from both ends meet the ceiling or each other, and the time that this saves, (K,) each.
+
+    Args:
+        profile: the profile.
+        cell: (K,) the cells.
+        time: (K,) duration of each cell.
+    """
+    steps, square, rest = profile.steps, profile.square, profile.marks.rest
+    before, after, ceiling = square[cell], square[cell + 1], steps.highest()
+    up, down = (np.minimum(steps.reached_in_pieces(cell, square, backward), _STEEPEST) for backward in (False, True))
+    left = np.where(rest[cell], ceiling[cell + 1], ceiling[cell])
+    right = np.where(rest[cell + 1], ceiling[cell], ceiling[cell + 1])
+    first = _meeting(left - before, up - before - (right - left))
+    second = 1 - _meeting(right - after, down - after - (left - right))
+    crossing = _meeting(down - before, up - before + down - after)
+    apart = first < second
+    first, second = np.where(apart, first, crossing), np.where(apart, second, crossing)
+    speeds = np.sqrt([before, before + (up - before) * first, after + (down - after) * (1 - second), after])
+    parts = np.array([first, second - first, 1 - second])
+    means = np.maximum(speeds[1:] + speeds[:-1], np.finfo(np.float64).tiny)
+    spent = 2 * np.diff(profile.marks.s)[cell] * (parts / means).sum(axis=0)
+    return first, second, time - spent
+
+
+def _meeting(gap: Array, slope: Array) -> Array:
+    """The part of a cell after which a slope closes a gap, from 0 to 1."""
+    gap = np.maximum(gap, 0.0)
+    return np.asarray(np.divide(gap, slope, out=np.ones_like(gap), where=slope > gap))
+
+
+def _refined(path: ToolPath, machine: Machine, profile: Profile, cell: Array, part: Array) -> Profile:
+    """The profile with new stations at parts of cells."""
+    marks, row = profile.marks, cell + 1
+    end, width = marks.u[row], np.diff(marks.s)[cell]
+    segment, u, s = marks.segment[row], end - (1 - part) * width, marks.s[cell] + part * width
+    added = limits_within(path, machine, segment, u).of_struts(profile.struts)
+    straight = profile.square[cell] + part * np.diff(profile.square)[cell]
+    along = np.diff(profile.square)[cell] / (2 * width)
+    share = profile.steps.share[cell]
+    beyond = demand(added, along, straight, share) - 1
+    bent = _bent(profile, cell, part, added, along, straight) / share
+
+    new = cell + 1 + np.arange(len(cell))  # rows of the new stations
+    marks = marks.inserted(row, Stations(segment, u, s, np.zeros(len(row), dtype=np.bool_), marks.edges))
+    limits = profile.steps.limits.inserted(row, added)
+    share, ceiling = (np.insert(one, cell, one[cell]) for one in (profile.steps.share, profile.steps.ceiling))
+    cut = np.zeros(len(share), dtype=np.bool_)
+    cut[new], cut[new - 1] = True, True
+    ceiling[cut] = ceilings(marks.s, limits, np.flatnonzero(cut), share[cut])
+    steps = Steps(marks.s, marks.rest, limits, ceiling, share)
+    square, fresh = _renewed(steps, np.insert(profile.square, row, np.inf), new)
+    changed = np.abs(square[new] - straight) > _CHANGED * np.maximum(square[new], straight)
+    again = new[changed | (beyond > _CHANGED) | ((bent > _CHANGED) & (beyond + _SHAPE * bent > 0))]
+    look = np.insert(profile.look, cell, profile.look[cell])
+    look[again], look[again - 1] = True, True
+    return Profile(marks, steps, square, look, fresh, profile.struts, profile.close)
+
+
+def _bent(profile: Profile, cell: Array, part: Array, added: StationLimits, along: Array, square: Array) -> Array:
+    """Demand that limits at new stations add to what they would be if straight between the ends of cells, (K,)."""
+    limits, rest = profile.steps.limits, profile.marks.rest
+    near, far = np.where(rest[cell], cell + 1, cell), np.where(rest[cell + 1], cell, cell + 1)
+    table = limits.table[near] + (limits.table[far] - limits.table[near]) * part[:, None]
+    first, second, tip = ((added.table - table).T[rows] for rows in limits.columns)
+    struts = functools.reduce(np.maximum, np.abs(first * along + second * square), np.zeros(len(cell)))
+    of_tip = np.abs(tip[0] * along**2 + 2 * tip[1] * along * square + tip[2] * square**2)
+    speed = limits.speed[near] + (limits.speed[far] - limits.speed[near]) * part
+    return np.asarray(np.maximum.reduce([struts, of_tip, np.abs(square / added.speed - square / speed)]))
+
+
+def _renewed(steps: Steps, square: Array, new: Array) -> tuple[Array, Array]:
+    """Speeds squared, (M,), after stations were put in, and the cells that may have changed, (M - 1,).
+
+    A station at its highest speed parts the path: what is put in on one side can change nothing on the other, unless it
+    lowers that station.
+
+    Args:
+        steps: the limits.
+        square: (M,) the speed squared before.
+        new: (K,) the new stations.
+    """
+    highest = np.where(steps.rest, 0.0, steps.highest())
+    parting = square >= highest * (1 - _AT_FEED)
+    parting[new] = False
+    part = np.cumsum(parting)
+    touched = np.zeros(part[-1] + 1, dtype=np.bool_)
+    touched[part[new]] = True
+    inside = touched[part]
+    start = np.where(inside & ~parting, highest, np.minimum(square, highest))
+    found = steps.renewed(start, inside[:-1])
+    changed = found != start
+    return found, inside[:-1] | changed[1:] | changed[:-1]
