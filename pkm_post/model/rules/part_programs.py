@@ -290,4 +290,7 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
         " object",
     ),
     "L442": error("an option does not apply to this input", "leave it out"),
+    "L443": warning(
+        "the file gives a tool several gauge lengths; none of them is used", "give its length with --tool-length"
+    ),
 }

@@ -7,6 +7,8 @@ no program.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from pkm_post.model import Array, Diagnostic, Program
@@ -107,8 +109,14 @@ def _describe_feed(state: ReaderState) -> list[str]:
 
 
 def _check_tool_lengths(state: ReaderState) -> None:
-    """Report tools of unknown length."""
+    """Report tools of unknown length, and of several: none of these is taken, as the place of the tip depends on it."""
     record_tool(state)
+    given = state.options.tools
     for number, tool in sorted(state.tools.items()):
-        if not tool.length > 0:
+        lengths = state.stated_lengths.get(number, [])
+        if len(lengths) > 1 and not (number in given and given[number].length > 0):
+            state.tools[number] = replace(tool, length=0.0)
+            found = f"tool {number}: {', '.join(f'{length:.10g}' for length in sorted(lengths))} mm"
+            state.faults.add("L443", (0, 0), found)
+        elif not tool.length > 0:
             state.faults.add("L411", (0, 0), f"tool {number}")

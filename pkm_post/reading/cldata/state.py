@@ -173,6 +173,7 @@ class ReaderState:
         arc_data: circle of the next ARCMOV.
         ended: whether FINI was read.
         tools: by number.
+        stated_lengths: by number, the different gauge lengths that the file gives a tool, mm.
         operations: names; the first is that of the rows before any operation.
     """
 
@@ -216,6 +217,7 @@ class ReaderState:
 
     transforms: dict[str, Array] = field(default_factory=dict)
     tools: dict[int, Tool] = field(default_factory=dict)
+    stated_lengths: dict[int, list[float]] = field(default_factory=dict)
     operations: list[str] = field(default_factory=lambda: [""])
     operation_starts: list[tuple[int, int]] = field(default_factory=list)
     points: list[tuple[int, Point]] = field(default_factory=list)

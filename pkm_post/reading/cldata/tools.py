@@ -123,10 +123,13 @@ def record_tool_if_used(state: ReaderState, row: int) -> None:
 
 
 def record_tool(state: ReaderState) -> None:
-    """Record the tool as currently known."""
+    """Record the tool as currently known; a tool change without a length keeps the one that the tool had."""
     default = state.options.default_tool
     given = state.options.tools.get(state.tool)
-    length = state.tool_length or (default.length if default else 0.0)
+    stated = state.stated_lengths.setdefault(state.tool, [])
+    if state.tool_length and state.tool_length not in stated:
+        stated.append(state.tool_length)
+    length = stated[-1] if stated else default.length if default else 0.0
     shape = (state.diameter, state.corner_radius, length, state.bottom_angle, state.side_angle)
     known = Tool(state.tool, state.tool_name, *shape, state.corner_known)
     if given is not None:

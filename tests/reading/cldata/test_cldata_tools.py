@@ -5,6 +5,7 @@ import math
 
 import pytest
 
+from pkm_post.model import Tool
 from pkm_post.reading.cldata import ReadOptions, read
 
 BODY = "LOADTL/1,LENGTH,100\nFEDRAT/600,MMPM\nGOTO/0,0,0\nGOTO/10,0,0\nFINI\n"
@@ -74,3 +75,36 @@ def test_ball_with_a_taper_is_larger_than_half_the_nominal_diameter():
     tool, codes = tool_and_codes(f"CUTTER/{d:.6f},3,0,3,0,10")
     assert shape(tool) == pytest.approx((d, 3, 0, 10), abs=1e-5)
     assert codes == []
+
+
+# Gauge lengths
+
+
+def lengths_and_codes(*changes, tools=None):
+    text = "UNITS/MM\nFEDRAT/600,MMPM\nCUTTER/10\n"
+    text += "".join(f"LOADTL/{change}\nGOTO/{step},0,0\nGOTO/{step},0,9\n" for step, change in enumerate(changes))
+    program, diagnostics = read(f"{text}FINI\n", "part.cls", ReadOptions(tools=tools or {}))
+    return {number: tool.length for number, tool in program.tools.items()}, [str(item) for item in diagnostics]
+
+
+def test_a_tool_keeps_its_length_where_a_change_states_none():
+    assert lengths_and_codes("1,LENGTH,100", "2,LENGTH,80", "1", "2") == ({1: 100, 2: 80}, [])
+    assert lengths_and_codes("1,LENGTH,100", "2,LENGTH,80", "1,LENGTH,100") == ({1: 100, 2: 80}, [])
+    assert lengths_and_codes("1", "2,LENGTH,80", "1,LENGTH,90") == ({1: 90, 2: 80}, [])
+
+
+def test_the_length_of_the_default_tool_is_none_that_the_file_states():
+    text = f"UNITS/MM\nCUTTER/10\nLOADTL/1\nGOTO/1,0,0\n{BODY}"
+    program, diagnostics = read(text, "part.cls", ReadOptions(default_tool=Tool(0, "", 0, 0, 90)))
+    assert (program.tools[1].length, [item.code for item in diagnostics]) == (100, [])
+
+
+def test_of_several_lengths_of_a_tool_none_is_taken():
+    lengths, (found,) = lengths_and_codes("1,LENGTH,100", "2,LENGTH,80", "1,LENGTH,95.5")
+    assert lengths == {1: 0, 2: 80}
+    assert "L443" in found
+    assert "tool 1: 95.5, 100 mm" in found
+    assert lengths_and_codes("1,LENGTH,100", "2,LENGTH,80", "1,LENGTH,95", tools={1: Tool(1, "", 10, 0, 70)}) == (
+        {1: 70, 2: 80},
+        [],
+    )
