@@ -1,18 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Interior point: the fastest speed spline under limits, by Newton's method for all unknowns at once.
 
-Minimised is the sum of w / sqrt(c) over the unknowns c of a ``SpeedSpline``, the time of the motion. A limit holds one
-or more numbers p, each a weighted sum of change of acceleration k, acceleration a and speed squared x:
-
-    kind            p                         limit
-    speed           x / X                     |p| <= 1
-    acceleration    (y' a + y'' x) / A        |p| <= 1
-    jerk            (y' k + 3 y'' a + y''' x) / J,   sqrt(x) |p| <= 1
-
-Speeds and accelerations are convex limits. For the jerk |p| <= 1 / sqrt(x) has a convex right side, so its tangent is
-on the safe side: that makes every step one of a convex problem, and successive steps a sequential convex programme
-[Debrouwere2013]. Slacks start positive and need not fit; predictor and corrector are Mehrotra's [Mehrotra1992]. The
-matrix of a step has two diagonals on either side, as only three unknowns count at a place (``banded``).
+Minimised is the sum of w / sqrt(c) over the unknowns c of a ``SpeedSpline``, the time of the motion, under the limits
+of ``motion_limits``. Those of speed and acceleration are convex. That of the jerk, |p| <= 1 / sqrt(x), has a convex
+right side, so its tangent is on the safe side: that makes every step one of a convex problem, and successive steps a
+sequential convex programme [Debrouwere2013]. Slacks start positive and need not fit; predictor and corrector are
+Mehrotra's [Mehrotra1992]. The matrix of a step has two diagonals on either side, as only three unknowns count at a
+place (``banded``).
 """
 
 from __future__ import annotations
@@ -23,7 +17,7 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.planning.banded import BandedFactor
-from pkm_post.planning.speed_spline import CellEnds
+from pkm_post.planning.motion_limits import Limits
 
 _MOST_STEPS = 60
 _LEAST_SLACK = 0.1
@@ -41,37 +35,6 @@ _STIFFENING = 1e-13
 """Relative addition to the main diagonal, which keeps rounding from making the matrix indefinite."""
 _PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 """The six different entries of a symmetric 3 x 3 matrix."""
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Limits of one kind at E ends of cells: G groups of numbers p, of which each group has one bound.
-
-    Attributes:
-        ends: where they apply.
-        weights: (3, R, E) of k, a and x for each of R numbers, divided by the bound.
-        each: whether each number has the bound for itself, G = R; else they are one vector, G = 1.
-        jerk: whether |p| is bounded by 1 / sqrt(x), rather than by 1.
-    """
-
-    ends: CellEnds
-    weights: Array
-    each: bool
-    jerk: bool
-
-    def numbers(self, values: Array) -> Array:
-        """The numbers p, (R, E), from values at the ends, (3, E)."""
-        k, a, x = self.weights
-        return np.asarray(k * values[0] + a * values[1] + x * values[2])
-
-    def by_group(self, of_numbers: Array) -> Array:
-        """Sums over the numbers of each group, (..., G, E) from (..., R, E)."""
-        return of_numbers if self.each else of_numbers.sum(axis=-2, keepdims=True)
-
-    def use(self, values: Array) -> Array:
-        """Share of each bound that is in use, (G, E); above 1 it is broken."""
-        size = np.sqrt(self.by_group(self.numbers(values) ** 2))
-        return size * np.sqrt(values[2]) if self.jerk else size
 
 
 @dataclass(frozen=True)

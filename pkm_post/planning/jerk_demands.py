@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, norm
 from pkm_post.model import Machine
-from pkm_post.planning.interior_point import Limits
+from pkm_post.planning.motion_limits import Limits
 from pkm_post.planning.speed_limits import PLANNED_SHARE, LimitedQuantity, feed_at, limited_quantities
 from pkm_post.planning.speed_profile import Stations
 from pkm_post.planning.speed_spline import SpeedSpline, highest_within, within_cells

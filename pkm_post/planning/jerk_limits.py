@@ -18,9 +18,10 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.model import Machine
-from pkm_post.planning.interior_point import Limits, Solution, State, fastest
+from pkm_post.planning.interior_point import Solution, State, fastest
 from pkm_post.planning.jerk_demands import Demands
 from pkm_post.planning.jerk_start import first_places, long_held, start, with_middles
+from pkm_post.planning.motion_limits import Limits
 from pkm_post.planning.speed_profile import Stations
 from pkm_post.planning.speed_spline import SpeedSpline, durations, within_cells
 from pkm_post.planning.tool_path import ToolPath

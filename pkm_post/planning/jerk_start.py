@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.geometry import Array, expand_counts
-from pkm_post.planning.interior_point import Limits
+from pkm_post.planning.motion_limits import Limits
 from pkm_post.planning.speed_limits import NO_LIMIT
 from pkm_post.planning.speed_profile import Stations, speed_profile
 from pkm_post.planning.speed_spline import SpeedSpline

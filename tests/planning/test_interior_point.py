@@ -4,7 +4,8 @@
 import numpy as np
 import pytest
 
-from pkm_post.planning.interior_point import Limits, Solution, fastest
+from pkm_post.planning.interior_point import Solution, fastest
+from pkm_post.planning.motion_limits import Limits
 from pkm_post.planning.speed_spline import SpeedSpline, durations
 
 
