@@ -163,12 +163,15 @@ def _given(arguments: str | ArgumentValues, file: Path) -> ArgumentValues:
         raise Refused([Diagnostic("J117", Place(str(file)), str(fault))]) from fault
 
 
+_ATTRIBUTES = {"leave_out": "left_out"}
+"""Reading options by the name of their argument, where the two differ."""
+
+
 def _with_typed_options(reading: ReadingOptions, chosen: Namespace) -> ReadingOptions:
     """How to read a file; typed options override ``reading``."""
     typed_ones = part_program_from(chosen, reading.axis_words)
-    return replace(
-        reading, **{name: getattr(typed_ones, name) for name in explicit_values(chosen) if hasattr(reading, name)}
-    )
+    names = [_ATTRIBUTES.get(name, name) for name in explicit_values(chosen)]
+    return replace(reading, **{name: getattr(typed_ones, name) for name in names if hasattr(reading, name)})
 
 
 def _with_lengths(program: Program, lengths: Mapping[int, float]) -> Program:

@@ -8,8 +8,17 @@ from option_examples import FLAGS, words
 
 from pkm_post.cli import main
 from pkm_post.model import Refused
-from pkm_post.options import InputKind, applicable_values, explicit_values, inapplicable_options, input_kind, parse_text
-from pkm_post.posting.post_file import post_file
+from pkm_post.options import (
+    InputKind,
+    applicable_values,
+    explicit_values,
+    inapplicable_options,
+    input_kind,
+    parse_text,
+    part_program_from,
+)
+from pkm_post.posting.post_file import _with_typed_options, post_file
+from pkm_post.reading import AS_WRITTEN
 
 GCODE = "T1 M6 G43 H1\nG21 G90 G94 S8000 M3\nG0 X0 Y0 Z30\nG4 P10\nG1 X10 Y0 Z20 F600\nG0 Z30\nM2\n"
 CLDATA = "UNITS/MM\nLOADTL/1\nRAPID\nGOTO/0,0,30\nFEDRAT/600,MMPM\nGOTO/10,0,20\nRAPID\nGOTO/10,0,30\nFINI\n"
@@ -17,6 +26,15 @@ REACHED = ("--tool-length=1=60", "--work-offset=0,0,250")
 FOR_CLDATA = ("--contour-data", "--cl-dialect", "--cycle-values")
 FOR_GCODE = ("--flavour", "--machine-zero", "--leave-out")
 FOR_PART_PROGRAMS = (*FOR_CLDATA, *FOR_GCODE, "--tool", "--unit", "--feed", "--allow-open-end", "--wear")
+
+
+@pytest.mark.parametrize("flag", FOR_PART_PROGRAMS)
+@pytest.mark.parametrize("which", [0, 1])
+def test_each_typed_option_of_a_part_program_reaches_its_reader(flag, which):
+    typed = parse_text(" ".join(words(flag, which)))
+    reading = _with_typed_options(AS_WRITTEN, typed)
+    assert reading == part_program_from(typed, "none")
+    assert reading != AS_WRITTEN or (flag, which) == ("--allow-open-end", 1)
 
 
 @pytest.fixture

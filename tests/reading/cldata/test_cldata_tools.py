@@ -87,6 +87,24 @@ def lengths_and_codes(*changes, tools=None):
     return {number: tool.length for number, tool in program.tools.items()}, [str(item) for item in diagnostics]
 
 
+@pytest.mark.parametrize(
+    ("statement", "length"),
+    [  # the forms of CATIA (a compensation number second), PTC, NX and NCCS; other numbers are registers
+        ("LOADTL/1", 0), ("LOADTL/1,2", 0), ("LOADTL/1,ADJUST,5", 0), ("LOADTL/1,LENGTH,60,ADJUST,5", 60),
+        ("LOADTL/1,OSETNO,3,LENGTH,60", 60), ("LOAD/TOOL,1", 0), ("LOAD/TOOL,1,ADJUST,3,LENGTH,60.5", 60.5),
+        ("TOOLNO/1,MILL,10,0,LENGTH,60", 60), ("LOADTL/TOOL,1", None), ("LOADTL/1.5", None), ("LOADTL/T1", None),
+        ("LOAD/1", None), ("LOADTL/-1", None),
+    ],
+)  # fmt: skip
+def test_forms_of_a_tool_change(statement, length):
+    program, diagnostics = read(f"UNITS/MM\nFEDRAT/60\n{statement}\nGOTO/1,0,0\nFINI\n", "part.cl", ReadOptions())
+    if length is None:
+        assert (program, diagnostics[0].code[:2]) == (None, "L4")
+    else:
+        assert {number: tool.length for number, tool in program.tools.items()} == {1: length}
+        assert [item.code for item in diagnostics] == ([] if length else ["L411"])
+
+
 def test_a_tool_keeps_its_length_where_a_change_states_none():
     assert lengths_and_codes("1,LENGTH,100", "2,LENGTH,80", "1", "2") == ({1: 100, 2: 80}, [])
     assert lengths_and_codes("1,LENGTH,100", "2,LENGTH,80", "1,LENGTH,100") == ({1: 100, 2: 80}, [])
