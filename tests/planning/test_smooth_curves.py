@@ -124,7 +124,7 @@ def test_no_derivative_is_larger_than_its_bound(lean):
 
 
 def test_a_wider_tolerance_of_the_program_smooths_more():
-    trajectory = scan(2, noise=0.005, feed=60.0)
+    trajectory = scan(2, noise=0.005)
     wide = dataclasses.replace(trajectory, tip_tolerance=np.full(len(trajectory), 0.02))
     narrow, smooth = (planned(one, Tolerances(MICRON, THOUSANDTH))[0] for one in (trajectory, wide))
     assert len(smooth.path.segments.splines) > 590
