@@ -52,7 +52,7 @@ def duration(feed_plan):
 
 
 def test_noise_within_the_tolerance_costs_at_most_five_percent():
-    """5 um of noise on chords of 0.2 mm at F6000, under a tolerance of 10 um; corners alone took 1.8 times as long."""
+    """5 um of noise on chords of 0.2 mm at F6000, under a tolerance of 10 um; blends alone take 1.5 times as long."""
     tolerances = Tolerances(0.01, THOUSANDTH)
     smooth, noisy = (planned(scan(noise=noise), tolerances)[0] for noise in (0.0, 0.005))
     assert duration(noisy) < 1.05 * duration(smooth)
