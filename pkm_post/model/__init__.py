@@ -29,7 +29,7 @@ from pkm_post.model.columns import (
 from pkm_post.model.diagnostic_log import DiagnosticLog
 from pkm_post.model.diagnostics import Diagnostic, Place, Refused, errors
 from pkm_post.model.machine import Body, Box, Machine, ToolChange
-from pkm_post.model.motion import Motion, Poses, StrutMotion
+from pkm_post.model.motion import FeedStudy, Motion, Poses, StrutMotion
 from pkm_post.model.program import MOTION_COLUMNS, OPTIONAL_COLUMNS, Event, EventKind, Kind, Program
 from pkm_post.model.rules import RULES, Severity
 from pkm_post.model.setup import (
@@ -64,6 +64,7 @@ __all__ = [
     "Event",
     "EventKind",
     "Extent",
+    "FeedStudy",
     "Figure",
     "Finding",
     "Kind",

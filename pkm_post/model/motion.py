@@ -124,6 +124,36 @@ class Motion:
 
 
 @dataclass(frozen=True)
+class FeedStudy:
+    """The feed along a motion, at M even instants: columns in mm/s.
+
+    Attributes:
+        time: (M,) s.
+        asked: (M,) programmed feed.
+        possible: (M,) highest tip speed that the limits of the machine allow at that place.
+        planned: (M,) tip speed.
+        limit: (M,) index into ``limits`` of what keeps the plan below the programmed feed; -1 where it is at the feed.
+        limits: names of the limits.
+        row: (M,) segment of the trajectory.
+        cutting: (M,) whether it is not a rapid move.
+    """
+
+    time: Array
+    asked: Array
+    possible: Array
+    planned: Array
+    limit: Array
+    limits: tuple[str, ...]
+    row: Array
+    cutting: Array
+
+    def __post_init__(self) -> None:
+        numbers = dict.fromkeys(("time", "asked", "possible", "planned"), _NUMBER)
+        rows: dict[str, RowType] = {"limit": (np.int64, ()), "row": (np.int64, ()), "cutting": (np.bool_, ())}
+        freeze(self, len(self.time), numbers | rows)
+
+
+@dataclass(frozen=True)
 class StrutMotion:
     """Columns of M knots in time.
 

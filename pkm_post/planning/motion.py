@@ -19,6 +19,7 @@ from pkm_post.machine import PosePath, reach_faults, strut_rates
 from pkm_post.model import (
     Diagnostic,
     Event,
+    FeedStudy,
     Machine,
     Motion,
     StrutMotion,
@@ -29,6 +30,7 @@ from pkm_post.model import (
     read_only,
 )
 from pkm_post.planning.fast_poses import fast_poses_within
+from pkm_post.planning.feed_study import feed_study
 from pkm_post.planning.interpolation import InterpolationCheck, poses_at
 from pkm_post.planning.jerk_limits import jerk_limited
 from pkm_post.planning.knots import LONGEST_MS, SLOWDOWN, block_rate_factors, even_marks, knots, slower_feed
@@ -67,7 +69,7 @@ class FeedPlan:
         path: the path with rounded corners.
         schedule: position along the path by time.
         share: (N,) share of the limits of acceleration that is planned on each segment.
-        events: auxiliary instructions by trajectory row.
+        trajectory: as programmed.
         machine: the machine to move.
         tolerances: the requested tolerances.
     """
@@ -75,7 +77,7 @@ class FeedPlan:
     path: ToolPath
     schedule: Schedule
     share: Array
-    events: tuple[Event, ...]
+    trajectory: Trajectory
     machine: Machine
     tolerances: Tolerances
 
@@ -87,10 +89,12 @@ class Plan:
     Attributes:
         motion: tool poses and their rates.
         struts: strut lengths and speeds.
+        feed: the feed as programmed, possible and planned.
     """
 
     motion: Motion
     struts: StrutMotion
+    feed: FeedStudy
 
 
 def plan(
@@ -145,7 +149,7 @@ def plan_feed(
     try:
         share = np.full(len(path.feed), PLANNED_SHARE)
         schedule = _schedule(path, machine, bounds, share)
-        return FeedPlan(path, schedule, share, trajectory.events, machine, tolerances), faults
+        return FeedPlan(path, schedule, share, trajectory, machine, tolerances), faults
     except _TooLongError as fault:
         duration = f"{fault.seconds:.6g} s, at most {LONGEST_MOTION:g} s"
         return None, (*faults, Diagnostic("K145", trajectory.place(fault.segment), duration))
@@ -227,7 +231,8 @@ def interpolate(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> Plan:
             break
         feed_plan = replace(feed_plan, path=path, schedule=schedule, share=share)
         motion, slower = _interpolated(feed_plan, longest_ms)
-    return Plan(motion, strut_motion(motion, feed_plan.machine))
+    study = feed_study(feed_plan.path, feed_plan.schedule, feed_plan.trajectory, feed_plan.machine)
+    return Plan(motion, strut_motion(motion, feed_plan.machine), study)
 
 
 @dataclass(frozen=True)
@@ -292,7 +297,7 @@ def _motion(feed_plan: FeedPlan, time_ms: Array, joint_time: Array) -> Motion:
         tool_length=tool_length,
         segment=segment,
         joint_time=joint_time,
-        events=_by_knot(feed_plan.events, schedule, time_ms),
+        events=_by_knot(feed_plan.trajectory.events, schedule, time_ms),
     )
 
 

@@ -18,6 +18,7 @@ from pkm_post.model import (
     Certificate,
     Coverage,
     Diagnostic,
+    FeedStudy,
     Machine,
     Motion,
     Place,
@@ -123,9 +124,9 @@ def _all_steps(
     """Run the steps in order; return the names of the parts of the program, and the content of the report."""
     frame = PostContext(path, machine, *run.value(controller_settings(machine)), options)
     trajectory = _stored_trajectory(run, frame, program)
-    motion, names, covered = _written_program(run, frame, trajectory, setup)
+    motion, feed, names, covered = _written_program(run, frame, trajectory, setup)
     played, certificate, files = _certificate(run, frame, trajectory, motion, covered)
-    report = _report(run, frame, trajectory, motion, played, certificate, program.reading, files)
+    report = _report(run, frame, trajectory, motion, feed, played, certificate, program.reading, files)
     for name in options.also:
         _write_another(run, frame, name, trajectory, motion, played, certificate)
     return names, report
@@ -153,13 +154,13 @@ def _store(run: Run, frame: PostContext, program: Program) -> Path:
 
 def _written_program(
     run: Run, frame: PostContext, trajectory: Trajectory, setup: Setup
-) -> tuple[Motion, list[str], tuple[Coverage, ...]]:
-    """The plan, the names of the parts of the program, and the coverage.
+) -> tuple[Motion, FeedStudy, list[str], tuple[Coverage, ...]]:
+    """The planned motion with its feed, the names of the parts of the program, and the coverage.
 
     Schedule and struts are freed before the program is read back: a long one needs the memory.
     """
     plan, covered = _planned(run, frame, trajectory, setup)
-    return plan.motion, _motion_program(run, frame, trajectory, plan.struts), covered
+    return plan.motion, plan.feed, _motion_program(run, frame, trajectory, plan.struts), covered
 
 
 def _planned(run: Run, frame: PostContext, trajectory: Trajectory, setup: Setup) -> tuple[Plan, tuple[Coverage, ...]]:
@@ -269,6 +270,7 @@ def _report(
     frame: PostContext,
     trajectory: Trajectory,
     motion: Motion,
+    feed: FeedStudy,
     played: StrutMotion,
     certificate: Certificate,
     reading: tuple[str, ...],
@@ -277,10 +279,10 @@ def _report(
     """Write the report as JSON and as a page; return its content."""
     with run.step(_REPORT) as notes:
         machine, tolerances = frame.machine, frame.tolerances
-        report = summary.report(trajectory, machine, certificate, tolerances, played, motion, reading, files)
+        report = summary.report(trajectory, machine, certificate, tolerances, played, motion, reading, files, feed)
         summary.write(report, frame.beside(result_files.REPORT))
         page = frame.beside(result_files.PAGE)
-        write_page(page, report, trajectory, machine, motion, played, certificate, tolerances)
+        write_page(page, report, trajectory, machine, motion, feed, played, certificate, tolerances)
         notes.extend(summary.verdict(certificate))
     run.print([*reading, *report["certificate"]["meaning"]])
     return report

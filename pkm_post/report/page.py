@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds
-from pkm_post.model import Certificate, Kind, Machine, Motion, StrutMotion, Tolerances, Trajectory
+from pkm_post.model import Certificate, FeedStudy, Kind, Machine, Motion, StrutMotion, Tolerances, Trajectory
 from pkm_post.report.charts import Band, Line, chart, legend
 
 _PLACES = 6000
@@ -29,6 +29,8 @@ _CHART_PLACES = 1000
 _AXES, _AXIS_LENGTH = 150, 15.0
 """Tool axes drawn, and their length in mm."""
 _MM_IN_UM = 1000.0
+_SHOWN_BEYOND = 1.15
+"""The chart of the feed ends at this multiple of the highest feed; the machine may allow far more."""
 _HINT = (
     "drag to turn, shift or right button to move, wheel to zoom, double click to reset; click a row or a chart to mark"
     " an instant"
@@ -41,6 +43,7 @@ def write_page(
     trajectory: Trajectory,
     machine: Machine,
     motion: Motion,
+    feed: FeedStudy,
     struts: StrutMotion,
     certificate: Certificate,
     tolerances: Tolerances,
@@ -53,6 +56,7 @@ def write_page(
         trajectory: the programmed path.
         machine: its limits are drawn.
         motion: the planned motion.
+        feed: its feed.
         struts: the program as read back.
         certificate: certificate of the program.
         tolerances: the requested tolerances.
@@ -63,6 +67,7 @@ def write_page(
         "<h2>Tool path</h2>",
         f'<p class="hint">{_HINT}</p><canvas id="path"></canvas>',
         f'<script type="application/json" id="path-data">{_path(trajectory, motion)}</script>',
+        _feed(report["feed"], feed, trajectory, motion, duration),
         _charts(report, trajectory, machine, motion, struts, certificate, tolerances, duration),
         _certificate_tables(report["certificate"]),
         _time_table(report["machining_time"]),
@@ -171,6 +176,46 @@ def _charts(
             chart("axis, degrees", [axis], duration, [float(np.degrees(tolerances.axis))], bands),
         ]
     )
+
+
+def _feed(shares: Mapping[str, Any], feed: FeedStudy, trajectory: Trajectory, motion: Motion, duration: float) -> str:
+    """The feed over time, and what limits it."""
+    if not shares:
+        return ""
+    highest = float(max(feed.asked.max(), feed.planned.max()))
+    lines = [
+        Line("programmed", feed.time, feed.asked, "faint"),
+        Line("possible", feed.time, np.minimum(feed.possible, _SHOWN_BEYOND * highest), "c3"),
+        Line("planned", feed.time, feed.planned, "c1"),
+    ]
+    rows = "".join(map(_limit, shares["limits"]))
+    return "\n".join(
+        [
+            "<h2>Feed</h2>",
+            f"<p>{_percent(shares['at_feed'])} of the cutting time at 95 % of the programmed feed or more; the machine"
+            f" allows that feed in {_percent(shares['feed_possible'])} of it, and the plan is at 95 % of what is"
+            f" possible there in {_percent(shares['as_possible'])}.</p>",
+            legend(lines),
+            chart(
+                "tip speed, mm/s", lines, duration, (), list(_operations(trajectory, motion, duration)),
+                (0.0, _SHOWN_BEYOND * highest),
+            ),
+            f"<table><tr><th>what limits the feed<th>share of cutting time<th>slowest, mm/s<th>programmed<th>time, s"
+            f"<th>operation<th>line</tr>{rows}</table>",
+        ]
+    )  # fmt: skip
+
+
+def _limit(row: Mapping[str, Any]) -> str:
+    cells = [
+        row["limit"], _percent(row["share"]), f"{row['slowest_mm_s']:.4g}", f"{row['asked_mm_s']:.4g}",
+        f"{row['time_s']:.3f}", row["operation"], str(row["line"]),
+    ]  # fmt: skip
+    return f'<tr data-time="{row["time_s"]:.6g}">{_cells(cells)}</tr>'
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.1f} %"
 
 
 def _strut_course(struts: StrutMotion) -> tuple[Array, Array, Array]:

@@ -20,6 +20,7 @@ from pkm_post.model import (
     Certificate,
     Coverage,
     EventKind,
+    FeedStudy,
     Figure,
     Finding,
     Kind,
@@ -31,6 +32,8 @@ from pkm_post.model import (
     coverage_summary,
 )
 
+_AT_FEED = 0.95
+"""Share of a feed from which on it counts as reached."""
 _FORMAT = 1
 """Version of the report's layout, for programs that parse it."""
 _AS_IT_IS = "axis values are strut lengths in mm, speeds in mm/s; do not edit: the program is certified as it is"
@@ -74,6 +77,7 @@ def report(
     motion: Motion,
     reading: Sequence[str] = (),
     files: Mapping[str, Any] | None = None,
+    feed: FeedStudy | None = None,
 ) -> dict[str, Any]:
     """The report as data that JSON can hold; ``reading`` is as in ``model.Program``, ``files`` as of ``hashes``."""
     return {
@@ -101,6 +105,7 @@ def report(
             "longest_strut_mm": _by_column(np.max, struts.length),
         },
         "machining_time": machining_time(trajectory, motion),
+        "feed": {} if feed is None else feed_shares(trajectory, feed),
         "hold_points": hold_points(trajectory, motion),
         "certificate": {
             "holds": certificate.holds,
@@ -132,6 +137,45 @@ def machining_time(trajectory: Trajectory, motion: Motion) -> dict[str, Any]:
         for number, name in enumerate(names)
     ]
     return {"total_s": _rounded(segment_time.sum() + dwell.sum(), 3), "operations": operations}
+
+
+def feed_shares(trajectory: Trajectory, feed: FeedStudy) -> dict[str, Any]:
+    """Shares of the cutting time at the programmed feed, and what limits the rest.
+
+    With f the programmed, p the possible and v the planned feed: ``at_feed`` is where v >= 0.95 f, ``feed_possible``
+    where p >= 0.95 f, ``as_possible`` where v >= 0.95 min(f, p). Each limit has its share, and the place where it slows
+    the tool most.
+    """
+    asked, possible, planned = (column[feed.cutting] for column in (feed.asked, feed.possible, feed.planned))
+    limit, row = feed.limit[feed.cutting], feed.row[feed.cutting]
+    if not len(asked):
+        return {}
+    limits = []
+    for number in np.unique(limit[limit >= 0]).tolist():
+        these = np.flatnonzero(limit == number)
+        slowest = these[np.argmin(planned[these] / asked[these])]
+        place = trajectory.place(int(row[slowest]))
+        limits.append(
+            {
+                "limit": feed.limits[number],
+                "share": _rounded(len(these) / len(limit), 4),
+                "slowest_mm_s": _significant(float(planned[slowest])),
+                "asked_mm_s": _significant(float(asked[slowest])),
+                "time_s": _rounded(feed.time[feed.cutting][slowest], 3),
+                "operation": place.operation,
+                "line": place.line,
+            }
+        )
+    return {
+        "at_feed": _share(planned >= _AT_FEED * asked),
+        "feed_possible": _share(possible >= _AT_FEED * asked),
+        "as_possible": _share(planned >= _AT_FEED * np.minimum(asked, possible)),
+        "limits": sorted(limits, key=lambda row: -row["share"]),
+    }
+
+
+def _share(where: Array) -> float:
+    return float(_rounded(float(where.mean()), 4))
 
 
 def hold_points(trajectory: Trajectory, motion: Motion) -> dict[str, list[Any]]:

@@ -51,10 +51,19 @@ def test_runs_cover_the_path_and_part_rapid_from_cutting(made):
 def test_every_finding_and_every_hazard_has_its_row(made):
     posted, page = made
     certificate = posted.report["certificate"]
-    assert page.count("<tr data-time=") == len(certificate["findings"]) + len(certificate["figures"])
+    limits = posted.report["feed"]["limits"]
+    assert page.count("<tr data-time=") == len(certificate["findings"]) + len(certificate["figures"]) + len(limits)
     for row in certificate["coverage"]:
         assert f"<td>{row['what']}<" in page
     assert "Certified, as far as the table below says" in page
+
+
+def test_the_page_shows_the_feed_and_what_limits_it(made):
+    posted, page = made
+    feed = posted.report["feed"]
+    assert f"{100 * feed['at_feed']:.1f} % of the cutting time" in page
+    for row in feed["limits"]:
+        assert f"<td>{row['limit']}<" in page
 
 
 def test_the_page_needs_no_network(made):
