@@ -94,6 +94,20 @@ def _cycle_values(text: str) -> tuple[str, ...]:
     return chosen
 
 
+GOTO_VALUES = (("x", "y", "z"), ("i", "j", "k"), ("nx", "ny", "nz"), ("px", "py", "pz"))
+"""Meanings of the values of a GOTO, as in ``cldata.GOTO_VALUES``."""
+
+
+def _goto_values(text: str) -> tuple[str, ...]:
+    """Distinct names of whole vectors, x, y and z among them."""
+    chosen = tuple(text.split(","))
+    whole = [each for each in GOTO_VALUES if set(each) & set(chosen)]
+    if len(set(chosen)) < len(chosen) or {*chosen} != {name for each in whole for name in each} or "x" not in chosen:
+        names = "; ".join(",".join(each) for each in GOTO_VALUES)
+        raise argparse.ArgumentTypeError(f"expected x,y,z and others of {names}, in any order, got {text!r}")
+    return chosen
+
+
 MIRRORS = ("xy", "xz", "yz")
 """Names of mirror planes, as in ``toolpath.MIRRORS``."""
 
@@ -258,6 +272,13 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "help": "what the numbers of CYCLE statements of CL data are where they have no words, in order and joined by"
         f" commas: {', '.join(CYCLE_VALUES)}",
     },
+    "--goto-values": {
+        "metavar": "NAMES",
+        "type": _goto_values,
+        "default": (),
+        "help": "what the values of those GOTO statements of CL data are that have as many: x,y,z the tool tip, i,j,k"
+        " the tool axis, nx,ny,nz the surface normal, px,py,pz the contact point, in the order of the file",
+    },
     "--allow-open-end": {
         "action": "store_true",
         "help": "take a part program without an end (M2, M30 or %% of G-code, FINI or END-OF-PATH of CL data), although"
@@ -345,6 +366,7 @@ def add_part_program(parser: argparse.ArgumentParser) -> None:
             "--wear",
             "--cl-dialect",
             "--cycle-values",
+            "--goto-values",
             "--allow-open-end",
         ),
     )

@@ -170,6 +170,7 @@ _KINDS: dict[str, tuple[InputKind, ...]] = {
     "contour_data": (InputKind.CLDATA,),
     "cl_dialect": (InputKind.CLDATA,),
     "cycle_values": (InputKind.CLDATA,),
+    "goto_values": (InputKind.CLDATA,),
     "tools": _PART_PROGRAMS,
     "unit": _PART_PROGRAMS,
     "feed": _PART_PROGRAMS,

@@ -51,6 +51,8 @@ class ReadingOptions:
         dwell_unit: unit of P of G4 and of cycles in G-code, a key of ``DWELL_UNITS``; that of the flavour if None.
         machine_zero: where G53 X0 Y0 Z0, and G28 and G30, bring the tool tip in {C}, mm.
         left_out: codes of G-code, such as "M21", to leave out where they are not understood.
+        goto_values: meanings of the values of those GOTO statements of CL data that have as many, as in
+            ``cldata.ReadOptions``.
         feed: speed of cutting moves before the first feed of the file, mm/s; None refuses such moves.
         lengths: gauge lengths of tools, and values of length offsets (H), by number, mm.
         allow_open_end: whether a file may lack an end statement, such as M2 or FINI.
@@ -70,6 +72,7 @@ class ReadingOptions:
     machine_zero: tuple[float, float, float] | None = None
     left_out: tuple[str, ...] = ()
     feed: float | None = None
+    goto_values: tuple[str, ...] = ()
 
 
 AS_WRITTEN = ReadingOptions()
@@ -160,6 +163,7 @@ def _read_cldata(content: bytes, file: str, reading: ReadingOptions) -> _Result:
         contour_data=reading.contour_data,
         wear=reading.wear,
         cycle_values=reading.cycle_values,
+        goto_values={len(reading.goto_values): reading.goto_values} if reading.goto_values else {},
         feed=reading.feed,
         needs_end=not reading.allow_open_end,
     )

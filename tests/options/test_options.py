@@ -68,6 +68,7 @@ def test_what_a_part_program_does_not_say():
 def test_what_cl_data_may_be_said_to_be_is_what_its_reader_knows():
     assert (*cldata.DIALECTS,) == arguments.CL_DIALECTS
     assert arguments.CYCLE_VALUES == cldata.CYCLE_VALUES
+    assert arguments.GOTO_VALUES == cldata.GOTO_VALUES
 
 
 @pytest.mark.parametrize("names", ["depth,feed,depth", "depth,height", "", "depth,"])

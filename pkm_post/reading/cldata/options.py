@@ -75,7 +75,8 @@ POINT = ("x", "y", "z")
 AXIS = ("i", "j", "k")
 NORMAL = ("nx", "ny", "nz")
 CONTACT = ("px", "py", "pz")
-_VALUES = {*POINT, *AXIS, *NORMAL, *CONTACT}
+GOTO_VALUES = (POINT, AXIS, NORMAL, CONTACT)
+"""Possible meanings of the values of a GOTO, by vector."""
 _HANDS = ("right", "left", "vote")
 _FRAMES = ("first", "absolute")
 CONTOUR_DATA = ("centre", "contour")
@@ -140,7 +141,8 @@ class ReadOptions:
         if len(set(self.cycle_values)) != len(self.cycle_values) or not {*self.cycle_values} <= {*CYCLE_VALUES}:
             raise ValueError(f"cycle_values: expected different names out of {CYCLE_VALUES}, got {self.cycle_values!r}")
         for count, names in self.goto_values.items():
-            if len(names) != count or len(set(names)) != count or not {*POINT} <= {*names} <= _VALUES:
+            whole = {name for each in GOTO_VALUES if {*each} & {*names} for name in each}
+            if len(names) != count or len(set(names)) != count or not {*POINT} <= {*names} == whole:
                 raise ValueError(f"goto_values: expected {count} different names with x, y, z, got {names!r}")
 
     def value_names(self, count: int) -> tuple[str, ...] | None:

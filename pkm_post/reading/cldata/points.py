@@ -47,7 +47,7 @@ class Points:
 
 def goto(state: ReaderState, row: int, statement: Statement) -> None:
     """Report a GOTO outside the bulk: its values are not understood."""
-    state.report_items(row, statement, "x,y,z or x,y,z,i,j,k")
+    state.report_items(row, statement, "x,y,z or x,y,z,i,j,k, or others with --goto-values")
 
 
 def numbers_only(state: ReaderState, row: int, statement: Statement) -> None:

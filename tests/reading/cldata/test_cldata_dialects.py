@@ -160,7 +160,16 @@ def test_a_dialect_and_a_hand_can_be_prescribed():
     assert sweep == pytest.approx(np.pi / 2)
 
 
-@pytest.mark.parametrize("wrong", [{"dialect": "x"}, {"units": "m"}, {"hand": "up"}, {"goto_values": {9: ("x",)}}])
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"dialect": "x"},
+        {"units": "m"},
+        {"hand": "up"},
+        {"goto_values": {9: ("x",)}},
+        {"goto_values": {4: ("x", "y", "z", "i")}},
+    ],
+)
 def test_impossible_options_are_refused(wrong):
     with pytest.raises(ValueError, match="expected"):
         ReadOptions(**wrong)
