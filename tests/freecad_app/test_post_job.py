@@ -314,5 +314,5 @@ def test_one_call_posts_jobs_documents_and_part_programs(ready, tmp_path):
     assert of_job.program.read_bytes() == of_document.program.read_bytes()
     assert of_program.program == tmp_path / "lines.pmc"
     assert (steps[0], steps[-2], steps[-1]) == ("reading", "report", "")
-    with pytest.raises(ValueError, match="txt"):
-        pkm_post.post(tmp_path / "a.txt", MACHINE, tmp_path)
+    with pytest.raises(ValueError, match="doc"):
+        pkm_post.post(tmp_path / "a.doc", MACHINE, tmp_path)

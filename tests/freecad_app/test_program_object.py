@@ -83,7 +83,7 @@ def test_file_that_is_gone_or_has_another_suffix(document, file):
     obj.touch()
     document.recompute()
     assert (obj.Path.Commands, "F103" in obj.Found[0]) == ([], True)
-    obj.File = str(file.with_suffix(".txt"))
+    obj.File = str(file.with_suffix(".doc"))
     document.recompute()
     assert ".aptsource" in obj.Found[0]
 
