@@ -64,9 +64,10 @@ def test_the_exit_code_of_the_command_is_that_of_the_command_inside(tmp_path, co
 
 def test_results_that_are_not_there_where_the_command_ended_well(tmp_path):
     well = script(tmp_path / "inside", f"exit {inner_exit_code(0)}")
-    is_refused(started(tmp_path, well), "F142", "part.pmc", "part.pkmt", "part-report.json", "part-manifest.json")
+    missing = "part.pmc", "part.pkmt", "part-report.json", "part-report.html", "part-manifest.json"
+    is_refused(started(tmp_path, well), "F142", *missing)
     (tmp_path / "out").mkdir()
-    for name in ("part.pmc", "part.pkmt", "part-manifest.json"):
+    for name in ("part.pmc", "part.pkmt", "part-report.html", "part-manifest.json"):
         (tmp_path / "out" / name).touch()
     ran = started(tmp_path, well)
     is_refused(ran, "F142", "part-report.json")

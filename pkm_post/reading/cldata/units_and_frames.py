@@ -24,6 +24,8 @@ from pkm_post.reading.units import UNITS
 
 _UNIT_WORDS: dict[str, str] = {"MM": "mm", "INCHES": "inch", "INCH": "inch", "IN": "inch"}
 """Operands of UNITS."""
+_IN_MATRIX = 12
+"""Numbers in three rows of four."""
 _LAST = "TRACUT/LAST"
 _FEED_UNITS: dict[str, str] = {
     **dict.fromkeys(("MMPM", "MMPR"), "mm"),
@@ -150,7 +152,10 @@ def path_index(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 def copy_matrix(state: ReaderState, row: int, statement: Statement) -> None:
-    """The matrix of a copy, three rows of four."""
+    """The matrix of a copy, three rows of four; a file may have the word as well."""
+    if len(statement.values) != _IN_MATRIX:
+        state.report_items(row, statement, "three rows of four numbers")
+        return
     _set_transform(state, row, replace(statement, word="COPY"), "COPY", _from_rows(statement.values))
 
 
