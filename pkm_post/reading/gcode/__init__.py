@@ -2,8 +2,8 @@
 """G-code: text to ``Program`` in three steps.
 
 Scan, text to ``Blocks``: ``scan``, ``lexer``, ``parse``, ``syntax_faults``, ``block_builders``, ``blocks``.
-Execute, parameters computed, loops and calls unrolled: ``execute``, ``statements``, ``expressions``, ``parameters``,
-``o_words``. Resolve, blocks to motions and events: ``resolve`` and all other files.
+Execute, parameters computed, loops and calls unrolled: ``execute``, ``interpreter``, ``statements``, ``expressions``,
+``parameters``, ``o_words``. Resolve, blocks to motions and events: ``resolve`` and all other files.
 """
 
 from pkm_post.reading.gcode.options import ExecutionLimits, ReadOptions

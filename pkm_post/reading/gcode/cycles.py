@@ -12,18 +12,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 
 from pkm_post.model import Array, EventKind, Kind
-from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import Group, Word, word_of
-from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
+from pkm_post.reading.gcode.codes import Word, word_of
 from pkm_post.reading.gcode.flavours import RS274, Flavour
-from pkm_post.reading.gcode.frames import PLANES, Frame
-from pkm_post.reading.gcode.modal import Modal, is_cycle
-from pkm_post.reading.gcode.polar import PolarWords
 
 PECK_CLEARANCE = 0.254
 """Clearance above the depth reached at which a peck resumes feed, and retract distance of G73, mm."""
@@ -32,9 +26,6 @@ MOST_STROKES = 10_000
 
 _PECKS = (730, 830)
 _STOPS_SPINDLE = 860
-_REPEATS = "LK"
-_SAME_HEIGHT = 1e-9
-"""mm: round-off of a coordinate transformed to {C} and back."""
 
 
 Words = tuple[float, float, float, float]
@@ -243,133 +234,3 @@ def _retract(cycle: Cycle, hole: Hole, normal: int, strokes: Strokes, spindle: f
     strokes.move(Kind.RAPID, normal, hole.clear)
     if cycle.code == _STOPS_SPINDLE:
         strokes.add_event(EventKind.SPINDLE, spindle)
-
-
-class CycleTracker:
-    """Tracks the active series of cycles."""
-
-    def __init__(
-        self,
-        blocks: Blocks,
-        modal: Modal,
-        polar: PolarWords,
-        spindle: Array,
-        dwells: Array,
-        faults: BlockDiagnostics,
-    ) -> None:
-        self._modal, self._polar, self._words = modal, polar, polar.words
-        self._cycle_words = {letter: blocks.word(letter) for letter in "RQIJ" + _REPEATS}
-        self._spindle, self._dwells, self._faults = spindle, dwells, faults
-        self._series: CycleSeries | None = None
-        self._row, self._level = 0, np.zeros(3)
-        self._plane = self._distance = 0
-        self._scale = 1.0
-
-    @cached_property
-    def _series_number(self) -> Array:
-        """Number of the last non-cycle block up to each block, (N,): constant within a series."""
-        return np.cumsum(~is_cycle(self._modal.active[Group.MOTION]))
-
-    def strokes(self, row: int, position: Array, known: Array, frame: Frame) -> Strokes | None:
-        """The strokes of one block, None if it has a fault.
-
-        Args:
-            row: the block.
-            position: (3,) tool position.
-            known: (3,) which coordinates are known.
-            frame: of these coordinates.
-        """
-        code = int(self._modal.active[Group.MOTION][row])
-        axes = PLANES[int(self._modal.active[Group.PLANE][row])]
-        relative = bool(self._modal.active[Group.DISTANCE][row] == 910)
-        given = ~np.isnan(self._words.at(row)) & (not relative)
-        given[axes[2]] = False
-        if not (known | given).all():
-            self._faults.add("G416", row, word_of(code))
-            return None
-        returns = bool(self._modal.active[Group.RETRACT][row] == 980)
-        series = self._extend_series(row, code, position, frame)
-        hole = series.hole(relative, returns)
-        repeats, spindle = self._repeats(row), float(self._spindle[row])
-        conflict = self._mode_conflict(row, series, relative or returns, frame)
-        if repeats == 0 and self._modal.flavour.stores_cycle:
-            return self._stored(row, position)
-        flavour = self._modal.flavour
-        fault = ("G426", conflict) if conflict else cycle_fault(series.cycle, hole, repeats, spindle, flavour)
-        if math.isnan(repeats):
-            fault = "G418", (word_of(code), " with L and K")
-        if fault:
-            self._faults.add(fault[0], row, fault[1])
-            return None
-        centres = self._centres(row, position, axes, relative, int(repeats))
-        return cycle_strokes(series.cycle, hole, centres, axes, position, spindle, self._modal.flavour)
-
-    def _stored(self, row: int, position: Array) -> Strokes | None:
-        """A cycle that only stores its words; whether it goes to a place of its own, controls do not agree."""
-        axes = PLANES[int(self._modal.active[Group.PLANE][row])]
-        if np.isnan(self._words.at(row)[list(axes[:2])]).all():
-            return Strokes(position)
-        name = word_of(int(self._modal.active[Group.MOTION][row]))
-        self._faults.add("G418", row, (name, " repeated 0 times at another place"))
-        return None
-
-    def _extend_series(self, row: int, code: int, position: Array, frame: Frame) -> CycleSeries:
-        """Extend the series by the cycle of this block."""
-        normal = PLANES[int(self._modal.active[Group.PLANE][row])][2]
-        scale = float(self._modal.scale[row])
-        retract, peck = (scale * float(self._cycle_words[letter][row]) for letter in "RQ")
-        words = (retract, float(self._words.columns[normal][row]), peck, float(self._dwells[row]))
-        before = self._series if self._series_number[row] == self._series_number[self._row] else None
-        self._series = self._with_smaller_pecks(
-            row, CycleSeries.after(before, code, float(position[normal]), words, self._modal.flavour)
-        )
-        self._row = row
-        if before is None:
-            self._level, self._plane = frame.to_work(position), int(self._modal.active[Group.PLANE][row])
-        if before is None or not (math.isnan(words[0]) or math.isnan(words[1])):
-            self._distance, self._scale = int(self._modal.active[Group.DISTANCE][row]), scale
-        return self._series
-
-    def _shrinks(self, row: int) -> bool:
-        """Whether I of a block is the first of pecks that grow smaller: J is by how much, K the smallest [Haas]."""
-        return self._modal.flavour.pecks_by_i and not math.isnan(self._cycle_words["I"][row])
-
-    def _with_smaller_pecks(self, row: int, series: CycleSeries) -> CycleSeries:
-        if not self._shrinks(row):
-            return series
-        scale = float(self._modal.scale[row])
-        first, less, least = (scale * float(self._cycle_words[letter][row]) for letter in "IJK")
-        reduction = 0.0 if math.isnan(less) else less
-        return replace(series, cycle=replace(series.cycle, peck=first, reduction=reduction, least=least))
-
-    def _mode_conflict(self, row: int, series: CycleSeries, needs_level: bool, frame: Frame) -> Found:
-        """What has changed since the modal words were programmed and may alter their meaning."""
-        name, plane = word_of(series.cycle.code), int(self._modal.active[Group.PLANE][row])
-        distance, scale = int(self._modal.active[Group.DISTANCE][row]), float(self._modal.scale[row])
-        if plane != self._plane:
-            return name, " goes on in ", word_of(plane), ", begun in ", word_of(self._plane)
-        if distance != self._distance:
-            return name, " goes on in ", word_of(distance), ", its R and depth are those of ", word_of(self._distance)
-        if scale != self._scale:
-            return name, f" goes on in a unit of {scale:g} mm, its R and depth are in one of {self._scale:g} mm"
-        level = float(frame.to_program(self._level)[PLANES[plane][2]])
-        if needs_level and abs(level - series.initial) > _SAME_HEIGHT:
-            return name, f": the initial level {series.initial:g} is {level:g} where the origin lies now"
-        return ""
-
-    def _repeats(self, row: int) -> float:
-        """Repeat count of the hole; NaN where two words specify it."""
-        letters = "L" if self._shrinks(row) else _REPEATS
-        words = [float(self._cycle_words[letter][row]) for letter in letters]
-        given = [word for word in words if not math.isnan(word)]
-        return 1.0 if not given else given[0] if len(given) == 1 else math.nan
-
-    def _centres(self, row: int, position: Array, axes: tuple[int, int, int], relative: bool, repeats: int) -> Array:
-        """Hole positions, (n, 2)."""
-        words, here = self._words.at(row)[list(axes[:2])], position[list(axes[:2])]
-        around = self._polar.repeated(row, here, repeats) if relative and axes[:2] == (0, 1) else None
-        if around is not None:
-            return around
-        if relative:
-            return here + np.arange(1, repeats + 1)[:, None] * np.nan_to_num(words)
-        return np.tile(np.where(np.isnan(words), here, words), (repeats, 1))

@@ -8,27 +8,19 @@ returned unchanged. Semantics are those of RS274NGC as implemented by LinuxCNC, 
 
 from __future__ import annotations
 
-import re
-from bisect import bisect_left
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
 from pkm_post.model import Array, Diagnostic, Place
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
-from pkm_post.reading.gcode.blocks import Block, Blocks
+from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.flavours import RS274, Flavour
-from pkm_post.reading.gcode.o_words import JumpTargets, link_o_words
+from pkm_post.reading.gcode.interpreter import PROGRAM_END, SUBPROGRAM_CODES, Interpreter
+from pkm_post.reading.gcode.o_words import link_o_words
 from pkm_post.reading.gcode.options import DEFAULT_LIMITS, ExecutionLimits
-from pkm_post.reading.gcode.parameters import ExecutionFault, Parameters, whole
-from pkm_post.reading.gcode.statements import OWord, Statement, label_of_number, statement_of
-
-_PROGRAM_END = (2, 30)
-_CALL, _RETURN = 98, 99
-_SUBPROGRAM_CODES = (_CALL, _RETURN)
-_COUNTED = 10_000
-"""P of M98 from here on is the number of passes and the last four digits of the program [Fanuc]."""
+from pkm_post.reading.gcode.parameters import ExecutionFault
+from pkm_post.reading.gcode.statements import OWord, Statement, statement_of
 
 
 def execute(
@@ -75,7 +67,7 @@ def execute_as_far_as_possible(
         Plain blocks and the faults. If there are any: the blocks before the one that stopped the execution, or all
         plain blocks of a program that cannot be executed.
     """
-    if not blocks.special and not np.isin(blocks.m, _SUBPROGRAM_CODES).any():
+    if not blocks.special and not np.isin(blocks.m, SUBPROGRAM_CODES).any():
         return blocks, ()
     skipped = blocks.deleted if block_delete else np.zeros(len(blocks), dtype=np.bool_)
     statements, faults = _statements(blocks, skipped, block_delete)
@@ -84,10 +76,10 @@ def execute_as_far_as_possible(
     if faults or not is_whole:
         return replace(blocks, special={}), _diagnostics(blocks, faults)
     special = skipped.copy()
-    special[blocks.m_row[np.isin(blocks.m, (*_SUBPROGRAM_CODES, *_PROGRAM_END))]] = True
+    special[blocks.m_row[np.isin(blocks.m, (*SUBPROGRAM_CODES, *PROGRAM_END))]] = True
     special[list(statements)] = True
     executed = ExecutedBlocksBuilder(blocks)
-    interpreter = _Interpreter(blocks, statements, jumps, skipped, limits, executed, flavour, text)
+    interpreter = Interpreter(blocks, statements, jumps, skipped, limits, executed, flavour, text)
     try:
         interpreter.run(np.flatnonzero(special).tolist())
     except ExecutionFault as fault:
@@ -95,7 +87,7 @@ def execute_as_far_as_possible(
     return _ended(executed.blocks(), interpreter), ()
 
 
-def _ended(blocks: Blocks, interpreter: _Interpreter) -> Blocks:
+def _ended(blocks: Blocks, interpreter: Interpreter) -> Blocks:
     """The executed blocks; where M99 ends the main program, it has come to its end."""
     return replace(blocks, closed=True, restarts=True) if interpreter.restarts else blocks
 
@@ -123,308 +115,3 @@ def _diagnostics(blocks: Blocks, faults: list[tuple[int, ExecutionFault]]) -> tu
         for row, fault in faults
     ]
     return tuple(sorted(dict.fromkeys(diagnostics), key=lambda item: (item.place.line, item.place.column)))
-
-
-_SEQUENCE_NUMBER = re.compile(rb"^[ \t]*/?[ \t]*N[ \t]*0*(\d+)", re.MULTILINE | re.IGNORECASE)
-
-
-def rows_of_sequence_numbers(text: bytes, line: Array) -> dict[str, list[int]]:
-    """Rows by sequence number, in order; of a number without a block the row after it.
-
-    Args:
-        text: of the program, lines ended by line feeds.
-        line: (N,) line of each row.
-    """
-    rows: dict[str, list[int]] = {}
-    start = number = 0
-    for found in _SEQUENCE_NUMBER.finditer(text):
-        number += text.count(b"\n", start, found.start())
-        start = found.start()
-        rows.setdefault(found[1].decode(), []).append(int(np.searchsorted(line, number + 1)))
-    return rows
-
-
-@dataclass
-class _Level:
-    """A running subprogram.
-
-    Attributes:
-        return_row: return row.
-        first_row: first row, for the next pass.
-        passes: remaining passes after this one; only M98 has more than one.
-        by_m98: whether M98 called it, so M99 ends it rather than ``endsub``.
-        repeats: remaining passes of every active ``repeat``.
-    """
-
-    return_row: int
-    first_row: int
-    passes: int = 0
-    by_m98: bool = False
-    repeats: dict[int, int] = field(default_factory=dict)
-
-
-class _Interpreter:
-    """One execution of a program.
-
-    Args:
-        blocks: the scanned blocks.
-        statements: compiled special blocks by row.
-        jumps: jump targets of O words.
-        skipped: (N,) mask of skipped blocks.
-        limits: bounds of the execution.
-        executed: collects the executed blocks.
-        flavour: whose subprogram calls they are.
-        text: of the program, where GOTO finds sequence numbers.
-    """
-
-    def __init__(
-        self,
-        blocks: Blocks,
-        statements: dict[int, Statement],
-        jumps: JumpTargets,
-        skipped: Array,
-        limits: ExecutionLimits,
-        executed: ExecutedBlocksBuilder,
-        flavour: Flavour,
-        text: bytes,
-    ) -> None:
-        self.row = 0
-        self._blocks, self._statements, self._jumps, self._skipped = blocks, statements, jumps, skipped
-        self._limits, self._executed, self._flavour = limits, executed, flavour
-        self._text = text
-        self._rows_of_label: dict[str, list[int]] | None = None
-        self.restarts = False
-        """Whether M99 ended the main program."""
-        self._blocks_left, self._operations_left = limits.blocks, limits.operations
-        self._cost = {row: statement.cost for row, statement in statements.items()}
-        self._parameters = Parameters()
-        self._levels = [_Level(return_row=len(blocks), first_row=0)]
-
-    def run(self, special: list[int]) -> None:
-        """Execute until the program ends.
-
-        Args:
-            special: rows that are not simply copied, in order; ``row`` is always the current row.
-
-        Raises:
-            ExecutionFault: the program cannot continue at ``row``.
-        """
-        end = len(self._blocks)
-        special = [*special, end]
-        while self.row < end:
-            stop = special[bisect_left(special, self.row)]
-            if stop > self.row:
-                self._copy(stop)
-            else:
-                self._spend(1, self._cost.get(self.row, 1))
-                self.row = self._step(self.row)
-        self._refuse_open_subprogram()
-
-    def _copy(self, stop: int) -> None:
-        self._spend(stop - self.row, self._codes(self.row, stop))
-        self._executed.copy(self.row, stop)
-        self.row = stop
-
-    def _codes(self, first_row: int, end: int) -> int:
-        """Number of G and M codes in plain rows."""
-        bounds = [rows.searchsorted((first_row, end)) for rows in (self._blocks.g_row, self._blocks.m_row)]
-        return int(sum(last - first for first, last in bounds))
-
-    def _spend(self, blocks: int, operations: int) -> None:
-        self._blocks_left -= blocks
-        self._operations_left -= operations
-        if self._blocks_left < 0:
-            raise ExecutionFault("G313", f"more than {self._limits.blocks} executed blocks")
-        if self._operations_left < 0:
-            raise ExecutionFault("G313", f"more than {self._limits.operations} operations in executed blocks")
-
-    def _refuse_open_subprogram(self) -> None:
-        if len(self._levels) > 1 and self.row == len(self._blocks):
-            self.row = max(self._levels[-1].first_row - 1, 0)
-            raise ExecutionFault("G308", "subprogram without M99")
-
-    def _step(self, row: int) -> int:
-        """Execute a row that is not simply copied; return the next row."""
-        statement = self._statements.get(row)
-        if isinstance(statement, OWord):
-            return _STEPS[statement.keyword](self, row, statement)
-        if statement is not None:
-            return self._finish(row, statement.executed(self._parameters))
-        return row + 1 if self._skipped[row] else self._finish(row, self._plain(row))
-
-    def _plain(self, row: int) -> Block:
-        self._spend(0, self._codes(row, row + 1))
-        blocks = self._blocks
-        return Block(blocks.words_of(row), blocks.g_of(row).tolist(), blocks.m_of(row).tolist())
-
-    def _finish(self, row: int, block: Block) -> int:
-        """Output a computed row and apply the jumps control of its M codes; return the next row."""
-        if not block.m:
-            self._executed.add(row, block)
-            return row + 1
-        subprogram_codes = [code for code in block.m if code in _SUBPROGRAM_CODES]
-        ends = [code for code in block.m if code in _PROGRAM_END]
-        if subprogram_codes and len(subprogram_codes) + len(ends) > 1:
-            raise ExecutionFault("G316", " ".join(f"M{code}" for code in (*subprogram_codes, *ends)))
-        if subprogram_codes:
-            rest = {letter: value for letter, value in block.words.items() if letter not in "PL"}
-            codes = [code for code in block.m if code not in _SUBPROGRAM_CODES]
-            self._executed.add(row, replace(block, words=rest, m=codes))
-            return self._call_program(row, block) if subprogram_codes == [_CALL] else self._leave_program(block)
-        self._executed.add(row, block)
-        return len(self._blocks) + 1 if ends else row + 1
-
-    def _call_program(self, row: int, block: Block) -> int:
-        number, passes = (whole(block.words.get(letter, default)) for letter, default in (("P", -1.0), ("L", 1.0)))
-        if number is None or passes is None or number < 0 or passes < 0:
-            words = "".join(f" {letter}{block.words[letter]:.10g}" for letter in "PL" if letter in block.words)
-            raise ExecutionFault("G316", f"M98{words}")
-        counted = self._flavour.counts_in_p and number >= _COUNTED and str(number) not in self._jumps.programs
-        if counted and "L" not in block.words:
-            passes, number = divmod(number, _COUNTED)
-        label = str(number)
-        # M98 cannot call a sub/endsub subprogram: it passes no arguments.
-        if label not in self._jumps.programs:
-            raise ExecutionFault("G309", f"M98 P{label}")
-        if passes == 0:
-            return row + 1
-        first_row = self._jumps.programs[label] + 1
-        self._enter(_Level(row + 1, first_row, passes - 1, by_m98=True), None)
-        return first_row
-
-    def _leave_program(self, block: Block) -> int:
-        level = self._levels[-1]
-        if self._flavour.restarts and len(self._levels) == 1 and "P" not in block.words:
-            self.restarts = True
-            return len(self._blocks) + 1
-        if not level.by_m98 or "P" in block.words:
-            raise ExecutionFault("G312", "M99 P" if "P" in block.words else "M99 outside of a subprogram called by M98")
-        self._parameters.leave(None)
-        if level.passes:
-            level.passes -= 1
-            level.repeats.clear()
-            self._parameters.enter(None)
-            return level.first_row
-        self._levels.pop()
-        return level.return_row
-
-    def _enter(self, level: _Level, arguments: list[float] | None) -> None:
-        if len(self._levels) >= self._limits.depth:
-            raise ExecutionFault("G314", f"more than {self._limits.depth} levels, the main program included")
-        self._levels.append(level)
-        self._parameters.enter(arguments)
-
-    def _value(self, word: OWord) -> float:
-        return word.values[0].value(self._parameters)
-
-    def _next(self, row: int, _: OWord) -> int:
-        return row + 1
-
-    def _program(self, row: int, _: OWord) -> int:
-        """A number alone: where it begins another program, the one before it has no further blocks."""
-        return len(self._blocks) if self._flavour.programs_apart and row > 0 else row + 1
-
-    def _call(self, row: int, word: OWord) -> int:
-        label = word.label
-        if not isinstance(label, str):
-            label = label_of_number(label.value(self._parameters), label.column)
-        if label not in self._jumps.subs:
-            raise ExecutionFault("G309", f"O{label if label.isdigit() else f'<{label}>'} call")
-        first_row = self._jumps.subs[label] + 1
-        self._enter(_Level(row + 1, first_row), [value.value(self._parameters) for value in word.values])
-        return first_row
-
-    def _return(self, row: int, word: OWord) -> int:
-        if self._levels[-1].by_m98:
-            raise ExecutionFault("G312", f"{word.keyword} in a subprogram called by M98")
-        returned = self._value(word) if word.values else None
-        self._parameters.leave(returned)
-        return self._levels.pop().return_row
-
-    def _goto(self, row: int, word: OWord) -> int:
-        """To the next block with that sequence number, or else the first one of the same program [Fanuc]."""
-        if word.values and self._value(word) == 0:
-            return row + 1
-        first, end = self._program_of(row)
-        targets = [target for target in self._labels().get(str(word.label), []) if first <= target < end]
-        if not targets:
-            raise ExecutionFault("G309", f"GOTO {word.label}: no block N{word.label} in this program")
-        return next((target for target in targets if target > row), targets[0])
-
-    def _program_of(self, row: int) -> tuple[int, int]:
-        """The first row of the program that a row belongs to, and the row after its last."""
-        begins = sorted(self._jumps.programs.values())
-        index = bisect_left(begins, row + 1)
-        return begins[index - 1] if index else 0, begins[index] if index < len(begins) else len(self._blocks)
-
-    def _labels(self) -> dict[str, list[int]]:
-        """Rows by sequence number, from the text: a block does not keep its own."""
-        if self._rows_of_label is None:
-            self._rows_of_label = rows_of_sequence_numbers(self._text, self._blocks.line)
-        return self._rows_of_label
-
-    def _macro_while(self, row: int, word: OWord) -> int:
-        return row + 1 if self._value(word) != 0 else self._jumps.other_end[row] + 1
-
-    def _after_other_end(self, row: int, _: OWord) -> int:
-        return self._jumps.other_end[row] + 1
-
-    def _to_other_end(self, row: int, _: OWord) -> int:
-        return self._jumps.other_end[row]
-
-    def _if(self, row: int, word: OWord) -> int:
-        """Jump to the first branch whose condition is true."""
-        while word.values and self._value(word) == 0:
-            self.row = row = self._jumps.next_branch[row]
-            self._spend(1, self._cost[row])
-            branch = self._statements[row]
-            assert isinstance(branch, OWord)
-            word = branch
-        return row + 1
-
-    def _while(self, row: int, word: OWord) -> int:
-        holds = self._value(word) != 0
-        if holds == (row in self._jumps.closing):
-            return self._jumps.other_end[row] + 1
-        return row + 1
-
-    def _repeat(self, row: int, word: OWord) -> int:
-        repeats = round(self._value(word))
-        if repeats <= 0:
-            return self._jumps.other_end[row] + 1
-        self._levels[-1].repeats[row] = repeats
-        return row + 1
-
-    def _endrepeat(self, row: int, _: OWord) -> int:
-        first_row = self._jumps.other_end[row]
-        self._levels[-1].repeats[first_row] -= 1
-        return first_row + 1 if self._levels[-1].repeats[first_row] else row + 1
-
-    def _break(self, row: int, _: OWord) -> int:
-        return self._jumps.last_row[row] + 1
-
-    def _continue(self, row: int, _: OWord) -> int:
-        return self._jumps.last_row[row]
-
-
-_STEPS: dict[str, Callable[[_Interpreter, int, OWord], int]] = {
-    "program": _Interpreter._program,
-    "sub": _Interpreter._after_other_end,
-    "endsub": _Interpreter._return,
-    "return": _Interpreter._return,
-    "call": _Interpreter._call,
-    "if": _Interpreter._if,
-    "elseif": _Interpreter._after_other_end,
-    "else": _Interpreter._after_other_end,
-    "endif": _Interpreter._next,
-    "while": _Interpreter._while,
-    "endwhile": _Interpreter._to_other_end,
-    "do": _Interpreter._next,
-    "repeat": _Interpreter._repeat,
-    "endrepeat": _Interpreter._endrepeat,
-    "break": _Interpreter._break,
-    "continue": _Interpreter._continue,
-    "goto": _Interpreter._goto,
-    "macro while": _Interpreter._macro_while,
-    "macro end": _Interpreter._to_other_end,
-}

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Motions: track the tool position from block to block.
+"""Motions: the motions of a program as columns in execution order, in program coordinates and mm, each with its frame.
 
-Enters: blocks with their modal codes. Leaves: the motions of the program as columns in execution order, in program
-coordinates and mm, each with its frame. Motions between two blocks that change the frame or move in a special manner
-form a section and are processed as columns; only those blocks are looped over. A motion starts at the end point of the
-previous one, so start points are stored per section only.
+Enters: sections, as ``position_tracker`` finds them. Leaves: all of them together. A motion starts at the end point of
+the previous one, so start points are stored per section only.
 """
 
 from __future__ import annotations
@@ -15,17 +13,10 @@ from functools import cached_property
 
 import numpy as np
 
-from pkm_post.model import Array, is_uniform, map_rows, uniform
-from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import CYCLES, NONE, Group, word_of
-from pkm_post.reading.gcode.cycles import CycleTracker
-from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
+from pkm_post.model import Array, is_uniform, uniform
 from pkm_post.reading.gcode.events import CycleEvent
 from pkm_post.reading.gcode.frames import Frame
-from pkm_post.reading.gcode.modal import Modal, PositionWords, forward_fill, is_cycle, track_coordinate
-from pkm_post.reading.gcode.options import ReadOptions
-from pkm_post.reading.gcode.polar import PolarWords
-from pkm_post.reading.gcode.work_offsets import IN_ORDER, SETS_OFFSETS, TIP_CONTROL, OffsetCodes
+from pkm_post.reading.gcode.modal import forward_fill
 
 
 @dataclass(frozen=True)
@@ -138,216 +129,5 @@ def _joined(columns: list[Array]) -> Array:
     return columns[0] if len(columns) == 1 else np.concatenate(columns)
 
 
-_ROTARY = "ABC"
-"""Axes of other machines: G28 with them alone moves no other one."""
 KEPT, OTHERS_LOST, LOST = 0, 1, 2
 """What a block leaves known of the place of the tip: all, the coordinates that it gives, nothing."""
-_SECOND = 2
-"""P of G30 for the second reference point; those beyond are not known."""
-_SPECIAL_CODES = (280, 281, 300, 301, 530, *SETS_OFFSETS)
-
-
-class PositionTracker:
-    """Tracks the tool through the blocks."""
-
-    def __init__(
-        self,
-        blocks: Blocks,
-        modal: Modal,
-        tools: Array,
-        spindle: Array,
-        dwells: Array,
-        lost: Array,
-        options: ReadOptions,
-        faults: BlockDiagnostics,
-    ):
-        self.blocks, self.modal, self.options, self.faults = blocks, modal, options, faults
-        self.tools, self.spindle, self.lost = tools, spindle, lost
-        self.polar = PolarWords(blocks, modal, PositionWords.of(blocks, modal), faults)
-        self.words, self._is_polar = self.polar.words, self.polar.rows()
-        self.relative = modal.active[Group.DISTANCE] == 910
-        self.offset_codes = OffsetCodes(blocks, modal, self.words, tools, options, faults)
-        self.drilling = CycleTracker(blocks, modal, self.polar, spindle, dwells, faults)
-        zero = options.machine_zero
-        self.home = {280: options.home or zero, 300: options.second_home or zero}
-        self.in_cycles: list[CycleEvent] = []
-        self._sections: list[Section] = []
-        self._rows = 0
-        self._uses_work_offset = False
-        self.frame = self.offset_codes.offsets.frame()
-        self.frames = [self.frame]
-        start = options.start
-        self.position = np.zeros(3) if start is None else self.frame.to_program(np.array(start))
-        self.known = np.full(3, start is not None)
-
-    def motions(self) -> Motions:
-        """Process all blocks."""
-        moves = np.flatnonzero(self.modal.moves).astype(np.int32)
-        section_ends, done = np.flatnonzero(self._section_ends()), 0
-        for row, until in zip(section_ends.tolist(), np.searchsorted(moves, section_ends).tolist(), strict=True):
-            self._add_ordinary(moves[done:until])
-            done = until
-            self._change_frame(row)
-            if self.lost[row]:
-                self._lose_place(row)
-                done += 1
-                continue
-            if self._is_polar[row]:
-                self.polar.resolve(row, self.position, self.known)
-            if self._special_motion(row):
-                done += int(self.modal.moves[row])
-            elif self._is_polar[row]:
-                self._add_ordinary(moves[done : done + 1])
-                done += 1
-        self._add_ordinary(moves[done:])
-        return concatenated(self._sections, self.frames, self.in_cycles)
-
-    def _section_ends(self) -> Array:
-        """Mask of blocks that change the frame or move in a special manner, (N,)."""
-        programmed = self.modal.programmed
-        section_ends = self.modal.moves & is_cycle(self.modal.active[Group.MOTION])
-        special = map_rows(lambda codes: np.isin(codes, _SPECIAL_CODES), programmed[Group.ONCE])
-        for group in (Group.CHANGE, *IN_ORDER[1:]):
-            special = special | (programmed[group] != NONE)
-        if not is_uniform(programmed[Group.LENGTH]):
-            special = special | ((programmed[Group.LENGTH] != NONE) & ~self._repeats_length_code())
-        return section_ends | special | self._is_polar | (self.lost != KEPT)
-
-    def _repeats_length_code(self) -> Array:
-        """Mask of blocks that repeat the active tip control, (N,): every LN block does."""
-        programmed, length = self.modal.programmed[Group.LENGTH], self.modal.active[Group.LENGTH]
-        same = np.append(False, length[1:] == length[:-1])[: len(length)]
-        return same & np.isin(programmed, TIP_CONTROL) & ~self.blocks.has("H")
-
-    def _add_ordinary(self, rows: Array) -> None:
-        """Add the motions of ordinary blocks, all in one frame."""
-        if not len(rows):
-            return
-        self._uses_work_offset = True
-        index = as_slice(rows)
-        ends, known_from = np.empty((len(rows), 3)), np.zeros(3, np.int64)
-        for axis, column in enumerate(self.words.columns):
-            ends[:, axis], known_from[axis] = track_coordinate(column[index], self.relative[index], self.position[axis])
-        known_from[self.known] = 0
-        motion = self.modal.active[Group.MOTION][index]
-        self._add(rows, motion, ends, int(known_from.max()), known_from < len(rows))
-
-    def _add(self, block: Array, motion: Array, ends: Array, unknown: int, known: Array) -> None:
-        """Add motions in the active frame; ``known``, (3,), marks the known coordinates of the last one."""
-        frame = len(self.frames) - 1
-        self._sections.append(Section(block, motion, ends, unknown, self.position, bool(self.known.all()), frame))
-        self.position, self.known = ends[-1], known
-        self._rows += len(block)
-
-    def _change_frame(self, row: int) -> None:
-        if self.modal.programmed[Group.CHANGE][row] == 6:
-            self.offset_codes.change_tool(row)
-            # The coordinates are unchanged; with a length offset the tip of the new tool is elsewhere.
-            self._set_frame()
-        # Only for a block with such a code: the transformation to {C} and back costs the last digit.
-        if self.offset_codes.changes_frame(row):
-            point = self.frame.to_work(self.position)
-            for groups in (IN_ORDER, (Group.ONCE,)):
-                for group in groups:
-                    self.offset_codes.execute(row, group, self.position, self.known, self._uses_work_offset)
-                self._rebase(point)
-
-    def _rebase(self, point: Array) -> None:
-        """Switch to the active frame; the tool keeps its position in {C}, and its coordinates change."""
-        mixed = self.frame.oblique()
-        self._set_frame()
-        mixed |= self.frame.oblique()
-        self.position = self.frame.to_program(point)
-        if mixed.any():
-            self.known = np.where(mixed, self.known[mixed].all(), self.known)
-
-    def _set_frame(self) -> None:
-        frame = self.offset_codes.offsets.frame()
-        if not (np.array_equal(frame.turn, self.frame.turn) and np.array_equal(frame.shift, self.frame.shift)):
-            self.frame = frame
-            self.frames.append(frame)
-
-    def _lose_place(self, row: int) -> None:
-        """A rapid block that turns the tool: of its tip only coordinates given to the upright tool are known."""
-        words, upright = self.words.at(row), self.lost[row] == OTHERS_LOST
-        given = ~np.isnan(words) & upright & (not self.relative[row])
-        self.position = np.where(given, words, self.position)
-        self.known = given
-
-    # special motions
-
-    def _special_motion(self, row: int) -> bool:
-        """Execute a block with a special motion; return whether it was one."""
-        once = int(self.modal.programmed[Group.ONCE][row])
-        if once == 530 and self.modal.moves[row]:
-            self._machine_move(row)
-        elif once in (280, 300):
-            self._home(row, once)
-        elif once in (281, 301):
-            self.offset_codes.require_position(row, self.known, word_of(once))
-            self.home[once - 1] = tuple(self.frame.to_work(self.position).tolist())
-        elif self.modal.moves[row] and self.modal.active[Group.MOTION][row] in CYCLES:
-            self._drill(row)
-        else:
-            return False
-        return True
-
-    def _add_moves(self, row: int, motions: list[int], points: list[Array], known: Array) -> None:
-        """Linear moves of one block to (3,) positions in program coordinates."""
-        if points:
-            rows, unknown = np.full(len(points), row, np.int32), 0 if known.all() else len(points)
-            self._add(rows, np.array(motions, np.int16), np.array(points), unknown, known)
-
-    def _machine_move(self, row: int) -> None:
-        """G53: words in machine coordinates, those of the spindle nose while a length offset is in force.
-
-        With ``machine_zero`` they are those of the tip, whatever the tool.
-        """
-        motion = 0 if self.modal.flavour.g53_is_rapid else int(self.modal.active[Group.MOTION][row])
-        if self.options.machine_zero is not None:
-            self._move_to(row, motion, self.words.at(row) + np.array(self.options.machine_zero))
-            return
-        if not self.options.work_offsets:
-            self.faults.add("G412", row, ("machine coordinates (", word_of(530), ")"))
-        offsets = self.offset_codes.offsets
-        if self.options.axis_words != "none" and offsets.length is not None:
-            self.faults.add("G412", row, ("machine coordinates (", word_of(530), ") while the tool axis can tilt"))
-        own = 0.0 if offsets.length is None else offsets.own_length
-        words = self.words.at(row) - np.array([0.0, 0.0, own])
-        self._move_to(row, motion, words)
-
-    def _move_to(self, row: int, motion: int, words: Array) -> None:
-        """Move to coordinates in {C}; NaN leaves a coordinate unchanged."""
-        given = ~np.isnan(words)
-        mixed = self.frame.oblique()
-        known = self.known | given
-        if mixed.any() and not known[mixed].all():
-            self.faults.add("G416", row, "a turned coordinate system")
-        point = np.where(given, words, self.frame.to_work(self.position))
-        self._add_moves(row, [motion], [self.frame.to_program(point)], known)
-
-    def _home(self, row: int, code: int) -> None:
-        """G28, G30: move via the programmed point, if any, to the reference point, in the programmed axes."""
-        home = self.home[code]
-        number = self.blocks.word("P")[row]
-        if home is None or number > _SECOND:
-            self.faults.add("G413", row, word_of(code))
-            return
-        words = self.words.at(row)
-        given = ~np.isnan(words)
-        if not given.any() and any(self.blocks.has(letter)[row] for letter in _ROTARY):
-            return
-        if given.any():
-            self._uses_work_offset |= not self.relative[row]
-            from_here = words + self.position if self.relative[row] else words
-            known = self.known if self.relative[row] else self.known | given
-            self._add_moves(row, [0], [np.where(given, from_here, self.position)], known)
-        self._move_to(row, 0, np.where(given if given.any() else True, np.array(home), np.nan))
-
-    def _drill(self, row: int) -> None:
-        strokes = self.drilling.strokes(row, self.position, self.known, self.frame)
-        if strokes is None:
-            return
-        self._uses_work_offset = True
-        self.in_cycles += [(self._rows + index, row, kind, value) for index, kind, value in strokes.events]
-        self._add_moves(row, [int(kind) * 10 for kind in strokes.kinds], strokes.ends, np.ones(3, dtype=np.bool_))

@@ -25,8 +25,9 @@ from pkm_post.reading.gcode.feeds import INVERSE_TIME, feeds, path_modes
 from pkm_post.reading.gcode.flavours import FLAVOURS, RS274
 from pkm_post.reading.gcode.frames import RowFrames, normal_coordinate
 from pkm_post.reading.gcode.modal import Modal, modal_state
-from pkm_post.reading.gcode.motions import Motions, PositionTracker
+from pkm_post.reading.gcode.motions import Motions
 from pkm_post.reading.gcode.options import UNITS, ReadOptions, axis_names
+from pkm_post.reading.gcode.position_tracker import PositionTracker
 from pkm_post.reading.gcode.recovery import first_line, own_faults
 from pkm_post.reading.gcode.tool_axes import check_cycles, spins, surface_normals, tool_axes
 from pkm_post.reading.gcode.tools import side_offsets, spindle_speeds, tools_in_spindle
