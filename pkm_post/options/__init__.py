@@ -25,9 +25,6 @@ from pkm_post.options.arguments import (
     MANUAL_MOVE_PROGRAM,
     PARITIES,
     READING_STEP,
-    RULES_WITH_HEADING,
-    SIDE_OUTPUTS,
-    SPIN_WORDS,
     START_TOLERANCE_MM,
     TextParser,
     add_machine,
@@ -37,6 +34,7 @@ from pkm_post.options.arguments import (
     text_parser,
 )
 from pkm_post.options.conversion import argument_values, options_from, part_program_from, solid_files, tool_lengths_from
+from pkm_post.options.converters import RULES_WITH_HEADING, SIDE_OUTPUTS, SPIN_WORDS
 from pkm_post.options.layers import (
     NO_VALUES,
     ArgumentValues,

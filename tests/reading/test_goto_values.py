@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pkm_post.model.diagnostics import errors
-from pkm_post.options.arguments import _goto_values
+from pkm_post.options.converters import goto_values
 from pkm_post.reading.part_program import ReadingOptions, read_content
 
 CL_DATA = b"UNITS/MM\nFEDRAT/60\nCUTTER/10,5\nLOADTL/1,LENGTH,60\nGOTO/0,0,9\nGOTO/1,2,3,0,0,1,.6,0,.8\nFINI\n"
@@ -27,9 +27,9 @@ def test_normals_follow_the_axis_as_the_option_says():
 @pytest.mark.parametrize("text", ["x,y", "x,y,z,i", "i,j,k", "x,y,z,x,y,z", "x,y,z,w", "", "x,y,z,nx,ny"])
 def test_names_are_of_whole_vectors(text):
     with pytest.raises(argparse.ArgumentTypeError, match="expected x,y,z"):
-        _goto_values(text)
+        goto_values(text)
 
 
 @pytest.mark.parametrize("text", ["x,y,z", "i,j,k,x,y,z", "x,y,z,i,j,k,px,py,pz,nx,ny,nz", "x,i,y,j,z,k"])
 def test_any_order_of_whole_vectors(text):
-    assert _goto_values(text) == tuple(text.split(","))
+    assert goto_values(text) == tuple(text.split(","))

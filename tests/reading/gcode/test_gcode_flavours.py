@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from pkm_post.model import EventKind, Kind, Tool
-from pkm_post.options.arguments import GCODE_FLAVOURS
+from pkm_post.options.converters import GCODE_FLAVOURS
 from pkm_post.reading.gcode import ReadOptions, read
 from pkm_post.reading.gcode.flavours import FLAVOURS, Flavour
 from pkm_post.reading.gcode.guess import guessed_flavour

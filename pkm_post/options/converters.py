@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Converters: the text of one option to its value, in the units of the user; for ``type=`` of ``argparse``.
+
+Input: the text as typed. Output: the value; or ``argparse.ArgumentTypeError`` with what was expected. NumPy is not
+needed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+
+from pkm_post.options.argument_types import above_zero, between, number, offset, tool_length, validated
+from pkm_post.options.layers import NOTHING
+from pkm_post.system import result_files
+
+SIDE_OUTPUTS = tuple(result_files.SIDE_OUTPUTS)
+"""Names of the optional files, in the order in which they are written."""
+
+Pose = tuple[float, float, float, float]
+
+
+def work_offset(text: str) -> str | Pose:
+    """A name, or x, y, z in mm and the rotation about z in degrees."""
+    words = text.split(",")
+    if len(words) == 1:
+        return text
+    if len(words) not in (3, 4):
+        raise argparse.ArgumentTypeError(f"expected X,Y,Z or X,Y,Z,DEG, got {text!r}")
+    x, y, z = map(offset, words[:3])
+    return x, y, z, number(words[3]) if words[3:] else 0.0
+
+
+def sizes(text: str) -> tuple[float, float | None]:
+    """Diameter and corner radius, None if omitted."""
+    word, comma, corner = text.partition(",")
+    diameter = tool_length(word)
+    return diameter, between(0, diameter / 2)(corner) if comma else None
+
+
+_SPINS = {
+    "zero": "",
+    "file": "",
+    "x-in-plane": "DEG",
+    "y-in-plane": "DEG",
+    "optimise": "OBJECTIVE",
+}
+"""Spin rules by name, each with its operand after ``=``."""
+OBJECTIVES = ("stroke", "joints", "singular", "weighted")
+RULES_WITH_HEADING = tuple(rule for rule, value in _SPINS.items() if value == "DEG")
+"""Rules that need a heading."""
+SPIN_WORDS = (*(rule for rule in _SPINS if _SPINS[rule] != "OBJECTIVE"), *(f"optimise={one}" for one in OBJECTIVES))
+"""All choices for the spin, without headings."""
+
+
+def spin(text: str) -> tuple[str, float, str]:
+    """Rule, heading in degrees and objective."""
+    rule, given, value = text.partition("=")
+    if rule not in _SPINS or (given and not _SPINS[rule]):
+        raise argparse.ArgumentTypeError(f"expected one of {spin_words()}, got {text!r}")
+    if _SPINS[rule] == "DEG":
+        return rule, number(value) if given else 0.0, OBJECTIVES[0]
+    if given and value not in OBJECTIVES:
+        raise argparse.ArgumentTypeError(f"expected one of {', '.join(OBJECTIVES)} after =, got {value!r}")
+    return rule, 0.0, value or OBJECTIVES[0]
+
+
+def also(text: str) -> tuple[str, ...]:
+    """Distinct names; the word for nothing cancels a job's choice."""
+    chosen = text.split(",") if text != NOTHING else []
+    if not set(chosen) <= set(SIDE_OUTPUTS):
+        raise argparse.ArgumentTypeError(f"expected names out of {', '.join(SIDE_OUTPUTS)}, got {text!r}")
+    return tuple(name for name in SIDE_OUTPUTS if name in chosen)
+
+
+CL_DIALECTS = ("nx", "creo", "catia", "solidworks", "makino", "apt")
+"""Sources of CL data, as in ``cldata.DIALECTS``."""
+CYCLE_VALUES = ("depth", "feed", "clearance", "return", "step", "dwell")
+"""Meanings of a cycle's numbers, as in ``cldata.CYCLE_VALUES``."""
+
+
+def cycle_values(text: str) -> tuple[str, ...]:
+    """Distinct names, in their order."""
+    chosen = tuple(text.split(","))
+    if not set(chosen) <= set(CYCLE_VALUES) or len(set(chosen)) < len(chosen):
+        raise argparse.ArgumentTypeError(f"expected different names out of {', '.join(CYCLE_VALUES)}, got {text!r}")
+    return chosen
+
+
+GOTO_VALUES = (("x", "y", "z"), ("i", "j", "k"), ("nx", "ny", "nz"), ("px", "py", "pz"))
+"""Meanings of the values of a GOTO, as in ``cldata.GOTO_VALUES``."""
+
+
+def goto_values(text: str) -> tuple[str, ...]:
+    """Distinct names of whole vectors, x, y and z among them."""
+    chosen = tuple(text.split(","))
+    whole = [each for each in GOTO_VALUES if set(each) & set(chosen)]
+    if len(set(chosen)) < len(chosen) or {*chosen} != {name for each in whole for name in each} or "x" not in chosen:
+        names = "; ".join(",".join(each) for each in GOTO_VALUES)
+        raise argparse.ArgumentTypeError(f"expected x,y,z and others of {names}, in any order, got {text!r}")
+    return chosen
+
+
+MIRRORS = ("xy", "xz", "yz")
+"""Names of mirror planes, as in ``toolpath.MIRRORS``."""
+
+
+def copies(text: str) -> tuple[str | float, ...]:
+    """Mirror planes and angles in degrees, in order; the word for nothing cancels a job's choice."""
+    words = text.split(",") if text != NOTHING else []
+    return tuple(word if word in MIRRORS else _copy_angle(word) for word in words)
+
+
+_copy_angle = validated(number, lambda angle: 0 < abs(angle) < 360, "xy, xz, yz or an angle within 360 degrees")
+
+
+GCODE_FLAVOURS = ("rs274", "fanuc")
+"""Whose G-code it is, as in ``gcode.FLAVOUR_NAMES``."""
+_CODE = re.compile(r"[GM]\d{1,4}(\.\d)?", re.IGNORECASE)
+
+
+def codes(text: str) -> tuple[str, ...]:
+    """Codes without leading zeros, in upper case."""
+    words = text.split(",")
+    if not all(map(_CODE.fullmatch, words)):
+        raise argparse.ArgumentTypeError(f"expected G and M codes such as M21,G187, got {text!r}")
+    return tuple(f"{word[0].upper()}{float(word[1:]):g}" for word in words)
+
+
+def point(text: str) -> tuple[float, float, float]:
+    """X, Y and Z in mm."""
+    words = text.split(",")
+    if len(words) != 3:
+        raise argparse.ArgumentTypeError(f"expected X,Y,Z, got {text!r}")
+    x, y, z = map(offset, words)
+    return x, y, z
+
+
+def surface_speed_or_none(text: str) -> float | None:
+    """A surface speed in m/min; None for the word for nothing."""
+    return None if text == NOTHING else above_zero(100_000)(text)
+
+
+def fixture(file: str) -> tuple[str, str]:
+    """A file with its own name: named in two layers of options, it counts once."""
+    return file, file
+
+
+def spin_words() -> str:
+    """The spin rules with their operands, for help and messages."""
+    return ", ".join(rule + (f"[={value}]" if value else "") for rule, value in _SPINS.items())
