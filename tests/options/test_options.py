@@ -12,7 +12,7 @@ from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
     SPIN_WORDS,
     add_options,
-    arguments,
+    converters,
     options_from,
     part_program_from,
     tool_lengths_from,
@@ -66,9 +66,9 @@ def test_what_a_part_program_does_not_say():
 
 
 def test_what_cl_data_may_be_said_to_be_is_what_its_reader_knows():
-    assert (*cldata.DIALECTS,) == arguments.CL_DIALECTS
-    assert arguments.CYCLE_VALUES == cldata.CYCLE_VALUES
-    assert arguments.GOTO_VALUES == cldata.GOTO_VALUES
+    assert (*cldata.DIALECTS,) == converters.CL_DIALECTS
+    assert converters.CYCLE_VALUES == cldata.CYCLE_VALUES
+    assert converters.GOTO_VALUES == cldata.GOTO_VALUES
 
 
 @pytest.mark.parametrize("names", ["depth,feed,depth", "depth,height", "", "depth,"])
@@ -106,9 +106,9 @@ def test_surface_speed():
 
 
 def test_every_rule_of_the_spin_can_be_chosen():
-    assert set(arguments._SPINS) == {rule.value for rule in SpinRule}
-    assert set(arguments._OBJECTIVES) == set(OBJECTIVES)
-    assert {options_from(parsed("--spin", rule)).spin.rule for rule in arguments._SPINS} == set(SpinRule)
+    assert set(converters._SPINS) == {rule.value for rule in SpinRule}
+    assert set(converters.OBJECTIVES) == set(OBJECTIVES)
+    assert {options_from(parsed("--spin", rule)).spin.rule for rule in converters._SPINS} == set(SpinRule)
     assert options_from(parsed()).spin == ZERO_TORSION
 
 
