@@ -83,7 +83,9 @@ class Stopwatch:
         self.steps = []
 
     def begins(self, name, _=0.0):
-        """A step begins, and the one before it ends."""
+        """A step begins, and the one before it ends; further calls within a step are passed over."""
+        if self.steps and self.steps[-1][0] == name:
+            return
         self.steps.append((name, np.array([time.perf_counter(), time.process_time()])))
 
     def reported(self):
