@@ -29,7 +29,7 @@ from pkm_post.model.columns import (
 from pkm_post.model.diagnostic_log import DiagnosticLog
 from pkm_post.model.diagnostics import Diagnostic, Place, Refused, errors
 from pkm_post.model.machine import Body, Box, Machine, ToolChange
-from pkm_post.model.motion import FeedStudy, Motion, Poses, StrutMotion
+from pkm_post.model.motion import AT_FEED, FeedStudy, Motion, Poses, StrutMotion
 from pkm_post.model.program import MOTION_COLUMNS, OPTIONAL_COLUMNS, Event, EventKind, Kind, Program
 from pkm_post.model.rules import RULES, Severity
 from pkm_post.model.setup import (
@@ -46,6 +46,7 @@ from pkm_post.model.setup import (
 from pkm_post.model.trajectory import MAX_SPIN, MIN_TOLERANCE, TRAJECTORY_COLUMNS, Trajectory
 
 __all__ = [
+    "AT_FEED",
     "EMPTY_SETUP",
     "MAX_SPIN",
     "MIN_TOLERANCE",

@@ -14,6 +14,8 @@ import numpy as np
 from pkm_post.model.columns import RowType, freeze, uniform
 from pkm_post.model.program import Array, Event
 
+AT_FEED = 0.95
+"""Share of a feed from which on it counts as reached."""
 _VECTOR: RowType = (np.float64, (3,))
 _NUMBER: RowType = (np.float64, ())
 MOTION_BY_TIME: dict[str, RowType] = {

@@ -14,14 +14,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from pkm_post.geometry import Array, norm
-from pkm_post.model import FeedStudy, Kind, Machine, Trajectory
+from pkm_post.model import AT_FEED, FeedStudy, Kind, Machine, Trajectory
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.speed_limits import LimitedQuantity, limited_quantities
 from pkm_post.planning.tool_path import ToolPath
 
 _INSTANTS = 2000
-_AT_FEED = 0.95
-"""Share of the programmed feed from which on the tool runs at the feed."""
 _NEGLIGIBLE = 1e-9
 """Derivatives below this impose no limit; keeps the quotients finite."""
 _CONTROLLER = "blocks of the controller"
@@ -52,7 +50,7 @@ def feed_study(path: ToolPath, schedule: Schedule, trajectory: Trajectory, machi
         asked=asked,
         possible=np.minimum.reduce(possible) * moved,
         planned=planned,
-        limit=np.where(planned >= _AT_FEED * asked, -1, np.argmax(used, axis=0)),
+        limit=np.where(planned >= AT_FEED * asked, -1, np.argmax(used, axis=0)),
         limits=names,
         row=row,
         cutting=trajectory.kind[row] != Kind.RAPID,

@@ -62,13 +62,14 @@ def write_page(
         tolerances: the requested tolerances.
     """
     duration = float(struts.time_ms[-1]) / 1000
+    bands = list(_operations(trajectory, motion, duration))
     parts = [
         _heading(report, machine.name),
         "<h2>Tool path</h2>",
         f'<p class="hint">{_HINT}</p><canvas id="path"></canvas>',
         f'<script type="application/json" id="path-data">{_path(trajectory, motion)}</script>',
-        _feed(report["feed"], feed, trajectory, motion, duration),
-        _charts(report, trajectory, machine, motion, struts, certificate, tolerances, duration),
+        _feed(report["feed"], feed, duration, bands),
+        _charts(machine, struts, certificate, tolerances, duration, bands),
         _certificate_tables(report["certificate"]),
         _time_table(report["machining_time"]),
         _origin(report),
@@ -147,16 +148,13 @@ def _instants(time_ms: Array, count: int) -> tuple[Array, Array, Array]:
 
 
 def _charts(
-    report: Mapping[str, Any],
-    trajectory: Trajectory,
     machine: Machine,
-    motion: Motion,
     struts: StrutMotion,
     certificate: Certificate,
     tolerances: Tolerances,
     duration: float,
+    bands: Sequence[Band],
 ) -> str:
-    bands = list(_operations(trajectory, motion, duration))
     time, length, speed = _strut_course(struts)
     lengths, speeds = (
         [Line(f"strut {number}", time, column, f"c{number}") for number, column in enumerate(values, 1)]
@@ -178,7 +176,7 @@ def _charts(
     )
 
 
-def _feed(shares: Mapping[str, Any], feed: FeedStudy, trajectory: Trajectory, motion: Motion, duration: float) -> str:
+def _feed(shares: Mapping[str, Any], feed: FeedStudy, duration: float, bands: Sequence[Band]) -> str:
     """The feed over time, and what limits it."""
     if not shares:
         return ""
@@ -196,14 +194,11 @@ def _feed(shares: Mapping[str, Any], feed: FeedStudy, trajectory: Trajectory, mo
             f" allows that feed in {_percent(shares['feed_possible'])} of it, and the plan is at 95 % of what is"
             f" possible there in {_percent(shares['as_possible'])}.</p>",
             legend(lines),
-            chart(
-                "tip speed, mm/s", lines, duration, (), list(_operations(trajectory, motion, duration)),
-                (0.0, _SHOWN_BEYOND * highest),
-            ),
+            chart("tip speed, mm/s", lines, duration, (), bands, (0.0, _SHOWN_BEYOND * highest)),
             f"<table><tr><th>what limits the feed<th>share of cutting time<th>slowest, mm/s<th>programmed<th>time, s"
             f"<th>operation<th>line</tr>{rows}</table>",
         ]
-    )  # fmt: skip
+    )
 
 
 def _limit(row: Mapping[str, Any]) -> str:

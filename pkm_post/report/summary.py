@@ -17,6 +17,7 @@ import numpy as np
 import pkm_post
 from pkm_post.geometry import Array
 from pkm_post.model import (
+    AT_FEED,
     Certificate,
     Coverage,
     EventKind,
@@ -32,8 +33,6 @@ from pkm_post.model import (
     coverage_summary,
 )
 
-_AT_FEED = 0.95
-"""Share of a feed from which on it counts as reached."""
 _FORMAT = 1
 """Version of the report's layout, for programs that parse it."""
 _AS_IT_IS = "axis values are strut lengths in mm, speeds in mm/s; do not edit: the program is certified as it is"
@@ -167,9 +166,9 @@ def feed_shares(trajectory: Trajectory, feed: FeedStudy) -> dict[str, Any]:
             }
         )
     return {
-        "at_feed": _share(planned >= _AT_FEED * asked),
-        "feed_possible": _share(possible >= _AT_FEED * asked),
-        "as_possible": _share(planned >= _AT_FEED * np.minimum(asked, possible)),
+        "at_feed": _share(planned >= AT_FEED * asked),
+        "feed_possible": _share(possible >= AT_FEED * asked),
+        "as_possible": _share(planned >= AT_FEED * np.minimum(asked, possible)),
         "limits": sorted(limits, key=lambda row: -row["share"]),
     }
 

@@ -23,7 +23,7 @@ from pkm_post.writing import trajectory_file
 from pkm_post.writing.controllers import pmac
 
 TOLERANCES = Tolerances(0.001, np.radians(0.001))
-MUTANTS = int(os.environ.get("PKM_MUTANTS", "200"))
+MUTANTS = int(os.environ.get("PKM_MUTANTS", "500"))
 """``PKM_MUTANTS=3000`` for a long series."""
 LAST_DIGIT = 1e-6
 """mm, of a length in the program: the planned length was rounded to it."""
