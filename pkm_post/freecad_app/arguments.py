@@ -20,6 +20,7 @@ from pkm_post.options import (
     ArgumentValues,
     InputKind,
     TextParser,
+    add_recorded,
     explicit_values,
     inapplicable_options,
     parse_text,
@@ -89,7 +90,7 @@ def parse_arguments(text: str, place: Place, post_processor: str = PMAC) -> argp
         Refused: as ``job_arguments``.
     """
     try:
-        chosen = parse_text(text, _parser(post_processor))
+        chosen = parse_text(text, parser_of(post_processor))
         if chosen.also and post_processor != PMAC:
             raise ValueError(f"--also is only for {PMAC} in {text!r}")
     except ValueError as fault:
@@ -164,11 +165,12 @@ def store_in_job(job: Any, text: str, program: str) -> None:
 
 def arguments_help(post_processor: str = PMAC) -> str:
     """Help text of the arguments."""
-    return _parser(post_processor).format_help()
+    return parser_of(post_processor).format_help()
 
 
-def _parser(post_processor: str) -> TextParser:
+def parser_of(post_processor: str) -> TextParser:
+    """The parser of a post-processor's arguments."""
     parser = text_parser(post_processor, POST_PROCESSORS[post_processor])
     for flag, words in _EXTRA_ARGUMENTS.get(post_processor, {}).items():
-        parser.add_argument(flag, **words)
+        add_recorded(parser, flag, **words)
     return parser

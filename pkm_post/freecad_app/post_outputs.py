@@ -2,11 +2,13 @@
 """Post outputs: what the post-processors write for a CAM job.
 
 Takes a job, its settings and the path to which CAM will write; returns the text for that path, and the diagnostics.
-Binary files are written to the same folder. All faults are reported together, and then nothing is written.
+Binary files are written to the same folder, but not for the dialog of FreeCAD newer than 1.1, which saves texts later
+and elsewhere. All faults are reported together, and then nothing is written.
 """
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path as FilePath
@@ -21,8 +23,8 @@ from pkm_post.freecad_app.job_setup import prepared_job
 from pkm_post.freecad_app.post_job import post_to
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.machine import check_reach, find_collisions
-from pkm_post.model import Diagnostic, Refused, Trajectory, errors
-from pkm_post.posting import effective_setup, step_names
+from pkm_post.model import Diagnostic, Place, Refused, Trajectory, errors
+from pkm_post.posting import Posted, effective_setup, step_names
 from pkm_post.system import result_files, staged, write_fault
 from pkm_post.writing import GcodeDialect, manifest, outputs, trajectory_file, write
 
@@ -42,13 +44,29 @@ def _motion_program(job: Any, settings: JobSettings, path: FilePath) -> Written:
     CAM accepts several texts, but inserts its own number into every name after the first: a part would get a name that
     no reader of the program expects. The other parts are therefore not passed to CAM.
     """
-    steps = len(step_names(settings.options)) + _EXTRA_STEPS
-    with Progress(App.Qt.translate("Progress", "Post"), steps) as bar:
-        posted = post_to(path, job, settings, print, lambda step, share: bar.step())
+    posted = _posted(job, settings, path)
     if len(posted.parts) > 1:
         names = ", ".join(part.name for part in posted.parts)
         App.Console.PrintMessage(f"the program has {len(posted.parts)} parts, to be run in this order: {names}\n")
     return posted.program.read_text(encoding="ascii"), posted.diagnostics
+
+
+def _program_alone(job: Any, settings: JobSettings, path: FilePath) -> Written:
+    """The motion program without its other files, for a dialog that saves texts wherever the user likes."""
+    with tempfile.TemporaryDirectory() as folder:
+        posted = _posted(job, settings, FilePath(folder) / path.name)
+        names = ", ".join(file.name for file in posted.files if file != posted.program)
+        if len(posted.parts) > 1:
+            raise Refused([*posted.diagnostics, Diagnostic("F111", Place(path.name), f"it needs {names} beside it")])
+        found = Diagnostic("F112", Place(path.name), f"without {names}")
+        return posted.program.read_text(encoding="ascii"), (*posted.diagnostics, found)
+
+
+def _posted(job: Any, settings: JobSettings, path: FilePath) -> Posted:
+    """The results of posting, with progress in the status bar."""
+    steps = len(step_names(settings.options)) + _EXTRA_STEPS
+    with Progress(App.Qt.translate("Progress", "Post"), steps) as bar:
+        return post_to(path, job, settings, print, lambda step, share: bar.step())
 
 
 def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
@@ -89,13 +107,33 @@ def _gcode(job: Any, settings: JobSettings, path: FilePath) -> Written:
     return _require(write(program, GcodeDialect(settings.arguments.form), inch=settings.arguments.inch), found)
 
 
-OUTPUTS: dict[str, Callable[[Any, JobSettings, FilePath], Written]] = {
+def _trajectory_alone(job: Any, settings: JobSettings, path: FilePath) -> Written:
+    """Refuse: the dialog would save the text, and the trajectory it names is a file of bytes."""
+    found = f"it needs {path.with_suffix(result_files.TRAJECTORY).name} beside it"
+    raise Refused([Diagnostic("F111", Place(path.name), found)])
+
+
+Output = Callable[[Any, JobSettings, FilePath], Written]
+"""Takes the job, its settings and the path of the text."""
+_OUTPUTS: dict[str, Output] = {
     PMAC: _motion_program,
     TRAJECTORY: _trajectory,
     LINUXCNC: _linuxcnc,
     GCODE: _gcode,
 }
-"""Output function by post-processor; it takes the job, its settings and the path of the text."""
+"""Output function by post-processor."""
+_IN_THE_DIALOG: dict[str, Output] = {PMAC: _program_alone, TRAJECTORY: _trajectory_alone}
+"""Those that differ where only texts are saved, after posting and in a folder that is not known then."""
+
+
+def output_of(post_processor: str, for_dialog: bool = False) -> Output:
+    """Output function of a post-processor.
+
+    Args:
+        post_processor: its name.
+        for_dialog: whether the dialog of FreeCAD newer than 1.1 saves the text, where nothing else is written.
+    """
+    return _IN_THE_DIALOG.get(post_processor, _OUTPUTS[post_processor]) if for_dialog else _OUTPUTS[post_processor]
 
 
 def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:

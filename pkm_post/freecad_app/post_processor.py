@@ -36,6 +36,7 @@ class HexapodPost(PostProcessor):
 
     def __init__(self, job: Any) -> None:
         job, self._chosen = _unpacked(job)
+        self._entered: dict[str, Any] = {}
         super().__init__(job, tooltip=self.tooltip, tooltipargs="", units="G21")
 
     @property
@@ -57,15 +58,19 @@ class HexapodPost(PostProcessor):
             Refused: the job cannot be posted; CAM writes nothing then.
         """
         from pkm_post.freecad_app.job_settings import settings_of
-        from pkm_post.freecad_app.post_outputs import OUTPUTS
+        from pkm_post.freecad_app.post_outputs import output_of
+        from pkm_post.freecad_app.post_properties import values_of_properties
         from pkm_post.freecad_app.progress import Stopped
         from pkm_post.model import Refused
         from pkm_post.system import memory_guard
 
         try:
             with memory_guard(self._job.Label):
-                settings = settings_of(self._job, post_processor=self.name, selection=self._chosen)
-                text, diagnostics = OUTPUTS[self.name](self._job, settings, program_path(self._job))
+                machine = getattr(self, "_machine", None)
+                given = values_of_properties(self._job, self.name, machine, self._entered)
+                settings = settings_of(self._job, given, post_processor=self.name, selection=self._chosen)
+                output = output_of(self.name, for_dialog=getattr(self, "_dialog_handled", False))
+                text, diagnostics = output(self._job, settings, program_path(self._job))
         except Refused as refused:
             _report(refused)
             raise
@@ -77,21 +82,37 @@ class HexapodPost(PostProcessor):
         return [("allitems", text)]
 
     def export2(self) -> list[tuple[str, str]]:
-        """The same for a job with a FreeCAD machine: the machine from our arguments is used."""
+        """The same for a job with a machine of FreeCAD newer than 1.1.
+
+        Its axes, output and processing options are those of a serial machine and have no meaning here: the machine
+        file that our arguments name is used. FreeCAD's own form would write the path without planning or certificate.
+        """
         return self.export()
 
     def get_file_extension(self) -> str:
         """The suffix of the text, which newer versions ask for when the job has a FreeCAD machine."""
         return program_path(self._job).suffix.lstrip(".")
 
+    @classmethod
+    def get_common_property_schema(cls) -> list[dict[str, Any]]:
+        """None of the properties that FreeCAD's own posts share, such as a preamble: they would change nothing."""
+        return []
+
+    @classmethod
+    def get_property_schema(cls) -> list[dict[str, Any]]:
+        """The arguments, for the dialogs of FreeCAD newer than 1.1."""
+        from pkm_post.freecad_app.post_properties import property_schema
+
+        return property_schema(cls.name)
+
     def apply_configuration_bundle(self, overrides: Mapping[str, Any] | None = None) -> None:
-        """Take the fixtures chosen in the dialog of FreeCAD newer than 1.1; its other settings are for FreeCAD's posts.
+        """Take the fixtures and arguments chosen in the dialog of FreeCAD newer than 1.1.
 
         Args:
-            overrides: settings of the dialog, by name.
+            overrides: settings of the dialog, by name; its others are for FreeCAD's posts.
         """
-        fixtures = (overrides or {}).get("selected_fixtures")
-        self._chosen = replace(self._chosen, fixtures=fixtures or None)
+        self._entered = dict(overrides or {})
+        self._chosen = replace(self._chosen, fixtures=self._entered.get("selected_fixtures") or None)
 
 
 def _unpacked(job: Any) -> tuple[Any, Selection]:

@@ -18,6 +18,8 @@ from types import ModuleType
 from typing import Any
 
 FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "postprocessors")
+MACHINE_FOLDER = os.path.join(FOLDER, "machine")
+"""Post-processors for the machines of FreeCAD newer than 1.1; older versions would list them beside the others."""
 _PREFERENCES = "Path.Preferences"
 _MESH_FILE = "pkm_post.reading"
 
@@ -42,6 +44,7 @@ def _add_folder(preferences: ModuleType) -> None:
     add_folder = getattr(preferences, "addAddonPostPath", None)
     if add_folder is not None:  # FreeCAD newer than 1.1
         add_folder(FOLDER)
+        add_folder(MACHINE_FOLDER)
         return
 
     def searchPathsPost() -> list[str]:

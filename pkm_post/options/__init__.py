@@ -6,6 +6,7 @@ The argument table imports nothing else: FreeCAD reads it for a tooltip.
 
 from typing import TYPE_CHECKING, Any
 
+from pkm_post.options.argument_fields import ArgumentField, argument_fields, text_of_fields
 from pkm_post.options.argument_types import (
     LONGEST_TOOL,
     above_zero,
@@ -40,6 +41,7 @@ from pkm_post.options.layers import (
     ArgumentValues,
     InputKind,
     Override,
+    add_recorded,
     applicable_values,
     explicit_values,
     flag_of,
@@ -69,6 +71,7 @@ __all__ = [
     "SIDE_OUTPUTS",
     "SPIN_WORDS",
     "START_TOLERANCE_MM",
+    "ArgumentField",
     "ArgumentValues",
     "InputKind",
     "MeshFiles",
@@ -80,7 +83,9 @@ __all__ = [
     "add_machine",
     "add_options",
     "add_part_program",
+    "add_recorded",
     "applicable_values",
+    "argument_fields",
     "argument_values",
     "between",
     "count",
@@ -102,6 +107,7 @@ __all__ = [
     "positive",
     "result_conflicts",
     "solid_files",
+    "text_of_fields",
     "text_parser",
     "tool_length",
     "tool_lengths_from",

@@ -2,6 +2,7 @@
 """package.xml says what the add-on manager of FreeCAD needs, and names files that are there."""
 
 import ast
+import json
 from pathlib import Path as FilePath
 
 import FreeCAD as App
@@ -32,8 +33,14 @@ def test_class_of_the_workbench_exists():
 
 def test_post_processors_are_where_newer_versions_of_freecad_look():
     named = [ROOT / each.Subdirectory / f"{each.Name}_post.py" for each in PACKAGE.Content["Postprocessor"]]
-    assert sorted(named) == sorted((ROOT / "postprocessors").glob("*.py"))
-    assert [each.Name for each in PACKAGE.Content["Postprocessor"]] == list(POST_PROCESSORS)
+    assert sorted(named) == sorted((ROOT / "postprocessors").rglob("*.py"))
+    assert [each.Name for each in PACKAGE.Content["Postprocessor"]] == [*POST_PROCESSORS, "hexapod_machine"]
+
+
+def test_machines_are_where_newer_versions_of_freecad_look():
+    (machine,) = PACKAGE.Content["machine"]
+    (file,) = (ROOT / machine.Subdirectory).glob("*.fcm")
+    assert json.loads(file.read_text(encoding="utf-8"))["machine"]["name"] == machine.Name
 
 
 def test_dependencies():

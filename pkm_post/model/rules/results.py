@@ -147,6 +147,15 @@ RESULT_RULES: dict[str, Rule] = {
         "not all files were replaced, and earlier files could not be restored",
         "close the programs that have the named files open, remove them, and try again",
     ),
+    "F111": error(
+        "CAM's dialog saves one text, and this result has several files",
+        "post with Post of the PKM Post workbench, which writes them together",
+    ),
+    "F112": warning(
+        "CAM's dialog saves the program alone",
+        "post with Post of the PKM Post workbench to have its report, trajectory and set-up file beside it: a program"
+        " without them is not loaded into the controller (C110)",
+    ),
     "F130": error(
         "there is not enough memory",
         "close other programs, do fewer operations or files at a time, or use a computer with more memory",
