@@ -174,6 +174,7 @@ def certify(
     tolerances: Tolerances,
     collisions: tuple[Coverage, ...] = NO_SETUP,
     spin_deviation: Array | float = 0.0,
+    rests: tuple[bool, bool] = (True, True),
 ) -> tuple[Certificate | None, tuple[Diagnostic, ...]]:
     """Play a program and compare it with the trajectory it was made from.
 
@@ -187,8 +188,9 @@ def certify(
         collisions: coverage of the checks against part, stock and fixtures.
         spin_deviation: (K + 1,) mm of a strut due to spin error, if the motion was reconstructed and so has the spin
             of the program itself.
+        rests: whether the program rests at its start, and at its end; a piece of a motion may not.
     """
-    faults = structure_faults(struts, program_name, trajectory, machine, motion)
+    faults = structure_faults(struts, program_name, trajectory, machine, motion, rests)
     if faults:
         return None, faults
     ruler, ceiling = TrajectoryRuler(trajectory, tolerances), _feed_ceiling(trajectory, motion)

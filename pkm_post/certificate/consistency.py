@@ -28,7 +28,12 @@ _SAME = 1e-9
 
 
 def structure_faults(
-    struts: StrutMotion, program_name: str, trajectory: Trajectory, machine: Machine, motion: Motion
+    struts: StrutMotion,
+    program_name: str,
+    trajectory: Trajectory,
+    machine: Machine,
+    motion: Motion,
+    rests: tuple[bool, bool] = (True, True),
 ) -> tuple[Diagnostic, ...]:
     """Diagnostics that prevent a comparison: another machine, other knots, other events, or motion at the ends.
 
@@ -38,6 +43,7 @@ def structure_faults(
         trajectory: the programmed trajectory.
         machine: the machine to check the program on.
         motion: the plan.
+        rests: whether the program rests at its start, and at its end.
     """
     another, found = machine_fault(trajectory, machine, program_name), []
     if not np.array_equal(struts.time_ms, motion.time_ms):
@@ -45,8 +51,8 @@ def structure_faults(
         found.append(("V110", _first_difference("knot", *times, "{} ms".format)))
     if struts.events != motion.events:
         found.append(("V109", event_fault(struts.events, motion.events)))
-    for which, speed in (("first", struts.speed[0]), ("last", struts.speed[-1])):
-        if speed.any():
+    for which, speed, rest in zip(("first", "last"), struts.speed[[0, -1]], rests, strict=True):
+        if rest and speed.any():
             found.append(("V105", f"{which} speeds {speed.tolist()} mm/s"))
     diagnostics = (Diagnostic(code, Place(program_name), text) for code, text in found)
     return (another, *diagnostics) if another else tuple(diagnostics)

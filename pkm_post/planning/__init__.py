@@ -3,11 +3,17 @@
 
 from pkm_post.planning.knots import LONGEST_MS
 from pkm_post.planning.motion import FeedPlan, Plan, interpolate, plan, plan_feed, strut_motion
+from pkm_post.planning.schedule import Schedule
+from pkm_post.planning.window import Course, PathState, course
 
 __all__ = [
     "LONGEST_MS",
+    "Course",
     "FeedPlan",
+    "PathState",
     "Plan",
+    "Schedule",
+    "course",
     "interpolate",
     "plan",
     "plan_feed",

@@ -218,6 +218,13 @@ def interpolate(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> Plan:
 
     Where points exceed the block rate of the controller, the motion is replanned with a lower feed.
     """
+    feed_plan, motion = within_controller(feed_plan, longest_ms)
+    study = feed_study(feed_plan.path, feed_plan.schedule, feed_plan.trajectory, feed_plan.machine)
+    return Plan(motion, strut_motion(motion, feed_plan.machine), study)
+
+
+def within_controller(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> tuple[FeedPlan, Motion]:
+    """The plan with the feed that its controller can follow, and its motion at the knots."""
     motion, slower = _interpolated(feed_plan, longest_ms)
     for _ in range(_MOST_ROUNDS):
         if slower.is_none:
@@ -231,8 +238,7 @@ def interpolate(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> Plan:
             break
         feed_plan = replace(feed_plan, path=path, schedule=schedule, share=share)
         motion, slower = _interpolated(feed_plan, longest_ms)
-    study = feed_study(feed_plan.path, feed_plan.schedule, feed_plan.trajectory, feed_plan.machine)
-    return Plan(motion, strut_motion(motion, feed_plan.machine), study)
+    return feed_plan, motion
 
 
 @dataclass(frozen=True)
@@ -255,8 +261,13 @@ class _Slower:
 
 def _interpolated(feed_plan: FeedPlan, longest_ms: int) -> tuple[Motion, _Slower]:
     """The motion of the tool; and what the controller requires."""
+    return interpolated_between(feed_plan, even_marks(feed_plan.schedule.rests_ms, longest_ms))
+
+
+def interpolated_between(feed_plan: FeedPlan, marks: Array) -> tuple[Motion, _Slower]:
+    """The same from the first of some whole ms, (K,) that are knots, to the last."""
     path, schedule, machine = feed_plan.path, feed_plan.schedule, feed_plan.machine
-    marks, shortest = even_marks(schedule.rests_ms, longest_ms), machine.shortest_interval
+    shortest = machine.shortest_interval
     ends = np.flatnonzero(np.diff(marks[:-1] // _STRETCH_MS, prepend=-1, append=-1))
     stretches = [marks[first : last + 1] for first, last in itertools.pairwise(ends)]
 

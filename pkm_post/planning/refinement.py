@@ -70,10 +70,40 @@ class Profile:
     close: Array
 
 
+@dataclass(frozen=True)
+class Span:
+    """A part of a path, from a place that is passed at a speed to a rest.
+
+    Attributes:
+        start: path length where it begins.
+        end: path length where the motion rests.
+        square: speed squared at the start, 0 for a rest.
+    """
+
+    start: float
+    end: float
+    square: float
+
+    def of(self, marks: Stations, path: ToolPath) -> Stations:
+        """The stations between both ends, and the ends."""
+        gap = _NARROW * (self.end - self.start)
+        inside = np.flatnonzero((marks.s > self.start + gap) & (marks.s < self.end - gap))
+        within, ends = marks.some(inside), np.array([self.start, self.end])
+        last = len(path.feed) - 1
+        first = np.searchsorted(path.starts, ends[:1], side="right") - 1
+        segment = np.clip(np.append(first, np.searchsorted(path.starts, ends[1:]) - 1), 0, last)
+        rest = np.array([self.square == 0, True])
+        row = np.array([0, len(inside)])
+        return within.inserted(row, Stations(segment, ends - path.starts[segment], ends, rest, marks.edges))
+
+
 def refined_profile(
-    path: ToolPath, machine: Machine, close: Array, rough: Pair, share: Array
+    path: ToolPath, machine: Machine, close: Array, rough: Pair, share: Array, span: Span | None = None
 ) -> tuple[Stations, Array]:
     """Stations, and the fastest speed squared at them, (M,).
+
+    The motion comes to rest at the end of a span in time. If it is too fast for that at its start, the first speed is
+    lower than that of the span.
 
     Args:
         path: N segments.
@@ -81,11 +111,15 @@ def refined_profile(
         close: (N,) which segments get exact limits.
         rough: limits of speed squared and acceleration that hold on the whole of each other segment, (N,) each.
         share: (N,) share of the limits of acceleration that is planned on each segment.
+        span: the part of the path to plan; its segments and their neighbours are all close. By default all of it.
     """
     marks = stations(path, close, coarse=True)
+    marks = marks if span is None else span.of(marks, path)
     needed = close[marks.segment] | close[following(path, marks.segment, marks.u)] | marks.rest
     first = marks.some(needed)
     limits = limits_at(path, first.segment, first.u, close, rough, machine)
+    if span is not None and span.square > 0:
+        limits.speed[0] = min(limits.speed[0], span.square)
     profile = _coarse(first, limits, share[first.segment[1:]], close)
     for _ in range(_MOST_ROUNDS):
         cell, part, waiting = _places(profile)
