@@ -15,6 +15,7 @@ from pkm_post.model.checkpoint import checkpoint, checkpoints
 from pkm_post.model.columns import (
     Array,
     ColumnBuilder,
+    find_rows,
     freeze,
     in_pieces,
     is_uniform,
@@ -88,6 +89,7 @@ __all__ = [
     "corner_reach",
     "coverage_summary",
     "errors",
+    "find_rows",
     "freeze",
     "gauge_lengths",
     "checkpoint",

@@ -149,6 +149,15 @@ def select_rows(column: Array, rows: Array) -> Array:
     return np.take(column, rows, axis=0)
 
 
+def find_rows(ascending: Array, rows: Array) -> tuple[Array, Array]:
+    """Where ``rows``, (N,), occur in ``ascending``, (M,): their indices in both, (K,) each."""
+    if not len(ascending):
+        return ascending, ascending
+    at = np.minimum(np.searchsorted(ascending, rows), len(ascending) - 1)
+    found = np.flatnonzero(ascending[at] == rows)
+    return found, at[found]
+
+
 def map_rows(function: Callable[[Array], Array], column: Array) -> Array:
     """Apply a function to each row, computed once where all rows are equal.
 

@@ -34,7 +34,7 @@ from pkm_post.planning import FeedPlan, Plan, interpolate, plan_feed
 from pkm_post.posting.machine_check import home_faults
 from pkm_post.posting.placement import effective_setup, trajectory_of
 from pkm_post.posting.run import Findings, Log, PostContext, Posted, Progress, Run, no_log, no_progress
-from pkm_post.report import draw_report, summary, write_page
+from pkm_post.report import Results, draw_report, summary, write_page
 from pkm_post.system import memory_guard, result_files, staged, write_fault
 from pkm_post.writing import TABLES, controller_settings, manifest, outputs, program_files, read_texts, trajectory_file
 
@@ -126,9 +126,10 @@ def _all_steps(
     trajectory = _stored_trajectory(run, frame, program)
     motion, feed, names, covered = _written_program(run, frame, trajectory, setup)
     played, certificate, files = _certificate(run, frame, trajectory, motion, covered)
-    report = _report(run, frame, trajectory, motion, feed, played, certificate, program.reading, files)
+    results = Results(trajectory, machine, motion, played, certificate, frame.tolerances, feed, program.reading, files)
+    report = _report(run, frame, results)
     for name in options.also:
-        _write_another(run, frame, name, trajectory, motion, played, certificate)
+        _write_another(run, frame, name, results)
     return names, report
 
 
@@ -265,47 +266,27 @@ def _read_back(run: Run, frame: PostContext) -> tuple[StrutMotion, list[str]]:
     return played, [program_files.program_hash(text) for _, text in texts]
 
 
-def _report(
-    run: Run,
-    frame: PostContext,
-    trajectory: Trajectory,
-    motion: Motion,
-    feed: FeedStudy,
-    played: StrutMotion,
-    certificate: Certificate,
-    reading: tuple[str, ...],
-    files: dict[str, Any],
-) -> dict[str, Any]:
+def _report(run: Run, frame: PostContext, results: Results) -> dict[str, Any]:
     """Write the report as JSON and as a page; return its content."""
     with run.step(_REPORT) as notes:
-        machine, tolerances = frame.machine, frame.tolerances
-        report = summary.report(trajectory, machine, certificate, tolerances, played, motion, reading, files, feed)
+        report = summary.report(results)
         summary.write(report, frame.beside(result_files.REPORT))
-        page = frame.beside(result_files.PAGE)
-        write_page(page, report, trajectory, machine, motion, feed, played, certificate, tolerances)
-        notes.extend(summary.verdict(certificate))
-    run.print([*reading, *report["certificate"]["meaning"]])
+        write_page(frame.beside(result_files.PAGE), report, results)
+        notes.extend(summary.verdict(results.certificate))
+    run.print([*results.reading, *report["certificate"]["meaning"]])
     return report
 
 
-def _write_another(
-    run: Run,
-    frame: PostContext,
-    name: str,
-    trajectory: Trajectory,
-    motion: Motion,
-    played: StrutMotion,
-    certificate: Certificate,
-) -> None:
+def _write_another(run: Run, frame: PostContext, name: str, results: Results) -> None:
     """Write an additional output."""
+    trajectory = results.trajectory
     with run.step(_another(name)) as notes:
         if name == LINUXCNC:
             run.accept(outputs.write_for_linuxcnc(frame.path, trajectory, frame.tolerances.tip))
             return
         if name == PICTURE:
-            picture = frame.beside(result_files.PICTURE)
-            run.accept(draw_report(picture, trajectory, frame.machine, motion, played, certificate, frame.tolerances))
+            run.accept(draw_report(frame.beside(result_files.PICTURE), results))
             return
-        note, faults = outputs.write_table(frame.path, TABLES[name], played, summary.origin(trajectory))
+        note, faults = outputs.write_table(frame.path, TABLES[name], results.struts, summary.origin(trajectory))
         run.accept(faults)
         notes.append(note)

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from pkm_post.certificate import certify, machine_fault, reconstruct, values_beyond_machine
 from pkm_post.machine import reach_faults
 from pkm_post.model import Certificate, Diagnostic, Machine, Place, Refused, StrutMotion, Trajectory, errors
-from pkm_post.report import summary
+from pkm_post.report import Results, summary
 from pkm_post.writing import controller_settings, manifest, program_files, read_texts, trajectory_file
 
 Findings = tuple[Diagnostic, ...]
@@ -97,7 +97,8 @@ def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) 
     files = summary.hashes(
         [program_files.program_hash(text) for _, text in texts], manifest.fingerprint_of_file(trajectory)
     )
-    return certificate, summary.report(planned, machine, certificate, tolerances, struts, result.motion, files=files)
+    results = Results(planned, machine, result.motion, struts, certificate, tolerances, files=files)
+    return certificate, summary.report(results)
 
 
 def _refuse_for_machine(planned: Trajectory, machine: Machine, name: str) -> None:

@@ -5,9 +5,11 @@ from pkm_post.report import summary
 from pkm_post.report.animated_png import animate
 from pkm_post.report.page import write_page
 from pkm_post.report.plots import draw_reach, draw_report
+from pkm_post.report.results import Results
 from pkm_post.report.summary import heading
 
 __all__ = [
+    "Results",
     "animate",
     "draw_reach",
     "draw_report",

@@ -19,8 +19,9 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds
-from pkm_post.model import Certificate, FeedStudy, Kind, Machine, Motion, StrutMotion, Tolerances, Trajectory
+from pkm_post.model import FeedStudy, Kind, Motion, StrutMotion, Trajectory
 from pkm_post.report.charts import Band, Line, chart, legend
+from pkm_post.report.results import Results
 
 _PLACES = 6000
 """Instants at which the path is drawn in 3D."""
@@ -37,39 +38,24 @@ _HINT = (
 )
 
 
-def write_page(
-    path: Path,
-    report: Mapping[str, Any],
-    trajectory: Trajectory,
-    machine: Machine,
-    motion: Motion,
-    feed: FeedStudy,
-    struts: StrutMotion,
-    certificate: Certificate,
-    tolerances: Tolerances,
-) -> None:
+def write_page(path: Path, report: Mapping[str, Any], results: Results) -> None:
     """Write the page of a report.
 
     Args:
         path: of the HTML file.
         report: the content of the report (``summary.report``).
-        trajectory: the programmed path.
-        machine: its limits are drawn.
-        motion: the planned motion.
-        feed: its feed.
-        struts: the program as read back.
-        certificate: certificate of the program.
-        tolerances: the requested tolerances.
+        results: what the report was made from.
     """
-    duration = float(struts.time_ms[-1]) / 1000
+    trajectory, machine, motion = results.trajectory, results.machine, results.motion
+    duration = float(results.struts.time_ms[-1]) / 1000
     bands = list(_operations(trajectory, motion, duration))
     parts = [
         _heading(report, machine.name),
         "<h2>Tool path</h2>",
         f'<p class="hint">{_HINT}</p><canvas id="path"></canvas>',
         f'<script type="application/json" id="path-data">{_path(trajectory, motion)}</script>',
-        _feed(report["feed"], feed, duration, bands),
-        _charts(machine, struts, certificate, tolerances, duration, bands),
+        _feed(report["feed"], results.feed, duration, bands),
+        _charts(results, duration, bands),
         _certificate_tables(report["certificate"]),
         _time_table(report["machining_time"]),
         _origin(report),
@@ -147,15 +133,9 @@ def _instants(time_ms: Array, count: int) -> tuple[Array, Array, Array]:
     return time, interval, np.clip(share, 0.0, 1.0)
 
 
-def _charts(
-    machine: Machine,
-    struts: StrutMotion,
-    certificate: Certificate,
-    tolerances: Tolerances,
-    duration: float,
-    bands: Sequence[Band],
-) -> str:
-    time, length, speed = _strut_course(struts)
+def _charts(results: Results, duration: float, bands: Sequence[Band]) -> str:
+    machine, certificate, tolerances = results.machine, results.certificate, results.tolerances
+    time, length, speed = _strut_course(results.struts)
     lengths, speeds = (
         [Line(f"strut {number}", time, column, f"c{number}") for number, column in enumerate(values, 1)]
         for values in (length, speed)
@@ -176,9 +156,9 @@ def _charts(
     )
 
 
-def _feed(shares: Mapping[str, Any], feed: FeedStudy, duration: float, bands: Sequence[Band]) -> str:
+def _feed(shares: Mapping[str, Any], feed: FeedStudy | None, duration: float, bands: Sequence[Band]) -> str:
     """The feed over time, and what limits it."""
-    if not shares:
+    if feed is None or not shares:
         return ""
     highest = float(max(feed.asked.max(), feed.planned.max()))
     lines = [

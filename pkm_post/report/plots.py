@@ -18,6 +18,7 @@ import numpy as np
 from pkm_post.geometry import Array
 from pkm_post.model import Certificate, Diagnostic, Kind, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory
 from pkm_post.report.charts import decimated
+from pkm_post.report.results import Results
 
 _MATPLOTLIB = ("matplotlib.backends.backend_agg", "matplotlib.figure", "mpl_toolkits.mplot3d")
 """Required modules; the last provides 3D axes."""
@@ -43,26 +44,9 @@ def missing_matplotlib(picture: Path) -> tuple[Diagnostic, ...]:
     return ()
 
 
-def draw_report(
-    path: Path,
-    trajectory: Trajectory,
-    machine: Machine,
-    motion: Motion,
-    struts: StrutMotion,
-    certificate: Certificate,
-    tolerances: Tolerances,
-) -> tuple[Diagnostic, ...]:
-    """Draw the picture of the report to a PNG file.
-
-    Args:
-        path: path of the file.
-        trajectory: the programmed path.
-        machine: its limits are drawn.
-        motion: the planned motion.
-        struts: the program as read back.
-        certificate: certificate of the program.
-        tolerances: the requested tolerances.
-    """
+def draw_report(path: Path, results: Results) -> tuple[Diagnostic, ...]:
+    """Draw the picture of the report to a PNG file; a missing matplotlib is a warning."""
+    trajectory, machine, motion, struts = results.trajectory, results.machine, results.motion, results.struts
     missing = missing_matplotlib(path)
     if missing:
         return missing
@@ -76,8 +60,8 @@ def draw_report(
     lengths, speeds, deviations = right.subplots(3, 1, sharex=True, gridspec_kw=_PLOTS_OVER_TIME)
     _lengths(lengths, struts, machine)
     _speeds(speeds, struts, machine)
-    _deviations(deviations, certificate, tolerances)
-    title = f"{trajectory.source} on {machine.name}: {certificate.duration:.1f} s, {len(struts)} points"
+    _deviations(deviations, results.certificate, results.tolerances)
+    title = f"{trajectory.source} on {machine.name}: {results.certificate.duration:.1f} s, {len(struts)} points"
     figure.suptitle(title, parse_math=False)
     save(figure, path, dpi=110, pil_kwargs={"compress_level": 1})
     return ()

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,13 +25,11 @@ from pkm_post.model import (
     Figure,
     Finding,
     Kind,
-    Machine,
     Motion,
-    StrutMotion,
-    Tolerances,
     Trajectory,
     coverage_summary,
 )
+from pkm_post.report.results import Results
 
 _FORMAT = 1
 """Version of the report's layout, for programs that parse it."""
@@ -67,23 +65,15 @@ def origin(trajectory: Trajectory) -> list[str]:
     ]
 
 
-def report(
-    trajectory: Trajectory,
-    machine: Machine,
-    certificate: Certificate,
-    tolerances: Tolerances,
-    struts: StrutMotion,
-    motion: Motion,
-    reading: Sequence[str] = (),
-    files: Mapping[str, Any] | None = None,
-    feed: FeedStudy | None = None,
-) -> dict[str, Any]:
-    """The report as data that JSON can hold; ``reading`` is as in ``model.Program``, ``files`` as of ``hashes``."""
+def report(results: Results) -> dict[str, Any]:
+    """The report as data that JSON can hold."""
+    trajectory, certificate, tolerances = results.trajectory, results.certificate, results.tolerances
+    machine, motion, struts = results.machine, results.motion, results.struts
     return {
         "format": _FORMAT,
         "program": {
             "source": trajectory.source,
-            "reading": list(reading),
+            "reading": list(results.reading),
             "operations": list(trajectory.operations),
             "segments": len(trajectory),
             "cutting_length_mm": _rounded(trajectory.length[trajectory.kind != Kind.RAPID].sum(), 3),
@@ -91,7 +81,7 @@ def report(
             "tools": [vars(tool) for tool in _tools(trajectory)],
         },
         "machine": {"name": machine.name, "sha256": machine.fingerprint},
-        "files": dict(files or {}),
+        "files": dict(results.files),
         "tolerances": {
             "tip_mm": tolerances.tip,
             "axis_deg": _rounded(np.degrees(tolerances.axis), 9),
@@ -104,7 +94,7 @@ def report(
             "longest_strut_mm": _by_column(np.max, struts.length),
         },
         "machining_time": machining_time(trajectory, motion),
-        "feed": {} if feed is None else feed_shares(trajectory, feed),
+        "feed": {} if results.feed is None else feed_shares(trajectory, results.feed),
         "hold_points": hold_points(trajectory, motion),
         "certificate": {
             "holds": certificate.holds,

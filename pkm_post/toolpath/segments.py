@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.geometry import Array, across, along_rates, cross, dot, norm, towards
-from pkm_post.model import Kind, Trajectory, is_uniform, map_row_pairs, map_rows, select_rows
+from pkm_post.model import Kind, Trajectory, find_rows, is_uniform, map_row_pairs, map_rows, select_rows
 from pkm_post.toolpath.compressor.splines import Splines, direction
 
 _TURNING_IN_PLACE = 0.01
@@ -55,11 +55,7 @@ class Arcs:
 
     def among(self, segment: Array) -> tuple[Array, Array]:
         """Which of the given segments, (M,), are arcs, and their rows here, (K,) each."""
-        if not len(self.row):
-            return self.row, self.row
-        at = np.minimum(np.searchsorted(self.row, segment), len(self.row) - 1)
-        named = np.flatnonzero(self.row[at] == segment)
-        return named, at[named]
+        return find_rows(self.row, segment)
 
 
 @dataclass(frozen=True)

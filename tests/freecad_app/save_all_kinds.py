@@ -6,7 +6,7 @@ the part program that the document names:
 
     PKM_FREECAD=1.0 tools/freecad -M "$PWD" tools/run_script.py -- tests/freecad_app/save_all_kinds.py tests/data/saved
 
-What lies in tests/data/saved was written by the version in its name. It is opened by tests, and never written anew: a
+What lies in tests/data/saved was written by the version in its name. Tests open it; it is never written again: a
 new version gets a file of its own.
 """
 

@@ -182,7 +182,7 @@ def test_drill_is_refused(document):
 
 
 def test_stopped_computation_leaves_nothing(box_job, monkeypatch):
-    """Headless nobody can press Escape; FreeCAD's bar raises this when somebody does."""
+    """There is no Escape key without a window; FreeCAD's bar raises this when it is pressed."""
 
     class Bar:
         def start(self, text, steps):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Columns of tables: locked, shared where nobody can change them, and kept once where all rows are the same."""
+"""Columns of tables: read-only, shared where they may be, and kept once where all rows are the same."""
 
 from dataclasses import dataclass
 

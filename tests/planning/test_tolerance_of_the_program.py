@@ -12,7 +12,7 @@ from pkm_post.certificate import certify
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import interpolate, plan_feed, strut_motion
 from pkm_post.planning.motion import tool_path
-from pkm_post.report import summary
+from pkm_post.report import Results, summary
 from pkm_post.toolpath.place import place
 
 ASKED = Tolerances(tip=1e-3, axis=np.radians(1e-3))
@@ -111,7 +111,7 @@ def test_the_report_has_the_points_of_rest_and_the_tolerances_of_the_program():
     _, motion = planned(trajectory)
     certificate, _ = certified(trajectory, motion)
     struts = strut_motion(motion, example())
-    report = summary.report(trajectory, example(), certificate, ASKED, struts, motion)
+    report = summary.report(Results(trajectory, example(), motion, struts, certificate, ASKED))
     assert report["tolerances"]["tip_of_program_mm"] == [0.02, 0.05]
     held = report["hold_points"]
     assert held["line"] == [2, 4, 6]

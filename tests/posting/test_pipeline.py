@@ -229,7 +229,7 @@ class Cancelled(Exception):  # noqa: N818 - what a window raises when its user c
     pass
 
 
-GONE = ConnectionError("nobody listens")
+GONE = ConnectionError("no listener")
 """What a watcher raises that is elsewhere, and what printing raises when the terminal is closed: no fault of files."""
 
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from pkm_post.geometry import Array, length_of
+from pkm_post.model import find_rows
 
 TIP, AXIS, SPIN = slice(0, 3), slice(3, 6), slice(6, 7)
 """Columns of a place: tip, vector of the tool axis, spin."""
@@ -103,7 +104,7 @@ class Splines:
     @property
     def turns(self) -> bool:
         """Whether the curves have tool axis and spin."""
-        return self.powers.shape[1] > 3  # noqa: PLR2004
+        return self.powers.shape[1] > AXIS.start
 
     def pieces_of_rows(self) -> tuple[Array, Array]:
         """First and last piece on which each row lies, (M,) each."""
@@ -114,11 +115,7 @@ class Splines:
 
     def among(self, segment: Array) -> tuple[Array, Array]:
         """Which of the given segments, (N,), have curves, and their rows here, (K,) each."""
-        if not len(self.row):
-            return self.row, self.row
-        at = np.minimum(np.searchsorted(self.row, segment), len(self.row) - 1)
-        named = np.flatnonzero(self.row[at] == segment)
-        return named, at[named]
+        return find_rows(self.row, segment)
 
     @functools.cached_property
     def tip(self) -> Array:

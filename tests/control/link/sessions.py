@@ -51,7 +51,7 @@ class Turns:
 
     def sleep(self, seconds):
         me = threading.current_thread()
-        if me not in self._gates:  # nobody plays
+        if me not in self._gates:  # a thread without a gate
             self._pass(self.now + seconds)
             return
         self._due[me] = self.now + seconds

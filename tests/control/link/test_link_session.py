@@ -158,7 +158,7 @@ def test_what_programs_say_is_kept():
 
 
 def test_a_query_that_takes_long_is_left_for_a_stop(wire):
-    """One that does not is waited for: to connect anew would take longer."""
+    """One that does not is waited for: a new connection would take longer."""
     with wire.session() as session:
         session.preempt_when(lambda: True)
         assert session.query("P1") == ("0",)
@@ -184,7 +184,7 @@ def test_a_link_that_does_not_come_back_is_left_for_a_stop(wire):
 
 
 def test_a_stop_is_not_left_for_another(wire):
-    """What changes something runs to its end, or nobody would know of it."""
+    """What changes something runs to its end: its outcome has to be known."""
     with wire.session() as session:
         session.preempt_when(lambda: True)
         lose(wire, b"P5=1")

@@ -64,7 +64,7 @@ def lying(made, choice, share):
     def reported(session, text):
         said = execute(session, text)
         if text == "SIZE" or re.match("I3", text):
-            return said  # or nobody would get to know it
+            return said  # a false answer to these cannot be noticed
         lies = [choice.choice(JUNK) if choice.random() < share else each for each in said]
         return lies if choice.random() > share else lies[:-1]
 

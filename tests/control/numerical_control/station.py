@@ -70,7 +70,7 @@ class Station:
 
 
 def new_station(kind="tcp"):
-    """A station that nobody has touched."""
+    """A station in its initial state."""
     wire = Wire(copy.deepcopy(set_up()), kind, moves=True)
     session = wire.session()
     return Station(wire, NumericalControl(session, MACHINE, SETTINGS, TOOL))

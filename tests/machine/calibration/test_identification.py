@@ -93,7 +93,7 @@ def test_noisy_measurements_take_the_tip_error_from_43_mm_to_the_noise():
 
 
 def test_deviations_are_those_of_many_calibrations():
-    """Forty machines measured anew: the spread of each parameter is what its standard deviation says."""
+    """Forty calibrations, each with its own noise: the spread of each parameter is what its standard deviation says."""
     nominal, real = machines()
     rng = np.random.default_rng(3)
     reported = poses(rng, 40)

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Results: everything a posting or a verification found out, as the report, its page and its picture show it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from pkm_post.model import Certificate, FeedStudy, Machine, Motion, StrutMotion, Tolerances, Trajectory
+
+
+@dataclass(frozen=True)
+class Results:
+    """The input of a report.
+
+    Attributes:
+        trajectory: the programmed path.
+        machine: its limits are shown.
+        motion: the planned motion.
+        struts: the program as read back.
+        certificate: certificate of the program.
+        tolerances: the requested tolerances.
+        feed: feed of the plan; None if only the program is known.
+        reading: how the input was read, as in ``model.Program``.
+        files: hashes of the files (``summary.hashes``).
+    """
+
+    trajectory: Trajectory
+    machine: Machine
+    motion: Motion
+    struts: StrutMotion
+    certificate: Certificate
+    tolerances: Tolerances
+    feed: FeedStudy | None = None
+    reading: Sequence[str] = ()
+    files: Mapping[str, Any] = field(default_factory=dict)
