@@ -16,17 +16,19 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 from pkm_post.cli.terminal import ProgressLine, print_diagnostics
+from pkm_post.system import FREECADCMD, FreeCADCommand, freecad_command
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 _ADDON = _PACKAGE.parent
 _IN_A_WHEEL = _PACKAGE / "tools"
 _TOOLS = _IN_A_WHEEL if _IN_A_WHEEL.is_dir() else _ADDON / "tools"
+_FINDER = _ADDON / "tools" / "freecad"
 _START_INSIDE = str(_PACKAGE / "cli" / "start_inside.py")
 _READ_BY_FREECAD = (".fcstd", ".step", ".stp")
 _START = "import sys; sys.path.insert(0, sys.argv.pop(1)); from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))"
@@ -41,6 +43,8 @@ _TIME_TO_END = 10.0
 """Seconds for a process to clean up before it is killed."""
 _HAS_GROUPS = os.name == "posix"
 """Whether a process can lead a process group, so that all its children end with it."""
+_NO_WINDOW = getattr(subprocess, "CREATE_NO_WINDOW", 0)
+"""On Windows each process of a program without a console would open a console window."""
 
 
 def is_inside() -> bool:
@@ -70,7 +74,7 @@ def run_inside(arguments: Sequence[str]) -> int:
     if not command:
         return 1
     try:
-        ended = subprocess.run(command, check=False).returncode
+        ended = subprocess.run(command, check=False, creationflags=_window_flags()).returncode
     except OSError as fault:
         print_diagnostics([start_fault(command, fault)])
         return 1
@@ -80,17 +84,22 @@ def run_inside(arguments: Sequence[str]) -> int:
     return code
 
 
+def _window_flags() -> int:
+    """No window for a process whose output goes to ours, if we have no console that it could share."""
+    return 0 if sys.stdout is not None and sys.stdout.isatty() else _NO_WINDOW
+
+
 def command_inside(arguments: Sequence[str]) -> list[str]:
     """Command line that runs a command inside FreeCADCmd; empty, after a message, if FreeCAD is missing.
 
     FreeCAD loads an add-on as such. A wheel is not loaded: its folder contains packages for another Python.
     """
-    freecad = freecad_command()
-    if not freecad:
-        print_diagnostics([diagnostic_text(_NOT_STARTED, "FreeCADCmd", "there is none on the path")])
+    freecad = _freecad_command()
+    if not freecad.words:
+        print_diagnostics([diagnostic_text(_NOT_STARTED, "FreeCADCmd", freecad.missing)])
         return []
     addon = ["-M", str(_ADDON)] if (_ADDON / "Init.py").exists() else []
-    return [*freecad, *addon, str(_TOOLS / "run_script.py"), "--", _START_INSIDE, *arguments]
+    return [*freecad.words, *addon, str(_TOOLS / "run_script.py"), "--", _START_INSIDE, *arguments]
 
 
 def command_outside(arguments: Sequence[str]) -> list[str]:
@@ -122,18 +131,15 @@ def start_fault(command: Sequence[str], fault: OSError) -> str:
     return diagnostic_text(_NOT_STARTED, command[0], fault.strerror or str(fault))
 
 
-def freecad_command(environment: Mapping[str, str] = os.environ, system: str = sys.platform) -> list[str]:
-    """FreeCADCmd command line: from the user's setting, the add-on's finder, or the path.
+def _freecad_command() -> FreeCADCommand:
+    """FreeCADCmd, by the finder of a checkout, which makes one where there is none, or where it is installed.
 
     The finder is a bash script. Windows cannot run it, and a bash on its path belongs to another system, WSL.
     """
-    if environment.get("FREECADCMD"):
-        return [environment["FREECADCMD"]]
-    finder, path = _ADDON / "tools" / "freecad", environment.get("PATH")
-    if system != "win32" and finder.exists() and shutil.which("bash", path=path):
-        return [str(finder)]
-    found = shutil.which("freecadcmd", path=path) or shutil.which("FreeCADCmd", path=path)
-    return [found] if found else []
+    has_finder = sys.platform != "win32" and _FINDER.exists() and shutil.which("bash") is not None
+    if has_finder and not os.environ.get(FREECADCMD):
+        return FreeCADCommand((str(_FINDER),))
+    return freecad_command()
 
 
 def diagnostic_text(code: str, place: str, found: str) -> str:
@@ -177,6 +183,7 @@ class _Child:
             errors="replace",
             env=os.environ | {"PYTHONIOENCODING": "utf-8"},  # independent of the locale
             start_new_session=_HAS_GROUPS,
+            creationflags=_NO_WINDOW,
         )
 
     def interrupt(self) -> None:

@@ -25,7 +25,7 @@ from pkm_post.freecad_app.progress import Progress
 from pkm_post.machine import check_reach, find_collisions
 from pkm_post.model import Diagnostic, Place, Refused, Trajectory, errors
 from pkm_post.posting import Posted, effective_setup, step_names
-from pkm_post.system import result_files, staged, write_fault
+from pkm_post.system import require_usable, result_files, staged, write_fault
 from pkm_post.writing import GcodeDialect, manifest, outputs, trajectory_file, write
 
 T = TypeVar("T")
@@ -75,6 +75,7 @@ def _trajectory(job: Any, settings: JobSettings, path: FilePath) -> Written:
     target = path.with_suffix(result_files.TRAJECTORY)
     earlier = manifest.listed(target.parent, target.stem)
     try:
+        require_usable(target.name)
         with staged(target.parent, manifest.manifest_name(target.stem)) as folder:
             stored = folder / target.name
             trajectory_file.write(replace(trajectory, tolerances=settings.options.tolerances), stored)

@@ -35,7 +35,7 @@ from pkm_post.posting.machine_check import home_faults
 from pkm_post.posting.placement import effective_setup, trajectory_of
 from pkm_post.posting.run import Findings, Log, PostContext, Posted, Progress, Run, no_log, no_progress
 from pkm_post.report import Results, draw_report, summary, write_page
-from pkm_post.system import memory_guard, result_files, staged, write_fault
+from pkm_post.system import memory_guard, require_usable, result_files, staged, write_fault
 from pkm_post.writing import TABLES, controller_settings, manifest, outputs, program_files, read_texts, trajectory_file
 
 SUFFIX = result_files.PROGRAM
@@ -82,6 +82,7 @@ def post(
         raise Refused(found)
     run = Run(log, progress, _shares(options), list(found))
     try:
+        require_usable(program_path.name)
         results = staged(program_path.parent, manifest.manifest_name(program_path.stem))
         with memory_guard(str(program_path)), results as folder:
             parts, report = _all_steps(run, program, machine, folder / program_path.name, options, setup)

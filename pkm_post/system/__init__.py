@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Any
 from pkm_post.system import result_files
 from pkm_post.system.document import DocumentContent, Job, read_document
 from pkm_post.system.document_archive import DamagedDocument
+from pkm_post.system.file_names import require_usable, unusable_name
+from pkm_post.system.freecad_command import VARIABLE as FREECADCMD
+from pkm_post.system.freecad_command import FreeCADCommand, freecad_command
 from pkm_post.system.lock import Lock, OwnerRecord, lock_owner, try_lock
 from pkm_post.system.out_of_memory import MEMORY_FAULTS, memory_diagnostic, memory_guard
 from pkm_post.system.staged import staged, write_fault
@@ -18,21 +21,26 @@ if TYPE_CHECKING:
     from pkm_post.system.decimals import DecimalReader
 
 __all__ = [
+    "FREECADCMD",
     "MEMORY_FAULTS",
     "DamagedDocument",
     "DecimalReader",
     "DocumentContent",
+    "FreeCADCommand",
     "Job",
     "Lock",
     "OwnerRecord",
+    "freecad_command",
     "lock_owner",
     "memory_diagnostic",
     "memory_guard",
     "read_document",
+    "require_usable",
     "result_files",
     "staged",
     "try_lock",
     "in_workers",
+    "unusable_name",
     "workers",
     "write_fault",
 ]

@@ -19,6 +19,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pkm_post.system.file_names import UnusableNameError
 from pkm_post.system.lock import Lock, try_lock
 
 if TYPE_CHECKING:
@@ -39,11 +40,19 @@ _PATIENCE = 30.0
 _RESERVE = 4 << 20
 """Bytes that are free again when the private folder is removed: that takes memory, also where all of it is used."""
 _PAUSE = 0.005
-"""s, between attempts to acquire the lock."""
+"""s, between attempts to acquire the lock, or to move a file that is open."""
+_OPEN_ELSEWHERE = (5, 32, 33)
+"""Windows errors for a file that another program has open: access denied, sharing violation, lock violation."""
+_PATIENCE_WITH_OPEN_FILES = 3.0
+"""s, timeout for virus scanners and indexers, which open new files for a moment."""
 
 
 class BusyError(OSError):
     """Another process has been moving files into a folder for too long."""
+
+
+class OpenElsewhereError(OSError):
+    """Another program has a file open, which Windows does not let be moved or replaced then."""
 
 
 class MixedError(OSError):
@@ -69,6 +78,7 @@ def staged(folder: Path, last: str = "") -> Iterator[Path]:
 
     Raises:
         BusyError: another process is still moving files.
+        OpenElsewhereError: another program has one of the files open.
         MixedError: files could not be moved, and not all earlier ones could be restored.
         OSError: a folder cannot be made, the block left more than files, or one cannot be synchronised or moved.
     """
@@ -148,11 +158,31 @@ def _move_files(new: Path, folder: Path, aside: Path, last: str) -> None:
     try:
         for source, target in _moves(names, new, folder, aside, last):
             begun.append((source, target))
-            os.replace(source, target)
+            _move(source, target)
         _synchronise_names(folder)
     except BaseException as fault:
         _undo(begun, last, fault)
         raise
+
+
+def _move(source: Path, target: Path) -> None:
+    """Move a file; wait for programs that have it open for a moment.
+
+    Raises:
+        OpenElsewhereError: another program keeps it open.
+        OSError: it cannot be moved.
+    """
+    deadline = time.monotonic() + _PATIENCE_WITH_OPEN_FILES
+    while True:
+        try:
+            os.replace(source, target)
+            return
+        except PermissionError as fault:
+            if getattr(fault, "winerror", None) not in _OPEN_ELSEWHERE:
+                raise
+            if time.monotonic() > deadline:
+                raise OpenElsewhereError(f"{source.name} is open in another program, or protected: {fault}") from fault
+            time.sleep(_PAUSE)
 
 
 def _moves(names: list[str], new: Path, folder: Path, aside: Path, last: str) -> Iterator[_Move]:
@@ -175,7 +205,7 @@ def _undo(begun: list[_Move], last: str, fault: BaseException) -> None:
             continue
         try:
             if not os.path.lexists(source):  # the last move may not have happened
-                os.replace(target, source)
+                _move(target, source)
         except OSError:
             stuck.append(source.name)
     if stuck:
@@ -198,7 +228,13 @@ def _synchronise_names(folder: Path) -> None:
             os.close(descriptor)
 
 
-_CODES = ((BusyError, "F109"), (MixedError, "F110"), (OSError, "F101"))
+_CODES = (
+    (BusyError, "F109"),
+    (MixedError, "F110"),
+    (OpenElsewhereError, "F113"),
+    (UnusableNameError, "F114"),
+    (OSError, "F101"),
+)
 
 
 def write_fault(path: Path, fault: OSError) -> Diagnostic:

@@ -3,13 +3,15 @@
 
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 from interpreter import PYTHON
 
 from pkm_post.cli import processes
-from pkm_post.cli.processes import command_inside, freecad_command, inner_exit_code, outcome
+from pkm_post.cli.processes import command_inside, inner_exit_code, outcome
+from pkm_post.system import FreeCADCommand
 
 ADDON = Path(__file__).parents[2]
 
@@ -39,7 +41,7 @@ def is_refused(ran, code, *words):
 def test_what_cannot_be_started(tmp_path):
     text = tmp_path / "text"
     text.write_text("no program")
-    is_refused(started(tmp_path, "/no/such/freecadcmd"), "F140", "/no/such/freecadcmd", "No such file")
+    is_refused(started(tmp_path, "/no/such/freecadcmd"), "F140", "/no/such/freecadcmd", "no such file")
     is_refused(started(tmp_path, text), "F140", "Permission denied")
     is_refused(started(tmp_path, tmp_path), "F140", "Permission denied")
     text.chmod(0o755)
@@ -94,32 +96,35 @@ def test_a_bash_of_another_system(tmp_path):
     is_refused(started(tmp_path, "", **path), "F141", "no distribution is installed")
 
 
-def test_windows_runs_no_script_of_bash(tmp_path):
+def test_windows_runs_no_script_of_bash(tmp_path, monkeypatch, capsys):
+    monkeypatch.delenv("FREECADCMD", raising=False)
+    assert command_inside([])[0] == str(ADDON / "tools" / "freecad")
     script(tmp_path / "bash", "exit 1")
-    alone = {"PATH": str(tmp_path)}
-    assert freecad_command(alone, "win32") == []
-    assert freecad_command(alone, "linux") == [str(ADDON / "tools" / "freecad")]
-    freecad = script(tmp_path / "FreeCADCmd", "exit 0")
-    assert freecad_command(alone, "win32") == [freecad]
-    assert freecad_command(alone | {"FREECADCMD": "mine"}, "win32") == ["mine"]
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setattr(sys, "platform", "win32")
+    assert command_inside([]) == []
+    assert "there is none on the path" in capsys.readouterr().err
 
 
 def test_no_freecad_at_all(monkeypatch, capsys):
-    monkeypatch.setattr(processes, "freecad_command", lambda: [])
+    monkeypatch.setattr(processes, "_freecad_command", lambda: FreeCADCommand((), "there is none"))
     assert processes.run_inside(["post", "part.FCStd"]) == 1
-    assert "error F140" in capsys.readouterr().err
+    assert "error F140: FreeCAD could not be started: there is none" in capsys.readouterr().err
 
 
 def test_without_numpy_it_is_said_in_short(tmp_path):
     (tmp_path / "numpy.py").write_text("raise ModuleNotFoundError('no numpy', name='numpy')")
     ran = started(tmp_path, "/no/such/freecadcmd", PYTHONPATH=f"{tmp_path}{os.pathsep}{ADDON}")
-    is_refused(ran, "F140", "/no/such/freecadcmd", "No such file")
+    is_refused(ran, "F140", "/no/such/freecadcmd", "no such file")
 
 
-def test_what_is_not_started_for_freecad_ends_as_it_ends(monkeypatch):
+def test_what_is_not_started_for_freecad_ends_as_it_ends(tmp_path, monkeypatch):
+    script(tmp_path / "freecadcmd", "exit 0")
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
     monkeypatch.setenv("FREECADCMD", "freecadcmd")
     inside = command_inside(["post", "part.FCStd"])
-    assert inside[0] == "freecadcmd" and inside[-2:] == ["post", "part.FCStd"]
+    assert inside[0] == str(tmp_path / "freecadcmd") and inside[-2:] == ["post", "part.FCStd"]
     assert [outcome(["python3"], code) for code in (0, 1, 64)] == [(0, ""), (1, ""), (64, "")]
     assert [outcome(inside, inner_exit_code(code)) for code in (0, 1, 2, 130)] == [(0, ""), (1, ""), (2, ""), (130, "")]
 

@@ -156,6 +156,11 @@ RESULT_RULES: dict[str, Rule] = {
         "post with Post of the PKM Post workbench to have its report, trajectory and set-up file beside it: a program"
         " without them is not loaded into the controller (C110)",
     ),
+    "F113": error(
+        "a file is open in another program",
+        "close it there, or wait until a virus scanner or a cloud folder has done with it, and try again",
+    ),
+    "F114": error("a result cannot have this name", "choose another name for the program or the job"),
     "F130": error(
         "there is not enough memory",
         "close other programs, do fewer operations or files at a time, or use a computer with more memory",
