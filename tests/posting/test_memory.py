@@ -3,7 +3,6 @@
 
 import gc
 import json
-import resource
 import tracemalloc
 from pathlib import Path
 
@@ -21,6 +20,8 @@ from pkm_post.writing.controllers.pvt import reader as program_reader
 from pkm_post.writing.controllers.pvt import writer
 from pkm_post.writing.trajectory_file import invariants as parts
 from pkm_post.writing.trajectory_file import reader as trajectory_reader
+
+resource = pytest.importorskip("resource")  # POSIX
 
 PIECES = (
     (motion, "_KNOTS_AT_ONCE"),

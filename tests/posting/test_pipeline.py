@@ -2,7 +2,6 @@
 import dataclasses
 import json
 import math
-import resource
 import signal
 from contextlib import contextmanager
 
@@ -17,6 +16,8 @@ from pkm_post.options.choices import Options
 from pkm_post.posting import steps
 from pkm_post.posting.steps import post, step_names
 from pkm_post.writing.controllers import pmac
+
+resource = pytest.importorskip("resource")  # POSIX
 
 
 @pytest.fixture(scope="module")

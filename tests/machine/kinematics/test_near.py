@@ -12,6 +12,8 @@ from pkm_post.machine.kinematics.strut_cubics import KnotState
 SHARE = np.linspace(0, 1, 9)
 LENGTH = 1e-10
 """mm, of ``forward``."""
+ROUNDING = 0.0 if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else 1e-12
+"""Before NumPy 2 the last bits depend on how many rows are computed at once."""
 MACHINES = {"example": example, "screws": lambda: screwed(example())}
 
 
@@ -73,8 +75,8 @@ def test_a_pose_does_not_depend_on_the_others():
         own = tuple(inverse[row : row + 1] for inverse in inverses)
         alone = ToolPoses(guess.tip[part], guess.axis[part], guess.spin[part], tool[part])
         pose, _ = refine_poses(machine, lengths[row : row + 1], alone, own, SHARE)
-        np.testing.assert_array_equal(pose.tip, whole.tip[part])
-        np.testing.assert_array_equal(pose.axis, whole.axis[part])
+        np.testing.assert_allclose(pose.tip, whole.tip[part], rtol=0, atol=ROUNDING)
+        np.testing.assert_allclose(pose.axis, whole.axis[part], rtol=0, atol=ROUNDING)
 
 
 def test_shares_may_differ_by_interval():
