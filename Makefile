@@ -5,13 +5,15 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format translations fuzz soak conformance package clean
+.PHONY: help demo test oldest lint format translations fuzz soak conformance package docs release-check clean
 
 PYTHON ?= python3
 VENV := .venv
 FUZZ_VENV := .venv-fuzz
 TRANSLATIONS_VENV := .venv-translations
 PACKAGE_VENV := .venv-package
+OLDEST_VENV := .venv-oldest
+DOCS_VENV := .venv-docs
 CONFORMANCE := .conformance
 NPM_PACKAGES := kaitai-struct-compiler@0.11.0 kaitai-struct@0.11.0 js-yaml@5.5.0
 FUZZ_SECONDS ?= 120
@@ -30,7 +32,7 @@ endef
 
 help: ## print this list
 	@echo "make TARGET, where TARGET is one of"
-	@sed -n 's/^\([a-z]*\):.*## /  \1\t/p' Makefile | expand -t 16
+	@sed -n 's/^\([a-z-]*\):.*## /  \1\t/p' Makefile | expand -t 16
 	@echo "PKM_FREECAD=1.0 or 1.1 chooses the FreeCAD; 'tools/freecad --help' tells which one it is otherwise."
 
 demo: export PKM_MODULES = numpy matplotlib
@@ -72,15 +74,33 @@ soak: $(VENV)/made ## sessions and downloads over faulty links, killed posts (SO
 conformance: $(VENV)/made $(CONFORMANCE)/made ## compile pkmt.ksy with Kaitai's compiler, and read files with it
 	@$(VENV)/bin/python tests/writing/trajectory_file/conformance.py $(CONFORMANCE)
 
-package: $(VENV)/made ## build a wheel in dist/, and check a machine with it in an environment of its own
+package: $(VENV)/made ## build a wheel in dist/, and post G-code and a document with it in an empty environment
 	@rm -rf dist
 	@$(VENV)/bin/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir dist .
 	@$(PYTHON) -m venv --clear $(PACKAGE_VENV)
-	@$(PACKAGE_VENV)/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
-	@cd dist && ../$(PACKAGE_VENV)/bin/python -m pkm_post machine check example_6tps
+	@$(FREECAD) tests/freecad_app/save_one_job.py "$$PWD/$(PACKAGE_VENV)/trial.FCStd"
+	@wheel=$$(echo dist/*.whl); $(PACKAGE_VENV)/bin/python -m pip install --quiet --disable-pip-version-check "$$wheel[gcode]"
+	@trial=$$(mktemp -d); trap 'rm -rf "$$trial"' EXIT; run=$$PWD/$(PACKAGE_VENV)/bin/pkm-post; \
+	printf '#!/bin/sh\nunset FREECADCMD; exec "%s" "$$@"\n' "$$PWD/tools/freecad" >"$$trial/freecadcmd"; chmod +x "$$trial/freecadcmd"; \
+	cp examples/first.ngc $(PACKAGE_VENV)/trial.FCStd "$$trial"; cd "$$trial"; \
+	export FREECADCMD="$$trial/freecadcmd"; \
+	"$$run" machine check example_6tps; \
+	"$$run" post first.ngc trial.FCStd --tool-length 1=120 --work-offset=0,0,250 --out out; \
+	test -s out/first.pmc -a -s out/trial.pmc
+
+oldest: $(OLDEST_VENV)/made ## run a part of the tests with the oldest NumPy that is allowed
+	@PYTHONPATH=. $(OLDEST_VENV)/bin/python -m pytest -q -p no:cacheprovider -n 2 tests/options tests/writing tests/report \
+		tests/system/test_decimals.py tests/posting/test_verify.py $(ARGS)
+
+docs: $(DOCS_VENV)/made ## make the pages as a site in site/, with every link checked
+	@$(DOCS_VENV)/bin/python tools/make_site.py $(DOCS_VENV)/pages
+	@$(DOCS_VENV)/bin/mkdocs build --quiet --strict
+
+release-check: ## say what a release still lacks
+	@$(PYTHON) tools/release.py --check
 
 clean: ## remove what the targets left in this directory
-	rm -rf out dist $(VENV) $(FUZZ_VENV) $(TRANSLATIONS_VENV) $(PACKAGE_VENV) $(CONFORMANCE) .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf out dist $(VENV) $(FUZZ_VENV) $(TRANSLATIONS_VENV) $(PACKAGE_VENV) $(OLDEST_VENV) $(DOCS_VENV) site $(CONFORMANCE) .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -not -path './.git/*' -prune -exec rm -rf {} +
 
 # Kaitai's compiler is a package of npm; it is not needed to use or to test PKM Post, so .ci/run does without.
@@ -96,7 +116,9 @@ $(CONFORMANCE)/made: Makefile
 $(VENV)/made: GROUP = dev
 $(FUZZ_VENV)/made: GROUP = fuzz
 $(TRANSLATIONS_VENV)/made: GROUP = translations
-$(VENV)/made $(FUZZ_VENV)/made $(TRANSLATIONS_VENV)/made: pyproject.toml
+$(OLDEST_VENV)/made: GROUP = oldest
+$(DOCS_VENV)/made: GROUP = docs
+$(VENV)/made $(FUZZ_VENV)/made $(TRANSLATIONS_VENV)/made $(OLDEST_VENV)/made $(DOCS_VENV)/made: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or newer is needed: make PYTHON=python3.NN" >&2; exit 1; }
 	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \

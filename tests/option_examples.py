@@ -17,8 +17,6 @@ EXAMPLES = {
     "--feed": ("300", "450.5"),
     "--flavour": ("fanuc", "rs274"),
     "--machine-zero": ("0,0,300", "10,-20,400"),
-    "--origin": ("G55=100,0,0", "G55=100,0,0,90"),
-    "--subprograms": ("shop", "library"),
     "--leave-out": ("M21", "M21,G187"),
     "--contour-data": ("centre", "contour"),
     "--wear": ("1=0.02", "1=-0.01"),
@@ -35,14 +33,11 @@ EXAMPLES = {
     "--also": ("csv", "halstreamer,linuxcnc"),
 }
 """Each with an effect of its own, so that one is not mistaken for the other."""
-SWITCHES = {
-    flag: (flag, f"--no-{flag[2:]}")
-    for flag in ("--keep-chip-load", "--keep-climb", "--allow-open-end", "--block-delete")
-}
+SWITCHES = {flag: (flag, f"--no-{flag[2:]}") for flag in ("--keep-chip-load", "--keep-climb", "--allow-open-end")}
 """On and off."""
 
 
-ADDED = {"--fixture", "--subprograms"}
+ADDED = {"--fixture"}
 """What comes to what is said before, and replaces nothing of it."""
 
 

@@ -30,7 +30,7 @@ def lap():
     document = App.newDocument("ring")
     job = new_job(document)
     add_operation(job, QUARTER)
-    runpy.run_path(str(ROOT / "examples" / "four_quadrants.FCMacro"), run_name="__main__")
+    runpy.run_path(str(ROOT / "examples" / "four_quadrants.py"), run_name="__main__")
     yield job.Operations.Group
     App.closeDocument(document.Name)
 

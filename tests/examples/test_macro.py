@@ -35,7 +35,7 @@ def names_in(folder):
 
 
 def test_macro_posts_beside_the_document(run):
-    assert {"part.pmc", "part.pkmt"} <= names_in(run("post_first_job.FCMacro"))
+    assert {"part.pmc", "part.pkmt"} <= names_in(run("post_first_job.py"))
 
 
 def test_macro_posts_a_folder_and_goes_on_behind_what_is_refused(run, tmp_path):
@@ -43,15 +43,15 @@ def test_macro_posts_a_folder_and_goes_on_behind_what_is_refused(run, tmp_path):
     empty.saveAs(str(tmp_path / "empty.FCStd"))
     App.closeDocument(empty.Name)
     App.setActiveDocument("part")
-    folder = run("post_folder.FCMacro")
+    folder = run("post_folder.py")
     assert {"part.pmc", "part.pkmt"} <= names_in(folder / "posted")
     assert set(App.listDocuments()) == {"part"}
 
 
 def test_macro_posts_for_another_machine(run):
-    slow = run("post_to_another_machine.FCMacro") / "another_machine"
+    slow = run("post_to_another_machine.py") / "another_machine"
     assert {"careful.toml", "part.pmc", "part.csv"} <= names_in(slow)
     report = json.loads((slow / "part-report.json").read_text())
     assert report["tolerances"]["tip_mm"] == 0.002
-    fast = json.loads((run("post_first_job.FCMacro") / "part-report.json").read_text())
+    fast = json.loads((run("post_first_job.py") / "part-report.json").read_text())
     assert report["motion"]["duration_s"] > fast["motion"]["duration_s"]

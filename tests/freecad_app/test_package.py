@@ -46,7 +46,7 @@ def test_machines_are_where_newer_versions_of_freecad_look():
 def test_dependencies():
     depends = {depend["package"]: depend["optional"] for depend in PACKAGE.Depend}
     assert depends == {
-        "CAM": False,
+        "cam": False,
         "numpy": False,
         "lark": True,
         "pyserial": True,

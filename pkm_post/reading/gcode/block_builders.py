@@ -269,7 +269,6 @@ class ExecutedBlocksBuilder:
             comments=scanned.comments,
             source=scanned.source,
             closed=scanned.closed,
-            files=scanned.files,
         )
 
     def _rows(self) -> Array:

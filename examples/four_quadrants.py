@@ -8,6 +8,7 @@ each begins where the one before ended. What they cover together is told in the 
 import math
 
 import FreeCAD
+
 import pkm_post as pkm
 
 document = FreeCAD.ActiveDocument

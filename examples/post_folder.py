@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post every FreeCAD document of a folder, with the arguments that each job has; a refused one does not stop the others.
+"""Post every FreeCAD document of a folder, with the arguments that each job has; refused ones do not stop it.
 
 The folder is that of the active document. For many documents, `python3 -m pkm_post post *.FCStd` is faster: it posts
 several at a time.
@@ -8,6 +8,7 @@ several at a time.
 from pathlib import Path
 
 import FreeCAD
+
 import pkm_post as pkm
 
 folder = Path(FreeCAD.ActiveDocument.FileName).parent

@@ -4,6 +4,7 @@
 from pathlib import Path
 
 import FreeCAD
+
 import pkm_post as pkm
 
 document = FreeCAD.ActiveDocument

@@ -9,6 +9,7 @@ import re
 from pathlib import Path
 
 import FreeCAD
+
 import pkm_post as pkm
 
 document = FreeCAD.ActiveDocument
