@@ -17,6 +17,8 @@ EXAMPLES = {
     "--feed": ("300", "450.5"),
     "--flavour": ("fanuc", "rs274"),
     "--machine-zero": ("0,0,300", "10,-20,400"),
+    "--origin": ("G55=100,0,0", "G55=100,0,0,90"),
+    "--subprograms": ("shop", "library"),
     "--leave-out": ("M21", "M21,G187"),
     "--contour-data": ("centre", "contour"),
     "--wear": ("1=0.02", "1=-0.01"),
@@ -33,11 +35,14 @@ EXAMPLES = {
     "--also": ("csv", "halstreamer,linuxcnc"),
 }
 """Each with an effect of its own, so that one is not mistaken for the other."""
-SWITCHES = {flag: (flag, f"--no-{flag[2:]}") for flag in ("--keep-chip-load", "--keep-climb", "--allow-open-end")}
+SWITCHES = {
+    flag: (flag, f"--no-{flag[2:]}")
+    for flag in ("--keep-chip-load", "--keep-climb", "--allow-open-end", "--block-delete")
+}
 """On and off."""
 
 
-ADDED = {"--fixture"}
+ADDED = {"--fixture", "--subprograms"}
 """What comes to what is said before, and replaces nothing of it."""
 
 

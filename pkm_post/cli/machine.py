@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The commands ``machine list``, ``machine check`` and ``machine calibrate``."""
+"""The commands ``machine list``, ``machine check``, ``machine calibrate`` and ``machine export``."""
 
 from __future__ import annotations
 
 import argparse
+import math
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +15,7 @@ from pkm_post.cli.terminal import print_diagnostics
 
 def add_commands(commands: Any) -> None:
     """Add the commands to a parser."""
-    machine = commands.add_parser("machine", help="list, check and calibrate machine files")
+    machine = commands.add_parser("machine", help="list, check, calibrate and export machine files")
     actions = machine.add_subparsers(required=True, metavar="ACTION")
     listing = actions.add_parser("list", help="name the machines that come with PKM Post")
     listing.set_defaults(run=_list)
@@ -25,6 +27,47 @@ def add_commands(commands: Any) -> None:
     calibrating.add_argument("measurements", type=Path, metavar="MEASUREMENTS.csv", help="see docs/machine-file.md")
     calibrating.add_argument("--out", required=True, type=Path, metavar="NEW.toml", help="the machine file to write")
     calibrating.set_defaults(run=_calibrate)
+    exporting = actions.add_parser("export", help="write the kinematics of a machine for its controller")
+    exporting.add_argument("file", metavar="NAME_OR_FILE")
+    exporting.add_argument("--to", required=True, choices=_TARGETS, help="the controller that computes the kinematics")
+    exporting.add_argument("--out", required=True, type=Path, metavar="DIR", help="folder of the files")
+    exporting.add_argument(
+        "--segment-time",
+        type=partial(_whole_number, 1, 255),
+        default=_SEGMENT_TIME,
+        metavar="MS",
+        help=f"time of a segment of a PMAC's coarse interpolation, 1 to 255 (default: {_SEGMENT_TIME})",
+    )
+    exporting.add_argument(
+        "--tool-length",
+        type=_length,
+        metavar="MM",
+        help="gauge length of the tool that is set at first (default: that of the rest pose)",
+    )
+    exporting.set_defaults(run=_export)
+
+
+_TARGETS = ("turbo-pmac", "power-pmac")
+_SEGMENT_TIME = 10
+
+
+def _whole_number(least: int, most: int, text: str) -> int:
+    if not (text.isascii() and text.isdigit() and least <= int(text) <= most):
+        raise argparse.ArgumentTypeError(f"expected a whole number from {least} to {most}, got {text!r}")
+    return int(text)
+
+
+def _length(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 <= value <= _LONGEST:
+        raise argparse.ArgumentTypeError(f"expected a length of 0 to {_LONGEST:g} mm, got {text!r}")
+    return value
+
+
+_LONGEST = 10000.0
 
 
 def _list(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
@@ -60,3 +103,20 @@ def _calibrate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     print(report)
     print(namespace.out)
     return 0
+
+
+def _export(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    from pkm_post.machine import machine_named
+    from pkm_post.posting import export_machine
+    from pkm_post.writing import kinematics
+
+    machine, diagnostics = machine_named(namespace.file)
+    files: tuple[Path, ...] = ()
+    if machine is not None:
+        tool_length = machine.rest_tool_length if namespace.tool_length is None else namespace.tool_length
+        export = kinematics.Export(namespace.segment_time, tool_length)
+        files, diagnostics = export_machine(machine, namespace.file, namespace.to, namespace.out, export)
+    print_diagnostics(diagnostics)
+    for file in files:
+        print(file)
+    return 0 if files else 1

@@ -9,6 +9,7 @@ of the object. ``decode`` converts it to an operation of a CAM job. Saved docume
 
 from __future__ import annotations
 
+from argparse import ArgumentTypeError
 from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
@@ -23,6 +24,7 @@ from pkm_post.freecad_app.document_object import PropertyProxy, Row, print_diagn
 from pkm_post.freecad_app.tools import preselected
 from pkm_post.freecad_app.window import add_view
 from pkm_post.model import Diagnostic, EventKind, Place, Program, Refused
+from pkm_post.options import MOST_FEED, above_zero, format_value, goto_values, origin
 from pkm_post.reading import (
     AXIS_WORDS,
     CONTOUR_DATA,
@@ -48,6 +50,8 @@ FROM_FILE = "file"
 CYCLE_ORDERS = ("depth,feed,clearance", "depth,feed,clearance,step", "depth,feed")
 """The usual meanings of cycle parameters; the command line accepts others."""
 
+_TYPED = {"Origins": origin, "FirstFeed": above_zero(MOST_FEED), "GotoValues": goto_values}
+"""Properties that are typed as arguments are."""
 _DWELL_CHOICES = [FROM_FILE, *DWELL_UNITS]
 _G = "Program"
 _PROPERTIES: tuple[Row, ...] = (
@@ -62,6 +66,18 @@ _PROPERTIES: tuple[Row, ...] = (
      QT_TRANSLATE_NOOP("App::Property", "X, Y and Z in mm where G53 X0 Y0 Z0, G28 and G30 bring the tool tip"), []),
     ("App::PropertyStringList", "LeaveOut", _G,
      QT_TRANSLATE_NOOP("App::Property", "Codes of G-code to leave out where they are not known, such as M21"), []),
+    ("App::PropertyStringList", "Origins", _G,
+     QT_TRANSLATE_NOOP("App::Property", "Origins of work offsets of G-code, as in G55=100,0,0 with mm and degrees"),
+     []),
+    ("App::PropertyStringList", "Subprograms", _G,
+     QT_TRANSLATE_NOOP("App::Property", "Folders with the files of subprograms, before that of the part program"), []),
+    ("App::PropertyBool", "BlockDelete", _G,
+     QT_TRANSLATE_NOOP("App::Property", "Whether what stands behind / in blocks of G-code is left out"), False),
+    ("App::PropertyFloat", "FirstFeed", _G,
+     QT_TRANSLATE_NOOP("App::Property", "Feed of cutting moves before the first one of the file, mm/min; 0 for none"),
+     0.0),
+    ("App::PropertyString", "GotoValues", _G,
+     QT_TRANSLATE_NOOP("App::Property", "What the values of GOTO statements of CL data are, as in x,y,z,i,j,k"), ""),
     ("App::PropertyEnumeration", "Unit", _G,
      QT_TRANSLATE_NOOP("App::Property", "Unit of length of the part program"), [FROM_FILE, *UNITS]),
     ("App::PropertyEnumeration", "ContourData", _G,
@@ -160,17 +176,54 @@ def reading_of(obj: Any) -> ReadingOptions:
         flavour=flavour,
         machine_zero=x_y_z if len(x_y_z) == len("XYZ") else None,
         left_out=tuple(code.upper() for code in obj.LeaveOut),
+        work_offsets=dict(_typed(obj, "Origins")),
+        subprograms=tuple(obj.Subprograms),
+        block_delete=obj.BlockDelete,
+        feed=next((feed / 60 for feed in _typed(obj, "FirstFeed")), None),
+        goto_values=next(iter(_typed(obj, "GotoValues")), ()),
     )
+
+
+def _texts(obj: Any, name: str) -> list[str]:
+    """The texts of a property; none where it says nothing."""
+    value = getattr(obj, name)
+    return [str(each) for each in (value if isinstance(value, list) else [value]) if each]
+
+
+def _typed(obj: Any, name: str) -> list[Any]:
+    """The values of a property that is typed as an argument is; those that are wrong are left to ``_wrong``."""
+    return [value for text in _texts(obj, name) if (value := _converted(name, text)[0]) is not None]
+
+
+def _converted(name: str, text: str) -> tuple[Any, str]:
+    """A value, or None and what is wrong with its text."""
+    try:
+        return _TYPED[name](text), ""
+    except ArgumentTypeError as fault:
+        return None, str(fault)
+
+
+def _wrong(obj: Any) -> Findings:
+    """Properties whose text has no meaning."""
+    found = (
+        f"{name}: {wrong}" for name in _TYPED for text in _texts(obj, name) if (wrong := _converted(name, text)[1])
+    )
+    return tuple(Diagnostic("J121", Place(str(obj.File), obj.Label), text) for text in found)
 
 
 def set_reading(obj: Any, reading: ReadingOptions) -> None:
     """Store reading options in the properties of a program object; wear and cutters have no property."""
-    choices: dict[str, str | bool | list[Any]] = {
+    choices: dict[str, str | bool | float | list[Any]] = {
         "AxisWords": reading.axis_words,
         "Flavour": reading.flavour or FROM_FILE,
         "DwellUnit": reading.dwell_unit or FROM_FILE,
         "MachineZero": list(reading.machine_zero or ()),
         "LeaveOut": list(reading.left_out),
+        "Origins": [format_value("origin", each) for each in reading.work_offsets.items()],
+        "Subprograms": list(reading.subprograms),
+        "BlockDelete": reading.block_delete,
+        "FirstFeed": float(f"{60 * (reading.feed or 0.0):.12g}"),
+        "GotoValues": ",".join(reading.goto_values),
         "Unit": reading.unit or FROM_FILE,
         "ContourData": reading.contour_data or FROM_FILE,
         "ClDialect": reading.cl_dialect or FROM_FILE,
@@ -187,6 +240,9 @@ def read_program(obj: Any) -> tuple[Program | None, Findings]:
     file = FilePath(obj.File)
     if not is_part_program(file):
         return None, (Diagnostic("F103", Place(str(file)), f"its name ends with none of {', '.join(SUFFIXES)}"),)
+    wrong = _wrong(obj)
+    if wrong:
+        return None, wrong
     program, diagnostics = read_part_program(file, reading_of(obj))
     if program is None:
         return None, diagnostics

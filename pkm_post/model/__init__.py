@@ -31,7 +31,15 @@ from pkm_post.model.diagnostic_log import DiagnosticLog
 from pkm_post.model.diagnostics import Diagnostic, Place, Refused, errors
 from pkm_post.model.machine import Body, Box, Machine, ToolChange
 from pkm_post.model.motion import AT_FEED, FeedStudy, Motion, Poses, StrutMotion
-from pkm_post.model.program import MOTION_COLUMNS, OPTIONAL_COLUMNS, Event, EventKind, Kind, Program
+from pkm_post.model.program import (
+    IN_SUBPROGRAM_FILE,
+    MOTION_COLUMNS,
+    OPTIONAL_COLUMNS,
+    Event,
+    EventKind,
+    Kind,
+    Program,
+)
 from pkm_post.model.rules import RULES, Severity
 from pkm_post.model.setup import (
     EMPTY_SETUP,
@@ -51,6 +59,7 @@ __all__ = [
     "EMPTY_SETUP",
     "MAX_SPIN",
     "MIN_TOLERANCE",
+    "IN_SUBPROGRAM_FILE",
     "MOTION_COLUMNS",
     "OPTIONAL_COLUMNS",
     "RULES",

@@ -75,6 +75,10 @@ OPTIONAL_COLUMNS: dict[str, tuple[DTypeLike, tuple[int, ...], float]] = {
 """Columns that few sources have, each with its default."""
 
 
+IN_SUBPROGRAM_FILE = "subprogram "
+"""How the operation of rows begins that come from another file than ``Program.source``, before the name of the file."""
+
+
 @dataclass(frozen=True)
 class Program:
     """Columns of N motions.

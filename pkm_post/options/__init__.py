@@ -35,7 +35,14 @@ from pkm_post.options.arguments import (
     text_parser,
 )
 from pkm_post.options.conversion import argument_values, options_from, part_program_from, solid_files, tool_lengths_from
-from pkm_post.options.converters import RULES_WITH_HEADING, SIDE_OUTPUTS, SPIN_WORDS
+from pkm_post.options.converters import (
+    MOST_FEED,
+    RULES_WITH_HEADING,
+    SIDE_OUTPUTS,
+    SPIN_WORDS,
+    goto_values,
+    origin,
+)
 from pkm_post.options.layers import (
     NO_VALUES,
     ArgumentValues,
@@ -62,6 +69,7 @@ __all__ = [
     "LINUXCNC",
     "LONGEST_TOOL",
     "MANUAL_MOVE_PROGRAM",
+    "MOST_FEED",
     "NO_MESH",
     "NO_VALUES",
     "PARITIES",
@@ -92,6 +100,7 @@ __all__ = [
     "explicit_values",
     "flag_of",
     "format_value",
+    "goto_values",
     "inapplicable_options",
     "input_kind",
     "job_stem",
@@ -99,6 +108,7 @@ __all__ = [
     "number",
     "offset",
     "options_from",
+    "origin",
     "overridden",
     "overrides",
     "overwritten_sources",

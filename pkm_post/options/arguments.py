@@ -17,14 +17,16 @@ from pkm_post.options.converters import (
     CL_DIALECTS,
     CYCLE_VALUES,
     GCODE_FLAVOURS,
+    MOST_FEED,
     OBJECTIVES,
     SIDE_OUTPUTS,
     also,
     codes,
     copies,
     cycle_values,
-    fixture,
     goto_values,
+    listed,
+    origin,
     point,
     sizes,
     spin,
@@ -110,7 +112,7 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     },
     "--feed": {
         "metavar": "MM/MIN",
-        "type": above_zero(1_000_000),
+        "type": above_zero(MOST_FEED),
         "help": "feed of the cutting moves of a part program before the first feed that it states (default: they are"
         " refused)",
     },
@@ -123,6 +125,26 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "metavar": "X,Y,Z",
         "type": point,
         "help": "where G-code brings the tool tip with G53 X0 Y0 Z0, and with G28 and G30: mm in the work frame",
+    },
+    "--origin": {
+        "metavar": "NAME=POSE",
+        "type": origin,
+        "action": "append",
+        "default": [],
+        "help": "origin of a work offset of G-code, G54 to G59.3 or G54.1P1 to G54.1P300, as X,Y,Z[,DEG] in mm in the"
+        " work frame with a turn about z, as in G55=100,0,0; may be repeated",
+    },
+    "--subprograms": {
+        "metavar": "FOLDER",
+        "type": listed,
+        "action": "append",
+        "default": [],
+        "help": "where the files of subprograms that G-code calls are looked for before the folder of the program; may"
+        " be repeated",
+    },
+    "--block-delete": {
+        "action": "store_true",
+        "help": "leave out what stands behind / in blocks of G-code; --no-block-delete takes it back",
     },
     "--leave-out": {
         "metavar": "CODES",
@@ -202,7 +224,7 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     },
     "--fixture": {
         "metavar": "FILE",
-        "type": fixture,
+        "type": listed,
         "default": [],
         "help": "STL or STEP file of a clamp or vice, mm in the work frame, which nothing may touch; may be repeated",
     },
@@ -244,6 +266,9 @@ def add_part_program(parser: argparse.ArgumentParser) -> None:
             "--feed",
             "--flavour",
             "--machine-zero",
+            "--origin",
+            "--subprograms",
+            "--block-delete",
             "--leave-out",
             "--contour-data",
             "--wear",

@@ -100,6 +100,9 @@ def part_program_from(namespace: argparse.Namespace, axis_words: str) -> Reading
         flavour=namespace.flavour,
         machine_zero=namespace.machine_zero,
         left_out=namespace.leave_out,
+        work_offsets=dict(namespace.origin),
+        subprograms=tuple(dict(namespace.subprograms).values()),
+        block_delete=namespace.block_delete,
         goto_values=namespace.goto_values,
         feed=None if namespace.feed is None else namespace.feed / 60,
     )

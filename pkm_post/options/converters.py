@@ -114,6 +114,8 @@ def copies(text: str) -> tuple[str | float, ...]:
 _copy_angle = validated(number, lambda angle: 0 < abs(angle) < 360, "xy, xz, yz or an angle within 360 degrees")
 
 
+MOST_FEED = 1_000_000
+"""mm/min."""
 GCODE_FLAVOURS = ("rs274", "fanuc")
 """Whose G-code it is, as in ``gcode.FLAVOUR_NAMES``."""
 _CODE = re.compile(r"[GM]\d{1,4}(\.\d)?", re.IGNORECASE)
@@ -125,6 +127,20 @@ def codes(text: str) -> tuple[str, ...]:
     if not all(map(_CODE.fullmatch, words)):
         raise argparse.ArgumentTypeError(f"expected G and M codes such as M21,G187, got {text!r}")
     return tuple(f"{word[0].upper()}{float(word[1:]):g}" for word in words)
+
+
+_ORIGIN = re.compile(r"(G5[4-9]|G59\.[123]|G54\.1P([1-9]\d?|[12]\d\d|300))=(.*)", re.IGNORECASE)
+
+
+def origin(text: str) -> tuple[str, Pose]:
+    """Name of a work offset of G-code in upper case; x, y, z in mm and the rotation about z in degrees."""
+    found = _ORIGIN.fullmatch(text)
+    pose = work_offset(found[3]) if found else ""
+    if found is None or isinstance(pose, str):
+        raise argparse.ArgumentTypeError(
+            f"expected NAME=X,Y,Z[,DEG] with G54 to G59.3 or G54.1P1 to G54.1P300, got {text!r}"
+        )
+    return found[1].upper(), pose
 
 
 def point(text: str) -> tuple[float, float, float]:
@@ -141,7 +157,7 @@ def surface_speed_or_none(text: str) -> float | None:
     return None if text == NOTHING else above_zero(100_000)(text)
 
 
-def fixture(file: str) -> tuple[str, str]:
+def listed(file: str) -> tuple[str, str]:
     """A file with its own name: named in two layers of options, it counts once."""
     return file, file
 

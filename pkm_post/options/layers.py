@@ -130,8 +130,8 @@ def _plain(value: Any) -> str:
     return f"{value + 0.0:.12g}" if isinstance(value, float) else str(value)
 
 
-def _by_number(entry: tuple[int, Any]) -> str:
-    """Format the value of a tool; an unknown corner radius is left out."""
+def _by_number(entry: tuple[int | str, Any]) -> str:
+    """Format the value of a tool or a work offset; an unknown corner radius is left out."""
     number, value = entry
     known = [each for each in (value if isinstance(value, tuple) else [value]) if each is not None]
     return f"{number}={','.join(map(_plain, known))}"
@@ -146,8 +146,8 @@ def _spin(value: tuple[str, float, str]) -> str:
 
 _FORMATS: dict[str, Callable[[Any], str]] = {
     "spin": _spin,
-    **dict.fromkeys(("tool_length", "tools", "actual_tool", "wear"), _by_number),
-    "fixture": lambda entry: str(entry[0]),
+    **dict.fromkeys(("tool_length", "tools", "actual_tool", "wear", "origin"), _by_number),
+    **dict.fromkeys(("fixture", "subprograms"), lambda entry: str(entry[0])),
 }
 """Formats of values that ``_plain`` does not format."""
 
@@ -167,6 +167,9 @@ _KINDS: dict[str, tuple[InputKind, ...]] = {
     "flavour": (InputKind.GCODE,),
     "machine_zero": (InputKind.GCODE,),
     "leave_out": (InputKind.GCODE,),
+    "origin": (InputKind.GCODE,),
+    "subprograms": (InputKind.GCODE,),
+    "block_delete": (InputKind.GCODE,),
     "contour_data": (InputKind.CLDATA,),
     "cl_dialect": (InputKind.CLDATA,),
     "cycle_values": (InputKind.CLDATA,),

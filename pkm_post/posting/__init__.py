@@ -5,6 +5,7 @@ Only ``steps`` defines the order of the steps. Either all files are written and 
 """
 
 from pkm_post.posting.machine_check import format_table, machine_faults, machine_summary
+from pkm_post.posting.machine_export import export_machine
 from pkm_post.posting.placement import effective_setup, trajectory_of, work_offset
 from pkm_post.posting.post_file import Prepared, post_file, prepared_file
 from pkm_post.posting.reach_study import Study, study, work_offset_text
@@ -21,6 +22,7 @@ __all__ = [
     "Study",
     "format_table",
     "effective_setup",
+    "export_machine",
     "machine_faults",
     "post",
     "post_file",

@@ -163,7 +163,7 @@ def _given(arguments: str | ArgumentValues, file: Path) -> ArgumentValues:
         raise Refused([Diagnostic("J117", Place(str(file)), str(fault))]) from fault
 
 
-_ATTRIBUTES = {"leave_out": "left_out"}
+_ATTRIBUTES = {"leave_out": "left_out", "origin": "work_offsets"}
 """Reading options by the name of their argument, where the two differ."""
 
 

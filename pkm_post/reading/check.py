@@ -16,7 +16,7 @@ import numpy as np
 
 from pkm_post.geometry import across, arc_points, arc_sweep, cross, dot, move_lengths
 from pkm_post.model import Array, Diagnostic, Kind, Program, errors
-from pkm_post.reading.part_program import AS_WRITTEN, ReadingOptions, read_part_program
+from pkm_post.reading.part_program import AS_WRITTEN, ReadingOptions, name_of, read_part_program
 
 _LONGEST_LINE = 200
 """Maximum number of characters shown of a line."""
@@ -115,9 +115,21 @@ def checks_as_text(results: Iterable[CheckedFile]) -> str:
 
 def _diagnostic_lines(result: CheckedFile) -> list[str]:
     """The diagnostics of a file with their source lines, and how it was interpreted."""
-    lines = result.file.read_bytes().splitlines() if any(fault.place.line for fault in result.diagnostics) else []
-    faults = [text for fault in result.diagnostics for text in (str(fault), *_source_line(fault, lines))]
+    files = {fault.place.file for fault in result.diagnostics if fault.place.line}
+    lines = {file: _lines_of(result.file if file == name_of(result.file) else Path(file)) for file in files}
+    faults = [
+        text
+        for fault in result.diagnostics
+        for text in (str(fault), *_source_line(fault, lines.get(fault.place.file, [])))
+    ]
     return [*faults, *(f"{result.file}: {line}" for line in result.reading)]
+
+
+def _lines_of(file: Path) -> list[bytes]:
+    try:
+        return file.read_bytes().splitlines()
+    except OSError:
+        return []  # it has gone since it was read: its diagnostics are shown without it
 
 
 def _source_line(diagnostic: Diagnostic, lines: list[bytes]) -> list[str]:
@@ -161,6 +173,7 @@ def _entry(result: CheckedFile) -> dict[str, Any]:
             {
                 "code": fault.code,
                 "severity": fault.severity.value,
+                "file": fault.place.file,
                 "line": fault.place.line,
                 "column": fault.place.column,
                 "found": fault.found,

@@ -55,6 +55,9 @@ class ReadingOptions:
             ``cldata.ReadOptions``.
         feed: speed of cutting moves before the first feed of the file, mm/s; None refuses such moves.
         lengths: gauge lengths of tools, and values of length offsets (H), by number, mm.
+        work_offsets: by name, such as "G54" and "G54.1P7", origin in mm and rotation about z in degrees in {C}.
+        block_delete: whether what stands behind / in blocks of G-code is left out.
+        subprograms: folders where files of subprograms of G-code are looked for before that of the program.
         allow_open_end: whether a file may lack an end statement, such as M2 or FINI.
     """
 
@@ -73,6 +76,9 @@ class ReadingOptions:
     left_out: tuple[str, ...] = ()
     feed: float | None = None
     goto_values: tuple[str, ...] = ()
+    work_offsets: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
+    block_delete: bool = False
+    subprograms: tuple[str, ...] = ()
 
 
 AS_WRITTEN = ReadingOptions()
@@ -89,35 +95,44 @@ def read_part_program(file: Path, reading: ReadingOptions) -> _Result:
         ValueError: the suffix is not known.
     """
     language_of(file)
-    # File name as Unicode for storage in results; undecodable bytes are replaced.
-    name = os.fsencode(file).decode("utf-8", "replace")
+    name = name_of(file)
     try:
         content = file.read_bytes()
     except OSError as fault:
         return None, (Diagnostic("F103", Place(name), str(fault)),)
-    program, diagnostics = read_content(content, name, reading)
+    program, diagnostics = read_content(content, name, reading, file.parent)
     if program is not None:
         program = replace(program, source_fingerprint=hashlib.sha256(content).hexdigest())
     return program, diagnostics
 
 
-def read_content(content: bytes, name: str, reading: ReadingOptions) -> _Result:
+def name_of(file: Path) -> str:
+    """A file name as Unicode for storage in results; undecodable bytes are replaced."""
+    return os.fsencode(file).decode("utf-8", "replace")
+
+
+def read_content(content: bytes, name: str, reading: ReadingOptions, folder: Path | None = None) -> _Result:
     """Read the content of a file.
 
     Args:
         content: of the whole file.
         name: file name in Unicode, with a known suffix.
         reading: settings that the file does not contain.
+        folder: of the file; that of its name, where this is absolute, if None.
 
     Raises:
         ValueError: the suffix is not known.
     """
-    read = _read_gcode if language_of(name, content) is Language.GCODE else _read_cldata
-    program, diagnostics = read(content, name, reading)
+    if folder is None and Path(name).is_absolute():
+        folder = Path(name).parent
+    if language_of(name, content) is Language.GCODE:
+        program, diagnostics = _read_gcode(content, name, reading, folder)
+    else:
+        program, diagnostics = _read_cldata(content, name, reading)
     return program, diagnostics if program is None else (*diagnostics, *end_warnings(program))
 
 
-def _read_gcode(content: bytes, file: str, reading: ReadingOptions) -> _Result:
+def _read_gcode(content: bytes, file: str, reading: ReadingOptions, folder: Path | None) -> _Result:
     # NaN as diameter or length is reported where it is used.
     unknown = Tool(0, "", math.nan, 0.0, math.nan, corner_known=False)
     numbers = {*reading.tools, *reading.lengths}
@@ -135,6 +150,9 @@ def _read_gcode(content: bytes, file: str, reading: ReadingOptions) -> _Result:
         machine_zero=reading.machine_zero,
         left_out=reading.left_out,
         feed=reading.feed,
+        work_offsets=reading.work_offsets,
+        block_delete=reading.block_delete,
+        folders=(*map(Path, reading.subprograms), *([] if folder is None else [folder])),
         needs_end=not reading.allow_open_end,
     )
     program, diagnostics = gcode.read(content, file, options)

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from pkm_post.geometry import arc_points, arc_sweep, dot
-from pkm_post.model import Array, Diagnostic, Kind, Program, errors
+from pkm_post.model import IN_SUBPROGRAM_FILE, Array, Diagnostic, Kind, Place, Program, errors
 from pkm_post.reading.check import Size, size_of
 from pkm_post.reading.part_program import AS_WRITTEN, ReadingOptions, read_content
 
@@ -53,7 +54,15 @@ def check_text(text: str, name: str, reading: ReadingOptions = AS_WRITTEN) -> Ch
     if program is None and {each.code for each in errors(diagnostics)} <= _OPEN_END:
         program, _ = read_content(content, name, replace(reading, allow_open_end=True))
     size = size_of(program) if program is not None and len(program) else None
-    return CheckedText(program, size, diagnostics)
+    return CheckedText(program, size, tuple(_of_text(each, name) for each in diagnostics))
+
+
+def _of_text(diagnostic: Diagnostic, name: str) -> Diagnostic:
+    """A diagnostic of another file without a line, which the text has not."""
+    place = diagnostic.place
+    if place.file == name:
+        return diagnostic
+    return replace(diagnostic, place=Place(name, str(replace(place, file=Path(place.file).name))))
 
 
 MAX_MOVES = 1000
@@ -72,7 +81,8 @@ def tip_paths_of_line(program: Program, line: int) -> list[Array]:
         One polyline per move, for the first ``MAX_MOVES`` moves; none if the line has no motion. The first move of a
         program has no start point: its path is a point.
     """
-    rows = np.flatnonzero(program.line == line)[:MAX_MOVES]
+    elsewhere = [name.startswith(IN_SUBPROGRAM_FILE) for name in program.operations]
+    rows = np.flatnonzero((program.line == line) & ~np.array(elsewhere)[program.operation])[:MAX_MOVES]
     return [_tip_path(program, int(row)) for row in rows]
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Writing: trajectory files, controller programs, G-code and what stands beside them."""
 
-from pkm_post.writing import manifest, outputs, trajectory_file
+from pkm_post.writing import kinematics, manifest, outputs, trajectory_file
 from pkm_post.writing.controllers import pmac, power_pmac, program_files
 from pkm_post.writing.controllers.pmac import read_part
 from pkm_post.writing.controllers.pmac.program import program_text, rotary_opening
@@ -24,6 +24,7 @@ __all__ = [
     "controller_of",
     "controller_settings",
     "convert",
+    "kinematics",
     "manifest",
     "outputs",
     "split_motion",

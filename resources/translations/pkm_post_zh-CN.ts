@@ -136,6 +136,26 @@
         <translation>不认识时略去的 G 代码，例如 M21</translation>
     </message>
     <message>
+        <source>Origins of work offsets of G-code, as in G55=100,0,0 with mm and degrees</source>
+        <translation>G 代码工件偏置的原点,例如 G55=100,0,0,单位为毫米和度</translation>
+    </message>
+    <message>
+        <source>Folders with the files of subprograms, before that of the part program</source>
+        <translation>子程序文件所在的文件夹,先于零件程序的文件夹查找</translation>
+    </message>
+    <message>
+        <source>Whether what stands behind / in blocks of G-code is left out</source>
+        <translation>是否略去 G 代码程序段中 / 之后的内容</translation>
+    </message>
+    <message>
+        <source>Feed of cutting moves before the first one of the file, mm/min; 0 for none</source>
+        <translation>文件给出第一个进给之前切削移动的进给,毫米/分钟;0 表示没有</translation>
+    </message>
+    <message>
+        <source>What the values of GOTO statements of CL data are, as in x,y,z,i,j,k</source>
+        <translation>CL 数据 GOTO 语句中各数值的含义,例如 x,y,z,i,j,k</translation>
+    </message>
+    <message>
         <source>Unit of length of the part program</source>
         <translation>零件程序的长度单位</translation>
     </message>

@@ -21,7 +21,16 @@ from pathlib import Path
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import TRAJECTORY_COLUMNS, Diagnostic, EventKind, Machine, Place, Trajectory, errors
+from pkm_post.model import (
+    IN_SUBPROGRAM_FILE,
+    TRAJECTORY_COLUMNS,
+    Diagnostic,
+    EventKind,
+    Machine,
+    Place,
+    Trajectory,
+    errors,
+)
 from pkm_post.reading import is_part_program
 from pkm_post.system import result_files
 from pkm_post.writing import manifest, trajectory_file
@@ -94,7 +103,7 @@ class ProgramBlocks:
             return BlockDisplay(number, len(self))
         first, end = self._rows(number)
         place = self.trajectory.place(first)
-        known = 0 < place.line <= len(self.lines)
+        known = 0 < place.line <= len(self.lines) and not place.operation.startswith(IN_SUBPROGRAM_FILE)
         text = self.lines[place.line - 1].strip() if known else self._target(end - 1)
         behind = self._codes(end) if end == len(self.trajectory) else ""
         texts = " | ".join(filter(None, (self._codes(first), text, behind)))

@@ -6,7 +6,6 @@ The user's choices come from the fields of the post panel, and are stored in the
 
 from __future__ import annotations
 
-from argparse import Namespace
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -22,7 +21,7 @@ from pkm_post.freecad_gui.post_fields import PostChoices
 from pkm_post.freecad_gui.post_outcome import step_text
 from pkm_post.freecad_gui.preferences import GROUP, default_arguments
 from pkm_post.model import Place, Refused
-from pkm_post.options import explicit_values, part_program_from
+from pkm_post.options import explicit_values
 from pkm_post.posting import post_file
 from pkm_post.reading import (
     AS_WRITTEN,
@@ -77,7 +76,7 @@ class Posting(QtCore.QObject):
             self.ended.emit()
             return
         out, given = folder or file.parent, explicit_values(chosen)
-        call = partial(post_file, file, out=out, reading=_with_typed(reading, chosen), arguments=given)
+        call = partial(post_file, file, out=out, reading=reading, arguments=given)
         task = BackgroundCall(lambda: call(progress=task.report), self)
         self._task, self._progress = task, self._bar(task)
         task.finished.connect(self._end)
@@ -117,23 +116,6 @@ class Posting(QtCore.QObject):
         finally:
             task.deleteLater()
             self.ended.emit()
-
-
-def _with_typed(reading: ReadingOptions, chosen: Namespace) -> ReadingOptions:
-    """The options chosen beside the text, overridden by those typed as arguments."""
-    typed = part_program_from(chosen, reading.axis_words)
-    return replace(
-        typed,
-        flavour=typed.flavour or reading.flavour,
-        dwell_unit=reading.dwell_unit,
-        machine_zero=typed.machine_zero or reading.machine_zero,
-        left_out=typed.left_out or reading.left_out,
-        unit=typed.unit or reading.unit,
-        contour_data=typed.contour_data or reading.contour_data,
-        cl_dialect=typed.cl_dialect or reading.cl_dialect,
-        cycle_values=typed.cycle_values or reading.cycle_values,
-        allow_open_end=typed.allow_open_end or reading.allow_open_end,
-    )
 
 
 class _Dialog(QtWidgets.QDialog):

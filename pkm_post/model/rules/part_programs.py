@@ -124,7 +124,11 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
     "G308": error(
         "a subprogram, loop or branch has no end", "end it: sub, if, while, do and repeat by O word, O numbers by M99"
     ),
-    "G309": error("the subprogram is not in this file", "put it into the file; other files are not called"),
+    "G309": error(
+        "there is no such subprogram",
+        "put it into the program, or into a file of its number or name, such as O1234.nc or name.ngc, beside it or in a"
+        " folder that --subprograms names",
+    ),
     "G310": error("a label is used twice", "give each its own label"),
     "G311": error("this is not a label", "write a whole number that is not negative, or a name in < >"),
     "G312": error("this is not allowed here", "call with call and end with endsub, or with M98 and M99"),
@@ -134,6 +138,10 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
     "G316": error("this is not a call of a subprogram", "write M98 P and L with whole numbers, P always, and no M99"),
     "G317": error(
         "the tool axis or normal cannot be given in this way here", "write the tool axis alone, on straight moves"
+    ),
+    "G318": error(
+        "several files may be the subprogram",
+        "leave one of them in the folder, or give the folder with the right one with --subprograms",
     ),
     # G4: what a G-code program means
     "G401": error(
@@ -158,7 +166,8 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
     "G411": error("the tool is unknown", "give its diameter and corner radius: --tool NUMBER=D[,R]"),
     "G412": error(
         "the offset of this coordinate system is unknown",
-        "set it with G10 L2; for G53 give the place of the machine's zero with --machine-zero X,Y,Z",
+        "give it with --origin NAME=X,Y,Z, or set it with G10 L2; for G53"
+        " give the place of the machine's zero with --machine-zero X,Y,Z",
     ),
     "G413": error("the reference point is unknown", "give it with --machine-zero X,Y,Z, or set it with G28.1 or G30.1"),
     "G414": error(

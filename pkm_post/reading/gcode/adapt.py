@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from pkm_post.model import Array
-from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.blocks import Blocks, SubprogramFile, located
 from pkm_post.reading.gcode.codes import (
     ARCS,
     CANCEL_CYCLE,
@@ -92,16 +93,20 @@ def _notes(blocks: Blocks, letter: str, found: Array, text: Callable[[int], str]
     """A line for each code that is left out: why, and where it stands."""
     codes, rows = (blocks.g, blocks.g_row) if letter == "G" else (blocks.m, blocks.m_row)
     return [
-        f"{name_of(code, letter)}{text(code)} ({_lines(np.unique(blocks.line[rows[found & (codes == code)]]))})"
+        f"{name_of(code, letter)}{text(code)} ({_lines(blocks, np.unique(blocks.line[rows[found & (codes == code)]]))})"
         for code in np.unique(codes[found]).tolist()
     ]
 
 
-def _lines(lines: Array) -> str:
+def _lines(blocks: Blocks, lines: Array) -> str:
     """The first lines of some, and how many more there are."""
-    first = ", ".join(map(str, lines[:_LINES_SHOWN].tolist()))
+    first = ", ".join(_shown(*located(blocks.files, line)) for line in lines[:_LINES_SHOWN].tolist())
     more = f" and {len(lines) - _LINES_SHOWN} more" if len(lines) > _LINES_SHOWN else ""
     return f"line{'s' * (len(lines) > 1)} {first}{more}"
+
+
+def _shown(file: SubprogramFile | None, line: int) -> str:
+    return str(line) if file is None else f"{line} of {Path(file.path).name}"
 
 
 def _without(blocks: Blocks, g: Array, m: Array, flavour: Flavour) -> Blocks:

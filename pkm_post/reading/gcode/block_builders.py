@@ -269,6 +269,7 @@ class ExecutedBlocksBuilder:
             comments=scanned.comments,
             source=scanned.source,
             closed=scanned.closed,
+            files=scanned.files,
         )
 
     def _rows(self) -> Array:

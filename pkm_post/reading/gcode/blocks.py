@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import DTypeLike
@@ -44,6 +44,22 @@ class Block:
         return bool(self.words or self.g or self.m or self.tree)
 
 
+class SubprogramFile(NamedTuple):
+    """A file that was added to a program for a call.
+
+    Attributes:
+        label: number or name that is called.
+        path: of the file.
+        row: an empty row before its first one, which no program runs into.
+        before: lines before its first one; the lines of all files are counted together.
+    """
+
+    label: str
+    path: str
+    row: int
+    before: int
+
+
 @dataclass(frozen=True)
 class Blocks:
     """Columns of N blocks with K G codes and L M codes in total. The arrays are not copied.
@@ -63,6 +79,7 @@ class Blocks:
         source: name of the file.
         closed: whether a percent sign, or M99 of the main program, closes the file.
         restarts: whether M99 ends the main program, which a control begins again.
+        files: of subprograms, in order; their rows and lines follow those of the program.
     """
 
     line: Array
@@ -77,6 +94,7 @@ class Blocks:
     source: str
     closed: bool = False
     restarts: bool = False
+    files: tuple[SubprogramFile, ...] = ()
 
     def __post_init__(self) -> None:
         rows = len(self.line)
@@ -152,6 +170,14 @@ class Blocks:
             m_row=m_row,
             deleted=self.deleted[rows],
         )
+
+
+def located(files: tuple[SubprogramFile, ...], line: int) -> tuple[SubprogramFile | None, int]:
+    """The subprogram file that has a line, None for the program itself, and the number of the line there."""
+    for file in reversed(files):
+        if line >= file.before:
+            return file, line - file.before
+    return None, line
 
 
 def _column(name: str, values: Array, dtype: DTypeLike, count: int) -> Array:

@@ -16,8 +16,8 @@ from pkm_post.model import Array, Diagnostic, Place
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.flavours import RS274, Flavour
-from pkm_post.reading.gcode.interpreter import PROGRAM_END, SUBPROGRAM_CODES, Interpreter
-from pkm_post.reading.gcode.o_words import link_o_words
+from pkm_post.reading.gcode.interpreter import PROGRAM_END, SUBPROGRAM_CODES, Interpreter, MissingProgram
+from pkm_post.reading.gcode.o_words import JumpTargets, link_o_words
 from pkm_post.reading.gcode.options import DEFAULT_LIMITS, ExecutionLimits
 from pkm_post.reading.gcode.parameters import ExecutionFault
 from pkm_post.reading.gcode.statements import OWord, Statement, statement_of
@@ -52,6 +52,7 @@ def execute_as_far_as_possible(
     flavour: Flavour = RS274,
     is_whole: bool = True,
     text: bytes = b"",
+    may_add: bool = False,
 ) -> tuple[Blocks, tuple[Diagnostic, ...]]:
     """Execute a program up to its first fault.
 
@@ -62,10 +63,14 @@ def execute_as_far_as_possible(
         flavour: whose subprogram calls they are.
         text: of the program, where GOTO finds sequence numbers.
         is_whole: whether no block is missing; otherwise nothing is executed, and only invalid blocks are reported.
+        may_add: whether a subprogram that is missing may be added, and the program be executed once more.
 
     Returns:
         Plain blocks and the faults. If there are any: the blocks before the one that stopped the execution, or all
         plain blocks of a program that cannot be executed.
+
+    Raises:
+        MissingProgram: a subprogram is missing that may be added.
     """
     if not blocks.special and not np.isin(blocks.m, SUBPROGRAM_CODES).any():
         return blocks, ()
@@ -75,7 +80,9 @@ def execute_as_far_as_possible(
     faults.extend(unlinked if is_whole else ())
     if faults or not is_whole:
         return replace(blocks, special={}), _diagnostics(blocks, faults)
+    _add_files_by_number(blocks, jumps)
     special = skipped.copy()
+    special[[file.row for file in blocks.files]] = True
     special[blocks.m_row[np.isin(blocks.m, (*SUBPROGRAM_CODES, *PROGRAM_END))]] = True
     special[list(statements)] = True
     executed = ExecutedBlocksBuilder(blocks)
@@ -83,8 +90,19 @@ def execute_as_far_as_possible(
     try:
         interpreter.run(np.flatnonzero(special).tolist())
     except ExecutionFault as fault:
+        if may_add and isinstance(fault, MissingProgram):
+            raise
         return executed.blocks(), _diagnostics(blocks, [(interpreter.row, fault)])
     return _ended(executed.blocks(), interpreter), ()
+
+
+def _add_files_by_number(blocks: Blocks, jumps: JumpTargets) -> None:
+    """Let M98 call the files that have a number in their names and none within."""
+    ends = [*(file.row for file in blocks.files), len(blocks)]
+    for file, end in zip(blocks.files, ends[1:], strict=True):
+        has_number = any(file.row < row < end for row in jumps.programs.values())
+        if file.label.isdigit() and not has_number:
+            jumps.programs.setdefault(file.label, file.row)
 
 
 def _ended(blocks: Blocks, interpreter: Interpreter) -> Blocks:

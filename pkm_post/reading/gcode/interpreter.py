@@ -48,6 +48,19 @@ def rows_of_sequence_numbers(text: bytes, line: Array) -> dict[str, list[int]]:
     return rows
 
 
+class MissingProgram(ExecutionFault):  # noqa: N818 - it is no error of the program
+    """A call of a subprogram that is not there, so far.
+
+    Attributes:
+        labels: number or name, in all readings of the call.
+        row: of the call.
+    """
+
+    def __init__(self, labels: tuple[str, ...], row: int, found: str) -> None:
+        super().__init__("G309", found)
+        self.labels, self.row = labels, row
+
+
 @dataclass
 class _Level:
     """A running subprogram.
@@ -96,6 +109,7 @@ class Interpreter:
         self._blocks, self._statements, self._jumps, self._skipped = blocks, statements, jumps, skipped
         self._limits, self._executed, self._flavour = limits, executed, flavour
         self._text = text
+        self._ends = {file.row for file in blocks.files}
         self._rows_of_label: dict[str, list[int]] | None = None
         self.restarts = False
         """Whether M99 ended the main program."""
@@ -149,6 +163,8 @@ class Interpreter:
 
     def _step(self, row: int) -> int:
         """Execute a row that is not simply copied; return the next row."""
+        if row in self._ends:
+            return len(self._blocks)
         statement = self._statements.get(row)
         if isinstance(statement, OWord):
             return _STEPS[statement.keyword](self, row, statement)
@@ -184,12 +200,14 @@ class Interpreter:
             words = "".join(f" {letter}{block.words[letter]:.10g}" for letter in "PL" if letter in block.words)
             raise ExecutionFault("G316", f"M98{words}")
         counted = self._flavour.counts_in_p and number >= _COUNTED and str(number) not in self._jumps.programs
+        labels: tuple[str, ...] = (str(number),)
         if counted and "L" not in block.words:
             passes, number = divmod(number, _COUNTED)
+            labels = (*labels, str(number))
         label = str(number)
         # M98 cannot call a sub/endsub subprogram: it passes no arguments.
         if label not in self._jumps.programs:
-            raise ExecutionFault("G309", f"M98 P{label}")
+            raise MissingProgram(labels, row, f"M98 P{label}")
         if passes == 0:
             return row + 1
         first_row = self._jumps.programs[label] + 1
@@ -233,7 +251,7 @@ class Interpreter:
         if not isinstance(label, str):
             label = label_of_number(label.value(self._parameters), label.column)
         if label not in self._jumps.subs:
-            raise ExecutionFault("G309", f"O{label if label.isdigit() else f'<{label}>'} call")
+            raise MissingProgram((label,), row, f"O{label if label.isdigit() else f'<{label}>'} call")
         first_row = self._jumps.subs[label] + 1
         self._enter(_Level(row + 1, first_row), [value.value(self._parameters) for value in word.values])
         return first_row

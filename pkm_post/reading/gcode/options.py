@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from pkm_post.model import Tool
 from pkm_post.reading.units import UNITS as UNITS
@@ -49,8 +50,8 @@ class ReadOptions:
         axis_words: tool axis notation, a key of ``AXIS_WORDS``: "vector" is I J K after G43.5 and its equivalents on
             other controls, A3= B3= C3= after TRAORI and TX TY TZ after LN; "AC", "BC" and "AB" are rotary words after
             G43.4, "RPY" those of LinuxCNC's hexapod: k = Rz(C) Ry(B) Rx(A) e_z.
-        work_offsets: by name, "G54" to "G59.3", origin in mm and angle about Z in degrees, in {C}. If empty, {C} is the
-            frame of the only work offset that the program uses.
+        work_offsets: by name, "G54" to "G59.3" or "G54.1P1" to "G54.1P300", origin in mm and angle about Z in degrees,
+            in {C}. If empty, {C} is the frame of the only work offset that the program uses.
         machine_zero: tool tip position in {C}, mm, where X, Y and Z of G53 are zero: with ``work_offsets`` {C}'s own
             zero.
         home: target of G28, in {C}, mm; ``machine_zero`` if None.
@@ -63,6 +64,7 @@ class ReadOptions:
         left_out: codes, such as "M21", that are left out where the reader does not understand them.
         feed: speed of cutting moves before the first F, mm/s, where F is per minute; None if unknown: such moves are
             refused.
+        folders: where files of subprograms that a program calls are looked for, in this order.
         needs_end: whether the text is a complete program, which must end with M2, M30 or a percent sign; an MDI line is
             not.
     """
@@ -81,6 +83,7 @@ class ReadOptions:
     dwell_unit: str | None = None
     left_out: tuple[str, ...] = ()
     feed: float | None = None
+    folders: tuple[Path, ...] = ()
     needs_end: bool = False
 
     def __post_init__(self) -> None:
@@ -109,14 +112,16 @@ class ExecutionLimits:
         blocks: executed blocks, including those that yield no plain block.
         operations: values and operators evaluated in expressions, and G and M codes output.
         depth: call depth, including the main program.
+        files: files of subprograms.
     """
 
     blocks: int = 10_000_000
     operations: int = 100_000_000
     depth: int = 10
+    files: int = 100
 
     def __post_init__(self) -> None:
-        for name in ("blocks", "operations", "depth"):
+        for name in ("blocks", "operations", "depth", "files"):
             if getattr(self, name) < 1:
                 raise ValueError(f"{name}: expected at least 1, got {getattr(self, name)}")
 

@@ -13,13 +13,15 @@ from dataclasses import replace
 from pkm_post.model import Diagnostic, Place, Program, errors
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.execute import execute_as_far_as_possible
-from pkm_post.reading.gcode.flavours import FLAVOURS, Flavour
+from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, Flavour
 from pkm_post.reading.gcode.foreign import foreign_language
 from pkm_post.reading.gcode.guess import guessed_flavour
+from pkm_post.reading.gcode.interpreter import MissingProgram
 from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, ExecutionLimits, ReadOptions
 from pkm_post.reading.gcode.recovery import first_line, merged, own_faults
 from pkm_post.reading.gcode.resolve import resolve
 from pkm_post.reading.gcode.scan import scan_recovering, with_line_feeds
+from pkm_post.reading.gcode.subprograms import Source, with_operations, with_places
 
 _COMMENT = re.compile(rb"\([^()\n]*\)|;[^\n]*")
 _WITHOUT_A_POINT = re.compile(rb"(?<![A-Za-z#\]])[XYZIJxyzij][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])")
@@ -51,17 +53,38 @@ def read(
     flavour, why = _flavour(scanned, options)
     options = replace(options, flavour=flavour.name)
     is_whole = not errors(syntax)
-    executed, execution = execute_as_far_as_possible(
-        scanned, limits, options.block_delete, flavour, is_whole, with_line_feeds(text) if scanned.special else b""
-    )
+    source, executed, execution = _executed(Source(scanned, text), options, limits, is_whole)
+    files, syntax = executed.files, syntax + source.warnings
     if not is_whole or execution:
-        return None, _all_faults(text, file, executed, syntax + execution, options)
-    program, meaning = resolve(executed, options, text)
-    points = _lengths_without_a_point(text, file) if flavour.counts_thousandths else ()
-    diagnostics = syntax + merged((*meaning, *points))
+        return None, _all_faults(source.text, file, executed, syntax + execution, options)
+    program, meaning = resolve(executed, options, source.text)
+    points = _lengths_without_a_point(source.text, file) if flavour.counts_thousandths else ()
+    diagnostics = syntax + merged(with_places((*meaning, *points), files))
     if program is None:
         return None, diagnostics
-    return replace(program, reading=(why, *program.reading, *_RESTARTS[: executed.restarts])), diagnostics
+    notes = (why, *source.notes, *program.reading, *_RESTARTS[: executed.restarts])
+    return replace(with_operations(program, files), reading=notes), diagnostics
+
+
+def _executed(
+    source: Source, options: ReadOptions, limits: ExecutionLimits, is_whole: bool
+) -> tuple[Source, Blocks, tuple[Diagnostic, ...]]:
+    """Execute a program, with the files of the subprograms that it calls: each is added when it is found missing."""
+    flavour, may_add = FLAVOURS[options.flavour or RS274.name], bool(options.folders)
+    of_files: tuple[Diagnostic, ...] = ()
+    while True:
+        blocks = source.blocks
+        text = with_line_feeds(source.text) if blocks.special else b""
+        try:
+            executed, faults = execute_as_far_as_possible(
+                blocks, limits, options.block_delete, flavour, is_whole, text, may_add
+            )
+        except MissingProgram as missing:
+            longer, of_files = source.with_file(missing, options.folders)
+            may_add = longer is not source and len(longer.blocks.files) < limits.files
+            source = longer
+        else:
+            return source, executed, of_files if errors(of_files) else faults
 
 
 def _lengths_without_a_point(text: bytes | str, file: str) -> tuple[Diagnostic, ...]:
@@ -87,7 +110,8 @@ def _all_faults(
         return (Diagnostic("G213", Place(file, line=language[1]), language[0]),)
     _, meaning = resolve(blocks, replace(options, needs_end=False), text)
     own = own_faults(meaning, first_line(faults), options)
-    return merged(sorted((*faults, *own), key=lambda fault: (fault.place.line, fault.place.column)))
+    listed = sorted((*faults, *own), key=lambda fault: (fault.place.line, fault.place.column))
+    return merged(with_places(listed, blocks.files))
 
 
 def _flavour(blocks: Blocks, options: ReadOptions) -> tuple[Flavour, str]:

@@ -50,14 +50,19 @@ def first_line(found: Iterable[Diagnostic]) -> int:
 
 def merged(found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Diagnostics by line, each once; many equal ones, and many of a code, as one with their number."""
-    equal: dict[tuple[str, str], list[Diagnostic]] = {}
+    equal: dict[tuple[str, str, str], list[Diagnostic]] = {}
     for fault in dict.fromkeys(found):
-        equal.setdefault((fault.code, _MORE.sub("", fault.found)), []).append(fault)
-    by_code: dict[str, list[_Counted]] = {}
-    for (code, _), group in equal.items():
-        by_code.setdefault(code, []).extend(_counted(group))
+        equal.setdefault((fault.place.file, fault.code, _MORE.sub("", fault.found)), []).append(fault)
+    by_code: dict[tuple[str, str], list[_Counted]] = {}
+    for (file, code, _), group in equal.items():
+        by_code.setdefault((file, code), []).extend(_counted(group))
+    files = list(dict.fromkeys(file for file, _ in by_code))
     each = [fault for group in by_code.values() for fault in _first_of_many(group)]
-    return tuple(sorted(each, key=lambda fault: (fault.place.line or _LAST, fault.place.column)))
+    return tuple(sorted(each, key=lambda fault: _place_of(fault, files)))
+
+
+def _place_of(fault: Diagnostic, files: list[str]) -> tuple[int, int, int]:
+    return files.index(fault.place.file), fault.place.line or _LAST, fault.place.column
 
 
 _Counted = tuple[Diagnostic, int]

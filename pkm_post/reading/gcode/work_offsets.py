@@ -17,7 +17,7 @@ import numpy as np
 
 from pkm_post.model import Array, Tool
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import NONE, WORK_OFFSETS, Group, Word, word_of
+from pkm_post.reading.gcode.codes import FURTHER_OFFSET, NONE, WORK_OFFSETS, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
 from pkm_post.reading.gcode.frames import PLANES, Frame, rotation
 from pkm_post.reading.gcode.modal import Modal, PositionWords
@@ -66,7 +66,8 @@ class _Offsets:
         """Create the offsets from the options."""
         offsets = cls()
         for name, (x, y, z, degrees) in options.work_offsets.items():
-            code = round(10 * float(name.removeprefix("G")))
+            number, _, further = name.removeprefix("G").partition("P")
+            code = FURTHER_OFFSET - int(further) if further else round(10 * float(number))
             offsets.origins[code] = np.array([x, y, z])
             offsets.angles[code] = float(np.radians(degrees))
         return offsets

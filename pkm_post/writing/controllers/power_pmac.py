@@ -47,6 +47,7 @@ __all__ = [
     "read_parts",
     "settings_of",
     "setup_text",
+    "soft_limit_lines",
     "stated_part",
 ]
 SETUP_SUFFIX = result_files.SETUPS["power_pmac"]
@@ -134,7 +135,7 @@ def setup_text(settings: PowerPmacSettings, machine_name: str, stroke: tuple[flo
         "// #motor->SCALE LETTER OFFSET: motor units = SCALE * strut length + OFFSET",
         *axis_definitions(settings),
         *_coordinate_system_lines(settings),
-        *_motor_lines(settings, stroke),
+        *soft_limit_lines(settings, stroke),
     ]
     return "\n".join(lines) + "\n"
 
@@ -153,7 +154,8 @@ def _coordinate_system_lines(settings: PowerPmacSettings) -> list[str]:
     ]
 
 
-def _motor_lines(settings: PowerPmacSettings, stroke: tuple[float, float]) -> list[str]:
+def soft_limit_lines(settings: PowerPmacSettings, stroke: tuple[float, float]) -> list[str]:
+    """The lines of the soft limits of all motors; the stroke in mm."""
     lines = ["// Soft limits: the stroke in motor units. They act while the higher one is above the lower one"]
     for motor, (low, high) in enumerate(stroke_counts(settings, stroke), start=1):
         lines.append(f"Motor[{motor}].MaxPos={math.floor(high)} // strut {motor}")

@@ -2,7 +2,6 @@
 """Faults of execution: each with its code, its line and, where there is one, its column."""
 
 import random
-import time
 
 import pytest
 
@@ -12,8 +11,6 @@ from pkm_post.reading.gcode.o_words import link_o_words
 from pkm_post.reading.gcode.options import ExecutionLimits
 from pkm_post.reading.gcode.scan import scan_by_block
 from pkm_post.reading.gcode.statements import OWord
-
-BOUND = 60.0  # s, far above what it takes, and far below what a hang takes
 
 BLOCKS = """#1=[#1+1]|##1=2|X#1|X#<a>|#<a>=1|M98 P5 L2|M2|G1 X1|/Y2|X[1/#1]|G#1|o#1 call|o7 call [#1+1]|o5 call
 #31=[#31-1]|o{0} break|o{0} continue|o7 return [#1]|o7 endsub|M99|o{0} endif|o{0} if [1]""".replace("\n", "|").split(
@@ -124,8 +121,10 @@ def test_fault(text, code, line, column, found):
 
 
 def test_every_fault_of_execution_is_shown_here():
-    by_limit, of_meaning = {"G313", "G314"}, {"G317"}
-    assert {fault[1] for fault in FAULTS} | by_limit | of_meaning == {code for code in RULES if code.startswith("G3")}
+    by_limit, of_meaning, of_files = {"G313", "G314"}, {"G317"}, {"G318"}
+    assert {fault[1] for fault in FAULTS} | by_limit | of_meaning | of_files == {
+        code for code in RULES if code.startswith("G3")
+    }
 
 
 def test_faults_of_structure_are_reported_at_once():
@@ -140,9 +139,7 @@ def test_endless_programs_end(text):
 
 
 def test_endless_programs_end_by_the_default_limit():
-    begin = time.perf_counter()
     assert faults_of("o1 while [1]\no1 endwhile")[0][0] == "G313"
-    assert time.perf_counter() - begin < BOUND
 
 
 def test_the_limit_of_blocks_is_exact():

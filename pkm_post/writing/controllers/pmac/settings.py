@@ -60,7 +60,8 @@ def setup_text(settings: PmacSettings, machine_name: str, stroke: tuple[float, f
         "CLOSE ; no program buffer may be open",
         *_axis_lines(settings),
         *_coordinate_system_lines(settings),
-        *_motor_lines(settings, stroke),
+        *soft_limit_lines(settings, stroke),
+        *_rollover_lines(settings),
     ]
     return "\n".join(lines) + "\n"
 
@@ -83,15 +84,21 @@ def _coordinate_system_lines(settings: PmacSettings) -> list[str]:
     ]
 
 
-def _motor_lines(settings: PmacSettings, stroke: tuple[float, float]) -> list[str]:
+def soft_limit_lines(settings: PmacSettings, stroke: tuple[float, float]) -> list[str]:
+    """The lines of the soft limits of all motors; the stroke in mm."""
     lines = ["; Soft limits: the stroke in counts. 0 would switch a limit off, so 1 or -1 stands for it"]
     for motor, (low, high) in enumerate(stroke_counts(settings, stroke), start=1):
         lines.append(f"I{motor}13={_limit(high, math.floor, 1)} ; strut {motor}, highest count")
         lines.append(f"I{motor}14={_limit(low, math.ceil, -1)} ; strut {motor}, lowest count")
-    for motor, letter in enumerate(settings.letters, start=1):
-        if letter in ROTARY_LETTERS:
-            lines.append(f"I{motor}27=0 ; {letter} would be a rotary axis: no rollover, it is a length here")
     return lines
+
+
+def _rollover_lines(settings: PmacSettings) -> list[str]:
+    return [
+        f"I{motor}27=0 ; {letter} would be a rotary axis: no rollover, it is a length here"
+        for motor, letter in enumerate(settings.letters, start=1)
+        if letter in ROTARY_LETTERS
+    ]
 
 
 def _limit(counts: Decimal, inward: Callable[[Decimal], int], instead_of_zero: int) -> int:

@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Kinematics in the controller: programs and set-up by which a controller itself turns tip and axis into struts.
+
+``formulas`` and ``programs`` state the kinematics once, ``dialects`` writes them in the words of a PMAC, and
+``controller_file`` adds axis definitions, limits and look-ahead. ``sign_off`` is the sheet for who runs the machine.
+"""
+
+from pkm_post.writing.kinematics.controller_file import Export
+from pkm_post.writing.kinematics.sign_off import CheckPoses
+from pkm_post.writing.kinematics.targets import TARGETS, export_files
+
+__all__ = ["TARGETS", "CheckPoses", "Export", "export_files"]

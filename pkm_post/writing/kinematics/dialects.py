@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Dialects: kinematic statements in the words of the Turbo PMAC and of the Power PMAC.
+
+Sources: Turbo PMAC User Manual (Delta Tau), "Setting Up a Coordinate System", p. 259 to 267, and "Computational
+Features", p. 248, for functions and I15; Power PMAC User's Manual (Omron), "Kinematic Subroutines", p. 511 to 519, and
+Software Reference Manual, "Command Syntax Summary", for operators and functions.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from pkm_post.writing.kinematics.statements import Assign, Comment, Fail, If, Statement, While, assigned
+from pkm_post.writing.kinematics.variables import AXES, STRUTS, work_numbers
+
+_ARC_TANGENT = re.compile(r"atan2\((\w+), (\w+)\)")
+_NAME = re.compile(r"[a-z]\w*")
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """The words of one controller.
+
+    Attributes:
+        comment: start of a comment.
+        functions: its names of functions with angles in degrees.
+        equal: its comparison of equal numbers.
+        both: between two conditions.
+        arc_tangent: target, sine and cosine to lines that assign the angle in degrees.
+        branch: opens the first branch of a condition, with ``{}`` for the condition.
+        otherwise: between two branches.
+        end_branch: ends a condition.
+        loop: opens a loop, with ``{}`` for the condition.
+        end_loop: ends a loop.
+        names: names of axes, rates, motors and the flag of speeds.
+        fail: coordinate system to the lines that report a position that does not exist.
+    """
+
+    comment: str
+    functions: Mapping[str, str]
+    equal: str
+    both: str
+    arc_tangent: Callable[[str, str, str], list[str]]
+    branch: str
+    otherwise: str
+    end_branch: str
+    loop: str
+    end_loop: str
+    names: Mapping[str, str]
+    fail: Callable[[int], list[str]]
+
+
+def _turbo_names() -> dict[str, str]:
+    """Positions of A B C in Q1 to Q3 and of X Y Z in Q7 to Q9; rates ten higher; motors in P, speeds 100 higher."""
+    numbers = dict(zip(AXES, (7, 8, 9, 1, 2, 3), strict=True))
+    return {
+        "wants_speed": "Q10",
+        **{axis: f"Q{number}" for axis, number in numbers.items()},
+        **{f"rate_{axis}": f"Q{number + 10}" for axis, number in numbers.items()},
+        **{f"motor{strut}": f"P{strut}" for strut in STRUTS},
+        **{f"speed{strut}": f"P{100 + strut}" for strut in STRUTS},
+    }
+
+
+def _power_names() -> dict[str, str]:
+    """Positions of A B C in C0 to C2 and of X Y Z in C6 to C8; rates 32 higher; motors in L, speeds in R."""
+    numbers = dict(zip(AXES, (6, 7, 8, 0, 1, 2), strict=True))
+    return {
+        "wants_speed": "D0",
+        **{axis: f"C{number}" for axis, number in numbers.items()},
+        **{f"rate_{axis}": f"C{number + 32}" for axis, number in numbers.items()},
+        **{f"motor{strut}": f"L{strut}" for strut in STRUTS},
+        **{f"speed{strut}": f"R{strut}" for strut in STRUTS},
+    }
+
+
+def _power_failure(system: int) -> list[str]:
+    """An error that stops a motion program, or positions that are not numbers for a query."""
+    unknown = [f"C{number}=sqrt(0-1)" for number in (0, 1, 2, 6, 7, 8)]
+    return ["if (Ldata.Status&$40) {", f"Coord[{system}].ErrorStatus=255", "} else {", *unknown, "}"]
+
+
+TURBO = Dialect(
+    comment=";",
+    functions={name: name.upper() for name in ("sin", "cos", "sqrt", "abs")},
+    equal="=",
+    both=" AND ",
+    arc_tangent=lambda target, sine, cosine: [f"Q0={cosine}", f"{target}=ATAN2({sine})"],
+    branch="IF ({})",
+    otherwise="ELSE",
+    end_branch="ENDIF",
+    loop="WHILE ({})",
+    end_loop="ENDWHILE",
+    names=_turbo_names(),
+    fail=lambda system: [f"M{run_time_error(system)}=1"],
+)
+POWER = Dialect(
+    comment="//",
+    functions={"sin": "sind", "cos": "cosd", "sqrt": "sqrt", "abs": "abs"},
+    equal="==",
+    both=" && ",
+    arc_tangent=lambda target, sine, cosine: [f"{target}=atan2d({sine},{cosine})"],
+    branch="if ({}) {{",
+    otherwise="} else {",
+    end_branch="}",
+    loop="while ({}) {{",
+    end_loop="}",
+    names=_power_names(),
+    fail=_power_failure,
+)
+
+
+def run_time_error(system: int) -> int:
+    """Suggested M-variable of the run-time error bit of a coordinate system of the Turbo PMAC."""
+    return 5082 + 100 * system
+
+
+def rendered(
+    statements: Sequence[Statement],
+    dialect: Dialect,
+    numbers: Mapping[str, int],
+    system: int,
+    forward: bool,
+    literal: Mapping[str, str] | None = None,
+) -> list[str]:
+    """Lines of a program.
+
+    Args:
+        statements: its body.
+        dialect: the controller's words.
+        numbers: Q-variables of the parameters, by name.
+        system: number of the coordinate system.
+        forward: whether it is the forward program.
+        literal: further names as the controller has them.
+    """
+    computed = (name for name in assigned(statements) if name not in dialect.names)
+    variables = {name: f"Q{number}" for name, number in {**numbers, **work_numbers(computed, forward)}.items()}
+    names = {**variables, **dialect.names, **dialect.functions, **(literal or {})}
+    return list(_lines(statements, dialect, names, system))
+
+
+def _lines(statements: Sequence[Statement], dialect: Dialect, names: Mapping[str, str], system: int) -> Iterator[str]:
+    for statement in statements:
+        match statement:
+            case Comment(text):
+                yield f"{dialect.comment} {text}"
+            case Assign(target, expression):
+                yield from _assignment(target, expression, dialect, names)
+            case If(conditions, then, otherwise):
+                yield dialect.branch.format(_condition(conditions, dialect, names))
+                yield from _lines(then, dialect, names, system)
+                if otherwise:
+                    yield dialect.otherwise
+                    yield from _lines(otherwise, dialect, names, system)
+                yield dialect.end_branch
+            case While(conditions, body):
+                yield dialect.loop.format(_condition(conditions, dialect, names))
+                yield from _lines(body, dialect, names, system)
+                yield dialect.end_loop
+            case Fail():
+                yield from dialect.fail(system)
+
+
+def _assignment(target: str, expression: str, dialect: Dialect, names: Mapping[str, str]) -> list[str]:
+    """The lines of an assignment; the name behind them is for who checks them against the formulas."""
+    if (arc := _ARC_TANGENT.fullmatch(expression)) is not None:
+        *before, last = dialect.arc_tangent(names[target], names[arc[1]], names[arc[2]])
+    else:
+        before, last = [], f"{names[target]}={_named(expression, names)}"
+    return [*before, f"{last} {dialect.comment} {target}"]
+
+
+def _condition(conditions: Sequence[str], dialect: Dialect, names: Mapping[str, str]) -> str:
+    parts = (_named(condition, names).replace("=", dialect.equal) for condition in conditions)
+    return dialect.both.join(parts)
+
+
+def _named(expression: str, names: Mapping[str, str]) -> str:
+    return _NAME.sub(lambda name: names[name[0]], expression)

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Targets: the files of an export by the controller they are for.
+
+Enters: a machine, the settings of the export, and positions with their strut lengths. Leaves: names and texts of files,
+or diagnostics.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from pkm_post.model import Diagnostic, Machine, Place
+from pkm_post.writing.controllers.pmac.settings import PmacSettings
+from pkm_post.writing.controllers.power_pmac import PowerPmacSettings
+from pkm_post.writing.controllers.pvt.settings import settings_of
+from pkm_post.writing.kinematics.controller_file import Export, counts, power_text, turbo_text
+from pkm_post.writing.kinematics.sign_off import CheckPoses, sign_off_sheet
+
+Files = Mapping[str, str]
+Findings = tuple[Diagnostic, ...]
+Target = Callable[[Machine, str, Export, CheckPoses], tuple[Files | None, Findings]]
+SIGN_OFF = "-sign-off.md"
+
+
+def _pmac(
+    form: type[Any], write: Callable[..., str], target: str, suffix: str,
+    machine: Machine, stem: str, export: Export, poses: CheckPoses,
+) -> tuple[Files | None, Findings]:  # fmt: skip
+    """The kinematic file of a PMAC, whichever of the family the machine file names, and its sheet."""
+    of_kind = replace(machine, controller={**machine.controller, "kind": form.KIND})
+    settings, faults = settings_of(form, of_kind)
+    if settings is None:
+        return None, faults
+    text = write(machine, settings, export)
+    longest = max(len(line) for line in text.splitlines())
+    if longest > settings.line_limit:
+        found = f"controller.line_limit: lines of the kinematics have {longest} characters, got {settings.line_limit}"
+        return None, (Diagnostic("M106", Place(machine.name), found),)
+    rows = [[round(count) for count in counts(settings, row)] for row in poses.lengths.tolist()]
+    files = {f"{stem}{suffix}": text}
+    sheet = sign_off_sheet(machine, target, digests(files), poses, rows, export.segment_time, operations(text))
+    return {**files, f"{stem}{SIGN_OFF}": sheet}, ()
+
+
+def digests(files: Files) -> dict[str, str]:
+    """SHA-256 of files by name, hexadecimal."""
+    return {name: hashlib.sha256(text.encode("utf-8")).hexdigest() for name, text in files.items()}
+
+
+_OPERATION = re.compile(r"[-+*/=]|[a-zA-Z]{3,}\d?(?=\()")
+"""An operator, an assignment or a function."""
+
+
+def operations(text: str) -> int:
+    """Operations of one run of the inverse program, without speeds."""
+    body = re.split(r"(?im)^open inverse$|^close$", text)[-2]
+    without_speeds = re.sub(r"(?ms)^IF .*?^ENDIF|^if .*?^}", "", body)
+    return sum(len(_OPERATION.findall(re.split(";|//", line)[0])) for line in without_speeds.splitlines())
+
+
+TARGETS: dict[str, Target] = {
+    "turbo-pmac": partial(_pmac, PmacSettings, turbo_text, "turbo-pmac", "-kinematics.pmc"),
+    "power-pmac": partial(_pmac, PowerPmacSettings, power_text, "power-pmac", "-kinematics.cfg"),
+}
+"""Writers by the value of ``--to``."""
+
+
+def export_files(
+    target: str, machine: Machine, stem: str, export: Export, poses: CheckPoses
+) -> tuple[Files | None, Findings]:
+    """Names and texts of the files of a target, or None with diagnostics.
+
+    Args:
+        target: one of ``TARGETS``.
+        machine: the machine.
+        stem: start of the names.
+        export: settings.
+        poses: positions for the sign-off sheet.
+    """
+    return TARGETS[target](machine, stem, export, poses)
