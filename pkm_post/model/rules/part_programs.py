@@ -143,6 +143,11 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
         "several files may be the subprogram",
         "leave one of them in the folder, or give the folder with the right one with --subprograms",
     ),
+    "G319": error(
+        "the program stops with an alarm of its own",
+        "correct what the message beside it says, such as a missing argument",
+    ),
+    "G320": error("there is no block with this sequence number", "write the block's N, or correct the jump"),
     # G4: what a G-code program means
     "G401": error(
         "the code is not supported",

@@ -218,6 +218,9 @@ class ExecutedBlocksBuilder:
         """Runs of rows: 0 for scanned or 1 for computed rows, first row, row after the last."""
         self._count = 0
 
+    def __len__(self) -> int:
+        return self._count
+
     def copy(self, start: int, stop: int) -> None:
         """Add scanned blocks unchanged.
 

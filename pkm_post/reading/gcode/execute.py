@@ -8,6 +8,7 @@ returned unchanged. Semantics are those of RS274NGC as implemented by LinuxCNC, 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,11 +16,12 @@ import numpy as np
 from pkm_post.model import Array, Diagnostic, Place
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
 from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.call_levels import MissingProgram
 from pkm_post.reading.gcode.flavours import RS274, Flavour
-from pkm_post.reading.gcode.interpreter import PROGRAM_END, SUBPROGRAM_CODES, Interpreter, MissingProgram
+from pkm_post.reading.gcode.interpreter import PROGRAM_END, SUBPROGRAM_CODES, Interpreter
 from pkm_post.reading.gcode.o_words import JumpTargets, link_o_words
 from pkm_post.reading.gcode.options import DEFAULT_LIMITS, ExecutionLimits
-from pkm_post.reading.gcode.parameters import ExecutionFault
+from pkm_post.reading.gcode.parameters import ExecutionFault, Whereabouts
 from pkm_post.reading.gcode.statements import OWord, Statement, statement_of
 
 
@@ -53,6 +55,7 @@ def execute_as_far_as_possible(
     is_whole: bool = True,
     text: bytes = b"",
     may_add: bool = False,
+    where: Callable[[Blocks], Whereabouts] | None = None,
 ) -> tuple[Blocks, tuple[Diagnostic, ...]]:
     """Execute a program up to its first fault.
 
@@ -63,6 +66,7 @@ def execute_as_far_as_possible(
         flavour: whose subprogram calls they are.
         text: of the program, where GOTO finds sequence numbers.
         is_whole: whether no block is missing; otherwise nothing is executed, and only invalid blocks are reported.
+        where: the state after some executed blocks, which parameters may ask for.
         may_add: whether a subprogram that is missing may be added, and the program be executed once more.
 
     Returns:
@@ -86,7 +90,7 @@ def execute_as_far_as_possible(
     special[blocks.m_row[np.isin(blocks.m, (*SUBPROGRAM_CODES, *PROGRAM_END))]] = True
     special[list(statements)] = True
     executed = ExecutedBlocksBuilder(blocks)
-    interpreter = Interpreter(blocks, statements, jumps, skipped, limits, executed, flavour, text)
+    interpreter = Interpreter(blocks, statements, jumps, skipped, limits, executed, flavour, text, where)
     try:
         interpreter.run(np.flatnonzero(special).tolist())
     except ExecutionFault as fault:

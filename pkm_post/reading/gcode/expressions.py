@@ -258,18 +258,30 @@ def _exists(target: Target) -> Step:
 def _apply(function: Callable[[float], float], name: str, node: Node) -> Step:
     column = column_of_node(node)
 
-    def apply(stack: list[float], _: Parameters) -> None:
-        stack[-1] = _finite(column, name, function, stack[-1])
+    def apply(stack: list[float], parameters: Parameters) -> None:
+        if name == "-" and stack[-1] != stack[-1]:
+            raise ExecutionFault("G301", "- before a vacant variable", column)
+        stack[-1] = _finite(column, name, parameters.functions.get(name, function), _or_zero(stack[-1]))
 
     return apply
 
 
 def _combine(function: Callable[[float, float], float], name: str, column: int) -> Step:
-    def combine(stack: list[float], _: Parameters) -> None:
-        right = stack.pop()
-        stack[-1] = _finite(column, name, function, stack[-1], right)
+    def combine(stack: list[float], parameters: Parameters) -> None:
+        right, left = stack.pop(), stack[-1]
+        if left != left or right != right:
+            if name in ("eq", "ne"):  # a vacant variable equals another one, and no number
+                stack[-1] = float((left != left and right != right) == (name == "eq"))
+                return
+            left, right = _or_zero(left), _or_zero(right)
+        stack[-1] = _finite(column, name, parameters.functions.get(name, function), left, right)
 
     return combine
+
+
+def _or_zero(value: float) -> float:
+    """A value, or 0 of a vacant variable (NaN), as arithmetic takes it [Fanuc, custom macro, undefined variables]."""
+    return value if value == value else 0.0
 
 
 def _finite(column: int, name: str, function: Callable[..., float], *operands: float) -> float:

@@ -45,7 +45,8 @@ class Flavour:
         counts_in_p: whether P of M98 above four digits begins with how often the subprogram runs.
         programs_apart: whether an O number begins another program, which only a call enters.
         counts_thousandths: whether some controls take lengths without a point for thousandths.
-        restarts: whether M99 ends the main program, to begin it again.
+        restarts: whether M99 ends the main program, to begin it again, and M99 P goes on at a sequence number.
+        macros: whether G65 and G66 call programs with arguments, and variables may be vacant.
         equivalents: codes, in tenths, that mean the same as another one.
         without_motion: codes that change nothing here: switches of what this reader never switches on.
         requests: codes that ask the control for smoothing, by what they ask for.
@@ -72,6 +73,7 @@ class Flavour:
     programs_apart: bool
     counts_thousandths: bool
     restarts: bool
+    macros: bool
     equivalents: Mapping[int, int]
     without_motion: Mapping[int, str]
     requests: Mapping[int, str]
@@ -104,6 +106,7 @@ RS274 = Flavour(
     programs_apart=False,
     counts_thousandths=False,
     restarts=False,
+    macros=False,
     equivalents={},
     without_motion={},
     requests={},
@@ -137,8 +140,7 @@ _FANUC_REFUSED: dict[str, str] = {
     "G63": "tapping mode",
     "G7.1": "interpolation on a cylinder",
     "G12.1": "interpolation in polar coordinates",
-    "G65": "macros",
-    "G66": "macros",
+    "G66.1": "macros after every block; G66 is understood",
     "G76": "fine boring, which needs an oriented spindle",
 }
 
@@ -162,6 +164,7 @@ FANUC = replace(
     programs_apart=True,
     counts_thousandths=True,
     restarts=True,
+    macros=True,
     equivalents={2340: 434, 1540: 541},
     without_motion={
         131: "end of interpolation in polar coordinates",

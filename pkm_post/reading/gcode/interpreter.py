@@ -7,80 +7,34 @@ conditions decide which row comes next; parameters keep their values on the way.
 
 from __future__ import annotations
 
-import re
 from bisect import bisect_left
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-
-import numpy as np
+from dataclasses import replace
 
 from pkm_post.model import Array
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
 from pkm_post.reading.gcode.blocks import Block, Blocks
+from pkm_post.reading.gcode.call_levels import Level, MissingProgram, rows_of_sequence_numbers
+from pkm_post.reading.gcode.codes import CYCLES, name_of
 from pkm_post.reading.gcode.flavours import Flavour
+from pkm_post.reading.gcode.flow_control import FlowControl
+from pkm_post.reading.gcode.macro_calls import Call, call_of
+from pkm_post.reading.gcode.macro_variables import MacroVariables
 from pkm_post.reading.gcode.o_words import JumpTargets
 from pkm_post.reading.gcode.options import ExecutionLimits
-from pkm_post.reading.gcode.parameters import ExecutionFault, Parameters, whole
-from pkm_post.reading.gcode.statements import OWord, Statement, label_of_number
+from pkm_post.reading.gcode.parameters import ExecutionFault, Parameters, Whereabouts, whole
+from pkm_post.reading.gcode.statements import MacroCall, OWord, Statement, label_of_number
 
 PROGRAM_END = (2, 30)
 _CALL, _RETURN = 98, 99
 SUBPROGRAM_CODES = (_CALL, _RETURN)
+_END_OF_MODAL_CALL = 670
+_MOVING = frozenset("XYZABCUVW")
 _COUNTED = 10_000
 """P of M98 from here on is the number of passes and the last four digits of the program [Fanuc]."""
 
-_SEQUENCE_NUMBER = re.compile(rb"^[ \t]*/?[ \t]*N[ \t]*0*(\d+)", re.MULTILINE | re.IGNORECASE)
 
-
-def rows_of_sequence_numbers(text: bytes, line: Array) -> dict[str, list[int]]:
-    """Rows by sequence number, in order; of a number without a block the row after it.
-
-    Args:
-        text: of the program, lines ended by line feeds.
-        line: (N,) line of each row.
-    """
-    rows: dict[str, list[int]] = {}
-    start = number = 0
-    for found in _SEQUENCE_NUMBER.finditer(text):
-        number += text.count(b"\n", start, found.start())
-        start = found.start()
-        rows.setdefault(found[1].decode(), []).append(int(np.searchsorted(line, number + 1)))
-    return rows
-
-
-class MissingProgram(ExecutionFault):  # noqa: N818 - it is no error of the program
-    """A call of a subprogram that is not there, so far.
-
-    Attributes:
-        labels: number or name, in all readings of the call.
-        row: of the call.
-    """
-
-    def __init__(self, labels: tuple[str, ...], row: int, found: str) -> None:
-        super().__init__("G309", found)
-        self.labels, self.row = labels, row
-
-
-@dataclass
-class _Level:
-    """A running subprogram.
-
-    Attributes:
-        return_row: return row.
-        first_row: first row, for the next pass.
-        passes: remaining passes after this one; only M98 has more than one.
-        by_m98: whether M98 called it, so M99 ends it rather than ``endsub``.
-        repeats: remaining passes of every active ``repeat``.
-    """
-
-    return_row: int
-    first_row: int
-    passes: int = 0
-    by_m98: bool = False
-    repeats: dict[int, int] = field(default_factory=dict)
-
-
-class Interpreter:
+class Interpreter(FlowControl):
     """One execution of a program.
 
     Args:
@@ -92,6 +46,7 @@ class Interpreter:
         executed: collects the executed blocks.
         flavour: whose subprogram calls they are.
         text: of the program, where GOTO finds sequence numbers.
+        where: the state after some executed blocks, where parameters may ask for it.
     """
 
     def __init__(
@@ -104,6 +59,7 @@ class Interpreter:
         executed: ExecutedBlocksBuilder,
         flavour: Flavour,
         text: bytes,
+        where: Callable[[Blocks], Whereabouts] | None = None,
     ) -> None:
         self.row = 0
         self._blocks, self._statements, self._jumps, self._skipped = blocks, statements, jumps, skipped
@@ -115,8 +71,12 @@ class Interpreter:
         """Whether M99 ended the main program."""
         self._blocks_left, self._operations_left = limits.blocks, limits.operations
         self._cost = {row: statement.cost for row, statement in statements.items()}
-        self._parameters = Parameters()
-        self._levels = [_Level(return_row=len(blocks), first_row=0)]
+        self._parameters = MacroVariables() if flavour.macros else Parameters()
+        if where is not None:
+            self._parameters.where = lambda: where(self._so_far())
+        self._after_moves: Call | None = None
+        """The macro that follows every move, since G66."""
+        self._levels = [Level(return_row=len(blocks), first_row=0)]
 
     def run(self, special: list[int]) -> None:
         """Execute until the program ends.
@@ -131,12 +91,17 @@ class Interpreter:
         special = [*special, end]
         while self.row < end:
             stop = special[bisect_left(special, self.row)]
-            if stop > self.row:
+            if stop > self.row and self._after_moves is None:
                 self._copy(stop)
             else:
                 self._spend(1, self._cost.get(self.row, 1))
                 self.row = self._step(self.row)
         self._refuse_open_subprogram()
+
+    def _so_far(self) -> Blocks:
+        """The blocks executed so far; to look at them counts as executing them once more."""
+        self._spend(len(self._executed), 0)
+        return self._executed.blocks()
 
     def _copy(self, stop: int) -> None:
         self._spend(stop - self.row, self._codes(self.row, stop))
@@ -168,9 +133,46 @@ class Interpreter:
         statement = self._statements.get(row)
         if isinstance(statement, OWord):
             return _STEPS[statement.keyword](self, row, statement)
+        if isinstance(statement, MacroCall):
+            return self._macro(row, statement)
         if statement is not None:
             return self._finish(row, statement.executed(self._parameters))
         return row + 1 if self._skipped[row] else self._finish(row, self._plain(row))
+
+    def _macro(self, row: int, statement: MacroCall) -> int:
+        """G65 calls a macro, G66 one after every move that follows."""
+        if not self._flavour.macros:
+            codes = [round(10 * value.value(self._parameters)) for letter, value in statement.words if letter == "G"]
+            return self._finish(row, Block(g=codes))
+        call = call_of(statement, self._parameters)
+        if self._after_moves is not None:
+            raise ExecutionFault("G316", f"{call.text} while G66 is in force")
+        if not call.modal:
+            return self._call_macro(row, call, row + 1)
+        self._after_moves = call
+        return row + 1
+
+    def _call_macro(self, row: int, call: Call, return_row: int) -> int:
+        if call.label not in self._jumps.programs:
+            raise MissingProgram((call.label,), row, call.text)
+        if call.passes == 0:
+            return return_row
+        first_row = self._jumps.programs[call.label] + 1
+        self._enter(Level(return_row, first_row, call.passes - 1, by_m98=True, call=call), call.arguments)
+        return first_row
+
+    def _after_move(self, row: int, block: Block) -> int:
+        """The next row while G66 is in force; within its macro it is not."""
+        call = self._after_moves
+        if call is None or self._levels[-1].call is call:
+            return row + 1
+        if _END_OF_MODAL_CALL in block.g:
+            self._after_moves = None
+            return row + 1
+        taken = sorted({*block.g} & {*self._flavour.axis_takers(), *CYCLES})
+        if taken:
+            raise ExecutionFault("G316", f"{name_of(taken[0])} while G66 is in force")
+        return self._call_macro(row, call, row + 1) if {*block.words} & _MOVING else row + 1
 
     def _plain(self, row: int) -> Block:
         self._spend(0, self._codes(row, row + 1))
@@ -181,7 +183,7 @@ class Interpreter:
         """Output a computed row and apply the jumps control of its M codes; return the next row."""
         if not block.m:
             self._executed.add(row, block)
-            return row + 1
+            return self._after_move(row, block)
         subprogram_codes = [code for code in block.m if code in SUBPROGRAM_CODES]
         ends = [code for code in block.m if code in PROGRAM_END]
         if subprogram_codes and len(subprogram_codes) + len(ends) > 1:
@@ -192,9 +194,11 @@ class Interpreter:
             self._executed.add(row, replace(block, words=rest, m=codes))
             return self._call_program(row, block) if subprogram_codes == [_CALL] else self._leave_program(block)
         self._executed.add(row, block)
-        return len(self._blocks) + 1 if ends else row + 1
+        return len(self._blocks) + 1 if ends else self._after_move(row, block)
 
     def _call_program(self, row: int, block: Block) -> int:
+        if self._after_moves is not None:
+            raise ExecutionFault("G316", "M98 while G66 is in force")
         number, passes = (whole(block.words.get(letter, default)) for letter, default in (("P", -1.0), ("L", 1.0)))
         if number is None or passes is None or number < 0 or passes < 0:
             words = "".join(f" {letter}{block.words[letter]:.10g}" for letter in "PL" if letter in block.words)
@@ -211,36 +215,33 @@ class Interpreter:
         if passes == 0:
             return row + 1
         first_row = self._jumps.programs[label] + 1
-        self._enter(_Level(row + 1, first_row, passes - 1, by_m98=True), None)
+        self._enter(Level(row + 1, first_row, passes - 1, by_m98=True), None)
         return first_row
 
     def _leave_program(self, block: Block) -> int:
         level = self._levels[-1]
-        if self._flavour.restarts and len(self._levels) == 1 and "P" not in block.words:
+        to = label_of_number(block.words["P"]) if "P" in block.words and self._flavour.restarts else ""
+        if self._flavour.restarts and len(self._levels) == 1:
+            if to:
+                return self._sequence(to, self.row, f"M99 P{to}")
             self.restarts = True
             return len(self._blocks) + 1
-        if not level.by_m98 or "P" in block.words:
+        if not level.by_m98 or ("P" in block.words and not to):
             raise ExecutionFault("G312", "M99 P" if "P" in block.words else "M99 outside of a subprogram called by M98")
         self._parameters.leave(None)
-        if level.passes:
+        if level.passes and not to:
             level.passes -= 1
             level.repeats.clear()
-            self._parameters.enter(None)
+            self._parameters.enter(None if level.call is None else level.call.arguments)
             return level.first_row
         self._levels.pop()
-        return level.return_row
+        return self._sequence(to, level.return_row - 1, f"M99 P{to}") if to else level.return_row
 
-    def _enter(self, level: _Level, arguments: list[float] | None) -> None:
+    def _enter(self, level: Level, arguments: list[float] | None) -> None:
         if len(self._levels) >= self._limits.depth:
             raise ExecutionFault("G314", f"more than {self._limits.depth} levels, the main program included")
         self._levels.append(level)
         self._parameters.enter(arguments)
-
-    def _value(self, word: OWord) -> float:
-        return word.values[0].value(self._parameters)
-
-    def _next(self, row: int, _: OWord) -> int:
-        return row + 1
 
     def _program(self, row: int, _: OWord) -> int:
         """A number alone: where it begins another program, the one before it has no further blocks."""
@@ -253,7 +254,7 @@ class Interpreter:
         if label not in self._jumps.subs:
             raise MissingProgram((label,), row, f"O{label if label.isdigit() else f'<{label}>'} call")
         first_row = self._jumps.subs[label] + 1
-        self._enter(_Level(row + 1, first_row), [value.value(self._parameters) for value in word.values])
+        self._enter(Level(row + 1, first_row), [value.value(self._parameters) for value in word.values])
         return first_row
 
     def _return(self, row: int, word: OWord) -> int:
@@ -267,11 +268,26 @@ class Interpreter:
         """To the next block with that sequence number, or else the first one of the same program [Fanuc]."""
         if word.values and self._value(word) == 0:
             return row + 1
+        label = word.label
+        if not isinstance(label, str):
+            label = label_of_number(label.value(self._parameters), label.column)
+        return self._sequence(label, row, f"GOTO {label}")
+
+    def _sequence(self, label: str, row: int, text: str) -> int:
+        """The row of a sequence number in the program of a row: the next one behind it, or else the first."""
         first, end = self._program_of(row)
-        targets = [target for target in self._labels().get(str(word.label), []) if first <= target < end]
+        targets = [target for target in self._labels().get(label, []) if first <= target < end]
         if not targets:
-            raise ExecutionFault("G309", f"GOTO {word.label}: no block N{word.label} in this program")
+            raise ExecutionFault("G320", f"{text}: no block N{label} in this program")
         return next((target for target in targets if target > row), targets[0])
+
+    def _then(self, row: int, word: OWord) -> int:
+        """IF THEN: an assignment if the condition holds."""
+        target, value = word.target, word.values[1]
+        if target is not None and self._value(word) != 0:
+            name, assigned = target.resolved(self._parameters), value.value(self._parameters)
+            self._parameters.assign(name, assigned)
+        return row + 1
 
     def _program_of(self, row: int) -> tuple[int, int]:
         """The first row of the program that a row belongs to, and the row after its last."""
@@ -284,49 +300,6 @@ class Interpreter:
         if self._rows_of_label is None:
             self._rows_of_label = rows_of_sequence_numbers(self._text, self._blocks.line)
         return self._rows_of_label
-
-    def _macro_while(self, row: int, word: OWord) -> int:
-        return row + 1 if self._value(word) != 0 else self._jumps.other_end[row] + 1
-
-    def _after_other_end(self, row: int, _: OWord) -> int:
-        return self._jumps.other_end[row] + 1
-
-    def _to_other_end(self, row: int, _: OWord) -> int:
-        return self._jumps.other_end[row]
-
-    def _if(self, row: int, word: OWord) -> int:
-        """Jump to the first branch whose condition is true."""
-        while word.values and self._value(word) == 0:
-            self.row = row = self._jumps.next_branch[row]
-            self._spend(1, self._cost[row])
-            branch = self._statements[row]
-            assert isinstance(branch, OWord)
-            word = branch
-        return row + 1
-
-    def _while(self, row: int, word: OWord) -> int:
-        holds = self._value(word) != 0
-        if holds == (row in self._jumps.closing):
-            return self._jumps.other_end[row] + 1
-        return row + 1
-
-    def _repeat(self, row: int, word: OWord) -> int:
-        repeats = round(self._value(word))
-        if repeats <= 0:
-            return self._jumps.other_end[row] + 1
-        self._levels[-1].repeats[row] = repeats
-        return row + 1
-
-    def _endrepeat(self, row: int, _: OWord) -> int:
-        first_row = self._jumps.other_end[row]
-        self._levels[-1].repeats[first_row] -= 1
-        return first_row + 1 if self._levels[-1].repeats[first_row] else row + 1
-
-    def _break(self, row: int, _: OWord) -> int:
-        return self._jumps.last_row[row] + 1
-
-    def _continue(self, row: int, _: OWord) -> int:
-        return self._jumps.last_row[row]
 
 
 _STEPS: dict[str, Callable[[Interpreter, int, OWord], int]] = {
@@ -347,6 +320,7 @@ _STEPS: dict[str, Callable[[Interpreter, int, OWord], int]] = {
     "break": Interpreter._break,
     "continue": Interpreter._continue,
     "goto": Interpreter._goto,
+    "then": Interpreter._then,
     "macro while": Interpreter._macro_while,
     "macro end": Interpreter._to_other_end,
 }

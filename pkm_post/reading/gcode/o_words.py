@@ -83,7 +83,7 @@ class _Linker:
             ExecutionFault: the O word is unmatched.
         """
         keyword = word.keyword
-        if keyword in ("call", "goto"):
+        if keyword in ("call", "goto", "then"):
             return
         if keyword in MACRO_JUMPS and isinstance(word.label, str):
             self._link_macro_loop(row, keyword, word.label)

@@ -9,8 +9,9 @@ knows are refused.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import ClassVar, Protocol
 
 HIGHEST = 5601
 """The last numbered parameter."""
@@ -54,6 +55,9 @@ _SETTINGS_OF_THE_MACHINE = ("_hal[", "_ini[")
 _OF_A_CALL = ("_value", "_value_returned", "_call_level")
 """Names set by subprogram calls only, not by assignment."""
 
+_PLACES = (5420, 5421, 5422)
+"""X, Y and Z of the current position in the work frame of the program."""
+
 Name = int | str
 """What follows ``#``: a number, or a name in lower case without blanks."""
 
@@ -72,6 +76,19 @@ class ExecutionFault(Exception):  # noqa: N818 - it is no error of the program
         self.code, self.found, self.column = code, found, column
 
 
+class Whereabouts(Protocol):
+    """What a program can know of the state that it has come to, in its own units."""
+
+    def coordinate(self, axis: int, number: int) -> float:
+        """A coordinate of the tool in the work frame of the program, for the parameter of that number."""
+
+    def machine_coordinate(self, axis: int, number: int) -> float:
+        """A coordinate of the tool from the zero of the machine."""
+
+    def code(self, number: int) -> float:
+        """The code or word in force that a variable from #4001 to #4130 has."""
+
+
 @dataclass
 class _Level:
     """Call frame of a subprogram: its names, and the caller's values of #1 to #30."""
@@ -83,7 +100,11 @@ class _Level:
 class Parameters:
     """All parameters of a running program."""
 
+    functions: ClassVar[Mapping[str, Callable[..., float]]] = {}
+    """Functions and operators that mean something else than in RS274NGC."""
+
     def __init__(self) -> None:
+        self.where: Callable[[], Whereabouts] | None = None
         self._numbered = [0.0] * (HIGHEST + 1)
         self._global: dict[str, float] = dict.fromkeys(_OF_A_CALL, 0.0)
         self._levels = [_Level({}, None)]
@@ -100,6 +121,8 @@ class Parameters:
             ExecutionFault: it is undefined, or reserved for the control.
         """
         if isinstance(name, int):
+            if name in _PLACES and self.where is not None:
+                return self.where().coordinate(_PLACES.index(name), name)
             return self._numbered[_numbered(name)]
         _refuse_names_of_the_machine(name)
         value = self._named(name).get(name)
@@ -125,8 +148,10 @@ class Parameters:
         """Whether a parameter can be read.
 
         Raises:
-            ExecutionFault: only the control knows.
+            ExecutionFault: only the control knows, or there is none of that number.
         """
+        if isinstance(name, int) and not 1 <= name <= HIGHEST:
+            raise ExecutionFault("G302", f"#{name}")
         if isinstance(name, str) and name.startswith(_SETTINGS_OF_THE_MACHINE):
             raise ExecutionFault("G303", f"#<{name}>")
         return isinstance(name, int) or name in _NAMES_OF_THE_MACHINE or name in self._named(name)
@@ -165,6 +190,8 @@ class Parameters:
 
 def whole(value: float) -> int | None:
     """The integer a value represents, None if it represents none."""
+    if value != value:  # a vacant variable
+        return None
     number = round(value)
     return number if abs(value - number) < _WHOLE else None
 
@@ -173,15 +200,17 @@ def in_range(value: float) -> int:
     """Convert a value to a parameter number.
 
     Raises:
-        ExecutionFault: there is no parameter of that number.
+        ExecutionFault: it is no whole number, or below 0.
     """
     number = whole(value)
-    if number is None or not 1 <= number <= HIGHEST:
+    if number is None or number < 0:
         raise ExecutionFault("G302", f"#{value:.10g}")
     return number
 
 
 def _numbered(number: int) -> int:
+    if not 1 <= number <= HIGHEST:
+        raise ExecutionFault("G302", f"#{number}")
     if number > _OF_THE_MACHINE[0][0] - 1:
         for first, last, what in _OF_THE_MACHINE:
             if first <= number <= last:

@@ -25,6 +25,10 @@ _DEEPEST_TREE = 100
 
 LARGEST_CODE = 9999.0
 
+MACRO_CALLS = (65.0, 66.0)
+MAY_BE_REPEATED = "IJK"
+"""Arguments of a macro that may stand several times in a block."""
+
 DIALECT_CODES: dict[str, tuple[int, ...]] = {"LN": (435, 10), "TRAORI": (435,), "TRAFOOF": (430,)}
 """Words of other dialects and the equivalent G codes, in tenths: G43.5 G1, G43.5 and G43."""
 
@@ -59,7 +63,8 @@ def parse_line(line: bytes) -> Block | UnexpectedInput | Fault:
 def _block_of(tree: Tree[Token]) -> Block:
     block = Block()
     seen: set[str] = set()
-    special = False
+    special = is_macro_call(tree)
+    repeated = MAY_BE_REPEATED if special else "GM"
     for place, child in enumerate(tree.children):
         if isinstance(child, str):
             is_delete = child.type == "DELETE"
@@ -67,7 +72,7 @@ def _block_of(tree: Tree[Token]) -> Block:
             special |= is_delete and place > 0
             block.g.extend(dialect_codes(child))
         elif child.data in ("word", "named_word", "surface_word"):
-            special |= not _add_word(block, child, seen)
+            special |= not _add_word(block, child, seen, repeated)
         else:
             special |= child.data != "line_number"
     if special:
@@ -80,12 +85,18 @@ def dialect_codes(word: str) -> tuple[int, ...]:
     return DIALECT_CODES.get(word.split("(")[0].strip().upper(), ())
 
 
-def _add_word(block: Block, word: Tree[Token], seen: set[str]) -> bool:
+def is_macro_call(tree: Tree[Token]) -> bool:
+    """Whether a block has G65 or G66, beside which words are arguments."""
+    words = (child.children for child in tree.children if not isinstance(child, str) and child.data == "word")
+    return any(str(name) in "Gg" and isinstance(value, str) and float(value) in MACRO_CALLS for name, value in words)
+
+
+def _add_word(block: Block, word: Tree[Token], seen: set[str], repeated: str) -> bool:
     """Add a word to the block; return whether it is plain, a name and a number."""
     name, value = word.children
     assert isinstance(name, str)  # in the grammar a word starts with a terminal
     letter = "".join(name.split()).upper()
-    if letter in seen and letter not in "GM":
+    if letter in seen and letter not in repeated:
         raise _InvalidBlock("G202", name)
     seen.add(letter)
     if not isinstance(value, str):

@@ -9,23 +9,30 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from functools import partial
 
 from pkm_post.model import Diagnostic, Place, Program, errors
 from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.call_levels import MissingProgram
 from pkm_post.reading.gcode.execute import execute_as_far_as_possible
 from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, Flavour
 from pkm_post.reading.gcode.foreign import foreign_language
 from pkm_post.reading.gcode.guess import guessed_flavour
-from pkm_post.reading.gcode.interpreter import MissingProgram
 from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, ExecutionLimits, ReadOptions
 from pkm_post.reading.gcode.recovery import first_line, merged, own_faults
 from pkm_post.reading.gcode.resolve import resolve
 from pkm_post.reading.gcode.scan import scan_recovering, with_line_feeds
 from pkm_post.reading.gcode.subprograms import Source, with_operations, with_places
+from pkm_post.reading.gcode.whereabouts import ExecutedBlocks
 
 _COMMENT = re.compile(rb"\([^()\n]*\)|;[^\n]*")
 _WITHOUT_A_POINT = re.compile(rb"(?<![A-Za-z#\]])[XYZIJxyzij][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])")
 """A coordinate that is a whole number other than 0, without a point."""
+_MACRO_CALL = re.compile(rb"^[^\n]*[Gg]0*6[56](?![\d.])[^\n]*", re.MULTILINE)
+_ARGUMENT_WITHOUT_A_POINT = re.compile(
+    rb"(?<![A-Za-z#\]])[ABCEFKQRUVWabcefkqruvw][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])"
+)
+"""An argument of a macro likewise, which counts in the smallest increment of its address [Fanuc, custom macro]."""
 _RESTARTS = ("M99 ends the main program, which a control would begin again: it is carried out once",)
 
 
@@ -71,13 +78,14 @@ def _executed(
 ) -> tuple[Source, Blocks, tuple[Diagnostic, ...]]:
     """Execute a program, with the files of the subprograms that it calls: each is added when it is found missing."""
     flavour, may_add = FLAVOURS[options.flavour or RS274.name], bool(options.folders)
+    where = partial(ExecutedBlocks, options=options)
     of_files: tuple[Diagnostic, ...] = ()
     while True:
         blocks = source.blocks
         text = with_line_feeds(source.text) if blocks.special else b""
         try:
             executed, faults = execute_as_far_as_possible(
-                blocks, limits, options.block_delete, flavour, is_whole, text, may_add
+                blocks, limits, options.block_delete, flavour, is_whole, text, may_add, where
             )
         except MissingProgram as missing:
             longer, of_files = source.with_file(missing, options.folders)
@@ -91,10 +99,12 @@ def _lengths_without_a_point(text: bytes | str, file: str) -> tuple[Diagnostic, 
     """A warning about whole numbers as coordinates, at the first of them."""
     raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else bytes(text)
     plain = _COMMENT.sub(lambda comment: b" " * len(comment[0]), raw) if b"(" in raw or b";" in raw else raw
-    found = _WITHOUT_A_POINT.search(plain)
-    if found is None:
+    places = [*_WITHOUT_A_POINT.finditer(plain)]
+    for call in _MACRO_CALL.finditer(plain):
+        places += _ARGUMENT_WITHOUT_A_POINT.finditer(plain, *call.span())
+    if not places:
         return ()
-    number = len(_WITHOUT_A_POINT.findall(plain))
+    found, number = min(places, key=lambda place: place.start()), len(places)
     line = plain.count(b"\n", 0, found.start()) + 1
     column = found.start() - plain.rfind(b"\n", 0, found.start())
     more = f", and {number - 1} more like it" if number > 1 else ""

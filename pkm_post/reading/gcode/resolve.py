@@ -109,7 +109,7 @@ def _up_to_end(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:
 
 
 @dataclass(frozen=True)
-class _BlockStates:
+class BlockStates:
     """State of each block, apart from positions and modal codes.
 
     Attributes:
@@ -131,13 +131,14 @@ class _BlockStates:
     spins: Array
 
 
-def _block_states(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> _BlockStates:
+def block_states(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> BlockStates:
+    """The states of all blocks."""
     tools = tools_in_spindle(blocks, modal, options, faults)
     checkpoint()
     axes, lost = tool_axes(blocks, modal, options, faults)
     checkpoint()
     check_cycles(modal, axes, faults)
-    return _BlockStates(
+    return BlockStates(
         tools=tools,
         spindle=spindle_speeds(blocks, modal),
         sides=side_offsets(blocks, modal, tools, options, faults),
@@ -149,7 +150,7 @@ def _block_states(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
 
 
 def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> Program | None:
-    states = _block_states(blocks, modal, options, faults)
+    states = block_states(blocks, modal, options, faults)
     checkpoint()
     modes = path_modes(blocks, modal, faults)
     checkpoint()
@@ -207,7 +208,7 @@ def _frames(motions: Motions) -> RowFrames:
 
 
 def _directions(
-    blocks: Blocks, modal: Modal, states: _BlockStates, motions: Motions, axis: Array, faults: BlockDiagnostics
+    blocks: Blocks, modal: Modal, states: BlockStates, motions: Motions, axis: Array, faults: BlockDiagnostics
 ) -> dict[str, Array]:
     """Program columns that frames rotate and mirror but do not translate."""
     frames = _frames(motions)

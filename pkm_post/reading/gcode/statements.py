@@ -21,7 +21,7 @@ from pkm_post.reading.gcode.expressions import (
     target_of,
 )
 from pkm_post.reading.gcode.parameters import ARGUMENTS, ExecutionFault, Parameters, whole
-from pkm_post.reading.gcode.parse import LARGEST_CODE, dialect_codes
+from pkm_post.reading.gcode.parse import LARGEST_CODE, dialect_codes, is_macro_call
 
 if TYPE_CHECKING:
     from lark import Token, Tree
@@ -66,7 +66,8 @@ class Words:
         Raises:
             ExecutionFault: a value cannot be computed or is invalid for its word.
         """
-        values = {letter: value.value(parameters) for letter, value in self.values}
+        computed_words = {letter: value.value(parameters) for letter, value in self.values}
+        values = {letter: value for letter, value in computed_words.items() if value == value}  # a vacant one is none
         g = [*self.codes, *(_code("G", code, 10, parameters) for code in self.g)]
         m = [_code("M", code, 1, parameters) for code in self.m]
         computed = [(target.resolved(parameters), value.value(parameters)) for target, value in self.assignments]
@@ -86,11 +87,13 @@ class OWord:
         keyword: in lower case; ``program`` for a bare label.
         label: number or name, or an expression that gives the number at execution.
         values: operands after the keyword.
+        target: of the assignment behind ``then``.
     """
 
     keyword: str
     label: str | Expression
     values: tuple[Expression, ...]
+    target: Target | None = None
 
     @property
     def cost(self) -> int:
@@ -99,7 +102,23 @@ class OWord:
         return sum(len(value.steps) for value in (*label, *self.values))
 
 
-Statement = Words | OWord
+@dataclass(frozen=True)
+class MacroCall:
+    """A block with G65 or G66: the words are arguments, in their order.
+
+    Attributes:
+        words: letters and values.
+    """
+
+    words: tuple[tuple[str, Expression], ...]
+
+    @property
+    def cost(self) -> int:
+        """How many operations it takes to execute the block."""
+        return sum(len(value.steps) for _, value in self.words)
+
+
+Statement = Words | OWord | MacroCall
 
 
 def statement_of(tree: Tree[Token], block_delete: bool = False) -> Statement:
@@ -112,6 +131,8 @@ def statement_of(tree: Tree[Token], block_delete: bool = False) -> Statement:
     Raises:
         ExecutionFault: the block is invalid.
     """
+    if is_macro_call(tree):
+        return _macro_call_of(tree)
     words = Words()
     for place, child in enumerate(tree.children):
         if isinstance(child, str):
@@ -125,6 +146,11 @@ def statement_of(tree: Tree[Token], block_delete: bool = False) -> Statement:
         elif child.data in _ADD:
             _ADD[child.data](words, child)
     return words
+
+
+def _macro_call_of(tree: Tree[Token]) -> MacroCall:
+    words = [child for child in tree.children if not isinstance(child, str) and child.data == "word"]
+    return MacroCall(tuple((str(word.children[0]).upper(), expression_of(word.children[1])) for word in words))
 
 
 def _add_word(words: Words, word: Tree[Token]) -> None:
@@ -156,12 +182,17 @@ MACRO_JUMPS = ("goto", "macro while", "macro end")
 
 
 def _macro_of(tree: Tree[Token]) -> OWord:
-    *before, number = tree.children
+    *before, last = tree.children
     condition = tuple(expression_of(node) for node in before if not isinstance(node, str) or node.type == "NUMBER")
     kinds = {node.type for node in before if isinstance(node, str)}
+    if "THEN" in kinds:
+        assert not isinstance(last, str)  # in the grammar an assignment is always a branch
+        parameter, value = last.children
+        return OWord("then", "", (*condition, expression_of(value)), target_of(parameter))
     keyword = "goto" if "GOTO" in kinds else "macro while" if "WHILE" in kinds else "macro end"
-    assert isinstance(number, str)  # in the grammar a jump ends with its number
-    return OWord(keyword, label_of_number(float(number), column_of_node(number)), condition)
+    if isinstance(last, str):
+        return OWord(keyword, label_of_number(float(last), column_of_node(last)), condition)
+    return OWord(keyword, expression_of(last), condition)
 
 
 def _o_word_of(tree: Tree[Token]) -> OWord:

@@ -19,7 +19,7 @@ import numpy as np
 
 from pkm_post.model import IN_SUBPROGRAM_FILE, Array, Diagnostic, Place, Program, errors
 from pkm_post.reading.gcode.blocks import Blocks, SubprogramFile, located
-from pkm_post.reading.gcode.interpreter import MissingProgram
+from pkm_post.reading.gcode.call_levels import MissingProgram
 from pkm_post.reading.gcode.scan import scan_recovering, with_line_feeds
 
 _SUFFIXES = r"\.(?:ngc|nc|cnc|tap|gcode|mpf|spf|sub|eia|iso|txt)"

@@ -41,8 +41,8 @@ def test_the_way_through_a_program(text, expected):
 @pytest.mark.parametrize(
     ("text", "code", "line"),
     [
-        ("GOTO 20\nG1 X1.\n", "G309", 3),
-        ("M98 P7\nM30\nN5 G1 X1.\nO7\nGOTO 5\nM99\n", "G309", 7),
+        ("GOTO 20\nG1 X1.\n", "G320", 3),
+        ("M98 P7\nM30\nN5 G1 X1.\nO7\nGOTO 5\nM99\n", "G320", 7),
         ("WHILE [1] DO1\nG1 X1.\n", "G308", 3),
         ("END1\nG1 X1.\n", "G307", 3),
         ("WHILE [1] DO1\nWHILE [1] DO2\nEND1\nEND2\n", "G307", 5),

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Macro variables: the memory of custom macro B of Fanuc's controls.
+
+Enters: numbers of variables and values. Leaves: values, in the unit of the program; NaN is a vacant variable, which
+arithmetic takes as 0 and for which a word is left out. #0 is always vacant, #1 to #33 belong to a level of
+macro calls and are vacant where it begins, #100 to #199 and #500 to #999 are common to all levels [Fanuc, custom macro,
+variables]. What #500 to #999 hold when a program begins is not known: reading one before it is assigned is a fault.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import ClassVar
+
+from pkm_post.reading.gcode.expressions import FUNCTIONS, arc_tangent
+from pkm_post.reading.gcode.parameters import ExecutionFault, Name, Parameters
+
+LOCAL = 33
+"""Number of local variables."""
+_VACANT = math.nan
+_CLEARED = range(100, 200)
+"""Common variables that are vacant when the control is switched on."""
+_KEPT = range(500, 1000)
+"""Common variables that keep their values from other programs."""
+_ALARM = 3000
+_PANEL = (3003, 3004)
+"""Switches of single block and feed hold: they change nothing about the motion."""
+_CODES = range(4001, 4131)
+_BLOCK_END, _IN_MACHINE, _CURRENT = range(5001, 5004), range(5021, 5024), range(5041, 5044)
+_FULL_TURN = 360.0
+
+
+def _whole(value: float) -> int:
+    if value != round(value):
+        raise ExecutionFault("G305", f"{value:.10g} bit by bit")
+    return round(value)
+
+
+def _positive(degrees: float) -> float:
+    return degrees + _FULL_TURN if degrees < 0 else degrees
+
+
+class MacroVariables(Parameters):
+    """All variables of a running program."""
+
+    functions: ClassVar[Mapping[str, Callable[..., float]]] = {
+        "fix": math.trunc,
+        "fup": lambda value: math.copysign(math.ceil(abs(value)), value),
+        "and": lambda left, right: _whole(left) & _whole(right),
+        "or": lambda left, right: _whole(left) | _whole(right),
+        "xor": lambda left, right: _whole(left) ^ _whole(right),
+        "atan": lambda y, x: _positive(arc_tangent(y, x)),
+        "asin": lambda value: _positive(FUNCTIONS["asin"](value)),
+    }
+    """FIX cuts off and FUP rounds away from 0; AND, OR and XOR go bit by bit, which is the same for conditions; ATAN
+    and ASIN are from 0 to 360 degrees [Fanuc, custom macro, arithmetic; parameter 6004#0 at 0]."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._common: dict[int, float] = {}
+        self._local: list[dict[int, float]] = [{}]
+        self._calls: list[bool] = []
+        """For each call, whether it began a level of its own."""
+
+    @property
+    def depth(self) -> int:
+        """Call depth; 0 in the main program."""
+        return len(self._calls)
+
+    def value(self, name: Name) -> float:
+        """The value of a variable, NaN of a vacant one.
+
+        Raises:
+            ExecutionFault: it is not known.
+        """
+        if isinstance(name, str):
+            raise ExecutionFault("G302", f"#<{name}>")
+        if name <= LOCAL:
+            return self._local[-1].get(name, _VACANT)
+        if name in self._common or name in _CLEARED:
+            return self._common.get(name, _VACANT)
+        if name in _KEPT:
+            raise ExecutionFault("G301", f"#{name}")
+        return self._of_the_control(name)
+
+    def _of_the_control(self, number: int) -> float:
+        if self.where is not None:
+            for places in (_BLOCK_END, _CURRENT):
+                if number in places:
+                    return self.where().coordinate(number - places.start, number)
+            if number in _IN_MACHINE:
+                return self.where().machine_coordinate(number - _IN_MACHINE.start, number)
+            if number in _CODES:
+                return self.where().code(number)
+        raise ExecutionFault("G303", f"#{number}")
+
+    def assign(self, name: Name, value: float) -> None:
+        """Assign a value to a variable; NaN makes it vacant.
+
+        Raises:
+            ExecutionFault: it is no variable of the program, or an alarm.
+        """
+        if isinstance(name, str):
+            raise ExecutionFault("G302", f"#<{name}>")
+        if 1 <= name <= LOCAL:
+            self._local[-1][name] = value
+        elif name in _CLEARED or name in _KEPT:
+            self._common[name] = value
+        elif name == _ALARM:
+            raise ExecutionFault("G319", f"#{_ALARM}={value:g}")
+        elif name not in _PANEL:
+            raise ExecutionFault("G303", f"#{name}, assigned")
+
+    def exists(self, name: Name) -> bool:
+        """Whether a variable has a value."""
+        return self.value(name) == self.value(name)
+
+    def enter(self, arguments: Sequence[float] | None) -> None:
+        """Enter a program.
+
+        Args:
+            arguments: values of #1 and up, NaN where vacant; None when it shares them with its caller, as after M98.
+        """
+        self._calls.append(arguments is not None)
+        if arguments is not None:
+            self._local.append(dict(enumerate(arguments, start=1)))
+
+    def leave(self, returned: float | None) -> None:
+        """Leave a program; macros return nothing."""
+        if self._calls.pop():
+            self._local.pop()

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Whereabouts: where the blocks executed so far have brought the tool, and which codes are in force there.
+
+Enters: the executed blocks. Leaves: coordinates and codes for the parameters that a program reads, in its own units:
+#5420 to #5422 of LinuxCNC, #5001 to #5043 and #4001 to #4130 of Fanuc's controls. The blocks are resolved as at the
+end, so that both agree; what they leave unknown, or have a fault before, cannot be read.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from pkm_post.model import Array
+from pkm_post.reading.gcode.adapt import adapted
+from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.checks import check
+from pkm_post.reading.gcode.codes import FURTHER_OFFSET, Group
+from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
+from pkm_post.reading.gcode.events import dwell_words
+from pkm_post.reading.gcode.flavours import FLAVOURS, RS274
+from pkm_post.reading.gcode.modal import Modal, modal_state
+from pkm_post.reading.gcode.options import UNITS, ReadOptions, axis_names
+from pkm_post.reading.gcode.parameters import ExecutionFault
+from pkm_post.reading.gcode.position_tracker import PositionTracker
+from pkm_post.reading.gcode.resolve import block_states
+
+_GROUPS = {
+    4001: Group.MOTION,
+    4002: Group.PLANE,
+    4003: Group.DISTANCE,
+    4005: Group.FEED_MODE,
+    4006: Group.UNIT,
+    4007: Group.SIDE,
+    4008: Group.LENGTH,
+    4010: Group.RETRACT,
+    4014: Group.SYSTEM,
+}
+"""Variables with the codes of the block before [Fanuc, custom macro, modal information]."""
+_WORDS = {4107: "D", 4109: "F", 4111: "H", 4119: "S", 4120: "T"}
+"""Variables with the last words."""
+_OFFSET_INCLUDED = 5021
+"""From this number on coordinates are those of the spindle nose where an offset is in force."""
+_NO_OFFSETS = {Group.LENGTH: 490, Group.SIDE: 400}
+
+
+@dataclass(frozen=True)
+class ExecutedBlocks:
+    """The blocks executed so far, and the options that they are read with."""
+
+    blocks: Blocks
+    options: ReadOptions
+
+    def coordinate(self, axis: int, number: int) -> float:
+        """A coordinate of the tool in the work frame of the program.
+
+        Raises:
+            ExecutionFault: it is not known.
+        """
+        position, known, modal, _ = self._state_for(number)
+        if not known[axis] or (number in range(_OFFSET_INCLUDED, 5100) and self._has_offsets(modal)):
+            raise ExecutionFault("G303", f"#{number}: the place of the tool")
+        return float(position[axis]) / self._unit(modal)
+
+    def machine_coordinate(self, axis: int, number: int) -> float:
+        """A coordinate of the tool from the zero of the machine.
+
+        Raises:
+            ExecutionFault: it is not known.
+        """
+        _, known, modal, work = self._state_for(number)
+        zero = self.options.machine_zero
+        if zero is None or not known.all() or self._has_offsets(modal):
+            raise ExecutionFault("G303", f"#{number}: the place of the tool on the machine")
+        return float(work[axis] - zero[axis]) / self._unit(modal)
+
+    def code(self, number: int) -> float:
+        """The code of a group, or the last word of a letter.
+
+        Raises:
+            ExecutionFault: there is none.
+        """
+        modal = self._state_for(number)[2]
+        if number in _GROUPS:
+            code = int(_last(modal.active[_GROUPS[number]]))
+            if code > FURTHER_OFFSET:
+                return code / 10
+        words = self.blocks.word(_WORDS.get(number, ""))
+        given = words[~np.isnan(words)]
+        if not len(given):
+            raise ExecutionFault("G303", f"#{number}")
+        return float(given[-1])
+
+    def _unit(self, modal: Modal) -> float:
+        return float(_last(modal.scale))
+
+    def _has_offsets(self, modal: Modal) -> bool:
+        return any(_last(modal.active[group]) != code for group, code in _NO_OFFSETS.items())
+
+    def _state_for(self, number: int) -> tuple[Array, Array, Modal, Array]:
+        if not len(self.blocks):
+            raise ExecutionFault("G303", f"#{number}, before the first block")
+        return self._state
+
+    @cached_property
+    def _state(self) -> tuple[Array, Array, Modal, Array]:
+        """Coordinates of the tool, which are known, the codes, and the place in {C}."""
+        options = self.options
+        flavour = FLAVOURS[options.flavour or RS274.name]
+        blocks, _ = adapted(self.blocks, flavour, options.left_out)
+        faults = BlockDiagnostics(blocks)
+        modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), flavour)
+        check(blocks, modal, options, faults)
+        if faults.has_errors():
+            return np.zeros(3), np.zeros(3, np.bool_), modal, np.zeros(3)
+        states = block_states(blocks, modal, options, faults)
+        dwells = dwell_words(blocks, modal, options)
+        tracker = PositionTracker(blocks, modal, states.tools, states.spindle, dwells, states.lost, options, faults)
+        tracker.motions()
+        known = tracker.known & (not faults.has_errors())
+        return tracker.position, known, modal, tracker.frame.to_work(tracker.position)
+
+
+def _last(column: Array) -> Array:
+    value: Array = column[-1]
+    return value
