@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """PKM Post: from CAM jobs to certified motion programs of 6-TPS parallel kinematic machine tools."""
 
+import importlib
+import sys
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -82,15 +85,31 @@ __all__ = [
 
 __version__ = "0.1.0"
 
+
+def at_first_use(door: str, files: Mapping[str, str]) -> Callable[[str], Any]:
+    """``__getattr__`` of a door that imports names when they are first used [PEP 562]: small jobs need few files.
+
+    Args:
+        door: name of the package.
+        files: the names that each of its files gives, by the file's dotted name in the package; files and folders
+            directly in the package by an empty one. None of the other names may be that of such a file or folder.
+    """
+    file_of = {name: file for file, names in files.items() for name in names.split()}
+
+    def attribute(name: str) -> Any:
+        if name not in file_of:
+            raise AttributeError(f"module {door!r} has no attribute {name!r}")
+        if not file_of[name]:
+            return importlib.import_module(f"{door}.{name}")
+        value = getattr(importlib.import_module(f"{door}.{file_of[name]}"), name)
+        setattr(sys.modules[door], name, value)
+        return value
+
+    return attribute
+
+
 if not TYPE_CHECKING:
-
-    def __getattr__(name: str) -> Any:
-        """Import the API at its first use: the command line starts without NumPy."""
-        if name in __all__:
-            from pkm_post import api
-
-            return getattr(api, name)
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    __getattr__ = at_first_use(__name__, {"api": " ".join(__all__)})
 
 
 def __dir__() -> list[str]:

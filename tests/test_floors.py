@@ -2,7 +2,9 @@
 """The rules of the house: floors go down, a room is entered by its door, and each optional package has one door."""
 
 import ast
+import importlib
 import re
+import sys
 from functools import cache
 from pathlib import Path
 
@@ -157,3 +159,30 @@ def _inside(room):
 
 def _dotted(path):
     return ".".join(("pkm_post", *path.relative_to(PACKAGE).with_suffix("").parts)).removesuffix(".__init__")
+
+
+def _at_first_use(room):
+    """The names that a door imports when they are first used, and what it says of them for types: name and module."""
+    body = ast.parse((PACKAGE / room / "__init__.py").read_text(encoding="utf-8")).body
+    for node in body:
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING" and node.orelse:
+            (table,) = (ast.literal_eval(each.args[1]) for each in ast.walk(node) if isinstance(each, ast.Call))
+            of_table = {
+                (name, f"pkm_post.{room}.{file}".removesuffix("."))
+                for file, names in table.items()
+                for name in names.split()
+            }
+            return of_table, {(alias.name, each.module) for each in node.body for alias in each.names}
+    return set(), set()
+
+
+@pytest.mark.parametrize("room", [room for room in ROOMS if (PACKAGE / room / "__init__.py").exists()])
+def test_names_that_are_imported_at_their_first_use_are_those_for_types(room):
+    names, for_types = _at_first_use(room)
+    assert names == for_types
+    for name, module in names:
+        assert getattr(importlib.import_module(f"pkm_post.{room}"), name) is getattr(sys.modules[module], name)
+        files = {path.stem for path in (PACKAGE / room).iterdir()}
+        assert name not in files or module == f"pkm_post.{room}", (
+            f"the file of this name takes the place of {name} when it is imported"
+        )

@@ -27,7 +27,7 @@ def test_a_job_is_posted_without_lark_pyserial_and_paramiko():
 
 def test_a_part_program_needs_lark_and_says_so(tmp_path):
     part = tmp_path / "part.ngc"
-    part.write_text("G0 X1\n")
+    part.write_text("G0 X[1]\n")
     reported = python("from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))", "check", part)
     assert reported.returncode == 1
     assert "Traceback" not in reported.stderr

@@ -2,24 +2,33 @@
 """Command line: ``python3 -m pkm_post post part.FCStd --machine example_6tps --out DIR`` and other commands.
 
 Exit code 0 on success, 1 when the input was refused, memory ran out, or the output pipe was closed, 2 for invalid
-arguments, 130 after Ctrl-C. Each module adds its commands to the parser and runs them.
+arguments, 130 after Ctrl-C. Each module adds its commands to the parser and runs them; only that of the named command
+is imported.
 """
 
 from __future__ import annotations
 
 import argparse
+import importlib
 import io
 import os
 import sys
 from collections.abc import Sequence
 
 import pkm_post
-from pkm_post.cli import machine, pmac, post, programs, reach
 from pkm_post.cli.processes import INTERRUPTED
 from pkm_post.system import MEMORY_FAULTS, memory_diagnostic
 
 __all__ = ["main"]
 
+_COMMANDS = {
+    "post": ("post",),
+    "reach": ("reach", "reach-map"),
+    "programs": ("check", "convert", "verify"),
+    "machine": ("machine",),
+    "pmac": ("pmac",),
+}
+"""Commands by the module that has them, in the order of the help text."""
 _OPTIONAL = ("lark", "serial", "paramiko")
 """Optional packages; their entry points say what to install."""
 
@@ -28,7 +37,7 @@ def main(arguments: Sequence[str]) -> int:
     """Run one command and return its exit code."""
     try:
         _prepare_streams()
-        namespace = _parser().parse_args(arguments)
+        namespace = _parser(arguments[:1]).parse_args(arguments)
         code: int = namespace.run(namespace, arguments)
         sys.stdout.flush()
     except BrokenPipeError:
@@ -71,11 +80,13 @@ def _output_is_closed() -> bool:
     return False
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(first: Sequence[str] = ()) -> argparse.ArgumentParser:
+    """The parser of the command that the first argument names, or of all commands if it names none."""
     program = "pkm-post" if os.path.basename(sys.argv[0]) == "pkm-post" else "python3 -m pkm_post"
     parser = argparse.ArgumentParser(prog=program, description=pkm_post.__doc__)
     parser.add_argument("--version", action="version", version=f"PKM Post {pkm_post.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for module in (post, reach, programs, machine, pmac):
-        module.add_commands(commands)
+    named = [module for module, names in _COMMANDS.items() if set(first) & set(names)]
+    for module in named or _COMMANDS:
+        importlib.import_module(f"pkm_post.cli.{module}").add_commands(commands)
     return parser

@@ -38,10 +38,11 @@ from pkm_post.options import (
     solid_files,
     whole_from,
 )
-from pkm_post.system import DamagedDocument, Job, memory_guard, read_document
+from pkm_post.system import memory_guard
 
 if TYPE_CHECKING:
     from pkm_post.posting import Posted
+    from pkm_post.system import Job
 
 _DOCUMENT = ".fcstd"
 _ONLY = "--only"
@@ -121,6 +122,8 @@ def _items(file: Path, wanted: str | None, also: tuple[str, ...]) -> list[PostIt
 
 def _jobs_in(document: Path) -> tuple[Job, ...]:
     """CAM jobs of a document; none of an unreadable one, which is refused when posted."""
+    from pkm_post.system import DamagedDocument, read_document
+
     try:
         return read_document(document).jobs
     except (OSError, DamagedDocument):

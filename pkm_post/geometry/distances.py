@@ -103,10 +103,10 @@ def _nearest(start: Array, end: Array, away: Callable[[Array], Array]) -> Array:
     """
     way = end - start
     shape = np.broadcast_shapes(start.shape, end.shape, away(start).shape)[:-1]
-    low, high = np.zeros(shape), np.ones(shape)
+    low, high, along = np.zeros(shape), np.ones(shape), np.broadcast_to(way, (*shape, 3))
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
-        rising = dot(away(start + middle[..., None] * way), np.broadcast_to(way, (*shape, 3))) > 0
+        rising = dot(away(start + middle[..., None] * way), along) > 0
         low, high = np.where(rising, low, middle), np.where(rising, middle, high)
     # Where the slope never changes sign, the nearest point is an end, and must be exact to the last digit.
     share = np.where(high == 1.0, 1.0, low)

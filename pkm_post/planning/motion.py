@@ -32,7 +32,6 @@ from pkm_post.model import (
 from pkm_post.planning.fast_poses import fast_poses_within
 from pkm_post.planning.feed_study import feed_study
 from pkm_post.planning.interpolation import InterpolationCheck, poses_at
-from pkm_post.planning.jerk_limits import jerk_limited
 from pkm_post.planning.knots import LONGEST_MS, SLOWDOWN, block_rate_factors, even_marks, knots, slower_feed
 from pkm_post.planning.refinement import refined_profile
 from pkm_post.planning.rough_limits import DerivativeBounds, below_feed, deviates_in_blends, rough_limits
@@ -205,6 +204,8 @@ def _way(path: ToolPath, marks: Stations) -> tuple[PosePath, Array]:
 
 def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
     """The schedule for a machine with jerk limits."""
+    from pkm_post.planning.jerk_limits import jerk_limited
+
     marks = stations(path)
     motion = jerk_limited(path, marks, machine)
     _check_duration(motion.s, motion.square, marks)

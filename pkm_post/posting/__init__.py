@@ -4,14 +4,28 @@
 Only ``steps`` defines the order of the steps. Either all files are written and certified, or none.
 """
 
-from pkm_post.posting.machine_check import format_table, machine_faults, machine_summary
-from pkm_post.posting.machine_export import export_machine
+from typing import TYPE_CHECKING
+
+from pkm_post import at_first_use
 from pkm_post.posting.placement import effective_setup, trajectory_of, work_offset
 from pkm_post.posting.post_file import Prepared, post_file, prepared_file
-from pkm_post.posting.reach_study import Study, study, work_offset_text
 from pkm_post.posting.run import Log, Posted, Progress, no_log, no_progress
 from pkm_post.posting.steps import SUFFIX, post, step_names, write_program
 from pkm_post.posting.verify import verify, verify_texts
+
+if TYPE_CHECKING:
+    from pkm_post.posting.machine_check import format_table, machine_faults, machine_summary
+    from pkm_post.posting.machine_export import export_machine
+    from pkm_post.posting.reach_study import Study, study, work_offset_text
+else:
+    __getattr__ = at_first_use(
+        __name__,
+        {
+            "machine_check": "format_table machine_faults machine_summary",
+            "machine_export": "export_machine",
+            "reach_study": "Study study work_offset_text",
+        },
+    )
 
 __all__ = [
     "SUFFIX",

@@ -1,26 +1,44 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Reading: G-code, CL data, CAM documents and meshes, from their files to a program."""
 
+from typing import TYPE_CHECKING
+
+from pkm_post import at_first_use
 from pkm_post.reading import gcode
-from pkm_post.reading.check import check_file, checks_as_json, checks_as_text
-from pkm_post.reading.cldata.options import CONTOUR_DATA, DIALECTS
-from pkm_post.reading.editing import TextFile, renumbered
 from pkm_post.reading.gcode.codes import SPINDLE_SYNCHRONISED
-from pkm_post.reading.gcode.cycles import CycleSeries, Strokes, cycle_fault, cycle_strokes
 from pkm_post.reading.gcode.events import LONG_DWELL
 from pkm_post.reading.gcode.flavours import FLAVOURS
 from pkm_post.reading.gcode.options import AXIS_WORDS, DWELL_UNITS, FLAVOUR_NAMES
 from pkm_post.reading.gcode.tool_axes import axis_of
-from pkm_post.reading.highlighting import Colour, coloured_spans, underlined
 from pkm_post.reading.language import SUFFIXES, VERSIONED, Language, is_part_program, language_of, program_stem
-from pkm_post.reading.mesh_file import MESH_READERS, STEP_SUFFIXES, mesh_of_triangles, read_mesh
 from pkm_post.reading.part_program import (
     AS_WRITTEN,
     ReadingOptions,
     read_part_program,
 )
-from pkm_post.reading.preview import CheckedText, check_text, tip_paths_of_line
 from pkm_post.reading.units import UNITS
+
+if TYPE_CHECKING:
+    from pkm_post.reading.check import check_file, checks_as_json, checks_as_text
+    from pkm_post.reading.cldata.options import CONTOUR_DATA, DIALECTS
+    from pkm_post.reading.editing import TextFile, renumbered
+    from pkm_post.reading.gcode.cycles import CycleSeries, Strokes, cycle_fault, cycle_strokes
+    from pkm_post.reading.highlighting import Colour, coloured_spans, underlined
+    from pkm_post.reading.mesh_file import MESH_READERS, STEP_SUFFIXES, mesh_of_triangles, read_mesh
+    from pkm_post.reading.preview import CheckedText, check_text, tip_paths_of_line
+else:
+    __getattr__ = at_first_use(
+        __name__,
+        {
+            "check": "check_file checks_as_json checks_as_text",
+            "cldata.options": "CONTOUR_DATA DIALECTS",
+            "editing": "TextFile renumbered",
+            "gcode.cycles": "CycleSeries Strokes cycle_fault cycle_strokes",
+            "highlighting": "Colour coloured_spans underlined",
+            "mesh_file": "MESH_READERS STEP_SUFFIXES mesh_of_triangles read_mesh",
+            "preview": "CheckedText check_text tip_paths_of_line",
+        },
+    )
 
 __all__ = [
     "AS_WRITTEN",

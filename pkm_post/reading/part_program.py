@@ -23,7 +23,7 @@ import numpy as np
 
 from pkm_post.geometry import dot
 from pkm_post.model import Diagnostic, EventKind, Kind, Place, Program, Tool
-from pkm_post.reading import cldata, gcode
+from pkm_post.reading import gcode
 from pkm_post.reading.language import Language, language_of
 
 _Result = tuple[Program | None, tuple[Diagnostic, ...]]
@@ -174,6 +174,8 @@ def _zero_where_unknown(tool: Tool) -> Tool:
 
 
 def _read_cldata(content: bytes, file: str, reading: ReadingOptions) -> _Result:
+    from pkm_post.reading import cldata
+
     options = cldata.ReadOptions(
         dialect=reading.cl_dialect,
         units=reading.unit,

@@ -12,7 +12,6 @@ import base64
 import html
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +59,7 @@ def write_page(path: Path, report: Mapping[str, Any], results: Results) -> None:
         _time_table(report["machining_time"]),
         _origin(report),
     ]
-    style, script = (resources.files(__package__).joinpath(name).read_text("utf-8") for name in _ASSETS)
+    style, script = (Path(__file__).with_name(name).read_text("utf-8") for name in _ASSETS)
     title = html.escape(f"{trajectory.source} on {machine.name}")
     head = f'<html lang="en"><head><meta charset="utf-8"><title>{title}</title>\n<style>\n{style}</style></head>'
     text = "\n".join(["<!doctype html>", head, "<body>", *parts, f"<script>\n{script}</script>", "</body></html>", ""])

@@ -4,11 +4,10 @@
 The command line starts in a Python without NumPy: what needs NumPy is imported at its first use.
 """
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from pkm_post import at_first_use
 from pkm_post.system import result_files
-from pkm_post.system.document import DocumentContent, Job, read_document
-from pkm_post.system.document_archive import DamagedDocument
 from pkm_post.system.file_names import require_usable, unusable_name
 from pkm_post.system.freecad_command import VARIABLE as FREECADCMD
 from pkm_post.system.freecad_command import FreeCADCommand, freecad_command
@@ -19,6 +18,17 @@ from pkm_post.system.workers import in_workers, workers
 
 if TYPE_CHECKING:
     from pkm_post.system.decimals import DecimalReader
+    from pkm_post.system.document import DocumentContent, Job, read_document
+    from pkm_post.system.document_archive import DamagedDocument
+else:
+    __getattr__ = at_first_use(
+        __name__,
+        {
+            "document": "DocumentContent Job read_document",
+            "document_archive": "DamagedDocument",
+            "decimals": "DecimalReader",
+        },
+    )
 
 __all__ = [
     "FREECADCMD",
@@ -44,12 +54,3 @@ __all__ = [
     "workers",
     "write_fault",
 ]
-
-if not TYPE_CHECKING:
-
-    def __getattr__(name: str) -> Any:
-        if name == "DecimalReader":
-            from pkm_post.system.decimals import DecimalReader
-
-            return DecimalReader
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

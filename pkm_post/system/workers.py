@@ -20,8 +20,9 @@ Result = TypeVar("Result")
 
 _FOR_EACH = 112 << 20
 """Bytes of address space that a thread may take: 64 MB to allocate in, 32 for OpenBLAS, and its stack."""
-_ROWS = 256
-"""Rows of a matrix that keeps a thread busy for a millisecond or more, so that all compute at once."""
+_MATRICES, _ROWS = 8, 96
+"""Matrices that keep a thread busy for a millisecond or more, so that all compute at once, and the rows of each: few
+enough for OpenBLAS to take no further threads, which would wait busily for more work for a tenth of a second."""
 
 
 @functools.cache
@@ -39,7 +40,7 @@ def workers() -> ThreadPoolExecutor:
 
     def compute(_: int) -> None:
         together.wait()
-        np.linalg.inv(np.eye(_ROWS))
+        np.linalg.inv(np.broadcast_to(np.eye(_ROWS), (_MATRICES, _ROWS, _ROWS)))
 
     try:
         list(pool.map(compute, range(count)))

@@ -1,32 +1,63 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tool path: compensation, symmetry, surface passes, work offset and spindle speeds, from a program to a trajectory."""
 
-from pkm_post.toolpath.chords import CHORD_ERROR, with_chords
-from pkm_post.toolpath.compensation.compensate import compensate
-from pkm_post.toolpath.compensation.contact import tip_from_contact
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
-from pkm_post.toolpath.compensation.cutter import Cutter
-from pkm_post.toolpath.compensation.swept_volume import SweptVolume, stock_left
+from typing import TYPE_CHECKING
+
+from pkm_post import at_first_use
 from pkm_post.toolpath.compressor.bounds import SplineBounds
 from pkm_post.toolpath.compressor.compress import compress
 from pkm_post.toolpath.compressor.splines import Splines, direction
 from pkm_post.toolpath.place import place
 from pkm_post.toolpath.segments import Segments
-from pkm_post.toolpath.surface.moves import program_from_poses
-from pkm_post.toolpath.surface.options import CutMode, LeadMove, PassLines, PassOrder, SurfaceOptions
-from pkm_post.toolpath.surface.passes import surface_poses
-from pkm_post.toolpath.surface.poses import Poses, Tolerances
-from pkm_post.toolpath.surface.stepover import Stepover
-from pkm_post.toolpath.surface.surface import ParameterRange, Surface
-from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
-from pkm_post.toolpath.surface_speed import SurfaceSpeed, with_surface_speed
-from pkm_post.toolpath.symmetry.copies import MIRRORS, Copies, with_copies
-from pkm_post.toolpath.symmetry.coverage import Coverage, Seam, coverage, mirror_gap, seam, seams, sector
-from pkm_post.toolpath.symmetry.cut_direction import cut_lengths
-from pkm_post.toolpath.symmetry.passes import pass_rows
-from pkm_post.toolpath.symmetry.reverse import reversed_passes
-from pkm_post.toolpath.symmetry.transform import concatenate, mirror, rotation, transform
 from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
+
+if TYPE_CHECKING:
+    from pkm_post.toolpath.chords import CHORD_ERROR, with_chords
+    from pkm_post.toolpath.compensation.compensate import compensate
+    from pkm_post.toolpath.compensation.contact import tip_from_contact
+    from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
+    from pkm_post.toolpath.compensation.cutter import Cutter
+    from pkm_post.toolpath.compensation.swept_volume import SweptVolume, stock_left
+    from pkm_post.toolpath.surface.moves import program_from_poses
+    from pkm_post.toolpath.surface.options import CutMode, LeadMove, PassLines, PassOrder, SurfaceOptions
+    from pkm_post.toolpath.surface.passes import surface_poses
+    from pkm_post.toolpath.surface.poses import Poses, Tolerances
+    from pkm_post.toolpath.surface.stepover import Stepover
+    from pkm_post.toolpath.surface.surface import ParameterRange, Surface
+    from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
+    from pkm_post.toolpath.surface_speed import SurfaceSpeed, with_surface_speed
+    from pkm_post.toolpath.symmetry.copies import MIRRORS, Copies, with_copies
+    from pkm_post.toolpath.symmetry.coverage import Coverage, Seam, coverage, mirror_gap, seam, seams, sector
+    from pkm_post.toolpath.symmetry.cut_direction import cut_lengths
+    from pkm_post.toolpath.symmetry.passes import pass_rows
+    from pkm_post.toolpath.symmetry.reverse import reversed_passes
+    from pkm_post.toolpath.symmetry.transform import concatenate, mirror, rotation, transform
+else:
+    __getattr__ = at_first_use(
+        __name__,
+        {
+            "chords": "CHORD_ERROR with_chords",
+            "compensation.compensate": "compensate",
+            "compensation.contact": "tip_from_contact",
+            "compensation.contour_elements": "OffsetOptions",
+            "compensation.cutter": "Cutter",
+            "compensation.swept_volume": "SweptVolume stock_left",
+            "surface.moves": "program_from_poses",
+            "surface.options": "CutMode LeadMove PassLines PassOrder SurfaceOptions",
+            "surface.passes": "surface_poses",
+            "surface.poses": "Poses Tolerances",
+            "surface.stepover": "Stepover",
+            "surface.surface": "ParameterRange Surface",
+            "surface.tool_axis": "AxisRule tool_axes",
+            "surface_speed": "SurfaceSpeed with_surface_speed",
+            "symmetry.copies": "MIRRORS Copies with_copies",
+            "symmetry.coverage": "Coverage Seam coverage mirror_gap seam seams sector",
+            "symmetry.cut_direction": "cut_lengths",
+            "symmetry.passes": "pass_rows",
+            "symmetry.reverse": "reversed_passes",
+            "symmetry.transform": "concatenate mirror rotation transform",
+        },
+    )
 
 __all__ = [
     "CHORD_ERROR",

@@ -17,7 +17,6 @@ import numpy as np
 from pkm_post.model import Diagnostic, Kind, Place, Program, StrutMotion, Trajectory, pieces
 from pkm_post.system import result_files
 from pkm_post.writing.controllers import Table, part_names
-from pkm_post.writing.gcode import GcodeDialect, write
 
 Findings = tuple[Diagnostic, ...]
 
@@ -94,6 +93,8 @@ def linuxcnc_text(trajectory: Trajectory, tip_tolerance: float) -> tuple[str | N
         tip_tolerance: path tolerance of the tool tip where the program states none, mm. It is written as P of G64:
             without P LinuxCNC rounds corners as far as its speed requires.
     """
+    from pkm_post.writing.gcode import GcodeDialect, write
+
     text, found = write(_as_program(trajectory, tip_tolerance), GcodeDialect.LINUXCNC)
     comment = "(coordinates of the machine frame, work offsets are zero; not certified)\n"
     return (None if text is None else comment + text), found

@@ -14,7 +14,7 @@ from pkm_post.model import Kind, Tool
 from pkm_post.model.diagnostics import errors
 from pkm_post.reading.check import check_file, size_of
 from pkm_post.reading.part_program import ReadingOptions, read_part_program
-from pkm_post.writing.convert import TARGETS, convert
+from pkm_post.writing.conversion import TARGETS, convert
 from pkm_post.writing.gcode import GcodeDialect, write
 
 MICRON = 1e-3

@@ -1,147 +1,20 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Check: collisions of the machine and its tools with the set-up, and the coverage of the checks.
+"""Check: collisions of a trajectory with the set-up, and the coverage of the checks.
 
-Takes a trajectory, a machine and a set-up; returns diagnostics and coverage rows. Distances refer to the programmed
-trajectory; the allowed deviation of the tool from it is added to clearances and allowances. Units: mm, rad.
+Takes a trajectory, a machine and a set-up; returns diagnostics and coverage rows. Without a set-up there is nothing to
+search for, and what searches is not imported.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import numpy as np
+from pkm_post.machine.collisions.coverage import NO_SETUP
+from pkm_post.model import Coverage, Diagnostic, Machine, Setup, Tolerances, Trajectory
 
-from pkm_post.geometry import Array, is_closed
-from pkm_post.machine.collisions.contacts import (
-    ENOUGH,
-    Obstacle,
-    TrajectoryPath,
-    contact_faults,
-    contacts,
-    contacts_at_ends,
-    mesh_faults,
-    placed_triangles,
-)
-from pkm_post.machine.collisions.moving_bodies import (
-    MovingBody,
-    cutter_pieces,
-    platform_body,
-    shank_pieces,
-    strut_bodies,
-    tool_body,
-)
-from pkm_post.machine.collisions.stock_collisions import Intruder, body_of, rapid_cutter, shank_of, stock_faults
-from pkm_post.machine.collisions.tools_in_use import ToolUse, not_cut_before, tools_in_use
-from pkm_post.machine.kinematics.placed_machine import has_strut_bodies
-from pkm_post.machine.reach.collision_mesh import CollisionMesh
-from pkm_post.machine.reach.report import pose_path_of
-from pkm_post.model import Coverage, Diagnostic, Extent, Machine, Mesh, Place, Setup, Tolerances, Topic, Trajectory
-
-PART_NOT_KNOWN, FIXTURES_NOT_KNOWN, STOCK_NOT_KNOWN = (
-    Coverage(Topic.COLLISIONS, subject, Extent.NOT_COVERED, detail)
-    for subject, detail in (
-        ("machine and tool against the part", "part: not known"),
-        ("machine and tool against clamps and fixtures", "none beside those of the machine file is known"),
-        ("machine and rapid moves against the stock", "stock: not known"),
-    )
-)
-NO_SETUP = (PART_NOT_KNOWN, FIXTURES_NOT_KNOWN, STOCK_NOT_KNOWN)
-"""Collisions with an unknown set-up, as when a program is verified."""
-_WHOLE = "along the whole path"
-
-
-@dataclass
-class CoverageRows:
-    """The rows under construction.
-
-    Attributes:
-        unknown_cutters: names of tools of unknown size.
-    """
-
-    unknown_cutters: list[str] = field(default_factory=list)
-    _rows: list[Coverage] = field(default_factory=list)
-
-    def rows(self) -> tuple[Coverage, ...]:
-        """All rows."""
-        return tuple(self._rows)
-
-    def _add(self, subject: str, extent: Extent, detail: str) -> None:
-        self._rows.append(Coverage(Topic.COLLISIONS, subject, extent, detail))
-
-    def not_known(self, row: Coverage) -> None:
-        """Record an unknown item of the set-up."""
-        self._rows.append(row)
-
-    def machine(self, obstacle: Obstacle, bodies: bool, struts: bool) -> None:
-        """Record the check of bodies and struts, if the machine file states them."""
-        pairs = (
-            ("spindle and holder", bodies, "bodies of the platform"),
-            ("struts", struts, "tubes or rods of the struts"),
-        )
-        for subject, stated, needed in pairs:
-            extent = Extent.PROVEN if stated else Extent.NOT_COVERED
-            detail = _detail(obstacle, _WHOLE) if stated else f"the machine file does not state {needed}"
-            self._add(_against(subject, obstacle), extent, detail)
-
-    def shanks(self, obstacle: Obstacle, unknown: Sequence[str]) -> None:
-        """Record the check of shanks, if they are known."""
-        if unknown:
-            detail = f"{', '.join(unknown)}: it is not known where the cutting edges end"
-            self._add(_against("shanks", obstacle), Extent.NOT_COVERED, detail)
-        else:
-            self._add(_against("shanks", obstacle), Extent.PROVEN, _detail(obstacle, _WHOLE))
-
-    def cutters(self, obstacle: Obstacle, allowance: float) -> None:
-        """Record the check of cutters, if their size is known."""
-        deeper = f", what is deeper than {allowance:g} mm and was not cut before"
-        sampled = f"at ends of moves, 2000 at most for each tool, what is deeper than {allowance:g} mm"
-        kinds = [
-            ("cutters in rapid moves", Extent.PROVEN, _WHOLE + deeper),
-            ("cutters in cutting moves", Extent.SAMPLED, sampled),
-        ]
-        for subject, extent, detail in kinds:
-            if self.unknown_cutters:
-                detail = f"{', '.join(self.unknown_cutters)}: the diameter is not known"
-                self._add(_against(subject, obstacle), Extent.NOT_COVERED, detail)
-            else:
-                self._add(_against(subject, obstacle), extent, _detail(obstacle, detail))
-
-    def cutters_in_all_moves(self, obstacle: Obstacle) -> None:
-        """Record the check of cutters against a fixture, if their size is known."""
-        if self.unknown_cutters:
-            detail = f"{', '.join(self.unknown_cutters)}: the diameter is not known"
-            self._add(_against("cutters", obstacle), Extent.NOT_COVERED, detail)
-        else:
-            self._add(_against("cutters", obstacle), Extent.PROVEN, _detail(obstacle, _WHOLE))
-
-    def stock(self, obstacle: Obstacle, step: float, points: int) -> None:
-        """Record the check of the stock by grid points."""
-        detail = f"as it is left by the cuts before, in {points:,} points {step:.2g} mm apart"
-        self._add("machine and rapid moves against the stock", Extent.SAMPLED, _detail(obstacle, detail))
-
-    def stock_open(self, obstacle: Obstacle) -> None:
-        """Record that the stock is not a solid."""
-        detail = _detail(obstacle, "its mesh is not closed: rapid moves were not looked at")
-        self._add("machine and rapid moves against the stock", Extent.NOT_COVERED, detail)
-
-
-def _against(subject: str, obstacle: Obstacle) -> str:
-    source = f" {obstacle.source}" if obstacle.name == "fixture" else ""
-    return f"{subject} against the {obstacle.name}{source}"
-
-
-def _detail(obstacle: Obstacle, how: str) -> str:
-    return f"{obstacle.source}, {obstacle.triangles:,} triangles, {how}"
-
-
-ALLOWANCE = 0.25
-"""mm that a cutter or a shank may enter the workpiece: its faces are triangulated, and the cutter has to touch them."""
-_TOUCH = 1e-3
-"""mm: bodies without clearance collide where they are closer than this."""
-_SAMPLES = 2000
-"""Sampled poses of cutting moves."""
-_ALL = 1_000_000
+if TYPE_CHECKING:
+    from pkm_post.machine.reach.collision_mesh import CollisionMesh
 
 
 @dataclass(frozen=True)
@@ -168,8 +41,12 @@ def find_collisions(trajectory: Trajectory, machine: Machine, setup: Setup, tole
     """
     if setup.is_empty:
         return Collisions((), NO_SETUP)
+    from pkm_post.machine.collisions.contacts import TrajectoryPath
+    from pkm_post.machine.collisions.search import Search
+    from pkm_post.machine.reach.report import pose_path_of
+
     way, segment, _ = pose_path_of(trajectory)
-    search = _Search(TrajectoryPath(trajectory, way, segment), machine, setup, tolerances)
+    search = Search(TrajectoryPath(trajectory, way, segment), machine, setup, tolerances)
     search.part()
     search.fixtures()
     search.stock()
@@ -187,129 +64,7 @@ def placed_workpiece(setup: Setup, trajectory: Trajectory) -> CollisionMesh | No
     """The workpiece in the position of a trajectory on the machine; None if unknown."""
     if setup.part is None:
         return None
+    from pkm_post.machine.collisions.contacts import placed_triangles
+    from pkm_post.machine.reach.collision_mesh import CollisionMesh
+
     return CollisionMesh.of(placed_triangles(setup.part, trajectory.machine_from_work))
-
-
-@dataclass
-class _Search:
-    """The checks in sequence, with their results."""
-
-    driven: TrajectoryPath
-    machine: Machine
-    setup: Setup
-    tolerances: Tolerances
-    found: list[Diagnostic] = field(default_factory=list)
-    extents: CoverageRows = field(default_factory=CoverageRows)
-
-    def __post_init__(self) -> None:
-        way = self.driven.way
-        self.used = tools_in_use(self.driven, self.setup)
-        self.bodies = [platform_body(self.machine, way, body) for body in self.machine.bodies]
-        self.struts = strut_bodies(self.machine, way) if has_strut_bodies(self.machine) else None
-        self.off_tip = float(self.driven.trajectory.tip_tolerances(self.tolerances.tip).max())
-
-    def part(self) -> None:
-        """Check everything that moves against the finished workpiece."""
-        if self.setup.part is None:
-            self.extents.not_known(PART_NOT_KNOWN)
-            return
-        part = self._obstacle("part", self.setup.part)
-        self._machine(part, "K117", "K121")
-        self._shanks(part, "K130", ALLOWANCE)
-        for used in self._with_size(part):
-            pieces = cutter_pieces(used.tool, used.edge_length, ALLOWANCE + self.off_tip)
-            self._rapid(part, used, tool_body(f"{used.name} in a rapid move", self.driven.way, used.rapid, pieces))
-            mover = tool_body(used.name, self.driven.way, _sampled(used.cutting), pieces)
-            met = contacts_at_ends(self.driven.way, mover, part.part, _TOUCH)
-            self.found += contact_faults(self.driven, "K132", mover, part, met, ALLOWANCE)
-        self.extents.cutters(part, ALLOWANCE)
-
-    def _rapid(self, part: Obstacle, used: ToolUse, mover: MovingBody) -> None:
-        met = contacts(self.driven.way, mover, part.part, _TOUCH, self.driven.operation, _ALL)
-        met = not_cut_before(self.driven, self.used, met)
-        self.found += contact_faults(self.driven, "K131", mover, part, met, ALLOWANCE)
-
-    def fixtures(self) -> None:
-        """Check everything that moves against the fixtures, in all moves."""
-        if not self.setup.fixtures:
-            self.extents.not_known(FIXTURES_NOT_KNOWN)
-        for mesh in self.setup.fixtures:
-            fixture = self._obstacle("fixture", mesh)
-            self._machine(fixture, "K133", "K133")
-            self._shanks(fixture, "K133", 0.0)
-            for used in self._with_size(fixture):
-                pieces = cutter_pieces(used.largest, used.edge_length, 0.0)
-                mover = tool_body(used.name, self.driven.way, used.cells(), pieces)
-                self.found += mesh_faults(self.driven, "K133", mover, fixture, _TOUCH + self.off_tip)
-            self.extents.cutters_in_all_moves(fixture)
-
-    def stock(self) -> None:
-        """Check the stock against bodies, struts and shanks in all moves, and against cutters in rapid moves."""
-        mesh = self.setup.stock
-        if mesh is None:
-            self.extents.not_known(STOCK_NOT_KNOWN)
-            return
-        stock = self._obstacle("stock", mesh)
-        closed = is_closed(mesh.triangles)
-        if not closed:
-            self.found.append(Diagnostic("K139", Place(mesh.source), f"{len(mesh.triangles)} triangles"))
-        intruders = [*self._in_stock(stock, closed)]
-        intruders += [rapid_cutter(used) for used in self.used if used.has_size and len(used.rapid)]
-        if closed and intruders:
-            grid, found = stock_faults(self.driven, mesh, intruders, self.used, self.off_tip)
-            self.found += found
-            self.extents.stock(stock, grid.step, int(grid.filled.sum()))
-        elif not closed:
-            self.extents.stock_open(stock)
-
-    def _in_stock(self, stock: Obstacle, closed: bool) -> Iterator[Intruder]:
-        """Movers not proven to stay clear of the uncut stock."""
-        movers: list[tuple[MovingBody, Intruder | None]] = [
-            (mover, body_of(self.machine, body, self.used))
-            for mover, body in zip(self.bodies, self.machine.bodies, strict=True)
-        ]
-        movers += [(mover, shank_of(used)) for used, mover in self._shank_movers(0.0)]
-        movers += [(self.struts, None)] if self.struts else []
-        for mover, intruder in movers:
-            in_points = closed and intruder is not None
-            operation, enough = self.driven.operation, 1 if in_points else ENOUGH
-            met = contacts(self.driven.way, mover, stock.part, _TOUCH + self.off_tip, operation, enough)
-            if len(met) and closed and intruder is not None:
-                yield intruder
-            elif len(met):
-                self.found += contact_faults(self.driven, "K135", mover, stock, met, 0.0)
-
-    def _obstacle(self, name: str, mesh: Mesh) -> Obstacle:
-        return Obstacle.of(name, mesh, self.driven.trajectory.machine_from_work)
-
-    def _machine(self, obstacle: Obstacle, of_bodies: str, strut_bodies: str) -> None:
-        """Check bodies of the platform and struts against a mesh."""
-        movers: Sequence[tuple[str, MovingBody]] = [(of_bodies, mover) for mover in self.bodies]
-        movers = [*movers, (strut_bodies, self.struts)] if self.struts else movers
-        for code, mover in movers:
-            clearance = self.machine.clearance + self.off_tip + self.tolerances.axis * mover.reach
-            self.found += mesh_faults(self.driven, code, mover, obstacle, max(clearance, _TOUCH))
-        self.extents.machine(obstacle, bool(self.bodies), self.struts is not None)
-
-    def _shanks(self, obstacle: Obstacle, code: str, allowance: float) -> None:
-        for _, mover in self._shank_movers(allowance):
-            self.found += mesh_faults(self.driven, code, mover, obstacle, _TOUCH)
-        self.extents.shanks(obstacle, [used.name for used in self.used if used.shank is None])
-
-    def _shank_movers(self, allowance: float) -> Iterator[tuple[ToolUse, MovingBody]]:
-        for used in self.used:
-            pieces = () if used.shank is None else shank_pieces(used.tool, used.shank, allowance + self.off_tip)
-            if pieces:
-                yield used, tool_body(f"shank of {used.name}", self.driven.way, used.cells(), pieces)
-
-    def _with_size(self, obstacle: Obstacle) -> Iterator[ToolUse]:
-        """The tools whose cutters are known; the others are recorded in the coverage."""
-        self.extents.unknown_cutters = [used.name for used in self.used if not used.has_size]
-        return (used for used in self.used if used.has_size)
-
-
-def _sampled(cells: Array) -> Array:
-    """A subset of many cells, evenly chosen, including the last one."""
-    if len(cells) <= _SAMPLES:
-        return cells
-    return cells[np.linspace(0, len(cells) - 1, _SAMPLES).astype(np.int64)]

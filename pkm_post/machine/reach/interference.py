@@ -100,11 +100,9 @@ def _strut_to_bodies(placed: PlacedMachine) -> Array:
     direction = placed.in_platform()
     base = machine.platform_joints - placed.distance[..., None] * direction
     start, end = pieces.ends(base, direction)
-    columns = []
-    for body in machine.bodies:
-        apart = segment_to_cylinder(start, end, body.radius, body.start, body.end)
-        columns.append((apart - pieces.radius[:, None]).min(axis=1))
-    return np.concatenate(columns, axis=1) - machine.clearance
+    sizes = np.array([(body.radius, body.start, body.end) for body in machine.bodies]).T[:, :, None]
+    apart = segment_to_cylinder(start[:, :, None], end[:, :, None], *sizes)  # piece, body, strut
+    return (apart - pieces.radius[:, None, None]).min(axis=1).reshape(len(placed), -1) - machine.clearance
 
 
 def _strut_to_fixtures(placed: PlacedMachine) -> Array:

@@ -3,8 +3,8 @@
 
 Enters: the bytes of whole lines, comments blanked. Leaves: the pattern of each line: the line with a marker for each
 number, and the offsets of the numbers. Work is done per byte with tables and per number with numpy, not per line.
-Real programs have some ten to hundred patterns, so lark parses some hundred blocks of a million; no block is accepted
-unless lark has accepted its pattern.
+Real programs have some ten to hundred patterns, so a million blocks take some hundred parses. Patterns of plain words
+are parsed here: importing lark and making its tables take longer than a short program. Lark parses all others.
 
 In a pattern letters are upper case and blanks are removed. The digits of G and M codes stay, because they determine the
 meaning of a block, as do those before an equals sign, as in A3=0.5; these and line numbers do not count as numbers.
@@ -12,6 +12,7 @@ meaning of a block, as do those before an equals sign, as in A3=0.5; these and l
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -19,7 +20,7 @@ import numpy as np
 
 from pkm_post.model import Array
 from pkm_post.reading.gcode.blocks import Block
-from pkm_post.reading.gcode.parse import parse_line
+from pkm_post.reading.gcode.parse import LARGEST_CODE, parse_line
 
 _MARK = b"\x01"
 """Marker of a number in a pattern."""
@@ -166,8 +167,33 @@ class PatternTable:
     m: CodeLists
 
 
+_WORD = re.compile(rb"([GM])(\d+\.?\d*|\.\d+)|([A-MP-Z@^])\x01")
+_PLAIN = re.compile(rb"%|(/?)(?:N\x01)?((?:" + _WORD.pattern + rb")*)")
+"""``block`` of the grammar without blanks, where each word is a letter and a number."""
+
+
+def plain_block(pattern: bytes) -> Block | None:
+    """The block of a pattern of plain words, as lark parses it; None of all others, and of what may be a fault."""
+    found = _PLAIN.fullmatch(pattern)
+    if found is None:
+        return None
+    block = Block(deleted=bool(found[1]))
+    for kind, number, letter in _WORD.findall(found[2] or b""):
+        if kind:
+            codes, parts = (block.g, 10) if kind == b"G" else (block.m, 1)
+            value = float(number) * parts
+            codes.append(round(min(value, LARGEST_CODE)))
+            if abs(value - codes[-1]) > 1e-6 or value > LARGEST_CODE:
+                return None
+        elif letter in b"GM" or letter.decode() in block.words:
+            return None
+        else:
+            block.words[letter.decode()] = 1.0
+    return block
+
+
 class Patterns(dict[bytes, int]):
-    """Indices of patterns; looking up a new pattern parses it with lark."""
+    """Indices of patterns; looking up a new pattern parses it."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -177,7 +203,8 @@ class Patterns(dict[bytes, int]):
     def __missing__(self, pattern: bytes) -> int:
         number = PARSED_ALONE
         if b"[" not in pattern:  # a code in brackets contains a marker, and a lone number there counts as plain
-            block = parse_line(pattern.replace(_MARK, b" 1 "))
+            plain = plain_block(pattern)
+            block = parse_line(pattern.replace(_MARK, b" 1 ")) if plain is None else plain
             if isinstance(block, Block) and block.tree is None:
                 number = len(self._blocks)
                 self._blocks.append(block)

@@ -17,7 +17,6 @@ from pkm_post.geometry import norm
 from pkm_post.model import Diagnostic, EventKind, Kind, Place, Program, Tool
 from pkm_post.toolpath.compensation.contact import Array, Flags, size_changes, tip_offsets
 from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
-from pkm_post.toolpath.compensation.contour_offset import offset_contours
 from pkm_post.toolpath.compensation.cutter import Cutter, known_cutter
 
 _SAME = 1e-9
@@ -34,15 +33,19 @@ def compensate(
         contours: how contours are offset.
         actual: by number, the tools whose cutters differ from those the program was made for.
     """
-    diagnostics: tuple[Diagnostic, ...] = ()
-    moved, faults = offset_contours(program, contours)
-    diagnostics += faults
+    moved, diagnostics = _with_contours(program, contours) if program.side_offset.any() else (program, ())
     for number, tool in sorted(actual.items()):
         if moved is None:
             break
         moved, faults = _for_cutter(moved, number, tool)
         diagnostics += faults
     return moved, diagnostics
+
+
+def _with_contours(program: Program, contours: OffsetOptions) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    from pkm_post.toolpath.compensation.contour_offset import offset_contours
+
+    return offset_contours(program, contours)
 
 
 def _for_cutter(program: Program, number: int, actual: Tool) -> tuple[Program | None, tuple[Diagnostic, ...]]:

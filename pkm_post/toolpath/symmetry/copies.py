@@ -15,7 +15,6 @@ from dataclasses import dataclass
 
 from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Program
-from pkm_post.toolpath.symmetry.reverse import reversed_passes
 from pkm_post.toolpath.symmetry.transform import concatenate, mirror, mirrors, rotation, transform
 
 MIRRORS = {"xy": (0.0, 0.0, 1.0), "xz": (0.0, 1.0, 0.0), "yz": (1.0, 0.0, 0.0)}
@@ -67,6 +66,8 @@ def _copy(program: Program, matrix: Array, keep_climb: bool) -> tuple[Program | 
     copy, diagnostics = transform(program, matrix)
     if copy is None or not (keep_climb and mirrors(matrix)):
         return copy, diagnostics
+    from pkm_post.toolpath.symmetry.reverse import reversed_passes
+
     reversed_, faults = reversed_passes(copy)
     return reversed_, (*diagnostics, *faults)
 

@@ -86,9 +86,16 @@ def test_every_terminal_of_the_grammar_has_words():
     assert terminals | {"$END", "<END-OF-FILE>"} == diagnostics
 
 
+def test_plain_words_are_read_without_lark(monkeypatch):
+    parser_of.cache_clear()
+    monkeypatch.setitem(sys.modules, "lark", None)
+    blocks, faults = scan("%\nN10 G0 X1 (c)\n\n/ g43.4 h1 m08\n", "part.ngc")
+    assert (blocks.g.tolist(), blocks.m.tolist(), faults) == ([0, 434], [8], ())
+
+
 @pytest.mark.parametrize("way", [scan, scan_by_block])
 def test_a_missing_lark_is_named(monkeypatch, way):
     parser_of.cache_clear()
     monkeypatch.setitem(sys.modules, "lark", None)
     with pytest.raises(ImportError, match="needs lark: install python3-lark, or type: pip install lark"):
-        way("G1 X1", "part.ngc")
+        way("G1 X[1]", "part.ngc")

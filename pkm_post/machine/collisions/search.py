@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Search: the checks for collisions of the machine and its tools with the set-up, one body after the other.
+
+Takes the path of the machine and a set-up; returns diagnostics and coverage rows. Distances refer to the programmed
+trajectory; the allowed deviation of the tool from it is added to clearances and allowances. Units: mm, rad.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from pkm_post.geometry import Array, is_closed
+from pkm_post.machine.collisions.contacts import (
+    ENOUGH,
+    Obstacle,
+    TrajectoryPath,
+    contact_faults,
+    contacts,
+    contacts_at_ends,
+    mesh_faults,
+)
+from pkm_post.machine.collisions.coverage import (
+    FIXTURES_NOT_KNOWN,
+    PART_NOT_KNOWN,
+    STOCK_NOT_KNOWN,
+    CoverageRows,
+)
+from pkm_post.machine.collisions.moving_bodies import (
+    MovingBody,
+    cutter_pieces,
+    platform_body,
+    shank_pieces,
+    strut_bodies,
+    tool_body,
+)
+from pkm_post.machine.collisions.stock_collisions import Intruder, body_of, rapid_cutter, shank_of, stock_faults
+from pkm_post.machine.collisions.tools_in_use import ToolUse, not_cut_before, tools_in_use
+from pkm_post.machine.kinematics.placed_machine import has_strut_bodies
+from pkm_post.model import Diagnostic, Machine, Mesh, Place, Setup, Tolerances
+
+ALLOWANCE = 0.25
+"""mm that a cutter or a shank may enter the workpiece: its faces are triangulated, and the cutter has to touch them."""
+_TOUCH = 1e-3
+"""mm: bodies without clearance collide where they are closer than this."""
+_SAMPLES = 2000
+"""Sampled poses of cutting moves."""
+_ALL = 1_000_000
+
+
+@dataclass
+class Search:
+    """The checks, which a caller makes in the order of their definition.
+
+    Attributes:
+        driven: the path.
+        machine: its bodies, struts and clearance.
+        setup: workpiece, stock and fixtures.
+        tolerances: allowed deviation of the tool from the path.
+        found: errors and warnings so far.
+        extents: what was looked at so far.
+    """
+
+    driven: TrajectoryPath
+    machine: Machine
+    setup: Setup
+    tolerances: Tolerances
+    found: list[Diagnostic] = field(default_factory=list)
+    extents: CoverageRows = field(default_factory=CoverageRows)
+
+    def __post_init__(self) -> None:
+        way = self.driven.way
+        self.used = tools_in_use(self.driven, self.setup)
+        self.bodies = [platform_body(self.machine, way, body) for body in self.machine.bodies]
+        self.struts = strut_bodies(self.machine, way) if has_strut_bodies(self.machine) else None
+        self.off_tip = float(self.driven.trajectory.tip_tolerances(self.tolerances.tip).max())
+
+    def part(self) -> None:
+        """Check everything that moves against the finished workpiece."""
+        if self.setup.part is None:
+            self.extents.not_known(PART_NOT_KNOWN)
+            return
+        part = self._obstacle("part", self.setup.part)
+        self._machine(part, "K117", "K121")
+        self._shanks(part, "K130", ALLOWANCE)
+        for used in self._with_size(part):
+            pieces = cutter_pieces(used.tool, used.edge_length, ALLOWANCE + self.off_tip)
+            self._rapid(part, used, tool_body(f"{used.name} in a rapid move", self.driven.way, used.rapid, pieces))
+            mover = tool_body(used.name, self.driven.way, _sampled(used.cutting), pieces)
+            met = contacts_at_ends(self.driven.way, mover, part.part, _TOUCH)
+            self.found += contact_faults(self.driven, "K132", mover, part, met, ALLOWANCE)
+        self.extents.cutters(part, ALLOWANCE)
+
+    def _rapid(self, part: Obstacle, used: ToolUse, mover: MovingBody) -> None:
+        met = contacts(self.driven.way, mover, part.part, _TOUCH, self.driven.operation, _ALL)
+        met = not_cut_before(self.driven, self.used, met)
+        self.found += contact_faults(self.driven, "K131", mover, part, met, ALLOWANCE)
+
+    def fixtures(self) -> None:
+        """Check everything that moves against the fixtures, in all moves."""
+        if not self.setup.fixtures:
+            self.extents.not_known(FIXTURES_NOT_KNOWN)
+        for mesh in self.setup.fixtures:
+            fixture = self._obstacle("fixture", mesh)
+            self._machine(fixture, "K133", "K133")
+            self._shanks(fixture, "K133", 0.0)
+            for used in self._with_size(fixture):
+                pieces = cutter_pieces(used.largest, used.edge_length, 0.0)
+                mover = tool_body(used.name, self.driven.way, used.cells(), pieces)
+                self.found += mesh_faults(self.driven, "K133", mover, fixture, _TOUCH + self.off_tip)
+            self.extents.cutters_in_all_moves(fixture)
+
+    def stock(self) -> None:
+        """Check the stock against bodies, struts and shanks in all moves, and against cutters in rapid moves."""
+        mesh = self.setup.stock
+        if mesh is None:
+            self.extents.not_known(STOCK_NOT_KNOWN)
+            return
+        stock = self._obstacle("stock", mesh)
+        closed = is_closed(mesh.triangles)
+        if not closed:
+            self.found.append(Diagnostic("K139", Place(mesh.source), f"{len(mesh.triangles)} triangles"))
+        intruders = [*self._in_stock(stock, closed)]
+        intruders += [rapid_cutter(used) for used in self.used if used.has_size and len(used.rapid)]
+        if closed and intruders:
+            grid, found = stock_faults(self.driven, mesh, intruders, self.used, self.off_tip)
+            self.found += found
+            self.extents.stock(stock, grid.step, int(grid.filled.sum()))
+        elif not closed:
+            self.extents.stock_open(stock)
+
+    def _in_stock(self, stock: Obstacle, closed: bool) -> Iterator[Intruder]:
+        """Movers not proven to stay clear of the uncut stock."""
+        movers: list[tuple[MovingBody, Intruder | None]] = [
+            (mover, body_of(self.machine, body, self.used))
+            for mover, body in zip(self.bodies, self.machine.bodies, strict=True)
+        ]
+        movers += [(mover, shank_of(used)) for used, mover in self._shank_movers(0.0)]
+        movers += [(self.struts, None)] if self.struts else []
+        for mover, intruder in movers:
+            in_points = closed and intruder is not None
+            operation, enough = self.driven.operation, 1 if in_points else ENOUGH
+            met = contacts(self.driven.way, mover, stock.part, _TOUCH + self.off_tip, operation, enough)
+            if len(met) and closed and intruder is not None:
+                yield intruder
+            elif len(met):
+                self.found += contact_faults(self.driven, "K135", mover, stock, met, 0.0)
+
+    def _obstacle(self, name: str, mesh: Mesh) -> Obstacle:
+        return Obstacle.of(name, mesh, self.driven.trajectory.machine_from_work)
+
+    def _machine(self, obstacle: Obstacle, of_bodies: str, strut_bodies: str) -> None:
+        """Check bodies of the platform and struts against a mesh."""
+        movers: Sequence[tuple[str, MovingBody]] = [(of_bodies, mover) for mover in self.bodies]
+        movers = [*movers, (strut_bodies, self.struts)] if self.struts else movers
+        for code, mover in movers:
+            clearance = self.machine.clearance + self.off_tip + self.tolerances.axis * mover.reach
+            self.found += mesh_faults(self.driven, code, mover, obstacle, max(clearance, _TOUCH))
+        self.extents.machine(obstacle, bool(self.bodies), self.struts is not None)
+
+    def _shanks(self, obstacle: Obstacle, code: str, allowance: float) -> None:
+        for _, mover in self._shank_movers(allowance):
+            self.found += mesh_faults(self.driven, code, mover, obstacle, _TOUCH)
+        self.extents.shanks(obstacle, [used.name for used in self.used if used.shank is None])
+
+    def _shank_movers(self, allowance: float) -> Iterator[tuple[ToolUse, MovingBody]]:
+        for used in self.used:
+            pieces = () if used.shank is None else shank_pieces(used.tool, used.shank, allowance + self.off_tip)
+            if pieces:
+                yield used, tool_body(f"shank of {used.name}", self.driven.way, used.cells(), pieces)
+
+    def _with_size(self, obstacle: Obstacle) -> Iterator[ToolUse]:
+        """The tools whose cutters are known; the others are recorded in the coverage."""
+        self.extents.unknown_cutters = [used.name for used in self.used if not used.has_size]
+        return (used for used in self.used if used.has_size)
+
+
+def _sampled(cells: Array) -> Array:
+    """A subset of many cells, evenly chosen, including the last one."""
+    if len(cells) <= _SAMPLES:
+        return cells
+    return cells[np.linspace(0, len(cells) - 1, _SAMPLES).astype(np.int64)]
