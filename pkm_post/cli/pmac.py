@@ -16,7 +16,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from pkm_post.cli import pmac_manual, pmac_simulate
+from pkm_post.cli import pmac_manual, pmac_play, pmac_simulate
 from pkm_post.cli.inputs import NO_AXIS_WORDS, axis_words
 from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, OF_POWER_PMAC, ROTARY_WORDS
 from pkm_post.cli.pmac_stop import JobTarget, Target
@@ -132,6 +132,7 @@ _OWN: dict[str, Callable[[argparse.ArgumentParser], None]] = {
     "step": _add_step,
     "continue": _add_continue,
     "override": _add_override,
+    "play": pmac_play.add_arguments,
 }
 
 
@@ -145,7 +146,7 @@ def add_commands(commands: Any) -> None:
     """Add the command ``pmac`` with its actions to a parser."""
     pmac = commands.add_parser("pmac", help="talk to a Turbo PMAC, or simulate one")
     actions = pmac.add_subparsers(required=True, metavar="ACTION")
-    for name, (action, text, needs) in (ACTIONS | pmac_manual.ACTIONS).items():
+    for name, (action, text, needs) in (ACTIONS | pmac_manual.ACTIONS | pmac_play.ACTIONS).items():
         parser = actions.add_parser(name, help=text)
         _add_port(parser)
         parser.add_argument("--machine", required="machine" in needs, metavar="NAME_OR_FILE", help="the machine")

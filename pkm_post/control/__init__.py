@@ -42,6 +42,9 @@ from pkm_post.control.numerical_control.interlocks import (
 from pkm_post.control.numerical_control.manual_moves import CartesianJog, Jog, MdiSettings, StrutJog
 from pkm_post.control.numerical_control.plan import Plan
 from pkm_post.control.numerical_control.single_block import BlockDisplay, ProgramBlocks, read_blocks
+from pkm_post.control.player.orders import Choices, Order, PlayState
+from pkm_post.control.player.play import Player, PlayResult
+from pkm_post.control.player.playable import first_row, read_playable
 from pkm_post.control.simulator.controller import LEAST_MEMORY, Controller, SimulatorSettings
 from pkm_post.control.simulator.errors import ERROR_TEXTS
 from pkm_post.control.simulator.serial_port import SerialPort
@@ -56,6 +59,11 @@ __all__ = [
     "EMERGENCY_STEPS",
     "Array",
     "Bits",
+    "Choices",
+    "Order",
+    "PlayResult",
+    "PlayState",
+    "Player",
     "ProgramBlocks",
     "CancelledError",
     "CartesianJog",
@@ -89,7 +97,9 @@ __all__ = [
     "ConnectionTarget",
     "Interlock",
     "activity_text",
+    "first_row",
     "read_blocks",
+    "read_playable",
     "check_setup",
     "check_trigger",
     "connect",

@@ -320,5 +320,7 @@ START_TOLERANCE_MM = 0.05
 struts."""
 MANUAL_MOVE_PROGRAM = 999
 """Program number of a manual move; jobs use others."""
+PLAYER_PROGRAM = 998
+"""Program number of the player."""
 APPROACH_MM_S = 10.0
 """Tip speed of the planned approach to the start of a program; for a turn in place, degrees per second."""

@@ -42,10 +42,10 @@ SILENCE_S = 5.0
 """Seconds without a sign of life after which an owner is overridden."""
 POLL_S = 0.5
 ATTEMPTS = 3
-OPERATIONS = ("download", "run", "stream", "jog", "home", "resume", "override", "terminal")
+OPERATIONS = ("download", "run", "stream", "jog", "home", "resume", "override", "terminal", "play")
 """Operations of an owner; the controller stores the index in this list, from 1. Append new ones at its end."""
-RESUMED_BY_ALL = ("stream",)
-"""A stream has no resume command: after a hold any client may resume it."""
+RESUMED_BY_ALL = ("stream", "play")
+"""What another client may resume after a hold, while its owner goes on feeding it."""
 _ERR_NOT_OPEN = 5
 _log = logging.getLogger(__name__)
 

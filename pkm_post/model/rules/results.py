@@ -20,7 +20,8 @@ RESULT_RULES: dict[str, Rule] = {
     "C101": error("the program has an unknown or misplaced line", "post the job again; do not edit the program"),
     "C102": error(
         "the program is larger than the controller's memory and has no rest where it can be split",
-        "post fewer operations at a time, or put a stop into the job where the tool is free",
+        "post fewer operations at a time, or put a stop into the job where the tool is free; or post it with a higher"
+        " controller.memory_words, and play the trajectory (pmac play)",
     ),
     "C103": error("the line is too long for the controller", "use fewer decimals in the machine file"),
     "C104": error("an event has no code of the controller", "give it one under [controller.codes] in the machine file"),
@@ -52,6 +53,14 @@ RESULT_RULES: dict[str, Rule] = {
     "C205": error(
         "the source lines of the program are unknown",
         "keep all results of a posting together in one folder, or post the job again",
+    ),
+    "C206": error(
+        "the player does not plan with limits of jerk",
+        "post the trajectory's program and run it, or play it with a machine file without these limits, posted for it",
+    ),
+    "C207": error(
+        "the trajectory has no line to begin with",
+        "name a line up to the last one that moves, and the operation it belongs to with --operation",
     ),
     "C210": error(
         "another client controls the machine",

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Between: what happens between two parts of a program, while the machine rests: tool change, spindle, coolant, dwell.
+
+The codes are those of posted programs, and so is their way into the controller: as a program of their own that moves
+the tip by a millionth of a millimetre, so that there is something to be certified, listed back and started.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.control.link.errors import PmacError
+from pkm_post.control.link.session import Session
+from pkm_post.control.numerical_control.execute import execute, wait_for_rest
+from pkm_post.control.numerical_control.manual_moves import stationary_trajectory
+from pkm_post.control.numerical_control.plan import planned
+from pkm_post.control.player.stretches import rows_of
+from pkm_post.model import Event, EventKind, Machine, Refused, Tolerances, Trajectory
+from pkm_post.toolpath import ToolPose
+from pkm_post.writing import PmacSettings
+
+TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
+_LONGEST_S = 120.0
+"""Longest time of the machine's own codes: a tool change."""
+
+
+def pose_before(trajectory: Trajectory, row: int) -> tuple[ToolPose, float]:
+    """The tool pose at the start of a row, or at the end of the trajectory; and the gauge length of the tool."""
+    lengths = trajectory.tool_length()
+    if row < len(trajectory):
+        start = rows_of(trajectory, row, row + 1)
+        return ToolPose(start.start_tip, start.start_axis, start.start_spin), float(lengths[row])
+    return ToolPose(trajectory.tip[-1], trajectory.axis[-1], float(trajectory.spin[-1])), float(lengths[-1])
+
+
+def run_events(
+    session: Session,
+    machine: Machine,
+    settings: PmacSettings,
+    trajectory: Trajectory,
+    row: int,
+    events: tuple[Event, ...],
+) -> None:
+    """Carry out events before a row, and wait until they are done.
+
+    Raises:
+        Refused: they cannot be planned.
+        PmacError: machine or link are not ready, or it takes too long.
+    """
+    here, length = pose_before(trajectory, row)
+    at_rest = tuple(Event(0, each.kind, each.value) for each in events)
+    plan, diagnostics = planned(stationary_trajectory(machine, here, length, at_rest), machine, settings, TOLERANCES)
+    if plan is None:
+        raise Refused(diagnostics)
+    execute(session, machine, settings, plan.job)
+    dwells = sum(each.value for each in events if each.kind is EventKind.DWELL)
+    status = wait_for_rest(session, settings, dwells + _LONGEST_S)
+    if status.running or status.fault_texts():
+        raise PmacError("the codes between two moves did not end: " + "; ".join(status.fault_texts() or ("held",)))

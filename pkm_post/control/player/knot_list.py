@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Knot list: the points of a motion as a linked list in P-variables of the controller, and the program that runs it.
+
+A rotary buffer keeps what was sent: the stop at its end could not be replaced by more motion. So the points stand in
+P-variables, each with the variable of the point after it, and a resident program goes from point to point:
+
+    P(a) variable of the next point, 0 at the end     P(a+1) interval, ms
+    P(a+2..7) strut lengths, mm                       P(a+8..13) strut speeds, mm/s
+
+The program reads P(a) when it computes the move after that point. So one assignment to P(a) replaces the way on from
+it, as a whole or not at all: until then the list leads through a stop to rest. Diamond Light Source feeds trajectories
+to Turbo PMACs in a similar way, from a resident program and two buffers of points [EPICSpmac, trajectory scan].
+
+Enters: points in mm, mm/s and whole ms. Leaves: lines for the controller, and the points that lines state.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.control.link.program import PmacProgram
+from pkm_post.control.link.status import Array
+from pkm_post.model import StrutMotion
+from pkm_post.writing import PmacSettings
+
+POINT_VARIABLES = 14
+FIRST_VARIABLE, LAST_VARIABLE = 1000, 8186
+"""The variables behind them keep the owner of the machine (``ownership``)."""
+_HEAD_VARIABLES = 2
+_LINE = 200
+"""Characters of a line: several assignments in one exchange."""
+_ASSIGNMENT = re.compile(r"P(\d+)=(-?\d+(?:\.\d+)?)")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where the list stands.
+
+    Attributes:
+        first: number of its first P-variable: that of the point to go to next.
+        last: number of the last one that may be used.
+    """
+
+    first: int = FIRST_VARIABLE
+    last: int = LAST_VARIABLE
+
+    @property
+    def next(self) -> int:
+        """The variable with the point to go to next."""
+        return self.first
+
+    @property
+    def current(self) -> int:
+        """The variable with the point whose move was computed last."""
+        return self.first + 1
+
+    def points(self) -> range:
+        """The first variables of all points."""
+        begin = self.first + _HEAD_VARIABLES
+        return range(begin, self.last + 2 - POINT_VARIABLES, POINT_VARIABLES)
+
+
+def resident_program(layout: Layout, settings: PmacSettings, number: int) -> PmacProgram:
+    """The program that runs the list: one PVT move for each point, to its end."""
+    current = f"P{layout.current}"
+    axes = " ".join(
+        f"{letter}(P({current}+{2 + strut})):(P({current}+{8 + strut}))"
+        for strut, letter in enumerate(settings.letters)
+    )
+    lines = (
+        "ABS",
+        f"WHILE(P{layout.next}>0)",
+        f"{current}=P{layout.next}",
+        f"PVT(P({current}+1))",
+        axes,
+        f"P{layout.next}=P({current})",
+        "ENDWHILE",
+        "DWELL0",
+    )
+    return PmacProgram(number, lines)
+
+
+def point_assignments(motion: StrutMotion, places: Sequence[int], settings: PmacSettings) -> list[str]:
+    """The assignments that write the points after the first one of a motion, the last one as the end of the list.
+
+    Args:
+        motion: M points.
+        places: (M - 1,) the first variable of each point but the first.
+        settings: say how many decimals.
+    """
+    found = []
+    following = [*places[1:], 0]
+    intervals = (motion.time_ms[1:] - motion.time_ms[:-1]).tolist()
+    lengths, speeds = motion.length[1:].tolist(), motion.speed[1:].tolist()
+    for place, after, ms, length, speed in zip(places, following, intervals, lengths, speeds, strict=True):
+        found += [f"P{place}={after}", f"P{place + 1}={ms}"]
+        found += [f"P{place + 2 + n}={_number(value, settings.length_decimals)}" for n, value in enumerate(length)]
+        found += [f"P{place + 8 + n}={_number(value, settings.speed_decimals)}" for n, value in enumerate(speed)]
+    return found
+
+
+def _number(value: float, decimals: int) -> str:
+    return f"{round(value, decimals) + 0.0:.{decimals}f}"
+
+
+def assignment_lines(assignments: Iterable[str]) -> Iterator[str]:
+    """Lines with as many assignments as fit."""
+    line = ""
+    for one in assignments:
+        if line and len(line) + 1 + len(one) > _LINE:
+            yield line
+            line = ""
+        line = f"{line} {one}" if line else one
+    if line:
+        yield line
+
+
+def read_assignments(lines: Iterable[str]) -> dict[int, str]:
+    """The value of each P-variable that lines assign, as written.
+
+    Raises:
+        ValueError: a line has something else.
+    """
+    found: dict[int, str] = {}
+    for line in lines:
+        for one in line.split():
+            match = _ASSIGNMENT.fullmatch(one)
+            if match is None:
+                raise ValueError(f"line: expected assignments to P-variables, got {one!r}")
+            found[int(match[1])] = match[2]
+    return found
+
+
+def read_points(values: Mapping[int, str], place: int) -> Iterator[tuple[int, Array, Array]]:
+    """The points from a first variable to the end of the list: interval, lengths (6,) and speeds (6,).
+
+    Args:
+        values: of all variables of the points.
+        place: first variable of the first point.
+    """
+    while place:
+        numbers = np.array([float(values[place + n]) for n in range(POINT_VARIABLES)])
+        yield int(numbers[1]), numbers[2:8], numbers[8:14]
+        place = int(numbers[0])

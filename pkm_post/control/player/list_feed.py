@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""List feed: keeps the knot list of a controller filled, and knows from it where the motion is.
+
+A piece is written behind what is there, read back and compared, and only then taken into the list by one assignment.
+Before it the list leads through the stop of the piece before; the controller may have taken that already, if the
+assignment came too late. Which of both it does, it says itself: the variable with the current point.
+
+Every step may be repeated: after a lost link the same values are written to the same variables.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+
+from pkm_post.control.link.errors import LinkLostError, OutcomeUnknownError, PmacError
+from pkm_post.control.link.session import Session
+from pkm_post.control.player.knot_list import (
+    Layout,
+    assignment_lines,
+    point_assignments,
+    read_assignments,
+)
+from pkm_post.control.player.pieces import Leg, Piece
+from pkm_post.writing import PmacSettings
+
+_KEPT = 2
+"""Points before the current one that are not written over."""
+_READ_AT_ONCE = 448
+"""Variables in one answer: about 6 KB."""
+_SAME = 1e-9
+"""Difference of a value that is read back, by its size: 36 bits, as the controller keeps it."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point in the list.
+
+    Attributes:
+        place: its first variable.
+        ms: interval to it.
+        leg: the motion it belongs to.
+        knot: its number in that.
+    """
+
+    place: int
+    ms: int
+    leg: Leg
+    knot: int
+
+
+@dataclass(frozen=True)
+class _Branch:
+    """A stop in the list.
+
+    Attributes:
+        after: number of the point after which it begins.
+        points: its points.
+    """
+
+    after: int
+    points: tuple[Point, ...]
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """A piece that is being taken in: its points, its stop, and the lines that write them."""
+
+    points: tuple[Point, ...]
+    stop: tuple[Point, ...]
+    lines: tuple[str, ...]
+    commit: str
+
+
+class ListFeed:
+    """The list of one run, from rest to rest.
+
+    Attributes:
+        current: the point whose move the controller computed last; None before the first one.
+        stopped_at: the motion to rest that the controller has taken instead of what was planned; None otherwise.
+    """
+
+    def __init__(self, session: Session, settings: PmacSettings, layout: Layout) -> None:
+        self._session, self._settings, self._layout = session, settings, layout
+        self._free: deque[int] = deque()
+        self._points: deque[Point] = deque()
+        self._branches: deque[_Branch] = deque()
+        self._first = 0  # number of the first one of _points
+        self._entry: _Entry | None = None
+        self._at = -1
+        self.current: Point | None = None
+        self.stopped_at: Leg | None = None
+
+    def clear(self) -> None:
+        """Empty the list; no program runs that reads it."""
+        self._set(f"P{self._layout.next}=0 P{self._layout.current}=0")
+        self._free = deque(self._layout.points())
+        self._points.clear()
+        self._branches.clear()
+        self._first, self._entry, self._at = 0, None, -1
+        self.current, self.stopped_at = None, None
+
+    @property
+    def ahead_ms(self) -> int:
+        """Time until the last stop begins, from the end of the move that was computed last."""
+        return sum(point.ms for point in islice(self._points, self._at + 1 - self._first, None))
+
+    @property
+    def is_taking_in(self) -> bool:
+        """Whether a piece may be in the list, or not: its answers got lost."""
+        return self._entry is not None
+
+    def has_room(self, piece: Piece) -> bool:
+        """Whether a piece fits, besides what is ahead."""
+        return self._entry is not None or _size(piece) <= len(self._free)
+
+    def append(self, piece: Piece) -> None:
+        """Take a piece in; after a lost link, again with the same piece.
+
+        Raises:
+            LinkLostError: it may be in the list or not.
+            PmacError: what is read back differs; it is not in the list.
+        """
+        entry = self._entry = self._entry or self._prepared(piece)
+        for line in entry.lines:
+            self._set(line)
+        self._compare(entry)
+        self._set(entry.commit)
+        self._take_in(entry)
+
+    def look(self) -> Iterator[Leg]:
+        """Ask where the motion is; the motions that it has begun since.
+
+        Raises:
+            LinkLostError: no answer.
+            PmacError: the controller is at a point that is not in the list.
+        """
+        (place,) = self._read(self._layout.current, 1)
+        if place == 0 or (self.current is not None and place == self.current.place):
+            return
+        yield from self._arrived(int(place))
+
+    def is_at_its_end(self) -> bool:
+        """Whether the point computed last is one at rest, behind which there is nothing."""
+        return (
+            self.current is not None
+            and self.current.knot == len(self.current.leg.struts) - 1
+            and not (self.current.leg.end.speed.any())
+        )
+
+    def _take_in(self, entry: _Entry) -> None:
+        if entry.stop:
+            self._branches.append(_Branch(self._first + len(self._points) + len(entry.points) - 1, entry.stop))
+        self._points.extend(entry.points)
+        self._entry = None
+
+    def _prepared(self, piece: Piece) -> _Entry:
+        points = self._placed(piece.leg)
+        stop = self._placed(piece.stop) if piece.stop is not None else ()
+        written = point_assignments(piece.leg.struts, [point.place for point in points], self._settings)
+        if piece.stop is not None:
+            written += point_assignments(piece.stop.struts, [point.place for point in stop], self._settings)
+            written.append(f"P{points[-1].place}={stop[0].place}")
+        before = self._points[-1].place if self._points else self._layout.next
+        return _Entry(points, stop, tuple(assignment_lines(written)), f"P{before}={points[0].place}")
+
+    def _placed(self, leg: Leg) -> tuple[Point, ...]:
+        times = leg.struts.time_ms.tolist()
+        return tuple(
+            Point(self._free.popleft(), times[knot] - times[knot - 1], leg, knot) for knot in range(1, len(times))
+        )
+
+    def _compare(self, entry: _Entry) -> None:
+        """Read back what was written."""
+        wanted = read_assignments(entry.lines)
+        numbers = sorted(wanted)
+        begin = 0
+        while begin < len(numbers):
+            end = begin + 1
+            while end < len(numbers) and numbers[end] == numbers[end - 1] + 1 and end - begin < _READ_AT_ONCE:
+                end += 1
+            found = self._read(numbers[begin], end - begin)
+            for number, value in zip(numbers[begin:end], found, strict=True):
+                if not abs(value - float(wanted[number])) <= _SAME * max(1.0, abs(value)):
+                    raise PmacError(f"P{number}: expected {wanted[number]}, the controller has {value!r}")
+            begin = end
+
+    def _arrived(self, place: int) -> Iterator[Leg]:
+        entry = self._entry
+        if entry is not None and any(point.place == place for point in (*entry.points, *entry.stop)):
+            self._take_in(entry)  # it was taken in, and the answer got lost
+        for branch in self._branches:
+            for point in branch.points:
+                if point.place == place:
+                    yield from self._passed(branch.after)
+                    if self.stopped_at is None:
+                        self.stopped_at = point.leg
+                        yield point.leg
+                    self.current = point
+                    return
+        for number in range(max(self._at, self._first), self._first + len(self._points)):
+            if self._points[number - self._first].place == place:
+                yield from self._passed(number)
+                self._forget(number)
+                return
+        raise PmacError(f"P{self._layout.current}: the controller is at {place}, which is no point of the list")
+
+    def _passed(self, number: int) -> Iterator[Leg]:
+        """The motions that begin up to a point."""
+        for at in range(self._at + 1, number + 1):
+            point = self._points[at - self._first]
+            if point.knot == 1:
+                yield point.leg
+        if number >= self._first:
+            self._at, self.current = number, self._points[number - self._first]
+
+    def _forget(self, number: int) -> None:
+        """Free the variables of what lies behind a point."""
+        while self._branches and self._branches[0].after < number:
+            self._free.extend(point.place for point in self._branches.popleft().points)
+        while self._first < number - _KEPT:
+            self._free.append(self._points.popleft().place)
+            self._first += 1
+
+    def _read(self, first: int, count: int) -> list[float]:
+        answer = self._session.query(f"P{first}..{first + count - 1}" if count > 1 else f"P{first}")
+        try:
+            values = [float(line) for line in answer]
+        except ValueError:
+            values = []
+        if len(values) != count:
+            raise LinkLostError(f"P{first}: expected {count} numbers, got {len(answer)} lines")
+        return values
+
+    def _set(self, line: str) -> None:
+        """Assign, again after a lost answer: the same values."""
+        try:
+            self._session.command(line)
+        except OutcomeUnknownError:
+            self._session.query(line)
+
+
+def _size(piece: Piece) -> int:
+    """Points of a piece."""
+    stop = 0 if piece.stop is None else len(piece.stop.struts) - 1
+    return len(piece.leg.struts) - 1 + stop

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Orders: what an operator may want of a player, before and while it plays, and what the player shows.
+
+Units: mm, mm/s, s; an override of 1 is 100 %.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from pkm_post.control.player.knot_list import FIRST_VARIABLE
+from pkm_post.control.player.list_feed import Point
+from pkm_post.model import EventKind, Kind, Trajectory
+from pkm_post.options import PLAYER_PROGRAM
+
+OrderKind = Literal["override", "hold", "resume", "single", "start", "end"]
+
+
+@dataclass(frozen=True)
+class Order:
+    """An order.
+
+    Attributes:
+        kind: ``override`` sets the factor of the feed; ``hold`` and ``resume`` are those of the controller; ``single``
+            switches single block; ``start`` goes on after a stop of the program, a block or an override of 0; ``end``
+            ends at the next stop on the path.
+        value: of ``override``, a factor; of ``single``, 0 or 1.
+    """
+
+    kind: OrderKind
+    value: float = 0.0
+
+
+@dataclass(frozen=True)
+class Choices:
+    """How to play.
+
+    Attributes:
+        override: factor of the feed at the beginning.
+        single_block: whether to rest at the end of each line of the program.
+        optional_stop: whether M1 stops.
+        dry_feed: feed of all moves but rapid ones, mm/s, without spindle and coolant; None for the program's own.
+        first_row: row of the trajectory to begin with.
+        approach: whether to go to that row first; to one inside the program always.
+        first_variable: first P-variable of the knot list.
+        program: number of the resident program.
+        patience_s: how long a lost link is waited for.
+    """
+
+    override: float = 1.0
+    single_block: bool = False
+    optional_stop: bool = False
+    dry_feed: float | None = None
+    first_row: int = 0
+    approach: bool = False
+    first_variable: int = FIRST_VARIABLE
+    program: int = PLAYER_PROGRAM
+    patience_s: float = 30.0
+
+    def applied_to(self, trajectory: Trajectory) -> Trajectory:
+        """The trajectory as it is to be played."""
+        out = set() if self.dry_feed is None else {EventKind.SPINDLE, EventKind.COOLANT, EventKind.DWELL}
+        events = tuple(each for each in trajectory.events if each.kind not in out)
+        if not self.optional_stop:
+            events = tuple(each for each in events if not (each.kind is EventKind.STOP and each.value))
+        if self.dry_feed is None:
+            return replace(trajectory, events=events)
+        feed = np.where(trajectory.kind == Kind.RAPID, trajectory.feed, self.dry_feed)
+        return replace(trajectory, events=events, feed=feed)
+
+
+@dataclass(frozen=True)
+class PlayState:
+    """For display.
+
+    Attributes:
+        phase: what the player does, in words.
+        operation: that is played.
+        line: of its source.
+        row: of the trajectory.
+        to_go: way of the tip to the end of the program, mm.
+        remaining: s to its end at this override, without corners, stops and dwells.
+        override: that is asked for.
+        reached: mean speed of the last piece by that of the program.
+        ahead: s of motion that the controller has, without the stop behind it.
+    """
+
+    phase: str
+    operation: str
+    line: int
+    row: int
+    to_go: float
+    remaining: float
+    override: float
+    reached: float
+    ahead: float
+
+    def __str__(self) -> str:
+        where = " ".join(filter(None, (self.operation, f"line {self.line}")))
+        speed = f"{self.override:.0%} asked, {self.reached:.0%} reached" if self.reached else f"{self.override:.0%}"
+        return f"{self.phase}, {where}: {self.to_go:.1f} mm, {self.remaining:.0f} s to go; {speed}"
+
+
+class Way:
+    """The way along a trajectory, and what is left of it."""
+
+    def __init__(self, trajectory: Trajectory) -> None:
+        self._trajectory = trajectory
+        self._length = np.append(np.cumsum(trajectory.length[::-1])[::-1], 0.0)
+        moving = np.maximum(trajectory.length, np.degrees(trajectory.angle))
+        self._seconds = np.append(np.cumsum((moving / trajectory.feed)[::-1])[::-1], 0.0)
+
+    def state(
+        self, point: Point | None, phase: str, override: float, reached: float, ahead_ms: int, row: int | None = None
+    ) -> PlayState:
+        """The state at a point of the list, or before a row."""
+        share = 0.0
+        if row is None and point is not None:
+            row, share = int(point.leg.row[point.knot]), float(point.leg.share[point.knot])
+        row = min(row or 0, len(self._trajectory) - 1)
+        place = self._trajectory.place(row)
+        to_go, seconds = (float(way[row] + share * (way[row + 1] - way[row])) for way in (self._length, self._seconds))
+        remaining = seconds / override if override > 0 else np.inf
+        return PlayState(phase, place.operation, place.line, row, to_go, remaining, override, reached, ahead_ms / 1000)
+
+    def text(self, point: Point | None) -> str:
+        """Where a point is, in words."""
+        if point is None:
+            return "before the first point"
+        place = self._trajectory.place(int(point.leg.row[point.knot]))
+        return " ".join(filter(None, ("in", place.operation, f"line {place.line}")))

@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Pieces: what a player sends next, planned from where the motion before it is left, and certified.
+
+A piece is a fraction of a second of motion and the stop from its end. Both are certified by themselves, in the points
+that the controller gets: against the trajectory as programmed between their ends, and against the limits of the
+machine. A piece that a certificate refuses is never sent; the stop that the controller has already is what happens.
+
+Enters: a part of a trajectory, where the motion is, an override. Leaves: points with their certificates.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pkm_post.certificate import certify
+from pkm_post.control.player.cut import Place, cut
+from pkm_post.control.player.stretches import Part, Stretch, stretches_of
+from pkm_post.geometry import Array
+from pkm_post.machine import strut_lengths
+from pkm_post.model import (
+    Certificate,
+    Diagnostic,
+    Kind,
+    Machine,
+    Motion,
+    Refused,
+    StrutMotion,
+    Tolerances,
+    Trajectory,
+    errors,
+)
+from pkm_post.planning import Course, PathState, Schedule, course, strut_motion
+from pkm_post.writing import PmacSettings
+
+HIGHEST_OVERRIDE = 1.5
+LONGEST_MS = 128
+"""Longest interval: the controller computes two moves ahead, and a new way on has to come before."""
+PIECE_MS = 250
+"""Duration of a piece."""
+_FOLLOWED_MS = 40
+"""Part of a stop that is followed before the wanted motion is tried again."""
+_BRAKING = 0.1
+"""Share of the lowest limit of acceleration with which the horizon of a window is estimated."""
+_LEAST = 1e-6
+"""mm: places that are nearer are the same."""
+
+
+@dataclass(frozen=True)
+class At:
+    """Where a motion is.
+
+    Attributes:
+        stretch: number of the stretch of the part.
+        state: place, speed and override on its path.
+        length: (6,) strut lengths, as sent, mm.
+        speed: (6,) strut speeds, as sent, mm/s.
+    """
+
+    stretch: int
+    state: PathState
+    length: Array
+    speed: Array
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A motion between two points, as the controller gets it.
+
+    Attributes:
+        struts: its points, the first one that of the motion before.
+        row: (M,) row of the trajectory at each point.
+        share: (M,) share of that row that is behind it.
+        certificate: of its motion.
+        end: where it ends.
+    """
+
+    struts: StrutMotion
+    row: Array
+    share: Array
+    certificate: Certificate
+    end: At
+
+
+@dataclass(frozen=True)
+class Piece:
+    """What is sent next.
+
+    Attributes:
+        leg: the motion.
+        stop: the stop from its end; None where it ends at rest.
+        reached: its mean speed by that of the program at an override of 1.
+        is_end: whether the part ends with it.
+    """
+
+    leg: Leg
+    stop: Leg | None
+    reached: float
+    is_end: bool
+
+
+class PiecePlanner:
+    """Plans the pieces of one part of a trajectory, one after the other."""
+
+    def __init__(
+        self,
+        trajectory: Trajectory,
+        part: Part,
+        machine: Machine,
+        settings: PmacSettings,
+        tolerances: Tolerances,
+        planned_for: Machine | None = None,
+    ) -> None:
+        """Prepare a part.
+
+        Args:
+            trajectory: the whole.
+            part: its rows; at least one.
+            machine: geometry and limits, without a limit of jerk.
+            settings: of its controller; decimals of what is sent.
+            tolerances: limits for the certificate.
+            planned_for: the machine with lower limits, such as the block rate of a link; by default the same.
+        """
+        self._machine, self._settings, self._tolerances = machine, settings, tolerances
+        self._planned_for = planned_for or machine
+        self._coming = stretches_of(trajectory, part, tolerances)
+        self._stretches: dict[int, tuple[Stretch, Course]] = {}
+
+    def start(self) -> At:
+        """The beginning of the part, at rest.
+
+        Raises:
+            Refused: its first stretch is out of reach.
+        """
+        stretch, _ = self._stretch(0)
+        rows = stretch.trajectory
+        pose = rows.start_tip[None], rows.start_axis[None], np.array([rows.start_spin]), rows.tool_length()[:1]
+        return At(0, PathState(0.0, 0.0, 1.0), strut_lengths(self._machine, *pose)[0], np.zeros(6))
+
+    def prepare(self, at: At) -> None:
+        """Plan the path of the stretch after that of a place, if there is one."""
+        stretch, _ = self._stretch(at.stretch)
+        if stretch.over is not None:
+            self._stretch(at.stretch + 1)
+
+    def next_piece(self, at: At, override: float, single_block: bool = False) -> Piece:
+        """The next piece.
+
+        Args:
+            at: where the motion before it ends.
+            override: factor of the feed; 0 for a stop.
+            single_block: whether to rest at the end of the next line of the program that can be rested at.
+
+        Raises:
+            Refused: what is out of reach, or not certified.
+        """
+        at = self._moved_on(at)
+        stretch, along = self._stretch(at.stretch)
+        state = at.state
+        schedule = self._wanted(stretch, along, state, override, single_block) if override > 0 else None
+        most = PIECE_MS
+        if schedule is None:
+            schedule, most = along.stop(state), _FOLLOWED_MS if override > 0 else PIECE_MS
+            override = state.override
+        end_ms = int(schedule.rests_ms[-1])
+        shortest = self._machine.shortest_interval
+        until = end_ms if end_ms < most + max(shortest, 2) else most
+        leg = self._leg(at, schedule, until, override)
+        rests = until == end_ms
+        stop = None if rests else self._stop(leg.end)
+        return Piece(leg, stop, self._reached(along, state, leg), rests and self._is_end(stretch, along, leg.end))
+
+    def _wanted(
+        self, stretch: Stretch, along: Course, state: PathState, override: float, single_block: bool
+    ) -> Schedule | None:
+        """The wanted motion; None if it cannot be met."""
+        rest = along.next_rest(state.s)
+        if not single_block:
+            return along.window(state, min(rest, state.s + self._horizon(along, override)), override)
+        line, operation = stretch.trajectory.line, stretch.trajectory.operation
+        ends = np.append((np.diff(line) != 0) | (np.diff(operation) != 0), True)
+        places = along.path.starts[1:][ends]
+        for place in places[(places > state.s + _LEAST) & (places <= rest)]:
+            found = along.window(state, float(place), override)
+            if found is not None:
+                return found
+        return None
+
+    def _horizon(self, along: Course, override: float) -> float:
+        """How far a window reaches: a piece at the highest feed, and a distance to stop behind it."""
+        machine, speed = self._machine, float(along.feed(override).max())
+        slowest = _BRAKING * min(machine.tip_acceleration, machine.strut_acceleration)
+        return 2 * speed * PIECE_MS / 1000 + speed**2 / (2 * slowest)
+
+    def _stop(self, at: At) -> Leg:
+        _, along = self._stretch(at.stretch)
+        schedule = along.stop(at.state)
+        return self._leg(at, schedule, int(schedule.rests_ms[-1]), at.state.override)
+
+    def _leg(self, at: At, schedule: Schedule, until_ms: int, override: float) -> Leg:
+        """The motion of a schedule up to a time, certified.
+
+        Raises:
+            Refused: the certificate does not hold.
+        """
+        stretch, along = self._stretch(at.stretch)
+        motion = along.motion(schedule, until_ms, override, LONGEST_MS)
+        struts = self._as_sent(strut_motion(motion, self._machine), at)
+        s, speed, _ = schedule.at(motion.time_ms / 1000)
+        rests = not at.speed.any(), until_ms == int(schedule.rests_ms[-1])
+        certificate = self._certified(stretch, along, struts, motion, s[[0, -1]], override, rests)
+        starts = along.path.starts
+        row = np.clip(np.searchsorted(starts, s, side="right") - 1, 0, len(along.programmed) - 1)
+        share = np.minimum((s - starts[row]) / np.diff(starts)[row], 1.0)
+        state = PathState(float(s[-1]), 0.0 if rests[1] else float(speed[-1]), override)
+        end = At(at.stretch, state, struts.length[-1], struts.speed[-1])
+        return Leg(struts, stretch.first + row, share, certificate, end)
+
+    def _as_sent(self, struts: StrutMotion, at: At) -> StrutMotion:
+        """The motion with the decimals that are sent, from the point that was sent before."""
+        length = np.round(struts.length, self._settings.length_decimals)
+        speed = np.round(struts.speed, self._settings.speed_decimals) + 0.0
+        length[0], speed[0] = at.length, at.speed
+        return replace(struts, length=length, speed=speed)
+
+    def _certified(
+        self,
+        stretch: Stretch,
+        along: Course,
+        struts: StrutMotion,
+        motion: Motion,
+        s: Array,
+        override: float,
+        rests: tuple[bool, bool],
+    ) -> Certificate:
+        starts, rows = along.path.starts, stretch.trajectory
+        first = int(np.searchsorted(starts, s[0], side="right")) - 1
+        last = int(np.searchsorted(starts, s[1])) - 1
+        share = [(at - starts[row]) / (starts[row + 1] - starts[row]) for at, row in zip(s, (first, last), strict=True)]
+        programmed = cut(rows, Place(first, float(share[0])), Place(last, float(share[1])))
+        factor = np.where(programmed.kind == Kind.RAPID, min(override, 1.0), override)
+        programmed = replace(programmed, feed=programmed.feed * factor)
+        joints = np.append(motion.joint_time[first:last], motion.time_ms[-1] / 1000)
+        segment = np.clip(motion.segment - first, 0, last - first)
+        local = replace(motion, segment=segment, joint_time=joints)
+        found, diagnostics = certify(
+            struts, rows.source, programmed, self._machine, local, self._tolerances, rests=rests
+        )
+        if found is None or errors(diagnostics):
+            raise Refused(diagnostics)
+        return found
+
+    def _reached(self, along: Course, state: PathState, leg: Leg) -> float:
+        """Mean speed of a leg by the programmed feed."""
+        starts = along.path.starts
+        places = np.concatenate([[state.s], starts[(starts > state.s) & (starts < leg.end.state.s)], [leg.end.state.s]])
+        row = np.clip(np.searchsorted(starts, places[:-1], side="right") - 1, 0, len(along.programmed) - 1)
+        programmed = float((np.diff(places) / along.programmed[row]).sum())
+        return programmed / (float(leg.struts.time_ms[-1]) / 1000)
+
+    def _is_end(self, stretch: Stretch, along: Course, at: At) -> bool:
+        return stretch.over is None and at.state.s >= along.length - _LEAST
+
+    def _moved_on(self, at: At) -> At:
+        """The same place in the next stretch, where that takes over."""
+        stretch, along = self._stretch(at.stretch)
+        if stretch.over is None:
+            return at
+        row = stretch.over - stretch.first
+        starts = along.path.starts
+        if at.state.s < (starts[row] + starts[row + 1]) / 2:
+            return at
+        following, ahead = self._stretch(at.stretch + 1)
+        s = at.state.s - starts[row] + ahead.path.starts[stretch.over - following.first]
+        self._stretches.pop(at.stretch - 1, None)
+        return replace(at, stretch=at.stretch + 1, state=replace(at.state, s=float(s)))
+
+    def _stretch(self, number: int) -> tuple[Stretch, Course]:
+        """A stretch and its course, planned once.
+
+        Raises:
+            Refused: it is out of reach.
+        """
+        while number not in self._stretches:
+            stretch = next(self._coming)
+            found, diagnostics = course(stretch.trajectory, self._planned_for, self._tolerances, HIGHEST_OVERRIDE)
+            if found is None:
+                raise Refused(diagnostics)
+            self._stretches[max(self._stretches, default=-1) + 1] = stretch, found
+        return self._stretches[number]
+
+
+def refused_text(diagnostics: tuple[Diagnostic, ...]) -> str:
+    """Diagnostics as one line of text."""
+    return "; ".join(map(str, diagnostics))

@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Play: run a trajectory on a controller while it is planned piece by piece.
+
+A thread plans the next piece while the controller runs the ones before; this side keeps the knot list ahead of it
+(``run_to_rest``). The list always ends in a stop on the path. So a computer that is too late, a dead link, a piece that
+its certificate refuses and an override of 0 all end the same way: in that stop, from which the motion can go on.
+
+Enters: a session, a machine, a trajectory, orders of an operator. Leaves: states for display, and a log.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from concurrent.futures import Executor, ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+from pkm_post.control.link.download import download
+from pkm_post.control.link.errors import LinkLostError
+from pkm_post.control.link.ownership import owned
+from pkm_post.control.link.run import check_setup, set_feed_override, start_program
+from pkm_post.control.link.session import Session
+from pkm_post.control.link.status import Status, read_status
+from pkm_post.control.player.between import run_events
+from pkm_post.control.player.certificate_log import CertificateLog
+from pkm_post.control.player.desk import Desk
+from pkm_post.control.player.knot_list import Layout, resident_program
+from pkm_post.control.player.list_feed import ListFeed
+from pkm_post.control.player.orders import Choices, Order, PlayState, Way
+from pkm_post.control.player.pieces import At, PiecePlanner
+from pkm_post.control.player.run_to_rest import RunToRest, Timing
+from pkm_post.control.player.start_inside import go_to_row
+from pkm_post.control.player.stretches import Part, parts_of
+from pkm_post.model import EventKind, Machine, Tolerances, Trajectory
+from pkm_post.options import START_TOLERANCE_MM
+from pkm_post.writing import PmacSettings
+
+_POLL_S = 0.02
+_MOST_RATE = 200.0
+"""1/s: points of the plan; the list has room for some seconds of them."""
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class PlayResult:
+    """What was played.
+
+    Attributes:
+        log: its certificate.
+        stops: how often the motion came to rest because nothing more had come in time.
+        losses: how often the link was lost and came back.
+        finished: whether the program has ended; an operator may have ended it before.
+    """
+
+    log: CertificateLog
+    stops: int
+    losses: int
+    finished: bool
+
+
+class Player:
+    """Plays one trajectory.
+
+    Attributes:
+        log: the certificate of what was played.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        machine: Machine,
+        settings: PmacSettings,
+        trajectory: Trajectory,
+        tolerances: Tolerances,
+        choices: Choices | None = None,
+        show: Callable[[PlayState], None] = lambda state: None,
+        planning: Executor | None = None,
+    ) -> None:
+        """Prepare; ``play`` connects nothing and moves the machine.
+
+        Args:
+            session: an open session.
+            machine: the machine, without a limit of jerk.
+            settings: of its controller.
+            trajectory: what to play.
+            tolerances: limits for the certificate.
+            choices: how to play it.
+            show: called with the state some times a second.
+            planning: where pieces are planned; by default a thread of its own.
+        """
+        self._session, self._machine, self._settings = session, machine, settings
+        self._choices = choices or Choices()
+        self._trajectory, self._tolerances = self._choices.applied_to(trajectory), tolerances
+        self._planning_machine = replace(machine, block_rate=min(machine.block_rate, _MOST_RATE))
+        self._way, self._show, self._planning = Way(self._trajectory), show, planning
+        self._desk, self._timing = Desk(self._choices), Timing()
+        self._layout = Layout(self._choices.first_variable)
+        self._feed = ListFeed(session, settings, self._layout)
+        self._program = resident_program(self._layout, settings, self._choices.program)
+        self._run: RunToRest | None = None
+        self._stops, self._losses, self._is_waiting = 0, 0, False
+        self._lost_at: float | None = None
+        self.log = CertificateLog()
+
+    def order(self, order: Order) -> None:
+        """Give an order, from any thread."""
+        self._desk.order(order)
+
+    def play(self) -> PlayResult:
+        """Play the trajectory to its end, or to where an operator ends it.
+
+        Raises:
+            NotReadyError: the machine is not ready, or not where the trajectory begins.
+            Refused: a piece is not certified; the machine rests on the path.
+            PmacError: the controller or the link failed; the list ends in a stop.
+        """
+        session, settings = self._session, self._settings
+        with owned(session, "play"):
+            check_setup(session, settings, self._machine.strut_stroke)
+            download(session, self._program)
+            set_feed_override(session, settings, 100)
+            self._begin()
+            own = self._planning or ThreadPoolExecutor(1)
+            try:
+                for part in parts_of(self._trajectory, self._choices.first_row):
+                    if not self._desk.is_over:
+                        self._between(part)
+                    if part.end > part.first and not self._desk.is_over:
+                        self._play_part(part, own)
+            finally:
+                if self._planning is None:
+                    own.shutdown(wait=True, cancel_futures=True)
+        return PlayResult(self.log, self._stops, self._losses, not self._desk.is_over)
+
+    def _begin(self) -> None:
+        """Where the program is not played from its beginning, go there, when the operator has put the tool in."""
+        row = self._choices.first_row
+        if row or self._choices.approach:
+            tool = self._trajectory.tools[int(self._trajectory.tool[row])]
+            self._wait(f"T{tool.number}, {tool.length:g} mm long, in the spindle", row)
+            if not self._desk.is_over:
+                go_to_row(self._session, self._machine, self._settings, self._trajectory, row)
+
+    def _between(self, part: Part) -> None:
+        """Carry out the events before a part; its stops wait for the operator."""
+        events = list(part.events)
+        while events and not self._desk.is_over:
+            at = next((n for n, each in enumerate(events) if each.kind is EventKind.STOP), len(events))
+            if at:
+                run_events(
+                    self._session, self._machine, self._settings, self._trajectory, part.first, tuple(events[:at])
+                )
+            if at < len(events):
+                self._wait("M1" if events[at].value else "M0", part.first)
+            events = events[at + 1 :]
+
+    def _play_part(self, part: Part, planning: Executor) -> None:
+        planner = PiecePlanner(
+            self._trajectory, part, self._machine, self._settings, self._tolerances, self._planning_machine
+        )
+        desk, at, is_end = self._desk, planner.start(), False
+        while not is_end and not desk.is_over:
+            if desk.single_block:
+                self._wait("single block")
+            if desk.override == 0:
+                self._wait("override 0", until=lambda: desk.override > 0)
+            if desk.override > 0 and not desk.is_over:
+                self._feed.clear()
+                self._run = RunToRest(self._session, self._feed, planner, at, desk, planning)
+                at, is_end = self._run_to_rest(self._run)
+
+    def _run_to_rest(self, run: RunToRest) -> tuple[At, bool]:
+        """Where the run has come to rest, and whether the part ends there."""
+        while True:
+            status = self._look(run.is_started)
+            if run.is_started and status is not None and not status.running and status.standing:
+                self._stops += run.was_late()
+                return run.rest(lambda: self._way.text(self._feed.current))
+            if run.is_void():
+                return run.begin, False
+            try:
+                run.plan(self._timing.lead_s)
+                run.send(self._timing)
+                if run.may_start(self._timing.lead_s):
+                    self._start(run)
+            except LinkLostError as lost:
+                self._lose(lost)
+            self._session.sleep(_POLL_S)
+
+    def _start(self, run: RunToRest) -> None:
+        """Start the resident program where the run begins."""
+        order = self._session, self._settings, self._program, run.begin.length
+        start_program(*order, START_TOLERANCE_MM, self._machine)
+        run.is_started = True
+
+    def _look(self, is_started: bool) -> Status | None:
+        """Carry out orders and read where the machine is; None while the link is lost."""
+        try:
+            self._desk.carry_out(self._session, self._settings)
+            status = read_status(self._session, self._settings)
+            if is_started:
+                for leg in self._feed.look():
+                    self.log.add(leg.certificate)
+        except LinkLostError as lost:
+            self._lose(lost)
+            return None
+        if self._lost_at is not None:
+            self._losses, self._lost_at = self._losses + 1, None
+            _log.warning("the link is back")
+        if not self._is_waiting:
+            self._show(self._state("held" if status.held else "runs" if status.running else "rests"))
+        return status
+
+    def _lose(self, lost: LinkLostError) -> None:
+        """Note that the link is lost.
+
+        Raises:
+            LinkLostError: it has been for too long.
+        """
+        now = self._session.now()
+        if self._lost_at is None:
+            self._lost_at = now
+            _log.warning("the link is lost; the machine comes to rest on the path: %s", lost)
+        if now - self._lost_at > self._choices.patience_s:
+            raise lost
+        self._session.sleep(_POLL_S)
+
+    def _wait(self, what: str, row: int | None = None, until: Callable[[], bool] = lambda: False) -> None:
+        """Wait until an operator starts again, or ends, or something holds."""
+        desk = self._desk
+        desk.may_start, self._is_waiting = False, True
+        while not (desk.may_start or desk.is_over or until()):
+            self._look(False)
+            self._show(self._state(f"waits: {what}", row))
+            self._session.sleep(_POLL_S)
+        self._is_waiting = False
+
+    def _state(self, phase: str, row: int | None = None) -> PlayState:
+        reached = 0.0 if self._run is None else self._run.reached
+        return self._way.state(self._feed.current, phase, self._desk.override, reached, self._feed.ahead_ms, row)

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Start inside: begin a trajectory at a line of its source, after an abort or a loss of power.
+
+What the rows before the line have switched on is found, spindle, coolant and tool; the way to the line is that of an
+approach: up along the tool axis, across, and down along the axis of the start, planned, certified and checked for reach
+like any move by hand. Spindle and coolant are switched on above the start, before the last move down.
+
+Enters: a trajectory, a line, a machine that stands anywhere with the tool of that line in its spindle. Leaves: the row,
+and a machine at its beginning.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pkm_post.control.link.errors import NotReadyError, PmacError
+from pkm_post.control.link.session import Session
+from pkm_post.control.link.status import settled_status
+from pkm_post.control.link.tool_pose import pose_from_home
+from pkm_post.control.numerical_control.execute import execute, wait_for_rest
+from pkm_post.control.numerical_control.manual_moves import approach_trajectory
+from pkm_post.control.numerical_control.plan import Plan, planned
+from pkm_post.control.player.between import TOLERANCES, pose_before, run_events
+from pkm_post.model import Event, EventKind, Machine, Refused, Trajectory
+from pkm_post.options import APPROACH_MM_S
+from pkm_post.writing import PmacSettings
+
+_MODAL = (EventKind.SPINDLE, EventKind.COOLANT)
+_THERE = "C201"
+"""The tool stands where the approach leads to."""
+_SLOWEST = 0.05
+"""Override at which a move may still end in time, as for moves by hand."""
+_MORE_S = 30.0
+
+
+def row_of_line(trajectory: Trajectory, line: int, operation: str = "") -> int | None:
+    """The first row of a line, or of the first line after it; None if the source has no such line.
+
+    Args:
+        trajectory: with the lines of its rows.
+        line: line, or number of the command, in the source.
+        operation: its name, where several have such lines; by default the first one that does.
+    """
+    named = np.array([not operation or name == operation for name in trajectory.operations])
+    rows = np.flatnonzero(named[trajectory.operation] & (trajectory.line >= line))
+    return int(rows[0]) if len(rows) else None
+
+
+def modal_events(trajectory: Trajectory, row: int) -> tuple[Event, ...]:
+    """What the program has switched on before a row: the last event of each kind."""
+    last = {each.kind: each for each in trajectory.events if each.row <= row and each.kind in _MODAL}
+    return tuple(last.values())
+
+
+def go_to_row(
+    session: Session,
+    machine: Machine,
+    settings: PmacSettings,
+    trajectory: Trajectory,
+    row: int,
+    feed: float = APPROACH_MM_S,
+) -> None:
+    """Bring the tool to the start of a row, with what has to be switched on.
+
+    Args:
+        session: an open session.
+        machine: its geometry and limits.
+        settings: of its controller.
+        trajectory: the program.
+        row: where to begin.
+        feed: of the tip, mm/s; while the tip stands, degrees per second.
+
+    Raises:
+        NotReadyError: the pose of the tool is unknown, or the machine is not ready.
+        Refused: the way is not certified.
+        PmacError: it did not arrive.
+    """
+    events = modal_events(trajectory, row)
+    plan = approach_to_row(session, machine, settings, trajectory, row, events, feed)
+    if plan is None:
+        if events:
+            run_events(session, machine, settings, trajectory, row, events)
+        return
+    execute(session, machine, settings, plan.job)
+    status = wait_for_rest(session, settings, _MORE_S + plan.seconds / _SLOWEST)
+    if status.running or status.fault_texts():
+        raise PmacError("the approach did not arrive: " + "; ".join(status.fault_texts() or ("it is held",)))
+
+
+def approach_to_row(
+    session: Session,
+    machine: Machine,
+    settings: PmacSettings,
+    trajectory: Trajectory,
+    row: int,
+    events: tuple[Event, ...],
+    feed: float,
+) -> Plan | None:
+    """The way to the start of a row, with events above it; None where the tool is there.
+
+    Raises:
+        NotReadyError, Refused: as ``go_to_row``.
+    """
+    start, length = pose_before(trajectory, row)
+    here = pose_from_home(machine, settled_status(session, settings).commanded, length)
+    if here is None:
+        raise NotReadyError(["no pose of the platform reachable in small steps from home has these strut lengths"])
+    way, diagnostics = approach_trajectory(machine, here, start, length, feed)
+    if way is None:
+        if [each.code for each in diagnostics] == [_THERE]:
+            return None
+        raise Refused(diagnostics)
+    plan, diagnostics = planned(_with_events(way, events), machine, settings, TOLERANCES)
+    if plan is None:
+        raise Refused(diagnostics)
+    return plan
+
+
+def _with_events(way: Trajectory, events: tuple[Event, ...]) -> Trajectory:
+    """The way with events before its last move, the way down."""
+    last = len(way) - 1
+    stops = way.exact_stop | (np.arange(len(way)) >= last - 1)
+    return replace(way, exact_stop=stops, events=tuple(Event(last, each.kind, each.value) for each in events))

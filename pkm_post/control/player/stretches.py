@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Stretches: a long trajectory in overlapping pieces of bounded size whose paths are the same where they overlap.
+
+Rounded corners depend on two segments, but a smooth curve on all short lines of its run. So one line of every thousand
+stays a line: runs end there, and a curve is the same in every stretch that has all of its run. A stretch has two blocks
+between such lines, and some rows more on both sides; from the middle of the line between its blocks on, the motion may
+go over to the next stretch. The last rows of a stretch are its reserve for stopping.
+
+Enters: a trajectory. Leaves: its parts, from one event to the next, and their stretches as trajectories.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.model import TRAJECTORY_COLUMNS, Event, Tolerances, Trajectory
+
+BLOCK_ROWS = 1024
+_CHOICE = 64
+"""Rows of which the longest one stays a line."""
+_BESIDE = 4
+"""Rows on either side of a stretch by which the end of a run is the same: it depends on two neighbours."""
+_LESS = 1 - 1e-9
+"""Factor of a stated tolerance: another tolerance ends a run."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """Rows of a trajectory between two events, at rest at both ends.
+
+    Attributes:
+        first: its first row.
+        end: the row after its last.
+        events: that take place before it.
+    """
+
+    first: int
+    end: int
+    events: tuple[Event, ...]
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Rows of a part.
+
+    Attributes:
+        trajectory: these rows, from rest to rest.
+        first: row of the whole trajectory with which it begins.
+        over: row from whose middle on the next stretch takes over; None in the last one.
+    """
+
+    trajectory: Trajectory
+    first: int
+    over: int | None
+
+
+def parts_of(trajectory: Trajectory, first: int = 0) -> tuple[Part, ...]:
+    """The parts of a trajectory from a row on; the last one may have no rows, but events.
+
+    What takes place before a first row inside the trajectory belongs to the way there.
+    """
+    count = len(trajectory)
+    rows = sorted({first, *(each.row for each in trajectory.events if each.row > first), count})
+    found = []
+    for begin, end in zip(rows, [*rows[1:], count], strict=True):
+        events = tuple(each for each in trajectory.events if each.row == begin and (begin > first or first == 0))
+        if end > begin or events:
+            found.append(Part(begin, end, events))
+    return tuple(found)
+
+
+def stretches_of(trajectory: Trajectory, part: Part, tolerances: Tolerances) -> Iterator[Stretch]:
+    """The stretches of a part with rows, one after the other."""
+    lines = [part.first, *_lines(trajectory, part), part.end]
+    for number in range(max(len(lines) - 2, 1)):
+        is_last = number >= len(lines) - 3
+        begin = max(lines[number] - _BESIDE, part.first)
+        end = part.end if is_last else min(lines[number + 2] + _BESIDE, part.end)
+        kept = [row - begin for row in lines[1:-1] if begin <= row < end]
+        rows = _kept_lines(rows_of(trajectory, begin, end), kept, tolerances)
+        yield Stretch(rows, begin, None if is_last else lines[number + 1])
+
+
+def rows_of(trajectory: Trajectory, first: int, end: int) -> Trajectory:
+    """Some rows of a trajectory without its events, at rest at their end."""
+    columns = {name: getattr(trajectory, name)[max(first - 1, 0) : end] for name in TRAJECTORY_COLUMNS}
+    near = replace(trajectory, **columns, events=())
+    if first == 0:
+        columns = dict(columns)
+        start = trajectory.start_tip, trajectory.start_axis, trajectory.start_spin
+    else:
+        columns = {name: column[1:] for name, column in columns.items()}
+        start = near.tip_before()[1], near.axis_before()[1], float(near.spin_before()[1])
+    last = np.arange(end - first) == end - first - 1
+    columns["exact_stop"] = columns["exact_stop"] | last
+    columns["smooth"] = columns["smooth"] & ~last
+    return replace(near, **columns, start_tip=start[0], start_axis=start[1], start_spin=start[2])
+
+
+def _lines(trajectory: Trajectory, part: Part) -> list[int]:
+    """The rows that stay lines, about every ``BLOCK_ROWS``."""
+    length = trajectory.length
+    ends = range(part.first + BLOCK_ROWS, part.end - BLOCK_ROWS, BLOCK_ROWS)
+    return [end - _CHOICE + int(np.argmax(length[end - _CHOICE : end])) for end in ends]
+
+
+def _kept_lines(rows: Trajectory, kept: list[int], tolerances: Tolerances) -> Trajectory:
+    """The rows with some that are in no run: a tolerance of their own ends it."""
+    if not kept:
+        return rows
+    tolerance: Array = np.array(rows.tip_tolerance)
+    tolerance[kept] = np.where(tolerance[kept] > 0, tolerance[kept], tolerances.tip) * _LESS
+    return replace(rows, tip_tolerance=tolerance)

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A player on a simulated machine behind a wire in memory: each ms of the struts is kept, and measured afterwards.
+
+The poses come from forward kinematics, and their distances from the lines of the test's own program: nothing of the
+planning or of the certificate is asked.
+"""
+
+import copy
+import sys
+from concurrent.futures import Executor, Future
+from dataclasses import dataclass, field
+from pathlib import Path
+
+sys.path += [str(Path(__file__).parents[1] / room) for room in ("link", "numerical_control")]
+
+import numpy as np  # noqa: E402
+from programs import ON_PALLET, program  # noqa: E402
+from rig import Wire  # noqa: E402
+from station import MACHINE, SETTINGS, set_up  # noqa: E402
+
+from pkm_post.control.player.orders import Choices, Order  # noqa: E402
+from pkm_post.control.player.play import Player  # noqa: E402
+from pkm_post.geometry import norm  # noqa: E402
+from pkm_post.machine import forward_along_path, platform_rotation  # noqa: E402
+from pkm_post.model import Tolerances  # noqa: E402
+from pkm_post.toolpath.place import place  # noqa: E402
+
+TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
+TOOL = 120.0
+RECTANGLE = [[0, 0, 60], [30, 0, 60], [30, 20, 60], [0, 20, 60], [0, 0, 60]]
+HOOK = [[0, 0, 90], [25, 0, 90], [25, 15, 90]]
+
+
+def trajectory_of(position=HOOK, feed=80.0, events=(), **arguments):
+    made, _ = place(program(position, feed=feed, events=events, **arguments), MACHINE, ON_PALLET)
+    return made
+
+
+class AtOnce(Executor):
+    """Plans when asked; the simulated time stands meanwhile, but for delays.
+
+    Attributes:
+        delay: s that pass at each planning.
+    """
+
+    def __init__(self, wire=None, delay=lambda: 0.0):
+        self.wire, self.delay = wire, delay
+
+    def submit(self, function, *arguments):
+        made = Future()
+        if late := self.delay():
+            self.wire.sleep(late)
+        try:
+            made.set_result(function(*arguments))
+        except Exception as fault:
+            made.set_exception(fault)
+        return made
+
+
+@dataclass
+class Playing:
+    """A play and what the machine did.
+
+    Attributes:
+        wire: the link, with its faults.
+        trajectory: what is played.
+        at: orders by the number of the state at which they are given.
+    """
+
+    wire: Wire
+    trajectory: object
+    at: dict = field(default_factory=dict)
+    states: list = field(default_factory=list)
+    lengths: list = field(default_factory=list)
+
+    @classmethod
+    def of(cls, trajectory=None, at=None, **arguments):
+        wire = Wire(copy.deepcopy(set_up()), "tcp", moves=True, **arguments)
+        made = cls(wire, trajectory or trajectory_of(), at or {})
+        wire.sleep = made._sleep
+        return made
+
+    def play(self, delay=None, **choices):
+        planning = AtOnce(self.wire, delay) if delay else AtOnce()
+        with self.wire.session() as session:
+            self.player = Player(
+                session, MACHINE, SETTINGS, self.trajectory, TOLERANCES, Choices(**choices), self._show, planning
+            )
+            return self.player.play()
+
+    def _show(self, state):
+        self.states.append(state)
+        for order in self.at.pop(len(self.states), ()):
+            order(self.player) if callable(order) else self.player.order(order)
+        if state.phase.startswith("waits") and len(self.states) > 3 and self.states[-3].phase == state.phase:
+            self.player.order(Order("start"))
+
+    def _sleep(self, seconds):
+        for _ in range(max(1, round(1000 * seconds))):
+            self.wire.now += 1e-3
+            self.wire.controller.advance(1.0)
+            self.lengths.append(np.array(self.wire.controller.motors.commanded))
+
+    def rest(self):
+        """Let it go on by itself."""
+        self._sleep(3.0)
+
+    def struts(self):
+        """Commanded strut lengths at every ms, (T, 6) mm."""
+        return np.array(self.lengths) / SETTINGS.counts_per_mm + np.array(SETTINGS.zero_length)
+
+    def tips(self):
+        """Tool tips while anything moves, (T, 3) mm."""
+        struts = self.struts()
+        moving = np.append(True, (np.abs(np.diff(struts, axis=0)) > 1e-9).any(axis=1))
+        struts = struts[moving]
+        rotation = platform_rotation(MACHINE.home_axis[None], np.array([MACHINE.home_spin]))[0]
+        found = forward_along_path(MACHINE, struts, np.full(len(struts), TOOL), MACHINE.home_tip, rotation)
+        assert found.converged.all()
+        return found.tip
+
+    def check(self):
+        """The tool stayed on the path, the struts within their limits, and no move ended at speed."""
+        assert self.wire.controller.systems[0].path.abrupt_stops == 0
+        off = distance(self.tips(), np.vstack([self.trajectory.start_tip, self.trajectory.tip]))
+        assert off.max() < TOLERANCES.tip, off.max()
+        struts = self.struts()
+        assert np.abs(np.diff(struts, axis=0)).max() * 1e3 <= MACHINE.strut_speed
+        assert np.abs(np.diff(struts, 2, axis=0)).max() * 1e6 <= MACHINE.strut_acceleration
+
+    def arrived(self):
+        """How far the tip is from the end of the program at last, mm."""
+        return float(norm(self.tips()[-1] - self.trajectory.tip[-1]))
+
+
+def distance(points, corners):
+    """Distance of points, (T, 3), from a chain of lines, (T,) mm."""
+    nearest = np.full(len(points), np.inf)
+    for begin, end in zip(corners[:-1], corners[1:], strict=True):
+        way = end - begin
+        share = np.clip((points - begin) @ way / (way @ way), 0, 1)
+        nearest = np.minimum(nearest, norm(points - begin - share[:, None] * way))
+    return nearest

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Trajectories played on the simulated controller; whatever happens, the tool stays on the path."""
+
+import itertools
+
+import numpy as np
+import pytest
+from playing import RECTANGLE, SETTINGS, Playing, trajectory_of
+
+from pkm_post.control.link import stopping
+from pkm_post.control.link.errors import LinkLostError, PmacError
+from pkm_post.control.player.orders import Order
+from pkm_post.model import Event, EventKind
+
+
+def test_a_program_is_played_without_rests():
+    playing = Playing.of()
+    done = playing.play()
+    assert done.finished and done.log.holds and (done.stops, done.losses) == (0, 0)
+    playing.check()
+    assert playing.arrived() < 1e-3
+    to_go = [state.to_go for state in playing.states]
+    assert to_go == sorted(to_go, reverse=True) and to_go[-1] < 1e-3
+    assert {state.line for state in playing.states} == {1, 2, 3}
+
+
+def test_overrides_up_to_150_a_hold_and_an_override_of_zero():
+    orders = {
+        5: [Order("override", 1.5)],
+        20: [Order("hold")],
+        21: [Order("resume")],
+        30: [Order("override", 0.0)],
+        90: [Order("override", 0.6)],
+        100: [Order("override", 9.0)],
+    }
+    playing = Playing.of(trajectory_of(RECTANGLE), at=orders)
+    done = playing.play()
+    playing.check()
+    assert done.finished and done.log.holds and playing.arrived() < 1e-3 and not orders
+    assert max(state.override for state in playing.states) == 1.5
+    assert max(state.reached for state in playing.states if state.line > 1) > 1.2
+
+
+def test_a_planner_that_is_too_late_ends_in_a_stop_on_the_path():
+    calls = itertools.count()
+    playing = Playing.of()
+    done = playing.play(delay=lambda: 1.5 if next(calls) in (2, 3) else 0.0)
+    playing.check()
+    assert done.finished and done.stops >= 1 and playing.arrived() < 1e-3
+
+
+@pytest.mark.parametrize("at", (18_000, 24_000))
+def test_a_link_that_is_cut_and_comes_back(at):
+    playing = Playing.of(cut_at=at)
+    done = playing.play()
+    playing.check()
+    assert done.finished and playing.arrived() < 1e-3
+
+
+def test_a_link_that_is_cut_for_good_ends_in_a_stop_on_the_path():
+    playing = Playing.of(cut_at=22_000, mends=False)
+    with pytest.raises(LinkLostError):
+        playing.play(patience_s=1.0)
+    playing.rest()
+    playing.check()
+    assert not playing.wire.controller.runs_program() and playing.arrived() > 1.0
+
+
+def test_single_block_rests_at_the_end_of_each_line():
+    playing = Playing.of()
+    done = playing.play(single_block=True)
+    playing.check()
+    phases = [phase for phase, _ in itertools.groupby(state.phase for state in playing.states)]
+    assert done.finished and phases.count("waits: single block") == 3 and playing.arrived() < 1e-3
+
+
+def test_events_between_moves_and_stops_that_wait():
+    events = (Event(1, EventKind.SPINDLE, 1000.0), Event(2, EventKind.STOP, 0), Event(3, EventKind.STOP, 1))
+    playing = Playing.of(trajectory_of(events=events))
+    assert playing.play().finished
+    assert playing.wire.controller.variables.read("P", 7001) == 1
+    assert {state.phase for state in playing.states if "M" in state.phase} == {"waits: M0"}
+    playing = Playing.of(trajectory_of(events=events))
+    assert playing.play(optional_stop=True, dry_feed=60.0).finished
+    assert playing.wire.controller.variables.read("P", 7001) == 0
+    assert {state.phase for state in playing.states if "M" in state.phase} == {"waits: M0", "waits: M1"}
+
+
+def test_after_an_abort_the_program_goes_on_at_a_line():
+    playing = Playing.of(at={40: [lambda player: stopping.abort(player._session, SETTINGS, at_once=True)]})
+    with pytest.raises(PmacError, match="ended from elsewhere in Finish line"):
+        playing.play()
+    row = playing.states[-1].row
+    assert playing.arrived() > 1.0
+    playing.play(first_row=row)
+    assert playing.arrived() < 1e-3
+    assert any(state.phase.startswith("waits: T1") for state in playing.states)
+    assert np.all([state.row >= row for state in playing.states[-20:]])
