@@ -24,6 +24,7 @@ EXAMPLES = {
     "--wear": ("1=0.02", "1=-0.01"),
     "--cl-dialect": ("nx", "catia"),
     "--cycle-values": ("depth,feed", "depth"),
+    "--cycle-kinds": ("BORE=ream", "BORE=drill,DEEPHL=deep"),
     "--goto-values": ("x,y,z,i,j,k,nx,ny,nz", "i,j,k,x,y,z"),
     "--part": ("far.stl", "none"),
     "--stock": ("far.stl", "none"),

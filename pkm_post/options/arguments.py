@@ -23,6 +23,8 @@ from pkm_post.options.converters import (
     also,
     codes,
     copies,
+    CYCLE_STROKES,
+    cycle_kinds,
     cycle_values,
     goto_values,
     listed,
@@ -124,7 +126,8 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     "--machine-zero": {
         "metavar": "X,Y,Z",
         "type": point,
-        "help": "where G-code brings the tool tip with G53 X0 Y0 Z0, and with G28 and G30: mm in the work frame",
+        "help": "where G-code brings the tool tip with G53 X0 Y0 Z0, and with G28 and G30, and CL data with GOHOME: mm"
+        " in the work frame",
     },
     "--origin": {
         "metavar": "NAME=POSE",
@@ -176,6 +179,14 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "default": (),
         "help": "what the numbers of CYCLE statements of CL data are where they have no words, in order and joined by"
         f" commas: {', '.join(CYCLE_VALUES)}",
+    },
+    "--cycle-kinds": {
+        "metavar": "KIND=STROKES,...",
+        "type": cycle_kinds,
+        "default": (),
+        "help": "what kinds of CYCLE statements of CL data do, such as BORE=ream,DEEPHL=deep, with strokes out of"
+        f" {', '.join(CYCLE_STROKES)}: in one stroke, out of the hole after each peck, a short way back after each peck,"
+        " or out of the hole at the feed (default: as the CAM system means them)",
     },
     "--goto-values": {
         "metavar": "NAMES",
@@ -274,6 +285,7 @@ def add_part_program(parser: argparse.ArgumentParser) -> None:
             "--wear",
             "--cl-dialect",
             "--cycle-values",
+            "--cycle-kinds",
             "--goto-values",
             "--allow-open-end",
         ),

@@ -96,6 +96,7 @@ def part_program_from(namespace: argparse.Namespace, axis_words: str) -> Reading
         dict(namespace.wear),
         namespace.cl_dialect,
         namespace.cycle_values,
+        cycle_kinds=dict(namespace.cycle_kinds),
         allow_open_end=namespace.allow_open_end,
         flavour=namespace.flavour,
         machine_zero=namespace.machine_zero,

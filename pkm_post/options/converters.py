@@ -75,7 +75,7 @@ def also(text: str) -> tuple[str, ...]:
 
 CL_DIALECTS = ("nx", "creo", "catia", "solidworks", "makino", "apt")
 """Sources of CL data, as in ``cldata.DIALECTS``."""
-CYCLE_VALUES = ("depth", "feed", "clearance", "return", "step", "dwell")
+CYCLE_VALUES = ("depth", "feed", "clearance", "return", "step", "dwell", "diameter")
 """Meanings of a cycle's numbers, as in ``cldata.CYCLE_VALUES``."""
 
 
@@ -85,6 +85,21 @@ def cycle_values(text: str) -> tuple[str, ...]:
     if not set(chosen) <= set(CYCLE_VALUES) or len(set(chosen)) < len(chosen):
         raise argparse.ArgumentTypeError(f"expected different names out of {', '.join(CYCLE_VALUES)}, got {text!r}")
     return chosen
+
+
+CYCLE_STROKES = ("drill", "deep", "break", "ream")
+"""Strokes of a kind of cycle, as in ``cldata.CYCLE_STROKES``."""
+_CYCLE_KIND = re.compile(r"(\w+)=(\w+)", re.ASCII)
+
+
+def cycle_kinds(text: str) -> tuple[tuple[str, str], ...]:
+    """Words in upper case with the strokes that they stand for; no word twice."""
+    pairs = [match.groups() if (match := _CYCLE_KIND.fullmatch(part)) else ("", "") for part in text.split(",")]
+    chosen = {word.upper(): strokes for word, strokes in pairs}
+    if not set(chosen.values()) <= set(CYCLE_STROKES) or len(chosen) < len(pairs):
+        expected = f"KIND=STROKES,... with strokes out of {', '.join(CYCLE_STROKES)}"
+        raise argparse.ArgumentTypeError(f"expected {expected}, got {text!r}")
+    return tuple(chosen.items())
 
 
 GOTO_VALUES = (("x", "y", "z"), ("i", "j", "k"), ("nx", "ny", "nz"), ("px", "py", "pz"))

@@ -148,6 +148,7 @@ _FORMATS: dict[str, Callable[[Any], str]] = {
     "spin": _spin,
     **dict.fromkeys(("tool_length", "tools", "actual_tool", "wear", "origin"), _by_number),
     **dict.fromkeys(("fixture", "subprograms"), lambda entry: str(entry[0])),
+    "cycle_kinds": lambda pairs: ",".join(map("=".join, pairs)) or NOTHING,
 }
 """Formats of values that ``_plain`` does not format."""
 
@@ -165,7 +166,7 @@ _KINDS: dict[str, tuple[InputKind, ...]] = {
     "axis_words": (InputKind.GCODE,),
     "dwell_unit": (InputKind.GCODE,),
     "flavour": (InputKind.GCODE,),
-    "machine_zero": (InputKind.GCODE,),
+    "machine_zero": _PART_PROGRAMS,
     "leave_out": (InputKind.GCODE,),
     "origin": (InputKind.GCODE,),
     "subprograms": (InputKind.GCODE,),
@@ -173,6 +174,7 @@ _KINDS: dict[str, tuple[InputKind, ...]] = {
     "contour_data": (InputKind.CLDATA,),
     "cl_dialect": (InputKind.CLDATA,),
     "cycle_values": (InputKind.CLDATA,),
+    "cycle_kinds": (InputKind.CLDATA,),
     "goto_values": (InputKind.CLDATA,),
     "tools": _PART_PROGRAMS,
     "unit": _PART_PROGRAMS,

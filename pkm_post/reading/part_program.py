@@ -47,9 +47,10 @@ class ReadingOptions:
         wear: by number, mm by which the tool radius exceeds the one that CL data with CUTCOM was made for.
         cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; detected if None.
         cycle_values: meaning of the numbers of CYCLE statements without words, out of ``cldata.CYCLE_VALUES``.
+        cycle_kinds: strokes of kinds of cycles in CL data, out of ``cldata.CYCLE_STROKES``.
         flavour: whose G-code it is, one of ``FLAVOUR_NAMES``; guessed if None.
         dwell_unit: unit of P of G4 and of cycles in G-code, a key of ``DWELL_UNITS``; that of the flavour if None.
-        machine_zero: where G53 X0 Y0 Z0, and G28 and G30, bring the tool tip in {C}, mm.
+        machine_zero: where G53 X0 Y0 Z0, and G28 and G30, and GOHOME of CL data, bring the tool tip in {C}, mm.
         left_out: codes of G-code, such as "M21", to leave out where they are not understood.
         goto_values: meanings of the values of those GOTO statements of CL data that have as many, as in
             ``cldata.ReadOptions``.
@@ -68,6 +69,7 @@ class ReadingOptions:
     wear: Mapping[int, float] = field(default_factory=dict)
     cl_dialect: str | None = None
     cycle_values: tuple[str, ...] = ()
+    cycle_kinds: Mapping[str, str] = field(default_factory=dict)
     dwell_unit: str | None = None
     lengths: Mapping[int, float] = field(default_factory=dict)
     allow_open_end: bool = False
@@ -183,8 +185,10 @@ def _read_cldata(content: bytes, file: str, reading: ReadingOptions) -> _Result:
         contour_data=reading.contour_data,
         wear=reading.wear,
         cycle_values=reading.cycle_values,
+        cycle_kinds=reading.cycle_kinds,
         goto_values={len(reading.goto_values): reading.goto_values} if reading.goto_values else {},
         feed=reading.feed,
+        machine_zero=reading.machine_zero,
         needs_end=not reading.allow_open_end,
     )
     return cldata.read(content, file, options)

@@ -23,9 +23,10 @@ from pkm_post.reading import AS_WRITTEN
 GCODE = "T1 M6 G43 H1\nG21 G90 G94 S8000 M3\nG0 X0 Y0 Z30\nG4 P10\nG1 X10 Y0 Z20 F600\nG0 Z30\nM2\n"
 CLDATA = "UNITS/MM\nLOADTL/1\nRAPID\nGOTO/0,0,30\nFEDRAT/600,MMPM\nGOTO/10,0,20\nRAPID\nGOTO/10,0,30\nFINI\n"
 REACHED = ("--tool-length=1=60", "--work-offset=0,0,250")
-FOR_CLDATA = ("--contour-data", "--cl-dialect", "--cycle-values", "--goto-values")
-FOR_GCODE = ("--flavour", "--machine-zero", "--leave-out", "--origin", "--subprograms", "--block-delete")
-FOR_PART_PROGRAMS = (*FOR_CLDATA, *FOR_GCODE, "--tool", "--unit", "--feed", "--allow-open-end", "--wear")
+FOR_CLDATA = ("--contour-data", "--cl-dialect", "--cycle-values", "--cycle-kinds", "--goto-values")
+FOR_GCODE = ("--flavour", "--leave-out", "--origin", "--subprograms", "--block-delete")
+FOR_BOTH = ("--tool", "--unit", "--feed", "--allow-open-end", "--wear", "--machine-zero")
+FOR_PART_PROGRAMS = (*FOR_CLDATA, *FOR_GCODE, *FOR_BOTH)
 
 
 @pytest.mark.parametrize("flag", FOR_PART_PROGRAMS)

@@ -307,4 +307,12 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
     "L443": warning(
         "the file gives a tool several gauge lengths; none of them is used", "give its length with --tool-length"
     ),
+    "L444": error(
+        "the home position of the machine is unknown",
+        "give it with --machine-zero X,Y,Z, or set MachineZero of the program object",
+    ),
+    "L445": error(
+        "the strokes of this kind of cycle are not known",
+        "give them with --cycle-kinds, such as BORE=ream, or let the CAM system write single moves",
+    ),
 }

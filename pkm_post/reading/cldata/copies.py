@@ -5,7 +5,8 @@ Enters: the table of statements. Leaves: a table in which each COPY is replaced 
 with a matrix, three rows of four as written, precedes each of them, and one with the unit matrix ends them.
 
 COPY/n,...,k stands behind a path that INDEX/n begins and that has been made once. It makes k copies, the last one moved
-by the k-th power of its matrix [aptos].
+by the k-th power of its matrix [aptos]. A path with copies in it is repeated with them; where their matrices do not
+commute the order in which they apply differs between CAM systems [ICAM], and the COPY is refused.
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ MATRIX = "_COPY"
 MOST_STATEMENTS = 10_000_000
 """Statements of a file with all its copies."""
 
+_SAME = 1e-6
+"""Difference of matrices that are taken as equal: lengths as written."""
 _PLANES = {"XYROT": (0, 1), "YZROT": (1, 2), "ZXROT": (2, 0)}
 """Rotations, and the axes that they turn one to the other."""
 _FORMS = "n,SAME,k, n,TRANSL,x,y,z,k, n,XYROT, YZROT or ZXROT,degrees,k, or n,MODIFY,three rows of four,k"
@@ -45,7 +48,7 @@ def with_copies(statements: Statements, faults: Faults) -> Statements:
     for row in copies:
         parts.append(np.arange(done, row))
         done = row + 1
-        parts += _copies_at(statements, row, begins, copies, faults)
+        parts += _copies_at(statements, row, begins, parts, faults)
     parts.append(np.arange(done, len(statements)))
     return _table(statements, parts)
 
@@ -61,30 +64,65 @@ def _rows(statements: Statements, word: str) -> list[int]:
     return rows
 
 
-def _copies_at(statements: Statements, row: int, begins: list[int], copies: list[int], faults: Faults) -> list[_Part]:
-    """The copies of one COPY; none, with a fault, if it is not understood."""
+def _copies_at(
+    statements: Statements, row: int, begins: list[int], before: list[_Part], faults: Faults
+) -> list[_Part]:
+    """The copies of one COPY; none, with a fault, if it is not understood.
+
+    Args:
+        statements: of the file.
+        row: of the COPY.
+        begins: rows of all INDEX.
+        before: the parts up to the COPY.
+        faults: collects the faults.
+    """
     statement, place = statements.statement(row), statements.place(row)
     read = _matrix_and_count(statement)
     if read is None:
         faults.add("L402", place, f"COPY/{statement.items_text()}, expected {_FORMS}")
         return []
     matrix, count = read
-    mine = [begin for begin in begins if begin < row and statements.statement(begin).items == statement.items[:1]]
+    mine = _begins_of(statements, row, begins)
     if len(mine) != 1:
         found = f"COPY/{statement.items_text()} after {len(mine)} INDEX/{statement.numbers[0]:g}, expected one"
         faults.add("L402", place, found)
         return []
-    if any(mine[0] < other < row for other in copies):
-        faults.add("L401", place, f"COPY/{statement.items_text()} with another COPY after its INDEX")
+    path = _path_after(before, mine[0])
+    inner = [part for part in path if isinstance(part, tuple)]
+    if any(_begins_of(statements, other, begins)[0] < mine[0] or not _commute(made, matrix) for other, made in inner):
+        faults.add("L401", place, f"COPY/{statement.items_text()} with another COPY after its INDEX whose order matters")
         return []
-    if count * (row - mine[0]) > MOST_STATEMENTS:
+    if count * sum(map(_size, path)) > MOST_STATEMENTS:
         faults.add("L403", place, f"COPY/{statement.items_text()}: more than {MOST_STATEMENTS} statements")
         return []
-    path, power, parts = np.arange(mine[0] + 1, row), np.eye(4), list[_Part]()
+    power, parts = np.eye(4), list[_Part]()
     for _ in range(count):
         power = matrix @ power
-        parts += [(row, power), path]
+        parts.append((row, power))
+        parts += [(part[0], power @ part[1]) if isinstance(part, tuple) else part for part in path]
     return [*parts, (row, np.eye(4))]
+
+
+def _begins_of(statements: Statements, row: int, begins: list[int]) -> list[int]:
+    """The INDEX statements before a COPY that have its number."""
+    number = statements.statement(row).items[:1]
+    return [begin for begin in begins if begin < row and statements.statement(begin).items == number]
+
+
+def _path_after(parts: list[_Part], begin: int) -> list[_Part]:
+    """The parts after an INDEX where it stands in the file."""
+    at = next(index for index, part in enumerate(parts) if isinstance(part, np.ndarray) and begin in part)
+    first = parts[at]
+    return [first[first > begin], *parts[at + 1 :]] if isinstance(first, np.ndarray) else []
+
+
+def _commute(one: Array, other: Array) -> bool:
+    """Whether two matrices may be applied in either order."""
+    return bool(np.allclose(one @ other, other @ one, rtol=0.0, atol=_SAME))
+
+
+def _size(part: _Part) -> int:
+    return 1 if isinstance(part, tuple) else len(part)
 
 
 def _matrix_and_count(statement: Statement) -> tuple[Array, int] | None:

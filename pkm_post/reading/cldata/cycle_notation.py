@@ -96,10 +96,9 @@ class CycleNotation:
         """The words known in cycles of a kind."""
         return set(self.words) - self.excluded.get(kind, frozenset())
 
-    def positions_of(self, kind: str) -> tuple[str, ...]:
+    def positions_of(self, kind: CycleKind) -> tuple[str, ...]:
         """Meanings of the numbers without words in cycles of a kind; none where the system does not define them."""
-        has_pecks = self.kinds[kind].pecks != "none"
-        return tuple(name for name in self.positions if name != "step" or has_pecks)
+        return tuple(name for name in self.positions if name != "step" or kind.pecks != "none")
 
     def words_for(self, meaning: str) -> str:
         """The words with one meaning, for messages."""

@@ -15,8 +15,12 @@ from typing import NoReturn
 
 from pkm_post.reading.cldata.cycle_notation import (
     AUTO,
+    BREAK_CHIP,
     CAMWORKS,
+    DEEP,
+    DRILL,
     MANUAL,
+    REAM,
     TAPPING,
     Cycle,
     CycleKind,
@@ -33,6 +37,9 @@ from pkm_post.reading.cldata.statements import Statement
 _MAX_PECKS = 10000
 _RETURNS = ("INIT", "CLEAR")
 """CAMWorks: the tool returns to the height before the cycle, or RTRCTO if written, or to the clearance."""
+
+_STROKES = {"drill": DRILL, "deep": DEEP, "break": BREAK_CHIP, "ream": REAM}
+"""Strokes by their names in the option ``cycle_kinds``."""
 
 _Item = float | str | Statement | None
 
@@ -77,12 +84,15 @@ def _interpret(state: ReaderState, statement: Statement) -> tuple[Cycle, str]:
     known = notation_of_dialect(state.dialect.name)
     notation = known or notation_by_words(statement.words)
     guessed = known is None
-    kind = _kind(statement, notation, guessed)
-    positions = state.options.cycle_values or (() if guessed else notation.positions_of(kind))
+    kinds = {**notation.kinds, **{kind: _STROKES[name] for kind, name in state.options.cycle_kinds.items()}}
+    kind = _kind(statement, notation, kinds, guessed)
+    positions = state.options.cycle_values or (() if guessed else notation.positions_of(kinds[kind]))
     items = _CycleItems(notation, kind, guessed, positions)
     items.read(statement.items[len(kind.split(",")) :])
+    if "diameter" in items.values:
+        items.values["depth"] = _countersink_depth(state, items) * notation.down
     _check_signs(items)
-    cycle = _cycle(state, notation.kinds[kind], items)
+    cycle = _cycle(state, kinds[kind], items)
     fault = _fault_of(cycle, notation)
     if fault:
         raise _CycleError("L412", f"CYCLE/{kind}: {fault}")
@@ -92,26 +102,40 @@ def _interpret(state: ReaderState, statement: Statement) -> tuple[Cycle, str]:
 def _evidence(state: ReaderState, guessed: bool, items: _CycleItems) -> str:
     """Why the words of a cycle are attributed to a CAM system."""
     by = "by themselves" if guessed else "as the option says" if state.options.dialect else "by the dialect"
+    if items.kind in state.options.cycle_kinds:
+        by = f"{by}; {items.kind} is {state.options.cycle_kinds[items.kind]}, as the option says"
     if not items.by_position:
         return by
     source = "as the option says" if state.options.cycle_values else f"in the order of {items.notation.system}"
     return f"{by}; numbers are {', '.join(items.positions)}, {source}"
 
 
-def _kind(statement: Statement, notation: CycleNotation, guessed: bool) -> str:
+def _countersink_depth(state: ReaderState, items: _CycleItems) -> float:
+    """Depth at which the cone of the tool has a diameter, as written: diameter / 2 / tan(point angle / 2)."""
+    diameter, tool = items.values.pop("diameter"), state.diameter / state.scale
+    if "depth" in items.values:
+        raise _CycleError("L412", f"CYCLE/{items.kind}: a depth and a diameter")
+    if not state.point_angle:
+        raise _CycleError("L412", f"CYCLE/{items.kind}: diameter {diameter:g} with a tool of unknown point angle")
+    if not 0 < diameter <= tool:
+        raise _CycleError("L412", f"CYCLE/{items.kind}: diameter {diameter:g} with a tool of diameter {tool:g}")
+    return diameter / 2 / math.tan(state.point_angle / 2)
+
+
+def _kind(statement: Statement, notation: CycleNotation, kinds: Mapping[str, CycleKind], guessed: bool) -> str:
     """The kind of a cycle, one or two words."""
     first = [item for item in statement.items[:2] if isinstance(item, str)]
     candidates = [",".join(first), *first[:1]]
     if TAPPING & set(first):
         raise _CycleError("L440", f"CYCLE/{candidates[0]}")
     for kind in candidates:
-        if kind in notation.kinds:
+        if kind in kinds:
             return kind
     if guessed and any(map(is_known_kind, candidates)):
         raise _CycleError(
             "L419", f"CYCLE/{statement.items_text()}: {candidates[-1]} with the words of {notation.system}"
         )
-    raise _CycleError("L401", f"CYCLE/{statement.items_text()}")
+    raise _CycleError("L445", f"CYCLE/{statement.items_text()}")
 
 
 def _check_signs(items: _CycleItems) -> None:
@@ -243,7 +267,7 @@ class _CycleItems:
             self._check_no_pending_word()
             if word in FEED_WORDS:
                 self._unit = word
-            self._pending = "" if self.by_position and word in FEED_WORDS else word
+            self._pending = "" if word in FEED_WORDS and self.by_position and "feed" in self.positions else word
 
     def _pending_means(self, meaning: str) -> bool:
         """Whether the pending word has a given meaning."""

@@ -71,6 +71,12 @@ def _tlcomp(state: ReaderState, row: int, statement: Statement) -> None:
         state.report("L401", row, f"TLCOMP/{statement.items_text()}")
 
 
+def _rotary(state: ReaderState, row: int, statement: Statement) -> None:
+    """ROTABL, ROTHED and ROTATE: a table or head that turns by nothing leaves the motion alone; no hexapod has one."""
+    if not statement.numbers or any(statement.numbers):
+        state.report("L401", row, f"{statement.word}/{statement.items_text()}, a rotary axis")
+
+
 def _syn(state: ReaderState, row: int, statement: Statement) -> None:
     """SYN/'new','old',... redefines words: refused where such a word follows."""
     words = [item.strip("'\"") for item in statement.words[::2]]
@@ -103,7 +109,7 @@ HANDLERS: dict[str, _Handler] = {
     "UNITS": units, "UNIT": units, "MSYS": machining_frame, "CSYS": machining_frame, "CATIA0": machining_frame,
     "ORIGIN": origin, "TRANS": trans, "TRACUT": trans, "TRNTYP": trntyp,
     "INDEX": path_index, MATRIX: copy_matrix,
-    "TLCOMP": _tlcomp, "SYN": _syn,
+    "TLCOMP": _tlcomp, "ROTABL": _rotary, "ROTHED": _rotary, "ROTATE": _rotary, "SYN": _syn,
     "TOOL PATH": _operation, "OPERATION NAME": _operation, "FEATNO": _operation, "FINI": _fini,
 }  # fmt: skip
 """Words with a handler."""
@@ -118,7 +124,7 @@ IGNORED = frozenset({
 
 UNSUPPORTED = frozenset({
     "SPLINE", "BSPLINE", "NURBS",
-    "POLYGON", "ROTABL", "ROTHED", "ROTATE", "PIVOT", "TURRET", "MIRROR", "LOOPST", "LOOPND", "JUMPTO",
+    "POLYGON", "PIVOT", "TURRET", "MIRROR", "LOOPST", "LOOPND", "JUMPTO",
     "MACRO", "CALL", "IF", "DO", "GO", "GOFWD", "GOBACK", "GOLFT", "GORGT", "GOUP", "GODOWN", "OFFSET",
     "TLLFT", "TLRGT", "TLON", "TLLFT,GOFWD", "TLRGT,GOFWD", "TLON,GOLFT", "TLON,GORGT", "THREAD", "PITCH", "REFSYS",
     "RETRCT", "CALSUB", "DEFSUB", "ENDSUB", "PIVOTZ", "PROBE", "DNTCUT",

@@ -81,8 +81,11 @@ _HANDS = ("right", "left", "vote")
 _FRAMES = ("first", "absolute")
 CONTOUR_DATA = ("centre", "contour")
 """Possible meanings of the points under CUTCOM."""
-CYCLE_VALUES = ("depth", "feed", "clearance", "return", "step", "dwell")
-"""Possible meanings of a number without a word in a CYCLE statement."""
+CYCLE_VALUES = ("depth", "feed", "clearance", "return", "step", "dwell", "diameter")
+"""Possible meanings of a number without a word in a CYCLE statement; "diameter" is that of a countersink."""
+CYCLE_STROKES = ("drill", "deep", "break", "ream")
+"""Strokes that a kind of cycle may have."""
+_KIND = re.compile(r"\w+(?:,\w+)?", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -98,7 +101,10 @@ class ReadOptions:
             "nx ny nz" the surface normal, "px py pz" the contact point, which is ignored.
         cycle_values: meanings of the numbers that follow the kind of a CYCLE statement without words, in order, out of
             ``CYCLE_VALUES``: depth down from the point, clearance and return height up from it.
+        cycle_kinds: strokes, out of ``CYCLE_STROKES``, of kinds of cycles by their words, such as "BORE"; they override
+            those of the CAM system.
         feed: speed of cutting moves before the first FEDRAT, mm/s; None if unknown: such moves are refused.
+        machine_zero: home position of the tool tip in the work frame, mm, for GOHOME without a point; None if unknown.
         frame: "first": the work frame is the first machining frame of the file; "absolute": the frame those are defined
             in.
         tools: by number; they override the tool data of the file, except for a name and a length that they lack.
@@ -114,7 +120,9 @@ class ReadOptions:
     hand: str | None = None
     goto_values: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     cycle_values: tuple[str, ...] = ()
+    cycle_kinds: Mapping[str, str] = field(default_factory=dict)
     feed: float | None = None
+    machine_zero: tuple[float, float, float] | None = None
     frame: str = "first"
     tools: Mapping[int, Tool] = field(default_factory=dict)
     contour_data: str | None = None
@@ -140,6 +148,9 @@ class ReadOptions:
                 raise ValueError(f"wear: expected finite lengths, got {wear} for tool {number}")
         if len(set(self.cycle_values)) != len(self.cycle_values) or not {*self.cycle_values} <= {*CYCLE_VALUES}:
             raise ValueError(f"cycle_values: expected different names out of {CYCLE_VALUES}, got {self.cycle_values!r}")
+        for kind, strokes in self.cycle_kinds.items():
+            if not _KIND.fullmatch(kind) or kind != kind.upper() or strokes not in CYCLE_STROKES:
+                raise ValueError(f"cycle_kinds: expected words and one of {CYCLE_STROKES}, got {kind!r}: {strokes!r}")
         for count, names in self.goto_values.items():
             whole = {name for each in GOTO_VALUES if {*each} & {*names} for name in each}
             if len(names) != count or len(set(names)) != count or not {*POINT} <= {*names} == whole:

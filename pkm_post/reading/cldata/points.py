@@ -59,7 +59,8 @@ def numbers_only(state: ReaderState, row: int, statement: Statement) -> None:
 
 def from_or_godlta(state: ReaderState, row: int, statement: Statement) -> None:
     """FROM/x,y,z[,i,j,k]: the tool position; GODLTA/dx,dy,dz[,i,j,k]: an incremental move from it; GOHOME: a move."""
-    values = state.expect_values(row, statement, 3, 6)
+    at_home = statement.word == "GOHOME" and not statement.items
+    values = _home(state, row) if at_home else state.expect_values(row, statement, 3, 6)
     if not values:
         return
     if statement.word == "GOHOME" and _is_drilled(state, row):
@@ -72,6 +73,17 @@ def from_or_godlta(state: ReaderState, row: int, statement: Statement) -> None:
             return
         position = start + position
     state.points.append((row, Point(tuple(position.tolist()), axis, start=statement.word == "FROM")))
+
+
+def _home(state: ReaderState, row: int) -> list[float]:
+    """The home position as if it were written in the current units and frame; empty, with a fault, if unknown."""
+    zero = state.options.machine_zero
+    if zero is None:
+        state.report("L444", row, "GOHOME without a point")
+        return []
+    frame = state.frames[-1][1] if state.frames else np.eye(4)
+    written: list[float] = (np.linalg.solve(frame, [*zero, 1.0])[:3] / state.scale).tolist()
+    return written
 
 
 def tool_position(state: ReaderState, row: int, word: str) -> Array | None:

@@ -112,8 +112,9 @@ def _rows(state: ReaderState, points: Points, arcs: Arcs, holes: HoleMoves) -> _
 def _rapid(state: ReaderState, points: Points) -> Array:
     """Mask of points reached by rapid moves, (P,)."""
     rapid = points.start.copy()
-    nexts = np.searchsorted(points.row, np.array(state.rapids, dtype=np.int64), "left")
-    rapid[nexts[nexts < len(rapid)]] = True
+    motions = np.flatnonzero(~points.start)
+    nexts = np.searchsorted(points.row[motions], np.array(state.rapids, dtype=np.int64), "left")
+    rapid[motions[nexts[nexts < len(motions)]]] = True
     rapid[0] = True
     return rapid
 

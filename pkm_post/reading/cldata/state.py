@@ -161,6 +161,7 @@ class ReaderState:
         corner_known: whether the file gives it.
         bottom_angle: rad.
         side_angle: rad.
+        point_angle: of its tip, rad; 0 if unknown.
         point_meaning: of the points under CUTCOM, None if the file does not state it.
         cycle: last cycle, also after CYCLE/OFF.
         cycle_return: INIT or CLEAR, the return height of the next cycles; empty before.
@@ -204,6 +205,7 @@ class ReaderState:
     corner_known: bool = False
     bottom_angle: float = 0.0
     side_angle: float = 0.0
+    point_angle: float = 0.0
     point_meaning: PointMeaning | None = None
     cycle: Cycle | None = None
     cycle_return: str = ""

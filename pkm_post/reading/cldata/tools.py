@@ -33,7 +33,7 @@ def cutter(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 def tldata(state: ReaderState, row: int, statement: Statement) -> None:
-    """TLDATA/MILL,d,r,length,taper,tip,... and TLDATA/DRILL,MILL,d,...: only the diameter of the latter."""
+    """TLDATA/MILL,d,r,length,taper,tip,... and TLDATA/DRILL,MILL,d,r,length,point,...: diameter and point of the latter."""
     numbers = statement.numbers
     if not numbers:
         state.report_items(row, statement, "a diameter")
@@ -42,6 +42,8 @@ def tldata(state: ReaderState, row: int, statement: Statement) -> None:
     d, r, _, taper, tip = _padded(given, 5)
     if _new_cutter(state, row, d, r, tip, taper):
         state.corner_known = len(given) > 1
+        if "DRILL" in statement.words and len(numbers) > 3 and 0 < numbers[3] < 180:
+            state.point_angle = math.radians(numbers[3])
 
 
 def _check_corner(state: ReaderState, row: int, e: float, f: float) -> None:
@@ -73,6 +75,7 @@ def _new_cutter(state: ReaderState, row: int, diameter: float, corner: float, bo
     record_tool_if_used(state, row)
     state.diameter, state.corner_radius = diameter, min(corner, largest)
     state.bottom_angle, state.side_angle = bottom_angle, side_angle
+    state.point_angle = math.pi - 2 * bottom_angle if bottom_angle > 0 and not corner else 0.0
     state.tool_name = state.inserted_name
     return True
 

@@ -1,4 +1,4 @@
-$$ expects L401 6:1
+$$ expects L445 6:1
 UNITS/MM
 LOADTL/1,LENGTH,100
 CUTTER/10

@@ -124,12 +124,32 @@ def test_increments_and_events_are_copied():
         ("INDEX/1\nGOTO/1,2,3\nCOPY/1,MODIFY,-1,0,0,0,0,1,0,0,0,0,1,0,1\n", "L403"),
         ("INDEX/1,NOMORE\nGOTO/1,2,3\n", "L402"),
         ("INDEX/1\nGOTO/1,2,3\nCOPY/1,SAME,20000000\n", "L403"),
-        ("INDEX/1\nINDEX/2\nGOTO/1,2,3\nCOPY/2,SAME,1\nCOPY/1,SAME,1\n", "L401"),
+        ("INDEX/1\nINDEX/2\nGOTO/1,2,3\nCOPY/2,TRANSL,1,0,0,1\nCOPY/1,XYROT,90,1\n", "L401"),
+        ("INDEX/1\nGOTO/1,2,3\nINDEX/2\nGOTO/1,2,3\nCOPY/1,TRANSL,1,0,0,1\nCOPY/2,TRANSL,1,0,0,1\n", "L401"),
+        ("INDEX/1\nINDEX/2\nGOTO/1,2,3\nCOPY/2,SAME,4000\nCOPY/1,SAME,4000\n", "L403"),
         ("TRACUT/LAST\nGOTO/1,2,3\n", "L402"),
     ],
 )
 def test_copies_that_are_refused(text, code):
     assert codes(text) == [code]
+
+
+@pytest.mark.parametrize(
+    ("inner", "outer", "places"),
+    [
+        ("TRANSL,10,0,0,2", "TRANSL,0,5,0,1", [[1 + 10 * i, 5 * j, 0] for j in range(2) for i in range(3)]),
+        ("TRANSL,0,0,4,1", "XYROT,90,1", [[1, 0, 0], [1, 0, 4], [0, 1, 0], [0, 1, 4]]),
+        ("SAME,1", "TRANSL,3,0,0,1", [[1, 0, 0], [1, 0, 0], [4, 0, 0], [4, 0, 0]]),
+    ],
+)
+def test_a_copied_path_is_copied_with_its_copies(inner, outer, places):
+    text = f"INDEX/1\nINDEX/2\nGOTO/1,0,0\nCOPY/2,{inner}\nGODLTA/0,0,1\nCOPY/1,{outer}\n"
+    found = program(text).position[1:]
+    rising = places[len(places) // 2 - 1 :: len(places) // 2]
+    expected = [*places[: len(places) // 2], rising[0], *places[len(places) // 2 :], rising[1]]
+    expected[len(places) // 2] = [*rising[0][:2], rising[0][2] + 1]
+    expected[-1] = [*rising[1][:2], rising[1][2] + 1]
+    assert found == pytest.approx(np.array(expected, dtype=float))
 
 
 def test_a_file_without_copies_keeps_its_table():

@@ -283,18 +283,18 @@ def test_numbers_without_words_are_what_an_option_says(names, cycle, z, feed, di
         ("nx", "DRILL,RAPTO,2,FEDTO,-5,DWELL,ON", "L412"), ("nx", "BORE,BACK,RAPTO,2,FEDTO,-5", "L412"),
         ("nx", "DRILL,TEXT,RAPTO,2,FEDTO,-5", "L412"), ("nx", "TAP,RAPTO,2,FEDTO,-5", "L440"),
         ("creo", "DRILL,DEPTH,5,CLEAR,2,RAPTO,3", "L412"), ("creo", "THRU,DEPTH,5,CLEAR,2,DEPTH,9", "L412"),
-        ("creo", "BORE,DEPTH,5,CLEAR,2", "L401"), ("creo", "DRILL,DEPTH,-5,CLEAR,2", "L412"),
+        ("creo", "BORE,DEPTH,5,CLEAR,2", "L445"), ("creo", "DRILL,DEPTH,-5,CLEAR,2", "L412"),
         ("creo", "BRKCHP,DEPTH,5,STEP,2,CLEAR,2,DWELL,1", "L412"),
         ("creo", "DEEP,DEPTH,5,STEP,2,STEP,1,CLEAR,2", "L412"),
         ("creo", "BRKCHP,DEPTH,5,STEP,2,CLEAR,2,TIMES,1", "L412"), ("creo", "DRILL,DEPTH,5,CLEAR,2,REV,3", "L412"),
-        ("creo", "DRILL,DEPTH,5,CLEAR,2,DWELL,-1", "L412"), ("creo", "INIT", "L401"),
+        ("creo", "DRILL,DEPTH,5,CLEAR,2,DWELL,-1", "L412"), ("creo", "INIT", "L445"),
         ("creo", "DRILL,5,60,MMPM", "L412"), ("creo", "DRILL,5,60,MMPM,2,3", "L412"),
-        ("creo", "BORE,5,60,MMPM,2", "L401"), ("creo", "TAP,5,60,MMPM,1.5,2", "L440"),
+        ("creo", "BORE,5,60,MMPM,2", "L445"), ("creo", "TAP,5,60,MMPM,1.5,2", "L440"),
         ("creo", "DRILL,-5,60,MMPM,2", "L412"), ("creo", "DEEP,5,60,MMPM,2", "L412"),
-        ("solidworks", "BRKCHP,FEDTO,5,STEP,2,RAPTO,2", "L401"), ("solidworks", "DRILL,FEDTO,-5,RAPTO,2", "L412"),
+        ("solidworks", "BRKCHP,FEDTO,5,STEP,2,RAPTO,2", "L445"), ("solidworks", "DRILL,FEDTO,-5,RAPTO,2", "L412"),
         (None, "DRILL,FEDTO,-5,RAPTO,2", "L419"), (None, "DEEP,FEDTO,5,RAPTO,2,STEP,3", "L419"),
         (None, "DRILL,FEDTO,5,CLEAR,2", "L419"), (None, "DRILL,DEPTH,5,FEDTO,5,CLEAR,2", "L419"),
-        (None, "DRILL,FEDTO,5,RAPTO,2,RTRCTO,AUTO", "L419"), (None, "TWIST,DEPTH,5,CLEAR,2", "L401"),
+        (None, "DRILL,FEDTO,5,RAPTO,2,RTRCTO,AUTO", "L419"), (None, "TWIST,DEPTH,5,CLEAR,2", "L445"),
         (None, "DRILL,DEPTH,5,CLEAR,2,TWIST,3", "L412"), (None, "DRILL,DEPTH,CLEAR,2", "L412"),
         ("makino", "DRILL,FEDTO,-5,RAPTO,2", "L419"), ("catia", "DRILL,FEDTO,-5,RAPTO,2", "L419"),
     ],
@@ -339,10 +339,81 @@ def test_gohome_is_a_move_in_the_mode_in_force():
     assert rapid.tool_axis[-1].tolist() == [0, 0.6, 0.8]
 
 
+def test_gohome_without_a_point_goes_to_the_home_of_the_machine_in_any_frame():
+    text = f"{HEAD}MSYS/0,0,0,1,0,0,0,1,0\nGOTO/1,2,3\nMSYS/10,0,0,0,1,0,-1,0,0\nGOTO/1,2,3\nRAPID\nGOHOME\n"
+    found = program(text, dialect="nx", machine_zero=(0.0, 20.0, 300.0))
+    assert found.position[-1] == pytest.approx([0, 20, 300])
+    assert found.kind[-1] == Kind.RAPID
+
+
+def test_rapid_passes_a_from():
+    found = program(f"{HEAD}GOTO/0,0,9\nRAPID\nFROM/0,0,10\nGOTO/1,2,3\nGOTO/1,2,0\n")
+    assert found.kind[-2:].tolist() == [Kind.RAPID, Kind.LINE]
+
+
+@pytest.mark.parametrize(
+    ("statement", "code"),
+    [("ROTABL/0.,CLW,BAXIS", None), ("ROTATE/TABLE,ATANGL,0", None), ("ROTABL/30.,CLW,AAXIS", "L401"),
+     ("ROTABL/AAXIS", "L401"), ("ROTHED/0,5", "L401")],
+)  # fmt: skip
+def test_a_rotary_axis_may_turn_by_nothing_alone(statement, code):
+    found, diagnostics = read(f"{HEAD}{statement}\nGOTO/1,2,3\n", "part.cl")
+    assert [fault.code for fault in errors(diagnostics)] == ([code] if code else [])
+    assert (found is None) == bool(code)
+
+
+@pytest.mark.parametrize(
+    ("dialect", "strokes", "cycle", "z"),
+    [
+        ("creo", "ream", "BORE,DEPTH,5,MMPM,60,CLEAR,2", [30, 3, -4, 3]),
+        ("solidworks", "break", "BRKCHP,FEDTO,5,INCR,4,MMPM,60,RAPTO,2", [30, 3, -3, -2.5, -4, 3]),
+        ("catia", "deep", "DEEPHL,DEPTH,5,STEP,4,MMPM,60,CLEAR,2", [30, 3, -3, 3, -2.5, -4, 3]),
+        ("nx", "drill", "BORE,RAPTO,2,FEDTO,-5,MMPM,60", [30, 3, -4, 3]),
+    ],
+)
+def test_an_option_says_what_a_kind_of_cycle_does(dialect, strokes, cycle, z):
+    text = f"{HEAD}GOTO/0,0,30\nCYCLE/{cycle}\nGOTO/7,0,1\nCYCLE/OFF\n"
+    kind = cycle.partition(",")[0]
+    found = program(text, dialect=dialect, cycle_kinds={kind: strokes})
+    assert found.position[2:, 2] == pytest.approx(z)
+    assert (found.kind[-1] == Kind.LINE) == (strokes == "ream")
+    assert f"{kind} is {strokes}, as the option says" in found.reading[-1]
+
+
+def test_a_kind_of_cycle_without_known_strokes_is_refused():
+    text = f"{HEAD}CYCLE/WEBDRL,DEPTH,5,CLEAR,2\nGOTO/7,0,1\nCYCLE/OFF\n"
+    found, diagnostics = read(text, "part.cl", ReadOptions(dialect="creo"))
+    assert (found, [fault.code for fault in errors(diagnostics)]) == (None, ["L445"])
+
+
+COUNTERSINK = "CYCLE/DRILL,CSINK,{diameter},RAPTO,2,MMPM,60\nGOTO/7,0,1\nCYCLE/OFF\n"
+
+
+@pytest.mark.parametrize(
+    ("cutter", "diameter", "depth"),
+    [  # a cone of 90 degrees is as deep as half its diameter
+        ("TLDATA/DRILL,MILL,20,0,50,90,35", 12, 6),
+        ("TLDATA/DRILL,20,0,50,118,35", 12, 6 / np.tan(np.radians(59))),
+        ("CUTTER/20,0,10,0,45,0,50", 8, 4),
+    ],
+)
+def test_a_countersink_by_diameter_is_as_deep_as_the_cone_of_the_tool(cutter, diameter, depth):
+    text = f"{HEAD}{cutter}\nGOTO/0,0,30\n{COUNTERSINK.format(diameter=diameter)}"
+    found = program(text, dialect="nx", cycle_values=("diameter",))
+    assert found.position[-2, 2] == pytest.approx(1 - depth)
+
+
+@pytest.mark.parametrize("cutter", ["CUTTER/20", "TLDATA/DRILL,MILL,10,0,50,90,35", "TLDATA/MILL,20,2,50,0,45"])
+def test_a_countersink_by_diameter_needs_a_cone_of_its_size(cutter):
+    text = f"{HEAD}{cutter}\nGOTO/0,0,30\n{COUNTERSINK.format(diameter=12)}"
+    found, diagnostics = read(text, "part.cl", ReadOptions(dialect="nx", cycle_values=("diameter",)))
+    assert (found, [fault.code for fault in errors(diagnostics)]) == (None, ["L412"])
+
+
 @pytest.mark.parametrize(
     "statement, code",
     [
-        ("GOHOME", "L402"),
+        ("GOHOME", "L444"),
         ("GOHOME/1,2", "L402"),
         ("CYCLE/DRILL,DEPTH,5,CLEAR,2\nGOTO/7,0,1\nGOHOME/0,0,9", "L422"),
     ],
