@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,9 @@ def add_commands(commands: Any) -> None:
     """Add the commands to a parser."""
     checking = commands.add_parser("check", help="say what is wrong with part programs, and what they hold")
     checking.add_argument("files", nargs="+", type=part_program, metavar="FILE")
-    checking.add_argument("--json", action="store_true", help="write JSON instead of text")
+    form = checking.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="write JSON instead of text")
+    form.add_argument("--listing", action="store_true", help="write every line, with what was found beneath it")
     add_reading(checking)
     add_part_program(checking)
     checking.set_defaults(run=_check)
@@ -51,12 +54,15 @@ def _target(text: str) -> str:
 
 
 def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.reading import check_file, checks_as_json, checks_as_text
+    from pkm_post.reading import check_file, checks_as_json, checks_as_text, listing_lines
 
     if print_misplaced(namespace, namespace.files):
         return 2
     results = [check_file(file, reading_from(namespace)) for file in namespace.files]
-    print(checks_as_json(results) if namespace.json else checks_as_text(results))
+    if namespace.listing:
+        sys.stdout.writelines(f"{line}\n" for result in results for line in listing_lines(result))
+    else:
+        print(checks_as_json(results) if namespace.json else checks_as_text(results))
     return 0 if all(result.is_clean for result in results) else 1
 
 

@@ -55,9 +55,14 @@ class Diagnostic:
         """Severity of the rule."""
         return RULES[self.code].severity
 
-    def __str__(self) -> str:
+    @property
+    def text(self) -> str:
+        """Severity, code, cause, what was found, and the cure."""
         rule = RULES[self.code]
-        return f"{self.place}: {rule.severity.value} {self.code}: {rule.cause}: {self.found}; {rule.cure}"
+        return f"{rule.severity.value} {self.code}: {rule.cause}: {self.found}; {rule.cure}"
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.text}"
 
 
 def errors(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:

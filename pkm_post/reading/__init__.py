@@ -11,6 +11,7 @@ from pkm_post.reading.gcode.flavours import FLAVOURS
 from pkm_post.reading.gcode.options import AXIS_WORDS, DWELL_UNITS, FLAVOUR_NAMES
 from pkm_post.reading.gcode.tool_axes import axis_of
 from pkm_post.reading.language import SUFFIXES, VERSIONED, Language, is_part_program, language_of, program_stem
+from pkm_post.reading.listing import listing_lines
 from pkm_post.reading.part_program import (
     AS_WRITTEN,
     ReadingOptions,
@@ -73,6 +74,7 @@ __all__ = [
     "gcode",
     "is_part_program",
     "language_of",
+    "listing_lines",
     "mesh_of_triangles",
     "program_stem",
     "read_mesh",

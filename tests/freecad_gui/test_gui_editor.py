@@ -24,6 +24,9 @@ def test_editor_finds_planted_errors(session):
     assert [text.split()[:2] for text in found["findings"]] == [["6:5", "G102"], ["8:4", "G201"]]
     assert found["underlined"] == ["1..5", "Q"]
     assert (found["jumped"], found["after_undo"]) == (8, [])
+    over, beside = found["tool_tips"]
+    assert over.startswith("error G102: a number is malformed: '1..5'; write it as")
+    assert beside == ""
 
 
 def test_editor_replaces_renumbers_and_saves(session):

@@ -100,6 +100,7 @@ def marks_of(diagnostics: Sequence[Diagnostic], lines: Sequence[str], language: 
             each.place.line - 1,
             *underlined(lines[each.place.line - 1], each.place.column, language),
             is_error=each.severity is Severity.ERROR,
+            text=each.text,
         )
         for each in diagnostics
         if 0 < each.place.line <= len(lines)

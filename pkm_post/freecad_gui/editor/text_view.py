@@ -42,12 +42,13 @@ DARK: dict[Colour, str] = {
 
 @dataclass(frozen=True)
 class Mark:
-    """An underline: characters ``start`` to ``end`` of a line, from 0."""
+    """An underline: characters ``start`` to ``end`` of a line, from 0; ``text`` is shown where the mouse rests on it."""
 
     line: int
     start: int
     end: int
     is_error: bool
+    text: str = ""
 
 
 class TextView(QtWidgets.QPlainTextEdit):
@@ -82,6 +83,24 @@ class TextView(QtWidgets.QPlainTextEdit):
         """Underline these marks."""
         self._marks = tuple(marks)
         self._select_extra()
+
+    def viewportEvent(self, event: QtCore.QEvent) -> bool:
+        """Called by Qt: the mouse rests somewhere, among other things."""
+        if event.type() != QtCore.QEvent.Type.ToolTip:
+            return bool(super().viewportEvent(event))
+        text = self.text_at(event.pos())
+        if text:
+            QtWidgets.QToolTip.showText(event.globalPos(), text, self.viewport())
+        else:
+            QtWidgets.QToolTip.hideText()
+        return True
+
+    def text_at(self, position: QtCore.QPoint) -> str:
+        """The texts of the underlines at a position in the viewport, one per line; empty where there is none."""
+        cursor = self.cursorForPosition(position)
+        line, character = cursor.blockNumber(), cursor.positionInBlock()
+        here = [mark for mark in self._marks if mark.line == line and mark.start <= character <= mark.end]
+        return "\n".join(mark.text for mark in here)
 
     def current_line(self) -> int:
         """The cursor's line, from 1."""

@@ -13,7 +13,7 @@ angle takes precedence over both, and a sense given by the statement over all.
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -80,7 +80,10 @@ def _arc_moves(state: ReaderState, points: Points, frames: Array) -> list[_ArcMo
     ends = np.searchsorted(points.row, rows, "left")
     without_word = lines_of_numbers(state.statements)[points.row]
     moves: list[_ArcMove] = []
+    faulty = state.faults.error_lines()
     for index, ((row, arc), end) in enumerate(zip(state.arcs, ends.tolist(), strict=True)):
+        if faulty and _is_consequence(state, faulty, points, end):
+            continue
         if end >= len(points.row) or (index + 1 < len(ends) and ends[index + 1] == end):
             state.report("L414", row, "the arc")
         elif end == 0:
@@ -93,6 +96,13 @@ def _arc_moves(state: ReaderState, points: Points, frames: Array) -> list[_ArcMo
     minor = [move for move in moves if move.arc.minor]
     minor += _arcs_on_commented_circles(state, points, ends_of_arcs, frames)
     return [move for move in moves if not move.arc.minor] + _minor_arcs(state, points, minor, frames)
+
+
+def _is_consequence(state: ReaderState, faulty: list[int], points: Points, end: int) -> bool:
+    """Whether a fault of an arc would follow from a faulty line between its start and its end, both included."""
+    first = state.statements.place(int(points.row[end - 1]))[0] if end else 0
+    last = state.statements.place(int(points.row[end]))[0] if end < len(points.row) else faulty[-1]
+    return bisect_right(faulty, last) > bisect_left(faulty, first)
 
 
 def _arcs_to_points(state: ReaderState, first: _ArcMove, without_word: Array) -> list[_ArcMove]:

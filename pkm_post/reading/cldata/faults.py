@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Faults of CL data: line and column, what was found and what was expected, in words.
 
-Enters: lark errors, or invalid statements. Leaves: diagnostics in file order, at most a hundred; the last one states
-the number of the others. Warnings do not count.
+Enters: lark errors, or invalid statements. Leaves: diagnostics in file order. Equal faults are one with their number and
+the first of their lines. At most a hundred errors are reported; the last one states the number of the others.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from pkm_post.model import RULES, Diagnostic, DiagnosticLog, Place, Severity
+from pkm_post.model import RULES, Diagnostic, Place, Severity
 from pkm_post.reading.cldata.logical_lines import JOINT, LogicalLines
 from pkm_post.reading.grammar import Fault, in_words
 
@@ -35,42 +36,85 @@ EXPECTED: dict[str, tuple[str, ...]] = {
 """The terminals of the grammar in words, in reporting order."""
 
 _RUN = re.compile(r"[\w.+-]+")
+_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?", re.IGNORECASE)
+_MOST_EQUAL = 3
+"""Equal faults that are reported each by itself."""
+_LINES_SHOWN = 5
+
+
+@dataclass
+class _Equal:
+    """Faults of a code that differ in their numbers alone: the first ones, the lines of some, and how many there are."""
+
+    kept: list[Diagnostic] = field(default_factory=list)
+    lines: list[int] = field(default_factory=list)
+    count: int = 0
+
+    def add(self, line: int) -> None:
+        """Count one more."""
+        self.count += 1
+        if len(self.lines) < _LINES_SHOWN:
+            self.lines.append(line)
+
+    def reported(self) -> list[Diagnostic]:
+        """Each by itself if they are few, otherwise the first one with their number."""
+        if self.count <= _MOST_EQUAL:
+            return self.kept
+        lines = f"lines {', '.join(map(str, self.lines))}" + " and others" * (self.count > len(self.lines))
+        return [replace(self.kept[0], found=f"{self.kept[0].found} ({self.count} times, in {lines})")]
 
 
 class Faults:
-    """Collects the faults of a file."""
+    """Collects the faults of a file. Many equal ones become one."""
 
     def __init__(self, file: str) -> None:
         self._file = file
-        self._errors, self._warnings = DiagnosticLog(MAX_REPORTED), list[Diagnostic]()
+        self._equal: dict[tuple[str, str], _Equal] = {}
+        self._lines: set[int] = set()
 
     def add(self, code: str, place: tuple[int, int], found: str) -> None:
         """Add a fault; place is line and column, (0, 0) for the whole file."""
-        diagnostic = Diagnostic(code, Place(self._file, line=place[0], column=place[1]), found)
+        equal = self._equal.setdefault((code, _NUMBER.sub("#", found)), _Equal())
+        if equal.count < _MOST_EQUAL:
+            equal.kept.append(Diagnostic(code, Place(self._file, line=place[0], column=place[1]), found))
+        equal.add(place[0])
         if RULES[code].severity is Severity.ERROR:
-            self._errors.add(diagnostic)
-        else:
-            self._warnings.append(diagnostic)
+            self._lines.add(place[0])
 
-    def add_line(self, lines: LogicalLines, index: int, explain: Callable[[str], Fault]) -> None:
-        """Add the fault of an invalid line; the cause is determined only if it is reported."""
-        if not self._errors.keeps():
-            self._errors.count(1)
-            return
-        fault = explain(lines.text[index])
-        self.add(fault.code, lines.place(index, fault.offset), fault.found)
+    def add_lines(self, lines: LogicalLines, indices: Sequence[int], explain: Callable[[str], Fault]) -> None:
+        """Add the fault of lines that differ in their numbers alone; few of them are explained each."""
+        for index in indices[: 1 if len(indices) > _MOST_EQUAL else None]:
+            fault = explain(lines.text[index])
+            place = lines.place(index, fault.offset)
+            self.add(fault.code, place, fault.found)
+        if len(indices) > _MOST_EQUAL:
+            equal = self._equal[fault.code, _NUMBER.sub("#", fault.found)]
+            for index in indices[1:]:
+                equal.add(int(lines.number[index]))
+                self._lines.add(int(lines.number[index]))
 
     def any_errors(self) -> bool:
         """Whether there are errors."""
-        return self._errors.has_errors()
+        return bool(self._lines)
+
+    def error_lines(self) -> list[int]:
+        """The lines with errors, in order."""
+        return sorted(self._lines)
 
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The reported diagnostics, in file order."""
+        groups = [(equal, equal.reported()) for equal in self._equal.values()]
+        warnings = [each for _, found in groups for each in found if each.severity is not Severity.ERROR]
+        faults, more = list[Diagnostic](), 0
+        for equal, found in groups:
+            if found[0].severity is Severity.ERROR:
+                fits = len(faults) + len(found) <= MAX_REPORTED
+                faults += found if fits else []
+                more += 0 if fits else equal.count
         reported = sorted(
-            [*self._errors.kept, *self._warnings],
+            [*faults, *warnings],
             key=lambda fault: (fault.place.line, fault.place.column, fault.code, fault.found),
         )
-        more = self._errors.more()
         rest = [Diagnostic("L199", Place(self._file), f"and {more} more")] if more else []
         return (*reported, *rest)
 

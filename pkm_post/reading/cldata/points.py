@@ -220,7 +220,6 @@ def resolve_points(state: ReaderState, points: Points) -> Array:
     """Convert points to mm, the work frame and unit axes, in place; return their frames, (P, 4, 4) or (1, 4, 4)."""
     points.position = points.position * scale_at(state, points.row)[:, None]
     points.axis = _modal_axes(state, points)
-    _normalise(state, points.row, points.axis, "axis")
     given = np.flatnonzero(~np.isnan(points.normal[:, 0]))
     normal = points.normal[given]
     _normalise(state, points.row[given], normal, "normal")
@@ -242,12 +241,14 @@ def rotated(frames: Array, vectors: Array) -> Array:
 
 
 def _modal_axes(state: ReaderState, points: Points) -> Array:
-    """The axis of every point: its own, or the modal one."""
+    """The unit axis of every point: its own, or the modal one; report each where it is written."""
     own = np.flatnonzero(~np.isnan(points.axis[:, 0]))
-    row = np.concatenate([[-1], points.row[own], np.array([at for at, _ in state.axes], dtype=np.int64)])
-    axes = np.concatenate([[[0.0, 0.0, 1.0]], points.axis[own], np.array([v for _, v in state.axes]).reshape(-1, 3)])
+    row = np.concatenate([points.row[own], np.array([at for at, _ in state.axes], dtype=np.int64)])
+    axes = np.concatenate([points.axis[own], np.array([v for _, v in state.axes]).reshape(-1, 3)])
     order = np.argsort(row, kind="stable")
-    modal: Array = axes[order][np.searchsorted(row[order], points.row, "right") - 1]
+    row, axes = row[order], axes[order]
+    _normalise(state, row, axes, "axis")
+    modal: Array = np.concatenate([[[0.0, 0.0, 1.0]], axes])[np.searchsorted(row, points.row, "right")]
     return modal
 
 

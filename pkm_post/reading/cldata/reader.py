@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Program
+from pkm_post.model import Array, Diagnostic, EventKind, Program
 from pkm_post.reading.cldata.arcs import resolve_arcs
 from pkm_post.reading.cldata.copies import with_copies
 from pkm_post.reading.cldata.cutcom import cutcom_offsets
@@ -66,17 +66,16 @@ def _program(state: ReaderState, bulk: Array, names: ValueNames, file: str) -> P
     """The program of the statements; None on errors."""
     points = all_points(state, interpret(state, bulk), names)
     if not state.faults.any_errors() and not len(points.row):
-        state.faults.add("L413", (0, 0), "no GOTO")
-    if state.faults.any_errors():
+        last = len(state.statements) - 1
+        state.faults.add("L413", state.statements.place(last) if last >= 0 else (1, 0), "no GOTO")
+    if not len(points.row):
         return None
     frames = resolve_points(state, points)
-    if state.faults.any_errors():
-        return None
     arcs = resolve_arcs(state, points, frames)
     if state.faults.any_errors():
         return None
     unit = _describe_unit(state, points)
-    _check_tool_lengths(state)
+    _check_tool_lengths(state, points)
     offsets, reading = cutcom_offsets(state, points, frames, arcs)
     if state.faults.any_errors():
         return None
@@ -88,17 +87,17 @@ def _describe_unit(state: ReaderState, points: Points) -> list[str]:
     """Describe how the length unit was determined without UNITS; report a doubtful or missing unit."""
     if state.options.units is not None:
         return [f"lengths are in {state.options.units}, as the option says"]
-    unit, size = state.file_unit, float(np.ptp(points.position, axis=0).max())
+    unit, size, first = state.file_unit, float(np.ptp(points.position, axis=0).max()), int(points.row[0])
     if not unit.name:
-        state.faults.add("L431", (0, 0), unit.evidence)
+        state.report("L431", first, unit.evidence)
         return []
     if not unit.stated:
-        state.faults.add("L410", (0, 0), f"there is no UNITS; {unit.name}, by {unit.evidence}")
+        state.report("L410", first, f"there is no UNITS; {unit.name}, by {unit.evidence}")
     if unit.contradiction:
-        state.faults.add("L410", (0, 0), f"{unit.evidence}, but {unit.contradiction}: each is taken in its own unit")
+        state.report("L410", first, f"{unit.evidence}, but {unit.contradiction}: each is taken in its own unit")
     if state.unit == "inch" and size > _LARGE_INCHES:
         found = f"{unit.evidence}, and the path is {size / 25.4:.6g} inches = {size:.6g} mm wide"
-        state.faults.add("L410", (0, 0), found)
+        state.report("L410", first, found)
     return [] if unit.stated else [f"lengths are in {unit.name}, by {unit.evidence}"]
 
 
@@ -108,15 +107,17 @@ def _describe_feed(state: ReaderState) -> list[str]:
     return [] if feed is None else [f"the feed before the first FEDRAT is {feed * 60:.10g} mm/min, as the option says"]
 
 
-def _check_tool_lengths(state: ReaderState) -> None:
+def _check_tool_lengths(state: ReaderState, points: Points) -> None:
     """Report tools of unknown length, and of several: none of these is taken, as the place of the tip depends on it."""
     record_tool(state)
     given = state.options.tools
     for number, tool in sorted(state.tools.items()):
         lengths = state.stated_lengths.get(number, [])
+        changes = [row for row, kind, value in state.events if kind is EventKind.TOOL_CHANGE and value == number]
+        row = changes[0] if changes else int(points.row[0])
         if len(lengths) > 1 and not (number in given and given[number].length > 0):
             state.tools[number] = replace(tool, length=0.0)
             found = f"tool {number}: {', '.join(f'{length:.10g}' for length in sorted(lengths))} mm"
-            state.faults.add("L443", (0, 0), found)
+            state.report("L443", row, found)
         elif not tool.length > 0:
-            state.faults.add("L411", (0, 0), f"tool {number}")
+            state.report("L411", row, f"tool {number}")

@@ -168,8 +168,9 @@ def scan(lines: LogicalLines, faults: Faults) -> Statements:
     marks = np.array([text.count(MARK) for text in known], dtype=np.int64)[shape]
     good = np.array([isinstance(one, Template) for one in parsed], dtype=np.bool_)
     filled = np.array([bool(text.strip(_BLANKS)) for text in known], dtype=np.bool_)
-    for line in np.flatnonzero((~good & filled)[shape]).tolist():
-        faults.add_line(lines, line, _fault_of_line)
+    faulty = np.flatnonzero((~good & filled)[shape])
+    for one in dict.fromkeys(shape[faulty].tolist()):
+        faults.add_lines(lines, faulty[shape[faulty] == one].tolist(), _fault_of_line)
     return _table(lines, _values(body), shape, marks, parsed, good)
 
 

@@ -7,7 +7,7 @@ code of the block uses, and missing or invalid words.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -109,7 +109,7 @@ def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
     # A rotary axis at zero leaves the tool upright, whatever carries it.
     turned = {name: blocks.has(name) & (word != 0) for name, word in blocks.words.items() if name in rotary}
     _report_words("G414", turned, blocks, faults)
-    _report_words("G404", useless, blocks, faults)
+    _report_words("G404", useless, blocks, faults, _vector_hint if options.axis_words != "vector" else None)
 
 
 def _used_by_motion(letter: str, modal: Modal, options: ReadOptions) -> Array:
@@ -137,14 +137,27 @@ def _rows_that_use(letter: str, blocks: Blocks, flavour: Flavour) -> Array:
     return np.concatenate(rows)
 
 
-def _report_words(code: str, wrong: dict[str, Array], blocks: Blocks, faults: BlockDiagnostics) -> None:
+def _report_words(
+    code: str,
+    wrong: dict[str, Array],
+    blocks: Blocks,
+    faults: BlockDiagnostics,
+    hint: Callable[[Sequence[Word]], str] | None = None,
+) -> None:
     """Report invalid words, one fault per block."""
+
+    def found(row: int) -> tuple[str | Word, ...]:
+        words = [Word(name, blocks.words[name][row]) for name in wrong if wrong[name][row]]
+        return (*_spaced(words), hint(words) if hint else "")
+
     if wrong:
-        faults.add_where(
-            code,
-            np.any(list(wrong.values()), axis=0),
-            lambda row: _spaced([Word(name, blocks.words[name][row]) for name in wrong if wrong[name][row]]),
-        )
+        faults.add_where(code, np.any(list(wrong.values()), axis=0), found)
+
+
+def _vector_hint(words: Sequence[Word]) -> str:
+    """What makes I, J and K a tool axis."""
+    vector = {word.name for word in words} & set(VECTOR_WORDS)
+    return ", which are a tool axis after G43.5 with --axis-words vector" if vector else ""
 
 
 def _spaced(words: Sequence[Word]) -> tuple[str | Word, ...]:

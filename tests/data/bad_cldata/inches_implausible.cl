@@ -1,4 +1,4 @@
-$$ expects L410 0:0
+$$ expects L410 5:1
 UNITS/INCHES
 LOADTL/1,LENGTH,4
 FEDRAT/100,IPM

@@ -1,3 +1,3 @@
-$$ expects L431 0:0
+$$ expects L431 3:1
 LOADTL/1,LENGTH,4
 GOTO/0,0,0

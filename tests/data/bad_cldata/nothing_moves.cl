@@ -1,4 +1,4 @@
-$$ expects L413 0:0
+$$ expects L413 5:1
 UNITS/MM
 LOADTL/1,LENGTH,100
 CUTTER/10

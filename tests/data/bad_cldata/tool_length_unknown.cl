@@ -1,4 +1,4 @@
-$$ expects L411 0:0
+$$ expects L411 3:1
 UNITS/MM
 LOADTL/1
 GOTO/0,0,0

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pkm_post.model import Kind
+from pkm_post.model import Kind, Severity
 from pkm_post.model.diagnostics import errors
 from pkm_post.reading.cldata import DIALECTS, ReadOptions, interpreter, read
 from pkm_post.reading.cldata.faults import EXPECTED, MAX_REPORTED
@@ -57,9 +57,33 @@ def test_every_terminal_has_words():
 
 
 def test_a_hundred_errors_are_reported_and_the_others_counted():
-    diagnostics = read("GOTO/;\n" * 250, "part.cl")[1]
+    words = [f"W{chr(65 + index // 26)}{chr(65 + index % 26)}" for index in range(250)]
+    diagnostics = read("".join(f"COPY/{word}\n" for word in words), "part.cl")[1]
     assert len(diagnostics) == MAX_REPORTED + 1
     assert (diagnostics[-1].code, diagnostics[-1].found) == ("L199", "and 150 more")
+
+
+@pytest.mark.parametrize("statement", ["GOTO/{0},;", "GOTO/{0},1", "CYCLE/DRILL,DEPTH,1{0}"])
+def test_equal_faults_are_one_with_their_number_and_first_lines(statement):
+    text = "UNITS/MM\n" + "".join(f"{statement.format(number)}\n" for number in range(3950)) + "GOTO/1,2,3\nFINI\n"
+    fault, *others = [each for each in read(text, "part.cl")[1] if each.severity is Severity.ERROR]
+    assert (fault.place.line, others) == (2, [])
+    assert fault.found.endswith("(3950 times, in lines 2, 3, 4, 5, 6 and others)")
+
+
+def test_three_equal_faults_stand_each_by_itself():
+    text = "UNITS/MM\nGOTO/1,1\nGOTO/2,;\nGOTO/2,1\nGOTO/3,1\nGOTO/4,;\n"
+    assert [fault.place.line for fault in read(text, "part.cl")[1]] == [2, 3, 4, 5, 6]
+
+
+def test_faults_of_all_steps_are_reported_together_without_their_consequences():
+    """A bracket, an axis without direction that stays in force, and two arcs: one behind a faulty point, one that misfits."""
+    text = (
+        "UNITS/MM\nFEDRAT/300\nGOTO/0,0,0\nGOTO/(1,2,3\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0,0,0\n"
+        "GOTO/0,20,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/10,0,0\nGOTO/1,2,3,0,0,0\nGOTO/1,2,4\nFINI\n"
+    )
+    found = [(fault.code, fault.place.line) for fault in read(text, "part.cl")[1] if fault.severity is Severity.ERROR]
+    assert found == [("L203", 4), ("L402", 7), ("L408", 9), ("L405", 11)]
 
 
 def test_a_missing_lark_is_named(monkeypatch):

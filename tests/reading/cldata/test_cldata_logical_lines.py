@@ -87,7 +87,7 @@ def test_a_statement_with_quoted_dollars_is_read(text):
     program, diagnostics = read(
         f"UNITS/MM\nFEDRAT/100,MMPM\nSYNONYM/{text} $$ not read\nGOTO/1,2,3\nGOTO/1,2,4\n", "part.apt"
     )
-    assert [fault.code for fault in diagnostics] == ["L411", "L404"]
+    assert [fault.code for fault in diagnostics] == ["L404", "L411"]
     assert program.position.tolist() == [[1, 2, 3], [1, 2, 4]]
 
 
