@@ -15,6 +15,7 @@ from typing import Any, NoReturn
 from pkm_post.options.argument_types import above_zero, between, numbered, tool_length
 from pkm_post.options.converters import (
     CL_DIALECTS,
+    CYCLE_STROKES,
     CYCLE_VALUES,
     GCODE_FLAVOURS,
     MOST_FEED,
@@ -23,7 +24,6 @@ from pkm_post.options.converters import (
     also,
     codes,
     copies,
-    CYCLE_STROKES,
     cycle_kinds,
     cycle_values,
     goto_values,
@@ -185,8 +185,8 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "type": cycle_kinds,
         "default": (),
         "help": "what kinds of CYCLE statements of CL data do, such as BORE=ream,DEEPHL=deep, with strokes out of"
-        f" {', '.join(CYCLE_STROKES)}: in one stroke, out of the hole after each peck, a short way back after each peck,"
-        " or out of the hole at the feed (default: as the CAM system means them)",
+        f" {', '.join(CYCLE_STROKES)}: in one stroke, out of the hole after each peck, a short way back after each"
+        " peck, or out of the hole at the feed (default: as the CAM system means them)",
     },
     "--goto-values": {
         "metavar": "NAMES",

@@ -68,7 +68,8 @@ def editor_finds_planted_errors_while_they_are_typed():
     editor.widget.text.selectAll()
     editor.widget.text.insertPlainText(PROGRAM.replace("X10 Y4", "X1..5 Y4").replace("G0 Z30\nM2", "G0 Q\nM2"))
     findings = _findings(editor)
-    over = [_tool_tip(editor.widget.text, line, "1..5") for line in (6, 5)]
+    over = _tool_tip(editor.widget.text, 6, "1..5")
+    beside = editor.widget.text.text_at(_place_of(editor.widget.text, 5, "Z5"))
     underlined = [each.cursor.selectedText() for each in editor.widget.text.extraSelections()[1:]]
     editor.widget.findings.itemClicked.emit(editor.widget.findings.item(1))
     jumped = editor.widget.text.current_line()
@@ -78,20 +79,24 @@ def editor_finds_planted_errors_while_they_are_typed():
         "underlined": underlined,
         "jumped": jumped,
         "after_undo": _findings(editor),
-        "tool_tips": over,
+        "tool_tips": [over, beside],
     }
 
 
-def _tool_tip(text, line, words):
-    """What Qt shows where the mouse rests on some words of a line, or on its first character."""
+def _place_of(text, line, words):
+    """Where some words of a line are in the viewport."""
     block = text.document().findBlockByNumber(line - 1)
     cursor = QtGui.QTextCursor(block)
-    cursor.setPosition(block.position() + max(block.text().find(words), 0))
-    at = text.cursorRect(cursor).center()
+    cursor.setPosition(block.position() + block.text().index(words))
+    return text.cursorRect(cursor).center()
+
+
+def _tool_tip(text, line, words):
+    """What Qt shows where the mouse rests on some words of a line."""
+    at = _place_of(text, line, words)
     event = QtGui.QHelpEvent(QtCore.QEvent.Type.ToolTip, at, text.viewport().mapToGlobal(at))
-    QtWidgets.QToolTip.hideText()
     QtWidgets.QApplication.sendEvent(text.viewport(), event)
-    return QtWidgets.QToolTip.text() if QtWidgets.QToolTip.isVisible() else ""
+    return QtWidgets.QToolTip.text()
 
 
 @step

@@ -42,7 +42,7 @@ DARK: dict[Colour, str] = {
 
 @dataclass(frozen=True)
 class Mark:
-    """An underline: characters ``start`` to ``end`` of a line, from 0; ``text`` is shown where the mouse rests on it."""
+    """An underline: characters ``start`` to ``end`` of a line, from 0; ``text`` is its tool tip."""
 
     line: int
     start: int

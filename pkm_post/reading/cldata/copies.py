@@ -64,9 +64,7 @@ def _rows(statements: Statements, word: str) -> list[int]:
     return rows
 
 
-def _copies_at(
-    statements: Statements, row: int, begins: list[int], before: list[_Part], faults: Faults
-) -> list[_Part]:
+def _copies_at(statements: Statements, row: int, begins: list[int], before: list[_Part], faults: Faults) -> list[_Part]:
     """The copies of one COPY; none, with a fault, if it is not understood.
 
     Args:
@@ -90,7 +88,8 @@ def _copies_at(
     path = _path_after(before, mine[0])
     inner = [part for part in path if isinstance(part, tuple)]
     if any(_begins_of(statements, other, begins)[0] < mine[0] or not _commute(made, matrix) for other, made in inner):
-        faults.add("L401", place, f"COPY/{statement.items_text()} with another COPY after its INDEX whose order matters")
+        found = f"COPY/{statement.items_text()} with another COPY after its INDEX, whose order matters"
+        faults.add("L401", place, found)
         return []
     if count * sum(map(_size, path)) > MOST_STATEMENTS:
         faults.add("L403", place, f"COPY/{statement.items_text()}: more than {MOST_STATEMENTS} statements")
@@ -149,7 +148,8 @@ def _matrix_and_count(statement: Statement) -> tuple[Array, int] | None:
 def _table(statements: Statements, parts: list[_Part]) -> Statements:
     """The table of some parts, in order."""
     kind, size = len(statements.templates), np.diff(statements.number_start)
-    template, index, counts, numbers = [], [], [], []
+    template, index = [statements.template[:0]], [statements.index[:0]]
+    counts, numbers = [size[:0]], [statements.numbers[:0]]
     for part in parts:
         if isinstance(part, tuple):
             row, matrix = part

@@ -152,6 +152,12 @@ def notation_by_words(used: Collection[str]) -> CycleNotation:
     return NCCS if {"FEDTO", "RTRCTO"} & set(used) else CREO
 
 
+def words_of_cycles() -> set[str]:
+    """All words of cycles, of any CAM system."""
+    kinds = {word for one in _ALL for kind in one.kinds for word in kind.split(",")}
+    return kinds | {word for one in _ALL for word in one.words} | {AUTO, MANUAL} | TAPPING
+
+
 def is_known_word(word: str) -> bool:
     """Whether any CAM system uses a word."""
     return word == AUTO or any(word in one.words for one in _ALL)

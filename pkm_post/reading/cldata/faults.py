@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Faults of CL data: line and column, what was found and what was expected, in words.
 
-Enters: lark errors, or invalid statements. Leaves: diagnostics in file order. Equal faults are one with their number and
-the first of their lines. At most a hundred errors are reported; the last one states the number of the others.
+Enters: lark errors, or invalid statements. Leaves: diagnostics in file order. Equal faults are one with their number
+and the first of their lines. At most a hundred errors are reported; the last one states the number of the others.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _LINES_SHOWN = 5
 
 @dataclass
 class _Equal:
-    """Faults of a code that differ in their numbers alone: the first ones, the lines of some, and how many there are."""
+    """Faults of a code that differ in their numbers alone: the first ones, the lines of some, and their number."""
 
     kept: list[Diagnostic] = field(default_factory=list)
     lines: list[int] = field(default_factory=list)

@@ -22,6 +22,7 @@ from pkm_post.reading.cldata.logical_lines import LONGEST_LINE, decoded, logical
 from pkm_post.reading.cldata.options import DIALECTS, ReadOptions, detect_dialect
 from pkm_post.reading.cldata.points import Points, ValueNames, all_points, bulk_rows, resolve_points
 from pkm_post.reading.cldata.program import build_program
+from pkm_post.reading.cldata.source_language import expanded
 from pkm_post.reading.cldata.state import ReaderState
 from pkm_post.reading.cldata.statements import scan
 from pkm_post.reading.cldata.tools import record_tool
@@ -54,7 +55,7 @@ def read(
         faults.add("L104", (line, 0), f"a line of {size} bytes, at most {LONGEST_LINE}")
     whole = decoded(text)
     dialect = DIALECTS[options.dialect] if options.dialect else detect_dialect(whole)
-    statements = with_copies(scan(logical_lines(whole), faults), faults)
+    statements = with_copies(scan(expanded(logical_lines(whole), faults), faults), faults)
     bulk, names = bulk_rows(statements, options, dialect)
     unit = length_unit(statements, whole)
     state = ReaderState(statements, dialect, options, faults, np.flatnonzero(bulk), np.cumsum(bulk), unit)

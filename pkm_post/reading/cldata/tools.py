@@ -33,7 +33,7 @@ def cutter(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 def tldata(state: ReaderState, row: int, statement: Statement) -> None:
-    """TLDATA/MILL,d,r,length,taper,tip,... and TLDATA/DRILL,MILL,d,r,length,point,...: diameter and point of the latter."""
+    """TLDATA/MILL,d,r,length,taper,tip,...; of TLDATA/DRILL,[MILL,]d,r,length,point,... diameter and point angle."""
     numbers = statement.numbers
     if not numbers:
         state.report_items(row, statement, "a diameter")

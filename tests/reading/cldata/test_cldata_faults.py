@@ -77,7 +77,7 @@ def test_three_equal_faults_stand_each_by_itself():
 
 
 def test_faults_of_all_steps_are_reported_together_without_their_consequences():
-    """A bracket, an axis without direction that stays in force, and two arcs: one behind a faulty point, one that misfits."""
+    """A bracket, an axis without direction that stays in force, an arc to a faulty point, and one that misfits."""
     text = (
         "UNITS/MM\nFEDRAT/300\nGOTO/0,0,0\nGOTO/(1,2,3\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0,0,0\n"
         "GOTO/0,20,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/10,0,0\nGOTO/1,2,3,0,0,0\nGOTO/1,2,4\nFINI\n"
