@@ -128,6 +128,24 @@ def basis(knots: Array, degree: int, at: Array, order: int) -> tuple[Array, Arra
     return span - degree, np.ascontiguousarray(values[:, :-1].transpose(2, 0, 1))
 
 
+def bspline_points(knots: Array, degree: int, poles: Array, at: Array) -> Array:
+    """Points of a B-spline curve, the sum of its poles times their basis functions.
+
+    Args:
+        knots: (M,) ascending.
+        degree: degree of the curve.
+        poles: (M - degree - 1, 3) control points.
+        at: (N,) parameters, from ``knots[degree]`` to ``knots[-degree - 1]``.
+
+    Returns:
+        (N, 3).
+    """
+    first, values = basis(knots, degree, at, 0)
+    near = poles[first[:, None] + np.arange(degree + 1)]
+    points: Array = np.einsum("nk,nkd->nd", values[:, 0], near)
+    return points
+
+
 def _quotients(piece: Array, wanted: list[tuple[int, int]]) -> Array:
     """Derivatives of the surface from those of the weighted poles and of the weights: (len(wanted), N, 3)."""
     above, below = piece[..., :3], piece[..., 3:]

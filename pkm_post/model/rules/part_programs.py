@@ -315,4 +315,5 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
         "the strokes of this kind of cycle are not known",
         "give them with --cycle-kinds, such as BORE=ream, or let the CAM system write single moves",
     ),
+    "L446": error("the curve cannot be followed", "let the CAM system write the motion in plain points and arcs"),
 }

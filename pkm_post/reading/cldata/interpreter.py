@@ -33,6 +33,7 @@ from pkm_post.reading.cldata.copies import MATRIX
 from pkm_post.reading.cldata.cutcom import cutcom, geometry_type, points_comment
 from pkm_post.reading.cldata.cycle_statement import cycle
 from pkm_post.reading.cldata.feeds import coolnt, delay, fedrat, rapid, spindl, stop
+from pkm_post.reading.cldata.nurbs import movnrb
 from pkm_post.reading.cldata.points import from_or_godlta, goto, multax, numbers_only, tlaxis
 from pkm_post.reading.cldata.state import ReaderState
 from pkm_post.reading.cldata.statements import Statement, Statements
@@ -109,6 +110,7 @@ HANDLERS: dict[str, _Handler] = {
     "UNITS": units, "UNIT": units, "MSYS": machining_frame, "CSYS": machining_frame, "CATIA0": machining_frame,
     "ORIGIN": origin, "TRANS": trans, "TRACUT": trans, "TRNTYP": trntyp,
     "INDEX": path_index, MATRIX: copy_matrix,
+    "MOVNRB": movnrb,
     "TLCOMP": _tlcomp, "ROTABL": _rotary, "ROTHED": _rotary, "ROTATE": _rotary, "SYN": _syn,
     "TOOL PATH": _operation, "OPERATION NAME": _operation, "FEATNO": _operation, "FINI": _fini,
 }  # fmt: skip

@@ -246,9 +246,11 @@ def _modal_axes(state: ReaderState, points: Points) -> Array:
     row = np.concatenate([points.row[own], np.array([at for at, _ in state.axes], dtype=np.int64)])
     axes = np.concatenate([points.axis[own], np.array([v for _, v in state.axes]).reshape(-1, 3)])
     order = np.argsort(row, kind="stable")
-    row, axes = row[order], axes[order]
-    _normalise(state, row, axes, "axis")
-    modal: Array = np.concatenate([[[0.0, 0.0, 1.0]], axes])[np.searchsorted(row, points.row, "right")]
+    row, ordered = row[order], axes[order]
+    _normalise(state, row, ordered, "axis")
+    modal: Array = np.concatenate([[[0.0, 0.0, 1.0]], ordered])[np.searchsorted(row, points.row, "right")]
+    axes[order] = ordered
+    modal[own] = axes[: len(own)]  # several points may have one row
     return modal
 
 

@@ -19,6 +19,7 @@ from pkm_post.reading.cldata.cycle_statement import cycle_descriptions
 from pkm_post.reading.cldata.faults import Faults
 from pkm_post.reading.cldata.interpreter import interpret
 from pkm_post.reading.cldata.logical_lines import LONGEST_LINE, decoded, logical_lines, without_long_lines
+from pkm_post.reading.cldata.nurbs import with_curves
 from pkm_post.reading.cldata.options import DIALECTS, ReadOptions, detect_dialect
 from pkm_post.reading.cldata.points import Points, ValueNames, all_points, bulk_rows, resolve_points
 from pkm_post.reading.cldata.program import build_program
@@ -71,6 +72,8 @@ def _program(state: ReaderState, bulk: Array, names: ValueNames, file: str) -> P
         state.faults.add("L413", state.statements.place(last) if last >= 0 else (1, 0), "no GOTO")
     if not len(points.row):
         return None
+    if not state.faults.any_errors():
+        points = with_curves(state, points)
     frames = resolve_points(state, points)
     arcs = resolve_arcs(state, points, frames)
     if state.faults.any_errors():

@@ -131,6 +131,25 @@ class Cutcom:
 
 
 @dataclass
+class NurbsMotion:
+    """One motion along a curve of MOVNRB, as written.
+
+    Attributes:
+        row: its first statement.
+        counts: order, knots, weights and control points, as stated; empty before MOVNRB/ON.
+        five_axis: whether there is a second curve.
+        values: the knots (1), and coordinates of the control points (2 and 3).
+        points: statement rows of NEXT and OFF; 0 before.
+    """
+
+    row: int
+    five_axis: bool = False
+    counts: list[float] = field(default_factory=list)
+    values: dict[float, list[float]] = field(default_factory=lambda: {1.0: [], 2.0: [], 3.0: []})
+    points: tuple[int, int] = (0, 0)
+
+
+@dataclass
 class ReaderState:
     """Modal state during reading, and the recorded changes, each with its statement row.
 
@@ -233,6 +252,7 @@ class ReaderState:
     cycles: list[tuple[int, Cycle | None]] = field(default_factory=list)
     cycle_interpretations: dict[str, list[int]] = field(default_factory=dict)
     cutcoms: list[Cutcom] = field(default_factory=list)
+    nurbs: list[NurbsMotion] = field(default_factory=list)
     events: list[tuple[int, EventKind, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
