@@ -29,8 +29,8 @@ _CHART_PLACES = 1000
 _AXES, _AXIS_LENGTH = 150, 15.0
 """Tool axes drawn, and their length in mm."""
 _MM_IN_UM = 1000.0
-_SHOWN_BEYOND = 1.15
-"""The chart of the feed ends at this multiple of the highest feed; the machine may allow far more."""
+_FEED_SHOWN = 1.5
+"""The chart of the feed ends at this multiple of the highest cutting feed; rapids and the machine may go far beyond."""
 _HINT = (
     "drag to turn, shift or right button to move, wheel to zoom, double click to reset; click a row or a chart to mark"
     " an instant"
@@ -159,10 +159,10 @@ def _feed(shares: Mapping[str, Any], feed: FeedStudy | None, duration: float, ba
     """The feed over time, and what limits it."""
     if feed is None or not shares:
         return ""
-    highest = float(max(feed.asked.max(), feed.planned.max()))
+    highest = _FEED_SHOWN * float(feed.asked[feed.cutting].max())
     lines = [
         Line("programmed", feed.time, feed.asked, "faint"),
-        Line("possible", feed.time, np.minimum(feed.possible, _SHOWN_BEYOND * highest), "c3"),
+        Line("possible", feed.time, feed.possible, "c3"),
         Line("planned", feed.time, feed.planned, "c1"),
     ]
     rows = "".join(map(_limit, shares["limits"]))
@@ -173,7 +173,7 @@ def _feed(shares: Mapping[str, Any], feed: FeedStudy | None, duration: float, ba
             f" allows that feed in {_percent(shares['feed_possible'])} of it, and the plan is at 95 % of what is"
             f" possible there in {_percent(shares['as_possible'])}.</p>",
             legend(lines),
-            chart("tip speed, mm/s", lines, duration, (), bands, (0.0, _SHOWN_BEYOND * highest)),
+            chart("tip speed, mm/s", lines, duration, (), bands, (0.0, highest)),
             f"<table><tr><th>what limits the feed<th>share of cutting time<th>slowest, mm/s<th>programmed<th>time, s"
             f"<th>operation<th>line</tr>{rows}</table>",
         ]
