@@ -201,4 +201,5 @@ def test_the_journey_is_one_that_was_made():
     assert "\n".join(re.findall(r"^    (PVT\d+|A\d.*)$", reported, re.MULTILINE)) in written
     assert f"There are {len(motion)} knots" in reported
     for found in certificate.findings[1:]:
-        assert f"| {found.name} | {found.value:.4g} {found.unit} | {found.limit:.4g} {found.unit} |" in reported
+        limit = f"{'at least ' if found.is_least else ''}{found.limit:.4g} {found.unit}"
+        assert f"| {found.name} | {found.value:.4g} {found.unit} | {limit} |" in reported

@@ -27,6 +27,6 @@ def certificates_agree(verified, posted):
     assert verified["holds"] is posted["holds"] is True
     assert len(verified["findings"]) == len(posted["findings"])
     for one, other in zip(verified["findings"], posted["findings"], strict=True):
-        assert all(one[name] == other[name] for name in ("what", "unit", "limit", "holds"))
+        assert all(one[name] == other[name] for name in ("what", "unit", "limit", "is_least", "holds"))
         apart = max(PART_OF_LIMIT * one["limit"], ROUNDING * abs(other["value"]))
         assert math.isclose(one["value"], other["value"], abs_tol=apart), one["what"]

@@ -73,11 +73,10 @@ def findings(
         ("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration, starts),
         ("V113", "turning rate of the tool axis", "degrees/s", np.degrees(axis_speed), turning, starts),
         ("V114", "tip acceleration", "mm/s^2", tip_acceleration, machine.tip_acceleration, starts),
-        ("V106", "strut shorter than its stroke", "mm", machine.strut_stroke[0] - played.shortest, 0.0, starts),
-        ("V106", "strut longer than its stroke", "mm", played.longest - machine.strut_stroke[1], 0.0, starts),
+        ("V106", "shortest strut", "mm", played.shortest, machine.strut_stroke[0], starts),
+        ("V106", "longest strut", "mm", played.longest, machine.strut_stroke[1], starts),
+        ("V116", "shortest interval", "ms", np.diff(struts.time_ms), machine.shortest_interval, starts),
     )
-    too_short = machine.shortest_interval - np.diff(struts.time_ms)
-    rows = (*rows, ("V116", "interval shorter than the controller takes", "ms", too_short, 0.0, starts))
     if math.isfinite(machine.block_rate):
         blocks = blocks_in_a_second(struts.time_ms)
         rows = (*rows, ("V117", "blocks in one second", "1/s", blocks, machine.block_rate, knots))
@@ -149,11 +148,18 @@ def _of_columns(time: Array, segment: Array, row: int) -> tuple[float, int]:
 def _worst(
     trajectory: Trajectory, code: str, name: str, unit: str, values: Array, limit: Array | float, when: _When
 ) -> Finding:
-    """The finding at the largest value, by its limit if limits differ; NaN counts as a violation."""
-    values, limits = np.where(np.isnan(values), np.inf, values), np.broadcast_to(limit, values.shape)
+    """The finding at the worst value, by its limit if limits differ; NaN counts as a violation."""
+    is_least = name in _LEAST
+    sign = -1.0 if is_least else 1.0
+    values, limits = sign * np.where(np.isnan(values), sign * np.inf, values), np.broadcast_to(limit, values.shape)
     row = int(np.argmax(values if np.ndim(limit) == 0 else values / limits))
-    value, most, (time, segment) = float(values[row]), float(limits[row]), when(row)
-    return Finding(code, name, unit, value, most, value <= most, time, trajectory.place(segment))
+    value, bound, (time, segment) = sign * float(values[row]), float(limits[row]), when(row)
+    holds = value >= bound if is_least else value <= bound
+    return Finding(code, name, unit, value, bound, holds, time, trajectory.place(segment), is_least)
+
+
+_LEAST = ("shortest strut", "shortest interval")
+"""Findings whose limit is a least value."""
 
 
 _FEED_SHARE = 1.01

@@ -173,11 +173,11 @@ def _collisions(machine: Machine) -> tuple[Coverage, ...]:
 
 
 CERTIFIED = {
-    "struts.stroke": ("strut shorter than its stroke", "strut longer than its stroke"),
+    "struts.stroke": ("shortest strut", "longest strut"),
     "struts.speed": ("strut speed",),
     "struts.acceleration": ("strut acceleration",),
     "struts.jerk": ("strut jerk",),
-    "controller.shortest_interval": ("interval shorter than the controller takes",),
+    "controller.shortest_interval": ("shortest interval",),
     "controller.block_rate": ("blocks in one second",),
     "tool_path.rapid_speed": ("tip speed",),
     "tool_path.feed_speed": ("tip speed",),

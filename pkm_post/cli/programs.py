@@ -98,6 +98,7 @@ def _verify(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
         print(json.dumps(report, indent=2))
     else:
         for finding in report["certificate"]["findings"]:
-            print(f"{finding['what']}: {finding['value']:g} of {finding['limit']:g} {finding['unit']}".rstrip())
+            bound = ", at least" if finding["is_least"] else " of"
+            print(f"{finding['what']}: {finding['value']:g}{bound} {finding['limit']:g} {finding['unit']}".rstrip())
         print(*report["certificate"]["meaning"], f"{namespace.program}: the certificate holds", sep="\n")
     return 0

@@ -115,9 +115,8 @@ def _fill(table: QtWidgets.QTableWidget, findings: Sequence[dict[str, Any]]) -> 
     table.setRowCount(len(findings))
     for row, each in enumerate(findings):
         where = f"{each['operation']}: {each['line']}"
-        for column, text in enumerate(
-            (each["what"], f"{each['value']:.4g}", f"{each['limit']:.4g}", each["unit"], where)
-        ):
+        limit = f"{'≥ ' if each['is_least'] else ''}{each['limit']:.4g}"
+        for column, text in enumerate((each["what"], f"{each['value']:.4g}", limit, each["unit"], where)):
             item = QtWidgets.QTableWidgetItem(text)
             item.setData(_PLACE, (each["operation"], each["line"]))
             table.setItem(row, column, item)

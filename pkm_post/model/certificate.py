@@ -40,6 +40,7 @@ class Finding:
         time: s since the start, at the worst value; start of the interval for a value of an interval between two knots
             as a whole, like the speed of a strut.
         place: the source line that is executed at that time.
+        is_least: whether the value may not be below the limit, rather than above it.
     """
 
     code: str
@@ -50,10 +51,12 @@ class Finding:
     holds: bool
     time: float
     place: Place
+    is_least: bool = False
 
     def diagnostic(self) -> Diagnostic:
         """Diagnostic of a finding that does not hold."""
-        found = f"{self.name} {self._with_unit(self.value)}, allowed {self._with_unit(self.limit)}"
+        allowed = "at least" if self.is_least else "allowed"
+        found = f"{self.name} {self._with_unit(self.value)}, {allowed} {self._with_unit(self.limit)}"
         return Diagnostic(self.code, self.place, f"{found}, {self.time:.3f} s after the start")
 
     def _with_unit(self, value: float) -> str:

@@ -211,7 +211,9 @@ def _operations(trajectory: Trajectory, motion: Motion, duration: float) -> Iter
 
 def _certificate_tables(certificate: Mapping[str, Any]) -> str:
     findings = "".join(map(_finding, certificate["findings"]))
-    figures = "".join(_finding(figure | {"limit": None, "holds": True}) for figure in certificate["figures"])
+    figures = "".join(
+        _finding(figure | {"limit": None, "holds": True, "is_least": False}) for figure in certificate["figures"]
+    )
     covered = "".join(
         _row([row["topic"], row["what"], row["extent"], row["detail"]]) for row in certificate["coverage"]
     )
@@ -227,7 +229,8 @@ def _certificate_tables(certificate: Mapping[str, Any]) -> str:
 def _finding(row: Mapping[str, Any]) -> str:
     unit = f" {row['unit']}" if row["unit"] else ""
     value = "none" if row["value"] is None else f"{row['value']:.4g}{unit}"
-    limit = "" if row["limit"] is None else f"{row['limit']:.4g}{unit}"
+    bound = "at least " if row["is_least"] else ""
+    limit = "" if row["limit"] is None else f"{bound}{row['limit']:.4g}{unit}"
     cells = [row["what"], value, limit, f"{row['time_s']:.3f}", row["operation"], str(row["line"])]
     fails = "" if row["holds"] else ' class="fails"'
     return f'<tr data-time="{row["time_s"]:.6g}"{fails}>{_cells(cells)}</tr>'

@@ -208,6 +208,7 @@ def _finding(finding: Finding) -> dict[str, Any]:
         "unit": finding.unit,
         "value": _significant(finding.value) if math.isfinite(finding.value) else None,
         "limit": _significant(finding.limit),
+        "is_least": finding.is_least,
         "holds": finding.holds,
         "time_s": finding.time,
         "operation": finding.place.operation,
