@@ -40,23 +40,42 @@ def offset(machine):
 @cache
 def posted(name, seed, tolerances, decimals=(6, 4)):
     """Machine, trajectory, plan, printed struts, certificate and faults of a random job; none where out of reach."""
-    return of(preset(name), random_job(np.random.default_rng(seed)), tolerances, decimals)
+    return printed(preset(name), planned(name, seed, tolerances), tolerances, decimals)
+
+
+@cache
+def planned(name, seed, tolerances):
+    """Trajectory and plan of a random job; none where out of reach."""
+    return _planned(preset(name), random_job(np.random.default_rng(seed)), tolerances)
 
 
 def of(machine, program, tolerances, decimals=(6, 4)):
-    """The same of a program."""
-    tip, axis = tolerances
-    asked = Tolerances(tip, np.radians(axis))
+    """What ``posted`` returns, of a program."""
+    return printed(machine, _planned(machine, program, tolerances), tolerances, decimals)
+
+
+def _planned(machine, program, tolerances):
     trajectory, faults = place(program, machine, offset(machine))
     if faults:
         return None
-    made, faults = plan(trajectory, machine, asked)
-    if faults:
+    made, faults = plan(trajectory, machine, _asked(tolerances))
+    return None if faults else (trajectory, made)
+
+
+def _asked(tolerances):
+    tip, axis = tolerances
+    return Tolerances(tip, np.radians(axis))
+
+
+def printed(machine, job, tolerances, decimals):
+    """What ``posted`` returns, of a job that is planned."""
+    if job is None:
         return None
+    trajectory, made = job
     motion, exact = made.motion, made.struts
     length, speed = (np.round(one, digits) for one, digits in zip((exact.length, exact.speed), decimals, strict=True))
     struts = StrutMotion(exact.time_ms, length, speed, exact.events)
-    certificate, found = certify(struts, "x.pmc", trajectory, machine, motion, asked)
+    certificate, found = certify(struts, "x.pmc", trajectory, machine, motion, _asked(tolerances))
     return machine, trajectory, motion, struts, certificate, found
 
 

@@ -3,11 +3,11 @@
 
 import dataclasses
 import re
+from functools import cache
 
 import numpy as np
 import pytest
-from posted_jobs import NARROW, UNEQUAL, WIDE, of, posted, preset
-from programs import random_job
+from posted_jobs import NARROW, UNEQUAL, WIDE, planned, posted, preset, printed
 
 from pkm_post.certificate import certify
 from pkm_post.certificate.diagnosis import _further
@@ -35,6 +35,12 @@ def advised(fault, decimals):
     return reported["length"], reported["speed"]
 
 
+@cache
+def faults_of(name, seed, tolerances, decimals):
+    """The faults of a random job whose program has these decimals."""
+    return printed(with_decimals(name, decimals), planned(name, seed, tolerances), tolerances, decimals)[-1]
+
+
 SERIES = [
     (name, seed, tolerances, (length, speed))
     for name, seed, tolerances in (
@@ -50,21 +56,17 @@ SERIES = [
 
 @pytest.mark.parametrize(("name", "seed", "tolerances", "decimals"), SERIES)
 def test_a_job_that_decimals_spoil_is_posted_with_those_advised(name, seed, tolerances, decimals):
-    program = random_job(np.random.default_rng(seed))
-    *_, faults = of(with_decimals(name, decimals), program, tolerances, decimals)
+    faults = faults_of(name, seed, tolerances, decimals)
     if posted(name, seed, tolerances, (9, 9))[-1] == ():
         assert {fault.code for fault in faults} <= {"V118"}
     for fault in faults[:1]:
         enough = advised(fault, decimals)
         assert enough != decimals and "without rounding" in fault.found
-        assert of(with_decimals(name, enough), program, tolerances, enough)[-1] == ()
+        assert faults_of(name, seed, tolerances, enough) == ()
 
 
 def test_the_series_has_jobs_that_are_refused_and_jobs_that_are_not():
-    refused = [
-        bool(of(with_decimals(name, decimals), random_job(np.random.default_rng(seed)), tolerances, decimals)[-1])
-        for name, seed, tolerances, decimals in SERIES
-    ]
+    refused = [bool(faults_of(*job)) for job in SERIES]
     assert 5 < sum(refused) < len(refused) - 5
 
 
