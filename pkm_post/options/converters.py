@@ -131,8 +131,8 @@ _copy_angle = validated(number, lambda angle: 0 < abs(angle) < 360, "xy, xz, yz 
 
 MOST_FEED = 1_000_000
 """mm/min."""
-GCODE_FLAVOURS = ("rs274", "fanuc")
-"""Whose G-code it is, as in ``gcode.FLAVOUR_NAMES``."""
+GCODE_FLAVOURS = ("rs274", "fanuc", "siemens")
+"""Whose G-code it is, as in ``reading.FLAVOUR_NAMES``."""
 _CODE = re.compile(r"[GM]\d{1,4}(\.\d)?", re.IGNORECASE)
 
 

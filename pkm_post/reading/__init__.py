@@ -8,12 +8,13 @@ from pkm_post.reading import gcode
 from pkm_post.reading.gcode.codes import SPINDLE_SYNCHRONISED
 from pkm_post.reading.gcode.events import LONG_DWELL
 from pkm_post.reading.gcode.flavours import FLAVOURS
-from pkm_post.reading.gcode.options import AXIS_WORDS, DWELL_UNITS, FLAVOUR_NAMES
+from pkm_post.reading.gcode.options import AXIS_WORDS, DWELL_UNITS
 from pkm_post.reading.gcode.tool_axes import axis_of
 from pkm_post.reading.language import SUFFIXES, VERSIONED, Language, is_part_program, language_of, program_stem
 from pkm_post.reading.listing import listing_lines
 from pkm_post.reading.part_program import (
     AS_WRITTEN,
+    FLAVOUR_NAMES,
     ReadingOptions,
     read_part_program,
 )

@@ -21,7 +21,7 @@ class Language(enum.Enum):
 
 
 SUFFIXES: dict[str, Language | None] = {
-    **dict.fromkeys((".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".eia", ".iso"), Language.GCODE),
+    **dict.fromkeys((".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".spf", ".arc", ".eia", ".iso"), Language.GCODE),
     **dict.fromkeys((".cls", ".clsf", ".ncl", ".cl", ".apt", ".aptsource", ".cldata", ".as", ".clt"), Language.CLDATA),
     ".txt": None,
 }

@@ -23,11 +23,13 @@ import numpy as np
 
 from pkm_post.geometry import dot
 from pkm_post.model import Diagnostic, EventKind, Kind, Place, Program, Tool
-from pkm_post.reading import gcode
+from pkm_post.reading import gcode, siemens
 from pkm_post.reading.language import Language, language_of
 
 _Result = tuple[Program | None, tuple[Diagnostic, ...]]
 
+SIEMENS = "siemens"
+"""Flavour of Siemens's language, which a reader of its own reads."""
 _HEIGHT = 1e-3
 """mm; smaller height differences are rounding errors."""
 _SAME_AXIS = 1 - 1e-9
@@ -134,6 +136,21 @@ def read_content(content: bytes, name: str, reading: ReadingOptions, folder: Pat
     return program, diagnostics if program is None else (*diagnostics, *end_warnings(program))
 
 
+FLAVOUR_NAMES = (*gcode.FLAVOUR_NAMES, SIEMENS)
+"""Whose G-code a part program may be."""
+
+
+def _read_flavour(content: bytes, file: str, options: gcode.ReadOptions, flavour: str | None) -> _Result:
+    """Read G-code of the flavour that is chosen or guessed, and say why it is that."""
+    if flavour not in (None, SIEMENS):
+        return gcode.read(content, file, replace(options, flavour=flavour))
+    why = f"flavour {SIEMENS}, as chosen" if flavour else siemens.siemens_evidence(content, file)
+    if why is None:
+        return gcode.read(content, file, options)
+    program, diagnostics = siemens.read(content, file, options)
+    return program and replace(program, reading=(why, *program.reading)), diagnostics
+
+
 def _read_gcode(content: bytes, file: str, reading: ReadingOptions, folder: Path | None) -> _Result:
     # NaN as diameter or length is reported where it is used.
     unknown = Tool(0, "", math.nan, 0.0, math.nan, corner_known=False)
@@ -147,7 +164,6 @@ def _read_gcode(content: bytes, file: str, reading: ReadingOptions, folder: Path
         default_tool=unknown,
         axis_words=reading.axis_words,
         unit=reading.unit or "mm",
-        flavour=reading.flavour,
         dwell_unit=reading.dwell_unit,
         machine_zero=reading.machine_zero,
         left_out=reading.left_out,
@@ -157,7 +173,7 @@ def _read_gcode(content: bytes, file: str, reading: ReadingOptions, folder: Path
         folders=(*map(Path, reading.subprograms), *([] if folder is None else [folder])),
         needs_end=not reading.allow_open_end,
     )
-    program, diagnostics = gcode.read(content, file, options)
+    program, diagnostics = _read_flavour(content, file, options, reading.flavour)
     if reading.wear:
         found = "this is G-code: give the diameter of the cutter with --tool"
         return None, (*diagnostics, Diagnostic("L432", Place(file), found))

@@ -105,7 +105,7 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
     "G212": warning("blocks after the percent sign that ends the file are not read", "remove them, or the sign"),
     "G213": error(
         "the program is in another language than G-code",
-        "post it again from the CAM system for a control that reads G-code, such as LinuxCNC or Fanuc's",
+        "read Siemens's language with --flavour siemens; else post it again for a control that reads G-code",
     ),
     "G214": warning(
         "a length has no decimal point, and is taken in whole units",
@@ -167,7 +167,7 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
         "write F above zero before the move, or in it with G93, or give --feed",
     ),
     "G409": error("the arc does not fit its end points", "correct end point, centre or radius"),
-    "G410": error("the arc has no centre", "write I J K of its plane, or R"),
+    "G410": error("the arc has no centre", "write I J K of its plane, or R, which is CR= in Siemens's language"),
     "G411": error("the tool is unknown", "give its diameter and corner radius: --tool NUMBER=D[,R]"),
     "G412": error(
         "the offset of this coordinate system is unknown",
@@ -236,6 +236,37 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
         "divide the moves in the CAM system, or write the tool axis as vectors",
     ),
     "G506": error("a feed is so slow that it would be written as zero", "program a feed of 0.001 a minute at least"),
+    # G6: programs in Siemens's language
+    "G601": error(
+        "the statement is malformed", "write it as the programming manual of the control does; docs/siemens.md lists it"
+    ),
+    "G602": error(
+        "this part of Siemens's language is not read", "let the CAM system write plain moves and tool axes as vectors"
+    ),
+    "G603": error(
+        "the name is not known",
+        "define the variable with DEF, put the subprogram into the file, or remove what is for another machine",
+    ),
+    "G604": error("the jump has no destination in this program", "write the label or block number"),
+    "G605": error("a loop, branch or subprogram has no matching end", "write it, in the same program"),
+    "G606": error("the value is not possible here", "correct it"),
+    "G607": error(
+        "rotary words have no meaning here, or several",
+        "write the tool axis as a vector, A3= B3= C3=; or give the rotary axes with --axis-words AC, BC or AB, and"
+        " write them after TRAORI in a frame that is not turned",
+    ),
+    "G608": error(
+        "the angles of the tool axis have two readings, Euler angles and RPY angles",
+        "write ORIEULER or ORIRPY before them",
+    ),
+    "G609": error(
+        "the place of this coordinate system is unknown",
+        "post the work offsets one by one; for SUPA, G53 and G153 give --machine-zero X,Y,Z",
+    ),
+    "G610": warning(
+        "the way of the tool while the plane swivels depends on another machine",
+        "check the way there: the next move goes straight to the first place in the new plane",
+    ),
     # L1: the letters of CL data
     "L101": error("a character is not allowed here", "remove it, or put the text into a comment after $$"),
     "L102": error("a number is malformed", "write it as -12.5 or 1.0E-05"),

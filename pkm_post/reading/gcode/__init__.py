@@ -6,7 +6,7 @@ Execute, parameters computed, loops and calls unrolled: ``execute``, ``interpret
 ``parameters``, ``o_words``. Resolve, blocks to motions and events: ``resolve`` and all other files.
 """
 
-from pkm_post.reading.gcode.options import ExecutionLimits, ReadOptions
+from pkm_post.reading.gcode.options import FLAVOUR_NAMES, ExecutionLimits, ReadOptions
 from pkm_post.reading.gcode.read import read
 
-__all__ = ["ExecutionLimits", "ReadOptions", "read"]
+__all__ = ["FLAVOUR_NAMES", "ExecutionLimits", "ReadOptions", "read"]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Foreign languages: part programs that are not G-code of RS274NGC or ISO, recognised by what they alone have.
 
-Enters: the text of a program that cannot be read. Leaves: the name of its language and where it shows, or nothing. Two
+Enters: the text of a program. Leaves: the name of its language and where it shows, or nothing. Two
 kinds of evidence are needed: one may be a slip of the pen.
 """
 
@@ -50,15 +50,24 @@ def foreign_language(text: bytes) -> tuple[str, int] | None:
     Args:
         text: with a line feed at the end of each line.
     """
-    shown = {
-        name: [(what, text.count(b"\n", 0, found.start()) + 1) for what, found in _found(text, patterns)]
-        for name, patterns in _COMPILED.items()
-    }
+    shown = shown_by_language(text)
     name = max(shown, key=lambda each: len(shown[each]))
     if len(shown[name]) < _LEAST:
         return None
     evidence = sorted(shown[name], key=lambda each: each[1])[:_MOST_SHOWN]
     return f"{name}: {', '.join(f'{what} in line {line}' for what, line in evidence)}", evidence[0][1]
+
+
+def shown_by_language(text: bytes) -> dict[str, list[tuple[str, int]]]:
+    """By language, the kinds of its evidence in a text, each with the line of the first.
+
+    Args:
+        text: with a line feed at the end of each line.
+    """
+    return {
+        name: [(what, text.count(b"\n", 0, found.start()) + 1) for what, found in _found(text, patterns)]
+        for name, patterns in _COMPILED.items()
+    }
 
 
 def _found(text: bytes, patterns: dict[str, re.Pattern[bytes]]) -> list[tuple[str, re.Match[bytes]]]:

@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Execution: carries out computed blocks, one after the other.
+
+Enters: blocks in the order of execution. Leaves: what they do to the machine. Within a block come first the modal
+codes, then tool, spindle and coolant, a dwell, the motion, and a stop at last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from pkm_post.model import EventKind
+from pkm_post.reading.siemens import codes
+from pkm_post.reading.siemens.blocks import Block, Call
+from pkm_post.reading.siemens.buffer import ABSOLUTE, RELATIVE
+from pkm_post.reading.siemens.drilling import CYCLES, PATTERNS, drill, holes
+from pkm_post.reading.siemens.faults import BlockFault
+from pkm_post.reading.siemens.frames import FRAMES, LENGTHS, frame_of
+from pkm_post.reading.siemens.machine import Machine
+from pkm_post.reading.siemens.modal_codes import BUFFERED, DWELL_G, PLACES, STOPS, g_code, m_code, name_alone, words
+from pkm_post.reading.siemens.scan import PLAIN
+from pkm_post.reading.siemens.state import BY_POINT, LINE, NO_MOTION, RAPID, TANGENT
+from pkm_post.reading.siemens.swivel import resets, swivel
+
+_MOTION_NAMES = {"CIP": BY_POINT, "CT": TANGENT}
+_MODES = {"AC": ABSOLUTE, "DC": ABSOLUTE, "ACP": ABSOLUTE, "ACN": ABSOLUTE, "IC": RELATIVE}
+_MOTION_G = range(4)
+_LARGEST = 1e9
+_SUPA = "SUPA"
+
+
+def run_lines(machine: Machine, first: int, stop: int) -> None:
+    """Carry out the plain lines of a range of rows."""
+    if machine.modal_call is None:
+        machine.path.buffer.add_lines(first, stop)
+        return
+    for row in (first + np.flatnonzero(machine.lines.kind[first:stop] == PLAIN)).tolist():
+        machine.path.buffer.add_lines(row, row + 1)
+        words = machine.lines.words
+        _call_modal(machine, row, any(name in words and not np.isnan(words[name][row]) for name in PLACES))
+
+
+def carry_out(machine: Machine, block: Block) -> None:
+    """Carry out a block.
+
+    Raises:
+        BlockFault: it has no meaning here.
+    """
+    for name, value in block.words.items():
+        if not isinstance(value, str) and abs(value) > _LARGEST:
+            raise BlockFault("G406", f"{name}{value:g}", block.columns[name])
+    if _is_plain(machine, block):
+        _add_motion(machine, block)
+    else:
+        machine.path.flush()
+        statement = next((call for call in block.names if call.name in _STATEMENTS), None)
+        if statement is not None:
+            _STATEMENTS[statement.name](machine, block, statement)
+            return
+        _general(machine, block)
+    _call_modal(machine, block.row, any(name in block.words for name in PLACES) and DWELL_G not in block.g)
+
+
+def _is_plain(machine: Machine, block: Block) -> bool:
+    """Whether a block has only words of a move, which wait in the buffer."""
+    return (
+        not block.m
+        and block.words.keys() <= BUFFERED
+        and all(code in _MOTION_G for code in block.g)
+        and all(call.name in _MOTION_NAMES for call in block.names)
+    )
+
+
+def _add_motion(machine: Machine, block: Block) -> None:
+    motions = [code for code in block.g if code in _MOTION_G]
+    motions += [_MOTION_NAMES[call.name] for call in block.names if call.name in _MOTION_NAMES]
+    if len(motions) > 1:
+        raise BlockFault("G403", "two motions")
+    words = {name: block.number(name) for name in block.words if name in BUFFERED}
+    modes = {name: _MODES[mode] for name, mode in block.modes.items()}
+    machine.path.buffer.add_block(block.row, motions[0] if motions else NO_MOTION, words, modes)
+
+
+def _call_modal(machine: Machine, row: int, has_place: bool) -> None:
+    """Carry out the cycle of MCALL behind a block that moves."""
+    if machine.modal_call is not None and has_place:
+        machine.path.flush()
+        drill(machine, row, machine.modal_call)
+
+
+def _general(machine: Machine, block: Block) -> None:
+    once = {_SUPA for code in block.g if code in codes.SUPPRESSED}
+    for call in block.names:
+        if call.name == _SUPA:
+            once.add(_SUPA)
+        elif call.name not in _MOTION_NAMES:
+            name_alone(machine, block, call)
+    for code in block.g:
+        if code not in _MOTION_G and code not in codes.SUPPRESSED and code not in (DWELL_G, codes.EXACT_STOP_ONCE):
+            g_code(machine, block, code)
+    words(machine, block)
+    for code in block.m:
+        m_code(machine, block, code)
+    if DWELL_G in block.g:
+        _dwell_block(machine, block)
+    elif once:
+        _in_machine(machine, block)
+    else:
+        _motion(machine, block)
+    for code in block.m:
+        if code in STOPS:
+            machine.path.add_event(EventKind.STOP, STOPS[code])
+
+
+def _motion(machine: Machine, block: Block) -> None:
+    moves = block.words.keys() & BUFFERED
+    if not (moves or any(code in _MOTION_G for code in block.g) or any(c.name in _MOTION_NAMES for c in block.names)):
+        return
+    feed = machine.state.feed
+    if "FB" in block.words:
+        block.words["F"] = block.number("FB")
+    _add_motion(machine, block)
+    if codes.EXACT_STOP_ONCE in block.g or "FB" in block.words:
+        machine.path.flush(stops=codes.EXACT_STOP_ONCE in block.g)
+    if "FB" in block.words:
+        machine.state.feed = feed
+
+
+def _dwell_block(machine: Machine, block: Block) -> None:
+    """G4 F in seconds, or G4 S in turns of the spindle [SiemensNC, G4]."""
+    if "F" in block.words:
+        machine.dwell(block.row, block.number("F"))
+    elif "S" in block.words:
+        machine.dwell(block.row, machine.seconds_of_turns(block.number("S")))
+    else:
+        raise BlockFault("G405", "G4 without F or S")
+
+
+def _in_machine(machine: Machine, block: Block) -> None:
+    """SUPA, G53 and G153: words are coordinates of the machine, in this block alone."""
+    words = {name: block.number(name) for name in block.words if name in PLACES}
+    zero, state = machine.options.machine_zero, machine.state
+    if words and zero is None:
+        raise BlockFault("G609", "SUPA, G53 or G153")
+    for code in block.g:
+        state.motion = code if code in _MOTION_G else state.motion
+    if "F" in block.words:
+        state.feed = block.number("F")
+    if not words or zero is None:
+        return
+    if state.motion not in (RAPID, LINE):
+        raise BlockFault("G407", "SUPA, G53 or G153 without G0 or G1 in force")
+    target, known = state.frame.points(state.position).copy(), state.known.copy()
+    mixed = state.frame.mixed()
+    if mixed.any() and not known[mixed].all() and len(words) < len(PLACES):
+        raise BlockFault("G416", "a turned coordinate system")
+    for name, value in words.items():
+        k = PLACES.index(name)
+        relative = block.modes.get(name) == "IC" or (state.relative and name not in block.modes)
+        target[k] = value * state.scale + (target[k] if relative else zero[k])
+        known[k] |= not relative
+    if known.all():
+        machine.path.straight(block.row, state.frame.to_program(target))
+    state.position, state.known = state.frame.to_program(target), known
+
+
+def _frame(machine: Machine, block: Block, call: Call) -> None:
+    state = machine.state
+    if state.side:
+        raise BlockFault("G419", call.name, call.column)
+    if len(block.names) > 1 or block.g or block.m:
+        raise BlockFault("G601", f"{call.name} beside other codes", call.column)
+    scale = state.scale if call.name in LENGTHS else 1.0
+    words = {name: block.number(name) * (scale if name in PLACES else 1.0) for name in block.words}
+    state.set_frames(state.swivel, frame_of(call.name, words, state.plane, state.programmed))
+    if call.name in ("ROT", "AROT") and len(words) > 1:
+        machine.notes.add("ROT about several axes: Z first, then the new Y, then the new X", block.row)
+
+
+def _drill(machine: Machine, block: Block, call: Call) -> None:
+    drill(machine, block.row, call)
+
+
+def _holes(machine: Machine, block: Block, call: Call) -> None:
+    holes(machine, block.row, call)
+
+
+def _modal(machine: Machine, block: Block, call: Call) -> None:
+    """MCALL alone ends the modal call."""
+    others = [other for other in block.names if other is not call]
+    for other in others:
+        if other.name in codes.TAPPING:
+            raise BlockFault("G425", other.name, other.column)
+        if other.name not in CYCLES:
+            raise BlockFault("G602", f"MCALL {other.name}: {', '.join(CYCLES)} are read", other.column)
+    machine.modal_call = others[0] if others else None
+
+
+def _swivel(machine: Machine, block: Block, call: Call) -> None:
+    if machine.state.side:
+        raise BlockFault("G419", call.name, call.column)
+    if machine.state.traori and not (resets(call) and not machine.state.swivelled):
+        raise BlockFault("G602", "CYCLE800 after TRAORI: write TRAFOOF first", call.column)
+    if swivel(machine.state, call):
+        machine.faults.add(block.row, "G610", call.name, call.column)
+
+
+def _high_speed(machine: Machine, block: Block, call: Call) -> None:
+    """CYCLE832(tolerance, machining, tolerance of the axis); machining 0 ends it [SiemensNC, CYCLE832]."""
+    on = call.number(1, 0.0) % 10 != 0 and call.gives(0)
+    machine.state.high_speed = on
+    machine.state.contour_tolerance = call.number(0, 0.0) * machine.state.scale if on else 0.0
+    if on and call.number(0) <= 0:
+        raise BlockFault("G606", f"CYCLE832 with a tolerance of {call.number(0):g}", call.column)
+
+
+_STATEMENTS: dict[str, Callable[[Machine, Block, Call], None]] = {
+    "MCALL": _modal,
+    **dict.fromkeys(FRAMES, _frame),
+    **dict.fromkeys(CYCLES, _drill),
+    **dict.fromkeys(PATTERNS, _holes),
+    "CYCLE800": _swivel,
+    "CYCLE832": _high_speed,
+}
+"""Names of statements that have a block of their own."""

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Items: words, names, calls and assignments of a block, compiled.
+
+Enters: tokens. Leaves: items with expressions for their values.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pkm_post.reading.siemens.codes import ADDRESSES, NOTED_ELEMENTS
+from pkm_post.reading.siemens.expressions import Expression, expression
+from pkm_post.reading.siemens.faults import BlockFault
+from pkm_post.reading.siemens.tokens import Cursor, Token
+
+MODES = ("AC", "IC", "DC", "ACP", "ACN")
+"""Absolute and incremental words, and ways to an angle of a rotary axis."""
+
+
+@dataclass(frozen=True)
+class Word:
+    """An address with a value, such as X=IC(5); letters with digits stay together, as in A3."""
+
+    name: str
+    value: Expression
+    mode: str
+    column: int
+
+
+@dataclass(frozen=True)
+class Name:
+    """A name alone or a call of it, with None for an argument that is left out."""
+
+    name: str
+    arguments: tuple[Expression | None, ...] | None
+    column: int
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """A variable or element of an array, and its new value."""
+
+    name: str
+    index: tuple[Expression, ...]
+    value: Expression
+    column: int
+
+
+Item = Word | Name | Assignment
+
+
+def item_of(cursor: Cursor) -> Item:
+    """Read an item.
+
+    Raises:
+        BlockFault: it is malformed.
+    """
+    token = cursor.next()
+    if token.kind == "letter":
+        return address(cursor, token)
+    if token.kind != "name":
+        raise BlockFault("G206", f"'{token.text}'", token.column)
+    if cursor.peek().text == "(":
+        return Name(token.text, _arguments(cursor, token), token.column)
+    if cursor.peek().text == "[":
+        return _element(cursor, token)
+    if not cursor.takes("="):
+        return Name(token.text, None, token.column)
+    if token.text in ADDRESSES:
+        return _valued(cursor, token, token.text)
+    return Assignment(token.text, (), expression(cursor), token.column)
+
+
+def address(cursor: Cursor, token: Token) -> Item:
+    """A letter with a number, or with an extension and an equals sign."""
+    letter = token.text
+    if letter == "R" and cursor.peek().text == "[":
+        return _element(cursor, token)
+    number = cursor.peek()
+    if number.kind == "number" and cursor.peek(1).text == "=":
+        cursor.next()
+        cursor.next()
+        if not number.text.isdigit():
+            raise BlockFault("G601", f"{letter}{number.text}=", token.column)
+        if letter == "R":
+            index = Expression((lambda stack, _: stack.append(float(number.text)),), number.column)
+            return Assignment("R", (index,), expression(cursor), token.column)
+        return _valued(cursor, token, letter + str(int(number.text)))
+    if cursor.takes("="):
+        return _valued(cursor, token, letter)
+    return Word(letter, _signed_number(cursor, token), "", token.column)
+
+
+def _signed_number(cursor: Cursor, token: Token) -> Expression:
+    column = cursor.peek().column
+    sign = -1.0 if cursor.peek().text == "-" else 1.0
+    if cursor.peek().text in ("-", "+"):
+        cursor.next()
+    number = cursor.next()
+    if number.kind != "number":
+        raise BlockFault("G201", f"{token.text} before '{number.text}'", token.column)
+    value = sign * number.number()
+    return Expression((lambda stack, _: stack.append(value),), column)
+
+
+def _valued(cursor: Cursor, token: Token, name: str) -> Word:
+    """The value behind an equals sign, absolute or incremental by AC() or IC()."""
+    mode = cursor.peek().text
+    if mode in MODES and cursor.peek(1).text == "(":
+        cursor.next()
+        cursor.next()
+        value = expression(cursor)
+        cursor.expect(")")
+        return Word(name, value, mode, token.column)
+    return Word(name, expression(cursor), "", token.column)
+
+
+def _element(cursor: Cursor, token: Token) -> Item:
+    """An element of an array with its new value; an element of a list that has no effect here is a name."""
+    cursor.expect("[")
+    if token.text in NOTED_ELEMENTS or token.text.startswith("$"):
+        while not (cursor.at_end() or cursor.takes("]")):
+            cursor.next()
+        cursor.expect("=")
+        expression(cursor)
+        return Name(token.text, None, token.column)
+    index = [expression(cursor)]
+    while cursor.takes(","):
+        index.append(expression(cursor))
+    cursor.expect("]")
+    cursor.expect("=")
+    return Assignment(token.text, tuple(index), expression(cursor), token.column)
+
+
+def _arguments(cursor: Cursor, token: Token) -> tuple[Expression | None, ...]:
+    """Arguments in brackets; those of names whose arguments have no effect here are passed over."""
+    cursor.expect("(")
+    if token.text in NOTED_ELEMENTS:
+        depth = 1
+        while depth and not cursor.at_end():
+            text = cursor.next().text
+            depth += (text == "(") - (text == ")")
+        if depth:
+            cursor.expect(")")
+        return ()
+    found: list[Expression | None] = []
+    while True:
+        found.append(None if cursor.peek().text in (",", ")") else expression(cursor))
+        if cursor.takes(")"):
+            return tuple(found)
+        cursor.expect(",")

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machine: what carries out blocks: the path, the tools, the options and the state, with the elementary actions.
+
+Enters: moves and dwells of blocks and cycles. Leaves: motions and events in ``path``, and notes for the report.
+"""
+
+from __future__ import annotations
+
+from pkm_post.model import EventKind
+from pkm_post.reading.gcode.events import LONG_DWELL
+from pkm_post.reading.gcode.options import ReadOptions
+from pkm_post.reading.siemens.blocks import Call, Notes
+from pkm_post.reading.siemens.buffer import ABSOLUTE
+from pkm_post.reading.siemens.faults import BlockFault, Faults
+from pkm_post.reading.siemens.path import Path
+from pkm_post.reading.siemens.scan import Lines
+from pkm_post.reading.siemens.tools import Tools
+
+
+class Machine:
+    """The machine that carries out a program.
+
+    Args:
+        lines: of the program.
+        options: read options.
+        tools: of the program.
+        faults: collects the faults.
+    """
+
+    def __init__(self, lines: Lines, options: ReadOptions, tools: Tools, faults: Faults) -> None:
+        self.options, self.tools, self.notes = options, tools, Notes()
+        self.path = Path(lines, options.axis_words, faults)
+        self.state = self.path.state
+        if options.feed is not None:
+            self.state.feed = options.feed * 60
+        self.lines, self.faults = lines, faults
+        self.modal_call: Call | None = None
+
+    def move(self, row: int, motion: int, words: dict[str, float]) -> None:
+        """A move of a cycle to absolute coordinates in the unit in force; F among the words holds from here on."""
+        self.path.buffer.add_block(row, motion, words, dict.fromkeys(words, ABSOLUTE))
+
+    def dwell(self, row: int, seconds: float) -> None:
+        """A dwell.
+
+        Raises:
+            BlockFault: it is below zero.
+        """
+        if not seconds >= 0:
+            raise BlockFault("G406", f"a dwell of {seconds:g} s")
+        if seconds > LONG_DWELL:
+            self.faults.add(row, "G428", f"{seconds:g} s")
+        self.path.add_event(EventKind.DWELL, seconds)
+
+    def seconds_of_turns(self, turns: float) -> float:
+        """The time of some turns of the spindle.
+
+        Raises:
+            BlockFault: it stands still.
+        """
+        if not self.state.spindle():
+            raise BlockFault("G606", f"a dwell of {turns:g} turns while the spindle stands still")
+        return turns * 60 / abs(self.state.spindle())
+
+    def scratch(self) -> tuple[int, float]:
+        """Motion code and feed, which a cycle leaves as they were."""
+        return self.state.motion, self.state.feed
+
+    def restore(self, before: tuple[int, float]) -> None:
+        """Compute what a cycle has done, and put motion code and feed in force again."""
+        self.path.flush()
+        self.state.motion, self.state.feed = before
+
+    def finish(self, row: int) -> None:
+        """Carry out what is still waiting, and stop spindle and coolant."""
+        self.path.flush()
+        if self.state.spindle():
+            self.path.add_event(EventKind.SPINDLE, 0.0)
+        if self.state.coolant:
+            self.path.add_event(EventKind.COOLANT, 0.0)

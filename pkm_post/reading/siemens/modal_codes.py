@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Modal codes: what G and M codes, words and names put in force.
+
+Enters: codes and words of a block. Leaves: the state of the machine, and events of tool, spindle and coolant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from pkm_post.model import EventKind
+from pkm_post.reading.siemens import codes
+from pkm_post.reading.siemens.blocks import Block, Call
+from pkm_post.reading.siemens.faults import BlockFault
+from pkm_post.reading.siemens.machine import Machine
+from pkm_post.reading.siemens.scan import PLAIN_WORDS
+
+BUFFERED = frozenset({*PLAIN_WORDS, "A2", "B2", "C2", "I1", "J1", "K1", "AR", "TURN"})
+"""Words of moves."""
+PLACES = ("X", "Y", "Z")
+DWELL_G = 4
+STOPS = {0: 0.0, 1: 1.0}
+ENDS, RETURNS = (2, 30), 17
+_COOLANT = {7: 2.0, 8: 1.0, 9: 0.0}
+_SPINDLE = {3: 1.0, 4: -1.0, 5: 0.0}
+_METRIC_ISO = 21
+
+
+def words(machine: Machine, block: Block) -> None:
+    """Carry out the words of a block that are not those of a move, and refuse those without a meaning.
+
+    Raises:
+        BlockFault: a word has none, or its value has none.
+    """
+    for name in block.words:
+        if name in codes.REFUSED:
+            raise BlockFault("G602", f"{name}=: {codes.REFUSED[name]}", block.columns[name])
+        if name in codes.NOTED:
+            machine.notes.add(f"{name}: {codes.NOTED[name]}", block.row)
+        elif name == "H":
+            machine.notes.add("H: a function of the machine", block.row)
+        elif name in _WORDS:
+            _WORDS[name](machine, block)
+        elif name not in BUFFERED and name not in ("FB",):
+            raise BlockFault("G404", name, block.columns[name])
+
+
+def _contour_tolerance(machine: Machine, block: Block) -> None:
+    """CTOL= in the unit in force; below zero it is the one of the machine again [SiemensNC, CTOL]."""
+    machine.state.contour_tolerance = max(block.number("CTOL"), 0.0) * machine.state.scale
+
+
+def _speed(machine: Machine, block: Block) -> None:
+    if DWELL_G in block.g:
+        return
+    if block.number("S") < 0:
+        raise BlockFault("G406", f"S{block.number('S'):g}", block.columns["S"])
+    before = machine.state.spindle()
+    machine.state.speed = block.number("S")
+    if machine.state.spindle() != before and not any(code in _SPINDLE for code in block.m):
+        machine.path.add_event(EventKind.SPINDLE, machine.state.spindle())
+
+
+def _tool(machine: Machine, block: Block) -> None:
+    machine.state.selected = machine.tools.number(block.words["T"])
+    if not machine.tools.has_change:
+        _change_tool(machine)
+
+
+def _offset(machine: Machine, block: Block) -> None:
+    """D0 takes the offset of the tool away, any other D brings it."""
+    value = block.number("D")
+    if value < 0 or value != round(value):
+        raise BlockFault("G406", f"D{value:g}", block.columns["D"])
+    if machine.state.side:
+        raise BlockFault("G419", f"D{value:g}", block.columns["D"])
+    machine.state.has_offset = value > 0
+
+
+def _change_tool(machine: Machine) -> None:
+    number = machine.state.selected
+    if number is None:
+        raise BlockFault("G405", "M6 without T")
+    if machine.tools.tool(number) is None:
+        raise BlockFault("G411", f"T{number}")
+    machine.state.tool = number
+    machine.state.has_offset = True
+    machine.path.add_event(EventKind.TOOL_CHANGE, float(number))
+
+
+def m_code(machine: Machine, block: Block, code: int) -> None:
+    """Carry out an M code.
+
+    Raises:
+        BlockFault: it is not known, or lacks a word.
+    """
+    if code == 6:  # noqa: PLR2004 - M6
+        _change_tool(machine)
+    elif code in _SPINDLE:
+        if _SPINDLE[code] and np.isnan(machine.state.speed):
+            raise BlockFault("G405", f"M{code} without S", block.columns[f"M{code}"])
+        machine.state.sense = _SPINDLE[code]
+        machine.path.add_event(EventKind.SPINDLE, machine.state.spindle())
+    elif code in _COOLANT:
+        machine.state.coolant = _COOLANT[code]
+        machine.path.add_event(EventKind.COOLANT, _COOLANT[code])
+    elif code not in (*STOPS, *ENDS, RETURNS, *codes.SILENT_M):
+        _leave_out(machine, block, f"M{code}", codes.REFUSED.get(f"M{code}"))
+
+
+def _leave_out(machine: Machine, block: Block, word: str, why: str | None) -> None:
+    """Leave a code out where the user has named it, or refuse it."""
+    column = block.columns.get(word, 0)
+    if why is not None:
+        raise BlockFault("G602", f"{word}: {why}", column)
+    if word not in machine.options.left_out or any(name in block.words for name in PLACES if word[0] == "G"):
+        raise BlockFault("G401", word, column)
+    machine.notes.add(f"{word}, left out as chosen", block.row)
+
+
+def g_code(machine: Machine, block: Block, code: int) -> None:
+    """Put a G code in force.
+
+    Raises:
+        BlockFault: it is not known, or not allowed here.
+    """
+    state = machine.state
+    if code in codes.PLANES:
+        _refuse_with_compensation(machine, block, code)
+        state.plane = codes.PLANES[code]
+    elif code in codes.SIDES:
+        _compensate(machine, block, code)
+    elif code in (90, 91):
+        state.relative = code == 91  # noqa: PLR2004 - G91
+    elif code in codes.UNITS:
+        lengths, feeds = codes.UNITS[code]
+        state.scale, state.feed_scale = lengths, feeds or state.feed_scale
+    elif code in codes.FEED_MODES:
+        if code != state.feed_mode:
+            state.feed_mode, state.feed = code, np.nan
+    elif code in codes.WORK_OFFSETS:
+        _refuse_with_compensation(machine, block, code)
+        _work_offset(machine, block, code)
+    elif code == codes.EXACT_STOP:
+        state.stops = True
+    elif code in codes.CONTINUOUS:
+        state.stops, state.smoothing = False, code
+    elif code == _METRIC_ISO and state.scale != 1:
+        raise BlockFault("G401", "G21 where inches are in force", block.columns["G21"])
+    elif code in codes.NOTED_G:
+        machine.notes.add(f"G{code}: {codes.NOTED_G[code]}", block.row)
+    elif code in codes.TAPPING_G:
+        raise BlockFault("G425", f"G{code}", block.columns[f"G{code}"])
+    else:
+        _leave_out(machine, block, f"G{code}", codes.REFUSED_G.get(code))
+
+
+def _refuse_with_compensation(machine: Machine, block: Block, code: int) -> None:
+    if machine.state.side:
+        raise BlockFault("G419", f"G{code}", block.columns[f"G{code}"])
+
+
+def _compensate(machine: Machine, block: Block, code: int) -> None:
+    state = machine.state
+    state.side = codes.SIDES[code]
+    tool = machine.tools.tool(state.tool)
+    if state.side and tool is None:
+        raise BlockFault("G411", "no tool in the spindle")
+    machine.path.radius = tool.diameter / 2 if tool is not None else 0.0
+
+
+def _work_offset(machine: Machine, block: Block, code: int) -> None:
+    """The only settable offset in which a program moves is {C} itmachine."""
+    state = machine.state
+    if state.system not in (None, code) and state.has_moved:
+        raise BlockFault("G609", f"G{code} after G{state.system}", block.columns[f"G{code}"])
+    state.system = code
+
+
+def name_alone(machine: Machine, block: Block, call: Call) -> None:
+    """Put a name in force, or note that it has no effect.
+
+    Raises:
+        BlockFault: it is not known, or not read.
+    """
+    state, name = machine.state, call.name
+    if name in codes.NOTED:
+        state.compressor |= name.startswith("COMP")
+        machine.notes.add(f"{name}: {codes.NOTED[name]}", block.row)
+    elif name in codes.SILENT:
+        state.compressor &= name != "COMPOF"
+    elif name in codes.TAPPING:
+        raise BlockFault("G425", name, call.column)
+    elif name in codes.REFUSED:
+        raise BlockFault("G602", f"{name}: {codes.REFUSED[name]}", call.column)
+    elif name in _NAMES:
+        _NAMES[name](machine, block, call)
+    else:
+        raise BlockFault("G603", name, call.column)
+
+
+def _traori(machine: Machine, block: Block, call: Call) -> None:
+    """The first transformation; with a tilted tool the place of its tip is known after X, Y and Z."""
+    if machine.state.swivelled:
+        raise BlockFault("G602", "TRAORI after CYCLE800: write CYCLE800() first", call.column)
+    if call.number(0, 1.0) != 1:
+        raise BlockFault("G602", f"TRAORI({call.number(0, 1.0):g}): only the first transformation is read", call.column)
+    machine.state.traori = True
+
+
+def _trafoof(machine: Machine, block: Block, call: Call) -> None:
+    machine.state.traori = False
+
+
+def _angles(machine: Machine, block: Block, call: Call) -> None:
+    machine.state.angles = call.name
+
+
+_WORDS: dict[str, Callable[[Machine, Block], None]] = {
+    "CTOL": _contour_tolerance,
+    "S": _speed,
+    "T": _tool,
+    "D": _offset,
+}
+_NAMES: dict[str, Callable[[Machine, Block, Call], None]] = {
+    "TRAORI": _traori,
+    "TRAFOOF": _trafoof,
+    "ORIEULER": _angles,
+    "ORIRPY": _angles,
+}

@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Motions: blocks of moves with their start and end points, and the geometry of the arcs among them.
+
+Enters: columns of words and the state before them. Leaves: ``Motions`` in coordinates of the program, mm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import arc_length, arc_points, arc_sweep, cross, dot, norm
+from pkm_post.model import Array
+from pkm_post.reading.gcode.modal import track_coordinate
+from pkm_post.reading.siemens import arcs
+from pkm_post.reading.siemens.buffer import Columns
+from pkm_post.reading.siemens.faults import BlockFault, Faults
+from pkm_post.reading.siemens.state import BY_POINT, CLOCKWISE, COUNTERCLOCKWISE, LINE, TANGENT, State
+
+AXES = ("X", "Y", "Z")
+LENGTHS = (*AXES, *arcs.CENTRE, *arcs.POINT, "CR")
+_OPENING_ANGLE, _TURNS = "AR", "TURN"
+MOST_TURNS = 1000
+"""TURN goes up to 999 [SiemensNC, TURN]."""
+
+
+@dataclass
+class Motions:
+    """Columns of n motions.
+
+    Attributes:
+        row: (n,) row in the file.
+        motion: (n,) motion code; CT that is a line becomes G1.
+        start: (n, 3).
+        end: (n, 3).
+        known: (n,) whether the end is known.
+        start_known: (n,) whether the start is known.
+        known_at_end: (3,) which coordinates are known behind the last motion.
+        centre: (n, 3) of arcs, NaN elsewhere.
+        axis: (n, 3) unit axis of arcs, NaN elsewhere.
+        turns: (n,) full turns before the arc.
+    """
+
+    row: Array
+    motion: Array
+    start: Array
+    end: Array
+    known: Array
+    start_known: Array
+    known_at_end: Array
+    centre: Array
+    axis: Array
+    turns: Array
+
+    def tangents(self, rows: slice) -> Array:
+        """Directions at the ends of some motions, (m, 3) of any length; zero where nothing moves."""
+        on_arc = cross(self.axis[rows], self.end[rows] - self.centre[rows])
+        return np.where(np.isnan(self.axis[rows, :1]), self.end[rows] - self.start[rows], on_arc)
+
+    def lengths(self, state: State) -> Array:
+        """Distances travelled by the tip, (n,), mm."""
+        way = norm(np.einsum("ij,nj->ni", state.frame.matrix, self.end - self.start))
+        arc = np.flatnonzero(self.motion > LINE)
+        around = arc_length(self.start[arc], self.end[arc], self.centre[arc], self.axis[arc])
+        way[arc] = around + 2 * np.pi * self.turns[arc] * norm(self.start[arc] - self.centre[arc])
+        return np.where(self.start_known & self.known, way, 0.0)
+
+    def split_at_turns(self) -> Array:
+        """Split arcs at full turns; return the index of the motion that each piece belongs to."""
+        index = np.repeat(np.arange(len(self.row)), self.turns + 1)
+        if len(index) == len(self.row):
+            return index
+        count = self.turns[index] + 1
+        first = np.cumsum(self.turns + 1) - self.turns - 1
+        piece = np.arange(len(index)) - first[index]
+        start, end, centre, axis = (column[index] for column in (self.start, self.end, self.centre, self.axis))
+        split = count > 1
+        sweep = arc_sweep(start[split], end[split], centre[split], axis[split]) + 2 * np.pi * (count[split] - 1)
+        rise = dot(end[split] - start[split], axis[split]) * 2 * np.pi / sweep
+        before, behind = piece[split], piece[split] + 1
+        at_end = arc_points(start[split], centre[split], axis[split], 2 * np.pi * behind, rise * behind)
+        self.end, self.centre = end, centre
+        self.end[split] = np.where((behind == count[split])[:, None], end[split], at_end)
+        self.centre[split] = centre[split] + (rise * before)[:, None] * axis[split]
+        return index
+
+
+def motions_of(columns: Columns, motion: Array, state: State, faults: Faults) -> Motions:
+    """Motions of blocks whose X Y Z are those of the tip; the state keeps their last point.
+
+    Args:
+        columns: n blocks, each with a word of a move.
+        motion: (n,) motion codes.
+        state: before them.
+        faults: collects arcs that do not fit.
+
+    Raises:
+        BlockFault: a word has no meaning; the state is as it was.
+    """
+    lengths = {name: columns.words[name] * state.scale for name in LENGTHS if name in columns.words}
+    end, known, known_at_end = _ends(columns, lengths, state)
+    count = len(columns)
+    moves = Motions(
+        row=columns.row,
+        motion=motion.copy(),
+        start=np.vstack([state.position, end[:-1]]),
+        end=end,
+        known=known,
+        start_known=np.append(state.known.all(), known[:-1]),
+        known_at_end=known_at_end,
+        centre=np.full((count, 3), np.nan),
+        axis=np.full((count, 3), np.nan),
+        turns=np.zeros(count, np.int64),
+    )
+    if (motion > LINE).any():
+        _Arcs(moves, columns, lengths, state, faults).fill()
+    state.position, state.known = moves.end[-1], known_at_end
+    return moves
+
+
+def _ends(columns: Columns, lengths: dict[str, Array], state: State) -> tuple[Array, Array, Array]:
+    """End points, (n, 3), which are known, (n,), and which coordinates are known behind the last, (3,)."""
+    count = len(columns)
+    end, known_from = np.empty((count, 3)), np.zeros(3, np.int64)
+    for k, name in enumerate(AXES):
+        word = lengths.get(name)
+        if word is None:
+            end[:, k], known_from[k] = state.position[k], count
+        else:
+            relative = columns.relative(name, state.relative)
+            end[:, k], known_from[k] = track_coordinate(word, relative, float(state.position[k]))
+    known_from[state.known] = 0
+    return end, np.arange(count) >= known_from.max(), known_from < count
+
+
+@dataclass
+class _Arcs:
+    """The arcs among some motions."""
+
+    moves: Motions
+    columns: Columns
+    lengths: dict[str, Array]
+    state: State
+    faults: Faults
+
+    def fill(self) -> None:
+        """Fill in centres, axes and turns.
+
+        Raises:
+            BlockFault: an arc has no meaning; of several blocks together it may be any of them.
+        """
+        moves = self.moves
+        if not self.state.frame.keeps_circles(self.state.plane):
+            raise BlockFault("G602", "an arc under a SCALE that is not even in its plane")
+        is_arc, both = moves.motion > LINE, moves.start_known & moves.known
+        for index in np.flatnonzero(is_arc & ~both).tolist():
+            self.faults.add(int(moves.row[index]), "G416", "an arc starts there")
+        self._opening_angles()
+        self._in_plane(np.flatnonzero(np.isin(moves.motion, (CLOCKWISE, COUNTERCLOCKWISE)) & both))
+        for index in np.flatnonzero(np.isin(moves.motion, (BY_POINT, TANGENT)) & both).tolist():
+            found = self._through_point(index) if moves.motion[index] == BY_POINT else self._along_tangent(index)
+            if found is None:
+                moves.motion[index] = LINE
+            else:
+                moves.centre[index], moves.axis[index] = found
+
+    def _opening_angles(self) -> None:
+        """Replace AR= by the words of the centre, and by the end where the centre is given."""
+        angle, moves = self.columns.words.get(_OPENING_ANGLE), self.moves
+        if angle is None:
+            return
+        if len(self.columns) > 1:
+            raise BlockFault("G601", "AR= with others")  # its end is the start of the next one: carried out one by one
+        centre = np.array([self.lengths[name][0] if name in self.lengths else np.nan for name in arcs.CENTRE])
+        points = arcs.by_opening_angle(
+            moves.start[0], moves.end[0], centre, float(angle[0]), self.state.plane, int(moves.motion[0])
+        )
+        moves.end[0] = points[0]
+        offset = points[1] - moves.start[0]
+        self.lengths |= {name: np.array([value or np.nan]) for name, value in zip(arcs.CENTRE, offset, strict=True)}
+
+    def _in_plane(self, rows: Array) -> None:
+        """G2 and G3."""
+        if not len(rows):
+            return
+        moves, state = self.moves, self.state
+        words = {name: column[rows] for name, column in self.lengths.items()}
+        absolute = np.column_stack([~self.columns.relative(name, True)[rows] for name in arcs.CENTRE])
+        moves.centre[rows], moves.axis[rows], faults = arcs.plane_arcs(
+            moves.motion[rows], moves.start[rows], moves.end[rows], words, absolute, state.plane, state.scale
+        )
+        for index, code, found in faults:
+            self.faults.add(int(moves.row[rows[index]]), code, found)
+        more = self.columns.words.get(_TURNS)
+        if more is not None:
+            turns = np.nan_to_num(more[rows])
+            if ((turns < 0) | (turns >= MOST_TURNS) | (turns != np.round(turns))).any():
+                raise BlockFault("G606", f"TURN={turns[0]:g}")
+            moves.turns[rows] = turns.astype(np.int64)
+
+    def _through_point(self, index: int) -> arcs.Geometry:
+        """CIP: I1, J1 and K1 are coordinates with G90, and increments from the start with G91."""
+        start = self.moves.start[index]
+        point = start.copy()
+        for k, name in enumerate(arcs.POINT):
+            word = self.lengths.get(name)
+            if word is not None and not np.isnan(word[index]):
+                relative = self.columns.relative(name, self.state.relative)[index]
+                point[k] = word[index] + (start[k] if relative else 0.0)
+        return arcs.through_point(start, point, self.moves.end[index])
+
+    def _along_tangent(self, index: int) -> arcs.Geometry | None:
+        """CT: the tangent is that of the last motion before it that moves the tip."""
+        moves = self.moves
+        tangent = self.state.frame.turn.T @ self.state.tangent
+        before = moves.tangents(slice(index))
+        moved = np.flatnonzero(before.any(axis=1) & moves.known[:index])
+        if len(moved):
+            tangent = before[moved[-1]]
+        return arcs.along_tangent(moves.start[index], moves.end[index], tangent, self.state.plane)

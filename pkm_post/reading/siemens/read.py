@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Read: convert the text of a Siemens program to motions.
+
+Enters: the content of a file, in its own units. Leaves: a ``Program`` in mm, rad and mm/s, or the faults: of malformed
+blocks, of jumps and calls, and of what blocks mean. Behind the first fault only those are reported that a block shows
+by itself.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pkm_post.model import Diagnostic, Program, Severity, errors
+from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, ExecutionLimits, ReadOptions
+from pkm_post.reading.gcode.recovery import merged
+from pkm_post.reading.gcode.scan import with_line_feeds
+from pkm_post.reading.siemens.faults import Faults
+from pkm_post.reading.siemens.interpreter import Interpreter
+from pkm_post.reading.siemens.machine import Machine
+from pkm_post.reading.siemens.scan import scan
+from pkm_post.reading.siemens.structure import Structure, structure_of
+from pkm_post.reading.siemens.tools import Tools
+
+_CONSEQUENCES = ("G301", "G407", "G408", "G416", "G420", "G424", "G430", "G604")
+"""Faults that another one before them may cause."""
+
+
+def read(
+    text: bytes | str,
+    file: str,
+    options: ReadOptions = DEFAULT_OPTIONS,
+    limits: ExecutionLimits = DEFAULT_LIMITS,
+) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """Read a program in Siemens's language.
+
+    Args:
+        text: content of the file; any bytes.
+        file: its name, for diagnostics.
+        options: read options; those for flavours, dwells and work offsets of G-code mean nothing here.
+        limits: bounds of loops and calls.
+
+    Returns:
+        The program, or None if there are errors; and the diagnostics.
+    """
+    faults = Faults(file)
+    lines = scan(with_line_feeds(text))
+    structure = structure_of(lines, options.block_delete, faults)
+    tools = Tools([lines.line(row) for row in structure.statements], options)
+    machine = Machine(lines, options, tools, faults)
+    if options.unit == "inch":
+        machine.state.scale = machine.state.feed_scale = 25.4
+    interpreter = Interpreter(structure, machine, limits, faults)
+    if not any(fault.code == "G605" for fault in faults.in_order()):
+        interpreter.run()
+    sections = machine.path.sections
+    if not len(sections):
+        faults.add(0 if len(lines) else -1, "G420", f"{len(lines)} lines")
+    elif options.needs_end and not interpreter.has_ended:
+        faults.add(structure.main.end - 1, "G430", "no M2, M30, M17 or RET after it")
+    diagnostics = merged(_own(faults.in_order()))
+    if errors(diagnostics):
+        return None, diagnostics
+    return _program(structure, machine, file), diagnostics
+
+
+def _own(found: tuple[Diagnostic, ...]) -> list[Diagnostic]:
+    """The faults that are no consequences of the first one."""
+    first = next((fault.place.line for fault in found if fault.severity is Severity.ERROR), 0)
+    return [fault for fault in found if fault.place.line <= first or fault.code not in _CONSEQUENCES]
+
+
+def _program(structure: Structure, machine: Machine, file: str) -> Program:
+    numbers = {round(event.value) for event in machine.path.sections.events if event.kind.name == "TOOL_CHANGE"}
+    tools = {number: tool for number in sorted(numbers) if (tool := machine.tools.named_tool(number)) is not None}
+    initial = machine.tools.tool(0)
+    notes = (*machine.tools.notes(), *machine.notes.lines())
+    columns: dict[str, Any] = machine.path.sections.columns()
+    return Program(
+        **columns,
+        events=tuple(machine.path.sections.events),
+        operations=("",),
+        tools=tools or ({initial.number: initial} if initial is not None else {}),
+        source=file,
+        reading=notes,
+    )

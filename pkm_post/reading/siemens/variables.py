@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Variables: R parameters of the program, and variables that DEF and PROC define for one program or subprogram.
+
+Enters: names, indices and values. Leaves: values. Variables of DEF begin with 0 or an empty text; an R parameter
+without a value is a fault, since a control keeps that of the program before [SiemensNC, arithmetic parameters].
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from pkm_post.reading.siemens.faults import BlockFault
+
+Value = float | str
+Index = tuple[int, ...]
+
+R_PARAMETERS = 1000
+"""Most R parameters that a channel may have: more in number is a slip."""
+_MOST_ELEMENTS = 100_000
+TYPES = ("REAL", "INT", "BOOL", "CHAR", "STRING")
+
+
+@dataclass
+class _Variable:
+    """A variable of DEF or PROC.
+
+    Attributes:
+        kind: one of ``TYPES``.
+        size: dimensions of an array; none for a single value.
+        start: value of every element before it is assigned.
+        values: assigned elements.
+    """
+
+    kind: str
+    size: Index
+    start: Value
+    values: dict[Index, Value] = field(default_factory=dict)
+
+
+class Variables:
+    """The variables of a running program; each level of subprograms has its own, R parameters belong to all."""
+
+    def __init__(self) -> None:
+        self._r: dict[int, float] = {}
+        self._levels: list[dict[str, _Variable]] = [{}]
+
+    def enter(self) -> None:
+        """Begin a subprogram."""
+        self._levels.append({})
+
+    def leave(self) -> None:
+        """End a subprogram."""
+        self._levels.pop()
+
+    def is_defined(self, name: str) -> bool:
+        """Whether DEF or PROC has defined a variable here or in a program that called this one."""
+        return self._find(name) is not None
+
+    def define(self, name: str, kind: str, size: Index = (), start: Value | None = None) -> None:
+        """Define a variable.
+
+        Raises:
+            BlockFault: it is too large, or its first value does not have its type.
+        """
+        if math.prod(size) > _MOST_ELEMENTS:
+            raise BlockFault("G606", f"{name} with more than {_MOST_ELEMENTS} elements")
+        first = ("" if kind in ("STRING", "CHAR") else 0.0) if start is None else _typed(kind, start, name)
+        self._levels[-1][name] = _Variable(kind, size, first)
+
+    def value(self, name: str, index: Index) -> Value:
+        """The value of a variable.
+
+        Raises:
+            BlockFault: it does not exist or has none.
+        """
+        if name == "R":
+            if index[0] not in self._r:
+                raise BlockFault("G301", f"R{index[0]}")
+            return self._r[index[0]]
+        variable = self._checked(name, index)
+        return variable.values.get(index, variable.start)
+
+    def assign(self, name: str, index: Index, value: Value) -> None:
+        """Give a variable a value.
+
+        Raises:
+            BlockFault: it does not exist, or the value does not have its type.
+        """
+        if name == "R":
+            if index[0] >= R_PARAMETERS:
+                raise BlockFault("G302", f"R{index[0]}")
+            if isinstance(value, str):
+                raise BlockFault("G606", f'R{index[0]}="{value}"')
+            self._r[index[0]] = value
+            return
+        variable = self._checked(name, index)
+        variable.values[index] = _typed(variable.kind, value, name)
+
+    def _checked(self, name: str, index: Index) -> _Variable:
+        variable = self._find(name)
+        if variable is None:
+            raise BlockFault("G603", name)
+        inside = len(index) == len(variable.size) and all(
+            place < most for place, most in zip(index, variable.size, strict=True)
+        )
+        if not inside:
+            raise BlockFault("G606", f"{name}[{', '.join(map(str, index))}] of [{', '.join(map(str, variable.size))}]")
+        return variable
+
+    def _find(self, name: str) -> _Variable | None:
+        """A local variable, or else one of the main program, which subprograms see [SiemensNC, program-global]."""
+        return self._levels[-1].get(name) or self._levels[0].get(name)
+
+
+def _typed(kind: str, value: Value, name: str) -> Value:
+    """A value as a variable of a type keeps it."""
+    if isinstance(value, str) is not (kind in ("STRING", "CHAR")):
+        raise BlockFault("G606", f"{name}={value!r} of type {kind}")
+    if isinstance(value, str) or kind == "REAL":
+        return value
+    return float(value != 0) if kind == "BOOL" else math.copysign(math.floor(abs(value) + 0.5), value) + 0.0
