@@ -54,7 +54,8 @@ def read(
         interpreter.run()
     sections = machine.path.sections
     if not len(sections):
-        faults.add(0 if len(lines) else -1, "G420", f"{len(lines)} lines")
+        if not faults.has_errors():
+            faults.add(-1, "G420", f"{len(lines)} lines")
     elif options.needs_end and not interpreter.has_ended:
         faults.add(structure.main.end - 1, "G430", "no M2, M30, M17 or RET after it")
     diagnostics = merged(_own(faults.in_order()))
