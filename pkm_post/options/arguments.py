@@ -120,8 +120,9 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     },
     "--flavour": {
         "choices": GCODE_FLAVOURS,
-        "help": "whose G-code a part program is: rs274, that of LinuxCNC, or fanuc, that of controls of Fanuc's kind"
-        " (default: the one whose codes it has; the report says which and why)",
+        "help": "whose G-code a part program is: rs274, that of LinuxCNC, fanuc, that of controls of Fanuc's kind, or"
+        " siemens, the language of Sinumerik controls (default: the one whose codes it has; the report says which and"
+        " why)",
     },
     "--machine-zero": {
         "metavar": "X,Y,Z",
@@ -134,8 +135,8 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "type": origin,
         "action": "append",
         "default": [],
-        "help": "origin of a work offset of G-code, G54 to G59.3 or G54.1P1 to G54.1P300, as X,Y,Z[,DEG] in mm in the"
-        " work frame with a turn about z, as in G55=100,0,0; may be repeated",
+        "help": "origin of a work offset of G-code, G54 to G59.3, G54.1P1 to G54.1P300 or G500 to G599, as X,Y,Z[,DEG]"
+        " in mm in the work frame with a turn about z, as in G55=100,0,0; may be repeated",
     },
     "--subprograms": {
         "metavar": "FOLDER",

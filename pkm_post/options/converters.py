@@ -144,16 +144,18 @@ def codes(text: str) -> tuple[str, ...]:
     return tuple(f"{word[0].upper()}{float(word[1:]):g}" for word in words)
 
 
-_ORIGIN = re.compile(r"(G5[4-9]|G59\.[123]|G54\.1P([1-9]\d?|[12]\d\d|300))=(.*)", re.IGNORECASE)
+_ORIGIN = re.compile(
+    r"(G5[4-9]|G59\.[123]|G54\.1P(?:[1-9]\d?|[12]\d\d|300)|G500|G50[5-9]|G5[1-9]\d)=(.*)", re.IGNORECASE
+)
 
 
 def origin(text: str) -> tuple[str, Pose]:
     """Name of a work offset of G-code in upper case; x, y, z in mm and the rotation about z in degrees."""
     found = _ORIGIN.fullmatch(text)
-    pose = work_offset(found[3]) if found else ""
+    pose = work_offset(found[2]) if found else ""
     if found is None or isinstance(pose, str):
         raise argparse.ArgumentTypeError(
-            f"expected NAME=X,Y,Z[,DEG] with G54 to G59.3 or G54.1P1 to G54.1P300, got {text!r}"
+            f"expected NAME=X,Y,Z[,DEG] with G54 to G59.3, G54.1P1 to G54.1P300 or G500 to G599, got {text!r}"
         )
     return found[1].upper(), pose
 

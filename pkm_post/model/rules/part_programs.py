@@ -261,7 +261,7 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
     ),
     "G609": error(
         "the place of this coordinate system is unknown",
-        "post the work offsets one by one; for SUPA, G53 and G153 give --machine-zero X,Y,Z",
+        "give it with --origin, such as G55=X,Y,Z; for SUPA, G53 and G153 give --machine-zero X,Y,Z",
     ),
     "G610": warning(
         "the way of the tool while the plane swivels depends on another machine",

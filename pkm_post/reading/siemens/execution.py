@@ -19,7 +19,17 @@ from pkm_post.reading.siemens.drilling import CYCLES, PATTERNS, drill, holes
 from pkm_post.reading.siemens.faults import BlockFault
 from pkm_post.reading.siemens.frames import FRAMES, LENGTHS, frame_of
 from pkm_post.reading.siemens.machine import Machine
-from pkm_post.reading.siemens.modal_codes import BUFFERED, DWELL_G, PLACES, STOPS, g_code, m_code, name_alone, words
+from pkm_post.reading.siemens.modal_codes import (
+    BUFFERED,
+    DWELL_G,
+    NAMES,
+    PLACES,
+    STOPS,
+    g_code,
+    m_code,
+    name_alone,
+    words,
+)
 from pkm_post.reading.siemens.scan import PLAIN
 from pkm_post.reading.siemens.state import BY_POINT, LINE, NO_MOTION, RAPID, TANGENT
 from pkm_post.reading.siemens.swivel import resets, swivel
@@ -174,7 +184,7 @@ def _frame(machine: Machine, block: Block, call: Call) -> None:
         raise BlockFault("G601", f"{call.name} beside other codes", call.column)
     scale = state.scale if call.name in LENGTHS else 1.0
     words = {name: block.number(name) * (scale if name in PLACES else 1.0) for name in block.words}
-    state.set_frames(state.swivel, frame_of(call.name, words, state.plane, state.programmed))
+    state.set_frames(state.offset, state.swivel, frame_of(call.name, words, state.plane, state.programmed))
     if call.name in ("ROT", "AROT") and len(words) > 1:
         machine.notes.add("ROT about several axes: Z first, then the new Y, then the new X", block.row)
 
@@ -225,3 +235,7 @@ _STATEMENTS: dict[str, Callable[[Machine, Block, Call], None]] = {
     "CYCLE832": _high_speed,
 }
 """Names of statements that have a block of their own."""
+BUILT_IN = frozenset(
+    {*_STATEMENTS, *_MOTION_NAMES, _SUPA, *NAMES, *codes.NOTED, *codes.SILENT, *codes.REFUSED, *codes.TAPPING}
+)
+"""Names of the language, which no subprogram has."""

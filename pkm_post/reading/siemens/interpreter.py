@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pkm_post.model import checkpoint
 from pkm_post.reading.gcode.options import ExecutionLimits
 from pkm_post.reading.siemens.blocks import assign, block_of, computed
-from pkm_post.reading.siemens.execution import carry_out, run_lines
+from pkm_post.reading.siemens.execution import BUILT_IN, carry_out, run_lines
 from pkm_post.reading.siemens.expressions import Expression, index_of
 from pkm_post.reading.siemens.faults import BlockFault, Faults
 from pkm_post.reading.siemens.flow import Flow
@@ -23,6 +23,7 @@ from pkm_post.reading.siemens.machine import Machine
 from pkm_post.reading.siemens.modal_codes import ENDS, RETURNS
 from pkm_post.reading.siemens.statements import Statement
 from pkm_post.reading.siemens.structure import Program, Structure
+from pkm_post.reading.siemens.subprograms import MissingProgram
 from pkm_post.reading.siemens.variables import Value, Variables
 
 _MOST_PASSES = 9999
@@ -58,9 +59,18 @@ class Interpreter:
         machine: that carries out the blocks.
         limits: bounds of the execution.
         faults: collects the faults.
+        elsewhere: names of subprograms in other files.
     """
 
-    def __init__(self, structure: Structure, machine: Machine, limits: ExecutionLimits, faults: Faults) -> None:
+    def __init__(
+        self,
+        structure: Structure,
+        machine: Machine,
+        limits: ExecutionLimits,
+        faults: Faults,
+        elsewhere: frozenset[str] = frozenset(),
+    ) -> None:
+        self._elsewhere = elsewhere - BUILT_IN
         self._structure, self._machine, self._limits, self._faults = structure, machine, limits, faults
         self._statements = structure.statements
         self._special = sorted(structure.statements)
@@ -72,7 +82,11 @@ class Interpreter:
         """Whether the main program came to M2, M30, M17 or RET."""
 
     def run(self) -> None:
-        """Execute the main program; a fault of a jump or call ends it."""
+        """Execute the main program; a fault of a jump or call ends it.
+
+        Raises:
+            MissingProgram: it calls a program that is in another file.
+        """
         try:
             while self._levels:
                 self._next()
@@ -169,7 +183,10 @@ class Interpreter:
     def _call(self, statement: Statement) -> bool:
         """Carry out a call of a subprogram: a name, or L with a number, each with P for the number of passes."""
         items = statement.items
-        names = [item for item in items if isinstance(item, Name) and item.name in self._structure.programs]
+        programs = self._structure.programs
+        names = [
+            item for item in items if isinstance(item, Name) and (item.name in programs or item.name in self._elsewhere)
+        ]
         numbered = [item for item in items if isinstance(item, Word) and item.name == "L"]
         if not (names or numbered):
             return False
@@ -177,7 +194,9 @@ class Interpreter:
         if len(names) + len(numbered) + len(passes) < len(items) or len(names) + len(numbered) > 1:
             raise BlockFault("G601", "a call of a subprogram beside other words")
         name = names[0].name if names else f"L{numbered[0].value.number(self._variables):g}"
-        if name not in self._structure.programs:
+        if name not in programs:
+            if name in self._elsewhere:
+                raise MissingProgram(name, self.row)
             raise BlockFault("G603", name, numbered[0].column)
         arguments = names[0].arguments or () if names else ()
         values = tuple(computed(each, self._variables) for each in arguments)

@@ -98,7 +98,7 @@ def _signed_number(cursor: Cursor, token: Token) -> Expression:
         cursor.next()
     number = cursor.next()
     if number.kind != "number":
-        raise BlockFault("G201", f"{token.text} before '{number.text}'", token.column)
+        raise BlockFault("G201", token.text, token.column)
     value = sign * number.number()
     return Expression((lambda stack, _: stack.append(value),), column)
 

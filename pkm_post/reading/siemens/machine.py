@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pkm_post.model import EventKind
 from pkm_post.reading.gcode.events import LONG_DWELL
-from pkm_post.reading.gcode.options import ReadOptions
+from pkm_post.reading.gcode.options import UNITS, ReadOptions
 from pkm_post.reading.siemens.blocks import Call, Notes
 from pkm_post.reading.siemens.buffer import ABSOLUTE
 from pkm_post.reading.siemens.faults import BlockFault, Faults
@@ -31,8 +31,10 @@ class Machine:
         self.options, self.tools, self.notes = options, tools, Notes()
         self.path = Path(lines, options.axis_words, faults)
         self.state = self.path.state
+        if options.unit == "inch":
+            self.state.scale = self.state.feed_scale = UNITS["inch"]
         if options.feed is not None:
-            self.state.feed = options.feed * 60
+            self.state.feed = options.feed * 60 / self.state.feed_scale
         self.lines, self.faults = lines, faults
         self.modal_call: Call | None = None
 

@@ -14,6 +14,7 @@ from pkm_post.model import EventKind
 from pkm_post.reading.siemens import codes
 from pkm_post.reading.siemens.blocks import Block, Call
 from pkm_post.reading.siemens.faults import BlockFault
+from pkm_post.reading.siemens.frames import Frame, about
 from pkm_post.reading.siemens.machine import Machine
 from pkm_post.reading.siemens.scan import PLAIN_WORDS
 
@@ -172,10 +173,16 @@ def _compensate(machine: Machine, block: Block, code: int) -> None:
 
 
 def _work_offset(machine: Machine, block: Block, code: int) -> None:
-    """The only settable offset in which a program moves is {C} itmachine."""
-    state = machine.state
-    if state.system not in (None, code) and state.has_moved:
-        raise BlockFault("G609", f"G{code} after G{state.system}", block.columns[f"G{code}"])
+    """Without places of settable offsets, the only one in which a program moves is {C} itself."""
+    state, places, column = machine.state, machine.options.work_offsets, block.columns[f"G{code}"]
+    if places:
+        if f"G{code}" not in places:
+            raise BlockFault("G609", f"G{code}", column)
+        x, y, z, degrees = places[f"G{code}"]
+        turn = about(2, degrees)
+        state.set_frames(Frame(turn, np.array([x, y, z]), turn), state.swivel, state.programmed)
+    elif state.system not in (None, code) and state.has_moved:
+        raise BlockFault("G609", f"G{code} after G{state.system}", column)
     state.system = code
 
 
@@ -195,8 +202,8 @@ def name_alone(machine: Machine, block: Block, call: Call) -> None:
         raise BlockFault("G425", name, call.column)
     elif name in codes.REFUSED:
         raise BlockFault("G602", f"{name}: {codes.REFUSED[name]}", call.column)
-    elif name in _NAMES:
-        _NAMES[name](machine, block, call)
+    elif name in NAMES:
+        NAMES[name](machine, block, call)
     else:
         raise BlockFault("G603", name, call.column)
 
@@ -224,9 +231,10 @@ _WORDS: dict[str, Callable[[Machine, Block], None]] = {
     "T": _tool,
     "D": _offset,
 }
-_NAMES: dict[str, Callable[[Machine, Block, Call], None]] = {
+NAMES: dict[str, Callable[[Machine, Block, Call], None]] = {
     "TRAORI": _traori,
     "TRAFOOF": _trafoof,
     "ORIEULER": _angles,
     "ORIRPY": _angles,
 }
+"""Names that put something in force."""

@@ -10,18 +10,20 @@ from __future__ import annotations
 
 from typing import Any
 
-from pkm_post.model import Diagnostic, Program, Severity, errors
+from pkm_post.model import Diagnostic, Place, Program, Severity, errors
 from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, ExecutionLimits, ReadOptions
 from pkm_post.reading.gcode.recovery import merged
 from pkm_post.reading.gcode.scan import with_line_feeds
+from pkm_post.reading.gcode.subprograms import with_operations, with_places
 from pkm_post.reading.siemens.faults import Faults
 from pkm_post.reading.siemens.interpreter import Interpreter
 from pkm_post.reading.siemens.machine import Machine
 from pkm_post.reading.siemens.scan import scan
-from pkm_post.reading.siemens.structure import Structure, structure_of
+from pkm_post.reading.siemens.structure import structure_of
+from pkm_post.reading.siemens.subprograms import MissingProgram, Source, files_by_name
 from pkm_post.reading.siemens.tools import Tools
 
-_CONSEQUENCES = ("G301", "G407", "G408", "G416", "G420", "G424", "G430", "G604")
+_CONSEQUENCES = ("G301", "G407", "G408", "G416", "G420", "G424", "G430", "G604", "G605")
 """Faults that another one before them may cause."""
 
 
@@ -36,45 +38,67 @@ def read(
     Args:
         text: content of the file; any bytes.
         file: its name, for diagnostics.
-        options: read options; those for flavours, dwells and work offsets of G-code mean nothing here.
+        options: read options; those for flavours and dwells of G-code mean nothing here.
         limits: bounds of loops and calls.
 
     Returns:
         The program, or None if there are errors; and the diagnostics.
     """
+    source, added = Source(with_line_feeds(text)), files_by_name(options.folders)
+    while True:
+        try:
+            return _read(source, file, options, limits, frozenset(added))
+        except MissingProgram as missing:
+            place = Place(file, line=missing.row + 1)
+            source, diagnostics = source.with_file(missing.name, added.pop(missing.name), place)
+            if diagnostics:
+                return None, diagnostics
+            if len(source.files) > limits.files:
+                return None, (Diagnostic("G314", place, f"more than {limits.files} files of subprograms"),)
+
+
+def _read(
+    source: Source, file: str, options: ReadOptions, limits: ExecutionLimits, elsewhere: frozenset[str]
+) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """Read a program with the files of its subprograms.
+
+    Raises:
+        MissingProgram: it calls another one, of which there is a file.
+    """
     faults = Faults(file)
-    lines = scan(with_line_feeds(text))
+    lines = scan(source.text)
     structure = structure_of(lines, options.block_delete, faults)
     tools = Tools([lines.line(row) for row in structure.statements], options)
     machine = Machine(lines, options, tools, faults)
-    if options.unit == "inch":
-        machine.state.scale = machine.state.feed_scale = 25.4
-    interpreter = Interpreter(structure, machine, limits, faults)
+    interpreter = Interpreter(structure, machine, limits, faults, elsewhere)
     if not any(fault.code == "G605" for fault in faults.in_order()):
         interpreter.run()
-    sections = machine.path.sections
-    if not len(sections):
+    if not len(machine.path.sections):
         if not faults.has_errors():
             faults.add(-1, "G420", f"{len(lines)} lines")
     elif options.needs_end and not interpreter.has_ended:
         faults.add(structure.main.end - 1, "G430", "no M2, M30, M17 or RET after it")
-    diagnostics = merged(_own(faults.in_order()))
+    diagnostics = merged(with_places(_own(faults.in_order()), source.files))
     if errors(diagnostics):
         return None, diagnostics
-    return _program(structure, machine, file), diagnostics
+    program = _program(machine, file, source.notes)
+    return with_operations(program, source.files), diagnostics
 
 
 def _own(found: tuple[Diagnostic, ...]) -> list[Diagnostic]:
     """The faults that are no consequences of the first one."""
-    first = next((fault.place.line for fault in found if fault.severity is Severity.ERROR), 0)
-    return [fault for fault in found if fault.place.line <= first or fault.code not in _CONSEQUENCES]
+    first = next((fault for fault in found if fault.severity is Severity.ERROR), None)
+    if first is None:
+        return list(found)
+    caused = {*_CONSEQUENCES} - {first.code}
+    return [fault for fault in found if fault.place.line <= first.place.line or fault.code not in caused]
 
 
-def _program(structure: Structure, machine: Machine, file: str) -> Program:
+def _program(machine: Machine, file: str, files: tuple[str, ...]) -> Program:
     numbers = {round(event.value) for event in machine.path.sections.events if event.kind.name == "TOOL_CHANGE"}
     tools = {number: tool for number in sorted(numbers) if (tool := machine.tools.named_tool(number)) is not None}
     initial = machine.tools.tool(0)
-    notes = (*machine.tools.notes(), *machine.notes.lines())
+    notes = (*files, *machine.tools.notes(), *machine.notes.lines())
     columns: dict[str, Any] = machine.path.sections.columns()
     return Program(
         **columns,

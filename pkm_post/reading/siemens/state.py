@@ -52,6 +52,7 @@ class State:
         axis: (3,) unit tool axis in {C}.
         swivelled: whether CYCLE800 has set the tool along Z of its plane.
         system: the settable offset in force, None before the first.
+        offset: frame of the settable offset.
         swivel: frame of CYCLE800.
         programmed: programmable frame.
         position: (3,) of the tool tip.
@@ -86,6 +87,7 @@ class State:
     axis: Array = field(default_factory=lambda: UPRIGHT)
     swivelled: bool = False
     system: int | None = None
+    offset: Frame = field(default_factory=Frame)
     swivel: Frame = field(default_factory=Frame)
     programmed: Frame = field(default_factory=Frame)
     position: Array = field(default_factory=lambda: np.zeros(3))
@@ -94,12 +96,12 @@ class State:
     tangent: Array = field(default_factory=lambda: np.zeros(3))
     frame: Frame = field(default_factory=Frame)
 
-    def set_frames(self, swivel: Frame, programmed: Frame) -> None:
+    def set_frames(self, offset: Frame, swivel: Frame, programmed: Frame) -> None:
         """Change the frames; the tool stays where it is, and its coordinates change."""
         mixed = self.frame.mixed()
         point = self.frame.points(self.position)
-        self.swivel, self.programmed = swivel, programmed
-        self.frame = swivel.then(programmed)
+        self.offset, self.swivel, self.programmed = offset, swivel, programmed
+        self.frame = offset.then(swivel).then(programmed)
         mixed |= self.frame.mixed()
         self.position = self.frame.to_program(point)
         if mixed.any():

@@ -74,10 +74,10 @@ def _plane(state: State, call: Call) -> Frame:
 
 def _set(state: State, frame: Frame, turns: bool) -> bool:
     """Put a plane in force; whether the tool turns with it."""
-    state.set_frames(frame, state.programmed)
+    state.set_frames(state.offset, frame, state.programmed)
     if not turns:
         return False
-    axis = frame.directions(UPRIGHT)
+    axis = state.frame.directions(UPRIGHT)
     lost = bool(np.abs(axis - state.axis).max() > _EPSILON)
     state.axis = axis
     state.swivelled = not frame.is_unturned()

@@ -9,7 +9,7 @@ import math
 import numpy as np
 import pytest
 
-from pkm_post.model import EventKind, Kind, Tool, errors
+from pkm_post.model import Kind, Tool, errors
 from pkm_post.reading.gcode.options import ReadOptions
 from pkm_post.reading.siemens import read
 
@@ -34,83 +34,96 @@ def moves(text, **options):
 
 S = math.sqrt(0.5)
 MOTIONS = {
-    "words": ("G1 X=10 Y=-2.5\nX1EX1 Y=.5", [("L", 10, -2.5, 10), ("L", 10, 0.5, 10)]),
-    "run together": ("N10G1X1Y2F500", [("L", 1, 2, 10)]),
-    "increments": ("G1 X=IC(5) Y3\nG91 X5 Y=AC(1)\nG90 Z=IC(-1)", [("L", 5, 3, 10), ("L", 10, 1, 10), ("L", 10, 1, 9)]),
-    "comments": ('G1 X1 ; X2\nMSG("; X3")\n; X4\nG1 Y1', [("L", 1, 0, 10), ("L", 1, 1, 10)]),
-    "inches": ("G70 G1 X1\nG71 X1", [("L", 25.4, 0, 10), ("L", 1, 0, 10)]),
-    "R parameters": ("R1=2 R[R1+1]=R1*3\nG1 X=R1 Y=R3", [("L", 2, 6, 10)]),
-    "variables": ("DEF REAL AA=1.5, BB[2,2]\nBB[1,0]=AA+1\nG1 X=AA Y=BB[1,0]", [("L", 1.5, 2.5, 10)]),
+    "words": ("G1 X=10 Y=-2.5\nX1EX1 Y=.5", "L 10 -2.5 10, L 10 0.5 10"),
+    "run together": ("N10G1X1Y2F500", "L 1 2 10"),
+    "increments": ("G1 X=IC(5) Y3\nG91 X5 Y=AC(1)\nG90 Z=IC(-1)", "L 5 3 10, L 10 1 10, L 10 1 9"),
+    "comments": ('G1 X1 ; X2\nMSG("; X3")\n; X4\nG1 Y1', "L 1 0 10, L 1 1 10"),
+    "inches": ("G70 G1 X1\nG71 X1", "L 25.4 0 10, L 1 0 10"),
+    "R parameters": ("R1=2 R[R1+1]=R1*3\nG1 X=R1 Y=R3", "L 2 6 10"),
+    "variables": ("DEF REAL AA=1.5, BB[2,2]\nBB[1,0]=AA+1\nG1 X=AA Y=BB[1,0]", "L 1.5 2.5 10"),
     # [NC] 3.1.3: POT is the square, ATAN2(30.5,80.1) is 20.8455 degrees
     "functions": (
-        "G1 X=POT(3)+SQRT(4)-ABS(-1) Y=ROUND(10000*ATAN2(30.5,80.1))/10000 Z=10*SIN(30)\nX=TRUNC(-2.7) Y=ROUND(2.5) Z=7 MOD 4 + 7 DIV 2",
-        [("L", 10, 20.8455, 5), ("L", -2, 3, 6)],
+        "G1 X=POT(3)+SQRT(4)-ABS(-1) Y=ROUND(10000*ATAN2(30.5,80.1))/10000 Z=10*SIN(30)\n"
+        "X=TRUNC(-2.7) Y=ROUND(2.5) Z=7 MOD 4 + 7 DIV 2",
+        "L 10 20.8455 5, L -2 3 6",
     ),
-    "if": ("R1=3\nIF R1==3\nG1 X1\nELSE\nG1 X2\nENDIF\nIF R1<>3\nG1 X3\nELSE\nG1 X4\nENDIF", [("L", 1, 0, 10), ("L", 4, 0, 10)]),
+    "if": ("R1=3\nIF R1==3\nG1 X1\nELSE\nG1 X2\nENDIF\nIF R1<>3\nG1 X3\nELSE\nG1 X4\nENDIF", "L 1 0 10, L 4 0 10"),
     "jumps": (
         "R1=0\nAGAIN: R1=R1+1\nG1 X=R1\nIF R1<2 GOTOB AGAIN\nGOTOF N90\nG1 X99\nN90 G1 Y1",
-        [("L", 1, 0, 10), ("L", 2, 0, 10), ("L", 2, 1, 10)],
+        "L 1 0 10, L 2 0 10, L 2 1 10",
     ),
-    "case": ("R1=2\nCASE R1 OF 1 GOTOF AA 2 GOTOF BB DEFAULT GOTOF AA\nAA: G1 X1\nBB: G1 X2", [("L", 2, 0, 10)]),
+    "case": ("R1=2\nCASE R1 OF 1 GOTOF AA 2 GOTOF BB DEFAULT GOTOF AA\nAA: G1 X1\nBB: G1 X2", "L 2 0 10"),
     "loops": (
-        "G1\nFOR R1=1 TO 3\nX=R1\nENDFOR\nWHILE R1>2\nR1=R1-1\nY=R1\nENDWHILE\nREPEAT\nR1=R1+1\nZ=R1\nUNTIL R1>=4",
-        [("L", 1, 0, 10), ("L", 2, 0, 10), ("L", 3, 0, 10), ("L", 3, 3, 10), ("L", 3, 2, 10), ("L", 3, 2, 3), ("L", 3, 2, 4)],
+        "G1\nFOR R1=1 TO 3\nX=R1\nENDFOR\nWHILE R1>2\nR1=R1-1\nY=R1\nENDWHILE\nREPEAT\nR1=R1+1\nZ=R1\n"
+        "UNTIL R1>=4",
+        "L 1 0 10, L 2 0 10, L 3 0 10, L 3 3 10, L 3 2 10, L 3 2 3, L 3 2 4",
     ),
-    "loop left": ("R1=0\nG1\nLOOP\nR1=R1+1\nX=R1\nIF R1==2 GOTOF OUT\nENDLOOP\nOUT: Y1", [("L", 1, 0, 10), ("L", 2, 0, 10), ("L", 2, 1, 10)]),
+    "loop left": (
+        "R1=0\nG1\nLOOP\nR1=R1+1\nX=R1\nIF R1==2 GOTOF OUT\nENDLOOP\nOUT: Y1",
+        "L 1 0 10, L 2 0 10, L 2 1 10",
+    ),
     # [NC] 3.1.9, program section repetition
-    "repeat to here": ("G1 G91\nAA: X1\nREPEAT AA P=2", [("L", 1, 0, 10), ("L", 2, 0, 10), ("L", 3, 0, 10)]),
-    "repeat a block": ("G1 G91\nAA: X1\nY1\nREPEATB AA P=2", [("L", 1, 0, 10), ("L", 1, 1, 10), ("L", 2, 1, 10), ("L", 3, 1, 10)]),
+    "repeat to here": ("G1 G91\nAA: X1\nREPEAT AA P=2", "L 1 0 10, L 2 0 10, L 3 0 10"),
+    "repeat a block": ("G1 G91\nAA: X1\nY1\nREPEATB AA P=2", "L 1 0 10, L 1 1 10, L 2 1 10, L 3 1 10"),
     "repeat a section": (
         "G1 G91\nAA: X1\nBB: Y1\nZ1\nREPEAT AA BB P=1",
-        [("L", 1, 0, 10), ("L", 1, 1, 10), ("L", 1, 1, 11), ("L", 2, 1, 11), ("L", 2, 2, 11)],
+        "L 1 0 10, L 1 1 10, L 1 1 11, L 2 1 11, L 2 2 11",
     ),
-    "circle by centre": ("G1 X10\nG2 X20 Y10 I10 J0\nG3 X10 Y0 I=AC(20) J=AC(0)", [("L", 10, 0, 10), ("A", 20, 10, 10), ("A", 10, 0, 10)]),
-    "circle by radius": ("G2 X10 Y10 CR=10\nG3 X0 Y0 CR=-10", [("A", 10, 10, 10), ("A", 0, 0, 10)]),
-    "circle by angle": ("G3 X10 Y10 AR=90\nG3 I0 J10 AR=180", [("A", 10, 10, 10), ("A", 10, 30, 10)]),
-    "turns": ("G3 X0 Y0 Z7 I10 J0 TURN=2", [("A", 0, 0, 9), ("A", 0, 0, 8), ("A", 0, 0, 7)]),
+    "circle by centre": ("G1 X10\nG2 X20 Y10 I10 J0\nG3 X10 Y0 I=AC(20) J=AC(0)", "L 10 0 10, A 20 10 10, A 10 0 10"),
+    "circle by radius": ("G2 X10 Y10 CR=10\nG3 X0 Y0 CR=-10", "A 10 10 10, A 0 0 10"),
+    "circle by angle": ("G3 X10 Y10 AR=90\nG3 I0 J10 AR=180", "A 10 10 10, A 10 30 10"),
+    "turns": ("G3 X0 Y0 Z7 I10 J0 TURN=2", "A 0 0 9, A 0 0 8, A 0 0 7"),
     # 802D sl, 06/2006, p. 157: the circle of that example has its centre in (40, 32.5)
-    "CIP": ("G1 X30 Y40\nCIP X50 Y40 I1=40 J1=45", [("L", 30, 40, 10), ("A", 50, 40, 10)]),
-    "CIP in increments": ("G1 X30 Y40\nG91 CIP X20 Y0 I1=10 J1=5", [("L", 30, 40, 10), ("A", 50, 40, 10)]),
-    "CT": ("G1 X20\nCT X30 Y10\nCT X30 Y20", [("L", 20, 0, 10), ("A", 30, 10, 10), ("L", 30, 20, 10)]),
-    "shift": ("TRANS X10 Y5\nG1 X0 Y0\nATRANS X1\nX0\nTRANS\nX0", [("L", 10, 5, 10), ("L", 11, 5, 10), ("L", 0, 5, 10)]),
+    "CIP": ("G1 X30 Y40\nCIP X50 Y40 I1=40 J1=45", "L 30 40 10, A 50 40 10"),
+    "CIP in increments": ("G1 X30 Y40\nG91 CIP X20 Y0 I1=10 J1=5", "L 30 40 10, A 50 40 10"),
+    "CT": ("G1 X20\nCT X30 Y10\nCT X30 Y20", "L 20 0 10, A 30 10 10, L 30 20 10"),
+    "shift": ("TRANS X10 Y5\nG1 X0 Y0\nATRANS X1\nX0\nTRANS\nX0", "L 10 5 10, L 11 5 10, L 0 5 10"),
     # [NC] 2.12.5: ROT turns about Z, then about the new Y, then about the new X; absolute statements replace each other
-    "turn in the plane": ("TRANS X10\nAROT RPL=90\nG1 X5 Y0\nROT\nG1 X5 Y0", [("L", 10, 5, 10), ("L", 5, 0, 10)]),
-    "turn": ("ROT Z90 X90\nG1 X1 Y2 Z3\n", [("L", 3, 1, 2)]),
-    "scale and mirror": ("SCALE X2\nG1 X5\nMIRROR X0\nX5\nAMIRROR Y0\nY1 X0\nMIRROR\nG1 Y1", [("L", 10, 0, 10), ("L", -5, 0, 10), ("L", 0, -1, 10), ("L", 0, 1, 10)]),
-    "planes": ("G18 G2 X10 Z0 I0 K-10", [("A", 10, 0, 0)]),
+    "turn in the plane": ("TRANS X10\nAROT RPL=90\nG1 X5 Y0\nROT\nG1 X5 Y0", "L 10 5 10, L 5 0 10"),
+    "turn": ("ROT Z90 X90\nG1 X1 Y2 Z3\n", "L 3 1 2"),
+    "scale and mirror": (
+        "SCALE X2\nG1 X5\nMIRROR X0\nX5\nAMIRROR Y0\nY1 X0\nMIRROR\nG1 Y1",
+        "L 10 0 10, L -5 0 10, L 0 -1 10, L 0 1 10",
+    ),
+    "planes": ("G18 G2 X10 Z0 I0 K-10", "A 10 0 0"),
     # [C] 2.1: RFP + SDIS rapidly, the depth with feed, RTP rapidly
-    "CYCLE81": ("X5\nCYCLE81(20,0,2,-10)", [("R", 5, 0, 10), ("R", 5, 0, 2), ("L", 5, 0, -10), ("R", 5, 0, 20)]),
-    "depth relative": ("CYCLE82(20,1,2,,11,0.5)", [("R", 0, 0, 3), ("L", 0, 0, -10), ("R", 0, 0, 20)]),
-    "CYCLE85": ("CYCLE85(20,0,2,-10,,,300,900)", [("R", 0, 0, 2), ("L", 0, 0, -10), ("L", 0, 0, 2), ("R", 0, 0, 20)]),
+    "CYCLE81": ("X5\nCYCLE81(20,0,2,-10)", "R 5 0 10, R 5 0 2, L 5 0 -10, R 5 0 20"),
+    "depth relative": ("CYCLE82(20,1,2,,11,0.5)", "R 0 0 3, L 0 0 -10, R 0 0 20"),
+    "CYCLE85": ("CYCLE85(20,0,2,-10,,,300,900)", "R 0 0 2, L 0 0 -10, L 0 0 2, R 0 0 20"),
     "chips broken": (
         "CYCLE83(20,0,2,-12,,-5,,1,0,0,1,0)",
-        [("R", 0, 0, 2), ("L", 0, 0, -5), ("L", 0, 0, -4), ("L", 0, 0, -9), ("L", 0, 0, -8), ("L", 0, 0, -12), ("R", 0, 0, 20)],
+        "R 0 0 2, L 0 0 -5, L 0 0 -4, L 0 0 -9, L 0 0 -8, L 0 0 -12, R 0 0 20",
     ),
     "chips removed": (
         "CYCLE83(20,0,2,-9,,-5,,0,0,0,1,1)",
-        [("R", 0, 0, 2), ("L", 0, 0, -5), ("R", 0, 0, 2), ("R", 0, 0, -4.4), ("L", 0, 0, -9), ("R", 0, 0, 20)],
+        "R 0 0 2, L 0 0 -5, R 0 0 2, R 0 0 -4.4, L 0 0 -9, R 0 0 20",
     ),
     "MCALL": (
         "MCALL CYCLE81(20,0,2,-1)\nG0 X5\nX6\nMCALL\nX7",
-        [("R", 5, 0, 10), ("R", 5, 0, 2), ("L", 5, 0, -1), ("R", 5, 0, 20), ("R", 6, 0, 20), ("R", 6, 0, 2), ("L", 6, 0, -1), ("R", 6, 0, 20), ("R", 7, 0, 20)],
+        "R 5 0 10, R 5 0 2, L 5 0 -1, R 5 0 20, R 6 0 20, R 6 0 2, L 6 0 -1, R 6 0 20, R 7 0 20",
     ),
     "HOLES1": (
         "MCALL CYCLE81(20,0,2,-1)\nHOLES1(1,0,90,2,3,2)\nMCALL",
-        [("R", 1, 2, 10), ("R", 1, 2, 2), ("L", 1, 2, -1), ("R", 1, 2, 20), ("R", 1, 5, 20), ("R", 1, 5, 2), ("L", 1, 5, -1), ("R", 1, 5, 20)],
+        "R 1 2 10, R 1 2 2, L 1 2 -1, R 1 2 20, R 1 5 20, R 1 5 2, L 1 5 -1, R 1 5 20",
     ),
     "HOLES2": (
         "MCALL CYCLE81(20,0,2,-1)\nHOLES2(0,0,10,0,0,2)\nMCALL",
-        [("R", 10, 0, 10), ("R", 10, 0, 2), ("L", 10, 0, -1), ("R", 10, 0, 20), ("R", -10, 0, 20), ("R", -10, 0, 2), ("L", -10, 0, -1), ("R", -10, 0, 20)],
+        "R 10 0 10, R 10 0 2, L 10 0 -1, R 10 0 20, R -10 0 20, R -10 0 2, L -10 0 -1, R -10 0 20",
     ),
-    "swivel": ('CYCLE800(1,"",0,57,10,0,0,0,90,0,0,0,0,-1)\nG0 X0 Y0\nZ5\nG1 X1\nCYCLE800()\nG0 X0 Y0 Z20', [("R", 15, 0, 0), ("L", 15, 0, -1), ("R", 0, 0, 20)]),
-    "machine": ("G0 SUPA Z0 D0\nD1\nG1 X1", [("R", 0, 0, 300), ("L", 1, 0, 300)]),
+    "swivel": (
+        'CYCLE800(1,"",0,57,10,0,0,0,90,0,0,0,0,-1)\nG0 X0 Y0\nZ5\nG1 X1\nCYCLE800()\nG0 X0 Y0 Z20',
+        "R 15 0 0, L 15 0 -1, R 0 0 20",
+    ),
+    "machine": ("G0 SUPA Z0 D0\nD1\nG1 X1", "R 0 0 300, L 1 0 300"),
 }  # fmt: skip
+"""By name, a program and its moves: R, L or A for rapid moves, lines and arcs, with X Y Z."""
 
 
 @pytest.mark.parametrize("name", MOTIONS)
 def test_motions(name):
     text, expected = MOTIONS[name]
-    assert moves(text, machine_zero=(0.0, 0.0, 300.0)) == expected
+    wanted = [(kind, *map(float, point)) for kind, *point in (each.split() for each in expected.split(", "))]
+    assert moves(text, machine_zero=(0.0, 0.0, 300.0)) == wanted
 
 
 def test_arcs_have_the_centres_of_the_manual():
@@ -162,15 +175,17 @@ def test_the_feed_of_g70_stays_in_mm():
 def test_events():
     text = 'T="MILL 8" D1\nM6\nS500 M3 M8\nG0 X1\nG4 F2\nG4 S10\nM1\nG1 X2\nM30'
     events = [(event.row, event.kind, event.value) for event in taken(HEAD + text).events]
-    kind = EventKind
-    assert events == [
-        (1, kind.TOOL_CHANGE, 1), (1, kind.SPINDLE, 500), (1, kind.COOLANT, 1), (2, kind.DWELL, 2), (2, kind.DWELL, 1.2),
-        (2, kind.STOP, 1), (3, kind.SPINDLE, 0), (3, kind.COOLANT, 0),
+    names = [(row, kind.name, value) for row, kind, value in events]
+    assert names == [
+        (1, "TOOL_CHANGE", 1), (1, "SPINDLE", 500), (1, "COOLANT", 1), (2, "DWELL", 2), (2, "DWELL", 1.2),
+        (2, "STOP", 1), (3, "SPINDLE", 0), (3, "COOLANT", 0),
     ]  # fmt: skip
 
 
 def test_tools_by_name_get_free_numbers_and_the_report_says_so():
-    program = taken(HEAD + 'T1\nM6\nG1 X1\nT="MILL"\nM6\nX2\nT="DRILL"\nM6\nX3', tools={3: Tool(3, "Drill", 5.0, 0.0, 80.0)})
+    program = taken(
+        HEAD + 'T1\nM6\nG1 X1\nT="MILL"\nM6\nX2\nT="DRILL"\nM6\nX3', tools={3: Tool(3, "Drill", 5.0, 0.0, 80.0)}
+    )
     assert [event.value for event in program.events] == [1, 2, 3]
     assert [line for line in program.reading if "tool" in line] == ['tool "MILL" is number 2 here']
     assert (program.tools[2].name, program.tools[3].diameter) == ("MILL", 5.0)
@@ -193,7 +208,14 @@ def test_tolerances(text, tolerance):
 
 
 def test_exact_stops():
-    assert taken(HEAD + "G1 X1\nG60 X2\nX3\nG64 X4\nG9 X5\nX6").exact_stop[1:].tolist() == [False, True, True, False, True, False]
+    assert taken(HEAD + "G1 X1\nG60 X2\nX3\nG64 X4\nG9 X5\nX6").exact_stop[1:].tolist() == [
+        False,
+        True,
+        True,
+        False,
+        True,
+        False,
+    ]
 
 
 def test_cutter_compensation_and_mirrored_arcs():

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Subprograms in other files: NAME.SPF or NAME.MPF in the folders of subprograms, for a call of NAME or L123.
+
+Enters: folders, and the name of a call. Leaves: the text of the program with that of the file behind it, behind a line
+%_N_NAME_SPF as in an archive, so that all later steps see one file.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from pkm_post.model import Diagnostic, Place
+from pkm_post.reading.gcode.blocks import SubprogramFile
+from pkm_post.reading.gcode.scan import with_line_feeds
+
+SUFFIXES = (".spf", ".mpf")
+_BYTES = 256 * 1024 * 1024
+"""The longest file that is read."""
+
+
+class MissingProgram(Exception):  # noqa: N818 - it is found, and the program begins again
+    """A call of a subprogram that is in another file.
+
+    Attributes:
+        name: that is called.
+        row: of the call.
+    """
+
+    def __init__(self, name: str, row: int) -> None:
+        super().__init__(name)
+        self.name, self.row = name, row
+
+
+@dataclass(frozen=True)
+class Source:
+    """A program with the files of its subprograms.
+
+    Attributes:
+        text: of all files, lines ended by line feeds.
+        files: of subprograms.
+        notes: on them, for the report.
+    """
+
+    text: bytes
+    files: tuple[SubprogramFile, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def with_file(self, name: str, paths: list[Path], place: Place) -> tuple[Source, tuple[Diagnostic, ...]]:
+        """Add the file of a subprogram; the faults of finding and reading it."""
+        if len(paths) > 1:
+            found = f"{name}: {' and '.join(path.name for path in paths)} in {paths[0].parent}"
+            return self, (Diagnostic("G318", place, found),)
+        try:
+            with paths[0].open("rb") as stream:
+                content = stream.read(_BYTES + 1)
+        except OSError as fault:
+            return self, (Diagnostic("F103", Place(str(paths[0])), str(fault)),)
+        if len(content) > _BYTES:
+            return self, (Diagnostic("F103", Place(str(paths[0])), f"more than {_BYTES} bytes"),)
+        lines = self.text.count(b"\n")
+        file = SubprogramFile(name, str(paths[0]), lines, lines + 1)
+        note = f"{name} is the file {paths[0].name}, SHA-256 {hashlib.sha256(content).hexdigest()}"
+        begins = with_line_feeds(content)
+        header = b";" if begins.lstrip().startswith(b"%") else f"%_N_{name}_SPF".encode("latin-1")
+        return Source(b"".join([self.text, header, b"\n", begins]), (*self.files, file), (*self.notes, note)), ()
+
+
+def files_by_name(folders: Iterable[Path]) -> dict[str, list[Path]]:
+    """The files of subprograms by name in capitals, of each those in the first folder that has some."""
+    found: dict[str, list[Path]] = {}
+    for folder in folders:
+        here: dict[str, list[Path]] = {}
+        for path in _listed(folder):
+            if path.suffix.lower() in SUFFIXES and path.is_file():
+                here.setdefault(path.stem.upper(), []).append(path)
+        found = here | found
+    return found
+
+
+def _listed(folder: Path) -> list[Path]:
+    """The entries of a folder; none where it cannot be read: then the call has no subprogram."""
+    try:
+        return sorted(folder.iterdir())
+    except OSError:
+        return []

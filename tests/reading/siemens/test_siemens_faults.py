@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Programs in Siemens's language with a fault, each with its diagnostic: code, line, column and what was found."""
+
+import pytest
+
+from pkm_post.model import Severity, Tool
+from pkm_post.reading.gcode.options import DEFAULT_LIMITS, ExecutionLimits, ReadOptions
+from pkm_post.reading.siemens import read
+
+HEAD = "G90 G54 F600\nG0 X0 Y0 Z10\n"
+FIRST = 3
+"""The line behind the head."""
+TOOL = Tool(0, "", 10.0, 0.0, 100.0)
+
+
+def found(text, limits=DEFAULT_LIMITS, **options):
+    """The program, and its diagnostics as code, line, column and what was found."""
+    options = {"default_tool": TOOL} | options
+    program, diagnostics = read(text, "part.mpf", ReadOptions(**options), limits)
+    return program, [(each.code, each.place.line, each.place.column, each.found) for each in diagnostics]
+
+
+FAULTS = {
+    # malformed blocks
+    "G1 X?": ("G101", 5, "'?'"),
+    "G1 X": ("G201", 4, "X"),
+    "G1 X1 X2": ("G202", 7, "X"),
+    "G1 X=": ("G209", 6, "the end of the block instead of a value"),
+    "G1 X=(1+2": ("G601", 10, "the end of the block instead of )"),
+    "G1 X=" + 60 * "(" + "1" + 60 * ")": ("G211", 56, "more than 50 brackets within each other"),
+    "R1=1 R2=2\nIF R1==1 AND R2==2 GOTOF AA\nAA:": ("G601", 6, "AND beside == without brackets"),
+    "DEF FRAME F1": ("G602", 5, "DEF FRAME: only REAL, INT, BOOL, CHAR, STRING are read"),
+    "FOR 1 TO 2\nENDFOR": ("G206", 5, "'1'"),
+    # values
+    "G1 X=R1": ("G301", 6, "R1"),
+    "G1 X=WIDTH": ("G603", 6, "WIDTH"),
+    "G1 X=1/0": ("G304", 7, "1 / 0"),
+    "G1 X=SQRT(-1)": ("G305", 6, "SQRT of -1"),
+    "G1 X=$P_UIFR[1]": ("G303", 6, "$P_UIFR"),
+    'G1 X="A"': ("G606", 4, 'X="A"'),
+    "DEF REAL AA[2]\nAA[2]=1": ("G606", 1, "AA[2] of [2]"),
+    # flow
+    "GOTOF AA": ("G604", 0, "GOTOF AA"),
+    "AA: GOTOF AA": ("G604", 0, "GOTOF AA"),
+    "IF 1\nG1 X1": ("G605", 1, "IF without an end"),
+    "ENDFOR": ("G605", 1, "ENDFOR without FOR"),
+    "L77": ("G603", 1, "L77"),
+    "DRESS(1)": ("G603", 1, "DRESS"),
+    # what blocks mean
+    "G1 X1 E3": ("G404", 7, "E"),
+    "G123": ("G401", 1, "G123"),
+    "M77": ("G401", 1, "M77"),
+    "G96 S100": ("G602", 1, "G96: constant cutting speed"),
+    "G1 X1 RND=2": ("G602", 7, "RND=: roundings and chamfers between blocks"),
+    "ORIPATH": ("G602", 1, "ORIPATH: ways of the tool axis but the shortest one"),
+    "G331 Z-5 K1": ("G425", 1, "G331"),
+    "CYCLE84(10,0,2,-9,,,3,,1,0,300,300)": ("G425", 1, "CYCLE84"),
+    "MCALL CYCLE840(10,0,2,-9)": ("G425", 7, "CYCLE840"),
+    "CYCLE86(10,0,2,-9,,0,3,1,1,1,0)": ("G602", 1, "CYCLE86: boring with an oriented spindle or by hand"),
+    "G2 X10 Y0": ("G410", 0, "neither R nor the centre words of the plane"),
+    "G2 X10 Y0 CR=4": ("G409", 0, "CR=4, and its ends are 10.0000 mm apart"),
+    "CIP X10 Y0 I1=5 J1=0": ("G409", 0, "start, intermediate point and end of CIP are on a line"),
+    "SCALE X2\nG2 X10 Y0 I5": ("G602", 0, "an arc under a SCALE that is not even in its plane"),
+    "G1 X1 A3=1": ("G404", 0, "A3= without TRAORI"),
+    "TRAORI\nG1 X1 A3=0 B3=0 C3=0": ("G415", 0, "A3=0 B3=0 C3=0"),
+    "TRAORI\nG1 X1 A2=1 B2=2": ("G608", 0, "A2= B2= C2="),
+    "TRAORI\nG1 X1 A30": ("G607", 0, "A30"),
+    "TRAORI\nG1 X1 A30 A3=1": ("G607", 0, "two notations of the tool axis in one block"),
+    "TRAORI(2)": ("G602", 1, "TRAORI(2): only the first transformation is read"),
+    'TRANS X1\nCYCLE800(1,"",0,57,0,0,0,9,0,0,0,0,0,1)': (
+        "G602",
+        1,
+        "CYCLE800 while TRANS, ROT, SCALE or MIRROR is in force",
+    ),
+    'CYCLE800(1,"",0,64,0,0,0,9,0,0,0,0,0,1)': ("G602", 1, "CYCLE800 by solid angles (_MODE=64)"),
+    "G0 SUPA Z0": ("G609", 0, "SUPA, G53 or G153"),
+    "G1 X1\nG55": ("G609", 1, "G55 after G54"),
+    "CYCLE81(1,0,2,-10)": ("G418", 1, "CYCLE81: RTP 1 is below RFP + SDIS"),
+    "CYCLE81(10,0,2,5)": ("G418", 1, "CYCLE81: the depth 5 is not below RFP 0"),
+    "HOLES1(0,0,0,0,1,3)": ("G418", 1, "HOLES1 without MCALL of a drilling cycle before it"),
+    "T1\nG1 G41 X5\nTRANS X1": ("G419", 1, "TRANS"),
+    "M3": ("G405", 1, "M3 without S"),
+    "M6": ("G405", 0, "M6 without T"),
+    "D0\nG1 X1": ("G424", 0, "a cut after D0"),
+    "SCALE X0": ("G606", 0, "a factor of 0"),
+}
+
+
+@pytest.mark.parametrize("text", FAULTS, ids=[text[:24] for text in FAULTS])
+def test_faults(text):
+    code, column, what = FAULTS[text]
+    program, diagnostics = found(HEAD + text)
+    assert program is None
+    faulty = [each for each in diagnostics if each[0] == code]
+    assert len(faulty) == 1, diagnostics
+    lines = {"FOR": FIRST, "IF ": FIRST, "R1=": FIRST + 1}
+    line = lines.get(text[:3], FIRST + text.count("\n"))
+    assert faulty[0][1:] == (line, column, what)
+
+
+def test_the_first_cut_needs_a_feed():
+    text = "G90 G0 X0 Y0 Z1\nG1 X1\nX2"
+    assert found(text)[1] == [("G408", 2, 0, "no F"), ("G408", 3, 0, "no F")]
+    assert found(text, feed=5.0)[0].feed[1:].tolist() == [5, 5]
+
+
+def test_a_rapid_move_of_rotary_axes_loses_the_place_of_the_tip():
+    """It is known again when X, Y and Z are given with TRAORI."""
+    text = HEAD + "G0 A30 C10\nTRAORI\nG0 X5 Y5\nG0 Z5\nG1 X1"
+    program, diagnostics = found(text, axis_words="AC")
+    assert not diagnostics
+    assert program.position.tolist() == [[0, 0, 10], [5, 5, 5], [1, 5, 5]]
+    assert found(HEAD + "G0 A30\nTRAORI\nG1 X5", axis_words="AC")[1][0][0] == "G416"
+    assert found(HEAD + "G1 A30 X5", axis_words="AC")[1][0][0] == "G424"
+
+
+def test_cycle800_warns_of_the_way_there():
+    program, diagnostics = found(HEAD + 'CYCLE800(1,"",0,57,0,0,0,9,0,0,0,0,0,1)\nG0 X0 Y0 Z5')
+    assert program is not None
+    assert diagnostics == [("G610", 3, 1, "CYCLE800")]
+
+
+def test_a_drill_goes_along_the_tool():
+    assert found(HEAD + "TRAORI\nG1 X1 A3=1 C3=1\nCYCLE81(10,0,2,-10)")[1][0][0] == "G429"
+
+
+def test_a_long_dwell_is_a_warning():
+    program, diagnostics = found(HEAD + "G4 F61\nG1 X1")
+    assert program is not None
+    assert diagnostics == [("G428", 3, 0, "61 s")]
+
+
+def test_every_execution_ends():
+    limits = ExecutionLimits(blocks=1000, depth=3)
+    assert found(HEAD + "LOOP\nENDLOOP", limits)[1][0][0] == "G313"
+    assert found("AA: G90 G0 X0 Y0 Z0\nGOTOB AA", limits)[1][0][0] == "G313"
+    archive = "%_N_AA_MPF\nBB\nM30\n%_N_BB_SPF\nBB\nM17"
+    assert found(archive, limits)[1][0][0] == "G314"
+
+
+def test_a_program_needs_an_end():
+    assert found(HEAD + "G1 X1", needs_end=True)[1] == [("G430", 3, 0, "no M2, M30, M17 or RET after it")]
+    for end in ("M2", "M30", "M17", "RET", "N10 G0 X1 M30"):
+        assert found(HEAD + "G1 X1\n" + end, needs_end=True)[0] is not None
+
+
+def test_faults_behind_the_first_are_reported_and_consequences_are_not():
+    _, diagnostics = found("G90 G54\nG1 X1 Y2 Z3 F?\nX5\nRND=3\nM77 X4\nM30")
+    assert [each[:2] for each in diagnostics] == [("G101", 2), ("G602", 4), ("G401", 5)]
+
+
+def test_codes_are_left_out_as_chosen():
+    program, diagnostics = found(HEAD + "M77 G1 X1", left_out=("M77",))
+    assert not diagnostics
+    assert "M77, left out as chosen (line 3)" in program.reading
+
+
+def test_work_offsets_have_their_places():
+    offsets = {"G54": (0.0, 0.0, 0.0, 0.0), "G505": (100.0, 0.0, 0.0, 90.0)}
+    program, diagnostics = found(HEAD + "G1 X1 Y2\nG505 X1 Y2", work_offsets=offsets)
+    assert not diagnostics
+    assert program.position[1:].round(12).tolist() == [[1, 2, 10], [98, 1, 10]]
+    assert found(HEAD + "G55", work_offsets=offsets)[1][0][::3] == ("G609", "G55")
+
+
+def test_subprograms_in_other_files(tmp_path):
+    (tmp_path / "l10.SPF").write_text("G91 G1 X1\nG90\nM17\n")
+    (tmp_path / "STEP.SPF").write_text("%_N_STEP_SPF\nPROC STEP(REAL HIGH)\nG1 Z=HIGH\nRET\n")
+    text = HEAD + "L10 P2\nSTEP(3)\nM30"
+    program, diagnostics = found(text, folders=(tmp_path,))
+    assert not diagnostics
+    assert program.position.tolist() == [[0, 0, 10], [1, 0, 10], [2, 0, 10], [2, 0, 3]]
+    assert program.line.tolist() == [2, 1, 1, 3]
+    assert program.operations == ("", "subprogram l10.SPF", "subprogram STEP.SPF")
+    assert found(text)[1][0] == ("G603", 3, 1, "L10")
+    (tmp_path / "STEP.SPF").write_text("PROC STEP(REAL HIGH)\nG1 Z=?\nRET\n")
+    program, diagnostics = read(text, "part.mpf", ReadOptions(default_tool=TOOL, folders=(tmp_path,)))
+    assert (diagnostics[0].place.file, diagnostics[0].place.line) == (str(tmp_path / "STEP.SPF"), 2)
+
+
+@pytest.mark.parametrize(
+    "text", ["", ";", "\n\n", "%_N_A_MPF\n", "\x00\xff", '"' * 99, "G" * 20000, "N" * 500, "=" * 50]
+)
+def test_any_text_is_read_or_refused(text):
+    program, diagnostics = read(text, "part.mpf", ReadOptions(default_tool=TOOL))
+    assert program is None
+    assert any(each.severity is Severity.ERROR for each in diagnostics)
