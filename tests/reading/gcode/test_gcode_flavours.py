@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pkm_post import reading
 from pkm_post.model import EventKind, Kind, Tool
 from pkm_post.options.converters import GCODE_FLAVOURS
 from pkm_post.reading.gcode import ReadOptions, read
@@ -49,7 +50,8 @@ R, L = int(Kind.RAPID), int(Kind.LINE)
 
 
 def test_the_names_are_the_same_everywhere():
-    assert tuple(FLAVOURS) == FLAVOUR_NAMES == GCODE_FLAVOURS
+    assert tuple(FLAVOURS) == FLAVOUR_NAMES
+    assert reading.FLAVOUR_NAMES == GCODE_FLAVOURS == (*FLAVOUR_NAMES, "siemens")
     assert {flavour.dwell_unit for flavour in FLAVOURS.values()} <= set(DWELL_UNITS)
 
 
