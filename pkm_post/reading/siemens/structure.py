@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pkm_post.reading.gcode.interpreter import rows_of_sequence_numbers
+from pkm_post.reading.gcode.call_levels import rows_of_sequence_numbers
 from pkm_post.reading.siemens.faults import BlockFault, Faults
 from pkm_post.reading.siemens.flow import Flow
 from pkm_post.reading.siemens.scan import STATEMENT, Lines
