@@ -224,6 +224,19 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
         "the tool is tilted before G43.4, where the place of its tip depends on another machine",
         "check the way there: the next move goes straight to the first place with G43.4; or write G43.4 first",
     ),
+    "G432": error(
+        "it is not clear here how the tool stands to the tilted plane",
+        "write G53.1 directly after G68.2, G69 with the tool retracted, and rotary words of 0 before the next cut",
+    ),
+    "G433": warning(
+        "the tool turns to a tilted plane, where the place of its tip depends on another machine",
+        "check the way there: the next move goes straight to the first place in the plane",
+    ),
+    "G434": error(
+        "a factor of scaling has no decimal point, and counts in units that a parameter of the control sets",
+        "write it with a point, as in P2. for twice the size",
+    ),
+    "G435": error("controls differ in what this means while scaling is in force", "write G50 before it"),
     # G5: writing G-code
     "G501": error("the tool axis tilts, and this form of G-code cannot express it", "choose a form with five axes"),
     "G502": error("the tool axis points down, and this form of G-code cannot express it", "choose vectors or a head"),

@@ -34,6 +34,7 @@ class Group(Enum):
     ROTATION = "rotation"
     POLAR = "polar coordinates"
     MIRROR = "mirror"
+    SCALING = "scaling"
     STOP = "stop"
     CHANGE = "tool change"
     SPINDLE = "spindle"
@@ -135,7 +136,7 @@ UNSUPPORTED: dict[str, str] = {
     "G44": "negative length offsets",
     "G50": "scaling",
     "G51": "scaling",
-    "G68.2": "tilted planes",
+    "G68.2": "tilted planes; they are understood with --flavour fanuc",
     "G76": "threading cycles, and fine boring, which needs an oriented spindle",
     "G87": "back boring, which needs an oriented spindle",
     "G88": "boring with retraction by hand",

@@ -19,13 +19,14 @@ from pkm_post.reading.gcode.modal import Modal, PositionWords, is_cycle, track_c
 from pkm_post.reading.gcode.motions import KEPT, OTHERS_LOST, Motions, Section, as_slice, concatenated
 from pkm_post.reading.gcode.options import ReadOptions
 from pkm_post.reading.gcode.polar import PolarWords
+from pkm_post.reading.gcode.tilted_planes import TURN_TO_PLANE
 from pkm_post.reading.gcode.work_offsets import IN_ORDER, SETS_OFFSETS, TIP_CONTROL, OffsetCodes
 
 _ROTARY = "ABC"
 """Axes of other machines: G28 with them alone moves no other one."""
 _SECOND = 2
 """P of G30 for the second reference point; those beyond are not known."""
-_SPECIAL_CODES = (280, 281, 300, 301, 530, *SETS_OFFSETS)
+_SPECIAL_CODES = (280, 281, 300, 301, 530, TURN_TO_PLANE, *SETS_OFFSETS)
 
 
 class PositionTracker:
@@ -127,16 +128,23 @@ class PositionTracker:
             self._set_frame()
         # Only for a block with such a code: the transformation to {C} and back costs the last digit.
         if self.offset_codes.changes_frame(row):
-            point = self.frame.to_work(self.position)
+            point, was_tilted = self.frame.to_work(self.position), self.offset_codes.offsets.tilted
             for groups in (IN_ORDER, (Group.ONCE,)):
                 for group in groups:
                     self.offset_codes.execute(row, group, self.position, self.known, self._uses_work_offset)
                 self._rebase(point)
+            if was_tilted and not self.offset_codes.offsets.tilted:
+                self.known = np.zeros(3, np.bool_)
+        if self.modal.programmed[Group.ONCE][row] == TURN_TO_PLANE:
+            # Rotary axes turn the tool, and the tip goes where a machine brings it that is not this one.
+            self.known = np.zeros(3, np.bool_)
 
     def _rebase(self, point: Array) -> None:
         """Switch to the active frame; the tool keeps its position in {C}, and its coordinates change."""
-        mixed = self.frame.oblique()
+        before, mixed = self.frame, self.frame.oblique()
         self._set_frame()
+        if self.frame is before:
+            return
         mixed |= self.frame.oblique()
         self.position = self.frame.to_program(point)
         if mixed.any():

@@ -29,6 +29,8 @@ from pkm_post.reading.gcode.motions import Motions
 from pkm_post.reading.gcode.options import UNITS, ReadOptions, axis_names
 from pkm_post.reading.gcode.position_tracker import PositionTracker
 from pkm_post.reading.gcode.recovery import first_line, own_faults
+from pkm_post.reading.gcode.scaling import scaled
+from pkm_post.reading.gcode.tilted_planes import check_cuts_from_turns, check_tilted_planes
 from pkm_post.reading.gcode.tool_axes import check_cycles, spins, surface_normals, tool_axes
 from pkm_post.reading.gcode.tools import side_offsets, spindle_speeds, tools_in_spindle
 
@@ -64,6 +66,9 @@ def resolve(
     faults = BlockDiagnostics(blocks, text)
     modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), flavour)
     check(blocks, modal, options, faults)
+    if (modal.programmed[Group.SCALING] != NONE).any():
+        blocks = scaled(blocks, modal, faults)
+        modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), flavour)
     check_dwells(blocks, modal, options, faults)
     program = None if faults.has_errors() else _program(blocks, modal, options, faults)
     behind = _faults_behind(blocks, modal, options, faults) if program is None else ()
@@ -138,6 +143,7 @@ def block_states(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Blo
     axes, lost = tool_axes(blocks, modal, options, faults)
     checkpoint()
     check_cycles(modal, axes, faults)
+    check_tilted_planes(blocks, modal, axes, faults)
     return BlockStates(
         tools=tools,
         spindle=spindle_speeds(blocks, modal),
@@ -159,6 +165,7 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
     motions = tracker.motions()
     checkpoint()
     _check_lost_places(motions, states.lost, faults)
+    check_cuts_from_turns(blocks, motions, faults)
     centre, axis = arc_geometry(blocks, modal, motions, faults)
     if faults.has_errors():
         return None

@@ -30,6 +30,9 @@ SETS_OFFSETS = (100, 520, 920, 921, 922, 923)
 TIP_CONTROL = (434, 435)
 """Codes that make X Y Z tool tip coordinates while the tool axis tilts."""
 
+TILTED_PLANE = 682
+"""Its Z is the tool axis from G53.1 on."""
+
 IN_ORDER = (Group.LENGTH, Group.SYSTEM, Group.ROTATION, Group.MIRROR)
 """Groups whose codes all change the frame, in execution order."""
 
@@ -45,7 +48,8 @@ class _Offsets:
         local: (3,) offset of G52 and G92.
         kept: (3,) offset that G92.3 restores after G92.2.
         mirrored: (3,) mirrored coordinates; ``mirror_at`` holds the mirror positions.
-        rotation: plane, (3,) centre and angle of G68.
+        rotation: (3, 3) turn and (3,) shift of G68 or G68.2.
+        tilted: whether it is that of a tilted plane, G68.2.
         length: (3,) active length offset; None while the machine handles tool lengths (G49).
         own_length: gauge length of the active tool.
     """
@@ -57,7 +61,8 @@ class _Offsets:
     kept: Array = field(default_factory=lambda: np.zeros(3))
     mirrored: Array = field(default_factory=lambda: np.zeros(3, dtype=np.bool_))
     mirror_at: Array = field(default_factory=lambda: np.zeros(3))
-    rotation: tuple[int, Array, float] | None = None
+    rotation: tuple[Array, Array] | None = None
+    tilted: bool = False
     length: Array | None = None
     own_length: float = 0.0
 
@@ -81,9 +86,8 @@ class _Offsets:
         turn = np.diag(np.where(self.mirrored, -1.0, 1.0))
         shift = np.where(self.mirrored, 2 * self.mirror_at, 0.0)
         if self.rotation is not None:
-            plane, centre, angle = self.rotation
-            about = rotation(plane, angle)
-            turn, shift = about @ turn, about @ (shift - centre) + centre
+            about, by = self.rotation
+            turn, shift = about @ turn, about @ shift + by
         return turn, shift
 
     def work_offset_turn(self, system: int) -> Array:
@@ -177,7 +181,7 @@ class OffsetCodes:
         else:
             self._length_of_tool(row, code, float(word))
         own = np.array([0.0, 0.0, offsets.own_length])
-        tilts = self._options.axis_words != "none"
+        tilts = self._options.axis_words != "none" or offsets.tilted
         if tilts and offsets.length is not None and not np.array_equal(offsets.length, own):
             self._faults.add("G421", row, (word_of(code), f", the tool is {own[2]:g} mm long"))
 
@@ -219,14 +223,27 @@ class OffsetCodes:
 
     def _rotation(self, row: int, code: int, position: Array, known: Array, moved: bool) -> None:
         if code == 690:
-            self.offsets.rotation = None
+            self.offsets.rotation, self.offsets.tilted = None, False
+            return
+        if code == TILTED_PLANE:
+            self._tilt(row)
             return
         plane = int(self._modal.active[Group.PLANE][row])
         axes = list(PLANES[plane][:2])
         words = self._words.at(row)
         self.require_position(row, known[axes] | ~np.isnan(words[axes]), (word_of(code), " without a centre"))
         centre = np.where(np.isnan(words), self.offsets.inner(position), words)
-        self.offsets.rotation = plane, centre, math.radians(self._blocks.word("R")[row])
+        about = rotation(plane, math.radians(self._blocks.word("R")[row]))
+        self.offsets.rotation = about, centre - about @ centre
+
+    def _tilt(self, row: int) -> None:
+        """G68.2: X Y Z are the origin of the plane, I J K the Euler angles about Z, the new X and the new Z."""
+        offsets = self.offsets
+        if offsets.length is not None and not np.allclose(offsets.length, (0.0, 0.0, offsets.own_length)):
+            self._faults.add("G421", row, (word_of(TILTED_PLANE), f", the tool is {offsets.own_length:g} mm long"))
+        i, j, k = (math.radians(self._blocks.word(letter)[row]) for letter in "IJK")
+        offsets.rotation = rotation(170, i) @ rotation(190, j) @ rotation(170, k), self._words.at(row)
+        offsets.tilted = True
 
     def _mirror(self, row: int, code: int, position: Array, known: Array, moved: bool) -> None:
         offsets, words = self.offsets, self._words.at(row)

@@ -221,7 +221,7 @@ def test_codes_are_left_out_as_chosen_and_named():
 
 @pytest.mark.parametrize(
     ("block", "code", "fault"),
-    [("G1 X1", "G1", None), ("G51 P2", "G51", "G402"), ("G84 X1 Z-1 R1", "G84", "G425"), ("G211 X1", "G211", "G401")],
+    [("G1 X1", "G1", None), ("G60 P2", "G60", "G402"), ("G84 X1 Z-1 R1", "G84", "G425"), ("G211 X1", "G211", "G401")],
 )
 def test_nothing_that_is_understood_or_moves_the_tool_is_left_out(block, code, fault):
     assert codes(f"{block}\n", flavour="fanuc", left_out=(code,)) == ([fault] if fault else [])

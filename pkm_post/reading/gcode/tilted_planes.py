@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tilted planes: the blocks of a program in a plane of G68.2, to which G53.1 turns the tool.
+
+Enters: plain blocks with their codes. Leaves: faults where it is not clear how the tool stands. On a control the tool
+keeps its direction from G68.2 to G53.1, and from G69 until words for the rotary axes turn it back; X, Y and Z are not
+those of its tip meanwhile [Fanuc, tilted working plane command]. Here cuts are refused there, and where the turning
+brings the tip is not known: the next places with X, Y and Z are those of the tip again.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pkm_post.model import Array, map_rows
+from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.codes import Group, Word, word_of
+from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
+from pkm_post.reading.gcode.modal import Modal, forward_fill
+from pkm_post.reading.gcode.motions import Motions
+from pkm_post.reading.gcode.work_offsets import SETS_OFFSETS, TILTED_PLANE
+
+TURN_TO_PLANE, _END = 531, 690
+_UPRIGHT, _CHOSEN, _TURNED, _LEFT = range(4)
+"""The tool is upright; a plane is chosen, the tool is turned to it, it has been left with the tool turned."""
+_TILTED = 1e-9
+
+
+def check_tilted_planes(blocks: Blocks, modal: Modal, axes: Array, faults: BlockDiagnostics) -> None:
+    """Report blocks that mean something else on a control than the program with an upright or a turned tool.
+
+    Args:
+        blocks: plain blocks.
+        modal: their codes.
+        axes: (N, 3) tool axis in program coordinates, by words of their own.
+        faults: collects the faults.
+    """
+    if TILTED_PLANE not in blocks.g:
+        if TURN_TO_PLANE in blocks.g:
+            _report(faults, blocks.g_row[blocks.g == TURN_TO_PLANE], "G53.1 without G68.2")
+        return
+    state = _states(blocks)
+    rows = np.flatnonzero(modal.moves & (state == _CHOSEN))
+    _report(faults, rows, "a move between G68.2 and G53.1")
+    rows = np.flatnonzero(modal.moves & (state == _LEFT) & (modal.active[Group.MOTION] != 0))
+    _report(faults, rows, "a cut after G69 before rotary words have turned the tool back")
+    inside = (state == _CHOSEN) | (state == _TURNED)
+    changes = map_rows(lambda codes: np.isin(codes, SETS_OFFSETS), modal.programmed[Group.ONCE])
+    _report(faults, np.flatnonzero(inside & changes), "another origin within the plane")
+    rotary = np.any([blocks.has(letter) & (blocks.word(letter) != 0) for letter in "ABC"], axis=0)
+    tilts = (np.abs(axes[:, :2]) > _TILTED).any(axis=1)
+    _report(faults, np.flatnonzero(inside & (rotary | tilts)), "words for the tool axis within the plane")
+    others = blocks.g_row[blocks.g == 680]
+    _report(faults, others[inside[others]], "G68 within the plane")
+    turns = np.unique(blocks.g_row[blocks.g == TURN_TO_PLANE])
+    _report(faults, turns[~inside[turns]], "G53.1 without G68.2")
+    third = blocks.word("P")
+    for row in np.flatnonzero((modal.programmed[Group.ROTATION] == TILTED_PLANE) & (third > 0)).tolist():
+        if third[row] != 1 or sum(blocks.word(letter)[row] != 0 for letter in "IJK") > 1:
+            faults.add("G402", row, (word_of(TILTED_PLANE), " ", Word("P", third[row]), ": other angles than Euler's"))
+    for row in turns[inside[turns]].tolist():
+        faults.add("G433", row, word_of(TURN_TO_PLANE))
+
+
+def check_cuts_from_turns(blocks: Blocks, motions: Motions, faults: BlockDiagnostics) -> None:
+    """Report cuts that begin where the tip is not known since the tool was turned to a plane."""
+    turns = blocks.g_row[blocks.g == TURN_TO_PLANE]
+    if not len(turns):
+        return
+    cuts = np.flatnonzero((motions.motion != 0) & (motions.block > turns[0]))
+    _, known = motions.starts(cuts)
+    for block in np.unique(motions.block[cuts[~known]]).tolist():
+        faults.add("G416", block, "a cut from where the tool was turned to")
+
+
+def _states(blocks: Blocks) -> Array:
+    """How the tool stands in each block, (N,): its codes act before its motion."""
+    codes = np.isin(blocks.g, (TILTED_PLANE, TURN_TO_PLANE, _END))
+    upright = np.flatnonzero(np.any([blocks.word(letter) == 0 for letter in "ABC"], axis=0))
+    rows = np.concatenate([upright, blocks.g_row[codes]])
+    order = np.argsort(rows, kind="stable")
+    found = np.concatenate([np.zeros(len(upright), np.int32), blocks.g[codes]])[order].tolist()
+    state, states = _UPRIGHT, []
+    for code in found:
+        state = _AFTER.get((state, code), state)
+        states.append(state)
+    return forward_fill(rows[order], np.array(states, np.uint8), _UPRIGHT, len(blocks))
+
+
+_AFTER = {
+    **{(state, TILTED_PLANE): _CHOSEN for state in range(4)},
+    (_CHOSEN, TURN_TO_PLANE): _TURNED,
+    (_CHOSEN, _END): _UPRIGHT,
+    (_TURNED, _END): _LEFT,
+    (_LEFT, 0): _UPRIGHT,
+}
+"""By state and code, 0 for rotary words of 0. A plane after another one begins with the tool turned to that."""
+
+
+def _report(faults: BlockDiagnostics, rows: Array, what: str) -> None:
+    wrong = np.zeros(len(faults.blocks), dtype=np.bool_)
+    wrong[rows] = True
+    faults.add_where("G432", wrong, lambda _: what)

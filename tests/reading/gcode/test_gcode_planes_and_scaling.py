@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""G68.2 with G53.1, and G51: places and directions by other formulas, and what is refused.
+
+The turn of a tilted plane is composed here of three turns by Rodrigues' formula about the axes as they have become;
+scaled programs are compared with programs whose numbers a test has scaled itself.
+"""
+
+import numpy as np
+import pytest
+
+from pkm_post.model import Kind, Tool
+from pkm_post.reading.gcode import ReadOptions, read
+
+ANY = Tool(0, "any", 6.0, 0.0, 50.0)
+HEAD = "O1\nG21 G90 G94 G17\nG0 X0. Y0. Z100.\nG1 F100.\n"
+
+
+def taken(text, flavour="fanuc", **options):
+    return read(HEAD + text, "part.nc", ReadOptions(default_tool=ANY, flavour=flavour, **options))
+
+
+def codes(text, **options):
+    return [(fault.code, fault.place.line - 4) for fault in taken(text, **options)[1]]
+
+
+def turned(vectors, axis, degrees):
+    angle = np.radians(degrees)
+    along = np.outer(vectors @ axis, axis)
+    return vectors * np.cos(angle) + np.cross(axis, vectors) * np.sin(angle) + along * (1 - np.cos(angle))
+
+
+def plane_of(i, j, k):
+    """The axes of a plane as rows: about Z, about the new X, about the new Z."""
+    axes = turned(np.eye(3), np.array([0.0, 0.0, 1.0]), i)
+    axes = turned(axes, axes[0], j)
+    return turned(axes, axes[2], k)
+
+
+@pytest.mark.parametrize("angles", [(0, -90, 0), (30, 40, 0), (0, 0, 25), (-120, 15, 200), (10, 20, 30)])
+def test_a_tilted_plane_by_euler_angles(angles):
+    i, j, k = angles
+    moves = "G0 X1. Y2.\nZ30.\nG1 Z-3.\nG2 X1. Y2. I4. J0.\nG0 Z30.\n"
+    text = f"G68.2 X10. Y20. Z5. I{i}. J{j}. K{k}.\nG53.1\n{moves}G69\nM30\n"
+    program, faults = taken(text)
+    assert [fault.code for fault in faults if fault.code != "V131"] == ["G433"]
+    axes, origin = plane_of(*angles), np.array([10.0, 20.0, 5.0])
+    inside = np.array([[1.0, 2.0, 30.0], [1.0, 2.0, -3.0], [1.0, 2.0, -3.0], [1.0, 2.0, 30.0]])
+    assert np.allclose(program.position[1:], origin + inside @ axes, atol=1e-12)
+    assert np.allclose(program.tool_axis[1:], axes[2], atol=1e-12)
+    arc = int(np.flatnonzero(program.kind == Kind.ARC)[0])
+    assert np.allclose(program.arc_centre[arc], origin + np.array([5.0, 2.0, -3.0]) @ axes, atol=1e-12)
+    assert np.allclose(program.arc_axis[arc], -axes[2], atol=1e-12)
+
+
+def test_cycles_drill_along_the_tilted_tool():
+    text = "G68.2 X0. Y0. Z0. I0. J-90. K0.\nG53.1\nG0 X0. Y0. Z50.\nG81 X1. Z-5. R2.\nX4.\nG80\nG69\nM30\n"
+    program, _ = taken(text)
+    bottoms = program.position[1:][program.kind[1:] == Kind.LINE]
+    assert np.allclose(bottoms, [[1, -5, 0], [4, -5, 0]], atol=1e-12)  # the Z of the plane is Y
+
+
+def test_after_the_plane_the_place_is_known_again_with_all_coordinates_and_the_tool_is_upright():
+    text = (
+        "G68.2 X0. Y0. Z0. I0. J90. K0.\nG53.1\nG0 X0. Y0. Z50.\nG69\nG28 G91 Z0\nG90 B0. C0.\nX5. Y6.\nG1 Z1.\nM30\n"
+    )
+    program, _ = taken(text, machine_zero=(0.0, 0.0, 300.0))
+    assert program.position[-2:].tolist() == [[5.0, 6.0, 300.0], [5.0, 6.0, 1.0]]
+    assert program.tool_axis[-2:].tolist() == [[0.0, 0.0, 1.0]] * 2
+
+
+PLANE = "G68.2 X0. Y0. Z0. I0. J30. K0.\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("G53.1\nM30\n", [("G432", 1)]),
+        (PLANE + "X1.\nG53.1\nM30\n", [("G432", 2), ("G433", 3)]),
+        (PLANE + "G53.1\nG0 X0. Y0. Z1.\nG69\nG1 X1. Y1. Z1.\nM30\n", [("G433", 2), ("G416", 5), ("G432", 5)]),
+        (PLANE + "G53.1\nG52 X1.\nM30\n", [("G433", 2), ("G432", 3)]),
+        (PLANE + "G53.1\nG68 X0. Y0. R30.\nM30\n", [("G433", 2), ("G432", 3)]),
+        ("G68.2 X0. Y0. Z0. I0. J30.\nM30\n", [("G405", 1)]),
+        ("G68.2 P1 X0. Y0. Z0. I10. J30. K0.\nG53.1\nM30\n", [("G402", 1), ("G433", 2)]),
+        ("G68.2 P2 X0. Y0. Z0. I0. J30. K0.\nG53.1\nM30\n", [("G402", 1), ("G433", 2)]),
+        (PLANE + "G53.1\nG0 X0. Y0.\nG1 Z1.\nM30\n", [("G433", 2), ("G416", 4)]),
+    ],
+)
+def test_where_it_is_not_clear_how_the_tool_stands(text, expected):
+    assert codes(text) == expected
+
+
+def test_one_angle_of_roll_pitch_and_yaw_is_clear():
+    program, _ = taken("G68.2 P1 X0. Y0. Z0. I0. J0. K90.\nG53.1\nG0 X1. Y0. Z0.\nM30\n")
+    assert np.allclose(program.position[-1], [0.0, 1.0, 0.0])
+
+
+CONTOUR = "G1 X{0} Y{1}\nG2 X{2} Y{1} I{3} J{4}\nG3 X{0} Y{5} R{6}\nG91 G1 X{7}\nG90\n"
+NUMBERS = ("xa", "y0"), (15.0, 8.0, 20.0, 2.5, 0.0, 3.0, 30.0, 1.5)
+
+
+def contour(scale=1.0, x=0.0, y=0.0):
+    """The contour with places scaled about x, y and lengths scaled."""
+    a, b, c, i, j, d, r, step = NUMBERS[1]
+    place_x, place_y = (lambda value: x + scale * (value - x)), (lambda value: y + scale * (value - y))
+    values = (place_x(a), place_y(b), place_x(c), scale * i, scale * j, place_y(d), scale * r, scale * step)
+    return CONTOUR.format(*(f"{value:.9f}" for value in values))
+
+
+@pytest.mark.parametrize(("factor", "x", "y"), [(2.0, 10.0, -4.0), (0.5, 0.0, 0.0), (1.25, 3.0, 7.0)])
+@pytest.mark.parametrize("by", ["P{0}", "I{0} J{0} K1."])
+def test_scaling_is_the_program_with_scaled_numbers(factor, x, y, by):
+    word = by.format(factor)
+    one, _ = taken(f"G51 X{x} Y{y} Z0. {word}\n{contour()}G50\n{contour()}M30\n")
+    other, _ = taken(f"{contour(factor, x, y)}{contour()}M30\n")
+    assert np.allclose(one.position, other.position, atol=1e-6)
+    assert np.allclose(one.arc_centre, other.arc_centre, atol=1e-6, equal_nan=True)
+
+
+def test_factors_below_zero_mirror_and_arcs_and_sides_turn_round():
+    text = "G51 X10. Y0. Z0. I-2. J2. K1.\nG1 X10. Y0.\nG2 X12. Y2. I2. J0.\nG50\nG1 X0. Y0.\nM30\n"
+    program, _ = taken(text)
+    assert program.position[1:].tolist() == [[10.0, 0.0, 100.0], [6.0, 4.0, 100.0], [0.0, 0.0, 100.0]]
+    assert program.arc_centre[2].tolist() == [6.0, 0.0, 100.0]
+    assert program.arc_axis[2].tolist() == [0.0, 0.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("G51 X0. Y0. Z0. P2000\nX1.\nG50\nM30\n", [("G434", 1)]),
+        ("G51 X0. Y0. P2.\nX1.\nG50\nM30\n", [("G405", 1)]),
+        ("G51 X0. Y0. Z0.\nX1.\nG50\nM30\n", [("G405", 1)]),
+        ("G51 X0. Y0. I2. J3.\nX1.\nG2 X2. Y0. I.5 J0.\nG50\nM30\n", [("G435", 3)]),
+        ("G51 X0. Y0. Z0. P2.\nG55\nX1.\nG50\nM30\n", [("G435", 2)]),
+        ("G51 X0. Y0. Z0. P2.\nG68 X0. Y0. R20.\nX1.\nG50\nM30\n", [("G435", 2)] * 2),
+        ("G51 X0. Y0. Z0. P2.\nG81 X1. Z-1. R2.\nG50\nM30\n", [("G435", 2)]),
+    ],
+)
+def test_what_controls_scale_differently_is_refused(text, expected):
+    assert codes(text) == expected
+
+
+def test_g50_alone_changes_nothing():
+    assert taken("G50\nX1.\nM30\n")[0].position[-1].tolist() == [1.0, 0.0, 100.0]
+
+
+@pytest.mark.parametrize("block", ["G51 X0 Y0 Z0 P2.", "G50", "G68.2 X0 Y0 Z0 I0 J0 K0", "G53.1"])
+def test_linuxcnc_has_none_of_them(block):
+    assert {code for code, _ in codes(f"{block}\nX1.\nM2\n", flavour="rs274")} <= {"G401", "G402"}
