@@ -5,7 +5,7 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo test oldest lint format translations fuzz soak conformance package docs release-check clean
+.PHONY: help demo test oldest lint format translations fuzz soak conformance linuxcnc package docs release-check clean
 
 PYTHON ?= python3
 VENV := .venv
@@ -73,6 +73,9 @@ soak: $(VENV)/made ## sessions and downloads over faulty links, killed posts (SO
 
 conformance: $(VENV)/made $(CONFORMANCE)/made ## compile pkmt.ksy with Kaitai's compiler, and read files with it
 	@$(VENV)/bin/python tests/writing/trajectory_file/conformance.py $(CONFORMANCE)
+
+linuxcnc: $(VENV)/made ## run both outputs for LinuxCNC in LinuxCNC, without a screen, and compare (where it is installed)
+	@PYTHONPATH=. MPLBACKEND=Agg $(VENV)/bin/python tests/linuxcnc/compare.py
 
 package: $(VENV)/made ## build a wheel in dist/, and post G-code and a document with it in an empty environment
 	@rm -rf dist

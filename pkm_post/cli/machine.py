@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import sys
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -34,7 +35,6 @@ def add_commands(commands: Any) -> None:
     exporting.add_argument(
         "--segment-time",
         type=partial(_whole_number, 1, 255),
-        default=_SEGMENT_TIME,
         metavar="MS",
         help=f"time of a segment of a PMAC's coarse interpolation, 1 to 255 (default: {_SEGMENT_TIME})",
     )
@@ -47,7 +47,7 @@ def add_commands(commands: Any) -> None:
     exporting.set_defaults(run=_export)
 
 
-_TARGETS = ("turbo-pmac", "power-pmac")
+_TARGETS = ("turbo-pmac", "power-pmac", "linuxcnc")
 _SEGMENT_TIME = 10
 
 
@@ -110,11 +110,14 @@ def _export(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.posting import export_machine
     from pkm_post.writing import kinematics
 
+    if namespace.to == "linuxcnc" and namespace.segment_time is not None:
+        print("--segment-time: LinuxCNC has no segments", file=sys.stderr)
+        return 2
     machine, diagnostics = machine_named(namespace.file)
     files: tuple[Path, ...] = ()
     if machine is not None:
         tool_length = machine.rest_tool_length if namespace.tool_length is None else namespace.tool_length
-        export = kinematics.Export(namespace.segment_time, tool_length)
+        export = kinematics.Export(namespace.segment_time or _SEGMENT_TIME, tool_length)
         files, diagnostics = export_machine(machine, namespace.file, namespace.to, namespace.out, export)
     print_diagnostics(diagnostics)
     for file in files:

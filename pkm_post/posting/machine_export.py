@@ -7,6 +7,7 @@ Input: a machine, the controller to export to, and a folder. The strut lengths o
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -40,6 +41,7 @@ def export_machine(
     if errors(diagnostics):
         return (), diagnostics
     poses = check_poses(machine, export.tool_length)
+    export = replace(export, home_lengths=tuple(_home_lengths(machine, export.tool_length)))
     texts, faults = kinematics.export_files(target, machine, Path(file).stem, export, poses)
     diagnostics += faults
     if texts is None:
@@ -51,6 +53,12 @@ def export_machine(
     except OSError as fault:
         return (), (*diagnostics, write_fault(folder, fault))
     return tuple(folder / name for name in texts), diagnostics
+
+
+def _home_lengths(machine: Machine, tool_length: float) -> list[float]:
+    home = machine.home_tip[None], machine.home_axis[None], np.array([machine.home_spin]), np.array([tool_length])
+    lengths: list[float] = strut_lengths(machine, *home)[0].tolist()
+    return lengths
 
 
 def check_poses(machine: Machine, tool_length: float) -> kinematics.CheckPoses:

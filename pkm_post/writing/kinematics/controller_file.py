@@ -42,10 +42,12 @@ class Export:
     Attributes:
         segment_time: of the coarse interpolation, whole ms.
         tool_length: gauge length of the tool that is set at first, mm.
+        home_lengths: counted strut lengths at home with that tool, mm; for controllers that home by them.
     """
 
     segment_time: int
     tool_length: float
+    home_lengths: tuple[float, ...] = ()
 
 
 def parameters_of(machine: Machine, kind: str, export: Export) -> list[Variable]:

@@ -115,13 +115,48 @@ def sign_off_sheet(
     ])  # fmt: skip
 
 
+LINUXCNC_CHECKS = (
+    "The drives of `-simulated-drives.hal` are replaced by those of the machine, with their scales, enables, limits and"
+    " emergency stop, and homing is set up: as written, a joint counts as homed where it stands.",
+    "Joint i - 1 is strut i, and its position is counted length plus `struts.length_offset`.",
+    "Tool lengths in the tool table are `spindle_nose` plus gauge length, and every tool of a program is in it.",
+    "Tools change with the platform upright; G43 lifts base and platform joints alike (genhexkins).",
+    "All work offsets are zero for `-linuxcnc.ngc` of a posting, which is in {M}.",
+    "LinuxCNC plans within the speeds and accelerations of X Y Z A B C. Those of the joints are for jogging alone: a"
+    " program that asks a strut for more is not slowed down.",
+    "Angular accelerations are assumed: those at which the outermost platform joint has the acceleration of a strut.",
+    "Joints, cones, collisions and singular poses are not checked by LinuxCNC: it knows the strokes alone.",
+    "`-stream.hal`, where it is used: a first row that is not where the struts are is refused, and no strut moves;"
+    " `streamer.0.underruns` stays 0 in the whole program.",
+)
+
+
+def linuxcnc_sheet(machine: Machine, files: Mapping[str, str], poses: CheckPoses) -> str:
+    """The sheet for LinuxCNC; the positions are with G43, and joints in mm."""
+    joints = poses.lengths + machine.length_offset
+    return "\n".join([
+        *heading(machine, "linuxcnc", files),
+        *_boxes("Before the first move", (*LINUXCNC_CHECKS, *COMMON_CHECKS)),
+        *table(poses, "joint positions in mm", [[f"{value:.6f}" for value in row] for row in joints.tolist()]),
+        *signatures(),
+    ])  # fmt: skip
+
+
+_TRIED = {
+    "linuxcnc": "The authors ran such configurations in LinuxCNC with simulated drives, and none on a machine.",
+}
+_UNTRIED = (
+    "Nothing of this was tried on a controller by the authors. The programs were compared with PKM Post's own"
+    " kinematics by an interpreter that follows the manuals; what a manual leaves open is listed below."
+)
+
+
 def heading(machine: Machine, target: str, files: Mapping[str, str]) -> list[str]:
     """Title, machine and files."""
     return [
         f"# Sign-off: kinematics of {machine.name} on {target}",
         "",
-        "Nothing of this was tried on a controller by the authors. The programs were compared with PKM Post's own"
-        " kinematics by an interpreter that follows the manuals; what a manual leaves open is listed below.",
+        _TRIED.get(target, _UNTRIED),
         "",
         f"Machine file SHA-256: `{machine.fingerprint}`",
         "",

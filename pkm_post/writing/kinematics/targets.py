@@ -18,8 +18,10 @@ from pkm_post.model import Diagnostic, Machine, Place
 from pkm_post.writing.controllers.pmac.settings import PmacSettings
 from pkm_post.writing.controllers.power_pmac import PowerPmacSettings
 from pkm_post.writing.controllers.pvt.settings import settings_of
+from pkm_post.writing.kinematics import linuxcnc
 from pkm_post.writing.kinematics.controller_file import Export, counts, power_text, turbo_text
-from pkm_post.writing.kinematics.sign_off import CheckPoses, sign_off_sheet
+from pkm_post.writing.kinematics.linuxcnc_stream import stream_hal
+from pkm_post.writing.kinematics.sign_off import CheckPoses, linuxcnc_sheet, sign_off_sheet
 
 Files = Mapping[str, str]
 Findings = tuple[Diagnostic, ...]
@@ -63,9 +65,22 @@ def operations(text: str) -> int:
     return sum(len(_OPERATION.findall(re.split(";|//", line)[0])) for line in without_speeds.splitlines())
 
 
+def _linuxcnc(machine: Machine, stem: str, export: Export, poses: CheckPoses) -> tuple[Files | None, Findings]:
+    """The configuration for genhexkins, the gate for halstreamer's tables, and the sheet."""
+    files = {
+        f"{stem}.ini": linuxcnc.ini_text(machine, stem, export.home_lengths, export.tool_length),
+        f"{stem}-kinematics.hal": linuxcnc.kinematics_hal(machine),
+        f"{stem}-simulated-drives.hal": linuxcnc.simulated_drives_hal(),
+        f"{stem}-stream.hal": stream_hal(),
+        f"{stem}.tbl": linuxcnc.tool_table(machine, export.tool_length),
+    }
+    return {**files, f"{stem}{SIGN_OFF}": linuxcnc_sheet(machine, digests(files), poses)}, ()
+
+
 TARGETS: dict[str, Target] = {
     "turbo-pmac": partial(_pmac, PmacSettings, turbo_text, "turbo-pmac", "-kinematics.pmc"),
     "power-pmac": partial(_pmac, PowerPmacSettings, power_text, "power-pmac", "-kinematics.cfg"),
+    "linuxcnc": _linuxcnc,
 }
 """Writers by the value of ``--to``."""
 
