@@ -166,10 +166,13 @@ def _refuse_with_compensation(machine: Machine, block: Block, code: int) -> None
 def _compensate(machine: Machine, block: Block, code: int) -> None:
     state = machine.state
     state.side = codes.SIDES[code]
+    if not state.side:
+        machine.path.radius = 0.0  # the diameter of a tool that is not compensated may be unknown
+        return
     tool = machine.tools.tool(state.tool)
-    if state.side and tool is None:
+    if tool is None:
         raise BlockFault("G411", "no tool in the spindle")
-    machine.path.radius = tool.diameter / 2 if tool is not None else 0.0
+    machine.path.radius = tool.diameter / 2
 
 
 def _work_offset(machine: Machine, block: Block, code: int) -> None:

@@ -31,7 +31,7 @@ class Tools:
 
     def __init__(self, statements: Iterable[str], options: ReadOptions) -> None:
         lines = list(statements)
-        self._taken = {int(found[1]) for line in lines for found in _NUMBER.finditer(line)} | {*options.tools, 0}
+        self._taken = {int(found[1]) for line in lines for found in _NUMBER.finditer(line)} | {0}
         self._numbers = {tool.name.upper(): number for number, tool in options.tools.items() if tool.name}
         self._options = options
         self.named: dict[str, int] = {}

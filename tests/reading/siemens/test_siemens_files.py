@@ -40,3 +40,19 @@ def test_the_reader_is_chosen_by_flavour_or_evidence():
     assert program is None  # G71 is none of Fanuc's codes
     program, _ = read_content((BLOCKS.replace("G71", "G21") + END).encode(), "part.nc", ReadingOptions())
     assert program.reading[0].startswith("flavour rs274")
+
+
+def test_a_heading_cancels_compensation_of_a_cutter_whose_diameter_is_unknown():
+    text = f'G17 G40 G90 G71\nT="MILL"\nM6\nS100 M3\nG54 F600\nG0 X0 Y0 Z10\nG1 X5\nM5\n{END}'
+    program, _ = read_content(text.encode(), "part.mpf", ReadingOptions())
+    assert program.side_offset.tolist() == [0.0, 0.0]
+    refused, diagnostics = read_content(text.replace("G1 X5", "G41 G1 X5").encode(), "part.mpf", ReadingOptions())
+    assert refused is None
+    assert [found.code for found in diagnostics] == ["G411"]
+
+
+def test_options_name_a_tool_by_the_number_that_its_name_was_given():
+    text = f'G17 G90 G71\nT="MILL"\nM6\nT="BALL"\nM6\nS100 M3\nG54 F600\nG0 X0 Y0 Z10\nM5\n{END}'
+    reading = ReadingOptions(lengths={1: 100.0, 2: 120.0})
+    program, _ = read_content(text.encode(), "part.mpf", reading)
+    assert {(tool.number, tool.name, tool.length) for tool in program.tools.values()} >= {(2, "BALL", 120.0)}
