@@ -17,7 +17,7 @@ from collections.abc import Sequence
 
 import pkm_post
 from pkm_post.cli.processes import INTERRUPTED
-from pkm_post.system import MEMORY_FAULTS, memory_diagnostic
+from pkm_post.system import MEMORY_FAULTS, memory_diagnostic, packages
 
 __all__ = ["main"]
 
@@ -27,10 +27,9 @@ _COMMANDS = {
     "programs": ("check", "convert", "verify"),
     "machine": ("machine",),
     "pmac": ("pmac",),
+    "install": ("install",),
 }
 """Commands by the module that has them, in the order of the help text."""
-_OPTIONAL = ("lark", "serial", "paramiko")
-"""Optional packages; their entry points say what to install."""
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -57,7 +56,7 @@ def main(arguments: Sequence[str]) -> int:
 
 def _not_installed(fault: BaseException) -> str | None:
     """Installation hint for a missing optional package."""
-    return str(fault) if isinstance(fault, ImportError) and fault.name in _OPTIONAL else None
+    return str(fault) if isinstance(fault, ImportError) and fault.name in packages.OPTIONAL else None
 
 
 def _prepare_streams() -> None:

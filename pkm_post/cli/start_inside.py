@@ -25,6 +25,7 @@ def _import_package() -> None:
     from pkm_post.freecad_app import startup
 
     startup.install_step_reader()
+    startup.install_package_folder()
 
 
 if __name__ == "__main__":

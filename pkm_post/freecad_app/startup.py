@@ -22,6 +22,7 @@ MACHINE_FOLDER = os.path.join(FOLDER, "machine")
 """Post-processors for the machines of FreeCAD newer than 1.1; older versions would list them beside the others."""
 _PREFERENCES = "Path.Preferences"
 _MESH_FILE = "pkm_post.reading"
+_SYSTEM = "pkm_post.system"
 
 Then = Callable[[ModuleType], None]
 
@@ -34,6 +35,21 @@ def install_post_processors() -> None:
 def install_step_reader() -> None:
     """Let ``mesh_file`` read STEP, now if it is loaded and otherwise when it is."""
     _when_imported(_MESH_FILE, _add_step)
+
+
+def install_package_folder() -> None:
+    """Let ``system.packages`` install where FreeCAD looks, now if it is loaded and otherwise when it is."""
+    _when_imported(_SYSTEM, _use_package_folder)
+
+
+def _use_package_folder(system: ModuleType) -> None:
+    """State the folder that FreeCAD's Addon Manager uses as well; a snap has none of its own."""
+    import FreeCAD
+
+    if os.environ.get("SNAP_REVISION"):
+        return
+    version = f"py{sys.version_info.major}{sys.version_info.minor}"
+    system.packages.use_folder(Path(FreeCAD.getUserAppDataDir()) / "AdditionalPythonPackages" / version)
 
 
 def _add_folder(preferences: ModuleType) -> None:

@@ -122,6 +122,13 @@ def control(_item: FreeCAD.DocumentObject | None) -> None:
     open_control()
 
 
+def install_packages(_item: FreeCAD.DocumentObject | None) -> None:
+    """Ask which of the missing packages to install."""
+    from pkm_post.freecad_gui.package_install import open_question
+
+    open_question()
+
+
 def _when_computed(document: FreeCAD.Document, task: Callable[[], Any]) -> None:
     """Run a task once window and document are idle: timers fire even during the progress bar of a recompute."""
 

@@ -109,6 +109,15 @@ COMMANDS = (
         command_actions.control,
         "P, K, O",
     ),
+    WindowCommand(
+        "PKM_InstallPackages",
+        "packages.svg",
+        QT_TRANSLATE_NOOP("PKM_InstallPackages", "Install packages"),
+        QT_TRANSLATE_NOOP("PKM_InstallPackages", "Install the optional Python packages that are missing here"),
+        lambda item: True,
+        command_actions.install_packages,
+        "P, K, I",
+    ),
 )
 
 

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pkm_post.system import packages
+
 if TYPE_CHECKING:
     from lark import Lark, Token, Tree, UnexpectedInput
 
@@ -83,8 +85,7 @@ def parser_of(grammar: Grammar) -> Lark:
     try:
         from lark import Lark
     except ImportError as missing:
-        cure = "install python3-lark, or type: pip install lark"
-        raise ImportError(f"reading {grammar.reads} needs lark: {cure}", name="lark") from missing
+        raise packages.needs(f"reading {grammar.reads} needs", "lark") from missing
     return Lark(
         grammar.file.read_text(encoding="utf-8"),
         start=grammar.start,

@@ -7,7 +7,7 @@ The command line starts in a Python without NumPy: what needs NumPy is imported 
 from typing import TYPE_CHECKING
 
 from pkm_post import at_first_use
-from pkm_post.system import result_files
+from pkm_post.system import packages, result_files
 from pkm_post.system.file_names import require_usable, unusable_name
 from pkm_post.system.freecad_command import VARIABLE as FREECADCMD
 from pkm_post.system.freecad_command import FreeCADCommand, freecad_command
@@ -44,6 +44,7 @@ __all__ = [
     "lock_owner",
     "memory_diagnostic",
     "memory_guard",
+    "packages",
     "read_document",
     "require_usable",
     "result_files",

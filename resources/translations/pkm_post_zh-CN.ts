@@ -1381,6 +1381,17 @@ Is the way of all struts, of the platform and of the tool free?</source>
     </message>
 </context>
 <context>
+    <name>PKM_InstallPackages</name>
+    <message>
+        <source>Install packages</source>
+        <translation>安装软件包</translation>
+    </message>
+    <message>
+        <source>Install the optional Python packages that are missing here</source>
+        <translation>安装此处缺少的可选 Python 软件包</translation>
+    </message>
+</context>
+<context>
     <name>PKM_Machine</name>
     <message>
         <source>Machine</source>
@@ -1746,6 +1757,49 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>Tool controller</source>
         <translation>刀具控制器</translation>
+    </message>
+</context>
+<context>
+    <name>PackageInstall</name>
+    <message>
+        <source>Install packages</source>
+        <translation>安装软件包</translation>
+    </message>
+    <message>
+        <source>G-code and CL data</source>
+        <translation>G代码和CL数据</translation>
+    </message>
+    <message>
+        <source>serial lines to a controller</source>
+        <translation>连接控制器的串口</translation>
+    </message>
+    <message>
+        <source>ssh to a Power PMAC</source>
+        <translation>通过 ssh 连接 Power PMAC</translation>
+    </message>
+    <message>
+        <source>pictures of reports and reach maps</source>
+        <translation>报告和可达图的图片</translation>
+    </message>
+    <message>
+        <source>Missing:</source>
+        <translation>缺少：</translation>
+    </message>
+    <message>
+        <source>All packages are installed.</source>
+        <translation>所有软件包均已安装。</translation>
+    </message>
+    <message>
+        <source>Download and install</source>
+        <translation>下载并安装</translation>
+    </message>
+    <message>
+        <source>Install from a folder...</source>
+        <translation>从文件夹安装...</translation>
+    </message>
+    <message>
+        <source>Installing packages...</source>
+        <translation>正在安装软件包...</translation>
     </message>
 </context>
 <context>

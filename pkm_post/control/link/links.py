@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from pkm_post.control.link.errors import LinkLostError
 from pkm_post.options import PARITIES
+from pkm_post.system import packages
 
 if TYPE_CHECKING:
     import serial
@@ -201,9 +202,7 @@ class SerialLink:
         try:
             import serial
         except ImportError as missing:
-            raise ImportError(
-                "a serial line needs pyserial: python3 -m pip install pyserial", name="serial"
-            ) from missing
+            raise packages.needs("a serial line needs", "serial") from missing
         return serial.Serial(
             self._device,
             self._baud,

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 from pkm_post.control.link.errors import LinkLostError, NoAccessError
 from pkm_post.control.link.links import NO_SIGPIPE, SocketLink
+from pkm_post.system import packages
 
 if TYPE_CHECKING:
     import paramiko
@@ -182,5 +183,5 @@ def _paramiko() -> ModuleType:
     try:
         import paramiko
     except ImportError as missing:
-        raise ImportError("ssh needs paramiko: python3 -m pip install paramiko", name="paramiko") from missing
+        raise packages.needs("ssh needs", "paramiko") from missing
     return paramiko

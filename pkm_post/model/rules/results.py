@@ -128,7 +128,7 @@ RESULT_RULES: dict[str, Rule] = {
     "F101": error("the output cannot be written", "check the folder, its permissions and the free space"),
     "F102": warning(
         "the picture was not made: matplotlib is missing or cannot be imported",
-        "install python3-matplotlib, in a version that fits NumPy",
+        "install it, as by python3 -m pkm_post install matplotlib, in a version that fits NumPy",
     ),
     "F103": error("the file cannot be read", "check the path and its permissions"),
     "F104": warning(

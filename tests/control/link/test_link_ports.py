@@ -15,6 +15,7 @@ import pytest
 from pkm_post.cli import main
 from pkm_post.control.link.errors import LinkLostError
 from pkm_post.control.link.ports import Port, port_named
+from pkm_post.system import packages
 
 
 @pytest.mark.parametrize(
@@ -152,13 +153,13 @@ def test_a_serial_line_that_is_pulled_out():
 def test_without_pyserial_it_is_said_what_to_install(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "serial", None)
     assert main(["pmac", "probe", "--port", "serial:/dev/nothing"]) == 1
-    assert "pip install pyserial" in capsys.readouterr().err
+    assert packages.cure("serial") in capsys.readouterr().err
 
 
 def test_without_paramiko_it_is_said_what_to_install(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "paramiko", None)
     assert main(["pmac", "probe", "--port", "ssh:me@127.0.0.1"]) == 1
-    assert "pip install paramiko" in capsys.readouterr().err
+    assert packages.cure("paramiko") in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("action", ["resume", "download", "run", "stream"])

@@ -97,5 +97,5 @@ def test_plain_words_are_read_without_lark(monkeypatch):
 def test_a_missing_lark_is_named(monkeypatch, way):
     parser_of.cache_clear()
     monkeypatch.setitem(sys.modules, "lark", None)
-    with pytest.raises(ImportError, match="needs lark: install python3-lark, or type: pip install lark"):
+    with pytest.raises(ImportError, match="needs lark: .* install "):
         way("G1 X[1]", "part.ngc")
