@@ -146,6 +146,8 @@ class Machine:
         spin_down_time: from its highest speed to rest, s; None when equal to ``spin_up_time``.
         largest_tool_diameter: that the spindle accepts, mm; infinite when no limit is stated.
         longest_tool: largest gauge length that the spindle accepts, mm; infinite when no limit is stated.
+        machine_zero: (3,) tool tip in {M} where G-code has X, Y and Z of G53, G28 and G30 at 0; None if not stated.
+        left_out: codes of G-code, such as "M21", to leave out where they are not understood.
     """
 
     name: str
@@ -201,6 +203,8 @@ class Machine:
     spin_down_time: float | None = None
     largest_tool_diameter: float = math.inf
     longest_tool: float = math.inf
+    machine_zero: Array | None = None
+    left_out: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("base_cone", "platform_cone"):

@@ -33,6 +33,7 @@ from pkm_post.options import (
     part_program_from,
     tool_lengths_from,
 )
+from pkm_post.posting.machine_reading import with_machine
 from pkm_post.posting.placement import trajectory_of
 from pkm_post.posting.run import Findings, Log, Posted, Progress, beat, no_log, no_progress
 from pkm_post.posting.steps import SUFFIX, post
@@ -140,7 +141,10 @@ def prepared_file(
     chosen = overridden(parse_text(""), given)
     lengths = tool_lengths_from(chosen) | dict(tool_lengths)
     model, found = machine_named(chosen.machine if machine is None else machine)
-    program, diagnostics = read_part_program(Path(file), replace(_with_typed_options(reading, chosen), lengths=lengths))
+    choices = _at_first_fixture(options or options_from(chosen))
+    asked = replace(_with_typed_options(reading, chosen), lengths=lengths)
+    asked = asked if model is None else with_machine(asked, model, choices)
+    program, diagnostics = read_part_program(Path(file), asked)
     faults = [fault for fault in diagnostics if fault.code != _ASKED_FOR]
     strangers = inapplicable_options(given, {input_kind(Path(file))})
     faults += [Diagnostic("L442", Place(str(file)), each) for each in strangers]
@@ -148,7 +152,7 @@ def prepared_file(
         faults += [*_replaced(program, lengths), *_unknown(program, lengths)]
         program = _with_lengths(program, lengths)
         faults += _missing_lengths(program)
-    return Prepared(program, model, _at_first_fixture(options or options_from(chosen)), (*found, *faults))
+    return Prepared(program, model, choices, (*found, *faults))
 
 
 def _given(arguments: str | ArgumentValues, file: Path) -> ArgumentValues:

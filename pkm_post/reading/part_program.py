@@ -59,6 +59,7 @@ class ReadingOptions:
         feed: speed of cutting moves before the first feed of the file, mm/s; None refuses such moves.
         lengths: gauge lengths of tools, and values of length offsets (H), by number, mm.
         work_offsets: by name, such as "G54" and "G54.1P7", origin in mm and rotation about z in degrees in {C}.
+        machine_offsets: those of the machine, likewise, for a program that uses several.
         block_delete: whether what stands behind / in blocks of G-code is left out.
         subprograms: folders where files of subprograms of G-code are looked for before that of the program.
         allow_open_end: whether a file may lack an end statement, such as M2 or FINI.
@@ -81,6 +82,7 @@ class ReadingOptions:
     feed: float | None = None
     goto_values: tuple[str, ...] = ()
     work_offsets: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
+    machine_offsets: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
     block_delete: bool = False
     subprograms: tuple[str, ...] = ()
 
@@ -169,6 +171,7 @@ def _read_gcode(content: bytes, file: str, reading: ReadingOptions, folder: Path
         left_out=reading.left_out,
         feed=reading.feed,
         work_offsets=reading.work_offsets,
+        machine_offsets=reading.machine_offsets,
         block_delete=reading.block_delete,
         folders=(*map(Path, reading.subprograms), *([] if folder is None else [folder])),
         needs_end=not reading.allow_open_end,

@@ -190,6 +190,17 @@ def _read_letters(value: Any, scale: Scale) -> tuple[str, ...]:
     return tuple(known)
 
 
+_LEFT_OUT = re.compile(r"([GM]\d{1,4}(?:\.\d)?)\s+\S.*")
+
+
+def _read_left_out(value: Any, scale: Scale) -> tuple[str, ...]:
+    texts = value if isinstance(value, list) else [value]
+    found = [_LEFT_OUT.fullmatch(text) if isinstance(text, str) else None for text in texts]
+    if not all(found) or not isinstance(value, list):
+        raise WrongValueError(", ".join(map(quoted, texts)) or quoted(value))
+    return tuple(f"{each[1][0]}{float(each[1][1:]):g}" for each in found if each)
+
+
 _CODE = re.compile(r"(?:[ -z|~]|\{value\}|\{value:d\}|\{value:\.[1-9]f\})+")
 """Printable ASCII, braces only around the number of the event."""
 
@@ -223,6 +234,7 @@ POSE = ValueType("4 rows of 4 numbers, a rotation and a shift", _read_pose)
 NAME = _text("a text of one line", lambda text: text.strip() and text.isprintable())
 PROSE = _text("a text", lambda text: True)
 CODE = _text("a line of ASCII, the number as {value}, {value:d} or {value:.3f}", _CODE.fullmatch)
+LEFT_OUT = ValueType('texts such as "M21 chip conveyor": a G or M code and why it is left out', _read_left_out)
 LETTERS = ValueType(f"6 different letters out of {' '.join(AXIS_LETTERS)}", _read_letters)
 
 

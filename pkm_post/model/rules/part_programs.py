@@ -151,7 +151,8 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
     # G4: what a G-code program means
     "G401": error(
         "the code is not supported",
-        "replace it by supported codes, or leave it out with --leave-out if it does not move the tool",
+        "replace it by supported codes, or, if it does not move the tool, leave it out with --leave-out or with"
+        " part_programs.leave_out of the machine file",
     ),
     "G402": error(
         "the code has no meaning on this machine",

@@ -52,6 +52,8 @@ class ReadOptions:
             G43.4, "RPY" those of LinuxCNC's hexapod: k = Rz(C) Ry(B) Rx(A) e_z.
         work_offsets: by name, "G54" to "G59.3" or "G54.1P1" to "G54.1P300", origin in mm and angle about Z in degrees,
             in {C}. If empty, {C} is the frame of the only work offset that the program uses.
+        machine_offsets: those of the machine, likewise, for a program that uses several; the first one that it uses
+            has to be 0.
         machine_zero: tool tip position in {C}, mm, where X, Y and Z of G53 are zero: with ``work_offsets`` {C}'s own
             zero.
         home: target of G28, in {C}, mm; ``machine_zero`` if None.
@@ -73,6 +75,7 @@ class ReadOptions:
     default_tool: Tool | None = None
     axis_words: str = "none"
     work_offsets: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
+    machine_offsets: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
     machine_zero: Point | None = None
     home: Point | None = None
     second_home: Point | None = None

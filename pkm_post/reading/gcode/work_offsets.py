@@ -10,7 +10,7 @@ The order within a block is that of RS274NGC: length offset, work offset, then n
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -70,12 +70,15 @@ class _Offsets:
     def of(cls, options: ReadOptions) -> _Offsets:
         """Create the offsets from the options."""
         offsets = cls()
-        for name, (x, y, z, degrees) in options.work_offsets.items():
-            number, _, further = name.removeprefix("G").partition("P")
-            code = FURTHER_OFFSET - int(further) if further else round(10 * float(number))
-            offsets.origins[code] = np.array([x, y, z])
-            offsets.angles[code] = float(np.radians(degrees))
+        offsets.take(options.work_offsets)
         return offsets
+
+    def take(self, poses: Mapping[str, tuple[float, float, float, float]]) -> None:
+        """Take work offsets by name, origin in mm and rotation about Z in degrees."""
+        for name, (x, y, z, degrees) in poses.items():
+            code = _code_of(name)
+            self.origins[code] = np.array([x, y, z])
+            self.angles[code] = float(np.radians(degrees))
 
     def inner(self, point: Array) -> Array:
         """Apply mirror and rotation to a (3,) point of the program."""
@@ -114,6 +117,12 @@ class _Offsets:
         coordinates = np.where(np.isnan(words), position, words)
         moved = self.work_offset_turn(system) @ (self.inner(position) - self.inner(coordinates))
         self.origins[system] = self.origins.get(system, np.zeros(3)) + moved
+
+
+def _code_of(name: str) -> int:
+    """The code of a work offset: 540 of G54, and that of G54.1P7."""
+    number, _, further = name.removeprefix("G").partition("P")
+    return FURTHER_OFFSET - int(further) if further else round(10 * float(number))
 
 
 def _length_of(tool: Tool | None) -> float:
@@ -212,6 +221,8 @@ class OffsetCodes:
 
     def _work_offset(self, row: int, code: int, position: Array, known: Array, moved: bool) -> None:
         offsets = self.offsets
+        if code not in offsets.origins and moved | bool(offsets.origins):
+            self._take_those_of_the_machine()
         if not offsets.origins and (code == offsets.system or not moved):
             # The only work offset of a program is {C} itself.
             offsets.origins[code] = np.zeros(3)
@@ -220,6 +231,13 @@ class OffsetCodes:
         elif moved and offsets.system not in offsets.origins:
             self._faults.add("G412", row, (word_of(offsets.system), ", in force before ", word_of(code)))
         offsets.system = code
+
+    def _take_those_of_the_machine(self) -> None:
+        """A second work offset: take those of the machine file, where the first one is the {C} that they refer to."""
+        offsets, machine = self.offsets, self._options.machine_offsets
+        chosen = {_code_of(name) for name, pose in machine.items() if not any(pose)}
+        if offsets.system in chosen and not self._options.work_offsets and {*offsets.origins} <= {offsets.system}:
+            offsets.take(machine)
 
     def _rotation(self, row: int, code: int, position: Array, known: Array, moved: bool) -> None:
         if code == 690:
