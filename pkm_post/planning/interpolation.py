@@ -5,8 +5,8 @@ Enters: path, schedule and machine, then starts and ends of intervals in whole m
 of tip and axis, of speed and acceleration of tip and struts, and of the turning rate, each relative to its limit.
 
 The plan is compared with the cubics of the tool at the joints of the path and between them, where the motion deviates
-most, without kinematics. The difference to the struts' cubics, the drift, is bounded; where the bound is too coarse, it
-is measured and added.
+most, without kinematics. Where a smooth curve stands for lines, the joints of its pieces count. The difference to the
+struts' cubics, the drift, is bounded; where the bound is too coarse, it is measured and added.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, length_of, unit
 from pkm_post.machine import DRIFT_SHARES, Demand, KnotState, ToolCubics, ToolPoses, bounded_demand, measured_demand
-from pkm_post.model import Machine, Poses, Tolerances
+from pkm_post.model import Machine, Poses, Tolerances, checkpoint
 from pkm_post.planning.check_points import CheckPoints, Intervals
 from pkm_post.planning.fast_poses import fast_poses, fast_poses_within
 from pkm_post.planning.schedule import Schedule, by_time
@@ -73,6 +73,14 @@ def _poses(path: ToolPath, s: Array, speed: Array, acceleration: Array) -> Poses
     )
 
 
+def _allowed(path: ToolPath, rows: slice, tolerances: Tolerances) -> Array:
+    """What tip and axis may be off on some segments, (2, N) mm and rad."""
+    programmed = path.tip_tolerance[rows]  # the program may tighten the tolerance, not widen it
+    tip = np.where(programmed > 0, np.minimum(programmed, tolerances.tip), tolerances.tip)
+    share = np.where(path.segments.is_curve(np.arange(rows.start, rows.stop)), _SHARE_ON_CURVES, _SHARE_OF_TOLERANCES)
+    return np.stack([share * tip, share * tolerances.axis])
+
+
 class InterpolationCheck:
     """How well the controller's cubics follow the plan in one stretch; poses at ends of intervals are cached."""
 
@@ -89,27 +97,26 @@ class InterpolationCheck:
             marks: (K,) whole ms; the stretch runs from the first to the last.
         """
         self._path, self._schedule, self._machine = path, schedule, machine
-        programmed = path.tip_tolerance  # the program may tighten the tolerance, not widen it
-        tip = np.where(programmed > 0, np.minimum(programmed, tolerances.tip), tolerances.tip)
-        share = np.full(len(tip), _SHARE_OF_TOLERANCES)
-        share[path.segments.splines.row] = _SHARE_ON_CURVES
-        self._allowed = np.stack([share * tip, share * tolerances.axis])
+        whole = Intervals.of(schedule.joint_time, marks[:1], marks[-1:])
+        first, last = whole.first[0], whole.last[0]
+        joints = np.arange(first, last)
+        self._first_row = first
+        self._at_joint = self._plan(joints, path.segments.extent[joints]) if len(joints) else np.empty((6, 0))
+        self._seen = joints[~path.segments.in_one_piece(first, last)]
+        self._seen_time = schedule.joint_time[np.append(self._seen, last)]
+        self._allowed = _allowed(path, slice(first, last + 1), tolerances)
         self._negligible_drift = _NEGLIGIBLE_DRIFT * self._allowed[0].min()
         self._first = marks[0]
         self._row = np.full(marks[-1] - marks[0] + 1, -1)
         self._place = self._rate = np.empty((7 if path.attitude is None else 3, 0))
         self._tool_length, self._along = np.empty(0), np.empty((2, 0))
-        whole = Intervals.of(schedule.joint_time, marks[:1], marks[-1:])
-        joints = whole.at_joints(schedule.joint_time).segment
-        self._first_joint = whole.first[0]
-        self._at_joint = self._plan(joints, path.segments.extent[joints]) if len(joints) else np.empty((6, 0))
 
     def error(self, start: Array, end: Array) -> Array:
         """Worst value of intervals of whole ms, (N,), relative to its limit; above 1 the interval is too long.
 
         For an interval that is too long it is the value at which the check stopped.
         """
-        intervals = Intervals.of(self._schedule.joint_time, start, end)
+        intervals = Intervals.of(self._seen_time, start, end)
         first, last = self._rows(start), self._rows(end)
         cubics = self._tool_cubics(first, last, intervals.duration)
         worst = self._in_passes(self._deviation_at_joints, intervals, cubics, np.zeros((2, len(start))))
@@ -122,7 +129,8 @@ class InterpolationCheck:
     def _closely(self, intervals: Intervals, cubics: ToolCubics) -> Array:
         """Check machine limits and the points between joints, for intervals that hold at their joints."""
         demand = self._demand(intervals, cubics)
-        feed = np.maximum(self._path.feed[intervals.first], self._path.feed[intervals.last])
+        of_all = Intervals.of(self._schedule.joint_time, intervals.start, intervals.end)
+        feed = np.maximum(self._path.feed[of_all.first], self._path.feed[of_all.last])
         swing = (demand.tip_speed / feed - 1) / _SPEED_SWING
         drift = np.stack([demand.tip, demand.axis])
         off = self._in_passes(self._deviation_between, intervals, cubics, drift)
@@ -137,6 +145,7 @@ class InterpolationCheck:
         worst, points = np.empty(len(intervals)), np.cumsum(intervals.most_points(_GAPS, _WIDEST_GAP))
         bounds = np.flatnonzero(np.diff(points // _POINTS_AT_ONCE, prepend=-1, append=-1))
         for begin, end in itertools.pairwise(bounds):
+            checkpoint()
             rows = np.arange(begin, end)
             worst[rows] = deviation(intervals[rows], cubics[rows], drift[:, rows])
         return worst
@@ -163,17 +172,18 @@ class InterpolationCheck:
 
     def _deviation_at_joints(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
         """Largest deviation at joints by tolerance, (N,), with drifts of tip and axis, (2, N)."""
-        joints = intervals.at_joints(self._schedule.joint_time)
-        plan = self._at_joint[:, joints.segment - self._first_joint]
-        allowed = np.minimum(*(self._allowed[:, joints.segment + side] for side in (0, 1)))
+        joints = intervals.at_joints(self._seen_time)
+        row = self._seen[joints.segment] - self._first_row
+        plan, allowed = self._at_joint[:, row], np.minimum(*(self._allowed[:, row + side] for side in (0, 1)))
         return joints.maximum(self._deviation(joints, cubics, plan, allowed, drift), len(intervals))
 
     def _deviation_between(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
         """The same between the joints."""
-        points = intervals.between_joints(self._schedule.joint_time, _GAPS, _WIDEST_GAP)
+        points = intervals.between_joints(self._seen_time, _GAPS, _WIDEST_GAP)
         s, _, _ = self._schedule.at(points.time)
-        plan = self._plan(points.segment, s - self._path.starts[points.segment])
-        allowed = self._allowed[:, points.segment]
+        segment = np.searchsorted(self._schedule.joint_time, points.time)
+        plan = self._plan(segment, s - self._path.starts[segment])
+        allowed = self._allowed[:, segment - self._first_row]
         return points.maximum(self._deviation(points, cubics, plan, allowed, drift), len(intervals))
 
     def _deviation(self, points: CheckPoints, cubics: ToolCubics, plan: Array, allowed: Array, drift: Array) -> Array:
@@ -238,8 +248,8 @@ class InterpolationCheck:
         if not len(joints.row):
             return joints.segment, joints.time
         cubics = self._tool_cubics(self._rows(start), self._rows(end), intervals.duration)
-        plan = self._at_joint[:, joints.segment - self._first_joint]
-        allowed = self._allowed[:, joints.segment]
+        row = joints.segment - self._first_row
+        plan, allowed = self._at_joint[:, row], self._allowed[:, row]
         share = self._nearest(cubics[joints.row], joints.share, plan, allowed, joints.duration)
         time = start[joints.row] / 1000 + share * joints.duration
         return joints.segment, np.maximum.accumulate(time)

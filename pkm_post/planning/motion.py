@@ -56,8 +56,9 @@ _STATIONS_AT_ONCE = 4096
 """Stations in one pass: their working arrays stay in the processor's cache."""
 _KNOTS_AT_ONCE = 4096
 """Knots in one pass: the derivatives of their poses take more memory than the result."""
-_STRETCH_MS = 65_536
-"""Stretches of the motion, about a minute or a little more, whose knots are determined separately."""
+_STRETCH_MS, _STRETCH_ROWS = 1 << 20, 1 << 16
+"""ms, and segments, of the stretches of the motion whose knots are determined separately, with up to a mark more: few
+passes over long columns, which fit into memory."""
 
 
 @dataclass(frozen=True)
@@ -269,7 +270,8 @@ def interpolated_between(feed_plan: FeedPlan, marks: Array) -> tuple[Motion, _Sl
     """The same from the first of some whole ms, (K,) that are knots, to the last."""
     path, schedule, machine = feed_plan.path, feed_plan.schedule, feed_plan.machine
     shortest = machine.shortest_interval
-    ends = np.flatnonzero(np.diff(marks[:-1] // _STRETCH_MS, prepend=-1, append=-1))
+    row = np.searchsorted(schedule.joint_time, marks[:-1] / 1000)
+    ends = np.flatnonzero(np.diff(marks[:-1] // _STRETCH_MS + row // _STRETCH_ROWS, prepend=-1, append=-1))
     stretches = [marks[first : last + 1] for first, last in itertools.pairwise(ends)]
 
     def knots_of(stretch: Array) -> tuple[Array, Array, tuple[Array, Array]]:

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, along_rates, norm
-from pkm_post.model import Poses, Trajectory
+from pkm_post.model import Poses, Trajectory, pieces
 from pkm_post.toolpath import Segments, direction
 
 OFFSET = 3 / 16
@@ -34,6 +34,8 @@ _BEND = 0.5
 """rad: the most that an arc is extended; beyond it, the two segments of a joint no longer approximate each other."""
 _SHARE = 0.45
 """Share of the shorter neighbour that a blend may use; two blends on one segment never meet."""
+_JOINTS_AT_ONCE = 16384
+"""Joints whose blends are computed in one pass."""
 _INSIDE = 1 - 1e-9
 """Share of the half width that counts as the blend: at its very end the segment is exact despite rounding."""
 
@@ -169,20 +171,23 @@ def _as_vectors(at: Callable[[Array, Array], Triple]) -> Callable[[Array, Array]
 
 def _blends(segments: Segments, rests: Array, tip_tolerance: Array | float, axis_tolerance: float) -> Array:
     blend = np.zeros(len(segments) + 1)
-    joint = 1 + np.flatnonzero(~(rests[1:-1] | segments.in_one_curve()))
-    before, at_start = joint - 1, np.zeros(len(joint))
-    at_end = segments.extent[before]
-    _, tangent_end, bend_end = segments.tip_at(before, at_end)
-    _, tangent_start, bend_start = segments.tip_at(joint, at_start)
-    blend[joint] = half_widths(
-        norm(tangent_start - tangent_end),
-        norm(bend_start - bend_end),
-        np.maximum(norm(bend_start), norm(bend_end)),
-        norm(segments.axis_at(joint, at_start)[1] - segments.axis_at(before, at_end)[1]),
-        np.minimum(at_end, segments.extent[joint]),
-        _at_joints(np.broadcast_to(tip_tolerance, len(segments)), joint),
-        axis_tolerance,
-    )
+    joints = 1 + np.flatnonzero(~(rests[1:-1] | segments.in_one_curve()))
+    tip = np.broadcast_to(tip_tolerance, len(segments))
+    for rows in pieces(len(joints), _JOINTS_AT_ONCE):
+        joint = joints[rows]
+        before, at_start = joint - 1, np.zeros(len(joint))
+        at_end = segments.extent[before]
+        _, tangent_end, bend_end = segments.tip_at(before, at_end)
+        _, tangent_start, bend_start = segments.tip_at(joint, at_start)
+        blend[joint] = half_widths(
+            norm(tangent_start - tangent_end),
+            norm(bend_start - bend_end),
+            np.maximum(norm(bend_start), norm(bend_end)),
+            norm(segments.axis_at(joint, at_start)[1] - segments.axis_at(before, at_end)[1]),
+            np.minimum(at_end, segments.extent[joint]),
+            _at_joints(tip, joint),
+            axis_tolerance,
+        )
     return blend
 
 

@@ -11,8 +11,9 @@ from __future__ import annotations
 import functools
 import os
 import threading
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from typing import TypeVar
 
 Item = TypeVar("Item")
@@ -23,6 +24,8 @@ _FOR_EACH = 112 << 20
 _MATRICES, _ROWS = 8, 96
 """Matrices that keep a thread busy for a millisecond or more, so that all compute at once, and the rows of each: few
 enough for OpenBLAS to take no further threads, which would wait busily for more work for a tenth of a second."""
+_BETWEEN_CHECKPOINTS = 0.1
+"""s between two checkpoints of a caller that waits."""
 
 
 @functools.cache
@@ -51,15 +54,44 @@ def workers() -> ThreadPoolExecutor:
     return pool
 
 
+class _EndedError(Exception):
+    """The caller of a worker has left: nothing waits for its result."""
+
+
 def in_workers(function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:
-    """The results of a function for items, in order, computed by the pool, with a checkpoint before each.
+    """The results of a function for items, in order, computed by the pool, with checkpoints while the caller waits.
+
+    A single item is computed in the thread of the caller. When the caller leaves, as by an exception from a
+    checkpoint, workers stop at their next checkpoint.
 
     Args:
         function: must not submit work to the pool.
         items: what it is called with.
     """
-    from pkm_post.model import checkpoint
+    from pkm_post.model import checkpoint, checkpoints
 
-    for result in workers().map(function, items):
-        checkpoint()
-        yield result
+    waiting, ended = deque(items), threading.Event()
+
+    def leave() -> None:
+        if ended.is_set():
+            raise _EndedError
+
+    def work(item: Item) -> Result:
+        with checkpoints(leave):
+            return function(item)
+
+    if len(waiting) == 1:
+        yield function(waiting.pop())
+        return
+    futures = deque(workers().submit(work, item) for item in waiting)
+    try:
+        while futures:
+            future = futures.popleft()
+            checkpoint()
+            while not wait([future], _BETWEEN_CHECKPOINTS).done:
+                checkpoint()
+            yield future.result()
+    finally:
+        ended.set()
+        for future in futures:
+            future.cancel()

@@ -74,6 +74,7 @@ def place(
     checkpoint()
     keep = (way["length"] > _NO_MOVE) | (way["angle"] > _NO_MOVE)
     faults = (*_faults(placed, machine, way, keep), *added, *waits)
+    checkpoint()
     if errors(faults):
         return None, faults
     events = _events_on_kept_rows(placed.events, keep)
@@ -102,14 +103,17 @@ def _path_columns(placed: Program, machine: Machine) -> dict[str, Any]:
     angle = np.zeros(len(placed))
     x, y, z = (axis != axis_before).T
     turns = x | y | z
+    checkpoint()
     angle[turns] = angle_between(axis_before[turns], axis[turns])
     # At a tool change the platform stands still: the tip of a longer tool starts lower.
     longer = np.diff(gauge_lengths(placed.tools, tool), prepend=placed.tools[int(tool[0])].length)
     tip_before = np.vstack([machine.home_tip, tip[:-1]]) - longer[:, None] * axis_before
+    checkpoint()
     arc = placed.kind == Kind.ARC
     sweep, length = np.zeros(len(placed)), norm(tip - tip_before)
     sweep[arc] = arc_sweep(tip_before[arc], tip[arc], centre[arc], turn[arc])
     length[arc] = arc_length(tip_before[arc], tip[arc], centre[arc], turn[arc])
+    checkpoint()
     return {
         "kind": placed.kind,
         "tip_before": tip_before,

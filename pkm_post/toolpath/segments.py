@@ -120,6 +120,14 @@ class Segments:
         within[row[:-1][same]] = True
         return within
 
+    def in_one_piece(self, first: int, last: int) -> Array:
+        """Joints from one segment to another, (last - first,), at which one piece of a curve goes on."""
+        part = slice(*np.searchsorted(self.splines.row, [first, last + 1]))
+        row, within = self.splines.row[part], np.zeros(last - first, dtype=np.bool_)
+        same = (np.diff(row) == 1) & (np.diff(self.splines.piece_at(self.splines.place[part], part)) == 0)
+        within[row[:-1][same] - first] = True
+        return within
+
     def __len__(self) -> int:
         return len(self.extent)
 

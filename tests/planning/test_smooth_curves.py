@@ -148,3 +148,15 @@ def test_fast_poses_are_those_of_the_path(lean):
         fast, poses = fast_poses(path, s[rows]), path.at(s[rows])
         for name in ("tip", "tip_1", "axis", "spin", "tool_length"):
             np.testing.assert_allclose(getattr(fast, name), getattr(poses, name), atol=1e-11)
+
+
+def test_joints_within_one_piece_of_a_curve_are_those_between_its_bounds():
+    segments = tool_path(scan(2, noise=0.003), Tolerances(0.01, THOUSANDTH)).segments
+    splines = segments.splines
+    within = segments.in_one_piece(0, len(segments) - 1)
+    assert 0.5 * len(splines) < within.sum() < len(splines)
+    first, last = splines.pieces_of_rows()
+    for row in np.flatnonzero(within).tolist():
+        here, after = np.searchsorted(splines.row, [row, row + 1])
+        assert first[here] == first[after] == last[here]
+    np.testing.assert_array_equal(segments.in_one_piece(50, 90), within[50:90])

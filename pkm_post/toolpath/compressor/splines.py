@@ -113,6 +113,11 @@ class Splines:
         first = np.clip(first, self.first, self.last)
         return first, np.clip(last, first, self.last)
 
+    def piece_at(self, place: Array, row: Array | slice) -> Array:
+        """The pieces at places along all curves, (N,), of rows that are there."""
+        piece = np.searchsorted(self.begin, place, side="right") - 1
+        return np.clip(piece, self.first[row], self.last[row])
+
     def among(self, segment: Array) -> tuple[Array, Array]:
         """Which of the given segments, (N,), have curves, and their rows here, (K,) each."""
         return find_rows(self.row, segment)
@@ -158,8 +163,7 @@ class Splines:
     def _located(self, row: Array, u: Array) -> tuple[Array, Array, Array]:
         """The piece at parameters u of rows, its width, and the share of it, outside 0 and 1 beyond ends of runs."""
         place = self.place[row] + u
-        piece = np.searchsorted(self.begin, place, side="right") - 1
-        piece = np.clip(piece, self.first[row], self.last[row])
+        piece = self.piece_at(place, row)
         width = self.width[piece]
         return piece, width, (place - self.begin[piece]) / width
 

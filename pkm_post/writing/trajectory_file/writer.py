@@ -16,7 +16,7 @@ from typing import BinaryIO
 
 import numpy as np
 
-from pkm_post.model import TRAJECTORY_COLUMNS, Event, Tool, Trajectory
+from pkm_post.model import TRAJECTORY_COLUMNS, Event, Tool, Trajectory, checkpoint
 from pkm_post.system import staged
 from pkm_post.writing.trajectory_file.interpolation import blocks, interpolation, missed_ends
 from pkm_post.writing.trajectory_file.invariants import chunks, contradictions, first_segments, violations
@@ -117,6 +117,7 @@ def _write_tables(file: BinaryIO, header: Records, trajectory: Trajectory, strin
     for name, record in TABLES.items():
         count = 0
         for records in tables[name]:
+            checkpoint()
             data = records.view(np.uint8).data
             file.write(data)
             checksum = zlib.crc32(data, checksum)
