@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The commands ``check``, ``convert`` and ``verify``: examine programs, or write them in another form.
+"""The commands ``check``, ``convert``, ``verify`` and ``cartesian``: examine programs, or write them in another form.
 
 ``check`` and ``convert`` read part programs; ``verify`` compares a motion program with its trajectory file.
 """
@@ -45,6 +45,15 @@ def add_commands(commands: Any) -> None:
     verifying.add_argument("--json", action="store_true", help="write the whole report as JSON")
     add_machine(verifying)
     verifying.set_defaults(run=_verify)
+
+    turning = commands.add_parser(
+        "cartesian", help="write a posted program in X Y Z A B C, for kinematics in a Turbo PMAC"
+    )
+    turning.add_argument("program", type=Path, metavar="PROGRAM.pmc")
+    turning.add_argument("--against", type=Path, required=True, metavar="FILE.pkmt", help="its trajectory file")
+    turning.add_argument("--out", type=Path, required=True, metavar="FILE", help="the file to write")
+    add_machine(turning)
+    turning.set_defaults(run=_cartesian)
 
 
 def _target(text: str) -> str:
@@ -101,4 +110,28 @@ def _verify(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
             bound = ", at least" if finding["is_least"] else " of"
             print(f"{finding['what']}: {finding['value']:g}{bound} {finding['limit']:g} {finding['unit']}".rstrip())
         print(*report["certificate"]["meaning"], f"{namespace.program}: the certificate holds", sep="\n")
+    return 0
+
+
+def _finding_line(what: str, value: float, limit: float, unit: str) -> str:
+    return f"{what}: {value:g} of {limit:g} {unit}".rstrip()
+
+
+def _cartesian(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    from pkm_post.model import Refused
+    from pkm_post.posting import cartesian_program
+
+    machine = read_machine(namespace.machine)
+    if machine is None:
+        return 1
+    try:
+        made = cartesian_program(namespace.program, namespace.against, machine, namespace.out)
+    except Refused as refused:
+        print_diagnostics([refused])
+        return 1
+    for finding in made.certificate.findings:
+        print(_finding_line(finding.name, finding.value, finding.limit, finding.unit))
+    print(f"struts at most {made.off:.2e} mm from those of {namespace.program} at its points")
+    print("played with kinematics in doubles, where the controller has 36 bits; no segmentation in PVT mode")
+    print(*made.files, sep="\n")
     return 0

@@ -14,6 +14,7 @@ from pkm_post.posting.steps import SUFFIX, post, step_names, write_program
 from pkm_post.posting.verify import verify, verify_texts
 
 if TYPE_CHECKING:
+    from pkm_post.posting.cartesian_form import cartesian_program
     from pkm_post.posting.machine_check import format_table, machine_faults, machine_summary
     from pkm_post.posting.machine_export import export_machine
     from pkm_post.posting.reach_study import Study, study, work_offset_text
@@ -21,6 +22,7 @@ else:
     __getattr__ = at_first_use(
         __name__,
         {
+            "cartesian_form": "cartesian_program",
             "machine_check": "format_table machine_faults machine_summary",
             "machine_export": "export_machine",
             "reach_study": "Study study work_offset_text",
@@ -34,6 +36,7 @@ __all__ = [
     "Prepared",
     "Progress",
     "Study",
+    "cartesian_program",
     "format_table",
     "effective_setup",
     "export_machine",

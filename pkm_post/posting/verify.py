@@ -75,28 +75,59 @@ def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine
     return Verified(certificate, report, diagnostics)
 
 
+def read_motion(program: Path, machine: Machine) -> StrutMotion:
+    """The motion of a program in all its parts.
+
+    Raises:
+        Refused: it cannot be read, or is faulty.
+    """
+    controller, faults = controller_settings(machine)
+    if controller is None:
+        raise Refused(faults)
+    texts, faults = read_texts(program, controller[0])
+    if texts is None:
+        raise Refused(faults)
+    return _played(texts, machine)
+
+
 def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> tuple[Certificate, dict[str, Any]]:
     """The certificate of a program, which holds, and the report."""
+    digests = [program_files.program_hash(text) for _, text in texts]
+    return certified(_played(texts, machine), program.name, trajectory, machine, digests)
+
+
+def certified(
+    struts: StrutMotion, name: str, trajectory: Path, machine: Machine, digests: list[str]
+) -> tuple[Certificate, dict[str, Any]]:
+    """The certificate of a motion against a trajectory file, which holds, and the report.
+
+    Args:
+        struts: read from a program.
+        name: of the program, for the diagnostics.
+        trajectory: the file.
+        machine: the machine.
+        digests: SHA-256 of the parts of the program, for the report.
+
+    Raises:
+        Refused: the file cannot be read, is of another machine, or the certificate does not hold.
+    """
     planned, faults = trajectory_file.read(trajectory)
     if planned is None:
         raise Refused(faults)
-    struts = _played(texts, machine)
     tolerances = planned.tolerances
     if tolerances is None:
         raise Refused([Diagnostic("T105", Place(str(trajectory)), "none are in its header")])
-    _refuse_for_machine(planned, machine, program.name)
-    result, faults = reconstruct(struts, program.name, planned, machine, tolerances)
+    _refuse_for_machine(planned, machine, name)
+    result, faults = reconstruct(struts, name, planned, machine, tolerances)
     if result is None:
         raise Refused(faults)
     certificate, faults = certify(
-        struts, program.name, planned, machine, result.motion, tolerances, spin_deviation=result.spin_deviation
+        struts, name, planned, machine, result.motion, tolerances, spin_deviation=result.spin_deviation
     )
     faults = (*faults, *reach_faults(machine, planned, *result.way()))
     if certificate is None or errors(faults):
         raise Refused(faults)
-    files = summary.hashes(
-        [program_files.program_hash(text) for _, text in texts], manifest.fingerprint_of_file(trajectory)
-    )
+    files = summary.hashes(digests, manifest.fingerprint_of_file(trajectory))
     results = Results(planned, machine, result.motion, struts, certificate, tolerances, files=files)
     return certificate, summary.report(results)
 

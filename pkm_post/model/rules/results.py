@@ -43,6 +43,10 @@ RESULT_RULES: dict[str, Rule] = {
         "keep the trajectory file, the report and all parts of one posting in the folder of the program, or post the"
         " job again; pmac --uncertified loads it nevertheless",
     ),
+    "C111": error(
+        "the program has tools of several lengths, and the form in tip and axis knows one",
+        "post the operations of each tool as a program of their own, or load the program of strut lengths",
+    ),
     # C2: moves by hand, at the controller
     "C201": error("the command moves nothing", "give a direction and a distance"),
     "C202": error("no pose of the platform belongs to the strut lengths on the way", "jog less far, or jog the tool"),

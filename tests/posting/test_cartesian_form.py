@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The form in tip and axis: struts and certificate are those of the program it was made from."""
+
+import dataclasses
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+import programs
+import pytest
+
+from pkm_post.cli import main
+from pkm_post.machine import machine_named
+from pkm_post.model import Event, EventKind, Refused
+from pkm_post.options import Options
+from pkm_post.posting import cartesian_program, post
+from pkm_post.posting.verify import read_motion
+
+sys.path.append(str(Path(__file__).parents[1] / "writing" / "kinematics"))
+
+import exported_machines as made  # noqa: E402
+from kinematic_language import DOUBLE, TURBO  # noqa: E402
+
+ROUNDING = 5e-7 * (np.sqrt(3) + np.sqrt(3) * np.radians(283.0))
+"""mm: half a digit of X Y Z, and of A B C in degrees at the platform joints, 283 mm from the tip; speeds have two
+decimals less."""
+MOVE = re.compile(r"^" + " ".join(rf"{letter}(-?[\d.]+):(-?[\d.]+)" for letter in "XYZABC") + "$", re.M)
+
+
+@pytest.fixture(scope="module")
+def posted(tmp_path_factory):
+    """A job that tilts the tool and stops in between, its folder, and its form in tip and axis."""
+    machine, folder = machine_named("example_6tps")[0], tmp_path_factory.mktemp("posted")
+    job = dataclasses.replace(programs.cone(30, turns=0.4), events=(Event(12, EventKind.STOP, 0.0),))
+    post(job, machine, folder / "job.pmc", Options())
+    return machine, folder, cartesian_program(folder / "job.pmc", folder / "job.pkmt", machine, folder / "tip.pmc")
+
+
+def test_its_struts_are_those_of_the_program(posted):
+    _, _, form = posted
+    assert 0.0 < form.off < ROUNDING
+    assert form.certificate.holds and len(form.files) == 1
+
+
+@pytest.mark.parametrize("bits", [DOUBLE, TURBO])
+def test_the_exported_inverse_program_makes_the_struts_of_it(posted, bits):
+    """Words of the text, through the kinematic program of ``machine export``, against the program of strut lengths."""
+    machine, folder, form = posted
+    words = np.array(MOVE.findall(form.files[0].read_text()), dtype=float)
+    axes, rates = words[:, 0::2], words[:, 1::2]
+    given = dict(zip(("Q7", "Q8", "Q9", "Q1", "Q2", "Q3"), axes.T, strict=True))
+    given |= dict(zip(("Q17", "Q18", "Q19", "Q11", "Q12", "Q13"), rates.T, strict=True))
+    run = made.controller_of(machine, "turbo", bits).run("inverse", given | {"Q10": 1.0})
+    scale, zero = machine.controller["counts_per_mm"], np.array(machine.controller["zero_length"])
+    struts = read_motion(folder / "job.pmc", machine)
+    found = np.stack([run[f"P{motor}"] for motor in range(1, 7)], axis=1) / scale + zero
+    speeds = np.stack([run[f"P10{motor}"] for motor in range(1, 7)], axis=1) / scale
+    assert len(found) == len(struts) - 1
+    np.testing.assert_allclose(found, struts.length[1:], rtol=0, atol=ROUNDING)
+    np.testing.assert_allclose(speeds, struts.speed[1:], rtol=0, atol=100 * ROUNDING)
+    assert np.ptp(axes, axis=0).min() > 1.0
+
+
+def test_heading_says_what_it_runs_with(posted):
+    text = posted[2].files[0].read_text()
+    assert "; runs with I5150=1, Q50=120 and Q51 to Q54 zero, never with I5150=0" in text
+    assert "FRAX(X,Y,Z,A,B,C)" in text and "strut lengths" not in text
+
+
+def test_a_changed_program_is_refused(posted, tmp_path):
+    machine, folder, _ = posted
+    changed = folder / "job.pmc"
+    text = changed.read_text()
+    try:
+        changed.write_text(re.sub(r"A(\d+)", lambda found: f"A{int(found[1]) + 3}", text, count=20))
+        with pytest.raises(Refused):
+            cartesian_program(changed, folder / "job.pkmt", machine, tmp_path / "tip.pmc")
+    finally:
+        changed.write_text(text)
+    assert not list(tmp_path.iterdir())
+
+
+def test_tools_of_several_lengths_are_refused(tmp_path):
+    machine = machine_named("example_6tps")[0]
+    job = programs.cone(24, turns=0.2)
+    length = next(iter(job.tools.values()))
+    two = {1: length, 2: dataclasses.replace(length, number=2, length=length.length + 10.0)}
+    events = (Event(0, EventKind.TOOL_CHANGE, 1.0), Event(12, EventKind.TOOL_CHANGE, 2.0))
+    post(dataclasses.replace(job, tools=two, events=events), machine, tmp_path / "job.pmc", Options())
+    with pytest.raises(Refused, match="C111"):
+        cartesian_program(tmp_path / "job.pmc", tmp_path / "job.pkmt", machine, tmp_path / "out" / "tip.pmc")
+    assert not (tmp_path / "out").exists()
+
+
+def test_command_prints_the_certificate_and_the_file(posted, tmp_path, capsys):
+    _, folder, _ = posted
+    out = tmp_path / "tip.pmc"
+    arguments = [str(folder / "job.pmc"), "--against", str(folder / "job.pkmt"), "--machine", "example_6tps"]
+    assert main(["cartesian", *arguments, "--out", str(out)]) == 0
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[-1] == str(out) and any(line.startswith("deviation of the tool tip: ") for line in printed)
+
+
+def test_a_power_pmac_is_refused(posted, tmp_path):
+    machine, folder, _ = posted
+    power = dataclasses.replace(machine, controller={**machine.controller, "kind": "power_pmac"})
+    with pytest.raises(Refused, match="M104"):
+        cartesian_program(folder / "job.pmc", folder / "job.pkmt", power, tmp_path / "tip.pmc")
