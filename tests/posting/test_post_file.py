@@ -49,6 +49,33 @@ GOTO/20,5,30
 SPINDL/OFF
 FINI
 """
+SIEMENS = """\
+%_N_PART_MPF
+DEF REAL STEP=10
+T="1" D1
+M6
+G71 G90 G94 G17 G54 S8000 M3
+CYCLE832(0.01,1,1)
+TRAORI
+ORIWKS ORIVECT
+CYCLE832()
+G0 X0 Y0 Z30 A3=0 B3=0 C3=1
+FOR R1=1 TO 2
+STEPS(R1, STEP)
+ENDFOR
+G0 Z30
+TRAFOOF
+M5
+M30
+%_N_STEPS_SPF
+PROC STEPS(INT NUMBER, REAL WIDTH)
+IF NUMBER==1
+G1 X=IC(WIDTH) Y0 Z20 A3=0.1 B3=0 C3=1 F600
+ELSE
+G1 X=WIDTH*NUMBER Y5 Z20 A3=0.1 B3=0.1 C3=1
+ENDIF
+M17
+"""
 
 
 def cutter(diameter):
@@ -62,13 +89,14 @@ def posted(folder, name, text, **choices):
     return post_file(file, choices.pop("machine", "example_6tps"), folder / "out", **choices)
 
 
-def test_g_code_and_cl_data_of_one_path_give_one_report(tmp_path):
+def test_g_code_siemens_s_language_and_cl_data_of_one_path_give_one_report(tmp_path):
     reports = [
+        posted(tmp_path, "a.mpf", SIEMENS, reading=ReadingOptions("none", {1: cutter(10.0)})).report,
         posted(tmp_path, "a.ngc", G_CODE, reading=ReadingOptions("vector", {1: cutter(10.0)})).report,
         posted(tmp_path, "a.cls", CL_DATA).report,
     ]
     assert all(report["certificate"]["holds"] for report in reports)
-    assert reports[0]["motion"] == reports[1]["motion"]
+    assert reports[0]["motion"] == reports[1]["motion"] == reports[2]["motion"]
 
 
 G_HOLES = """\
@@ -78,6 +106,20 @@ G0 X0 Y0 Z30
 G98 G81 X10 Y0 R3 Z-9 F300
 G81 X-15 Y5 R13 Z1
 G80
+M5
+M30
+"""
+SIEMENS_HOLES = """\
+T1 D1
+M6
+G71 G90 G94 G17 S8000 M3
+G0 X0 Y0 Z30
+F300
+MCALL CYCLE81(30,0,3,-9)
+G0 X10 Y0
+MCALL CYCLE81(30,10,3,,9)
+X-15 Y5
+MCALL
 M5
 M30
 """
@@ -111,6 +153,8 @@ def test_canned_cycles_and_cycles_of_cl_data_give_one_report(tmp_path, fine_mach
     reading = ReadingOptions("vector", {1: cutter(10.0)})
     canned = posted(tmp_path, "a.ngc", G_HOLES, reading=reading, machine=fine_machine).report
     cycles = posted(tmp_path, "a.cls", CL_HOLES, machine=fine_machine).report
+    called = posted(tmp_path, "a.mpf", SIEMENS_HOLES, reading=reading, machine=fine_machine).report
+    assert called["motion"] == canned["motion"]
     assert canned["certificate"]["holds"]
     assert canned["motion"] == cycles["motion"]
     assert cycles["program"]["reading"] == ["CYCLE in line 8: words of NX, by the dialect"]

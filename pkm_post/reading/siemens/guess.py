@@ -20,7 +20,7 @@ _HEAD = 256 * 1024
 _LEAST = 2
 _MOST_SHOWN = 3
 _GCODE = re.compile(
-    rb"^[^;\n]*?(?:(?<![A-Z_])(?:G0*(?:20|28|30|43|49|73|80|81|82|83|98|99)(?![0-9])|O[0-9]|M9[89])|#[0-9<]|\[|^\()",
+    rb"^[^;\n]*?(?:(?<![A-Z_])(?:G0*(?:20|28|30|43|49|73|80|81|82|83|98|99)(?![0-9])|O[0-9]|M9[89])|#[0-9<]|(?<![A-Z0-9_])\[|^\()",
     re.MULTILINE | re.IGNORECASE,
 )
 """Codes and signs of G-code that Siemens's language does not have."""
