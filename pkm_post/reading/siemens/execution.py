@@ -28,16 +28,16 @@ from pkm_post.reading.siemens.modal_codes import (
     g_code,
     m_code,
     name_alone,
+    tool_offset,
     words,
 )
-from pkm_post.reading.siemens.scan import PLAIN
+from pkm_post.reading.siemens.scan import LARGEST, PLAIN
 from pkm_post.reading.siemens.state import BY_POINT, LINE, NO_MOTION, RAPID, TANGENT
 from pkm_post.reading.siemens.swivel import resets, swivel
 
 _MOTION_NAMES = {"CIP": BY_POINT, "CT": TANGENT}
 _MODES = {"AC": ABSOLUTE, "DC": ABSOLUTE, "ACP": ABSOLUTE, "ACN": ABSOLUTE, "IC": RELATIVE}
 _MOTION_G = range(4)
-_LARGEST = 1e9
 _SUPA = "SUPA"
 
 
@@ -59,7 +59,7 @@ def carry_out(machine: Machine, block: Block) -> None:
         BlockFault: it has no meaning here.
     """
     for name, value in block.words.items():
-        if not isinstance(value, str) and abs(value) > _LARGEST:
+        if not isinstance(value, str) and abs(value) > LARGEST:
             raise BlockFault("G406", f"{name}{value:g}", block.columns[name])
     if _is_plain(machine, block):
         _add_motion(machine, block)
@@ -67,10 +67,18 @@ def carry_out(machine: Machine, block: Block) -> None:
         machine.path.flush()
         statement = next((call for call in block.names if call.name in _STATEMENTS), None)
         if statement is not None:
+            _refuse_others(block, statement)
             _STATEMENTS[statement.name](machine, block, statement)
             return
         _general(machine, block)
     _call_modal(machine, block.row, any(name in block.words for name in PLACES) and DWELL_G not in block.g)
+
+
+def _refuse_others(block: Block, statement: Call) -> None:
+    """Frames, cycles and the like have a block of their own: words of frames and the cycle of MCALL belong to them."""
+    names = len(block.names) > (2 if statement.name == "MCALL" else 1)
+    if names or block.g or block.m or (block.words and statement.name not in FRAMES):
+        raise BlockFault("G601", f"{statement.name} beside other words", statement.column)
 
 
 def _is_plain(machine: Machine, block: Block) -> bool:
@@ -113,6 +121,8 @@ def _general(machine: Machine, block: Block) -> None:
     words(machine, block)
     for code in block.m:
         m_code(machine, block, code)
+    if "D" in block.words:
+        tool_offset(machine, block)
     if DWELL_G in block.g:
         _dwell_block(machine, block)
     elif once:
@@ -180,8 +190,6 @@ def _frame(machine: Machine, block: Block, call: Call) -> None:
     state = machine.state
     if state.side:
         raise BlockFault("G419", call.name, call.column)
-    if len(block.names) > 1 or block.g or block.m:
-        raise BlockFault("G601", f"{call.name} beside other codes", call.column)
     scale = state.scale if call.name in LENGTHS else 1.0
     words = {name: block.number(name) * (scale if name in PLACES else 1.0) for name in block.words}
     state.set_frames(state.offset, state.swivel, frame_of(call.name, words, state.plane, state.programmed))

@@ -60,6 +60,8 @@ def item_of(cursor: Cursor) -> Item:
         return address(cursor, token)
     if token.kind != "name":
         raise BlockFault("G206", f"'{token.text}'", token.column)
+    if token.text.startswith("$"):
+        raise BlockFault("G602", f"{token.text}: variables of the system", token.column)
     if cursor.peek().text == "(":
         return Name(token.text, _arguments(cursor, token), token.column)
     if cursor.peek().text == "[":
@@ -118,7 +120,7 @@ def _valued(cursor: Cursor, token: Token, name: str) -> Word:
 def _element(cursor: Cursor, token: Token) -> Item:
     """An element of an array with its new value; an element of a list that has no effect here is a name."""
     cursor.expect("[")
-    if token.text in NOTED_ELEMENTS or token.text.startswith("$"):
+    if token.text in NOTED_ELEMENTS:
         while not (cursor.at_end() or cursor.takes("]")):
             cursor.next()
         cursor.expect("=")

@@ -44,7 +44,7 @@ def words(machine: Machine, block: Block) -> None:
             machine.notes.add("H: a function of the machine", block.row)
         elif name in _WORDS:
             _WORDS[name](machine, block)
-        elif name not in BUFFERED and name not in ("FB",):
+        elif name not in BUFFERED and name not in ("D", "FB"):
             raise BlockFault("G404", name, block.columns[name])
 
 
@@ -70,8 +70,12 @@ def _tool(machine: Machine, block: Block) -> None:
         _change_tool(machine)
 
 
-def _offset(machine: Machine, block: Block) -> None:
-    """D0 takes the offset of the tool away, any other D brings it."""
+def tool_offset(machine: Machine, block: Block) -> None:
+    """D0 takes the offset of the tool away, any other D brings it.
+
+    Raises:
+        BlockFault: D is no number of a cutting edge.
+    """
     value = block.number("D")
     if value < 0 or value != round(value):
         raise BlockFault("G406", f"D{value:g}", block.columns["D"])
@@ -177,16 +181,16 @@ def _compensate(machine: Machine, block: Block, code: int) -> None:
 
 def _work_offset(machine: Machine, block: Block, code: int) -> None:
     """Without places of settable offsets, the only one in which a program moves is {C} itself."""
-    state, places, column = machine.state, machine.options.work_offsets, block.columns[f"G{code}"]
+    state, places = machine.state, machine.options.work_offsets
     if places:
         if f"G{code}" not in places:
-            raise BlockFault("G609", f"G{code}", column)
+            raise BlockFault("G609", f"G{code}", block.columns[f"G{code}"])
         x, y, z, degrees = places[f"G{code}"]
         turn = about(2, degrees)
         state.set_frames(Frame(turn, np.array([x, y, z]), turn), state.swivel, state.programmed)
-    elif state.system not in (None, code) and state.has_moved:
-        raise BlockFault("G609", f"G{code} after G{state.system}", column)
-    state.system = code
+    elif not state.has_moved or state.system is None:
+        state.system = code
+    state.unplaced = "" if places or code == state.system else f"G{code} after G{state.system}"
 
 
 def name_alone(machine: Machine, block: Block, call: Call) -> None:
@@ -196,7 +200,9 @@ def name_alone(machine: Machine, block: Block, call: Call) -> None:
         BlockFault: it is not known, or not read.
     """
     state, name = machine.state, call.name
-    if name in codes.NOTED:
+    if name in NAMES:
+        NAMES[name](machine, block, call)
+    elif name in codes.NOTED:
         state.compressor |= name.startswith("COMP")
         machine.notes.add(f"{name}: {codes.NOTED[name]}", block.row)
     elif name in codes.SILENT:
@@ -205,8 +211,6 @@ def name_alone(machine: Machine, block: Block, call: Call) -> None:
         raise BlockFault("G425", name, call.column)
     elif name in codes.REFUSED:
         raise BlockFault("G602", f"{name}: {codes.REFUSED[name]}", call.column)
-    elif name in NAMES:
-        NAMES[name](machine, block, call)
     else:
         raise BlockFault("G603", name, call.column)
 
@@ -228,16 +232,23 @@ def _angles(machine: Machine, block: Block, call: Call) -> None:
     machine.state.angles = call.name
 
 
+def _reference(machine: Machine, block: Block, call: Call) -> None:
+    """ORIWKS and ORIMKS: the frame of the tool axis and of its way."""
+    machine.state.in_machine_frame = call.name == "ORIMKS"
+    machine.notes.add(f"{call.name}: {codes.NOTED[call.name]}", block.row)
+
+
 _WORDS: dict[str, Callable[[Machine, Block], None]] = {
     "CTOL": _contour_tolerance,
     "S": _speed,
     "T": _tool,
-    "D": _offset,
 }
 NAMES: dict[str, Callable[[Machine, Block, Call], None]] = {
     "TRAORI": _traori,
     "TRAFOOF": _trafoof,
     "ORIEULER": _angles,
     "ORIRPY": _angles,
+    "ORIWKS": _reference,
+    "ORIMKS": _reference,
 }
 """Names that put something in force."""

@@ -39,7 +39,7 @@ def tool_axes(words: Words, relative: Array, state: State, notation: str) -> Arr
 
     Args:
         words: by name, (n,) values, NaN where absent.
-        relative: (n,) whether rotary words are increments.
+        relative: (n, 3) whether A, B and C are increments.
         state: of the program before them.
         notation: of the rotary axes, a key of ``AXIS_WORDS``.
 
@@ -54,6 +54,8 @@ def tool_axes(words: Words, relative: Array, state: State, notation: str) -> Arr
     rows = np.flatnonzero(given)
     if not len(rows):
         return np.broadcast_to(state.axis, (count, 3))
+    if state.in_machine_frame and not state.frame.is_unturned() and (by_vector | by_angles).any():
+        raise BlockFault("G607", "vectors or angles after ORIMKS in a turned frame")
     axes = np.empty((count, 3))
     if by_vector.any():
         axes[by_vector] = state.frame.directions(_vectors(words, by_vector))
@@ -100,7 +102,7 @@ def rotary_angles(words: Words, relative: Array, state: State) -> Array:
         if word is None:
             angles[:, k] = state.rotary[k]
         else:
-            angles[:, k], _ = track_coordinate(word, relative, float(state.rotary[k]))
+            angles[:, k], _ = track_coordinate(word, relative[:, k], float(state.rotary[k]))
     state.rotary = angles[-1]
     return angles
 

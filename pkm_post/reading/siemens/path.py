@@ -107,6 +107,9 @@ class Path:
         if len(without):
             self._faults.add(blocks.row(int(without[0])), "G407", "axis words while no motion is in force")
             return
+        if self.state.unplaced:
+            self._faults.add(blocks.row(), "G609", self.state.unplaced)
+            self.state.unplaced = ""
         if self._is_controlled(blocks.columns):
             before = replace(self.state)
             try:
@@ -158,13 +161,17 @@ class Path:
         """Rotary axes without TRAORI: the tip goes somewhere, unless the tool was and stays upright."""
         state = self.state
         before = state.is_tilted() or state.swivelled
-        angles = orientation.rotary_angles(columns.words, columns.relative("A", state.relative), state)
+        angles = orientation.rotary_angles(columns.words, self._relative(columns), state)
         axis = orientation.axes_of_rotary(angles, self._notation)[-1]
         if state.swivelled and state.rotary.any():
             raise BlockFault("G607", "rotary axes after CYCLE800")
         if before or axis[2] < 1:
             state.axis, state.swivelled = axis, False
             state.lose_position()
+
+    def _relative(self, columns: Columns) -> Array:
+        """Whether rotary words are increments, (n, 3)."""
+        return np.column_stack([columns.relative(name, self.state.relative) for name in orientation.ROTARY])
 
     # motions
 
@@ -174,7 +181,7 @@ class Path:
         moves = motions_of(blocks.columns, blocks.motion, state, self._faults)
         axes = np.broadcast_to(state.axis, (len(blocks), 3))
         if state.traori:
-            relative = blocks.columns.relative("A", state.relative)
+            relative = self._relative(blocks.columns)
             axes = orientation.tool_axes(blocks.columns.words, relative, state, self._notation)
         self._check_lost(moves)
         speed = self._speeds(moves, blocks.feed)
@@ -215,7 +222,7 @@ class Path:
                 arc_axis=frame.hand() * frame.directions(moves.axis[rows]),
                 stops=state.stops or stops,
                 tolerance=state.tip_tolerance(),
-                side=state.side * self.radius * frame.hand() * float(np.sign(along)),
+                side=state.side * self.radius * frame.hand() * float(np.sign(along)) if state.side else 0.0,
                 plane=plane,
             )
         )

@@ -26,6 +26,8 @@ EMPTY, PLAIN, STATEMENT = range(3)
 PLAIN_WORDS = ("X", "Y", "Z", "A", "B", "C", "A3", "B3", "C3", "I", "J", "K", "CR", "F")
 """Words of a move that a plain line may have."""
 LONGEST_LINE = 10_000
+LARGEST = 1e9
+"""Upper bound of lengths, angles, times and numbers of a program; beyond it decimals are lost."""
 _PIECE = 256 * 1024
 """Bytes that are scanned together."""
 
@@ -130,7 +132,7 @@ def _scan_piece(
     layout = np.fromiter(map(layouts.__getitem__, lexed.patterns), np.intp, len(lexed.patterns))
     values = DecimalReader(piece).numbers(lexed.starts, lexed.ends)
     number_line = np.searchsorted(line_start, lexed.starts, side="right") - 1
-    wrong = np.concatenate([lexed.suspicious, lexed.starts[~np.isfinite(values)]])
+    wrong = np.concatenate([lexed.suspicious, lexed.starts[~(np.abs(values) <= LARGEST)]])
     alone = np.searchsorted(line_start, wrong, side="right") - 1
     layout[alone] = STATEMENT - 1
     layout[np.diff(line_start) - 1 > LONGEST_LINE] = STATEMENT - 1

@@ -51,7 +51,9 @@ class State:
         rotary: (3,) A, B, C.
         axis: (3,) unit tool axis in {C}.
         swivelled: whether CYCLE800 has set the tool along Z of its plane.
-        system: the settable offset in force, None before the first.
+        system: the settable offset in which the program moves, None before the first.
+        unplaced: another one that is in force, whose place is not known; empty if there is none.
+        in_machine_frame: whether ORIMKS is on.
         offset: frame of the settable offset.
         swivel: frame of CYCLE800.
         programmed: programmable frame.
@@ -87,6 +89,8 @@ class State:
     axis: Array = field(default_factory=lambda: UPRIGHT)
     swivelled: bool = False
     system: int | None = None
+    unplaced: str = ""
+    in_machine_frame: bool = False
     offset: Frame = field(default_factory=Frame)
     swivel: Frame = field(default_factory=Frame)
     programmed: Frame = field(default_factory=Frame)

@@ -74,7 +74,13 @@ FAULTS = {
     ),
     'CYCLE800(1,"",0,64,0,0,0,9,0,0,0,0,0,1)': ("G602", 1, "CYCLE800 by solid angles (_MODE=64)"),
     "G0 SUPA Z0": ("G609", 0, "SUPA, G53 or G153"),
-    "G1 X1\nG55": ("G609", 1, "G55 after G54"),
+    "G1 X1\nG55 X2": ("G609", 0, "G55 after G54"),
+    "X5 CYCLE81(10,0,2,-5)": ("G601", 4, "CYCLE81 beside other words"),
+    "TRANS X1 G0": ("G601", 1, "TRANS beside other words"),
+    "$P_UIFR[1]=CTRANS(X,5)": ("G602", 1, "$P_UIFR: variables of the system"),
+    "TRAORI ORIMKS\nROT Z90\nG1 X1 A3=1": ("G607", 0, "vectors or angles after ORIMKS in a turned frame"),
+    "T1 M6 D0\nG1 X1": ("G424", 0, "a cut after D0"),
+    "G1 X12345678901": ("G406", 4, "X1.23457e+10"),
     "CYCLE81(1,0,2,-10)": ("G418", 1, "CYCLE81: RTP 1 is below RFP + SDIS"),
     "CYCLE81(10,0,2,5)": ("G418", 1, "CYCLE81: the depth 5 is not below RFP 0"),
     "HOLES1(0,0,0,0,1,3)": ("G418", 1, "HOLES1 without MCALL of a drilling cycle before it"),
@@ -118,6 +124,12 @@ def test_cycle800_warns_of_the_way_there():
     program, diagnostics = found(HEAD + 'CYCLE800(1,"",0,57,0,0,0,9,0,0,0,0,0,1)\nG0 X0 Y0 Z5')
     assert program is not None
     assert diagnostics == [("G610", 3, 1, "CYCLE800")]
+
+
+def test_an_offset_without_a_move_needs_no_place():
+    """Many programs end with G500."""
+    assert not found(HEAD + "G1 X1\nG500")[1]
+    assert not found("G500\n" + HEAD + "G1 X1")[1]
 
 
 def test_a_drill_goes_along_the_tool():

@@ -141,6 +141,7 @@ AXES = {
     "Euler": ("TRAORI ORIEULER\nG1 X1 A2=90 B2=45", (S, 0, S)),
     "rotary": ("TRAORI\nG1 X1 A=90 C=90", (1, 0, 0)),
     "shortest": ("TRAORI\nG1 X1 A=DC(90) C=DC(90)", (1, 0, 0)),
+    "rotary increments": ("TRAORI\nG1 X1 A=30 C=90\nA=IC(60) C90", (1, 0, 0)),
     "swivelled": ('CYCLE800(1,"",0,57,0,0,0,0,45,0,0,0,0,-1)\nG0 X1 Y0 Z0', (S, 0, S)),
     "kept": ("TRAORI\nG1 X1 A3=1 C3=1\nROT Z90\nG1 X2", (S, 0, S)),
 }
