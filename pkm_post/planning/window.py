@@ -28,8 +28,11 @@ from pkm_post.planning.speed_limits import PLANNED_SHARE
 from pkm_post.planning.speed_profile import Stations, cell_times
 from pkm_post.planning.tool_path import ToolPath
 
-_SAME_SPEED = 2e-3
+_SAME_SPEED = 5e-3
 """Relative difference of speeds squared that is left to the share of the acceleration that is not planned."""
+_SHARES_OF_STOPS = (1.0, 1.0, 1.0, 1.15, 1.3, 1.45, 1.6)
+"""Factors of that share in the tries of a stop: between stations a motion may be faster than at one that is new there.
+A stop does not speed up, so it needs not all of what is left for switches between speeding up and braking."""
 _SHORTEST_STOP = 1.1
 """Factor of the distance in which the first stop is tried, by that with all of the acceleration along the path."""
 _LONGER_STOP = 1.6
@@ -90,23 +93,26 @@ class Course:
         rests = self.path.starts[self.path.rests]
         return float(rests[np.searchsorted(rests, s, side="right")])
 
-    def window(self, start: PathState, end: float, override: float, highest: float = np.inf) -> Schedule | None:
+    def window(self, start: PathState, end: float, override: float) -> Schedule | None:
         """The fastest motion from a place and speed to rest; None if it cannot be met from there.
 
         Args:
             start: where it begins.
             end: path length where it rests; no rest of the program lies between.
             override: factor of the feed, above 0.
-            highest: highest speed, mm/s.
         """
+        return self._window(start, end, self.feed(override), self.feed_plan.share)
+
+    def _window(self, start: PathState, end: float, feed: Array, share: Array) -> Schedule | None:
+        """The same with highest speeds and shares of the limits of acceleration by segment, (N,) each."""
         machine, square = self.feed_plan.machine, start.speed**2
-        path = replace(self.path, feed=np.minimum(self.feed(override), highest))
+        path = replace(self.path, feed=feed)
         first, last = np.searchsorted(path.starts, [start.s, end])
         close = np.zeros(len(path.feed), dtype=np.bool_)
         close[max(first - 2, 0) : last + 1] = True
         rough = rough_limits(path, machine, self.bounds)
         span = Span(start.s, end, square)
-        marks, squares = refined_profile(path, machine, close, rough, self.feed_plan.share, span)
+        marks, squares = refined_profile(path, machine, close, rough, share, span)
         if squares[0] < square * (1 - _SAME_SPEED):
             return None
         squares[0] = square
@@ -118,19 +124,19 @@ class Course:
         Args:
             start: a place and a speed from which a motion can come to rest before the next rest of the program.
         """
-        end = self.next_rest(start.s)
-        machine = self.feed_plan.machine
+        rest, machine = self.next_rest(start.s), self.feed_plan.machine
+        feed = np.minimum(self.feed(start.override), start.speed)
+        # in blends the feed is that of the tip, which may travel farther than the path length
+        feed[np.searchsorted(self.path.starts, start.s, side="right") - 1] = start.speed
         fastest = PLANNED_SHARE * min(machine.tip_acceleration, machine.strut_acceleration)
-        distance = _SHORTEST_STOP * start.speed**2 / (2 * fastest)
-        while start.s + distance < end:
-            found = self.window(start, start.s + distance, start.override, start.speed)
+        end = start.s + _SHORTEST_STOP * start.speed**2 / (2 * fastest)
+        for factor in _SHARES_OF_STOPS:
+            share = np.minimum(self.feed_plan.share * factor, 1.0)
+            found = self._window(start, min(end, rest), feed, share)
             if found is not None:
                 return found
-            distance *= _LONGER_STOP
-        found = self.window(start, end, start.override, start.speed)
-        if found is None:
-            raise ValueError(f"start: expected a speed that can be stopped before {end:g} mm, got {start}")
-        return found
+            end = start.s + (end - start.s) * _LONGER_STOP
+        raise ValueError(f"start: expected a speed that can be stopped before {end:g} mm, got {start}")
 
     def motion(self, schedule: Schedule, until_ms: int, override: float, longest_ms: int = LONGEST_MS) -> Motion:
         """Tool poses at the knots of a window, from its start to a whole ms.

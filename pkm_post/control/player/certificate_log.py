@@ -1,36 +1,56 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Certificate log: the worst of each quantity of all motions that were played, with time and place.
 
-Enters: certificates of motions, in the order in which they were played. Leaves: findings as those of one certificate.
+What a certificate measures of a motion by itself is the same in the whole, but for the blocks in a second: these are
+counted over the ends of motions.
+
+Enters: motions with their certificates, in the order in which they were played. Leaves: findings as of one certificate.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
-from pkm_post.model import Certificate, Finding
+import numpy as np
+
+from pkm_post.control.player.pieces import Leg
+from pkm_post.geometry import Array
+from pkm_post.model import Finding
+
+_BLOCKS = "V117"
+_SECOND_MS = 1000
 
 
-@dataclass
 class CertificateLog:
     """What was played.
 
     Attributes:
-        seconds: of motion.
-        motions: number of certificates.
+        motions: number of motions.
     """
 
-    seconds: float = 0.0
-    motions: int = 0
-    _worst: dict[tuple[str, str], Finding] = field(default_factory=dict)
+    def __init__(self) -> None:
+        self.motions = 0
+        self._ms = 0
+        self._recent: Array = np.zeros(1, dtype=np.int64)
+        self._worst: dict[tuple[str, str], Finding] = {}
 
-    def add(self, certificate: Certificate) -> None:
+    @property
+    def seconds(self) -> float:
+        """Duration of the motions."""
+        return self._ms / 1000
+
+    def add(self, leg: Leg) -> None:
         """Add the next motion."""
-        for finding in certificate.findings:
-            key, before = (finding.code, finding.name), self._worst.get((finding.code, finding.name))
+        blocks = self._blocks(leg)
+        for finding in leg.certificate.findings:
+            if finding.code == _BLOCKS:
+                value = float(max(blocks, finding.value))
+                finding = replace(finding, value=value, holds=value <= finding.limit)
+            key = finding.code, finding.name
+            before = self._worst.get(key)
             if before is None or _use(finding) > _use(before):
                 self._worst[key] = replace(finding, time=finding.time + self.seconds)
-        self.seconds += certificate.duration
+        self._ms += int(leg.struts.time_ms[-1])
         self.motions += 1
 
     @property
@@ -42,6 +62,13 @@ class CertificateLog:
     def holds(self) -> bool:
         """Whether everything holds."""
         return all(finding.holds for finding in self.findings)
+
+    def _blocks(self, leg: Leg) -> int:
+        """Most points in any second up to the end of a motion."""
+        times = np.concatenate([self._recent, self._ms + leg.struts.time_ms[1:]])
+        count = np.searchsorted(times, times + _SECOND_MS) - np.arange(len(times))
+        self._recent = times[times > times[-1] - _SECOND_MS]
+        return int(count.max())
 
 
 def _use(finding: Finding) -> float:

@@ -10,6 +10,7 @@ Enters: a part of a trajectory, where the motion is, an override. Leaves: points
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +22,6 @@ from pkm_post.geometry import Array
 from pkm_post.machine import strut_lengths
 from pkm_post.model import (
     Certificate,
-    Diagnostic,
     Kind,
     Machine,
     Motion,
@@ -38,7 +38,7 @@ HIGHEST_OVERRIDE = 1.5
 LONGEST_MS = 128
 """Longest interval: the controller computes two moves ahead, and a new way on has to come before."""
 PIECE_MS = 250
-"""Duration of a piece."""
+"""Duration of the shortest piece."""
 _FOLLOWED_MS = 40
 """Part of a stop that is followed before the wanted motion is tried again."""
 _BRAKING = 0.1
@@ -125,7 +125,10 @@ class PiecePlanner:
         self._machine, self._settings, self._tolerances = machine, settings, tolerances
         self._planned_for = planned_for or machine
         self._coming = stretches_of(trajectory, part, tolerances)
+        self._next: Stretch | None = None
+        self._count = 0
         self._stretches: dict[int, tuple[Stretch, Course]] = {}
+        self._lock = threading.RLock()
 
     def start(self) -> At:
         """The beginning of the part, at rest.
@@ -138,19 +141,23 @@ class PiecePlanner:
         pose = rows.start_tip[None], rows.start_axis[None], np.array([rows.start_spin]), rows.tool_length()[:1]
         return At(0, PathState(0.0, 0.0, 1.0), strut_lengths(self._machine, *pose)[0], np.zeros(6))
 
-    def prepare(self, at: At) -> None:
-        """Plan the path of the stretch after that of a place, if there is one."""
-        stretch, _ = self._stretch(at.stretch)
-        if stretch.over is not None:
-            self._stretch(at.stretch + 1)
+    def prepare(self, number: int) -> None:
+        """Plan the path of the stretch after one of a number, if there is one; in a thread of its own.
 
-    def next_piece(self, at: At, override: float, single_block: bool = False) -> Piece:
+        What is out of reach is found again by the piece that needs it.
+        """
+        stretch, _ = self._stretch(number)
+        if stretch.over is not None:
+            self._stretch(number + 1)
+
+    def next_piece(self, at: At, override: float, single_block: bool = False, piece_ms: int = PIECE_MS) -> Piece:
         """The next piece.
 
         Args:
             at: where the motion before it ends.
             override: factor of the feed; 0 for a stop.
             single_block: whether to rest at the end of the next line of the program that can be rested at.
+            piece_ms: duration of the piece, if the motion does not rest before.
 
         Raises:
             Refused: what is out of reach, or not certified.
@@ -158,13 +165,15 @@ class PiecePlanner:
         at = self._moved_on(at)
         stretch, along = self._stretch(at.stretch)
         state = at.state
-        schedule = self._wanted(stretch, along, state, override, single_block) if override > 0 else None
-        most = PIECE_MS
+        reach = self._horizon(along, override, piece_ms) if not single_block else np.inf
+        schedule = self._wanted(stretch, along, state, override, reach) if override > 0 else None
+        most = piece_ms
         if schedule is None:
-            schedule, most = along.stop(state), _FOLLOWED_MS if override > 0 else PIECE_MS
+            schedule, most = along.stop(state), _FOLLOWED_MS if override > 0 else piece_ms
             override = state.override
         end_ms = int(schedule.rests_ms[-1])
         shortest = self._machine.shortest_interval
+        most = min(most, self._time_to_limit(stretch, along, schedule))
         until = end_ms if end_ms < most + max(shortest, 2) else most
         leg = self._leg(at, schedule, until, override)
         rests = until == end_ms
@@ -172,12 +181,12 @@ class PiecePlanner:
         return Piece(leg, stop, self._reached(along, state, leg), rests and self._is_end(stretch, along, leg.end))
 
     def _wanted(
-        self, stretch: Stretch, along: Course, state: PathState, override: float, single_block: bool
+        self, stretch: Stretch, along: Course, state: PathState, override: float, reach: float
     ) -> Schedule | None:
-        """The wanted motion; None if it cannot be met."""
+        """The wanted motion over a distance, or to the end of a line if that is infinite; None if it cannot be met."""
         rest = along.next_rest(state.s)
-        if not single_block:
-            return along.window(state, min(rest, state.s + self._horizon(along, override)), override)
+        if np.isfinite(reach):
+            return along.window(state, min(rest, state.s + reach), override)
         line, operation = stretch.trajectory.line, stretch.trajectory.operation
         ends = np.append((np.diff(line) != 0) | (np.diff(operation) != 0), True)
         places = along.path.starts[1:][ends]
@@ -187,11 +196,21 @@ class PiecePlanner:
                 return found
         return None
 
-    def _horizon(self, along: Course, override: float) -> float:
-        """How far a window reaches: a piece at the highest feed, and a distance to stop behind it."""
+    def _time_to_limit(self, stretch: Stretch, along: Course, schedule: Schedule) -> int:
+        """Whole ms until the motion is so far in a stretch that the next one has to take over."""
+        s = schedule.law.s
+        if stretch.over is None:
+            return int(schedule.rests_ms[-1])
+        limit = (along.path.starts[stretch.over - stretch.first + 1] + along.length) / 2
+        if s[-1] <= limit:
+            return int(schedule.rests_ms[-1])
+        return max(int(1000 * schedule.law.when(np.array([limit]))[0]), self._machine.shortest_interval)
+
+    def _horizon(self, along: Course, override: float, piece_ms: int) -> float:
+        """How far a window reaches: a piece at the highest feed and half as much, and a distance to stop behind it."""
         machine, speed = self._machine, float(along.feed(override).max())
         slowest = _BRAKING * min(machine.tip_acceleration, machine.strut_acceleration)
-        return 2 * speed * PIECE_MS / 1000 + speed**2 / (2 * slowest)
+        return 1.5 * speed * piece_ms / 1000 + speed**2 / (2 * slowest)
 
     def _stop(self, at: At) -> Leg:
         _, along = self._stretch(at.stretch)
@@ -277,20 +296,20 @@ class PiecePlanner:
         return replace(at, stretch=at.stretch + 1, state=replace(at.state, s=float(s)))
 
     def _stretch(self, number: int) -> tuple[Stretch, Course]:
-        """A stretch and its course, planned once.
+        """A stretch and its course, planned once; another thread may be planning it.
 
         Raises:
             Refused: it is out of reach.
         """
-        while number not in self._stretches:
-            stretch = next(self._coming)
-            found, diagnostics = course(stretch.trajectory, self._planned_for, self._tolerances, HIGHEST_OVERRIDE)
-            if found is None:
-                raise Refused(diagnostics)
-            self._stretches[max(self._stretches, default=-1) + 1] = stretch, found
-        return self._stretches[number]
-
-
-def refused_text(diagnostics: tuple[Diagnostic, ...]) -> str:
-    """Diagnostics as one line of text."""
-    return "; ".join(map(str, diagnostics))
+        with self._lock:
+            while number not in self._stretches:
+                if self._next is None:
+                    self._next = next(self._coming)
+                found, diagnostics = course(
+                    self._next.trajectory, self._planned_for, self._tolerances, HIGHEST_OVERRIDE
+                )
+                if found is None:
+                    raise Refused(diagnostics)
+                self._stretches[self._count] = self._next, found
+                self._next, self._count = None, self._count + 1
+            return self._stretches[number]

@@ -36,6 +36,8 @@ from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings
 
 _POLL_S = 0.02
+_THREADS = 2
+"""One plans pieces, the other one the path of the next stretch."""
 _MOST_RATE = 200.0
 """1/s: points of the plan; the list has room for some seconds of them."""
 
@@ -121,7 +123,7 @@ class Player:
             download(session, self._program)
             set_feed_override(session, settings, 100)
             self._begin()
-            own = self._planning or ThreadPoolExecutor(1)
+            own = self._planning or ThreadPoolExecutor(_THREADS)
             try:
                 for part in parts_of(self._trajectory, self._choices.first_row):
                     if not self._desk.is_over:
@@ -180,7 +182,7 @@ class Player:
             if run.is_void():
                 return run.begin, False
             try:
-                run.plan(self._timing.lead_s)
+                run.plan(self._timing)
                 run.send(self._timing)
                 if run.may_start(self._timing.lead_s):
                     self._start(run)
@@ -201,7 +203,7 @@ class Player:
             status = read_status(self._session, self._settings)
             if is_started:
                 for leg in self._feed.look():
-                    self.log.add(leg.certificate)
+                    self.log.add(leg)
         except LinkLostError as lost:
             self._lose(lost)
             return None

@@ -5,7 +5,9 @@ The list reaches at least so far ahead of the point that was computed last:
 
     lead = 2 (longest planning + longest sending of the last pieces) + 2 longest intervals, at least half a second
 
-Two, for one piece may just have missed its turn; the intervals, for the controller computes two moves ahead.
+Two, for one piece may just have missed its turn; the intervals, for the controller computes two moves ahead. A piece
+lasts two and a half times as long as planning one, from a quarter of a second to one second: what planning takes hardly
+depends on it.
 
 Enters: a planner, a place at rest, an operator's desk. Leaves: the place at rest where the motion has ended.
 """
@@ -17,14 +19,20 @@ from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from pkm_post.control.link.errors import PmacError
 from pkm_post.control.link.session import Session
 from pkm_post.control.player.desk import Desk
 from pkm_post.control.player.list_feed import ListFeed
-from pkm_post.control.player.pieces import LONGEST_MS, At, Leg, Piece, PiecePlanner
+from pkm_post.control.player.pieces import LONGEST_MS, PIECE_MS, At, Leg, Piece, PiecePlanner
 from pkm_post.model import Refused
 
 LEAST_LEAD_S = 0.25
+_AHEAD = 2.5
+"""Duration of a piece by that of its planning."""
+_LONGEST_PIECE_MS = 1000
+"""The list has room for the points of two such pieces at the highest rate."""
 _PIECES_TIMED = 8
 """Last pieces of which the longest planning and sending count."""
 
@@ -47,6 +55,12 @@ class Timing:
         """How far the list has to reach ahead, s."""
         planning, sending = (max(values) for values in zip(*self.spent, strict=True))
         return max(2 * (planning + sending), LEAST_LEAD_S) + 2 * LONGEST_MS / 1000
+
+    @property
+    def piece_ms(self) -> int:
+        """Duration of a piece, so that planning keeps ahead."""
+        planning = max(planning for planning, _ in self.spent)
+        return int(np.clip(1000 * _AHEAD * planning, PIECE_MS, _LONGEST_PIECE_MS))
 
 
 class RunToRest:
@@ -76,7 +90,7 @@ class RunToRest:
         self._planned: Planned | None = None
         self._last: Leg | None = None
         self._fault: Refused | None = None
-        self._is_block_end = False
+        self._is_block_end, self._stretch = False, -1
         self.reached, self.is_started = 0.0, False
 
     @property
@@ -90,11 +104,11 @@ class RunToRest:
         is_complete = self._last is not None or self._is_block_end or self._fault or self._feed.stopped_at
         return self._desk.override > 0 and not (self._desk.is_over or is_complete)
 
-    def plan(self, lead_s: float) -> None:
+    def plan(self, timing: Timing) -> None:
         """Have the next piece planned when the list becomes short, and fetch it when it is."""
-        is_short = self._feed.ahead_ms / 1000 < lead_s
+        is_short = self._feed.ahead_ms / 1000 < timing.lead_s
         if self._pending is None and self._planned is None and self.is_wanted and is_short:
-            self._pending = self._planning.submit(self._next_piece, self._ahead)
+            self._pending = self._planning.submit(self._next_piece, self._ahead, timing.piece_ms)
         if self._pending is not None and self._pending.done():
             try:
                 self._planned = self._pending.result()
@@ -116,6 +130,9 @@ class RunToRest:
         piece, planning_s = self._planned
         if not self._feed.has_room(piece):
             return
+        if piece.leg.end.stretch != self._stretch:
+            self._stretch = piece.leg.end.stretch
+            self._planning.submit(self._planner.prepare, self._stretch)
         began = self._session.now()
         self._feed.append(piece)
         timing.spent.append((planning_s, self._session.now() - began))
@@ -163,10 +180,8 @@ class RunToRest:
         """Whether it has come to rest although more motion was wanted."""
         return self._feed.stopped_at is not None and self._desk.override > 0 and not self._desk.is_over
 
-    def _next_piece(self, at: At) -> Planned:
-        """Plan a piece, and the path behind it; in the thread that plans."""
+    def _next_piece(self, at: At, piece_ms: int) -> Planned:
+        """Plan a piece; in a thread that plans."""
         began = self._session.now()
-        piece = self._planner.next_piece(at, self._desk.override, self._desk.single_block)
-        seconds = self._session.now() - began
-        self._planner.prepare(piece.leg.end)
-        return piece, seconds
+        piece = self._planner.next_piece(at, self._desk.override, self._desk.single_block, piece_ms)
+        return piece, self._session.now() - began
