@@ -115,7 +115,8 @@ def _print_result(done: PlayResult) -> int:
         print(f"the link was lost {done.losses} times and came back")
     for finding in log.findings:
         if finding.unit and finding.limit:
-            print(f"{finding.name}: {finding.value:.6g} {finding.unit}, allowed {finding.limit:.6g}")
+            bound = "at least" if finding.is_least else "allowed"
+            print(f"{finding.name}: {finding.value:.6g} {finding.unit}, {bound} {finding.limit:.6g}")
     return 0 if done.finished else 1
 
 

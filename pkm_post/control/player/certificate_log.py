@@ -72,5 +72,7 @@ class CertificateLog:
 
 
 def _use(finding: Finding) -> float:
-    """A value by its limit; a limit of 0 is a bound of a difference."""
+    """What grows as a value becomes worse: its share of the limit, or the value itself if that is 0."""
+    if finding.is_least:
+        return -finding.value
     return finding.value / finding.limit if finding.limit else finding.value

@@ -132,7 +132,7 @@ class Player:
                         self._play_part(part, own)
             finally:
                 if self._planning is None:
-                    own.shutdown(wait=True, cancel_futures=True)
+                    own.shutdown(wait=False, cancel_futures=True)  # a stop does not wait for a plan
         return PlayResult(self.log, self._stops, self._losses, not self._desk.is_over)
 
     def _begin(self) -> None:

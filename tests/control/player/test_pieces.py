@@ -72,6 +72,7 @@ def test_the_certificates_of_the_pieces_are_that_of_the_whole(trajectory, short_
     )
     assert not faults and certificate.holds and log.holds and log.seconds == certificate.duration
     worst = {finding.name: finding.value / (finding.limit or 1) for finding in log.findings}
+    assert worst["shortest interval"] == np.diff(whole.time_ms).min() / MACHINE.shortest_interval
     for finding in certificate.findings:
         if finding.name == "strut off its plan" or not finding.limit:
             continue  # the plan is recovered; limits of 0 are differences
