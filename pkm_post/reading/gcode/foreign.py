@@ -33,7 +33,7 @@ LANGUAGES: dict[str, dict[str, str]] = {
         "%_N_": r"^%_N_",
         "system variables": r"\$(?:P|TC|AA|MN|MA)_",
         "DEF REAL": _BLOCK + r"DEF[ \t]+(?:REAL|INT|BOOL|AXIS|STRING)\b",
-        "ORIWKS": r"\b(?:ORIWKS|ORIAXES|ORIMKS|STOPRE|SUPA|FFWON|SOFT|COMPCAD|CUT2D|WORKPIECE)\b",
+        "names such as ORIWKS": r"\b(?:ORIWKS|ORIAXES|ORIMKS|STOPRE|SUPA|FFWON|SOFT|COMPCAD|CUT2D|WORKPIECE)\b",
     },
 }
 """By language, what only its programs have, as regular expressions."""

@@ -165,7 +165,7 @@ def _depths(call: Call, hole: Hole) -> Iterator[float]:
 
 
 def _first_depth(call: Call, hole: Hole) -> float:
-    if call.gives(6) and (call.number(6) or not call.gives(5)):
+    if call.number(6, 0.0):
         return max(hole.reference - abs(call.number(6)), hole.bottom)
     return max(call.number(5), hole.bottom) if call.gives(5) else hole.bottom
 

@@ -9,7 +9,7 @@ from pkm_post.reading.siemens import siemens_evidence
 END = "M30\n"
 RECOGNISED = {
     ("part.nc", 'MSG("A")\nCYCLE81(1)\n'): 'flavour siemens, by MSG("") in line 1, CYCLE in line 2',
-    ("part.nc", "G0 X=IC(5)\nTRAORI\nORIWKS\n"): "flavour siemens, by =IC() in line 1, ORIWKS in line 3",
+    ("part.nc", "G0 X=IC(5)\nTRAORI\nORIWKS\n"): "flavour siemens, by =IC() in line 1, names such as ORIWKS in line 3",
     ("part.nc", "G0 X=IC(5)\n"): None,
     ("part.mpf", "G0 X1 Y1 Z1\n"): "flavour siemens, by the suffix .mpf",
     ("part.SPF", "R1=5\n"): "flavour siemens, by R parameters in line 1, the suffix .SPF",
