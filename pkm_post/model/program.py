@@ -70,6 +70,7 @@ OPTIONAL_COLUMNS: dict[str, tuple[DTypeLike, tuple[int, ...], float]] = {
     "smaller_tool": (np.bool_, (), False),
     "plane": (np.uint8, (), 2),
     "normal": (np.float64, (3,), np.nan),
+    "contact": (np.bool_, (), False),
     "spin": (np.float64, (), np.nan),
 }
 """Columns that few sources have, each with its default."""
@@ -112,6 +113,8 @@ class Program:
             0 for YZ (G19).
         normal: (N, 3) unit surface normal at the contact point, towards the tool, in {C}; NaN, the default, where the
             source gives none.
+        contact: (N,) whether ``position`` is the contact point of ``normal``, of which compensation makes the tool tip;
+            False by default.
         spin: (N,) rotation of the platform about the tool axis, from the shortest rotation upright, rad; NaN, the
             default, where the source gives none.
     """
@@ -138,6 +141,7 @@ class Program:
     smaller_tool: Array = None  # type: ignore[assignment] # filled in below
     plane: Array = None  # type: ignore[assignment] # filled in below
     normal: Array = None  # type: ignore[assignment] # filled in below
+    contact: Array = None  # type: ignore[assignment] # filled in below
     spin: Array = None  # type: ignore[assignment] # filled in below
 
     def __post_init__(self) -> None:

@@ -194,7 +194,8 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "type": goto_values,
         "default": (),
         "help": "what the values of those GOTO statements of CL data are that have as many: x,y,z the tool tip, i,j,k"
-        " the tool axis, nx,ny,nz the surface normal, px,py,pz the contact point, in the order of the file",
+        " the tool axis, nx,ny,nz the surface normal, px,py,pz the contact point, in the order of the file; without"
+        " x,y,z the tip follows from contact point, normal and cutter",
     },
     "--allow-open-end": {
         "action": "store_true",

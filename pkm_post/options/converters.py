@@ -107,12 +107,14 @@ GOTO_VALUES = (("x", "y", "z"), ("i", "j", "k"), ("nx", "ny", "nz"), ("px", "py"
 
 
 def goto_values(text: str) -> tuple[str, ...]:
-    """Distinct names of whole vectors, x, y and z among them."""
+    """Distinct names of whole vectors: with x, y and z, or with contact point and normal."""
     chosen = tuple(text.split(","))
     whole = [each for each in GOTO_VALUES if set(each) & set(chosen)]
-    if len(set(chosen)) < len(chosen) or {*chosen} != {name for each in whole for name in each} or "x" not in chosen:
+    placed = "x" in chosen or {"px", "nx"} <= set(chosen)
+    if len(set(chosen)) < len(chosen) or {*chosen} != {name for each in whole for name in each} or not placed:
         names = "; ".join(",".join(each) for each in GOTO_VALUES)
-        raise argparse.ArgumentTypeError(f"expected x,y,z and others of {names}, in any order, got {text!r}")
+        expected = f"x,y,z or px,py,pz and nx,ny,nz, and others of {names}, in any order"
+        raise argparse.ArgumentTypeError(f"expected {expected}, got {text!r}")
     return chosen
 
 

@@ -11,7 +11,6 @@ from pkm_post.reading.gcode.flavours import FLAVOURS
 from pkm_post.reading.gcode.options import AXIS_WORDS, DWELL_UNITS
 from pkm_post.reading.gcode.tool_axes import axis_of
 from pkm_post.reading.language import SUFFIXES, VERSIONED, Language, is_part_program, language_of, program_stem
-from pkm_post.reading.listing import listing_lines
 from pkm_post.reading.part_program import (
     AS_WRITTEN,
     FLAVOUR_NAMES,
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from pkm_post.reading.editing import TextFile, renumbered
     from pkm_post.reading.gcode.cycles import CycleSeries, Strokes, cycle_fault, cycle_strokes
     from pkm_post.reading.highlighting import Colour, coloured_spans, underlined
+    from pkm_post.reading.listing import listing_lines
     from pkm_post.reading.mesh_file import MESH_READERS, STEP_SUFFIXES, mesh_of_triangles, read_mesh
     from pkm_post.reading.preview import CheckedText, check_text, tip_paths_of_line
 else:
@@ -37,6 +37,7 @@ else:
             "editing": "TextFile renumbered",
             "gcode.cycles": "CycleSeries Strokes cycle_fault cycle_strokes",
             "highlighting": "Colour coloured_spans underlined",
+            "listing": "listing_lines",
             "mesh_file": "MESH_READERS STEP_SUFFIXES mesh_of_triangles read_mesh",
             "preview": "CheckedText check_text tip_paths_of_line",
         },

@@ -6,9 +6,13 @@ import argparse
 import numpy as np
 import pytest
 
+from pkm_post.geometry import unit
+from pkm_post.model import Tool
 from pkm_post.model.diagnostics import errors
 from pkm_post.options.converters import goto_values
 from pkm_post.reading.part_program import ReadingOptions, read_content
+from pkm_post.toolpath import Cutter, OffsetOptions, compensate, tip_from_contact
+from pkm_post.writing.gcode import GcodeDialect, write
 
 CL_DATA = b"UNITS/MM\nFEDRAT/60\nCUTTER/10,5\nLOADTL/1,LENGTH,60\nGOTO/0,0,9\nGOTO/1,2,3,0,0,1,.6,0,.8\nFINI\n"
 NAMES = ("x", "y", "z", "i", "j", "k", "nx", "ny", "nz")
@@ -33,3 +37,76 @@ def test_names_are_of_whole_vectors(text):
 @pytest.mark.parametrize("text", ["x,y,z", "i,j,k,x,y,z", "x,y,z,i,j,k,px,py,pz,nx,ny,nz", "x,i,y,j,z,k"])
 def test_any_order_of_whole_vectors(text):
     assert goto_values(text) == tuple(text.split(","))
+
+
+BULL_NOSE = Cutter.of(Tool(1, "", 20.0, 4.0, 60.0))
+CONTACTS = ("px", "py", "pz", "nx", "ny", "nz", "i", "j", "k")
+
+
+def contact_program(points, normals, axes, before="", after="", cutter="CUTTER/20,4", **options):
+    """A file of contact points as the option reads it."""
+    rows = [",".join(f"{value:.17g}" for value in row) for row in np.hstack([points, normals, axes])]
+    text = f"UNITS/MM\nFEDRAT/60\n{cutter}\nLOADTL/1,LENGTH,60\n{before}" + "".join(f"GOTO/{row}\n" for row in rows)
+    reading = ReadingOptions(goto_values=CONTACTS, **options)
+    found, diagnostics = read_content(f"{text}{after}FINI\n".encode(), "a.apt", reading)
+    assert found is not None, diagnostics
+    return found
+
+
+def dome(count):
+    """Points of a sphere of 50 mm with their normals, and axes that lean elsewhere."""
+    angle = np.linspace(0.3, 0.9, count)
+    normals = np.column_stack([np.sin(angle), np.zeros(count), np.cos(angle)])
+    axes = unit(normals + np.column_stack([np.zeros(count), np.full(count, 0.3), np.full(count, 0.5)]))
+    return 50 * normals, normals, axes
+
+
+def test_contact_points_become_tips_by_the_cutter_of_the_file():
+    points, normals, axes = dome(9)
+    found = contact_program(points, normals, axes)
+    assert found.contact.all() and found.position == pytest.approx(points)
+    assert found.reading[-1] == "9 points are contact points, as the option says"
+    tips, faults = compensate(found, OffsetOptions(), {})
+    expected, _ = tip_from_contact(points, normals, axes, BULL_NOSE)
+    assert (faults, tips.contact.any()) == ((), False)
+    assert tips.position == pytest.approx(expected)
+    # by hand: the corner circle of 4 mm touches at the point, 6 mm from the axis
+    for tip, point, normal, axis in zip(tips.position, points, normals, axes, strict=True):
+        centre = point + 4 * normal
+        from_tip = centre - tip
+        assert from_tip @ axis == pytest.approx(4)
+        assert np.linalg.norm(from_tip - 4 * axis) == pytest.approx(6)
+
+
+def test_the_cutter_in_the_spindle_goes_before_that_of_the_file():
+    points, normals, axes = dome(5)
+    ball = Tool(1, "", 10.0, 5.0, 60.0)
+    tips, _ = compensate(contact_program(points, normals, axes), OffsetOptions(), {1: ball})
+    assert tips.position == pytest.approx(points + 5 * normals - 5 * axes)
+    assert tips.tools[1].diameter == 10
+
+
+def test_points_with_a_tip_stay_where_they_are():
+    points, normals, axes = dome(4)
+    found = contact_program(points, normals, axes, before="GOTO/0,0,99\n", after="GOTO/0,0,98,0,0,1\n")
+    tips, _ = compensate(found, OffsetOptions(), {})
+    assert tips.position[[0, -1]].tolist() == [[0, 0, 99], [0, 0, 98]]
+
+
+@pytest.mark.parametrize(("cutter", "code"), [("CUTTER/20", "N117"), ("CUTTER/0,0", "N109")])
+def test_contact_points_need_the_whole_cutter(cutter, code):
+    found = contact_program(*dome(4), cutter=cutter)
+    moved, faults = compensate(found, OffsetOptions(), {})
+    assert (moved, [fault.code for fault in faults]) == (None, [code])
+
+
+def test_contact_points_are_not_written_as_tips():
+    text, faults = write(contact_program(*dome(3)), GcodeDialect.VECTOR)
+    assert (text, [fault.code for fault in faults]) == (None, ["N119"])
+
+
+def test_goto_values_without_a_position_are_refused():
+    for text in ("px,py,pz", "px,py,pz,i,j,k", "nx,ny,nz,i,j,k"):
+        with pytest.raises(argparse.ArgumentTypeError, match="px,py,pz and nx,ny,nz"):
+            goto_values(text)
+    assert goto_values(",".join(CONTACTS)) == CONTACTS

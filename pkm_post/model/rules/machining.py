@@ -184,6 +184,7 @@ MACHINING_RULES: dict[str, Rule] = {
         " path was made for, --actual-tool NUMBER=D,R for the one in the spindle",
     ),
     "N118": error("the program has no such tool", "pass --actual-tool with the number of a tool of the program"),
+    "N119": error("points of contact are not tool tips", "post the program, which makes tips of them by the cutter"),
     # N2: cutter compensation in a plane
     "N201": error("cutter compensation begins or ends on an arc", "begin and end it on a straight move"),
     "N202": error("the tool is too large for the block", "use a smaller tool, or let such blocks be removed"),

@@ -77,7 +77,7 @@ def with_curves(state: ReaderState, points: Points) -> Points:
 
 
 def _columns(points: Points) -> tuple[Array, ...]:
-    return points.row, points.position, points.axis, points.normal, points.start
+    return points.row, points.position, points.axis, points.normal, points.start, points.contact
 
 
 def _chords(state: ReaderState, motion: NurbsMotion, points: Points, mine: Array) -> Points:
@@ -104,7 +104,8 @@ def _chords(state: ReaderState, motion: NurbsMotion, points: Points, mine: Array
     if motion.five_axis:
         axis = bspline_points(knots, degree, curves[1], at) - tip
         axis /= np.where(norm(axis) > 0, norm(axis), 1.0)[:, None]
-    return Points(points.row[mine][which], tip, axis, np.full_like(tip, np.nan), np.zeros(len(at), dtype=np.bool_))
+    start, contact = np.zeros((2, len(at)), dtype=np.bool_)
+    return Points(points.row[mine][which], tip, axis, np.full_like(tip, np.nan), start, contact)
 
 
 def _curves(motion: NurbsMotion) -> tuple[Array, int, list[Array]]:

@@ -98,7 +98,8 @@ class ReadOptions:
         hand: "right", "left" or "vote": sense of rotation of arcs about their axis; overrides the dialect. "vote"
             selects for the whole file the sense under which most arcs are shorter than half a turn.
         goto_values: for GOTO with other than 3 or 6 values the meaning of each value: "x y z", "i j k" the tool axis,
-            "nx ny nz" the surface normal, "px py pz" the contact point, which is ignored.
+            "nx ny nz" the surface normal, "px py pz" the contact point. Beside "x y z", the tool tip, the contact point
+            is ignored; without it compensation makes the tip of contact point and normal.
         cycle_values: meanings of the numbers that follow the kind of a CYCLE statement without words, in order, out of
             ``CYCLE_VALUES``: depth down from the point, clearance and return height up from it.
         cycle_kinds: strokes, out of ``CYCLE_STROKES``, of kinds of cycles by their words, such as "BORE"; they override
@@ -153,8 +154,10 @@ class ReadOptions:
                 raise ValueError(f"cycle_kinds: expected words and one of {CYCLE_STROKES}, got {kind!r}: {strokes!r}")
         for count, names in self.goto_values.items():
             whole = {name for each in GOTO_VALUES if {*each} & {*names} for name in each}
-            if len(names) != count or len(set(names)) != count or not {*POINT} <= {*names} == whole:
-                raise ValueError(f"goto_values: expected {count} different names with x, y, z, got {names!r}")
+            placed = {*POINT} <= {*names} or {*CONTACT, *NORMAL} <= {*names}
+            if len(names) != count or len(set(names)) != count or not placed or {*names} != whole:
+                expected = "x, y, z, or px, py, pz and nx, ny, nz"
+                raise ValueError(f"goto_values: expected {count} different names with {expected}, got {names!r}")
 
     def value_names(self, count: int) -> tuple[str, ...] | None:
         """Meanings of the values of a GOTO, None if unknown."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from pkm_post.geometry import norm
 from pkm_post.model import Array
-from pkm_post.reading.cldata.options import AXIS, NORMAL, POINT, Dialect, ReadOptions
+from pkm_post.reading.cldata.options import AXIS, CONTACT, NORMAL, POINT, Dialect, ReadOptions
 from pkm_post.reading.cldata.state import Point, ReaderState
 from pkm_post.reading.cldata.statements import Statement, Statements
 
@@ -36,6 +36,7 @@ class Points:
         axis: (P, 3) unit tool axis.
         normal: (P, 3) unit surface normal, NaN where absent.
         start: (P,) whether the point is the tool position, not a target.
+        contact: (P,) whether the position is a contact point, not the tool tip.
     """
 
     row: Array
@@ -43,6 +44,7 @@ class Points:
     axis: Array
     normal: Array
     start: Array
+    contact: Array
 
 
 def goto(state: ReaderState, row: int, statement: Statement) -> None:
@@ -118,8 +120,13 @@ def _is_drilled(state: ReaderState, row: int) -> bool:
 def _written_position(state: ReaderState, row: int) -> Array:
     """The point of a GOTO as written."""
     first, end = state.statements.number_start[row : row + 2].tolist()
-    names = state.options.value_names(end - first) or POINT
+    names = _positions_named(state.options.value_names(end - first) or POINT)
     return np.array([state.statements.numbers[first + names.index(name)] for name in POINT])
+
+
+def _positions_named(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Meanings of values with the contact point as the position, where there is no other."""
+    return names if "x" in names else tuple(dict(zip(CONTACT, POINT, strict=True)).get(name, name) for name in names)
 
 
 def _in_current_frame(state: ReaderState, row: int, position: Array) -> Array:
@@ -177,31 +184,33 @@ def lines_of_numbers(statements: Statements) -> Array:
 
 def all_points(state: ReaderState, bulk: Array, names: ValueNames) -> Points:
     """All points of the file as written, in file order."""
-    rows, values = _bulk_values(state, bulk, names)
+    rows, values, contact = _bulk_values(state, bulk, names)
     special = [point for _, point in state.points]
     row = np.concatenate([rows, np.array([at for at, _ in state.points], dtype=np.int64)])
     order = np.argsort(row, kind="stable")
     nothing = (np.nan,) * 3
     more = np.array([(*one.position, *(one.axis or nothing), *nothing) for one in special]).reshape(-1, 9)
     columns = np.concatenate([values, more])[order]
-    start = np.zeros(len(row), dtype=np.bool_)
+    start, on_surface = np.zeros((2, len(row)), dtype=np.bool_)
     start[len(rows) :] = [one.start for one in special]
-    return Points(row[order], columns[:, :3], columns[:, 3:6], columns[:, 6:], start[order])
+    on_surface[: len(rows)] = contact
+    return Points(row[order], columns[:, :3], columns[:, 3:6], columns[:, 6:], start[order], on_surface[order])
 
 
-def _bulk_values(state: ReaderState, bulk: Array, names: ValueNames) -> tuple[Array, Array]:
-    """Rows of GOTO statements, and their values as (P, 9): position, axis, normal."""
+def _bulk_values(state: ReaderState, bulk: Array, names: ValueNames) -> tuple[Array, Array, Array]:
+    """Rows of GOTO statements, their position, axis and normal as (P, 9), and whether they are contact points."""
     statements = state.statements
     rows = np.flatnonzero(bulk)
-    values = np.full((len(rows), 9), np.nan)
+    values, contact = np.full((len(rows), 9), np.nan), np.zeros(len(rows), dtype=np.bool_)
     column = {name: index for index, name in enumerate((*POINT, *AXIS, *NORMAL))}
     for template, value_names in names.items():
         mine = statements.template[rows] == template
         first = statements.number_start[rows[mine]]
-        for offset, name in enumerate(value_names):
+        contact[mine] = "x" not in value_names
+        for offset, name in enumerate(_positions_named(value_names)):
             if name in column:
                 values[mine, column[name]] = statements.numbers[first + offset]
-    return rows, values
+    return rows, values, contact
 
 
 def active_index(row: Array, changes: list[int]) -> Array:

@@ -72,6 +72,7 @@ def build_program(
         smaller_tool=_column(sides, points.row, 3, 0)[point].astype(np.bool_),
         plane=_column(sides, points.row, 2, 2)[point].astype(np.uint8),
         normal=points.normal[point],
+        contact=points.contact[point],
         reading=tuple(reading),
     )
 

@@ -83,7 +83,7 @@ def _program(state: ReaderState, bulk: Array, names: ValueNames, file: str) -> P
     offsets, reading = cutcom_offsets(state, points, frames, arcs)
     if state.faults.any_errors():
         return None
-    described = [*unit, *_describe_feed(state), *cycle_descriptions(state), *reading]
+    described = [*unit, *_describe_feed(state), *_describe_contact(points), *cycle_descriptions(state), *reading]
     return build_program(state, points, arcs, file, offsets, described)
 
 
@@ -109,6 +109,12 @@ def _describe_feed(state: ReaderState) -> list[str]:
     """Describe the feed that the options supply."""
     feed = state.options.feed
     return [] if feed is None else [f"the feed before the first FEDRAT is {feed * 60:.10g} mm/min, as the option says"]
+
+
+def _describe_contact(points: Points) -> list[str]:
+    """Describe how many positions the options make contact points."""
+    count = int(points.contact.sum())
+    return [f"{count} points are contact points, as the option says"] if count else []
 
 
 def _check_tool_lengths(state: ReaderState, points: Points) -> None:

@@ -39,7 +39,46 @@ def compensate(
             break
         moved, faults = _for_cutter(moved, number, tool)
         diagnostics += faults
+    if moved is not None and moved.contact.any():
+        moved, faults = _with_tips(moved)
+        diagnostics += faults
     return moved, diagnostics
+
+
+def _with_tips(program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """Make tool tips of contact points, by the cutter of each tool; other rows are tips and stay.
+
+    Returns:
+        The program, or None when a row cannot be compensated; and the diagnostics: N101 to N107, N109 and N117.
+    """
+    shift, diagnostics = np.zeros_like(program.position), tuple[Diagnostic, ...]()
+    for number, tool in sorted(program.tools.items()):
+        in_use = _rows_of(program, number if len(program.tools) > 1 else None)
+        rows = np.flatnonzero(in_use & program.contact)
+        if not len(rows):
+            continue
+        cutter, faults = known_cutter(tool, Place(program.source))
+        diagnostics += faults
+        if cutter is None:
+            return None, diagnostics
+        columns = (program.position[rows], program.normal[rows], program.tool_axis[rows])
+        sizes = (cutter.corner_radius, cutter.radial_offset, cutter.axial_offset)
+        found, faults = tip_offsets(*columns, sizes, (cutter,), lambda row, rows=rows: program.place(int(rows[row])))
+        diagnostics += faults
+        if found is None:
+            return None, diagnostics
+        shift[rows] = found
+    bent = _bent_arcs(program, shift)
+    if bent:
+        return None, (*diagnostics, *bent)
+    position, centre = program.position + shift, program.arc_centre + shift
+    return replace(program, position=position, arc_centre=centre, contact=np.zeros(len(program), bool)), diagnostics
+
+
+def _bent_arcs(program: Program, shift: Array) -> tuple[Diagnostic, ...]:
+    """The arcs whose ends would move apart."""
+    bent = (program.kind == Kind.ARC) & (norm(np.diff(shift, axis=0, prepend=shift[:1])) > _SAME)
+    return tuple(_bent(program, shift, row) for row in np.flatnonzero(bent).tolist())
 
 
 def _with_contours(program: Program, contours: OffsetOptions) -> tuple[Program | None, tuple[Diagnostic, ...]]:
@@ -54,6 +93,10 @@ def _for_cutter(program: Program, number: int, actual: Tool) -> tuple[Program | 
         known = ", ".join(f"T{known}" for known in sorted(program.tools))
         return None, (Diagnostic("N118", place, f"T{number}, the program has {known}"),)
     tool = program.tools[number]
+    ground_tool = replace(actual, number=number, name=tool.name, length=tool.length)
+    if program.contact[_rows_of(program, number if len(program.tools) > 1 else None)].any():
+        # contact points were made for no cutter
+        return replace(program, tools=program.tools | {number: ground_tool}), ()
     nominal, faults = known_cutter(tool, place)
     ground, more = known_cutter(actual, place)
     if nominal is None or ground is None:
@@ -61,7 +104,6 @@ def _for_cutter(program: Program, number: int, actual: Tool) -> tuple[Program | 
     moved, diagnostics = compensate_tips(program, nominal, ground, number if len(program.tools) > 1 else None)
     if moved is None:
         return None, diagnostics
-    ground_tool = replace(actual, number=number, name=tool.name, length=tool.length)
     return replace(moved, tools=program.tools | {number: ground_tool}), diagnostics
 
 
@@ -96,9 +138,9 @@ def compensate_tips(
     if found is None:
         return None, diagnostics
     shift = np.where(in_use[:, None], found[_neighbours(given, program.kind == Kind.RAPID)], 0.0)
-    bent = (program.kind == Kind.ARC) & (norm(np.diff(shift, axis=0, prepend=shift[:1])) > _SAME)
-    if bent.any():
-        return None, tuple(_bent(program, shift, row) for row in np.flatnonzero(bent).tolist())
+    bent = _bent_arcs(program, shift)
+    if bent:
+        return None, bent
     moved = dataclasses.replace(program, position=program.position + shift, arc_centre=program.arc_centre + shift)
     return moved, diagnostics
 

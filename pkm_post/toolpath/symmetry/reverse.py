@@ -26,7 +26,7 @@ from pkm_post.toolpath.symmetry.passes import Link, closed_passes, links, pass_r
 
 _ANYWHERE = (EventKind.DWELL, EventKind.STOP)
 """Events allowed in the middle of a pass: they belong to a point."""
-_POINT_COLUMNS = ("position", "tool_axis", "normal", "spin", "exact_stop", "side_offset", "smaller_tool")
+_POINT_COLUMNS = ("position", "tool_axis", "normal", "contact", "spin", "exact_stop", "side_offset", "smaller_tool")
 """Columns that describe the end of a row: on the row where compensation begins, only its end has the offset. All other
 columns describe the path to that point."""
 _POSE = ("position", "tool_axis")

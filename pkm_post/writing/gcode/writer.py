@@ -189,6 +189,10 @@ def write(
     if fault is not None:
         row, code, found = fault
         return None, (Diagnostic(code, program.place(row), found),)
+    if program.contact.any():
+        return None, (
+            Diagnostic("N119", program.place(int(np.argmax(program.contact))), f"{program.contact.sum()} rows"),
+        )
     numbers = Numbers(decimals, axis_decimals, _INCH if inch else 1.0)
     standing = np.flatnonzero(cutting(program) & (feed_as_written(program, numbers) <= 0))
     if len(standing):
