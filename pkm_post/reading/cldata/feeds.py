@@ -24,7 +24,7 @@ _SENSES = {"CLW": 1.0, "CCLW": -1.0}
 _SURFACE_SPEEDS = {"SMM": 1000.0, "SFM": 304.8}
 _SPINDLE_PAIRS = frozenset({"MAXRPM", "RADIUS", "RANGE"})
 _SPINDLE_WORDS = frozenset({"RPM", "ON", "OFF", "ORIENT", "LOCK", "NEUTRL", "RANGE", "LOW", "MEDIUM", "HIGH"})
-_COOLANT = {"ON": 1.0, "FLOOD": 1.0, "MIST": 2.0, "TAP": 1.0, "THRU": 1.0, "OFF": 0.0}
+_COOLANT = {"ON": 1.0, "FLOOD": 1.0, "MIST": 2.0, "TAP": 1.0, "TAPKUL": 1.0, "THRU": 1.0, "OFF": 0.0}
 
 
 def feed_of(state: ReaderState, word: str, value: float) -> Feed:
@@ -60,7 +60,7 @@ def fedrat(state: ReaderState, row: int, statement: Statement) -> None:
     elif numbers:
         state.feed_word = units[0] if units else state.feed_word
         state.set_feed(row, feed_of(state, state.feed_word, numbers[0]))
-    elif not words:
+    elif not words and len(items) == len(statement.items):
         state.report("L402", row, "FEDRAT, expected a number")
 
 

@@ -129,7 +129,7 @@ UNSUPPORTED = frozenset({
     "POLYGON", "PIVOT", "TURRET", "MIRROR", "LOOPST", "LOOPND", "JUMPTO",
     "MACRO", "CALL", "TERMAC", "IF", "DO", "GO", "GOFWD", "GOBACK", "GOLFT", "GORGT", "GOUP", "GODOWN", "OFFSET",
     "TLLFT", "TLRGT", "TLON", "TLLFT,GOFWD", "TLRGT,GOFWD", "TLON,GOLFT", "TLON,GORGT", "THREAD", "PITCH", "REFSYS",
-    "RETRCT", "CALSUB", "DEFSUB", "ENDSUB", "PIVOTZ", "PROBE", "DNTCUT",
+    "RETRCT", "CALSUB", "DEFSUB", "ENDSUB", "PIVOTZ", "PROBE", "DNTCUT", "INCLUDE", "READ",
 })  # fmt: skip
 """Words that change the motion and are not supported."""
 

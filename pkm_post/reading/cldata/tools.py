@@ -20,6 +20,8 @@ _TANGENT_TOLERANCE = 2e-3
 
 def cutter(state: ReaderState, row: int, statement: Statement) -> None:
     """CUTTER/d[,r[,e,f,a,b,h]], angles in degrees; e and f follow from the others."""
+    if statement.items[:1] == ("DISPLY",):  # how NCL draws the cutter
+        return
     numbers = statement.numbers
     if not numbers or statement.words:
         state.report_items(row, statement, "d[,r[,e,f,a,b,h]]")

@@ -8,7 +8,7 @@ work offset: a mirror would swap left and right.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -63,7 +63,7 @@ def _with_tips(program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]
             return None, diagnostics
         columns = (program.position[rows], program.normal[rows], program.tool_axis[rows])
         sizes = (cutter.corner_radius, cutter.radial_offset, cutter.axial_offset)
-        found, faults = tip_offsets(*columns, sizes, (cutter,), lambda row, rows=rows: program.place(int(rows[row])))
+        found, faults = tip_offsets(*columns, sizes, (cutter,), _places(program, rows.tolist()))
         diagnostics += faults
         if found is None:
             return None, diagnostics
@@ -73,6 +73,11 @@ def _with_tips(program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]
         return None, (*diagnostics, *bent)
     position, centre = program.position + shift, program.arc_centre + shift
     return replace(program, position=position, arc_centre=centre, contact=np.zeros(len(program), bool)), diagnostics
+
+
+def _places(program: Program, rows: Sequence[int]) -> Callable[[int], Place]:
+    """The place of a row by its index among some rows."""
+    return lambda index: program.place(rows[index])
 
 
 def _bent_arcs(program: Program, shift: Array) -> tuple[Diagnostic, ...]:
@@ -134,7 +139,7 @@ def compensate_tips(
     rows = np.flatnonzero(given)
     columns = (program.position[rows], program.normal[rows], program.tool_axis[rows])
     sizes = size_changes(nominal, actual)
-    found, diagnostics = tip_offsets(*columns, sizes, (nominal, actual), lambda row: program.place(int(rows[row])))
+    found, diagnostics = tip_offsets(*columns, sizes, (nominal, actual), _places(program, rows.tolist()))
     if found is None:
         return None, diagnostics
     shift = np.where(in_use[:, None], found[_neighbours(given, program.kind == Kind.RAPID)], 0.0)

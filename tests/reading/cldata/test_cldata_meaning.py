@@ -346,6 +346,17 @@ def test_gohome_without_a_point_goes_to_the_home_of_the_machine_in_any_frame():
     assert found.kind[-1] == Kind.RAPID
 
 
+@pytest.mark.parametrize(
+    ("statement", "code"),
+    [("FEDRAT/LENGTH,80", None), ("FEDRAT/", "L402"), ("CUTTER/DISPLY,1", None), ("CUTTER/TOOL,1", "L402"),
+     ("COOLNT/TAPKUL", None), ("COOLNT/STEAM", "L402"), ("INCLUDE/OTHER", "L401"), ("READ/2,OTHER", "L401")],
+)  # fmt: skip
+def test_words_beside_the_motion_leave_it_alone_or_are_refused(statement, code):
+    found, diagnostics = read(f"{HEAD}{statement}\nGOTO/1,2,3\n", "part.cl")
+    assert [fault.code for fault in errors(diagnostics)] == ([code] if code else [])
+    assert code or found.position[-1].tolist() == [1, 2, 3]
+
+
 def test_rapid_passes_a_from():
     found = program(f"{HEAD}GOTO/0,0,9\nRAPID\nFROM/0,0,10\nGOTO/1,2,3\nGOTO/1,2,0\n")
     assert found.kind[-2:].tolist() == [Kind.RAPID, Kind.LINE]
