@@ -16,7 +16,18 @@ from pkm_post.model import Array, Event, Kind, Program
 
 CHORD_ERROR = 1e-3
 """Chordal deviation from the replaced arc, mm."""
-_COPIED = ("feed", "operation", "line", "side_offset", "smaller_tool", "plane", "spin", "exact_path", "tip_tolerance")
+_COPIED = (
+    "feed",
+    "operation",
+    "line",
+    "side_offset",
+    "smaller_tool",
+    "plane",
+    "contact",
+    "spin",
+    "exact_path",
+    "tip_tolerance",
+)
 """Columns that every chord inherits from its arc."""
 
 

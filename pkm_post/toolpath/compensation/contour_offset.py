@@ -27,7 +27,18 @@ from pkm_post.toolpath.compensation.contour_gouge import gouges
 
 _UNMET = 1e30
 """mm: missing length of elements that do not meet their neighbours; more than any corner takes."""
-_COPIED = ("tool_axis", "feed", "operation", "line", "plane", "normal", "spin", "exact_path", "tip_tolerance")
+_COPIED = (
+    "tool_axis",
+    "feed",
+    "operation",
+    "line",
+    "plane",
+    "normal",
+    "contact",
+    "spin",
+    "exact_path",
+    "tip_tolerance",
+)
 _DEFAULT = OffsetOptions()
 
 

@@ -261,6 +261,7 @@ def test_every_column_of_each_program_is_there():
         "side_offset": 1.0 * rows,
     }
     reported |= {"plane": [0, 1, 2], "normal": np.eye(3), "spin": 0.1 * rows, "smaller_tool": rows == 0}
+    reported["contact"] = rows == 1
     assert set(reported) == set(OPTIONAL_COLUMNS)
     second = dataclasses.replace(first, **reported)
     both = concatenate([first, second, first])
