@@ -20,7 +20,7 @@ import numpy as np
 
 from pkm_post.model import Array
 from pkm_post.reading.gcode.blocks import Block
-from pkm_post.reading.gcode.parse import LARGEST_CODE, parse_line
+from pkm_post.reading.gcode.parse import LARGEST_CODE, MACRO_CALLS, parse_line
 
 _MARK = b"\x01"
 """Marker of a number in a pattern."""
@@ -183,7 +183,7 @@ def plain_block(pattern: bytes) -> Block | None:
             codes, parts = (block.g, 10) if kind == b"G" else (block.m, 1)
             value = float(number) * parts
             codes.append(round(min(value, LARGEST_CODE)))
-            if abs(value - codes[-1]) > 1e-6 or value > LARGEST_CODE:
+            if abs(value - codes[-1]) > 1e-6 or value > LARGEST_CODE or (kind == b"G" and float(number) in MACRO_CALLS):
                 return None
         elif letter in b"GM" or letter.decode() in block.words:
             return None
