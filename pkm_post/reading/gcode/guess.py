@@ -20,6 +20,7 @@ from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import CANCEL_CYCLE, CYCLES, G_CODES, Group, name_of
 from pkm_post.reading.gcode.flavours import FANUC, RS274, Flavour
 from pkm_post.reading.gcode.modal import forward_fill
+from pkm_post.reading.gcode.parse import is_macro_call
 
 _MOST_SHOWN = 4
 """Pieces of evidence in a line of the report."""
@@ -71,6 +72,7 @@ def _first_of_each(blocks: Blocks, found: _Found) -> Iterator[str]:
 def _for_fanuc(blocks: Blocks) -> _Found:
     yield from _o_words(blocks, lambda keyword: not keyword)
     yield from _macro_jumps(blocks)
+    yield from _macro_calls(blocks)
     yield from _codes(blocks.g, blocks.g_row, _FANUC_G, "G")
     here = np.flatnonzero(np.isin(blocks.g, _WITHOUT_PLACE))
     here = here[~(blocks.has("X") | blocks.has("Y"))[blocks.g_row[here]]] if len(here) else here
@@ -139,6 +141,14 @@ def _macro_jumps(blocks: Blocks) -> _Found:
                 words = [leaf.upper() for leaf in child.children if isinstance(leaf, str) and leaf.type != "NUMBER"]
                 yield " ".join(words), row
                 return
+
+
+def _macro_calls(blocks: Blocks) -> _Found:
+    """The first G65 or G66."""
+    for row, tree in sorted(blocks.special.items()):
+        if is_macro_call(tree):
+            yield "a macro call", row
+            return
 
 
 def _named_parameters(blocks: Blocks) -> _Found:

@@ -28,7 +28,7 @@ from pkm_post.reading.gcode.statements import MacroCall, OWord, Statement, label
 PROGRAM_END = (2, 30)
 _CALL, _RETURN = 98, 99
 SUBPROGRAM_CODES = (_CALL, _RETURN)
-_END_OF_MODAL_CALL = 670
+_END_OF_MODAL_CALL, _DWELL = 670, 40
 _MOVING = frozenset("XYZABCUVW")
 _COUNTED = 10_000
 """P of M98 from here on is the number of passes and the last four digits of the program [Fanuc]."""
@@ -168,6 +168,8 @@ class Interpreter(FlowControl):
             return row + 1
         if _END_OF_MODAL_CALL in block.g:
             self._after_moves = None
+            return row + 1
+        if _DWELL in block.g:
             return row + 1
         taken = sorted({*block.g} & {*self._flavour.axis_takers(), *CYCLES})
         if taken:

@@ -172,6 +172,10 @@ _PLAIN = re.compile(rb"%|(/?)(?:N\x01)?((?:" + _WORD.pattern + rb")*)")
 """``block`` of the grammar without blanks, where each word is a letter and a number."""
 
 
+_MACRO_CALLS = {round(10 * code) for code in MACRO_CALLS}
+"""Beside them words are arguments."""
+
+
 def plain_block(pattern: bytes) -> Block | None:
     """The block of a pattern of plain words, as lark parses it; None of all others, and of what may be a fault."""
     found = _PLAIN.fullmatch(pattern)
@@ -189,7 +193,7 @@ def plain_block(pattern: bytes) -> Block | None:
             return None
         else:
             block.words[letter.decode()] = 1.0
-    return block
+    return None if {*block.g} & _MACRO_CALLS else block
 
 
 class Patterns(dict[bytes, int]):

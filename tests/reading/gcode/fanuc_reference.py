@@ -25,12 +25,19 @@ class Control:
         self.here, self.motion, self.cycle, self.words = [math.nan] * 3, 0, None, {}
         self.level = self.plane = None
         self.scale, self.relative, self.plane, self.returns, self.polar = 1.0, False, 17, True, False
+        self.centre, self.factor = [0.0] * 3, [1.0] * 3
+        self.variables, self.modal = {}, None
         self.run(0)
 
     def run(self, at):
         """Blocks from a line on, until M30 or M99."""
         while True:
             line, at = self.lines[at], at + 1
+            if "G65" in line or "G66" in line:
+                self.call(line)
+                continue
+            if self.variables:
+                line = self.substituted(line)
             words = [(letter, float(value)) for letter, value in re.findall(r"([A-Z])([-+]?[\d.]+)", line)]
             codes = {round(10 * value) for letter, value in words if letter == "G"}
             ends = {int(value) for letter, value in words if letter == "M"}
@@ -43,12 +50,56 @@ class Control:
                 return
             elif "O" not in given:
                 self.block(codes, given)
+                if 670 in codes:
+                    self.modal = None
+                elif self.modal and set(given) & set("XYZ"):
+                    modal, self.modal = self.modal, None
+                    self.call(modal)
+                    self.modal = modal
+
+    def call(self, line):
+        """G65 runs a macro; G66 keeps it for the blocks that move."""
+        if "G66" in line:
+            self.modal = line.replace("G66", "G65")
+            return
+        words = re.findall(r"([A-Z])([-+]?[\d.]+)", line.replace("G65", ""))
+        before, self.variables = self.variables, {}
+        sets = 0
+        for letter, value in words:
+            if letter == "I":
+                self.variables[4 + 3 * sets] = float(value)
+                sets += 1
+            elif letter in "XYZ":
+                self.variables["XYZ".index(letter) + 24] = float(value)
+        number = next(value for letter, value in words if letter == "P")
+        self.variables[0] = 0.0
+        self.run(self.lines.index(f"O{number}") + 1)
+        self.variables = before
+
+    def substituted(self, line):
+        """A line with values in place of variables, and without words of vacant ones."""
+
+        def total(found):
+            return str(sum(self.variables.get(int(number), 0.0) for number in re.findall(r"#(\d+)", found[0])))
+
+        def word(found):
+            value = self.variables.get(int(found[2]))
+            return "" if value is None else f"{found[1]}{value:.9f}"
+
+        return re.sub(r"([A-Z])#(\d+)", word, re.sub(r"\[[^]]*\]", total, line))
 
     def block(self, codes, words):
         for code, (name, value) in MODES.items():
             if code in codes:
                 setattr(self, name, value)
         if codes & {51, 1870}:
+            return
+        if 510 in codes:
+            self.centre = [words.get(letter, 0.0) * self.scale for letter in "XYZ"]
+            self.factor = [words.get("P", words.get(letter, 1.0)) for letter in "IJK"]
+            return
+        if 500 in codes:
+            self.factor = [1.0] * 3
             return
         if 40 in codes:
             self.rows.append([4, words["X"] if "X" in words else words["P"] / 1000])
@@ -77,6 +128,10 @@ class Control:
 
     def target(self, place, turn=True):
         start = self.here if self.relative else [0.0] * 3
+        for i, c in enumerate("XYZ"):
+            if c in place and self.factor[i] != 1:
+                from_centre = place[c] if self.relative else place[c] - self.centre[i]
+                place = place | {c: self.factor[i] * from_centre + (0 if self.relative else self.centre[i])}
         end = [start[i] + place[c] if c in place else self.here[i] for i, c in enumerate("XYZ")]
         first, second, _ = PLANES[self.plane]
         if self.polar and turn and ("XYZ"[first] in place or "XYZ"[second] in place):
@@ -224,7 +279,22 @@ def program(seed):
     def called():
         return ["G91", f"M98 P{chance.choice(('', '2', '3'))}0007", "G90"]
 
+    def scaled():
+        centre = " ".join(letter + number(-9, 9) for letter in "XYZ")
+        factors = [f"{chance.choice((-1, 1)) * chance.uniform(0.5, 2):.4f}" for _ in "IJK"]
+        by = chance.choice((f"P{factors[0]}", " ".join(map("".join, zip("IJK", factors, strict=True)))))
+        moves = [f"G{chance.randint(0, 1)} {place('XYZ', -9, 9)}", *incremental()]
+        return [f"G51 {centre} {by}", *moves, "G50"]
+
+    def macro():
+        arguments = f"{place('XYZ', -9, 9)} I{number(1, 3)} " + chance.choice(("", f"I{number(2, 4)}"))
+        if chance.random() < 0.5:
+            return [f"G65 P8 {arguments}"]
+        return [f"G66 P8 {arguments}", f"G0 {place('XYZ', -9, 9)}", "G4 P20", place("XYZ", -9, 9), "G67"]
+
     parts = (
+        scaled,
+        macro,
         cycle,
         cycle,
         incremental,
@@ -238,4 +308,5 @@ def program(seed):
     for _ in range(12):
         lines += chance.choice(parts)()
     end = chance.choice(("M30", "M99"))
-    return "\n".join([*lines, end, "O7", f"G0 {place('XYZ', -3, 3)}", "M99", ""])
+    return "\n".join([*lines, end, "O7", f"G0 {place('XYZ', -3, 3)}", "M99",
+                      "O8", "G0 X#24 Y#25", f"G1 {axes[2]}[#4+#7+#26]", "M99", ""])  # fmt: skip

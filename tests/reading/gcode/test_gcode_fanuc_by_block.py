@@ -68,7 +68,10 @@ def test_same_motions_and_dwells(seed):
 
 def test_the_programs_have_what_they_are_for():
     text = "".join(program(seed) for seed in range(60))
-    assert all(text.count(word) > 5 for word in ("G80", "G16", "G28", "G53", "K0", "M98", "G5.1", "G4 X", "G20", "M99"))
+    assert all(
+        text.count(word) > 5
+        for word in ("G80", "G16", "G28", "G53", "K0", "M98", "G5.1", "G4 X", "G20", "M99", "G51", "G65", "G66")
+    )
 
 
 if __name__ == "__main__":
