@@ -15,7 +15,7 @@ from pkm_post.reading.gcode.scan import with_line_feeds
 
 LANGUAGE = "Siemens's language (Sinumerik)"
 SUFFIXES = (".mpf", ".spf", ".arc")
-_HEAD = 256 * 1024
+_HEAD = 64 * 1024
 """Bytes in which evidence is looked for."""
 _LEAST = 2
 _MOST_SHOWN = 3
