@@ -14,12 +14,17 @@ import io
 import os
 import sys
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import pkm_post
-from pkm_post.cli.processes import INTERRUPTED
-from pkm_post.system import MEMORY_FAULTS, memory_diagnostic, packages
+from pkm_post import at_first_use
+from pkm_post.cli.processes import INTERRUPTED, diagnostic_text
+from pkm_post.system import MEMORY_FAULTS, THREADS, ThreadCountError, memory_diagnostic, packages
 
-__all__ = ["main"]
+__all__ = ["main", "run_batch"]
+
+if not TYPE_CHECKING:
+    __getattr__ = at_first_use(__name__, {"batch": "run_batch"})
 
 _COMMANDS = {
     "post": ("post",),
@@ -27,6 +32,7 @@ _COMMANDS = {
     "programs": ("check", "convert", "verify"),
     "machine": ("machine",),
     "pmac": ("pmac",),
+    "batch": ("batch",),
     "install": ("install",),
 }
 """Commands by the module that has them, in the order of the help text."""
@@ -45,6 +51,9 @@ def main(arguments: Sequence[str]) -> int:
         return 1
     except KeyboardInterrupt:
         return INTERRUPTED
+    except ThreadCountError as fault:
+        print(diagnostic_text("F115", THREADS, str(fault)), file=sys.stderr)
+        return 1
     except MEMORY_FAULTS as fault:
         diagnostic = memory_diagnostic(fault, "pkm_post") or _not_installed(fault)
         if diagnostic is None:

@@ -8,7 +8,6 @@ its own process; a refused one does not stop the others.
 from __future__ import annotations
 
 import argparse
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -38,7 +37,7 @@ from pkm_post.options import (
     solid_files,
     whole_from,
 )
-from pkm_post.system import memory_guard
+from pkm_post.system import memory_guard, threads
 
 if TYPE_CHECKING:
     from pkm_post.posting import Posted
@@ -59,9 +58,8 @@ def add_commands(commands: Any) -> None:
     post.add_argument(
         "--jobs",
         type=count,
-        default=os.cpu_count() or 1,
         metavar="N",
-        help="how many of several files to post at the same time (default: the number of processors, %(default)s)",
+        help="how many of several files to post at the same time; they share the threads (default: as many)",
     )
     post.add_argument(_ONLY, type=whole_from(0, "0 or more"), help=argparse.SUPPRESS)
     add_options(post)
@@ -79,7 +77,7 @@ def _post(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 
 def _post_files(files: Sequence[Path], namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    at_a_time = min(namespace.jobs, len(files))
+    at_a_time = min(namespace.jobs or threads(), len(files))
     if at_a_time > 1:
         return _post_in_processes(files, solid_files(namespace), arguments, at_a_time)
     if needs_freecad(files, solid_files(namespace)):
@@ -89,7 +87,7 @@ def _post_files(files: Sequence[Path], namespace: argparse.Namespace, arguments:
 
 def _all_there(files: Sequence[Path], namespace: argparse.Namespace) -> int:
     """Check that the promised results exist, whichever process wrote them; return the exit code."""
-    items = [item for file in files for item in _items(file, namespace.job, namespace.also)]
+    items = [item for file in files for item in items_of(file, namespace.job, namespace.also)]
     missing = missing_results(items, namespace.out)
     print_diagnostics(
         diagnostic_text("F142", str(path), "it is not there, though posting ended well") for path in missing
@@ -102,12 +100,12 @@ def _faults(namespace: argparse.Namespace) -> list[str]:
     files = namespace.files
     if namespace.only is not None and namespace.only >= len(files):
         return [f"argument {_ONLY}: expected a number below {len(files)}, got {namespace.only}"]
-    items = [item for file in files for item in _items(file, namespace.job, namespace.also)]
+    items = [item for file in files for item in items_of(file, namespace.job, namespace.also)]
     lost = [*result_conflicts(items), *overwritten_sources(files, items, namespace.out)]
     return [*misplaced(namespace, files), *(f"{each}: post to different folders" for each in lost)]
 
 
-def _items(file: Path, wanted: str | None, also: tuple[str, ...]) -> list[PostItem]:
+def items_of(file: Path, wanted: str | None, also: tuple[str, ...]) -> list[PostItem]:
     """Items of a file: a part program, or the jobs of a document, with their own optional outputs."""
     if file.suffix.lower() != _DOCUMENT:
         from pkm_post.reading import program_stem

@@ -16,13 +16,13 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 from pkm_post.cli.terminal import ProgressLine, print_diagnostics
-from pkm_post.system import FREECADCMD, FreeCADCommand, freecad_command
+from pkm_post.system import FREECADCMD, FreeCADCommand, freecad_command, thread_share
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 _ADDON = _PACKAGE.parent
@@ -156,6 +156,7 @@ class _Child:
     """A command in a separate process."""
 
     command: Sequence[str]
+    variables: Mapping[str, str]
     process: subprocess.Popen[str] | None = None
     is_wanted: bool = True
 
@@ -181,7 +182,7 @@ class _Child:
             stderr=subprocess.PIPE,
             encoding="utf-8",
             errors="replace",
-            env=os.environ | {"PYTHONIOENCODING": "utf-8"},  # independent of the locale
+            env=os.environ | self.variables | {"PYTHONIOENCODING": "utf-8"},  # independent of the locale
             start_new_session=_HAS_GROUPS,
             creationflags=_NO_WINDOW,
         )
@@ -214,7 +215,7 @@ def run_parallel(commands: Sequence[Sequence[str]], at_a_time: int, doing: str) 
         at_a_time: most parallel processes.
         doing: task shown in the terminal.
     """
-    children, line, code = [_Child(command) for command in commands], ProgressLine(doing), 0
+    children, line, code = [_Child(command, thread_share(at_a_time)) for command in commands], ProgressLine(doing), 0
     with ThreadPoolExecutor(at_a_time) as pool:
         try:
             for number, (ended, printed, errors) in enumerate(pool.map(_Child.run, children)):

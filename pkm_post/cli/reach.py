@@ -10,7 +10,6 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import os
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -139,7 +138,7 @@ def _map(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
     from pkm_post.machine import reach_map
     from pkm_post.report import draw_reach
-    from pkm_post.system import staged, write_fault
+    from pkm_post.system import staged, threads, write_fault
 
     if math.prod(map(len, (namespace.x, namespace.y, namespace.z))) > _MAX_POINTS:
         print_diagnostics([f"expected --x, --y and --z with at most {_MAX_POINTS} places together"])
@@ -149,7 +148,7 @@ def _map(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
         return 1
     grid = np.meshgrid(namespace.x, namespace.y, namespace.z, indexing="ij")
     places = np.column_stack([column.ravel() for column in grid])
-    with ThreadPoolExecutor(min(os.cpu_count() or 1, 8)) as executor:
+    with ThreadPoolExecutor(min(threads(), 8)) as executor:
         tilts = reach_map(machine, places, namespace.length, math.radians(namespace.widest), executor=executor)
     stem = f"{Path(namespace.machine).stem}-reach"
     try:

@@ -14,6 +14,9 @@ from pkm_post.system.freecad_command import FreeCADCommand, freecad_command
 from pkm_post.system.lock import Lock, OwnerRecord, lock_owner, try_lock
 from pkm_post.system.out_of_memory import MEMORY_FAULTS, memory_diagnostic, memory_guard
 from pkm_post.system.staged import staged, write_fault
+from pkm_post.system.thread_count import VARIABLE as THREADS
+from pkm_post.system.thread_count import ThreadCountError, threads
+from pkm_post.system.thread_count import share as thread_share
 from pkm_post.system.workers import in_workers, workers
 
 if TYPE_CHECKING:
@@ -33,6 +36,7 @@ else:
 __all__ = [
     "FREECADCMD",
     "MEMORY_FAULTS",
+    "THREADS",
     "DamagedDocument",
     "DecimalReader",
     "DocumentContent",
@@ -40,6 +44,7 @@ __all__ = [
     "Job",
     "Lock",
     "OwnerRecord",
+    "ThreadCountError",
     "freecad_command",
     "lock_owner",
     "memory_diagnostic",
@@ -49,6 +54,8 @@ __all__ = [
     "require_usable",
     "result_files",
     "staged",
+    "thread_share",
+    "threads",
     "try_lock",
     "in_workers",
     "unusable_name",

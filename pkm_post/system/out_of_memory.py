@@ -74,9 +74,15 @@ def memory_diagnostic(fault: BaseException, subject: str) -> Diagnostic | None:
 
 def _start_workers() -> None:
     """Start the workers while there is memory for them, and before anything is written."""
+    from pkm_post.system.thread_count import VARIABLE, ThreadCountError
     from pkm_post.system.workers import workers
 
-    workers()
+    try:
+        workers()
+    except ThreadCountError as fault:
+        from pkm_post.model import Diagnostic, Place, Refused
+
+        raise Refused([Diagnostic("F115", Place(VARIABLE), str(fault))]) from fault
 
 
 def _is_lack_of_memory(fault: BaseException) -> bool:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Workers: one pool of compute threads, one per processor, kept for the life of the process.
+"""Workers: one pool of compute threads, as many as ``threads`` says, kept for the life of the process.
 
 All threads start and compute once before any receives work. A thread that Python starts without memory can wait
 forever, and OpenBLAS, which NumPy uses, allocates memory at the first use in a thread and ends the process if there is
@@ -9,12 +9,13 @@ none: half-written files would remain. Work in a worker must not submit work to 
 from __future__ import annotations
 
 import functools
-import os
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, wait
 from typing import TypeVar
+
+from pkm_post.system.thread_count import threads
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -34,10 +35,11 @@ def workers() -> ThreadPoolExecutor:
 
     Raises:
         MemoryError: there is not enough memory for the threads.
+        ThreadCountError: as ``threads``.
     """
     import numpy as np
 
-    count = os.cpu_count() or 1
+    count = threads()
     np.empty(count * _FOR_EACH, dtype=np.uint8)  # released at once: only tests whether there is room
     together, pool = threading.Barrier(count), ThreadPoolExecutor(count, thread_name_prefix="pkm_post")
 

@@ -48,7 +48,7 @@ def test_every_side_output_and_controller_has_its_ending():
 def lost(files, out=OUT, also=SIDE_OUTPUTS):
     """What posting these would lose, as the command line asks for it."""
     files = list(map(Path, files))
-    items = [item for file in files for item in post._items(file, None, also)]
+    items = [item for file in files for item in post.items_of(file, None, also)]
     return [*result_conflicts(items), *overwritten_sources(files, items, out)]
 
 

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The command ``batch``: post the files of a list, go on after an interruption, and leave a table of results.
+
+Enters: a TOML file with jobs. Leaves: the results of each job, and a table. Each job is posted by the command line in a
+process of its own, so that any executor of ``concurrent.futures`` may run the jobs, on this computer or others that see
+the same folders, and the bytes are the same. A job whose inputs and results are as in the table is left.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import hashlib
+import io
+import os
+import shlex
+import subprocess
+import tomllib
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor, as_completed
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import pkm_post
+from pkm_post.cli.post import items_of
+from pkm_post.cli.processes import command_inside, command_outside, needs_freecad, outcome
+from pkm_post.cli.terminal import ProgressLine, print_diagnostics
+from pkm_post.options import count, result_conflicts
+from pkm_post.system import result_files, staged, thread_share, threads, write_fault
+
+_KEYS = {"out", "arguments", "jobs"}
+_JOB_KEYS = {"file", "job", "arguments"}
+POSTED, REFUSED = "posted", "refused"
+
+
+@dataclass(frozen=True)
+class BatchJob:
+    """One file to post.
+
+    Attributes:
+        file: as the list names it.
+        path: the file.
+        out: folder for the results.
+        words: arguments of ``post``.
+        job: one job of a document; empty for all.
+        stems: stems of its results.
+    """
+
+    file: str
+    path: Path
+    out: Path
+    words: tuple[str, ...]
+    job: str
+    stems: tuple[str, ...]
+
+    def fingerprint(self) -> str:
+        """SHA-256 of what decides the result: version, arguments, the file, and files that arguments name."""
+        digest = hashlib.sha256("\0".join([pkm_post.__version__, self.file, self.job, *self.words]).encode())
+        for path in (self.path, *(Path(word.partition("=")[2] or word) for word in self.words)):
+            if path.is_file():
+                digest.update(path.read_bytes())
+        return digest.hexdigest()
+
+
+@dataclass(frozen=True)
+class BatchRow:
+    """A row of the table.
+
+    Attributes:
+        file, job: as in the list.
+        state: posted or refused.
+        programs: file names of the motion programs.
+        fingerprint: of the inputs.
+        messages: diagnostics, one per line.
+    """
+
+    file: str
+    job: str
+    state: str
+    programs: str
+    fingerprint: str
+    messages: str
+
+
+def add_commands(commands: Any) -> None:
+    """Add the command to a parser."""
+    batch = commands.add_parser("batch", help="post the files of a list, and go on where it was interrupted")
+    batch.add_argument("list", type=Path, metavar="JOBS.toml")
+    batch.add_argument("--jobs", type=count, metavar="N", help="how many at the same time (default: the processors)")
+    batch.set_defaults(run=_batch)
+
+
+def _batch(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
+    from pkm_post.model import Refused
+
+    at_a_time = namespace.jobs or threads()
+    line = ProgressLine(namespace.list.name)
+    try:
+        with ThreadPoolExecutor(at_a_time) as pool, line:
+            rows = run_batch(namespace.list, pool, at_a_time, line.show)
+    except Refused as refused:
+        print_diagnostics([refused])
+        return 1
+    for row in rows:
+        print(f"{row.state}: {row.file}{f' {row.job}' if row.job else ''}")
+        print_diagnostics(row.messages.splitlines())
+    print(table_of(namespace.list))
+    return int(any(row.state != POSTED for row in rows))
+
+
+def run_batch(
+    batch_file: str | Path, executor: Executor, at_a_time: int = 1, progress: Any = lambda name, share: None
+) -> list[BatchRow]:
+    """Post the jobs of a list that are not yet posted; return the rows of all, in the order of the list.
+
+    Args:
+        batch_file: the list, TOML.
+        executor: runs the jobs; its workers see the same folders.
+        at_a_time: how many of its workers share a computer, and so its threads.
+        progress: called with a file and the share that is done.
+
+    Raises:
+        Refused: F116, the list is not valid; or the table cannot be written.
+    """
+    file = Path(batch_file)
+    jobs, table = read_list(file), table_of(file)
+    rows = {job: row for job in jobs if (row := _row_before(job, _table_before(table))) is not None}
+    waiting: dict[Future[BatchRow], BatchJob] = {
+        executor.submit(post_one, job, thread_share(at_a_time)): job for job in jobs if job not in rows
+    }
+    try:
+        for done in as_completed(waiting):
+            rows[waiting[done]] = done.result()
+            _write_table(table, [rows[job] for job in jobs if job in rows])
+            progress(waiting[done].file, len(rows) / len(jobs))
+    finally:
+        for each in waiting:
+            each.cancel()
+    _write_table(table, [rows[job] for job in jobs])
+    return [rows[job] for job in jobs]
+
+
+def read_list(file: Path) -> list[BatchJob]:
+    """The jobs of a list.
+
+    Raises:
+        Refused: F116.
+    """
+    from pkm_post.model import Diagnostic, Place, Refused
+
+    try:
+        content = tomllib.loads(file.read_text(encoding="utf-8"))
+        jobs = list(_jobs(content, file.parent))
+    except (OSError, ValueError, TypeError) as fault:
+        raise Refused([Diagnostic("F116", Place(str(file)), str(fault))]) from fault
+    return jobs
+
+
+def _jobs(content: dict[str, Any], folder: Path) -> Iterator[BatchJob]:
+    if set(content) - _KEYS or not isinstance(content.get("jobs"), list) or not content["jobs"]:
+        raise ValueError(
+            f"expected {', '.join(sorted(_KEYS))} with at least one job, got {', '.join(content) or 'nothing'}"
+        )
+    out, common = folder / _text(content, "out", "."), shlex.split(_text(content, "arguments"))
+    items = []
+    for row in content["jobs"]:
+        if not isinstance(row, dict) or set(row) - _JOB_KEYS or "file" not in row:
+            raise ValueError(f"expected a job with file, and perhaps job and arguments, got {row}")
+        name, job = _text(row, "file"), _text(row, "job")
+        made = items_of(folder / name, job or None, ())
+        items += made
+        words = (*common, *shlex.split(_text(row, "arguments")))
+        yield BatchJob(name, folder / name, out, words, job, tuple(item.stem for item in made))
+    lost = result_conflicts(items)
+    if lost:
+        raise ValueError("; ".join(lost))
+
+
+def _text(table: dict[str, Any], key: str, default: str = "") -> str:
+    value = table.get(key, default)
+    if not isinstance(value, str):
+        raise ValueError(f"{key}: expected a text, got {value!r}")
+    return value
+
+
+def post_one(job: BatchJob, variables: dict[str, str]) -> BatchRow:
+    """Post one job in a process of its own; called by the executor.
+
+    Args:
+        job: what to post.
+        variables: environment variables that share the threads.
+    """
+    words = ["post", str(job.path), "--out", str(job.out), *(["--job", job.job] if job.job else []), *job.words]
+    command = (command_inside if needs_freecad([job.path]) else command_outside)(words)
+    ran = subprocess.run(
+        command,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        encoding="utf-8",
+        errors="replace",
+        env=os.environ | variables | {"PYTHONIOENCODING": "utf-8"},
+        creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+        check=False,
+    )
+    code, fault = outcome(command, ran.returncode)
+    written = [Path(line) for line in ran.stdout.splitlines() if line.endswith(result_files.PROGRAM)]
+    programs = [path.name for path in written if not path.stem.endswith("-setup")]
+    messages = "\n".join(filter(None, [*ran.stderr.splitlines(), fault]))
+    state = REFUSED if code else POSTED
+    return BatchRow(job.file, job.job, state, " ".join(programs), job.fingerprint(), messages)
+
+
+def _row_before(job: BatchJob, rows: list[BatchRow]) -> BatchRow | None:
+    """The row of an earlier run, if inputs and results are still those."""
+    from pkm_post.model import errors
+    from pkm_post.writing import manifest
+
+    found = next((row for row in rows if (row.file, row.job, row.state) == (job.file, job.job, POSTED)), None)
+    if found is None or found.fingerprint != job.fingerprint():
+        return None
+    checked = [manifest.check(job.out / (stem + result_files.PROGRAM)) for stem in job.stems]
+    return found if all(listed is not None and not errors(faults) for listed, faults in checked) else None
+
+
+def table_of(file: Path) -> Path:
+    """Path of the table of a list."""
+    return file.with_name(f"{file.stem}-results.csv")
+
+
+def _table_before(table: Path) -> list[BatchRow]:
+    try:
+        with table.open(encoding="utf-8", newline="") as stream:
+            return [BatchRow(**row) for row in csv.DictReader(stream)]
+    except (OSError, TypeError, ValueError):  # none yet, or not ours: every job is posted
+        return []
+
+
+def _write_table(table: Path, rows: Sequence[BatchRow]) -> None:
+    from pkm_post.model import Refused
+
+    text = io.StringIO()
+    writer = csv.DictWriter(text, [field.name for field in fields(BatchRow)], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(map(asdict, rows))
+    try:
+        with staged(table.parent) as folder:
+            (folder / table.name).write_text(text.getvalue(), encoding="utf-8", newline="\n")
+    except OSError as fault:
+        raise Refused([write_fault(table, fault)]) from fault
