@@ -62,9 +62,11 @@ def fast_poses_within(path: ToolPath, segment: Array, u: Array) -> FastPoses:
     side = np.where(nearer_end, 1.0, -1.0)
     other = np.clip(np.where(nearer_end, joint, segment - 1), 0, len(seg) - 1)
     half, distance = path.blend[joint], np.maximum(np.where(nearer_end, to_end, u), 0.0)
-    smooth = np.flatnonzero(seg.is_curve(segment) & (distance >= half))
-    if len(smooth) == len(u):
+    smooth = seg.is_curve(segment) & (distance >= half)
+    if smooth.all():
         return _on_curves(path, segment, u)
+    if smooth.any():
+        return _merged(path, segment, u, smooth)
     wide = np.maximum(2 * half, _NO_WIDTH)
     share = np.maximum(half - distance, 0.0) / wide
     square = share * share
@@ -81,11 +83,23 @@ def fast_poses_within(path: ToolPath, segment: Array, u: Array) -> FastPoses:
     else:
         axis, spin, tool_length = (np.broadcast_to(one, (len(u), *one.shape[1:])) for one in path.attitude)
     poses = FastPoses(tip.T, axis, spin, tip_1.T, tool_length, segment)
-    curved = _beside(seg, segment, other)
-    curved[smooth] = False
-    for rows, poses_at in ((smooth, _on_curves), (np.flatnonzero(curved), ToolPath.within)):
-        if len(rows):
-            _overwrite(poses, rows, poses_at(path, segment[rows], u[rows]))
+    curved = np.flatnonzero(_beside(seg, segment, other))
+    if len(curved):
+        _overwrite(poses, curved, path.within(segment[curved], u[curved]))
+    return poses
+
+
+def _merged(path: ToolPath, segment: Array, u: Array, smooth: Array) -> FastPoses:
+    """Places of which some are on smooth curves, (M,), and the others are not."""
+    count = len(u)
+    if path.attitude is None:
+        axis, spin, tool_length = np.empty((count, 3)), np.empty(count), select_rows(path.tool_length, segment)
+    else:
+        axis, spin, tool_length = (np.broadcast_to(one, (count, *one.shape[1:])) for one in path.attitude)
+    poses = FastPoses(np.empty((3, count)).T, axis, spin, np.empty((3, count)).T, tool_length, segment)
+    for part, poses_at in ((smooth, _on_curves), (~smooth, fast_poses_within)):
+        rows = np.flatnonzero(part)
+        _overwrite(poses, rows, poses_at(path, segment[rows], u[rows]))
     return poses
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, norm, tilt, turn_by_tilt
 from pkm_post.machine import strut_rate_bounds
-from pkm_post.model import Machine
+from pkm_post.model import Machine, checkpoint
 from pkm_post.planning.speed_limits import (
     FOR_CURVATURE,
     NO_LIMIT,
@@ -71,11 +71,13 @@ class DerivativeBounds:
         """The bounds of a path."""
         width, blended = path.blend[1:-1], path.blend[1:-1] > 0
         steepness = np.divide(_STEP, width, out=np.zeros_like(width), where=blended)
-        bounds = cls(
-            *_of_tip(path.segments, width, blended, steepness),
-            *_of_axis(path.segments, width, blended, steepness),
-            *_of_spin(path.segments, blended, steepness),
-        )
+        checkpoint()
+        tip = _of_tip(path.segments, width, blended, steepness)
+        checkpoint()
+        axis = _of_axis(path.segments, width, blended, steepness)
+        checkpoint()
+        bounds = cls(*tip, *axis, *_of_spin(path.segments, blended, steepness))
+        checkpoint()
         return bounds._with_curves(path) if len(path.segments.splines) else bounds
 
     def _with_curves(self, path: ToolPath) -> DerivativeBounds:
@@ -88,6 +90,7 @@ class DerivativeBounds:
         if splines.turns:
             ends = (tilt(path.segments.axis_at(row, u)[0]) for u in (0 * splines.extent, splines.extent))
             columns["half_tilt"][row] = turn_by_tilt(np.maximum(*ends) + of_row.axis_1 * splines.extent / 2)
+        checkpoint()
         ended = np.zeros(len(path.feed) + 1, dtype=np.bool_)
         joints = path.blend > 0
         ended[row] |= joints[row]
@@ -119,6 +122,7 @@ def rough_limits(path: ToolPath, machine: Machine, bounds: DerivativeBounds) -> 
     """
     square, along = feed_of_path_length(path.feed, bounds.tip_1) ** 2, np.full(len(path.feed), NO_LIMIT)
     for item in _quantities(machine, path, bounds):
+        checkpoint()
         planned = PLANNED_SHARE * item.acceleration
         square = lowered(square, item.speed, item.first, 2)
         square = lowered(square, FOR_CURVATURE * planned, item.second, 1)

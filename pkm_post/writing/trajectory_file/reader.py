@@ -111,9 +111,13 @@ def _content(path: Path) -> memoryview:
         size = os.fstat(file.fileno()).st_size
         _check_size(header, size)
         file.seek(0)
-        content = np.fromfile(file, np.uint8).data  # uses large pages: half the time of ``file.read``
-    if len(content) != size:
-        raise DamageError(f"the file changed from {size} to {len(content)} bytes while it was read")
+        content, length = np.empty(size, np.uint8).data, 0  # uses large pages: half the time of ``file.read``
+        while count := file.readinto(content[length : length + _BYTES_AT_ONCE]):
+            checkpoint()
+            length += count
+        length += len(file.read(1))
+    if length != size:
+        raise DamageError(f"the file changed from {size} to {length} bytes while it was read")
     return content
 
 
