@@ -24,7 +24,7 @@ from typing import Any
 
 import pkm_post
 from pkm_post.cli.post import items_of
-from pkm_post.cli.processes import command_inside, command_outside, needs_freecad, outcome
+from pkm_post.cli.processes import command_inside, command_outside, is_inside, needs_freecad, outcome
 from pkm_post.cli.terminal import ProgressLine, print_diagnostics
 from pkm_post.options import count, result_conflicts
 from pkm_post.system import result_files, staged, thread_share, threads, write_fault
@@ -192,7 +192,7 @@ def post_one(job: BatchJob, variables: dict[str, str]) -> BatchRow:
         variables: environment variables that share the threads.
     """
     words = ["post", str(job.path), "--out", str(job.out), *(["--job", job.job] if job.job else []), *job.words]
-    command = (command_inside if needs_freecad([job.path]) else command_outside)(words)
+    command = (command_inside if is_inside() or needs_freecad([job.path]) else command_outside)(words)
     ran = subprocess.run(
         command,
         stdin=subprocess.DEVNULL,

@@ -23,6 +23,7 @@ def test_workbench_has_its_commands(session):
         "Program editor",
         "Post to a hexapod",
         "Numerical control",
+        "Install packages",
     ]
     assert all(found["icons"])
 
