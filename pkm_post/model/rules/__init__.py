@@ -5,11 +5,13 @@ A code is a letter for the topic, a digit for its part, and two digits. Rows fol
 docs/diagnostics.md, and the number within each. A published code never changes its meaning.
 """
 
+from pkm_post.model.rules.cam_job import CAM_JOB_RULES
+from pkm_post.model.rules.cldata import CLDATA_RULES
+from pkm_post.model.rules.gcode import GCODE_RULES
 from pkm_post.model.rules.machining import MACHINING_RULES
-from pkm_post.model.rules.part_programs import PART_PROGRAM_RULES
 from pkm_post.model.rules.results import RESULT_RULES
 from pkm_post.model.rules.rule import Rule, Severity
 
 __all__ = ["RULES", "Rule", "Severity"]
 
-RULES: dict[str, Rule] = PART_PROGRAM_RULES | MACHINING_RULES | RESULT_RULES
+RULES: dict[str, Rule] = CAM_JOB_RULES | GCODE_RULES | CLDATA_RULES | MACHINING_RULES | RESULT_RULES

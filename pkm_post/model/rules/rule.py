@@ -31,3 +31,10 @@ def error(cause: str, cure: str) -> Rule:
 def warning(cause: str, cure: str) -> Rule:
     """A fault that is shown while the job continues."""
     return Rule(Severity.WARNING, cause, cure)
+
+
+TAPPING = error(
+    "tapping needs a feed synchronised with the spindle, which this machine's programs do not support",
+    "tap the threads on another machine, or mill them as helices",
+)
+"""One rule, with a code for each kind of input."""

@@ -1,85 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Part programs: the rules of the CAM job (J), of G-code (G) and of CL data (L)."""
+"""G-code: the rules of part programs in G-code and in Siemens's language (G)."""
 
 from __future__ import annotations
 
-from pkm_post.model.rules.rule import Rule, error, warning
+from pkm_post.model.rules.rule import TAPPING, Rule, error, warning
 
-_TAPPING = error(
-    "tapping needs a feed synchronised with the spindle, which this machine's programs do not support",
-    "tap the threads on another machine, or mill them as helices",
-)
-"""One rule, with a code for each kind of input."""
-_INTACT_COPY = "use an intact copy of the document, such as its backup file (.FCBak)"
-
-PART_PROGRAM_RULES: dict[str, Rule] = {
-    # J1: the CAM job
-    "J101": error("the file cannot be opened as a FreeCAD document", "check the path, or save the document again"),
-    "J102": error("there is no CAM job to post", "add a Job in the CAM workbench, or name the job with --job"),
-    "J103": error("the job has no active operation with a path", "activate an operation and recompute"),
-    "J104": error("the command is unknown or not allowed here", "remove it, or use a G0, G1, G2 or G3 move"),
-    "J105": error("a cutting move has no feed", "set the feed in the tool controller, in mm/min above zero"),
-    "J106": error("an arc in this plane is not supported", "use XY-plane arcs (G17), or straight moves"),
-    "J107": error("the arc does not fit its end points", "regenerate the operation; the radii must agree to 0.005 mm"),
-    "J108": error(
-        "a dress-up or array that does not support tool-axis words contains moves with them",
-        "remove it, or apply it to an operation without tool-axis words",
-    ),
-    "J109": error("only some of the cutting moves have a tool axis", "give every G1 of the operation I J K words"),
-    "J110": error("the tool axis has no direction", "give I J K words that are not all zero"),
-    "J111": error("the job uses several fixtures", "post one fixture at a time"),
-    "J112": error("the operation has no tool controller", "choose a tool controller for it"),
-    "J113": error(
-        "the gauge length of the tool is unknown",
-        "enter it under Gauge lengths in the panel of Post to a hexapod, set the property GaugeLength of its tool"
-        " controller, or pass --tool-length NUMBER=MM",
-    ),
-    "J114": error("two tools have the same number", "give every tool controller its own tool number"),
-    "J115": error("rotary words have no meaning on this machine", "give the tool axis as I J K words"),
-    "J116": error("the operation could not be computed", "repair it in FreeCAD until it recomputes without error"),
-    "J117": error("the job's options are not valid", "correct the arguments of the post-processor"),
-    "J118": warning("the tool axis was not of unit length and was normalised", "write unit vectors with 6 decimals"),
-    "J119": error("a coordinate of a move is not a finite number", "regenerate the operation"),
-    "J120": warning("a CAM operation cannot represent all of the part program", "post the part program itself"),
-    "J121": error("a property of a document object has an invalid value", "correct it"),
-    "J122": error(
-        "the drilling cycle cannot be executed",
-        "correct its words; cycles are drilled along Z (G17), after a move to a known height, in operations without"
-        " tool-axis words",
-    ),
-    "J123": _TAPPING,
-    "J124": warning(
-        "a dwell lasts longer than a minute", "correct it if it is not intended; dwells of CAM commands are in seconds"
-    ),
-    "J125": warning(
-        "an option overrides a value of the job or the program",
-        "leave the option out if this is not intended",
-    ),
-    "J126": error(
-        "an option gives the length of a tool that does not exist", "correct the number of the tool, or leave it out"
-    ),
-    "J127": error("CAM requests an operation that is not in the job", "choose among the operations of the job"),
-    "J128": error(
-        "the active length offset (H) is not that of the tool, and its value is unknown",
-        "pass its value with --tool-length NUMBER=MM; if it holds the length of the tool, pass that length",
-    ),
-    "J129": error("the file of the document is damaged", _INTACT_COPY),
-    "J130": error("the content of the document is inconsistent", _INTACT_COPY),
-    "J131": error("FreeCAD did not read all operations of the job", _INTACT_COPY),
-    "J132": error(
-        "the path of an active operation is empty",
-        "mark the operation to be recomputed and recompute the document, or deactivate the operation",
-    ),
-    "J133": error(
-        "an operation is out of date: it or its inputs changed after it was computed",
-        "switch Skip Recomputes off and recompute the document",
-    ),
-    "J134": error("FreeCAD could not read the path or another property of an operation", _INTACT_COPY),
-    "J135": error(
-        "the path of an operation holds characters that are not UTF-8",
-        "remove them from the inputs of the operation, mark it to be recomputed, and recompute the document",
-    ),
-    "J136": error("an object among the operations of the job has no path", "remove it from the operations"),
+GCODE_RULES: dict[str, Rule] = {
     # G1: the letters of G-code
     "G101": error("a character is not allowed here", "remove it, or put the text into a comment"),
     "G102": error("a number is malformed", "write it as -12.5: one sign, one point, no blanks and no exponent"),
@@ -197,7 +123,7 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
         "the tool is tilted, and X Y Z do not refer to its tip",
         "write upright words for the tool axis before TRAFOOF, G43 or G49, or TRAORI, G43.4 or G43.5 before the move",
     ),
-    "G425": _TAPPING,
+    "G425": TAPPING,
     "G426": error(
         "the modal words of the cycle are ambiguous here",
         "write R and the depth again where G90, G91 or the unit changes; write G80 before another plane or height of"
@@ -281,84 +207,4 @@ PART_PROGRAM_RULES: dict[str, Rule] = {
         "the way of the tool while the plane swivels depends on another machine",
         "check the way there: the next move goes straight to the first place in the new plane",
     ),
-    # L1: the letters of CL data
-    "L101": error("a character is not allowed here", "remove it, or put the text into a comment after $$"),
-    "L102": error("a number is malformed", "write it as -12.5 or 1.0E-05"),
-    "L103": error("a number is too large", "correct the number"),
-    "L104": error("a statement is too long", "split it"),
-    "L105": error("a text in quotes is not closed", "close it on the same line"),
-    "L106": error("a $ is inside a line", "put $ at the end of a line that is continued, $$ before a comment"),
-    "L199": error("there are more faults than are shown", "correct those that are shown, then check again"),
-    # L2: the grammar of CL data
-    "L201": error("a statement does not begin with a word", "begin it with its major word, such as GOTO"),
-    "L202": error("unexpected text in the statement", "write WORD/item,item,... on a line of its own"),
-    "L203": error("a parenthesis is not closed", "close it with )"),
-    "L204": error("a closing parenthesis has no opening one", "remove it, or add the opening one"),
-    "L205": error("parentheses are nested too deeply", "write the statement without them"),
-    # L4: what CL data means
-    "L401": error("the statement is not supported", "let the CAM system write the motion in plain points and arcs"),
-    "L402": error("the items of the statement are not valid", "give it the items described in docs/cl-data.md"),
-    "L403": error("a value is not possible", "correct it"),
-    "L404": warning("the word is unknown and was ignored", "check that the job does not need it"),
-    "L405": error("the tool axis has no direction", "give I, J and K, not all zero"),
-    "L406": warning("the tool axis was not of unit length and was normalised", "write unit vectors with 6 decimals"),
-    "L407": error("a cutting move has no feed", "write FEDRAT before it, or give --feed"),
-    "L408": error("the arc does not fit its end points", "regenerate the path; the radii must agree to 0.05 mm"),
-    "L409": warning("the arc fits its end points badly", "write more decimals; the radii should agree to 0.0005 mm"),
-    "L410": warning("the unit of length is uncertain", "check the size of the part, and give --unit mm or --unit inch"),
-    "L411": warning("the gauge length of the tool is unknown; 0 is used", "give the tool with its length"),
-    "L412": error("the cycle cannot be executed", "correct its items, or let the CAM system write single moves"),
-    "L413": error("the file contains no motion", "check the file"),
-    "L414": error("an arc has no end point", "write GOTO after it"),
-    "L415": warning("statements after FINI were ignored", "remove them, or remove FINI"),
-    "L416": error("an inverse time feed needs a move of non-zero length", "give such moves a feed in mm/min"),
-    "L417": error("the position of the tool is not yet known", "write FROM or GOTO first"),
-    "L418": warning(
-        "e and f do not put the corner of the cutter against its bottom and side, and were ignored",
-        "write the e and f of a corner that touches both, or leave them out",
-    ),
-    "L419": error(
-        "the words of this cycle differ between CAM systems",
-        "name the CAM system with --cl-dialect, or let the CAM system write single moves",
-    ),
-    "L420": error(
-        "the numbers of the cycle have no words, and their meaning is unknown",
-        "give the meaning with --cycle-values, such as depth,feed,clearance",
-    ),
-    "L421": error(
-        "the tool axis turns by more than 60 degrees on the way to a hole", "let the CAM system write the moves between"
-    ),
-    "L422": error(
-        "a motion begins or ends at a hole of a cycle, where the tool is not", "write CYCLE/OFF and a GOTO before it"
-    ),
-    "L429": error(
-        "CUTCOM has two readings: its points may be the contour of the part or the centre of the tool",
-        "give --contour-data contour or --contour-data centre, or set ContourData of the program object",
-    ),
-    "L430": warning(
-        "the points under CUTCOM were taken for the centre of the tool, by their arcs",
-        "check the size of the part, and give --contour-data centre or contour",
-    ),
-    "L431": error("the unit of length is unknown", "give --unit mm or --unit inch, or set Unit of the program object"),
-    "L432": error("the wear of a tool has no effect", "give --wear for a tool that the CL data compensates by CUTCOM"),
-    "L440": _TAPPING,
-    "L441": error(
-        "the file has no end: it may be truncated",
-        "get the complete file; if it is complete, add FINI at its end, give --allow-open-end, or set OpenEnd of the"
-        " program"
-        " object",
-    ),
-    "L442": error("an option does not apply to this input", "leave it out"),
-    "L443": warning(
-        "the file gives a tool several gauge lengths; none of them is used", "give its length with --tool-length"
-    ),
-    "L444": error(
-        "the home position of the machine is unknown",
-        "give it with --machine-zero X,Y,Z, or set MachineZero of the program object",
-    ),
-    "L445": error(
-        "the strokes of this kind of cycle are not known",
-        "give them with --cycle-kinds, such as BORE=ream, or let the CAM system write single moves",
-    ),
-    "L446": error("the curve cannot be followed", "let the CAM system write the motion in plain points and arcs"),
 }
