@@ -16,7 +16,7 @@ from pkm_post.options import between, count, positive, whole
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_stop import Target
-    from pkm_post.control import Choices, Player, PlayResult, PlayState, Session
+    from pkm_post.control import Player, PlayOptions, PlayResult, PlayState, Session
     from pkm_post.model import Trajectory
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
@@ -76,8 +76,8 @@ def play(session: Session, target: Target, namespace: argparse.Namespace) -> int
         return 1
 
 
-def _choices(trajectory: Trajectory, namespace: argparse.Namespace) -> Choices | None:
-    from pkm_post.control import Choices, NotReadyError, first_row
+def _choices(trajectory: Trajectory, namespace: argparse.Namespace) -> PlayOptions | None:
+    from pkm_post.control import NotReadyError, PlayOptions, first_row
     from pkm_post.options import MANUAL_MOVE_PROGRAM
 
     if namespace.number == MANUAL_MOVE_PROGRAM:
@@ -88,7 +88,7 @@ def _choices(trajectory: Trajectory, namespace: argparse.Namespace) -> Choices |
         _print_faults(diagnostics)
     if row is None:
         return None
-    return Choices(
+    return PlayOptions(
         override=namespace.override / 100,
         single_block=namespace.single_block,
         optional_stop=namespace.optional_stop,

@@ -42,7 +42,7 @@ from pkm_post.control.numerical_control.interlocks import (
 from pkm_post.control.numerical_control.manual_moves import CartesianJog, Jog, MdiSettings, StrutJog
 from pkm_post.control.numerical_control.plan import Plan
 from pkm_post.control.numerical_control.single_block import BlockDisplay, ProgramBlocks, read_blocks
-from pkm_post.control.player.orders import Choices, Order, PlayState
+from pkm_post.control.player.orders import Order, PlayOptions, PlayState
 from pkm_post.control.player.play import Player, PlayResult
 from pkm_post.control.player.playable import first_row, read_playable
 from pkm_post.control.simulator.controller import LEAST_MEMORY, Controller, SimulatorSettings
@@ -59,7 +59,7 @@ __all__ = [
     "EMERGENCY_STEPS",
     "Array",
     "Bits",
-    "Choices",
+    "PlayOptions",
     "Order",
     "PlayResult",
     "PlayState",

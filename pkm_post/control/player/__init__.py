@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Player: plays a trajectory on a controller while it is being planned, at any feed override.
 
-``docs/numerical-control.md`` has the design. The way of the data: a trajectory in ``stretches``; ``pieces`` with a stop
-each, certified by what is ``cut`` out of the trajectory; the ``knot_list`` in the controller, kept filled by
-``list_feed``; ``play`` runs them all, with what happens ``between`` parts, and ``start_inside`` begins at a line.
+``docs/numerical-control.md`` has the design. The way of the data: a trajectory in ``sections``; ``pieces`` with a stop
+each, certified against its ``subpath`` of the trajectory; the ``knot_list`` in the controller, kept filled by
+``list_feed``; ``play`` runs them all, with the ``stop_events`` between parts, and ``start_line`` begins at a line.
 """

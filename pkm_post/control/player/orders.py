@@ -35,7 +35,7 @@ class Order:
 
 
 @dataclass(frozen=True)
-class Choices:
+class PlayOptions:
     """How to play.
 
     Attributes:

@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.certificate import certify
-from pkm_post.control.player.cut import Place, cut
-from pkm_post.control.player.stretches import Part, Stretch, stretches_of
+from pkm_post.control.player.sections import Part, Section, sections_of
+from pkm_post.control.player.subpath import PathPoint, subpath
 from pkm_post.geometry import Array
 from pkm_post.machine import strut_lengths
 from pkm_post.model import (
@@ -52,13 +52,13 @@ class At:
     """Where a motion is.
 
     Attributes:
-        stretch: number of the stretch of the part.
+        section: number of the section of the part.
         state: place, speed and override on its path.
         length: (6,) strut lengths, as sent, mm.
         speed: (6,) strut speeds, as sent, mm/s.
     """
 
-    stretch: int
+    section: int
     state: PathState
     length: Array
     speed: Array
@@ -124,31 +124,31 @@ class PiecePlanner:
         """
         self._machine, self._settings, self._tolerances = machine, settings, tolerances
         self._planned_for = planned_for or machine
-        self._coming = stretches_of(trajectory, part, tolerances)
-        self._next: Stretch | None = None
+        self._coming = sections_of(trajectory, part, tolerances)
+        self._next: Section | None = None
         self._count = 0
-        self._stretches: dict[int, tuple[Stretch, Course]] = {}
+        self._sections: dict[int, tuple[Section, Course]] = {}
         self._lock = threading.RLock()
 
     def start(self) -> At:
         """The beginning of the part, at rest.
 
         Raises:
-            Refused: its first stretch is out of reach.
+            Refused: its first section is out of reach.
         """
-        stretch, _ = self._stretch(0)
-        rows = stretch.trajectory
+        section, _ = self._section(0)
+        rows = section.trajectory
         pose = rows.start_tip[None], rows.start_axis[None], np.array([rows.start_spin]), rows.tool_length()[:1]
         return At(0, PathState(0.0, 0.0, 1.0), strut_lengths(self._machine, *pose)[0], np.zeros(6))
 
     def prepare(self, number: int) -> None:
-        """Plan the path of the stretch after one of a number, if there is one; in a thread of its own.
+        """Plan the path of the section after one of a number, if there is one; in a thread of its own.
 
         What is out of reach is found again by the piece that needs it.
         """
-        stretch, _ = self._stretch(number)
-        if stretch.over is not None:
-            self._stretch(number + 1)
+        section, _ = self._section(number)
+        if section.over is not None:
+            self._section(number + 1)
 
     def next_piece(self, at: At, override: float, single_block: bool = False, piece_ms: int = PIECE_MS) -> Piece:
         """The next piece.
@@ -163,31 +163,31 @@ class PiecePlanner:
             Refused: what is out of reach, or not certified.
         """
         at = self._moved_on(at)
-        stretch, along = self._stretch(at.stretch)
+        section, along = self._section(at.section)
         state = at.state
         reach = self._horizon(along, override, piece_ms) if not single_block else np.inf
-        schedule = self._wanted(stretch, along, state, override, reach) if override > 0 else None
+        schedule = self._wanted(section, along, state, override, reach) if override > 0 else None
         most = piece_ms
         if schedule is None:
             schedule, most = along.stop(state), _FOLLOWED_MS if override > 0 else piece_ms
             override = state.override
         end_ms = int(schedule.rests_ms[-1])
         shortest = self._machine.shortest_interval
-        most = min(most, self._time_to_limit(stretch, along, schedule))
+        most = min(most, self._time_to_limit(section, along, schedule))
         until = end_ms if end_ms < most + max(shortest, 2) else most
         leg = self._leg(at, schedule, until, override)
         rests = until == end_ms
         stop = None if rests else self._stop(leg.end)
-        return Piece(leg, stop, self._reached(along, state, leg), rests and self._is_end(stretch, along, leg.end))
+        return Piece(leg, stop, self._reached(along, state, leg), rests and self._is_end(section, along, leg.end))
 
     def _wanted(
-        self, stretch: Stretch, along: Course, state: PathState, override: float, reach: float
+        self, section: Section, along: Course, state: PathState, override: float, reach: float
     ) -> Schedule | None:
         """The wanted motion over a distance, or to the end of a line if that is infinite; None if it cannot be met."""
         rest = along.next_rest(state.s)
         if np.isfinite(reach):
             return along.window(state, min(rest, state.s + reach), override)
-        line, operation = stretch.trajectory.line, stretch.trajectory.operation
+        line, operation = section.trajectory.line, section.trajectory.operation
         ends = np.append((np.diff(line) != 0) | (np.diff(operation) != 0), True)
         places = along.path.starts[1:][ends]
         for place in places[(places > state.s + _LEAST) & (places <= rest)]:
@@ -196,12 +196,12 @@ class PiecePlanner:
                 return found
         return None
 
-    def _time_to_limit(self, stretch: Stretch, along: Course, schedule: Schedule) -> int:
-        """Whole ms until the motion is so far in a stretch that the next one has to take over."""
+    def _time_to_limit(self, section: Section, along: Course, schedule: Schedule) -> int:
+        """Whole ms until the motion is so far in a section that the next one has to take over."""
         s = schedule.law.s
-        if stretch.over is None:
+        if section.over is None:
             return int(schedule.rests_ms[-1])
-        limit = (along.path.starts[stretch.over - stretch.first + 1] + along.length) / 2
+        limit = (along.path.starts[section.over - section.first + 1] + along.length) / 2
         if s[-1] <= limit:
             return int(schedule.rests_ms[-1])
         return max(int(1000 * schedule.law.when(np.array([limit]))[0]), self._machine.shortest_interval)
@@ -213,7 +213,7 @@ class PiecePlanner:
         return 1.5 * speed * piece_ms / 1000 + speed**2 / (2 * slowest)
 
     def _stop(self, at: At) -> Leg:
-        _, along = self._stretch(at.stretch)
+        _, along = self._section(at.section)
         schedule = along.stop(at.state)
         return self._leg(at, schedule, int(schedule.rests_ms[-1]), at.state.override)
 
@@ -223,18 +223,18 @@ class PiecePlanner:
         Raises:
             Refused: the certificate does not hold.
         """
-        stretch, along = self._stretch(at.stretch)
+        section, along = self._section(at.section)
         motion = along.motion(schedule, until_ms, override, LONGEST_MS)
         struts = self._as_sent(strut_motion(motion, self._machine), at)
         s, speed, _ = schedule.at(motion.time_ms / 1000)
         rests = not at.speed.any(), until_ms == int(schedule.rests_ms[-1])
-        certificate = self._certified(stretch, along, struts, motion, s[[0, -1]], override, rests)
+        certificate = self._certified(section, along, struts, motion, s[[0, -1]], override, rests)
         starts = along.path.starts
         row = np.clip(np.searchsorted(starts, s, side="right") - 1, 0, len(along.programmed) - 1)
         share = np.minimum((s - starts[row]) / np.diff(starts)[row], 1.0)
         state = PathState(float(s[-1]), 0.0 if rests[1] else float(speed[-1]), override)
-        end = At(at.stretch, state, struts.length[-1], struts.speed[-1])
-        return Leg(struts, stretch.first + row, share, certificate, end)
+        end = At(at.section, state, struts.length[-1], struts.speed[-1])
+        return Leg(struts, section.first + row, share, certificate, end)
 
     def _as_sent(self, struts: StrutMotion, at: At) -> StrutMotion:
         """The motion with the decimals that are sent, from the point that was sent before."""
@@ -245,7 +245,7 @@ class PiecePlanner:
 
     def _certified(
         self,
-        stretch: Stretch,
+        section: Section,
         along: Course,
         struts: StrutMotion,
         motion: Motion,
@@ -253,11 +253,11 @@ class PiecePlanner:
         override: float,
         rests: tuple[bool, bool],
     ) -> Certificate:
-        starts, rows = along.path.starts, stretch.trajectory
+        starts, rows = along.path.starts, section.trajectory
         first = int(np.searchsorted(starts, s[0], side="right")) - 1
         last = int(np.searchsorted(starts, s[1])) - 1
         share = [(at - starts[row]) / (starts[row + 1] - starts[row]) for at, row in zip(s, (first, last), strict=True)]
-        programmed = cut(rows, Place(first, float(share[0])), Place(last, float(share[1])))
+        programmed = subpath(rows, PathPoint(first, float(share[0])), PathPoint(last, float(share[1])))
         factor = np.where(programmed.kind == Kind.RAPID, min(override, 1.0), override)
         programmed = replace(programmed, feed=programmed.feed * factor)
         joints = np.append(motion.joint_time[first:last], motion.time_ms[-1] / 1000)
@@ -278,31 +278,31 @@ class PiecePlanner:
         programmed = float((np.diff(places) / along.programmed[row]).sum())
         return programmed / (float(leg.struts.time_ms[-1]) / 1000)
 
-    def _is_end(self, stretch: Stretch, along: Course, at: At) -> bool:
-        return stretch.over is None and at.state.s >= along.length - _LEAST
+    def _is_end(self, section: Section, along: Course, at: At) -> bool:
+        return section.over is None and at.state.s >= along.length - _LEAST
 
     def _moved_on(self, at: At) -> At:
-        """The same place in the next stretch, where that takes over."""
-        stretch, along = self._stretch(at.stretch)
-        if stretch.over is None:
+        """The same place in the next section, where that takes over."""
+        section, along = self._section(at.section)
+        if section.over is None:
             return at
-        row = stretch.over - stretch.first
+        row = section.over - section.first
         starts = along.path.starts
         if at.state.s < (starts[row] + starts[row + 1]) / 2:
             return at
-        following, ahead = self._stretch(at.stretch + 1)
-        s = at.state.s - starts[row] + ahead.path.starts[stretch.over - following.first]
-        self._stretches.pop(at.stretch - 1, None)
-        return replace(at, stretch=at.stretch + 1, state=replace(at.state, s=float(s)))
+        following, ahead = self._section(at.section + 1)
+        s = at.state.s - starts[row] + ahead.path.starts[section.over - following.first]
+        self._sections.pop(at.section - 1, None)
+        return replace(at, section=at.section + 1, state=replace(at.state, s=float(s)))
 
-    def _stretch(self, number: int) -> tuple[Stretch, Course]:
-        """A stretch and its course, planned once; another thread may be planning it.
+    def _section(self, number: int) -> tuple[Section, Course]:
+        """A section and its course, planned once; another thread may be planning it.
 
         Raises:
             Refused: it is out of reach.
         """
         with self._lock:
-            while number not in self._stretches:
+            while number not in self._sections:
                 if self._next is None:
                     self._next = next(self._coming)
                 found, diagnostics = course(
@@ -310,6 +310,6 @@ class PiecePlanner:
                 )
                 if found is None:
                     raise Refused(diagnostics)
-                self._stretches[self._count] = self._next, found
+                self._sections[self._count] = self._next, found
                 self._next, self._count = None, self._count + 1
-            return self._stretches[number]
+            return self._sections[number]

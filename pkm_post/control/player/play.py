@@ -21,23 +21,23 @@ from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.run import check_setup, set_feed_override, start_program
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import Status, read_status
-from pkm_post.control.player.between import run_events
 from pkm_post.control.player.certificate_log import CertificateLog
-from pkm_post.control.player.desk import Desk
 from pkm_post.control.player.knot_list import Layout, resident_program
 from pkm_post.control.player.list_feed import ListFeed
-from pkm_post.control.player.orders import Choices, Order, PlayState, Way
+from pkm_post.control.player.operator_input import OperatorInput
+from pkm_post.control.player.orders import Order, PlayOptions, PlayState, Way
 from pkm_post.control.player.pieces import At, PiecePlanner
 from pkm_post.control.player.run_to_rest import RunToRest, Timing
-from pkm_post.control.player.start_inside import go_to_row
-from pkm_post.control.player.stretches import Part, parts_of
+from pkm_post.control.player.sections import Part, parts_of
+from pkm_post.control.player.start_line import go_to_row
+from pkm_post.control.player.stop_events import run_events
 from pkm_post.model import EventKind, Machine, Tolerances, Trajectory
 from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings
 
 _POLL_S = 0.02
 _THREADS = 2
-"""One plans pieces, the other one the path of the next stretch."""
+"""One plans pieces, the other one the path of the next section."""
 _MOST_RATE = 200.0
 """1/s: points of the plan; the list has room for some seconds of them."""
 
@@ -75,7 +75,7 @@ class Player:
         settings: PmacSettings,
         trajectory: Trajectory,
         tolerances: Tolerances,
-        choices: Choices | None = None,
+        choices: PlayOptions | None = None,
         show: Callable[[PlayState], None] = lambda state: None,
         planning: Executor | None = None,
     ) -> None:
@@ -92,11 +92,11 @@ class Player:
             planning: where pieces are planned; by default a thread of its own.
         """
         self._session, self._machine, self._settings = session, machine, settings
-        self._choices = choices or Choices()
+        self._choices = choices or PlayOptions()
         self._trajectory, self._tolerances = self._choices.applied_to(trajectory), tolerances
         self._planning_machine = replace(machine, block_rate=min(machine.block_rate, _MOST_RATE))
         self._way, self._show, self._planning = Way(self._trajectory), show, planning
-        self._desk, self._timing = Desk(self._choices), Timing()
+        self._operator, self._timing = OperatorInput(self._choices), Timing()
         self._layout = Layout(self._choices.first_variable)
         self._feed = ListFeed(session, settings, self._layout)
         self._program = resident_program(self._layout, settings, self._choices.program)
@@ -107,7 +107,7 @@ class Player:
 
     def order(self, order: Order) -> None:
         """Give an order, from any thread."""
-        self._desk.order(order)
+        self._operator.order(order)
 
     def play(self) -> PlayResult:
         """Play the trajectory to its end, or to where an operator ends it.
@@ -126,14 +126,14 @@ class Player:
             own = self._planning or ThreadPoolExecutor(_THREADS)
             try:
                 for part in parts_of(self._trajectory, self._choices.first_row):
-                    if not self._desk.is_over:
+                    if not self._operator.is_over:
                         self._between(part)
-                    if part.end > part.first and not self._desk.is_over:
+                    if part.end > part.first and not self._operator.is_over:
                         self._play_part(part, own)
             finally:
                 if self._planning is None:
                     own.shutdown(wait=False, cancel_futures=True)  # a stop does not wait for a plan
-        return PlayResult(self.log, self._stops, self._losses, not self._desk.is_over)
+        return PlayResult(self.log, self._stops, self._losses, not self._operator.is_over)
 
     def _begin(self) -> None:
         """Where the program is not played from its beginning, go there, when the operator has put the tool in."""
@@ -141,13 +141,13 @@ class Player:
         if row or self._choices.approach:
             tool = self._trajectory.tools[int(self._trajectory.tool[row])]
             self._wait(f"T{tool.number}, {tool.length:g} mm long, in the spindle", row)
-            if not self._desk.is_over:
+            if not self._operator.is_over:
                 go_to_row(self._session, self._machine, self._settings, self._trajectory, row)
 
     def _between(self, part: Part) -> None:
         """Carry out the events before a part; its stops wait for the operator."""
         events = list(part.events)
-        while events and not self._desk.is_over:
+        while events and not self._operator.is_over:
             at = next((n for n, each in enumerate(events) if each.kind is EventKind.STOP), len(events))
             if at:
                 run_events(
@@ -161,15 +161,15 @@ class Player:
         planner = PiecePlanner(
             self._trajectory, part, self._machine, self._settings, self._tolerances, self._planning_machine
         )
-        desk, at, is_end = self._desk, planner.start(), False
-        while not is_end and not desk.is_over:
-            if desk.single_block:
+        operator, at, is_end = self._operator, planner.start(), False
+        while not is_end and not operator.is_over:
+            if operator.single_block:
                 self._wait("single block")
-            if desk.override == 0:
-                self._wait("override 0", until=lambda: desk.override > 0)
-            if desk.override > 0 and not desk.is_over:
+            if operator.override == 0:
+                self._wait("override 0", until=lambda: operator.override > 0)
+            if operator.override > 0 and not operator.is_over:
                 self._feed.clear()
-                self._run = RunToRest(self._session, self._feed, planner, at, desk, planning)
+                self._run = RunToRest(self._session, self._feed, planner, at, operator, planning)
                 at, is_end = self._run_to_rest(self._run)
 
     def _run_to_rest(self, run: RunToRest) -> tuple[At, bool]:
@@ -199,7 +199,7 @@ class Player:
     def _look(self, is_started: bool) -> Status | None:
         """Carry out orders and read where the machine is; None while the link is lost."""
         try:
-            self._desk.carry_out(self._session, self._settings)
+            self._operator.carry_out(self._session, self._settings)
             status = read_status(self._session, self._settings)
             if is_started:
                 for leg in self._feed.look():
@@ -230,9 +230,9 @@ class Player:
 
     def _wait(self, what: str, row: int | None = None, until: Callable[[], bool] = lambda: False) -> None:
         """Wait until an operator starts again, or ends, or something holds."""
-        desk = self._desk
-        desk.may_start, self._is_waiting = False, True
-        while not (desk.may_start or desk.is_over or until()):
+        operator = self._operator
+        operator.may_start, self._is_waiting = False, True
+        while not (operator.may_start or operator.is_over or until()):
             self._look(False)
             self._show(self._state(f"waits: {what}", row))
             self._session.sleep(_POLL_S)
@@ -240,4 +240,4 @@ class Player:
 
     def _state(self, phase: str, row: int | None = None) -> PlayState:
         reached = 0.0 if self._run is None else self._run.reached
-        return self._way.state(self._feed.current, phase, self._desk.override, reached, self._feed.ahead_ms, row)
+        return self._way.state(self._feed.current, phase, self._operator.override, reached, self._feed.ahead_ms, row)

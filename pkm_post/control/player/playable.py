@@ -10,7 +10,7 @@ import math
 from pathlib import Path
 
 from pkm_post.certificate import machine_fault, values_beyond_machine
-from pkm_post.control.player.start_inside import row_of_line
+from pkm_post.control.player.start_line import row_of_line
 from pkm_post.model import Diagnostic, Machine, Place, Tolerances, Trajectory, errors
 from pkm_post.writing import trajectory_file
 

@@ -9,7 +9,7 @@ Two, for one piece may just have missed its turn; the intervals, for the control
 lasts two and a half times as long as planning one, from a quarter of a second to one second: what planning takes hardly
 depends on it.
 
-Enters: a planner, a place at rest, an operator's desk. Leaves: the place at rest where the motion has ended.
+Enters: a planner, a place at rest, the operator's input. Leaves: the place at rest where the motion has ended.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ import numpy as np
 
 from pkm_post.control.link.errors import PmacError
 from pkm_post.control.link.session import Session
-from pkm_post.control.player.desk import Desk
 from pkm_post.control.player.list_feed import ListFeed
+from pkm_post.control.player.operator_input import OperatorInput
 from pkm_post.control.player.pieces import LONGEST_MS, PIECE_MS, At, Leg, Piece, PiecePlanner
 from pkm_post.model import Refused
 
@@ -72,7 +72,13 @@ class RunToRest:
     """
 
     def __init__(
-        self, session: Session, feed: ListFeed, planner: PiecePlanner, at: At, desk: Desk, planning: Executor
+        self,
+        session: Session,
+        feed: ListFeed,
+        planner: PiecePlanner,
+        at: At,
+        operator: OperatorInput,
+        planning: Executor,
     ) -> None:
         """Prepare a run; nothing is sent.
 
@@ -81,16 +87,22 @@ class RunToRest:
             feed: of the controller's list; the run begins with an empty one.
             planner: of the part.
             at: where the machine rests.
-            desk: of the operator.
+            operator: of the operator.
             planning: where pieces are planned.
         """
-        self._session, self._feed, self._planner, self._desk, self._planning = session, feed, planner, desk, planning
+        self._session, self._feed, self._planner, self._operator, self._planning = (
+            session,
+            feed,
+            planner,
+            operator,
+            planning,
+        )
         self._begin = self._ahead = at
         self._pending: Future[Planned] | None = None
         self._planned: Planned | None = None
         self._last: Leg | None = None
         self._fault: Refused | None = None
-        self._is_block_end, self._stretch = False, -1
+        self._is_block_end, self._section = False, -1
         self.reached, self.is_started = 0.0, False
 
     @property
@@ -102,7 +114,7 @@ class RunToRest:
     def is_wanted(self) -> bool:
         """Whether more motion is wanted than the list has."""
         is_complete = self._last is not None or self._is_block_end or self._fault or self._feed.stopped_at
-        return self._desk.override > 0 and not (self._desk.is_over or is_complete)
+        return self._operator.override > 0 and not (self._operator.is_over or is_complete)
 
     def plan(self, timing: Timing) -> None:
         """Have the next piece planned when the list becomes short, and fetch it when it is."""
@@ -130,15 +142,15 @@ class RunToRest:
         piece, planning_s = self._planned
         if not self._feed.has_room(piece):
             return
-        if piece.leg.end.stretch != self._stretch:
-            self._stretch = piece.leg.end.stretch
-            self._planning.submit(self._planner.prepare, self._stretch)
+        if piece.leg.end.section != self._section:
+            self._section = piece.leg.end.section
+            self._planning.submit(self._planner.prepare, self._section)
         began = self._session.now()
         self._feed.append(piece)
         timing.spent.append((planning_s, self._session.now() - began))
         self._planned, self._ahead = None, piece.leg.end
         self._last = piece.leg if piece.is_end else None
-        self._is_block_end = piece.stop is None and self._desk.single_block
+        self._is_block_end = piece.stop is None and self._operator.single_block
         if piece.stop is not None:
             self.reached = piece.reached
 
@@ -178,10 +190,10 @@ class RunToRest:
 
     def was_late(self) -> bool:
         """Whether it has come to rest although more motion was wanted."""
-        return self._feed.stopped_at is not None and self._desk.override > 0 and not self._desk.is_over
+        return self._feed.stopped_at is not None and self._operator.override > 0 and not self._operator.is_over
 
     def _next_piece(self, at: At, piece_ms: int) -> Planned:
         """Plan a piece; in a thread that plans."""
         began = self._session.now()
-        piece = self._planner.next_piece(at, self._desk.override, self._desk.single_block, piece_ms)
+        piece = self._planner.next_piece(at, self._operator.override, self._operator.single_block, piece_ms)
         return piece, self._session.now() - began

@@ -18,7 +18,7 @@ from programs import ON_PALLET, program  # noqa: E402
 from rig import Wire  # noqa: E402
 from station import MACHINE, SETTINGS, set_up  # noqa: E402
 
-from pkm_post.control.player.orders import Choices, Order  # noqa: E402
+from pkm_post.control.player.orders import Order, PlayOptions  # noqa: E402
 from pkm_post.control.player.play import Player  # noqa: E402
 from pkm_post.geometry import norm  # noqa: E402
 from pkm_post.machine import forward_along_path, platform_rotation  # noqa: E402
@@ -84,7 +84,7 @@ class Playing:
         planning = AtOnce(self.wire, delay) if delay else AtOnce()
         with self.wire.session() as session:
             self.player = Player(
-                session, MACHINE, SETTINGS, self.trajectory, TOLERANCES, Choices(**choices), self._show, planning
+                session, MACHINE, SETTINGS, self.trajectory, TOLERANCES, PlayOptions(**choices), self._show, planning
             )
             return self.player.play()
 

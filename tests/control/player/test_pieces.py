@@ -7,7 +7,7 @@ from playing import HOOK, MACHINE, SETTINGS, TOLERANCES, trajectory_of
 from programs import cone
 
 from pkm_post.certificate import certify, reconstruct
-from pkm_post.control.player import stretches
+from pkm_post.control.player import sections
 from pkm_post.control.player.certificate_log import CertificateLog
 from pkm_post.control.player.knot_list import (
     Layout,
@@ -17,7 +17,7 @@ from pkm_post.control.player.knot_list import (
     read_points,
 )
 from pkm_post.control.player.pieces import PiecePlanner
-from pkm_post.control.player.stretches import parts_of
+from pkm_post.control.player.sections import parts_of
 from pkm_post.geometry import angle_between, norm
 from pkm_post.machine import forward_along_path, platform_rotation
 from pkm_post.model import Refused, StrutMotion
@@ -55,8 +55,8 @@ def wave(rows=200):
 
 @pytest.fixture
 def short_blocks(monkeypatch):
-    monkeypatch.setattr(stretches, "BLOCK_ROWS", 48)
-    monkeypatch.setattr(stretches, "_CHOICE", 8)
+    monkeypatch.setattr(sections, "BLOCK_ROWS", 48)
+    monkeypatch.setattr(sections, "_CHOICE", 8)
 
 
 @pytest.mark.parametrize("trajectory", [trajectory_of(HOOK), wave()], ids=["corners", "wave"])
@@ -81,15 +81,15 @@ def test_the_certificates_of_the_pieces_are_that_of_the_whole(trajectory, short_
         assert finding.value / finding.limit == pytest.approx(worst[finding.name], abs=slack), finding
 
 
-def test_stretches_have_the_same_path_and_bounded_size(short_blocks):
+def test_sections_have_the_same_path_and_bounded_size(short_blocks):
     trajectory = wave()
     (part,) = parts_of(trajectory)
-    found = list(stretches.stretches_of(trajectory, part, TOLERANCES))
+    found = list(sections.sections_of(trajectory, part, TOLERANCES))
     assert len(found) > 2 and max(len(each.trajectory) for each in found) < 3 * 48 + 8
     for one, other in zip(found[:-1], found[1:], strict=True):
         paths = [tool_path(each.trajectory, TOLERANCES) for each in (one, other)]
         assert len(paths[0].segments.splines) and len(paths[1].segments.splines)
-        begin, end = one.over, one.first + len(one.trajectory) - 2 * stretches._BESIDE
+        begin, end = one.over, one.first + len(one.trajectory) - 2 * sections._BESIDE
         (s0, s1), (t0, t1) = (
             [path.starts[row - each.first] for row in (begin, end)]
             for path, each in zip(paths, (one, other), strict=True)

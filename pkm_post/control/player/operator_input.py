@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Desk: where the operator's orders arrive, from any thread, and what they have come to.
+"""Operator input: where the operator's orders arrive, from any thread, and what they have come to.
 
 Enters: orders. Leaves: the override, single block, and whether to go on or to end; holds and resumes go to the
 controller at once.
@@ -11,12 +11,12 @@ import queue
 
 from pkm_post.control.link import run, stopping
 from pkm_post.control.link.session import Session
-from pkm_post.control.player.orders import Choices, Order
+from pkm_post.control.player.orders import Order, PlayOptions
 from pkm_post.control.player.pieces import HIGHEST_OVERRIDE
 from pkm_post.writing import PmacSettings
 
 
-class Desk:
+class OperatorInput:
     """The operator's side of a player.
 
     Attributes:
@@ -26,7 +26,7 @@ class Desk:
         may_start: whether a start was ordered since this was cleared.
     """
 
-    def __init__(self, choices: Choices) -> None:
+    def __init__(self, choices: PlayOptions) -> None:
         self.override, self.single_block = choices.override, choices.single_block
         self.is_over = self.may_start = False
         self._orders: queue.SimpleQueue[Order] = queue.SimpleQueue()

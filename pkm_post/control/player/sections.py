@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stretches: a long trajectory in overlapping pieces of bounded size whose paths are the same where they overlap.
+"""Sections: a long trajectory in overlapping pieces of bounded size whose paths are the same where they overlap.
 
 Rounded corners depend on two segments, but a smooth curve on all short lines of its run. So one line of every thousand
-stays a line: runs end there, and a curve is the same in every stretch that has all of its run. A stretch has two blocks
+stays a line: runs end there, and a curve is the same in every section that has all of its run. A section has two blocks
 between such lines, and some rows more on both sides; from the middle of the line between its blocks on, the motion may
-go over to the next stretch. The last rows of a stretch are its reserve for stopping.
+go over to the next section. The last rows of a section are its reserve for stopping.
 
-Enters: a trajectory. Leaves: its parts, from one event to the next, and their stretches as trajectories.
+Enters: a trajectory. Leaves: its parts, from one event to the next, and their sections as trajectories.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ BLOCK_ROWS = 1024
 _CHOICE = 64
 """Rows of which the longest one stays a line."""
 _BESIDE = 4
-"""Rows on either side of a stretch by which the end of a run is the same: it depends on two neighbours."""
+"""Rows on either side of a section by which the end of a run is the same: it depends on two neighbours."""
 _LESS = 1 - 1e-9
 """Factor of a stated tolerance: another tolerance ends a run."""
 
@@ -44,13 +44,13 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Stretch:
+class Section:
     """Rows of a part.
 
     Attributes:
         trajectory: these rows, from rest to rest.
         first: row of the whole trajectory with which it begins.
-        over: row from whose middle on the next stretch takes over; None in the last one.
+        over: row from whose middle on the next section takes over; None in the last one.
     """
 
     trajectory: Trajectory
@@ -73,8 +73,8 @@ def parts_of(trajectory: Trajectory, first: int = 0) -> tuple[Part, ...]:
     return tuple(found)
 
 
-def stretches_of(trajectory: Trajectory, part: Part, tolerances: Tolerances) -> Iterator[Stretch]:
-    """The stretches of a part with rows, one after the other."""
+def sections_of(trajectory: Trajectory, part: Part, tolerances: Tolerances) -> Iterator[Section]:
+    """The sections of a part with rows, one after the other."""
     lines = [part.first, *_lines(trajectory, part), part.end]
     for number in range(max(len(lines) - 2, 1)):
         is_last = number >= len(lines) - 3
@@ -82,7 +82,7 @@ def stretches_of(trajectory: Trajectory, part: Part, tolerances: Tolerances) -> 
         end = part.end if is_last else min(lines[number + 2] + _BESIDE, part.end)
         kept = [row - begin for row in lines[1:-1] if begin <= row < end]
         rows = _kept_lines(rows_of(trajectory, begin, end), kept, tolerances)
-        yield Stretch(rows, begin, None if is_last else lines[number + 1])
+        yield Section(rows, begin, None if is_last else lines[number + 1])
 
 
 def rows_of(trajectory: Trajectory, first: int, end: int) -> Trajectory:

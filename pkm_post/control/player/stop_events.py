@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Between: what happens between two parts of a program, while the machine rests: tool change, spindle, coolant, dwell.
+"""Stop events: tool change, spindle, coolant and dwell between two parts of a program, while the machine rests.
 
 The codes are those of posted programs, and so is their way into the controller: as a program of their own that moves
 the tip by a millionth of a millimetre, so that there is something to be certified, listed back and started.
@@ -14,7 +14,7 @@ from pkm_post.control.link.session import Session
 from pkm_post.control.numerical_control.execute import execute, wait_for_rest
 from pkm_post.control.numerical_control.manual_moves import stationary_trajectory
 from pkm_post.control.numerical_control.plan import planned
-from pkm_post.control.player.stretches import rows_of
+from pkm_post.control.player.sections import rows_of
 from pkm_post.model import Event, EventKind, Machine, Refused, Tolerances, Trajectory
 from pkm_post.toolpath import ToolPose
 from pkm_post.writing import PmacSettings

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cut: the part of a trajectory between two places within its segments, as programmed.
+"""Subpath: the part of a trajectory between two places within its segments, as programmed.
 
 A line becomes a shorter line, an arc an arc of the same circle or helix, the tool axis stays on its great circle. So
 what is played between two places can be compared with what was programmed there.
@@ -13,14 +13,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.control.player.stretches import rows_of
+from pkm_post.control.player.sections import rows_of
 from pkm_post.geometry import Array
 from pkm_post.model import Trajectory
 from pkm_post.toolpath import Segments
 
 
 @dataclass(frozen=True)
-class Place:
+class PathPoint:
     """A place on a trajectory.
 
     Attributes:
@@ -32,7 +32,7 @@ class Place:
     share: float
 
 
-def cut(trajectory: Trajectory, start: Place, end: Place) -> Trajectory:
+def subpath(trajectory: Trajectory, start: PathPoint, end: PathPoint) -> Trajectory:
     """The part between two places.
 
     Args:

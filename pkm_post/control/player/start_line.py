@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Start inside: begin a trajectory at a line of its source, after an abort or a loss of power.
+"""Start line: begin a trajectory at a line of its source, after an abort or a loss of power.
 
 What the rows before the line have switched on is found, spindle, coolant and tool; the way to the line is that of an
 approach: up along the tool axis, across, and down along the axis of the start, planned, certified and checked for reach
@@ -22,7 +22,7 @@ from pkm_post.control.link.tool_pose import pose_from_home
 from pkm_post.control.numerical_control.execute import execute, wait_for_rest
 from pkm_post.control.numerical_control.manual_moves import approach_trajectory
 from pkm_post.control.numerical_control.plan import Plan, planned
-from pkm_post.control.player.between import TOLERANCES, pose_before, run_events
+from pkm_post.control.player.stop_events import TOLERANCES, pose_before, run_events
 from pkm_post.model import Event, EventKind, Machine, Refused, Trajectory
 from pkm_post.options import APPROACH_MM_S
 from pkm_post.writing import PmacSettings
