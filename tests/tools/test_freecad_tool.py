@@ -178,6 +178,21 @@ def test_freecadcmd_variable_is_never_overruled(machine):
     assert "FREECADCMD names no command: /no/such/freecadcmd" in missing.stderr
 
 
+def test_a_freecadcmd_that_starts_the_tool_is_asked_once(machine):
+    wrapper = machine.programs / "freecadcmd"
+    wrapper.write_text(f'#!/bin/bash\nexec "{TOOL}" "$@"\n')
+    wrapper.chmod(0o755)
+    for environment in ({}, {"FREECADCMD": str(wrapper)}):
+        reported = machine.run("script.py", **environment)
+        assert reported.returncode == NO_FREECAD
+        assert f"{wrapper} starts tools/freecad again" in reported.stderr
+
+
+def test_a_freecadcmd_variable_that_names_the_tool_is_none(machine):
+    machine.install("1.1.1")
+    assert machine.run(FREECADCMD=str(TOOL)).stdout.splitlines()[0] == "FreeCAD 1.1.1"
+
+
 def test_forbidden_root_is_said(machine):
     reported = machine.run("script.py")
     assert reported.returncode == NO_FREECAD
