@@ -32,10 +32,11 @@ from pkm_post.model import (
 from pkm_post.planning.fast_poses import fast_poses_within
 from pkm_post.planning.feed_study import feed_study
 from pkm_post.planning.interpolation import InterpolationCheck, poses_at
-from pkm_post.planning.knots import LONGEST_MS, SLOWDOWN, block_rate_factors, even_marks, knots, slower_feed
+from pkm_post.planning.knots import LONGEST_MS, even_marks, knots, slower_feed
 from pkm_post.planning.refinement import refined_profile
 from pkm_post.planning.rough_limits import DerivativeBounds, below_feed, deviates_in_blends, rough_limits
 from pkm_post.planning.schedule import Schedule
+from pkm_post.planning.slower import Slower, limits_jerk, required, too_coarse
 from pkm_post.planning.speed_limits import PLANNED_SHARE
 from pkm_post.planning.speed_profile import Stations, cell_times, stations
 from pkm_post.planning.tool_path import ToolPath
@@ -46,8 +47,6 @@ _FOR_CORNERS = 0.4
 """Share of the tolerances that rounding the corners may use."""
 _FOR_CURVES = 0.6
 """Share of the tolerances that curves may use in place of short lines."""
-_AT_FEED = 0.95
-"""Share of the feed from which on a motion is limited by the feed."""
 LONGEST_MOTION = 7 * 86_400.0
 """s: a week, which amounts to five million points and more."""
 _MOST_ROUNDS = 8
@@ -169,17 +168,13 @@ def _schedule(path: ToolPath, machine: Machine, bounds: DerivativeBounds, share:
     Raises:
         _TooLongError: the motion needs more points than fit into memory.
     """
-    if _limits_jerk(machine):
+    if limits_jerk(machine):
         return _without_jumps(path, machine)
     rough = rough_limits(path, machine, bounds)
     close = below_feed(path, *rough) | (share < PLANNED_SHARE)
     marks, profile = refined_profile(path, machine, close, rough, share)
     _check_duration(marks.s, profile, marks)
     return Schedule.of(marks, marks.s, marks.rest, profile, shortest_ms=machine.shortest_interval)
-
-
-def _limits_jerk(machine: Machine) -> bool:
-    return bool(np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk))
 
 
 def _check_duration(s: Array, square: Array, marks: Stations) -> None:
@@ -243,30 +238,12 @@ def within_controller(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> tupl
     return feed_plan, motion
 
 
-@dataclass(frozen=True)
-class _Slower:
-    """What the controller requires of N segments.
-
-    Attributes:
-        feed: (N,) factors of the mean speed.
-        acceleration: (N,) factors of the share of accelerations.
-    """
-
-    feed: Array
-    acceleration: Array
-
-    @property
-    def is_none(self) -> bool:
-        """Whether nothing has to be slower."""
-        return bool((self.feed == 1).all() and (self.acceleration == 1).all())
-
-
-def _interpolated(feed_plan: FeedPlan, longest_ms: int) -> tuple[Motion, _Slower]:
+def _interpolated(feed_plan: FeedPlan, longest_ms: int) -> tuple[Motion, Slower]:
     """The motion of the tool; and what the controller requires."""
     return interpolated_between(feed_plan, even_marks(feed_plan.schedule.rests_ms, longest_ms))
 
 
-def interpolated_between(feed_plan: FeedPlan, marks: Array) -> tuple[Motion, _Slower]:
+def interpolated_between(feed_plan: FeedPlan, marks: Array) -> tuple[Motion, Slower]:
     """The same from the first of some whole ms, (K,) that are knots, to the last."""
     path, schedule, machine = feed_plan.path, feed_plan.schedule, feed_plan.machine
     shortest = machine.shortest_interval
@@ -277,7 +254,7 @@ def interpolated_between(feed_plan: FeedPlan, marks: Array) -> tuple[Motion, _Sl
     def knots_of(stretch: Array) -> tuple[Array, Array, tuple[Array, Array]]:
         cubics = InterpolationCheck(path, schedule, machine, feed_plan.tolerances, stretch)
         times = knots(stretch, schedule.edges_ms, cubics.error, shortest)
-        return times[:-1], _too_coarse(times, cubics, shortest), cubics.joint_times(times)
+        return times[:-1], too_coarse(times, cubics, shortest), cubics.joint_times(times)
 
     times, coarse, passed = zip(*in_workers(knots_of, stretches), strict=True)
     time_ms = read_only(np.concatenate([*times, marks[-1:]]))
@@ -285,7 +262,7 @@ def interpolated_between(feed_plan: FeedPlan, marks: Array) -> tuple[Motion, _Sl
     for joints, time in passed:
         joint_time[joints] = time
     motion = _motion(feed_plan, time_ms, read_only(joint_time))
-    return motion, _slower(feed_plan, motion, np.concatenate(coarse, axis=1))
+    return motion, required(path, schedule, machine, motion, np.concatenate(coarse, axis=1))
 
 
 def _motion(feed_plan: FeedPlan, time_ms: Array, joint_time: Array) -> Motion:
@@ -313,37 +290,6 @@ def _motion(feed_plan: FeedPlan, time_ms: Array, joint_time: Array) -> Motion:
         joint_time=joint_time,
         events=_by_knot(feed_plan.trajectory.events, schedule, time_ms),
     )
-
-
-def _too_coarse(times: Array, cubics: InterpolationCheck, shortest: int) -> Array:
-    """Starts and ends of intervals that cannot be cut for the controller but are out of tolerance, (2, R) ms.
-
-    Intervals of one millisecond are exempt, as nothing is shorter.
-    """
-    start, end = times[:-1], times[1:]
-    rows = np.flatnonzero((end - start < 2 * shortest) & (end - start > 1))
-    rows = rows[cubics.error(start[rows], end[rows]) > 1] if len(rows) else rows
-    return np.stack([start[rows], end[rows]])
-
-
-def _slower(feed_plan: FeedPlan, motion: Motion, coarse: Array) -> _Slower:
-    """What the controller requires, with the starts and ends of intervals that are too coarse, (2, R) ms.
-
-    In these, time is to run slower by ``SLOWDOWN``: the accelerations go down by the square of it, and the feed where
-    they are at the feed, or jerk is limited. Where there are too many points, both go down.
-    """
-    path, joint_time = feed_plan.path, motion.joint_time
-    feed = block_rate_factors(motion.time_ms, motion.segment, feed_plan.machine.block_rate, len(joint_time))
-    acceleration = feed**2
-    first, last = (np.minimum(np.searchsorted(joint_time, ms / 1000), len(feed) - 1) for ms in coarse)
-    speed = np.maximum(*(feed_plan.schedule.at(ms / 1000)[1] for ms in coarse))
-    at_feed = speed > _AT_FEED * np.minimum(path.feed[first], path.feed[last])
-    at_feed |= _limits_jerk(feed_plan.machine)
-    for begin, end, fast in zip(first, last, at_feed, strict=True):
-        acceleration[begin : end + 1] = np.minimum(acceleration[begin : end + 1], SLOWDOWN**2)
-        if fast:
-            feed[begin : end + 1] = np.minimum(feed[begin : end + 1], SLOWDOWN)
-    return _Slower(feed, acceleration)
 
 
 def _by_knot(events: tuple[Event, ...], schedule: Schedule, time_ms: Array) -> tuple[Event, ...]:
