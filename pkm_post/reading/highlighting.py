@@ -80,7 +80,7 @@ GCODE: tuple[Row, ...] = (
         ("O_CALL", "O_CONDITION", "O_RESULT", "O_PLAIN"),
         rf"(?<![a-z])(?:{_FLOW})(?![a-z])",
     ),
-    Row(Colour.KEYWORD, ("GOTO", "IF", "WHILE", "DO", "END"), r"(?<![a-z])(?:go\s*to|end)(?![a-z])"),
+    Row(Colour.KEYWORD, ("GOTO", "IF", "THEN", "WHILE", "DO", "END"), r"(?<![a-z])(?:go\s*to|then|end)(?![a-z])"),
     # G and L before a function look like these: gexp[1] is g exp[1], and ltan[1] is l tan[1]
     Row(
         Colour.OPERATOR,

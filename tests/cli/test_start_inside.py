@@ -2,6 +2,7 @@
 """Documents are posted by a FreeCAD that is started: whatever else is started, nothing passes for posted."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -99,8 +100,7 @@ def test_a_bash_of_another_system(tmp_path):
 def test_windows_runs_no_script_of_bash(tmp_path, monkeypatch, capsys):
     monkeypatch.delenv("FREECADCMD", raising=False)
     assert command_inside([])[0] == str(ADDON / "tools" / "freecad")
-    script(tmp_path / "bash", "exit 1")
-    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr(shutil, "which", lambda name, path=None: str(tmp_path / name) if name == "bash" else None)
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setattr(sys, "platform", "win32")
     assert command_inside([]) == []

@@ -37,7 +37,7 @@ EXPECTED: dict[str, tuple[str, ...]] = {
     "a line number": ("_N",),
     "an O word": ("_O",),
     "'%'": ("PERCENT",),
-    "GOTO, IF, WHILE, DO or END": ("GOTO", "IF", "WHILE", "DO", "END"),
+    "GOTO, IF, THEN, WHILE, DO or END": ("GOTO", "IF", "THEN", "WHILE", "DO", "END"),
     "a keyword such as sub, call, if or while": ("O_PLAIN", "O_CONDITION", "O_RESULT", "O_CALL"),
     "the end of the block": ("$END", "<END-OF-FILE>"),
 }
