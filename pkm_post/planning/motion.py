@@ -55,9 +55,9 @@ _STATIONS_AT_ONCE = 4096
 """Stations in one pass: their working arrays stay in the processor's cache."""
 _KNOTS_AT_ONCE = 4096
 """Knots in one pass: the derivatives of their poses take more memory than the result."""
-_STRETCH_MS, _STRETCH_ROWS = 1 << 20, 1 << 16
+_STRETCH_MS, _STRETCH_ROWS = 1 << 20, 1 << 13
 """ms, and segments, of the stretches of the motion whose knots are determined separately, with up to a mark more: few
-passes over long columns, which fit into memory."""
+passes over long columns, and what they compute on the way is small beside the motion."""
 
 
 @dataclass(frozen=True)

@@ -111,10 +111,9 @@ def assert_alike(found, expected):
         assert found == expected
 
 
-def test_memory_for_a_line_is_bounded(monkeypatch, tmp_path):
+def test_memory_for_a_line_is_bounded(tmp_path):
     """The difference of two jobs: what does not depend on their length, as the pieces themselves, is in both."""
     few, many = 5000, 20000
-    monkeypatch.setattr(motion, "_STRETCH_ROWS", few // 2)
     post(tmp_path, few)  # what is imported and kept for later jobs is there then
     peaks = [peak_of(tmp_path, lines) for lines in (few, many)]
     assert (peaks[1] - peaks[0]) / (many - few) < BYTES_PER_LINE
