@@ -3,6 +3,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -96,22 +97,67 @@ ODD_NAMES = {
 """By exit code, commands with a byte that is no UTF-8 for each @, and what posting needs for +."""
 
 
-@needs_any_name
-@pytest.mark.parametrize(("code", "words"), [(code, each) for code in ODD_NAMES for each in ODD_NAMES[code]])
-def test_no_name_is_a_traceback(tmp_path, code, words):
+IN_FOLDERS = """
+import json, os, sys, traceback
+from pkm_post.cli import main
+codes = []
+for folder, words in json.loads(sys.stdin.read()):
+    os.chdir(folder)
+    for stream, name in ((1, "answer"), (2, "errors")):
+        file = os.open(name, os.O_WRONLY | os.O_CREAT, 0o666)
+        os.dup2(file, stream)
+        os.close(file)
+    try:
+        codes.append(main(words))
+    except SystemExit as leaving:
+        codes.append(leaving.code)
+    except BaseException:
+        codes.append(traceback.print_exc())
+    sys.stdout.flush()
+    sys.stderr.flush()
+with open(sys.argv[1], "w") as file:
+    json.dump(codes, file)
+"""
+"""One command in each folder, in one process; their exit codes go into a file, what they print into the folders."""
+
+
+@pytest.fixture(scope="module")
+def answers(tmp_path_factory):
+    """By its words, the exit code and the folder of each of ``ODD_NAMES``."""
+    top = tmp_path_factory.mktemp("odd")
     contents = {"a@.ngc": PART, "b.ngc": PART, "bad@.ngc": "G0 X1..2\nM2\n", "a@.cls": PART}
     contents["machine@.toml"] = (ADDON / "resources/machines/example_6tps.toml").read_text(encoding="utf-8")
-    for name, text in contents.items():
-        (tmp_path / odd(name)).write_text(text, encoding="utf-8")
-    if words.startswith("verify"):
-        assert run("post", odd("a@.ngc"), *TOOL, cwd=tmp_path).returncode == 0
-        for end in (".pmc", ".pkmt"):
-            (tmp_path / odd(f"a@{end}")).rename(tmp_path / odd(f"m@{end}"))
-    ran = run(*odd(words.replace("+", " ".join(TOOL))).split(), cwd=tmp_path)
-    assert (ran.returncode, b"Traceback" in ran.stderr) == (code, False), ran.stderr
+    (top / odd("m@.ngc")).write_text(PART, encoding="utf-8")
+    assert run("post", odd("m@.ngc"), *TOOL, cwd=top).returncode == 0
+    posted = [odd("m@.pmc"), odd("m@.pkmt")]
+    commands = [words for each in ODD_NAMES.values() for words in each]
+    folders = [top / str(number) for number, _ in enumerate(commands)]
+    for folder in folders:
+        folder.mkdir()
+        for name, text in contents.items():
+            (folder / odd(name)).write_text(text, encoding="utf-8")
+        for name in posted:
+            shutil.copy(top / name, folder)
+    words = [odd(each.replace("+", " ".join(TOOL))).split() for each in commands]
+    subprocess.run(
+        [PYTHON, "-c", IN_FOLDERS, top / "codes.json"],
+        env=os.environ | {"PYTHONPATH": str(ADDON)},
+        input=json.dumps(list(zip(map(str, folders), words, strict=True))),
+        text=True, timeout=240, check=True,
+    )  # fmt: skip
+    codes = json.loads((top / "codes.json").read_text(encoding="ascii"))
+    return dict(zip(commands, zip(codes, folders, strict=True), strict=True))
+
+
+@needs_any_name
+@pytest.mark.parametrize(("code", "words"), [(code, each) for code in ODD_NAMES for each in ODD_NAMES[code]])
+def test_no_name_is_a_traceback(answers, code, words):
+    left, folder = answers[words]
+    errors = (folder / "errors").read_bytes()
+    assert (left, b"Traceback" in errors) == (code, False), errors
     if "--json" in words:
-        json.loads(ran.stdout)
-    for program in tmp_path.glob("o*/*.pmc"):
+        json.loads((folder / "answer").read_bytes())
+    for program in folder.glob("o*/*.pmc"):
         program.read_bytes().decode("ascii")
 
 
