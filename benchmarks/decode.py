@@ -133,7 +133,7 @@ def write_program(path, program, blocks):
 
 
 def read_file(path):
-    """Read a program and tell what it took; the whole life of a process."""
+    """Read a program and print what it took; the whole life of a process."""
     before = _peak()
     text = Path(path).read_bytes()
     start = time.process_time()
@@ -180,7 +180,7 @@ def main():
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--blocks", type=int, default=200_000)
-    parser.add_argument("--memory", type=int, nargs="+", metavar="BLOCKS", help="tell memory instead of speed")
+    parser.add_argument("--memory", type=int, nargs="+", metavar="BLOCKS", help="measure memory instead of speed")
     parser.add_argument("--read", metavar="FILE", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.read:

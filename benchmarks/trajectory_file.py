@@ -136,7 +136,7 @@ def lines_to(count):
     return Trajectory(**columns, **pose, **machine, events=(), operations=("",), tools={0: tool}, source="")
 
 
-def tell_memory(count):
+def print_memory(count):
     """Write a trajectory and print the memory that took; the whole life of a process."""
     trajectory = lines_to(count)
     columns = sum(getattr(trajectory, name).nbytes for name in TRAJECTORY_COLUMNS)
@@ -163,11 +163,11 @@ def main():
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--blocks", type=int, default=1_000_000)
-    parser.add_argument("--memory", type=int, nargs="+", metavar="SEGMENTS", help="tell memory instead of speed")
+    parser.add_argument("--memory", type=int, nargs="+", metavar="SEGMENTS", help="measure memory instead of speed")
     parser.add_argument("--write", type=int, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.write:
-        tell_memory(arguments.write)
+        print_memory(arguments.write)
     elif arguments.memory:
         print(
             f"{'segments':>12} {'columns MB':>12} {'file MB':>9} {'for writing MB':>14} {'segments/s':>12}", flush=True

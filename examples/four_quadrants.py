@@ -2,7 +2,7 @@
 """Make a whole lap of the first operation in the active document's job, which cuts the quadrant x > 0, y > 0.
 
 The copies stand in the order of one lap, and the mirrored ones are run the other way, so that all of them cut alike and
-each begins where the one before ended. What they cover together is told in the Report view.
+each begins where the one before ended. What they cover together is printed in the Report view.
 """
 
 import math

@@ -17,7 +17,7 @@ import traceback
 
 
 def keep_stdout_for_the_script():
-    """Let FreeCAD itself talk to nobody from here on, but for its warnings and errors: those go to stderr."""
+    """Silence FreeCAD from here on, except for its warnings and errors, which go to stderr."""
     sys.stdout.flush()
     sys.stdout = os.fdopen(os.dup(1), "w", buffering=1, encoding="utf-8")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)

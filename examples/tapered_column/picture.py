@@ -73,7 +73,7 @@ def draw(document_path, machine_name, path_picture, picture_path):
 
 
 def main():
-    """Draw, and end FreeCAD with an exit code that tells how it went."""
+    """Draw, and end FreeCAD with an exit code that says how it went."""
     code = 0
     try:
         draw(*(os.environ[name] for name in ("PKM_DOCUMENT", "PKM_MACHINE", "PKM_PATH_PICTURE", "PKM_PICTURE")))

@@ -136,7 +136,7 @@ class _Shown:
         threading.Thread(target=self._read, daemon=True).start()
 
     def show(self, state: PlayState) -> None:
-        """Print a state where its phase is another, and every second; nobody answers when the input is over."""
+        """Print a state where its phase is another, and every second; without input questions go unanswered."""
         from pkm_post.control import Order
 
         if state.phase != self.phase or self.now() >= self.due:

@@ -185,6 +185,6 @@ def _set_results(obj: Any, machine: Machine, pose: ToolPoses) -> None:
     findings = reach_findings(machine, PosePath.straight(*pose))
     violations = [finding for finding in findings if finding.margin[0] < 0.0]
     obj.OutOfLimits = [
-        f"{finding.subject.name}: {finding.subject.tell(int(finding.part[0]), float(finding.margin[0]))}"
+        f"{finding.subject.name}: {finding.subject.describe(int(finding.part[0]), float(finding.margin[0]))}"
         for finding in violations
     ]

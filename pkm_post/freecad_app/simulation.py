@@ -235,7 +235,7 @@ def _stretches(finding: ReachFinding, checked: ReachReport, planned: Simulation)
     for group in groups:
         first, worst = int(group[0]), int(group[np.argmin(finding.margin[group])])
         begins, is_worst = (int(checked.segment[row]) for row in (first, worst))
-        text = finding.subject.tell(int(finding.part[worst]), float(finding.margin[worst]))
+        text = finding.subject.describe(int(finding.part[worst]), float(finding.margin[worst]))
         problem = Problem(
             time=_time_of(first - 1, begins, checked, planned),
             place=checked.trajectory.place(begins),

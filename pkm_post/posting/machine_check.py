@@ -121,7 +121,7 @@ def change_faults(machine: Machine, file: str) -> tuple[Diagnostic, ...]:
 
 def _broken_limits(code: str, standing: Home, file: str) -> tuple[Diagnostic, ...]:
     return tuple(
-        Diagnostic(code, Place(file), f"{one.subject.name}: {one.subject.tell(int(one.part[0]), one.margin[0])}")
+        Diagnostic(code, Place(file), f"{one.subject.name}: {one.subject.describe(int(one.part[0]), one.margin[0])}")
         for one in standing.findings
         if one.margin[0] < 0.0
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Language of a part program, G-code or CL data: by its name, and by the first line where the name does not tell.
+"""Language of a part program, G-code or CL data: by its name, and by the first line where the name does not say.
 
 Enters: the name of a file. Leaves: its language, and the stem that its results take. Creo counts the versions of a file
 behind its suffix, ``part.ncl.3``. Text files (``.txt``) are of either language: CL data begin with a word of APT and
@@ -33,7 +33,7 @@ _VERSION = re.compile(r"\.[0-9]{1,6}")
 _HEAD = 65536
 """Bytes of a text file within which its first statement is."""
 _NO_STATEMENT = re.compile(r"(?:[\s\ufeff%]*|[ \t]*[(;][^\n]*)")
-"""Lines of either language that do not tell which it is: empty ones, and comments of G-code."""
+"""Lines of either language that do not show which it is: empty ones, and comments of G-code."""
 _APT = re.compile(
     r"\s*(?:N[0-9]+[ \t]+)?(?:\$\$|(?:PARTNO|PPRINT|REMARK|MACHIN)\b|[A-Z]{2}[A-Z_, \t-]*+/)", re.IGNORECASE
 )
@@ -55,7 +55,7 @@ def language_of(file: str | Path, content: bytes | None = None) -> Language:
 
     Args:
         file: its name.
-        content: of the file; if None it is read where the suffix does not tell. A file that cannot be read counts as
+        content: of the file; if None it is read where the suffix does not say. A file that cannot be read counts as
             G-code.
 
     Raises:

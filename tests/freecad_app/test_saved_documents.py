@@ -50,7 +50,7 @@ CLASSES = {
 """A file format: names of classes in documents of users."""
 
 
-def computed_anew(document):
+def computed_again(document):
     """The properties of all kinds of objects, when everything was computed."""
     for obj in document.Objects:
         obj.touch()
@@ -135,24 +135,24 @@ def test_it_is_small_and_names_no_folder_of_a_computer(file):
 
 
 @pytest.mark.parametrize("file", VERSIONS, ids=lambda file: file.stem)
-def test_it_opens_with_its_classes_and_computed_anew_it_is_as_it_was(file, tmp_path, monkeypatch):
+def test_it_opens_with_its_classes_and_recomputed_it_is_as_it_was(file, tmp_path, monkeypatch):
     document = opened(file, tmp_path, monkeypatch)
     assert {name: class_of(document.getObject(name)) for name in CLASSES} == CLASSES
     kept = all_properties(document)
-    anew = computed_anew(document)
+    again = computed_again(document)
     for name, before in kept.items():
-        assert different(before.pop("Path", []), anew[name].pop("Path", []), SIXTH_DECIMAL) == [], name
+        assert different(before.pop("Path", []), again[name].pop("Path", []), SIXTH_DECIMAL) == [], name
         # later versions may plan a motion with fewer points, and not with more
-        assert anew[name].pop("Points", 0) <= before.pop("Points", 0), name
+        assert again[name].pop("Points", 0) <= before.pop("Points", 0), name
         for changed, (least, most) in CHANGED.get((file.stem, name), {}).items():
-            share = np.array(anew[name].pop(changed)) / np.array(before.pop(changed))
+            share = np.array(again[name].pop(changed)) / np.array(before.pop(changed))
             assert ((least <= share) & (share <= most)).all(), f"{changed}: {share}"
-        assert different(before, anew[name], OF_A_PLAN.get(name, ROUNDING)) == [], name
+        assert different(before, again[name], OF_A_PLAN.get(name, ROUNDING)) == [], name
 
 
 @pytest.mark.parametrize("file", VERSIONS, ids=lambda file: file.stem)
 def test_the_same_steps_give_the_same_today(file, tmp_path, monkeypatch):
-    kept = computed_anew(opened(file, tmp_path, monkeypatch))
+    kept = computed_again(opened(file, tmp_path, monkeypatch))
     made = all_properties(all_kinds(tmp_path / PROGRAM))
     for name, before in kept.items():
         assert different(before, made[name]) == [], name

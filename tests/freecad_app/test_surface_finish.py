@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surface Finish in CAM's own terms: made, computed anew, saved, opened, posted."""
+"""Surface Finish in CAM's own terms: made, recomputed, saved, opened, posted."""
 
 import math
 

@@ -101,7 +101,7 @@ def it_runs_line_by_line():
     page = face.program
     found = {"step before": page.step.isEnabled()}
     before = len(messages())
-    click(page.begin_at)  # what was opened was not posted: nobody knows the lines of its source
+    click(page.begin_at)  # what was opened was not posted: the lines of its source are unknown
     until(lambda: len(messages()) > before and not console.waits)
     found["refused"] = messages()[before:]
     face.stops.override.setValue(100)

@@ -123,7 +123,7 @@ def escape_stops_a_long_computation():
     from pkm_post.freecad_app.progress import Progress, Stopped
 
     class Patient:
-        """Computes for as long as nobody presses Escape, a minute at most."""
+        """Computes until Escape is pressed, a minute at most."""
 
         def execute(self, item):
             item.Label2 = ""

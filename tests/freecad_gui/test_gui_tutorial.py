@@ -3,7 +3,7 @@
 
     PKM_PICTURES=docs/pictures make test ARGS=tests/freecad_gui/test_gui_tutorial.py
 
-puts the pictures of the page anew into that folder, below the root of the repository.
+puts new pictures of the page into that folder, below the root of the repository.
 """
 
 import math

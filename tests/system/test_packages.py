@@ -19,7 +19,7 @@ NAME = "pkm_wheel_of_a_test"
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """The folder of FreeCAD's packages, and an optional package that nobody has."""
+    """The folder of FreeCAD's packages, and an optional package that is not installed."""
     monkeypatch.setattr(packages, "_PLACE", packages._Place(tmp_path / "AdditionalPythonPackages" / "py311"))
     monkeypatch.setattr(packages, "OPTIONAL", {NAME: NAME})
     monkeypatch.setattr(packages, "PURPOSES", {NAME: "tests"})

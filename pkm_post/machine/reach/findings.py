@@ -39,7 +39,7 @@ class CheckedLimit:
     parts: tuple[str, ...]
     violation: str
 
-    def tell(self, part: int, margin: float) -> str:
+    def describe(self, part: int, margin: float) -> str:
         """Format a violation."""
         return self.violation.format(part=self.parts[part], by=-margin * DISPLAY_UNITS[self.unit][1])
 
@@ -89,6 +89,6 @@ def finding_diagnostics(
     for finding in findings:
         for number in np.unique(operation[finding.margin < 0]):
             row = int(np.argmin(np.where(operation == number, finding.margin, np.inf)))
-            found = finding.subject.tell(int(finding.part[row]), float(finding.margin[row]))
+            found = finding.subject.describe(int(finding.part[row]), float(finding.margin[row]))
             faults.append(Diagnostic(finding.subject.code, trajectory.place(int(segment[row])), found))
     return tuple(sorted(faults, key=lambda fault: (fault.place.operation, fault.place.line, fault.code)))

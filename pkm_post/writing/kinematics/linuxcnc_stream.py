@@ -63,7 +63,7 @@ def _gate() -> list[str]:
         "net stream-refuse refuse.and => refused.set",
         "net stream-accepted accepted.out => not-accepted.in",
         "net stream-refused refused.out => not-refused.in",
-        "# begins with stream-start while drives-on, and begins anew after either was off",
+        "# begins with stream-start while drives-on, and begins again after either was off",
         "net stream-start => go.in0",
         "net drives-on => go.in1",
         "net stream-go go.out => stop.in enable.in0",

@@ -38,7 +38,7 @@ def test_a_trajectory_is_played_over_a_link(kind, posted, capsys, monkeypatch):
     with served(made, kind) as port:
         assert play(port, posted, *(["--from-line", "5"] if kind == "serial" else [])) == (kind == "serial")
         shown = capsys.readouterr()
-        if kind == "serial":  # nobody says that the tool is in the spindle
+        if kind == "serial":  # no one has said that the tool is in the spindle
             assert (
                 "waits: T0, 120 mm long, in the spindle, line 5" in shown.out and "ended by the operator" in shown.out
             )
