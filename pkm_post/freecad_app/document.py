@@ -7,7 +7,7 @@ Types are distinguished by properties. Nothing of CAM is imported here: commands
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -36,6 +36,42 @@ def is_operation(item: Any) -> bool:
     """Whether an object is an operation of a CAM job; tool controllers have paths as well."""
     others = is_job(item) or is_program(item) or hasattr(item, "ToolNumber")
     return item.isDerivedFrom("Path::Feature") and not others
+
+
+def job_of(item: Any) -> Any:
+    """The CAM job that an object is or belongs to; None for none, or if there are several.
+
+    An object belongs to a job as operation, tool controller, tool bit, stock or model, also as the original of these,
+    and as a machine, reach or simulation of the job.
+    """
+    if is_job(item):
+        return item
+    named = getattr(item, "Job", None)
+    jobs = [named] if named is not None else [each for each in item.InListRecursive if is_job(each)]
+    return jobs[0] if len(jobs) == 1 and is_job(jobs[0]) else None
+
+
+def only_job(document: Any) -> Any:
+    """The CAM job of a document that has just one; else None."""
+    jobs = [] if document is None else [item for item in document.Objects if is_job(item)]
+    return jobs[0] if len(jobs) == 1 else None
+
+
+def job_for(items: Sequence[Any], document: Any) -> Any:
+    """The CAM job that a selection means.
+
+    Args:
+        items: the selected objects, none or several.
+        document: the active document; None for none.
+
+    Returns:
+        The job of all objects that belong to one; the only one of the document if none does; None if objects belong to
+        several jobs, or if there is no telling.
+    """
+    jobs = {job.Name: job for job in map(job_of, items) if job is not None}
+    if jobs:
+        return next(iter(jobs.values())) if len(jobs) == 1 else None
+    return only_job(document)
 
 
 @contextlib.contextmanager

@@ -18,6 +18,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from pkm_post.freecad_app.commands.words import Words, undecodable_command
+from pkm_post.freecad_app.document import document_name
 from pkm_post.model import Diagnostic, Place, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
 
@@ -75,6 +76,20 @@ def _faults_of(file: FilePath, changed: int, size: int) -> tuple[Diagnostic, ...
     except Refused as refused:
         return refused.diagnostics
     return ()
+
+
+def require_computed(document: Any) -> None:
+    """Recompute a document whose paths are to be read.
+
+    A timer may fire inside a recompute, since its progress bar lets the window work. A second recompute does nothing
+    then, and operations that come later have old paths or none.
+
+    Raises:
+        Refused: the document is being recomputed, J137.
+    """
+    if document.Recomputing:
+        raise Refused([Diagnostic("J137", Place(document_name(document)), "a recompute is under way")])
+    document.recompute()
 
 
 def state_faults(operation: Any, source: str) -> list[Diagnostic]:

@@ -22,6 +22,7 @@ from Path.Main.Stock import StockType
 
 from pkm_post.freecad_app.arguments import POST_PROCESSORS, replace_arguments
 from pkm_post.freecad_app.document import document_name
+from pkm_post.freecad_app.document_checks import require_computed
 from pkm_post.freecad_app.document_object import print_diagnostics
 from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.job import read_job
@@ -143,7 +144,7 @@ def study_job(job: Any, free: str = "") -> Study:
     Raises:
         Refused: the job cannot be read or placed. A job out of reach is reported in the study instead.
     """
-    job.Document.recompute()
+    require_computed(job.Document)
     prepared = prepared_job(job, settings_of(job))
     result, faults = study(*prepared.sound, prepared.options, free)
     if result is None:

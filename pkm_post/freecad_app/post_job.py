@@ -16,7 +16,7 @@ import FreeCAD as App
 
 from pkm_post.freecad_app.arguments import values_of
 from pkm_post.freecad_app.document import document_name, is_job
-from pkm_post.freecad_app.document_checks import check_operations, read_content
+from pkm_post.freecad_app.document_checks import check_operations, read_content, require_computed
 from pkm_post.freecad_app.job import NO_LENGTHS
 from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.job_setup import prepared_job
@@ -75,7 +75,7 @@ def prepared(
         Refused: J117 for the arguments.
     """
     settings = settings_of(job, {**values_of(arguments), **_call_values(None, tool_lengths)})
-    job.Document.recompute()
+    require_computed(job.Document)
     return prepared_job(job, settings)
 
 
@@ -124,7 +124,7 @@ def read_document(file: str | FilePath, given: ArgumentValues, job_name: str | N
     """
     with _opened(FilePath(file)) as document:
         jobs = _jobs_named(document, job_name)
-        document.recompute()
+        require_computed(document)
         return tuple(prepared_job(job, settings_of(job, given, other_jobs=jobs)) for job in jobs)
 
 
@@ -172,7 +172,7 @@ def post_to(
         Refused: as ``post_job``.
     """
     progress(READING_STEP, 0.0)
-    job.Document.recompute()
+    require_computed(job.Document)
     return prepared_job(job, settings).post(program_path, log, progress)
 
 

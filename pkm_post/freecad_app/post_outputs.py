@@ -17,6 +17,7 @@ from typing import Any, TypeVar
 import FreeCAD as App
 
 from pkm_post.freecad_app.arguments import GCODE, LINUXCNC, PMAC, TRAJECTORY
+from pkm_post.freecad_app.document_checks import require_computed
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_settings import JobSettings
 from pkm_post.freecad_app.job_setup import prepared_job
@@ -102,7 +103,7 @@ def _linuxcnc(job: Any, settings: JobSettings, path: FilePath) -> Written:
 
 def _gcode(job: Any, settings: JobSettings, path: FilePath) -> Written:
     """The program of the job as G-code."""
-    job.Document.recompute()
+    require_computed(job.Document)
     program, diagnostics = read_job(job, settings.tool_lengths, settings.selection)
     program, found = _require((program, (*settings.found, *diagnostics)))
     return _require(write(program, GcodeDialect(settings.arguments.form), inch=settings.arguments.inch), found)
@@ -139,7 +140,7 @@ def output_of(post_processor: str, for_dialog: bool = False) -> Output:
 
 def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:
     """The trajectory of a job, verified to be reachable for its machine, and the warnings."""
-    job.Document.recompute()
+    require_computed(job.Document)
     prepared = prepared_job(job, settings)
     trajectory, found = _require(prepared.placed())
     program, machine = prepared.sound

@@ -18,6 +18,7 @@ from typing import Any
 import FreeCAD as App
 import numpy as np
 
+from pkm_post.freecad_app.document_checks import require_computed
 from pkm_post.freecad_app.job_setup import PlacedJob, placed_job
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.geometry import Array, hermite_accelerations, hermite_lengths, hermite_speeds, norm, unit
@@ -201,7 +202,7 @@ def simulate_job(job: Any, machine_object: Any = None) -> Simulation:
     Raises:
         Refused: the job cannot be read or placed. The simulation reports stretches that cannot be followed.
     """
-    job.Document.recompute()
+    require_computed(job.Document)
     return simulation_of(placed_job(job, machine_object))
 
 

@@ -6,19 +6,23 @@ A command that changes a document runs in one transaction, so that one undo reve
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
 from PySide import QtWidgets
 
-from pkm_post.freecad_app.document import transaction
+from pkm_post.freecad_app.document import job_for, transaction
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.system import MEMORY_FAULTS, memory_diagnostic
 
 translate = FreeCAD.Qt.translate
+
+_PAGES = Path(__file__).parents[2] / "docs"
+"""FreeCAD's Help opens files, so the pages are those of the installed version and need no network."""
 
 
 @contextmanager
@@ -37,6 +41,20 @@ def show_lack_of_memory(title: str) -> Iterator[None]:
         QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), title, str(diagnostic))
 
 
+Subject = Callable[[Sequence[FreeCAD.DocumentObject]], FreeCAD.DocumentObject | None]
+"""From the selected objects to the one that a command applies to, or None."""
+
+
+def one(accepts: Callable[[FreeCAD.DocumentObject], bool]) -> Subject:
+    """A subject that is the only selected object, if the command accepts it."""
+    return lambda items: items[0] if len(items) == 1 and accepts(items[0]) else None
+
+
+def job_or(accepts: Callable[[FreeCAD.DocumentObject], bool] = lambda item: False) -> Subject:
+    """A subject that is the only selected object, if the command accepts it, else the job that the selection means."""
+    return lambda items: one(accepts)(items) or job_for(items, FreeCAD.ActiveDocument)
+
+
 @dataclass(frozen=True)
 class Command:
     """A command with FreeCAD's interface.
@@ -46,19 +64,21 @@ class Command:
         icon: file name in resources/icons.
         text: menu text.
         tip: its function, in a sentence.
-        selectable: whether the command accepts an object.
-        action: applies it to the selected object.
+        subject: what a selection means for the command, such as its job; None if it means nothing.
+        action: applies it to that object.
         keys: keyboard shortcut; all begin with P, K, since CAM has P and one other key.
-        alone: whether it also runs without a selection; the action then gets None.
+        page: the file in docs that F1 opens.
+        alone: whether it also runs without any object; the action then gets None.
     """
 
     name: str
     icon: str
     text: str
     tip: str
-    selectable: Callable[[FreeCAD.DocumentObject], bool]
+    subject: Subject
     action: Callable[[FreeCAD.DocumentObject], None]
     keys: str
+    page: str = "workbench.md"
     alone: bool = False
 
     def GetResources(self) -> dict[str, str]:
@@ -69,18 +89,22 @@ class Command:
             "ToolTip": self.tip,
             "StatusTip": self.tip,
             "Accel": self.keys,
+            "WhatsThis": str(_PAGES / self.page),
         }
 
     def IsActive(self) -> bool:
-        """Whether exactly one suitable object is selected, or none if the command needs none."""
-        selected = FreeCADGui.Selection.getSelection()
-        if self.alone and not selected:
-            return FreeCAD.ActiveDocument is not None
-        return len(selected) == 1 and self.selectable(selected[0])
+        """Whether the selection means something for the command, or it needs nothing."""
+        if FreeCAD.ActiveDocument is None:
+            return False
+        return self.alone or self._selected() is not None
+
+    def _selected(self) -> FreeCAD.DocumentObject | None:
+        """What the selection means."""
+        return self.subject(FreeCADGui.Selection.getSelection())
 
     def Activated(self) -> None:
         """Run the command; a fault restores the previous state."""
-        subject = next(iter(FreeCADGui.Selection.getSelection()), None)
+        subject = self._selected()
         document = subject.Document if subject else FreeCAD.ActiveDocument
         with show_lack_of_memory(translate(self.name, self.text)):
             with transaction(document, translate(self.name, self.text)):
@@ -108,7 +132,7 @@ class PanelCommand(Command):
 
     def Activated(self) -> None:
         """Add the object and open its panel; a fault restores the previous state."""
-        (subject,) = FreeCADGui.Selection.getSelection()
+        subject = self._selected()
         document, before = subject.Document, set(subject.Document.Objects)
         with show_lack_of_memory(translate(self.name, self.text)):
             self._add(subject, document, before)

@@ -6,14 +6,14 @@ Changes to a document are recorded in macros, as the call into ``freecad_app`` t
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import FreeCAD
 import FreeCADGui
 from PySide import QtCore
 
-from pkm_post.freecad_app.document import is_job, is_simulation
+from pkm_post.freecad_app.document import is_job, is_simulation, job_of
 
 _A_MOMENT = 50
 """ms between two checks whether a document is still recomputing."""
@@ -40,26 +40,24 @@ def compensate(operation: FreeCAD.DocumentObject) -> None:
     _do("pkm_post.freecad_app.normal_compensation", "create_normal_compensation({})", operation)
 
 
-def job_of(item: FreeCAD.DocumentObject) -> FreeCAD.DocumentObject | None:
-    """The job itself, or the job whose model contains an object, as clone or original."""
-    if is_job(item):
-        return item
-    jobs = [other for other in item.Document.Objects if is_job(other)]
-    models = [(job, clone) for job in jobs for clone in job.Model.Group]
-    return next((job for job, clone in models if item in (clone, job.Proxy.baseObject(job, clone))), None)
-
-
 def finish(item: FreeCAD.DocumentObject) -> None:
     """Add the operation for the selected faces, and open its panel at the end of the command."""
-    module, document = "pkm_post.freecad_app.surface_finish", f"FreeCAD.getDocument({item.Document.Name!r})"
-    job, subject = (f"{document}.getObject({each.Name!r})" for each in (job_of(item), item))
-    names = [name for each in FreeCADGui.Selection.getSelectionEx() for name in each.SubElementNames]
-    faces = [] if is_job(item) else [name for name in names if name.startswith("Face")]
+    module, job = "pkm_post.freecad_app.surface_finish", job_of(item)
+    document = f"FreeCAD.getDocument({job.Document.Name!r})"
+    chosen = ", ".join(f"({document}.getObject({name!r}), {faces!r})" for name, faces in _selected_faces(job))
     FreeCADGui.addModule(module)
-    chosen = f"[({subject}, {faces!r})]" if faces else "[]"
-    FreeCADGui.doCommand(f"{module}.create_surface_finish({job}, {chosen})")
-    made = job_of(item).Operations.Group[-1]
+    FreeCADGui.doCommand(f"{module}.create_surface_finish({document}.getObject({job.Name!r}), [{chosen}])")
+    made = job.Operations.Group[-1]
     QtCore.QTimer.singleShot(0, lambda: made.ViewObject.Document.setEdit(made.ViewObject, 0))
+
+
+def _selected_faces(job: FreeCAD.DocumentObject) -> Iterator[tuple[str, list[str]]]:
+    """Yield each object of the job with selected faces, and their names; a body stands for its last feature."""
+    for each in FreeCADGui.Selection.getSelectionEx():
+        faces = [name for name in each.SubElementNames if name.startswith("Face")]
+        bodies = [other for other in each.Object.InList if getattr(other, "Tip", None) == each.Object]
+        if faces and not is_job(each.Object) and job_of(each.Object) == job:
+            yield (bodies or [each.Object])[0].Name, faces
 
 
 def machine(job: FreeCAD.DocumentObject | None) -> None:

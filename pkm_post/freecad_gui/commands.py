@@ -6,9 +6,9 @@ from __future__ import annotations
 import FreeCAD
 import FreeCADGui
 
-from pkm_post.freecad_app.document import is_job, is_operation, is_simulation
+from pkm_post.freecad_app.document import is_operation, is_simulation, job_of
 from pkm_post.freecad_gui import command_actions
-from pkm_post.freecad_gui.command import Command, PanelCommand, WindowCommand
+from pkm_post.freecad_gui.command import Command, PanelCommand, WindowCommand, job_or, one
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -18,7 +18,7 @@ COMMANDS = (
         "mirror.svg",
         QT_TRANSLATE_NOOP("PKM_Mirror", "Mirror operation"),
         QT_TRANSLATE_NOOP("PKM_Mirror", "Add the mirror image of the selected operation: plane, climb milling, report"),
-        is_operation,
+        one(is_operation),
         command_actions.mirror,
         "P, K, M",
     ),
@@ -27,7 +27,7 @@ COMMANDS = (
         "rotate.svg",
         QT_TRANSLATE_NOOP("PKM_Rotate", "Rotate operation"),
         QT_TRANSLATE_NOOP("PKM_Rotate", "Add the selected operation turned, once or several times about an axis"),
-        is_operation,
+        one(is_operation),
         command_actions.rotate,
         "P, K, R",
     ),
@@ -39,9 +39,10 @@ COMMANDS = (
             "PKM_NormalCompensation",
             "Take the points of the selected operation for contact points on the model, and let the cutter touch there",
         ),
-        is_operation,
+        one(is_operation),
         command_actions.compensate,
         "P, K, N",
+        "compensation.md",
     ),
     Command(
         "PKM_SurfaceFinish",
@@ -50,16 +51,17 @@ COMMANDS = (
         QT_TRANSLATE_NOOP(
             "PKM_SurfaceFinish", "Cover the selected faces of a job's model with passes of a leaning tool"
         ),
-        lambda item: command_actions.job_of(item) is not None,
+        job_or(lambda item: job_of(item) is not None),
         command_actions.finish,
         "P, K, F",
+        "surface-finish.md",
     ),
     Command(
         "PKM_Machine",
         "machine.svg",
         QT_TRANSLATE_NOOP("PKM_Machine", "Machine"),
-        QT_TRANSLATE_NOOP("PKM_Machine", "Add the machine around the part, with the work offset of the selected job"),
-        is_job,
+        QT_TRANSLATE_NOOP("PKM_Machine", "Add the machine around the part, with the work offset of the job"),
+        job_or(),
         command_actions.machine,
         "P, K, H",
         alone=True,
@@ -68,17 +70,18 @@ COMMANDS = (
         "PKM_Reach",
         "reach.svg",
         QT_TRANSLATE_NOOP("PKM_Reach", "Reach"),
-        QT_TRANSLATE_NOOP("PKM_Reach", "Check whether the machine can follow the selected job, and colour its way"),
-        is_job,
+        QT_TRANSLATE_NOOP("PKM_Reach", "Check whether the machine can follow the job, and colour its way"),
+        job_or(),
         command_actions.reach,
         "P, K, C",
+        "reach.md",
     ),
     Command(
         "PKM_Simulate",
         "simulate.svg",
         QT_TRANSLATE_NOOP("PKM_Simulate", "Simulate"),
-        QT_TRANSLATE_NOOP("PKM_Simulate", "Play the planned motion of the selected job on its machine"),
-        lambda item: is_job(item) or is_simulation(item),
+        QT_TRANSLATE_NOOP("PKM_Simulate", "Play the planned motion of the job on its machine"),
+        job_or(is_simulation),
         command_actions.simulate,
         "P, K, S",
     ),
@@ -87,7 +90,7 @@ COMMANDS = (
         "program.svg",
         QT_TRANSLATE_NOOP("PKM_Editor", "Program editor"),
         QT_TRANSLATE_NOOP("PKM_Editor", "Edit G-code or CL data, with its faults shown while it is typed"),
-        lambda item: True,
+        one(lambda item: True),
         command_actions.edit,
         "P, K, E",
     ),
@@ -95,8 +98,8 @@ COMMANDS = (
         "PKM_Post",
         "pkm_post.svg",
         QT_TRANSLATE_NOOP("PKM_Post", "Post to a hexapod"),
-        QT_TRANSLATE_NOOP("PKM_Post", "Write the certified motion program of the selected job"),
-        is_job,
+        QT_TRANSLATE_NOOP("PKM_Post", "Write the certified motion program of the job"),
+        job_or(),
         command_actions.post,
         "P, K, P",
     ),
@@ -105,16 +108,17 @@ COMMANDS = (
         "control.svg",
         QT_TRANSLATE_NOOP("PKM_Control", "Numerical control"),
         QT_TRANSLATE_NOOP("PKM_Control", "Operate a machine, or a simulated one: look, home, jog, run programs"),
-        lambda item: True,
+        one(lambda item: True),
         command_actions.control,
         "P, K, O",
+        "numerical-control.md",
     ),
     WindowCommand(
         "PKM_InstallPackages",
         "packages.svg",
         QT_TRANSLATE_NOOP("PKM_InstallPackages", "Install packages"),
         QT_TRANSLATE_NOOP("PKM_InstallPackages", "Install the optional Python packages that are missing here"),
-        lambda item: True,
+        one(lambda item: True),
         command_actions.install_packages,
         "P, K, I",
     ),

@@ -14,6 +14,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
+from pkm_post.freecad_app.document_checks import require_computed
 from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.freecad_app.job_setup import prepared_job
 from pkm_post.freecad_app.progress import Stopped
@@ -99,7 +100,7 @@ class PostPanel:
         """Read the job and its machine, after storing the choices."""
         self.choices.keep()
         self._target = self.choices.program()
-        self.job.Document.recompute()
+        require_computed(self.job.Document)
         return prepared_job(self.job, settings_of(self.job))
 
     def _keep_or_tell(self) -> bool:

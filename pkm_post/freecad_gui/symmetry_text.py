@@ -80,7 +80,11 @@ def _quantity(degrees: float) -> Any:
 
 def _joints(count: int, distance: Any, turn: Any) -> list[str]:
     if not count:
-        return [translate("SymmetryPanel", "They meet nowhere")]
+        return [
+            translate("SymmetryPanel", "No path of one ends where a path of another begins: the tool is lifted between"
+                      " them. For one continuous path, end the passes of the original at the plane or at the edges of"
+                      " its sector.")
+        ]  # fmt: skip
     text = translate("SymmetryPanel", "Where they meet ({}): tips {} apart, tool axes by {}")
     return [text.format(count, distance.UserString, turn.UserString)]
 

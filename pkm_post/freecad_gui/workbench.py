@@ -29,6 +29,14 @@ _VIEWS = {
 """Module and class of the view provider for each kind of object; imported when the first of its kind is made."""
 
 
+_CAM_BARS = {
+    "Project Setup": "PKM_Machine PKM_Reach PKM_Simulate PKM_Post",
+    "New Operations": "PKM_SurfaceFinish",
+    "Path Modification": "PKM_NormalCompensation PKM_Mirror PKM_Rotate",
+}
+"""Commands by CAM's tool bar that they belong to."""
+
+
 class PkmPostWorkbench(FreeCADGui.Workbench):
     """Symmetry and posting for machines with six struts, beside CAM."""
 
@@ -63,6 +71,10 @@ class CamMenu:
         from pkm_post.freecad_gui.commands import COMMANDS
 
         return [{"append": command.name, "menuItem": "CAM_SimpleCopy"} for command in COMMANDS]
+
+    def modifyToolBars(self):
+        """Add the commands to CAM's tool bars, at the end of the one where CAM has commands of their kind."""
+        return [{"append": name, "toolBar": bar} for bar, names in _CAM_BARS.items() for name in names.split()]
 
 
 def install() -> None:

@@ -1398,8 +1398,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>机床</translation>
     </message>
     <message>
-        <source>Add the machine around the part, with the work offset of the selected job</source>
-        <translation>按所选作业的工件偏置，在零件周围添加机床</translation>
+        <source>Add the machine around the part, with the work offset of the job</source>
+        <translation>按作业的工件偏置，在零件周围添加机床</translation>
     </message>
     <message>
         <source>Move it home</source>
@@ -1435,8 +1435,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>后处理到六自由度并联机床</translation>
     </message>
     <message>
-        <source>Write the certified motion program of the selected job</source>
-        <translation>写出所选作业经过验证的运动程序</translation>
+        <source>Write the certified motion program of the job</source>
+        <translation>写出作业经过验证的运动程序</translation>
     </message>
 </context>
 <context>
@@ -1446,8 +1446,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>可达性</translation>
     </message>
     <message>
-        <source>Check whether the machine can follow the selected job, and colour its way</source>
-        <translation>检查机床能否跟随所选作业，并为其轨迹着色</translation>
+        <source>Check whether the machine can follow the job, and colour its way</source>
+        <translation>检查机床能否跟随作业，并为其轨迹着色</translation>
     </message>
     <message>
         <source>Check</source>
@@ -1528,8 +1528,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>仿真</translation>
     </message>
     <message>
-        <source>Play the planned motion of the selected job on its machine</source>
-        <translation>在机床上播放所选作业的规划运动</translation>
+        <source>Play the planned motion of the job on its machine</source>
+        <translation>在机床上播放作业的规划运动</translation>
     </message>
     <message>
         <source>Pictures</source>
@@ -2291,8 +2291,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>覆盖 {}，重复覆盖 {}，最大间隙 {}</translation>
     </message>
     <message>
-        <source>They meet nowhere</source>
-        <translation>它们互不相接</translation>
+        <source>No path of one ends where a path of another begins: the tool is lifted between them. For one continuous path, end the passes of the original at the plane or at the edges of its sector.</source>
+        <translation>没有一条轨迹的终点与另一条轨迹的起点相接：其间刀具会抬起。要得到一条连续的轨迹，请让原始操作的各行在平面处或其扇区的边缘处结束。</translation>
     </message>
     <message>
         <source>Where they meet ({}): tips {} apart, tool axes by {}</source>

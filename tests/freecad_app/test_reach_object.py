@@ -28,7 +28,7 @@ def found(job):
 
 def test_findings_are_those_of_the_study(job, found):
     assert found.Reachable
-    assert all("warning K118" in line for line in found.Violations)  # slower than programmed, and no more than that
+    assert found.Violations and all("warning K128" in line for line in found.Violations)  # slower rapid moves, no more
     checks = study_job(job).reach.as_dict()["checks"]
     assert list(found.Checks) == [check["name"] for check in checks]
     assert list(found.LeastMargins) == pytest.approx([check["margin"] for check in checks], abs=NANOMETRE)

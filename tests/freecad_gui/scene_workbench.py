@@ -21,14 +21,35 @@ def workbench_has_its_commands():
 
 
 @step
+def commands_have_pages():
+    return {name: FreeCADGui.Command.get(name).getInfo()["whatsThis"] for name in FreeCADGui.listCommands()
+            if name.startswith("PKM_")}  # fmt: skip
+
+
+@step
 def commands_know_what_they_are_for():
     document = new_document("gui")
     job, operation = document.getObject("Job"), document.getObject("Custom")
     active = {}
-    for name, item in (("job", job), ("operation", operation), ("controller", job.Tools.Group[0])):
+    original = job.Proxy.baseObject(job, job.Model.Group[0])
+    items = {"job": job, "operation": operation, "controller": job.Tools.Group[0], "part": original, "stock": job.Stock}
+    for name, item in items.items():
         select(item)
-        active[name] = [FreeCADGui.Command.get(f"PKM_{c}").isActive() for c in ("Mirror", "Rotate", "Post")]
+        active[name] = _active()
+    FreeCADGui.Selection.clearSelection()
+    active["nothing"] = _active()
+    other = document.copyObject(job, True)
+    document.recompute()
+    active["nothing, two jobs"] = _active()
+    select(operation)
+    active["operation, two jobs"] = _active()
+    FreeCADGui.Selection.addSelection(other)
+    active["of both jobs"] = _active()
     return active
+
+
+def _active():
+    return [FreeCADGui.Command.get(f"PKM_{name}").isActive() for name in ("Mirror", "Rotate", "Post", "SurfaceFinish")]
 
 
 @step
@@ -39,7 +60,12 @@ def cam_menu_has_the_commands():
     for action in FreeCADGui.getMainWindow().menuBar().actions():
         if action.menu():
             texts += [item.text().replace("&", "") for item in _all_actions(action.menu())]
-    return {"has": [text in texts for text in ("Mirror operation", "Rotate operation", "Post to a hexapod")]}
+    bars = FreeCADGui.getMainWindow().findChildren(QtWidgets.QToolBar)
+    ours = {bar.objectName(): [item.text() for item in bar.actions()] for bar in bars}
+    return {
+        "has": [text in texts for text in ("Mirror operation", "Rotate operation", "Post to a hexapod")],
+        "bars": {name: ours[name][-1] for name in ("Project Setup", "New Operations", "Path Modification")},
+    }
 
 
 def _all_actions(menu):

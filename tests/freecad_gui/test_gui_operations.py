@@ -30,7 +30,7 @@ def test_button_puts_normal_compensation_over_an_operation(session):
 
 def test_surface_finish_is_made_of_selected_faces_and_edited_in_cams_panel(session):
     found = session["surface_finish_from_its_button"]
-    assert found["active"] == {"job": True, "face": True, "controller": False}
+    assert found["active"] == {"job": True, "face": True, "controller": True}  # each means the job
     assert (found["view"], found["icon"]) == ("SurfaceFinishView", "surface_finish.svg")
     assert (found["faces"], found["valid"]) == (["Face6"], True)
     assert found["panel_is_open"]

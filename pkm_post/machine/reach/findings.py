@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Diagnostic, Trajectory
+from pkm_post.model import Diagnostic, Kind, Trajectory
 
 DISPLAY_UNITS: dict[str, tuple[str, float]] = {
     "mm": ("mm", 1.0),
@@ -31,6 +31,7 @@ class CheckedLimit:
         unit: of the margin, a key of ``DISPLAY_UNITS``.
         parts: what may have the least margin: struts, pairs of bodies.
         violation: message template of a violation, with {part} and {by}.
+        rapid_code: diagnostic code of a violation in a rapid move; empty for the same one.
     """
 
     name: str
@@ -38,6 +39,11 @@ class CheckedLimit:
     unit: str
     parts: tuple[str, ...]
     violation: str
+    rapid_code: str = field(default="", kw_only=True)
+
+    def code_of(self, kind: int) -> str:
+        """The diagnostic code of a violation in a move of a kind."""
+        return self.rapid_code if self.rapid_code and kind == Kind.RAPID else self.code
 
     def describe(self, part: int, margin: float) -> str:
         """Format a violation."""
@@ -77,18 +83,21 @@ class ReachFinding:
 def finding_diagnostics(
     findings: Iterable[ReachFinding], trajectory: Trajectory, segment: Array
 ) -> tuple[Diagnostic, ...]:
-    """Diagnostics of violations: one for each operation and check, at the worst row.
+    """Diagnostics of violations: one for each operation, check and code, at the worst row.
 
     Args:
         findings: of a path along the trajectory.
         trajectory: source positions of the segments.
         segment: (N,) segment of each row.
     """
-    operation = trajectory.operation[segment]
+    operation, rapid = trajectory.operation[segment], trajectory.kind[segment] == Kind.RAPID
     faults = []
     for finding in findings:
-        for number in np.unique(operation[finding.margin < 0]):
-            row = int(np.argmin(np.where(operation == number, finding.margin, np.inf)))
-            found = finding.subject.describe(int(finding.part[row]), float(finding.margin[row]))
-            faults.append(Diagnostic(finding.subject.code, trajectory.place(int(segment[row])), found))
+        subject = finding.subject
+        group = 2 * operation + rapid if subject.rapid_code else operation
+        for number in np.unique(group[finding.margin < 0]):
+            row = int(np.argmin(np.where(group == number, finding.margin, np.inf)))
+            found = subject.describe(int(finding.part[row]), float(finding.margin[row]))
+            code = subject.code_of(int(trajectory.kind[segment[row]]))
+            faults.append(Diagnostic(code, trajectory.place(int(segment[row])), found))
     return tuple(sorted(faults, key=lambda fault: (fault.place.operation, fault.place.line, fault.code)))

@@ -202,9 +202,8 @@ def strut_speed_finding(machine: Machine, way: PosePath, shortest: float, durati
         duration: (N,) duration of each cell, s; that of cell 0 is ignored.
     """
     limit = machine.strut_speed
-    subject = CheckedLimit(
-        "strut speed", "K118", "mm/s", STRUTS, f"strut {{part}} by {{by:.1f}} mm/s; it reaches {limit:g}"
-    )
+    violation = f"strut {{part}} by {{by:.1f}} mm/s; it reaches {limit:g}"
+    subject = CheckedLimit("strut speed", "K118", "mm/s", STRUTS, violation, rapid_code="K128")
     lengths = strut_lengths(machine, *way.rows(slice(None)))
     cells = np.arange(1, len(way))
     margin, part = np.full(len(way), limit), np.zeros(len(way), dtype=np.int32)

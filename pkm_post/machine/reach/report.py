@@ -88,8 +88,11 @@ class ReachReport:
             "part": subject.parts[finding.part[worst]],
             "worst": self._where(worst),
             "first_violation": None if first is None else self._where(first),
-            "cure": None if first is None else RULES[subject.code].cure,
+            "cure": None if first is None else RULES[self._code(finding, first)].cure,
         }
+
+    def _code(self, finding: ReachFinding, row: int) -> str:
+        return finding.subject.code_of(int(self.trajectory.kind[self.segment[row]]))
 
     def _where(self, row: int) -> dict[str, Any]:
         segment = int(self.segment[row])

@@ -75,4 +75,8 @@ CAM_JOB_RULES: dict[str, Rule] = {
         "remove them from the inputs of the operation, mark it to be recomputed, and recompute the document",
     ),
     "J136": error("an object among the operations of the job has no path", "remove it from the operations"),
+    "J137": error(
+        "the document is being recomputed, and the paths of its operations are not complete",
+        "wait for the end of the recompute, then post or check again",
+    ),
 }

@@ -69,6 +69,11 @@ MACHINING_RULES: dict[str, Rule] = {
     ),
     "K126": error("an arc begins at a change to a tool of another length", "make a straight move before the arc"),
     "K127": error("a move takes longer than a day", "give it a higher feed"),
+    "K128": warning(
+        "a strut cannot keep up with a rapid move, and the tool will be slower there",
+        "nothing has to be done, the move takes longer; tool_path.rapid_speed of the machine file is the speed of rapid"
+        " moves",
+    ),
     "K130": error(
         "the shank of the tool goes into the part",
         "use a tool with longer cutting edges or a thinner shank, or tilt it",
@@ -204,7 +209,10 @@ MACHINING_RULES: dict[str, Rule] = {
         "the cutter does not fit into a hollow of the surface, so there is no stepover for a scallop height",
         "take a smaller cutter, or give the stepover as a distance",
     ),
-    "N304": error("the tool is tilted too far to be lifted along its axis", "limit the cone of the tool axis"),
+    "N304": error(
+        "the tool is tilted too far to be lifted along its axis",
+        "lower ConeLimit, the field Cone limit of the operation, or lower Lead and Tilt",
+    ),
     "N305": error("the tolerances cannot be kept by straight moves", "raise the tolerances, or lean the tool less"),
     "N306": warning("the surface has an edge, where the tool axis jumps", "cover the faces at the edge one by one"),
     "N307": error("the path lies above the height at which the tool traverses", "raise SafeHeight and ClearanceHeight"),

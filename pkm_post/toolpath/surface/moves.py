@@ -149,7 +149,8 @@ def _resting(settings: SurfaceOptions) -> Array:
 def _lift_faults(axis: Array, tip: Array, height: float, place: Place) -> list[Diagnostic]:
     """Faults that prevent a retract along the tool axis to the plane."""
     if axis[2] < _FLATTEST:
-        return [Diagnostic("N304", place, f"{math.degrees(math.asin(axis[2])):.1f} degrees above the horizontal")]
+        above, least = (math.degrees(math.asin(each)) for each in (axis[2], _FLATTEST))
+        return [Diagnostic("N304", place, f"{above:.1f} degrees above the horizontal, at least {least:g} are needed")]
     if tip[2] > height:
         return [Diagnostic("N307", place, f"the tip is at z = {tip[2]:.3f} mm, the plane at {height:.3f} mm")]
     return []
