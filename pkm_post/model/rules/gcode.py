@@ -164,6 +164,10 @@ GCODE_RULES: dict[str, Rule] = {
         "write it with a point, as in P2. for twice the size",
     ),
     "G435": error("controls differ in what this means while scaling is in force", "write G50 before it"),
+    "G436": error(
+        "the place of no move is known",
+        "give X, Y and Z in the first moves: a control would begin them wherever the tool stands",
+    ),
     # G5: writing G-code
     "G501": error("the tool axis tilts, and this form of G-code cannot express it", "choose a form with five axes"),
     "G502": error("the tool axis points down, and this form of G-code cannot express it", "choose vectors or a head"),

@@ -102,6 +102,12 @@ class BlockDiagnostics:
         return self._log.in_order(lambda fault: (fault.place.line, fault.code))
 
 
+def never_given(known: Array) -> str:
+    """Which of X, Y and Z have no value, by a (3,) mask of those that have one, in words."""
+    names = [name for name, has_value in zip("XYZ", known.tolist(), strict=True) if not has_value]
+    return f"{' and '.join(names)} {'was' if len(names) == 1 else 'were'} never given"
+
+
 def column_of(words: Iterable[Word], line: str) -> int:
     """Column, from 1, of the first of some words that a line has, or else of its first character.
 

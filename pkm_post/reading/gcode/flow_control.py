@@ -6,13 +6,15 @@ Enters: a row with such a word, and where the linked words of a program are. Lea
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 from pkm_post.reading.gcode.call_levels import Level
 from pkm_post.reading.gcode.o_words import JumpTargets
 from pkm_post.reading.gcode.parameters import Parameters
 from pkm_post.reading.gcode.statements import OWord, Statement
 
 
-class FlowControl:
+class FlowControl(ABC):
     """The steps of an interpreter that need no more than the linked words and the parameters."""
 
     row: int
@@ -22,8 +24,9 @@ class FlowControl:
     _parameters: Parameters
     _levels: list[Level]
 
+    @abstractmethod
     def _spend(self, blocks: int, operations: int) -> None:
-        raise NotImplementedError
+        """Count blocks and operations against the limits."""
 
     def _value(self, word: OWord) -> float:
         value = word.values[0].value(self._parameters)

@@ -12,10 +12,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pkm_post.model import Tool
+from pkm_post.model import Diagnostic, Program, Tool
 from pkm_post.reading.units import UNITS as UNITS
 
 Point = tuple[float, float, float]
+ReadResult = tuple[Program | None, tuple[Diagnostic, ...]]
+"""The program, or None if there are errors; and the diagnostics."""
 
 AXIS_WORDS: dict[str, str] = {"none": "", "vector": "IJK", "AC": "AC", "BC": "BC", "AB": "AB", "RPY": "ABC"}
 """Letters of each tool axis notation."""

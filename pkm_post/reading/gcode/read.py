@@ -11,14 +11,14 @@ import re
 from dataclasses import replace
 from functools import partial
 
-from pkm_post.model import Diagnostic, Place, Program, errors
+from pkm_post.model import Diagnostic, Place, errors
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.call_levels import MissingProgram
 from pkm_post.reading.gcode.execute import execute_as_far_as_possible
 from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, Flavour
 from pkm_post.reading.gcode.foreign import foreign_language
 from pkm_post.reading.gcode.guess import guessed_flavour
-from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, ExecutionLimits, ReadOptions
+from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, ExecutionLimits, ReadOptions, ReadResult
 from pkm_post.reading.gcode.recovery import first_line, merged, own_faults
 from pkm_post.reading.gcode.resolve import resolve
 from pkm_post.reading.gcode.scan import scan_recovering, with_line_feeds
@@ -37,11 +37,8 @@ _RESTARTS = ("M99 ends the main program, which a control would begin again: it i
 
 
 def read(
-    text: bytes | str,
-    file: str,
-    options: ReadOptions = DEFAULT_OPTIONS,
-    limits: ExecutionLimits = DEFAULT_LIMITS,
-) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    text: bytes | str, file: str, options: ReadOptions = DEFAULT_OPTIONS, limits: ExecutionLimits = DEFAULT_LIMITS
+) -> ReadResult:
     """Read a G-code program.
 
     Args:

@@ -17,8 +17,8 @@ from pkm_post.reading.gcode.options import ReadOptions
 
 _BY_ITSELF = frozenset(["G401", "G402", "G403", "G406", "G411", "G413", "G417", "G422", "G423", "G425", "G427", "G428"])
 """Faults of a block that no other block can cause."""
-_OF_THE_WHOLE = ("G420", "G430")
-"""Faults of a program as a whole, of which a part says nothing: no motion, and no end."""
+_OF_THE_WHOLE = ("G420", "G430", "G436")
+"""Faults of a program as a whole, of which a part says nothing: no motion, no end, and no place."""
 _MOST_EQUAL = 3
 """Equal faults that are reported each by itself."""
 _MOST_OF_A_CODE, _MOST_SHOWN = 10, 5

@@ -19,7 +19,7 @@ from pkm_post.reading.gcode.arcs import arc_geometry, path_lengths, split_turns,
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.checks import check
 from pkm_post.reading.gcode.codes import NONE, Group
-from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
+from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, never_given
 from pkm_post.reading.gcode.events import ENDS, check_dwells, dwell_words, events_of_blocks, ordered_events
 from pkm_post.reading.gcode.feeds import INVERSE_TIME, feeds, path_modes
 from pkm_post.reading.gcode.flavours import FLAVOURS, RS274
@@ -113,6 +113,14 @@ def _up_to_end(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:
     return blocks, blocks.closed or bool(len(ends))
 
 
+def _report_no_motion(blocks: Blocks, first: list[int], known: Array, faults: BlockDiagnostics) -> None:
+    """Report a program without moves, or the first of moves none of which has a known place."""
+    if first:
+        faults.add("G436", first[0], never_given(known))
+    else:
+        faults.add("G420", 0, f"{len(blocks)} blocks")
+
+
 @dataclass(frozen=True)
 class BlockStates:
     """State of each block, apart from positions and modal codes.
@@ -172,9 +180,10 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
     motions, centre, axis = split_turns(blocks, modal, motions, centre, axis)
     checkpoint()
     path_length = _path_lengths(modal, motions, centre, axis)
+    first = motions.block[:1].tolist()
     motions, (centre, axis, path_length) = with_known_ends(motions, [centre, axis, path_length])
     if not len(motions):
-        faults.add("G420", 0, f"{len(blocks)} blocks")
+        _report_no_motion(blocks, first, tracker.known, faults)
         return None
     columns = _directions(blocks, modal, states, motions, axis, faults)
     rotates = _axis_rotates(modal, columns["tool_axis"])

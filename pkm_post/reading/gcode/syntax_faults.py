@@ -11,13 +11,17 @@ import re
 from typing import TYPE_CHECKING
 
 from pkm_post.model import Diagnostic, DiagnosticLog, Place
+from pkm_post.reading.gcode.parse import LONGEST_LINE
 from pkm_post.reading.grammar import Fault, in_words
 
 if TYPE_CHECKING:
     from lark import UnexpectedInput, UnexpectedToken
 
-MOST_REPORTED = 100
-"""Faults reported individually; the rest are only counted."""
+MOST_SHAPES = 100
+"""Faulty lines that differ in more than their numbers whose faults are explained; the others are only counted."""
+MOST_OF_A_SHAPE = 6
+"""Lines of one shape whose fault is explained each by itself, since that takes lark time; the others are counted with
+it. One more than the lines that a merged fault names, so that it says when there are others."""
 
 LONGEST_TO_TRY = 200
 """Characters. To list the acceptable tokens, lark before 1.2 copies its parser state recursively."""
@@ -45,15 +49,18 @@ EXPECTED: dict[str, tuple[str, ...]] = {
 
 _COMMENT = re.compile(r"\([^()]*\)|;.*")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
+_DIGITS = re.compile(rb"\d+")
 _NUMERIC = "+-.0123456789"
 
 
 class SyntaxFaults:
-    """The faults of a file, collected in line order."""
+    """The faults of a file, collected in line order; lines that differ in their numbers alone have one shape."""
 
     def __init__(self, file: str) -> None:
         self._file = file
-        self._log = DiagnosticLog(MOST_REPORTED)
+        self._shapes: set[bytes] = set()
+        self._others = 0
+        self._log = DiagnosticLog(MOST_OF_A_SHAPE)
 
     def add(self, number: int, line: bytes, unexpected: UnexpectedInput | Fault) -> None:
         """Add the fault of a line.
@@ -63,18 +70,22 @@ class SyntaxFaults:
             line: its bytes.
             unexpected: its fault.
         """
-        if not self._log.keeps():
-            self._log.count(1)
+        shape = _DIGITS.sub(b"0", line[:LONGEST_LINE])
+        if shape not in self._shapes and len(self._shapes) == MOST_SHAPES:
+            self._others += 1
+            return
+        self._shapes.add(shape)
+        if not self._log.keeps(shape):
+            self._log.count(1, shape)
             return
         fault = unexpected if isinstance(unexpected, Fault) else fault_of_unexpected(line.decode("latin-1"), unexpected)
         place = Place(self._file, line=number, column=_column(line, fault))
-        self._log.add(Diagnostic(fault.code, place, fault.found))
+        self._log.add(Diagnostic(fault.code, place, fault.found), shape)
 
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics of the file."""
-        more = self._log.more()
-        rest = [Diagnostic("G199", Place(self._file), f"and {more} more")] if more else []
-        return (*self._log.kept, *rest)
+        """The diagnostics of the file; the last one of a shape says how many more there are."""
+        rest = [Diagnostic("G199", Place(self._file), f"and {self._others} more")] if self._others else []
+        return (*self._log.in_order(lambda fault: (fault.place.line, fault.place.column)), *rest)
 
 
 def readable(text: bytes) -> str:

@@ -64,6 +64,8 @@ class Path:
         self.sections = Sections()
         self.radius = 0.0
         """Radius of the tool for cutter compensation, mm."""
+        self.waiting_row = -1
+        """Row of the first move before X, Y and Z were all known; -1 if there is none."""
         self._notation, self._faults = notation, faults
 
     def flush(self, stops: bool = False) -> None:
@@ -189,6 +191,8 @@ class Path:
         moved = np.flatnonzero(tangents.any(axis=1) & moves.known & moves.start_known)
         if len(moved):
             state.tangent = state.frame.directions(tangents[moved[-1]])
+        if self.waiting_row < 0 and not moves.known.all():
+            self.waiting_row = int(moves.row[np.argmin(moves.known)])
         state.has_moved |= bool(moves.known.any())
         self._add(moves, axes, speed, stops)
 

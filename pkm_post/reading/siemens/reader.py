@@ -11,39 +11,28 @@ from __future__ import annotations
 from typing import Any
 
 from pkm_post.model import Diagnostic, Place, Program, Severity, errors
-from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, ExecutionLimits, ReadOptions
+from pkm_post.reading.gcode.diagnostics import never_given
+from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, ExecutionLimits, ReadOptions, ReadResult
 from pkm_post.reading.gcode.recovery import merged
 from pkm_post.reading.gcode.scan import with_line_feeds
 from pkm_post.reading.gcode.subprograms import with_operations, with_places
 from pkm_post.reading.siemens.faults import Faults
 from pkm_post.reading.siemens.interpreter import Interpreter
 from pkm_post.reading.siemens.machine import Machine
+from pkm_post.reading.siemens.path import Path
 from pkm_post.reading.siemens.scan import scan
 from pkm_post.reading.siemens.structure import structure_of
 from pkm_post.reading.siemens.subprograms import MissingProgram, Source, files_by_name
 from pkm_post.reading.siemens.tools import Tools
 
-_CONSEQUENCES = ("G301", "G407", "G408", "G416", "G420", "G424", "G430", "G604", "G605")
+_CONSEQUENCES = ("G301", "G407", "G408", "G416", "G420", "G424", "G430", "G436", "G604", "G605")
 """Faults that another one before them may cause."""
 
 
 def read(
-    text: bytes | str,
-    file: str,
-    options: ReadOptions = DEFAULT_OPTIONS,
-    limits: ExecutionLimits = DEFAULT_LIMITS,
-) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """Read a program in Siemens's language.
-
-    Args:
-        text: content of the file; any bytes.
-        file: its name, for diagnostics.
-        options: read options; those for flavours and dwells of G-code mean nothing here.
-        limits: bounds of loops and calls.
-
-    Returns:
-        The program, or None if there are errors; and the diagnostics.
-    """
+    text: bytes | str, file: str, options: ReadOptions = DEFAULT_OPTIONS, limits: ExecutionLimits = DEFAULT_LIMITS
+) -> ReadResult:
+    """Read a program in Siemens's language, as ``gcode.read`` reads G-code; flavours and dwell units mean nothing."""
     source, added = Source(with_line_feeds(text)), files_by_name(options.folders)
     while True:
         try:
@@ -59,7 +48,7 @@ def read(
 
 def _read(
     source: Source, file: str, options: ReadOptions, limits: ExecutionLimits, elsewhere: frozenset[str]
-) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+) -> ReadResult:
     """Read a program with the files of its subprograms.
 
     Raises:
@@ -74,8 +63,7 @@ def _read(
     if not any(fault.code == "G605" for fault in faults.in_order()):
         interpreter.run()
     if not len(machine.path.sections):
-        if not faults.has_errors():
-            faults.add(-1, "G420", f"{len(lines)} lines")
+        _report_no_motion(machine.path, len(lines), faults)
     elif options.needs_end and not interpreter.has_ended:
         faults.add(structure.main.end - 1, "G430", "no M2, M30, M17 or RET after it")
     diagnostics = merged(with_places(_own(faults.in_order()), source.files))
@@ -83,6 +71,16 @@ def _read(
         return None, diagnostics
     program = _program(machine, file, source.notes)
     return with_operations(program, source.files), diagnostics
+
+
+def _report_no_motion(path: Path, lines: int, faults: Faults) -> None:
+    """Report a program without moves, or the first of moves none of which has a known place; nothing after a fault."""
+    if faults.has_errors():
+        return
+    if path.waiting_row >= 0:
+        faults.add(path.waiting_row, "G436", never_given(path.state.known))
+    else:
+        faults.add(-1, "G420", f"{lines} lines")
 
 
 def _own(found: tuple[Diagnostic, ...]) -> list[Diagnostic]:

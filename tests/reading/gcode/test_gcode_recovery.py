@@ -68,6 +68,13 @@ def test_equal_faults_are_one_with_their_number_and_lines():
     ]
 
 
+@pytest.mark.parametrize("faulty", ["G1 X1..5", "G1 X[1", "G1 X1\xe4"])
+def test_equal_syntax_faults_are_one_however_many(faulty):
+    _, found = read(START + f"{faulty}\n" * 3950 + "Y\nM2\n", "part.ngc")
+    assert [(fault.code, fault.place.line) for fault in found[1:]] == [("G201", 3953)]
+    assert found[0].found.endswith(" (3950 times, in lines 3, 4, 5, 6, 7 and others)")
+
+
 def test_many_faults_of_a_code_are_the_first_ones_and_a_number():
     _, found = read(START + "".join(f"G1 X1 A{n}\n" for n in range(1, 401)), "part.ngc")
     assert [fault.place.line for fault in found] == [3, 4, 5, 6, 7]

@@ -166,8 +166,18 @@ def test_the_longest_line_is_a_block():
     assert_same(scan(f"X1 {comment}\nX2", "f"), scan_by_block(f"X1 {comment}\nX2", "f"))
 
 
-def test_a_hundred_faults_are_reported_and_the_others_counted():
-    _, diagnostics = scan("X\n" * 130, "part.ngc")
+def test_faults_of_lines_that_differ_in_numbers_alone_are_counted():
+    _, diagnostics = scan("".join(f"G1 X1..{n}\n" for n in range(4000)) + "X\n", "part.ngc")
+    assert [(fault.code, fault.place.line) for fault in diagnostics] == [
+        *(("G102", line) for line in range(1, 7)),
+        ("G201", 4001),
+    ]
+    assert diagnostics[-2].found == "'1..5', and 3994 more like it"
+
+
+def test_faults_of_a_hundred_shapes_are_reported_and_the_others_counted():
+    letters = [first + second for first in "ABCDEFGHIJKL" for second in "XYZABCDEFGH"]  # one is AA, another BB, ...
+    _, diagnostics = scan("\n".join(letters[:130]), "part.ngc")
     assert [fault.code for fault in diagnostics] == ["G201"] * 100 + ["G199"]
     assert diagnostics[-1].found == "and 30 more"
 

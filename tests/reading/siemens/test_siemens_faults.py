@@ -156,6 +156,11 @@ def test_a_program_needs_an_end():
         assert found(HEAD + "G1 X1\n" + end, needs_end=True)[0] is not None
 
 
+def test_moves_without_a_place_name_the_coordinate_that_was_never_given():
+    assert found("G90 G54\nG0 X1 Y2\nG1 X3 F100\nM30")[1] == [("G436", 2, 0, "Z was never given")]
+    assert found("G90 G54\nS100 M3\nM30")[1] == [("G420", 0, 0, "3 lines")]
+
+
 def test_faults_behind_the_first_are_reported_and_consequences_are_not():
     _, diagnostics = found("G90 G54\nG1 X1 Y2 Z3 F?\nX5\nRND=3\nM77 X4\nM30")
     assert [each[:2] for each in diagnostics] == [("G101", 2), ("G602", 4), ("G401", 5)]
