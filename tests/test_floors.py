@@ -17,7 +17,7 @@ BY_FLOOR = (
     "geometry",
     "system report",
     "reading toolpath",
-    "writing machine",
+    "writing machine removal",
     "options planning",
     "certificate",
     "posting",

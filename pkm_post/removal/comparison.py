@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Comparison: what is left of a stock over the part, and what is missing of the part. Units: mm, mm^3."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.removal.mesh_distance import mesh_distances
+from pkm_post.removal.stock import Stock, shares
+from pkm_post.removal.surface import patches
+
+REACH = 6.0
+"""Steps up to which distances from the part are measured."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A stock and a part.
+
+    Attributes:
+        left: volume of the stock outside the part, mm^3.
+        gouged: volume of the part outside the stock, mm^3.
+        thickest: largest distance of the surface of the stock from the part, outside it, mm; at most ``limit``.
+        deepest: largest distance inside it, mm; at most ``limit``.
+        thickest_at: (3,) where, in {C}.
+        deepest_at: (3,) where, in {C}.
+        limit: largest distance that is measured, mm.
+    """
+
+    left: float
+    gouged: float
+    thickest: float
+    deepest: float
+    thickest_at: Array
+    deepest_at: Array
+    limit: float
+
+
+def part_distances(stock: Stock, triangles: Array) -> Array:
+    """Distances of the nodes of a stock from the part, (B, 512), negative inside, up to ``REACH`` steps.
+
+    Args:
+        stock: the material.
+        triangles: (T, 3, 3) of the part in {C}, anticlockwise as seen from outside.
+    """
+    return mesh_distances(stock.grid, triangles, REACH * stock.grid.step)
+
+
+def compare(stock: Stock, part: Array) -> Comparison:
+    """Compare a stock with the part.
+
+    Args:
+        stock: the material.
+        part: from ``part_distances``.
+    """
+    cell, limit = stock.grid.step**3, REACH * stock.grid.step
+    more = shares(stock.field, stock.grid.step) - shares(part, stock.grid.step)
+    passed = np.flatnonzero((stock.field.min(axis=1) < stock.band) & (stock.field.max(axis=1) > -stock.band))
+    found = list(patches(stock, passed, part))
+    values = np.concatenate([patch.values for patch in found] or [np.zeros(0)])
+    points = np.concatenate([patch.points for patch in found] or [np.zeros((0, 3))])
+    if not len(values):
+        values, points = np.zeros(1), np.full((1, 3), np.nan)
+    high, low = int(np.argmax(values)), int(np.argmin(values))
+    return Comparison(
+        left=float(np.maximum(more, 0.0).sum(dtype=np.float64) * cell),
+        gouged=float(np.maximum(-more, 0.0).sum(dtype=np.float64) * cell),
+        thickest=float(np.clip(values[high], 0.0, limit)),
+        deepest=float(np.clip(-values[low], 0.0, limit)),
+        thickest_at=points[high],
+        deepest_at=points[low],
+        limit=limit,
+    )
