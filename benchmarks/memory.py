@@ -71,7 +71,9 @@ class Meter:
         self.steps = []
 
     def begins(self, name, _=0.0):
-        """A step begins, and the one before it ends."""
+        """A step begins, and the one before it ends; further calls within a step are passed over."""
+        if self.steps and self.steps[-1][0] == name:
+            return
         now, most = memory("VmRSS"), memory("VmHWM")
         Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
         self.steps.append((name, now, most, time.perf_counter(), time.process_time()))

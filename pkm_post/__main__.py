@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The command line: ``python3 -m pkm_post`` or the console script ``pkm-post``."""
 
+import gc
+import os
 import sys
 
-from pkm_post.cli import main
+gc.set_threshold(100_000, 20, 20)  # hardly any of the many objects that imports make is garbage
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # threads of our own share the work; those would only wait busily
+
+from pkm_post.cli import main  # noqa: E402 - NumPy reads the variable when it is loaded
 
 
 def run() -> int:

@@ -4,7 +4,6 @@
 from typing import TYPE_CHECKING
 
 from pkm_post import at_first_use
-from pkm_post.machine.best_position import best_position
 from pkm_post.machine.description.presets import find_machine, machine_named, presets, templates
 from pkm_post.machine.kinematics.forward import (
     ForwardSolution,
@@ -36,14 +35,15 @@ from pkm_post.machine.reach.findings import DISPLAY_UNITS, ReachFinding, finding
 from pkm_post.machine.reach.limit_checks import reach_margins
 from pkm_post.machine.reach.path_checks import reach_faults, reach_findings
 from pkm_post.machine.reach.pose_path import PosePath
-from pkm_post.machine.reach_map import reach_map
 from pkm_post.machine.spin.policy import ZERO_TORSION, SpinPolicy, SpinRule
 
 if TYPE_CHECKING:
     from pkm_post.machine.calibration.calibrate_file import calibrate_file
     from pkm_post.machine.collisions.check import find_collisions, placed_workpiece, setup_names
     from pkm_post.machine.collisions.coverage import NO_SETUP
+    from pkm_post.machine.reach.best_position import best_position
     from pkm_post.machine.reach.collision_mesh import CollisionMesh
+    from pkm_post.machine.reach.reach_map import reach_map
     from pkm_post.machine.reach.report import ReachReport, check_reach
     from pkm_post.machine.spin.apply import with_spin
     from pkm_post.machine.spin.optimise import least_normalised_margins
@@ -54,7 +54,9 @@ else:
             "calibration.calibrate_file": "calibrate_file",
             "collisions.check": "find_collisions placed_workpiece setup_names",
             "collisions.coverage": "NO_SETUP",
+            "reach.best_position": "best_position",
             "reach.collision_mesh": "CollisionMesh",
+            "reach.reach_map": "reach_map",
             "reach.report": "ReachReport check_reach",
             "spin.apply": "with_spin",
             "spin.optimise": "least_normalised_margins",

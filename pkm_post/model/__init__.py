@@ -15,6 +15,7 @@ from pkm_post.model.checkpoint import checkpoint, checkpoints
 from pkm_post.model.columns import (
     Array,
     ColumnBuilder,
+    distinct,
     find_rows,
     freeze,
     in_pieces,
@@ -98,6 +99,7 @@ __all__ = [
     "corner_reach",
     "coverage_summary",
     "errors",
+    "distinct",
     "find_rows",
     "freeze",
     "gauge_lengths",

@@ -149,6 +149,14 @@ def select_rows(column: Array, rows: Array) -> Array:
     return np.take(column, rows, axis=0)
 
 
+def distinct(values: Array) -> Array:
+    """The different values of a column, ascending; ``numpy.unique`` would import masked arrays for it."""
+    ordered = np.sort(values, axis=None)
+    new = np.ones(len(ordered), dtype=np.bool_)
+    new[1:] = ordered[1:] != ordered[:-1]
+    return np.asarray(ordered[new])
+
+
 def find_rows(ascending: Array, rows: Array) -> tuple[Array, Array]:
     """Where ``rows``, (N,), occur in ``ascending``, (M,): their indices in both, (K,) each."""
     if not len(ascending):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import functools
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -17,7 +18,8 @@ from typing import Any, TypeVar
 
 from pkm_post.model import Diagnostic, Machine, Refused, Tolerances, checkpoints, errors
 from pkm_post.options import Options
-from pkm_post.writing import Controller
+from pkm_post.system import result_files
+from pkm_post.writing import Controller, manifest
 
 T = TypeVar("T")
 Findings = tuple[Diagnostic, ...]
@@ -175,6 +177,16 @@ class PostContext:
     def tolerances(self) -> Tolerances:
         """The requested tolerances."""
         return self.options.tolerances
+
+    @property
+    def trajectory(self) -> Path:
+        """The path of the trajectory file."""
+        return self.beside(result_files.TRAJECTORY)
+
+    @functools.cached_property
+    def trajectory_hash(self) -> str:
+        """Fingerprint of the trajectory file, which nothing changes once it has been read back."""
+        return manifest.fingerprint_of_file(self.trajectory)
 
     def beside(self, ending: str) -> Path:
         """The path of an accompanying file."""

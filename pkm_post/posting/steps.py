@@ -85,9 +85,11 @@ def post(
         require_usable(program_path.name)
         results = staged(program_path.parent, manifest.manifest_name(program_path.stem))
         with memory_guard(str(program_path)), results as folder:
-            parts, report = _all_steps(run, program, machine, folder / program_path.name, options, setup)
+            settings = run.value(controller_settings(machine))
+            frame = PostContext(folder / program_path.name, machine, *settings, options)
+            parts, report = _all_steps(run, frame, program, setup)
             run.end()
-            manifest.write(folder, program_path.stem)
+            manifest.write(folder, program_path.stem, {frame.trajectory.name: frame.trajectory_hash})
             posted = _posted(run, program_path, sorted(os.listdir(folder)), parts, report)
     except OSError as fault:
         if fault is run.raised_outside:
@@ -119,23 +121,18 @@ def _another(name: str) -> str:
     return f"also {name}"
 
 
-def _all_steps(
-    run: Run, program: Program, machine: Machine, path: Path, options: Options, setup: Setup
-) -> tuple[list[str], dict[str, Any]]:
+def _all_steps(run: Run, frame: PostContext, program: Program, setup: Setup) -> tuple[list[str], dict[str, Any]]:
     """Run the steps in order; return the names of the parts of the program, and the content of the report."""
-    frame = PostContext(path, machine, *run.value(controller_settings(machine)), options)
     trajectory = _stored_trajectory(run, frame, program)
     motion, feed, names, covered = _written_program(run, frame, trajectory, setup)
     played, certificate, files = _certificate(run, frame, trajectory, motion, covered)
-    results = Results(trajectory, machine, motion, played, certificate, frame.tolerances, feed, program.reading, files)
+    results = Results(
+        trajectory, frame.machine, motion, played, certificate, frame.tolerances, feed, program.reading, files
+    )
     report = _report(run, frame, results)
-    for name in options.also:
+    for name in frame.options.also:
         _write_another(run, frame, name, results)
     return names, report
-
-
-def _trajectory_hash(frame: PostContext) -> str:
-    return manifest.fingerprint_of_file(frame.beside(result_files.TRAJECTORY))
 
 
 def _stored_trajectory(run: Run, frame: PostContext, program: Program) -> Trajectory:
@@ -149,9 +146,8 @@ def _stored_trajectory(run: Run, frame: PostContext, program: Program) -> Trajec
 def _store(run: Run, frame: PostContext, program: Program) -> Path:
     """Place a program and write its trajectory; return the path of the file."""
     placed = run.value(trajectory_of(program, frame.machine, frame.options))
-    stored = frame.beside(result_files.TRAJECTORY)
-    trajectory_file.write(replace(placed, tolerances=frame.tolerances), stored)
-    return stored
+    trajectory_file.write_in_private(replace(placed, tolerances=frame.tolerances), frame.trajectory)
+    return frame.trajectory
 
 
 def _written_program(
@@ -212,7 +208,7 @@ def _motion_program(run: Run, frame: PostContext, trajectory: Trajectory, struts
 
 def _write_parts(frame: PostContext, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
     controller, settings, machine = frame.controller, frame.settings, frame.machine
-    records = program_files.source_hash_lines(_trajectory_hash(frame), machine.fingerprint)
+    records = program_files.source_hash_lines(frame.trajectory_hash, machine.fingerprint)
     heading = [*summary.heading(trajectory), *records]
     parts = tuple(map(program_files.with_own_hash, controller.program_parts(struts, settings, heading)))
     names = outputs.write_parts(frame.path, parts)
@@ -243,7 +239,7 @@ def write_program(
     faults = (*faults, *frame.controller.faults(plan.struts, frame.settings, path.name))
     if errors(faults):
         return None, faults
-    trajectory_file.write(trajectory, frame.beside(result_files.TRAJECTORY))
+    trajectory_file.write(trajectory, frame.trajectory)
     return _write_parts(frame, trajectory, plan.struts), faults
 
 
@@ -256,7 +252,7 @@ def _certificate(
         measured = certify(played, frame.path.name, trajectory, frame.machine, motion, frame.tolerances, covered)
         certificate = run.value(measured)
         notes.append(f"{certificate.instants} instants")
-        files = summary.hashes(digests, _trajectory_hash(frame))
+        files = summary.hashes(digests, frame.trajectory_hash)
     return played, certificate, files
 
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from pkm_post.certificate import certify, machine_fault, reconstruct, values_beyond_machine
+from pkm_post.certificate import certify, machine_fault, values_beyond_machine
 from pkm_post.machine import reach_faults
 from pkm_post.model import Certificate, Diagnostic, Machine, Place, Refused, StrutMotion, Trajectory, errors
 from pkm_post.report import Results, summary
@@ -118,6 +118,8 @@ def certified(
     if tolerances is None:
         raise Refused([Diagnostic("T105", Place(str(trajectory)), "none are in its header")])
     _refuse_for_machine(planned, machine, name)
+    from pkm_post.certificate import reconstruct  # only this needs it
+
     result, faults = reconstruct(struts, name, planned, machine, tolerances)
     if result is None:
         raise Refused(faults)

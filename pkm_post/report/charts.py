@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array
+from pkm_post.model import distinct
 
 _WIDTH, _HEIGHT = 1000.0, 240.0
 _LEFT, _RIGHT, _TOP, _BOTTOM = 78.0, 990.0, 14.0, 210.0
@@ -106,7 +107,7 @@ def decimated(time: Array, values: Array, columns: int = _COLUMNS) -> tuple[Arra
     """A line over increasing times, or the minimum and maximum of each column of pixels if it has more points."""
     if len(time) <= 2 * columns:
         return time, values
-    first = np.unique(np.searchsorted(time, np.linspace(time[0], time[-1], columns)))
+    first = distinct(np.searchsorted(time, np.linspace(time[0], time[-1], columns)))
     both = np.stack([np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)], axis=1)
     both[1::2] = both[1::2, ::-1].copy()  # alternate up and down: half the ink of going up in every column
     return np.repeat(time[first], 2), both.ravel()

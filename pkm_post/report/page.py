@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds
-from pkm_post.model import FeedStudy, Kind, Motion, StrutMotion, Trajectory
+from pkm_post.model import FeedStudy, Kind, Motion, StrutMotion, Trajectory, distinct
 from pkm_post.report.charts import Band, Line, chart, legend
 from pkm_post.report.results import Results
 
@@ -104,7 +104,7 @@ def _path(trajectory: Trajectory, motion: Motion) -> str:
         {"first": int(a), "last": int(b), "operation": int(operation[a]), "rapid": bool(rapid[a])}
         for a, b in zip(first, last, strict=True)
     ]
-    some = np.unique(np.linspace(0, len(motion) - 1, _AXES).astype(int))
+    some = distinct(np.linspace(0, len(motion) - 1, _AXES).astype(int))
     some = some[trajectory.kind[motion.segment[some]] != Kind.RAPID]
     axes = np.stack([motion.tip[some], motion.tip[some] + _AXIS_LENGTH * motion.axis[some]], axis=1)
     shown = tip if rapid.all() else tip[~rapid]
@@ -126,7 +126,7 @@ def _instants(time_ms: Array, count: int) -> tuple[Array, Array, Array]:
     Where there are more knots than instants, every n-th is taken.
     """
     knots = time_ms[:: max(1, len(time_ms) // count)] / 1000
-    time = np.unique(np.concatenate([knots, np.linspace(0.0, time_ms[-1] / 1000, max(2, count - len(knots)))]))
+    time = distinct(np.concatenate([knots, np.linspace(0.0, time_ms[-1] / 1000, max(2, count - len(knots)))]))
     interval = np.clip(np.searchsorted(time_ms, 1000 * time, side="right") - 1, 0, len(time_ms) - 2)
     share = (1000 * time - time_ms[interval]) / (time_ms[interval + 1] - time_ms[interval])
     return time, interval, np.clip(share, 0.0, 1.0)

@@ -28,6 +28,7 @@ from pkm_post.model import (
     Motion,
     Trajectory,
     coverage_summary,
+    distinct,
 )
 from pkm_post.report.results import Results
 
@@ -85,7 +86,7 @@ def report(results: Results) -> dict[str, Any]:
         "tolerances": {
             "tip_mm": tolerances.tip,
             "axis_deg": _rounded(np.degrees(tolerances.axis), 9),
-            "tip_of_program_mm": _rounded(np.unique(trajectory.tip_tolerance[trajectory.tip_tolerance > 0]), 9),
+            "tip_of_program_mm": _rounded(distinct(trajectory.tip_tolerance[trajectory.tip_tolerance > 0]), 9),
         },
         "motion": {
             "duration_s": certificate.duration,
@@ -140,7 +141,7 @@ def feed_shares(trajectory: Trajectory, feed: FeedStudy) -> dict[str, Any]:
     if not len(asked):
         return {}
     limits = []
-    for number in np.unique(limit[limit >= 0]).tolist():
+    for number in distinct(limit[limit >= 0]).tolist():
         these = np.flatnonzero(limit == number)
         slowest = these[np.argmin(planned[these] / asked[these])]
         place = trajectory.place(int(row[slowest]))

@@ -14,6 +14,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
+from types import MappingProxyType
 from typing import BinaryIO
 
 import pkm_post
@@ -61,9 +62,15 @@ def manifest_name(stem: str) -> str:
     return stem + ENDING
 
 
-def write(folder: Path, stem: str) -> None:
-    """Write the manifest of all files in a folder into it; identical files yield identical bytes."""
-    files = {path.name: fingerprint_of_file(path) for path in sorted(folder.iterdir())}
+def write(folder: Path, stem: str, known: Mapping[str, str] = MappingProxyType({})) -> None:
+    """Write the manifest of all files in a folder into it; identical files yield identical bytes.
+
+    Args:
+        folder: the results, and nothing else.
+        stem: their stem.
+        known: fingerprints of large files that were computed before, by name.
+    """
+    files = {path.name: known.get(path.name) or fingerprint_of_file(path) for path in sorted(folder.iterdir())}
     content = {"format": _FORMAT, "product": f"PKM Post {pkm_post.__version__}", "files": files}
     text = json.dumps(content, indent=2) + "\n"
     (folder / manifest_name(stem)).write_text(text, encoding="ascii", newline="\n")

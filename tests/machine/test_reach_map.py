@@ -10,7 +10,7 @@ from machines import direction
 from pkm_post.cli import main
 from pkm_post.machine.description.presets import machine_named
 from pkm_post.machine.reach.limit_checks import reach_margins
-from pkm_post.machine.reach_map import NOWHERE, reach_map
+from pkm_post.machine.reach.reach_map import NOWHERE, reach_map
 
 LENGTH = 120.0
 STEP = np.radians(1.0)

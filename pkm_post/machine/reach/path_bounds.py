@@ -24,7 +24,7 @@ from pkm_post.machine.kinematics.inverse import lever_arms
 from pkm_post.machine.kinematics.placed_machine import PlacedMachine
 from pkm_post.machine.reach.findings import CheckedLimit, ReachFinding
 from pkm_post.machine.reach.pose_path import PosePath, turn_between
-from pkm_post.model import Machine
+from pkm_post.model import Machine, distinct
 from pkm_post.system import in_workers
 
 _AT_ONCE = 2048
@@ -117,7 +117,7 @@ class _PathCheck:
             share: share of the least computed margin that skipped rows must have.
         """
         sum_of_changes = np.cumsum(self.change)
-        marks = np.unique(np.append(np.arange(0, len(self.way), stride), len(self.way) - 1))
+        marks = distinct(np.append(np.arange(0, len(self.way), stride), len(self.way) - 1))
         self.look(marks)
         start, end = marks[:-1], marks[1:]
         while len(start):
@@ -253,7 +253,7 @@ class _Stretches:
     def of(cls, machine: Machine, way: PosePath) -> _Stretches:
         travel, turn = np.cumsum(way.travel), np.cumsum(way.turn())
         number = np.floor((travel + _longest_arm(machine, way) * turn) / _STRETCH)
-        ends = np.unique(np.concatenate([[0], np.flatnonzero(np.diff(number)) + 1, [len(way) - 1]]))
+        ends = distinct(np.concatenate([[0], np.flatnonzero(np.diff(number)) + 1, [len(way) - 1]]))
         begin, end = ends[: max(len(ends) - 1, 1)], ends[min(len(ends) - 1, 1) :]  # a path of one row has no extent
         row = (begin + end) // 2
         farther = [np.maximum(sums[row] - sums[begin], sums[end] - sums[row]) for sums in (travel, turn)]

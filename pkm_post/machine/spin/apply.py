@@ -12,7 +12,6 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.geometry import Array, cross, norm, torsion
-from pkm_post.machine.spin.optimise import optimise_spin
 from pkm_post.machine.spin.policy import SpinPolicy, SpinRule
 from pkm_post.model import Diagnostic, EventKind, Machine, Trajectory
 
@@ -79,6 +78,8 @@ def _by_policy(
     if policy.rule is SpinRule.FILE:
         return trajectory, ()
     if policy.rule is SpinRule.OPTIMISED:
+        from pkm_post.machine.spin.optimise import optimise_spin
+
         return optimise_spin(replace(trajectory, spin=np.zeros(len(trajectory))), machine, policy), ()
     if policy.rule is SpinRule.ZERO:
         return replace(trajectory, spin=np.zeros(len(trajectory))), ()

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pkm_post.model import Array
+from pkm_post.model import Array, distinct
 from pkm_post.reading.gcode.blocks import Blocks, SubprogramFile, located
 from pkm_post.reading.gcode.codes import (
     ARCS,
@@ -69,14 +69,14 @@ def _left_out(blocks: Blocks, flavour: Flavour, names: Collection[str]) -> tuple
     """
     g, m = (np.isin(codes, _named(codes, names, letter)) for letter, codes in (("G", blocks.g), ("M", blocks.m)))
     refused = {*flavour.unsupported, *SPINDLE_SYNCHRONISED}
-    fixed = [code for code in np.unique(blocks.g[g]).tolist() if code in flavour.g_codes or name_of(code) in refused]
+    fixed = [code for code in distinct(blocks.g[g]).tolist() if code in flavour.g_codes or name_of(code) in refused]
     moves = blocks.has("X") | blocks.has("Y") | blocks.has("Z")
     return g & ~np.isin(blocks.g, fixed) & ~moves[blocks.g_row], m & ~np.isin(blocks.m, [*flavour.m_codes])
 
 
 def _named(codes: Array, names: Collection[str], letter: str) -> list[int]:
     """The codes that some names stand for."""
-    return [code for code in np.unique(codes).tolist() if name_of(code, letter) in names]
+    return [code for code in distinct(codes).tolist() if name_of(code, letter) in names]
 
 
 def _with_equivalents(blocks: Blocks, flavour: Flavour) -> Blocks:
@@ -93,8 +93,8 @@ def _notes(blocks: Blocks, letter: str, found: Array, text: Callable[[int], str]
     """A line for each code that is left out: why, and where it stands."""
     codes, rows = (blocks.g, blocks.g_row) if letter == "G" else (blocks.m, blocks.m_row)
     return [
-        f"{name_of(code, letter)}{text(code)} ({_lines(blocks, np.unique(blocks.line[rows[found & (codes == code)]]))})"
-        for code in np.unique(codes[found]).tolist()
+        f"{name_of(code, letter)}{text(code)} ({_lines(blocks, distinct(blocks.line[rows[found & (codes == code)]]))})"
+        for code in distinct(codes[found]).tolist()
     ]
 
 
@@ -113,7 +113,7 @@ def _without(blocks: Blocks, g: Array, m: Array, flavour: Flavour) -> Blocks:
     """Drop codes, and the words of their blocks that no other code there takes."""
     if not (g.any() or m.any()):
         return blocks
-    rows = np.unique(np.concatenate([blocks.g_row[g], blocks.m_row[m]])).tolist()
+    rows = distinct(np.concatenate([blocks.g_row[g], blocks.m_row[m]])).tolist()
     kept = replace(
         blocks, g=blocks.g[~g], g_row=blocks.g_row[~g], m=blocks.m[~m], m_row=blocks.m_row[~m]
     )  # fmt: skip

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from pkm_post.model import Array, map_rows
+from pkm_post.model import Array, distinct, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import (
     NONE,
@@ -66,7 +66,7 @@ def _marked(blocks: Blocks, rows: Array) -> Array:
 
 def _unknown_codes(blocks: Blocks, flavour: Flavour, faults: BlockDiagnostics) -> None:
     for letter, codes, rows, known in _codes(blocks, flavour):
-        for code in np.unique(codes).tolist():
+        for code in distinct(codes).tolist():
             if code in known:
                 continue
             word = word_of(code, letter)
@@ -130,7 +130,7 @@ def _rows_that_use(letter: str, blocks: Blocks, flavour: Flavour) -> Array:
     for _, codes, row, known in _codes(blocks, flavour):
         users = [
             code
-            for code in np.unique(codes).tolist()
+            for code in distinct(codes).tolist()
             if code not in known or (known[code].group is not Group.MOTION and letter in known[code].letters)
         ]
         rows.append(row[np.isin(codes, users)])
@@ -170,7 +170,7 @@ def _spaced(words: Sequence[Word]) -> tuple[str | Word, ...]:
 
 def _missing_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     known = modal.flavour.g_codes
-    for code in np.unique(blocks.g).tolist():
+    for code in distinct(blocks.g).tolist():
         for letter in known[code].needs if code in known else "":
             missing = _marked(blocks, blocks.g_row[blocks.g == code]) & ~blocks.has(letter)
             faults.add_where("G405", missing, lambda _, c=code, w=letter: (word_of(c), f" without {w}"))  # type: ignore[misc]
@@ -201,7 +201,7 @@ def _values(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     for row in rows[np.abs(diameter - np.round(diameter)) > 0].tolist():
         faults.add("G406", row, Word("D", blocks.word("D")[row]))
     rows = blocks.g_row[blocks.g == 40]
-    for row in np.unique(rows[blocks.word("P")[rows] < 0]).tolist():
+    for row in distinct(rows[blocks.word("P")[rows] < 0]).tolist():
         faults.add("G406", row, Word("P", blocks.word("P")[row]))
 
 
@@ -224,7 +224,7 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
         "G407", both, lambda row: (word_of(modal.takes_axes[row]), " and ", word_of(explicit[row]), " in one block")
     )
     takers = blocks.g_row[np.isin(blocks.g, modal.flavour.axis_takers())]
-    for row in np.unique(takers[1:][takers[1:] == takers[:-1]]).tolist():
+    for row in distinct(takers[1:][takers[1:] == takers[:-1]]).tolist():
         faults.add("G407", row, _spaced([word_of(code) for code in blocks.g_of(row).tolist()]))
     directly = modal.programmed[Group.ONCE] == 530
     wrong = directly & (motion != 0) & (motion != 10) & (not modal.flavour.g53_is_rapid)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model import Array, is_uniform, map_rows, uniform
+from pkm_post.model import Array, distinct, is_uniform, map_rows, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import ARCS, CYCLES, NONE, Group
 from pkm_post.reading.gcode.flavours import RS274, Flavour
@@ -124,7 +124,7 @@ def _by_group(blocks: Blocks, flavour: Flavour) -> dict[Group, tuple[Array, Arra
         (blocks.g, blocks.g_row, flavour.g_codes),
         (blocks.m, blocks.m_row, flavour.m_codes),
     ):
-        used = {table[code].group for code in np.unique(codes).tolist() if code in table}
+        used = {table[code].group for code in distinct(codes).tolist() if code in table}
         for group in used:
             of_group = np.isin(codes, [code for code, meaning in table.items() if meaning.group is group])
             by_group[group] = rows[of_group], codes[of_group].astype(_CODE)

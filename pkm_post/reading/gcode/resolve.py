@@ -13,7 +13,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Kind, Program, Tool, checkpoint, is_uniform, map_rows, read_only, uniform
+from pkm_post.model import (
+    Array,
+    Diagnostic,
+    Kind,
+    Program,
+    Tool,
+    checkpoint,
+    distinct,
+    is_uniform,
+    map_rows,
+    read_only,
+    uniform,
+)
 from pkm_post.reading.gcode.adapt import adapted
 from pkm_post.reading.gcode.arcs import arc_geometry, path_lengths, split_turns, with_known_ends
 from pkm_post.reading.gcode.blocks import Blocks
@@ -215,7 +227,7 @@ def _check_lost_places(motions: Motions, lost: Array, faults: BlockDiagnostics) 
     if not lost.any():
         return
     first = int(np.flatnonzero(lost)[0])
-    for block in np.unique(motions.block[~motions.known & (motions.motion != 0) & (motions.block > first)]).tolist():
+    for block in distinct(motions.block[~motions.known & (motions.motion != 0) & (motions.block > first)]).tolist():
         faults.add("G416", block, "a cut after the tool was turned without control of its tip")
 
 
@@ -276,7 +288,7 @@ def _compensation(
 
 def _tools(numbers: Array, options: ReadOptions) -> dict[int, Tool]:
     """The tools in use, by number."""
-    called = [number for number in np.unique(numbers).tolist() if number != NONE]
+    called = [number for number in distinct(numbers).tolist() if number != NONE]
     tools = {number: replace(tool, number=number) for number in called if (tool := options.tool(number))}
     initial = options.tool(0)
     return {initial.number: initial} if initial and not tools else tools

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.model import Array, map_rows
+from pkm_post.model import Array, distinct, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
@@ -51,7 +51,7 @@ def check_tilted_planes(blocks: Blocks, modal: Modal, axes: Array, faults: Block
     _report(faults, np.flatnonzero(inside & (rotary | tilts)), "words for the tool axis within the plane")
     others = blocks.g_row[blocks.g == 680]
     _report(faults, others[inside[others]], "G68 within the plane")
-    turns = np.unique(blocks.g_row[blocks.g == TURN_TO_PLANE])
+    turns = distinct(blocks.g_row[blocks.g == TURN_TO_PLANE])
     _report(faults, turns[~inside[turns]], "G53.1 without G68.2")
     third = blocks.word("P")
     for row in np.flatnonzero((modal.programmed[Group.ROTATION] == TILTED_PLANE) & (third > 0)).tolist():
@@ -68,7 +68,7 @@ def check_cuts_from_turns(blocks: Blocks, motions: Motions, faults: BlockDiagnos
         return
     cuts = np.flatnonzero((motions.motion != 0) & (motions.block > turns[0]))
     _, known = motions.starts(cuts)
-    for block in np.unique(motions.block[cuts[~known]]).tolist():
+    for block in distinct(motions.block[cuts[~known]]).tolist():
         faults.add("G416", block, "a cut from where the tool was turned to")
 
 

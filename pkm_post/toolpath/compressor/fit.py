@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.geometry import Array, length_of
+from pkm_post.model import distinct
 from pkm_post.toolpath.compressor.deviation import Allowed, by_allowed, deviation
 from pkm_post.toolpath.compressor.levels import Curves, fitted_curves
 from pkm_post.toolpath.compressor.polylines import Places, Polylines
@@ -47,7 +48,7 @@ def fit(point: Array, extent: Array, count: Array, allowed: Allowed) -> tuple[Sp
 def _placed(polyline: Polylines, curves: Curves) -> Splines:
     """The curves as pieces between nodes; each row ends at its path length."""
     grids = curves.grids
-    run, number = grids.numbers(np.unique(curves.nodes))
+    run, number = grids.numbers(distinct(curves.nodes))
     s = number * grids.width[run]
     state = at_nodes(grids, curves.coefficients, run, number)
     begin = np.flatnonzero(run[1:] == run[:-1])

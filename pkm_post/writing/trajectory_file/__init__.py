@@ -2,6 +2,6 @@
 """The binary trajectory file ``.pkmt``: a ``model.Trajectory`` on disk [paper section 5.1]."""
 
 from pkm_post.writing.trajectory_file.reader import decode, read
-from pkm_post.writing.trajectory_file.writer import write
+from pkm_post.writing.trajectory_file.writer import write, write_in_private
 
-__all__ = ["decode", "read", "write"]
+__all__ = ["decode", "read", "write", "write_in_private"]

@@ -48,11 +48,35 @@ def write(trajectory: Trajectory, path: Path) -> None:
         ValueError: the trajectory violates an invariant, or has a text that is not Unicode.
         OSError: the file cannot be written.
     """
+    _require_readable(trajectory)
+    with staged(path.parent) as folder:
+        _write(trajectory, folder / path.name)
+
+
+def write_in_private(trajectory: Trajectory, path: Path) -> None:
+    """The same in a private folder: nobody else sees the file, and whoever made the folder puts it on the disk.
+
+    Args:
+        trajectory: the trajectory to write.
+        path: the file, in an existing folder.
+
+    Raises:
+        ValueError: as above.
+        OSError: the file cannot be written.
+    """
+    _require_readable(trajectory)
+    _write(trajectory, path)
+
+
+def _require_readable(trajectory: Trajectory) -> None:
     faults = violations(trajectory) or contradictions(trajectory)
     if faults:
         raise ValueError(f"expected a trajectory that can be read back, got {'; '.join(faults)}")
+
+
+def _write(trajectory: Trajectory, path: Path) -> None:
     strings = _Strings.of(trajectory)
-    with staged(path.parent) as folder, (folder / path.name).open("wb") as file:
+    with path.open("wb") as file:
         file.write(bytes(HEADER.itemsize))
         header = _header(trajectory, strings)
         _write_tables(file, header, trajectory, strings)
