@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pkm_post.reading.cldata.options import CONTOUR_DATA, DIALECTS
     from pkm_post.reading.editing import TextFile, renumbered
     from pkm_post.reading.gcode.cycles import CycleSeries, Strokes, cycle_fault, cycle_strokes
-    from pkm_post.reading.highlighting import Colour, coloured_spans, underlined
+    from pkm_post.reading.highlighting import Colour, coloured_spans, shown_language, underlined
     from pkm_post.reading.listing import listing_lines
     from pkm_post.reading.mesh_file import MESH_READERS, STEP_SUFFIXES, mesh_of_triangles, read_mesh
     from pkm_post.reading.preview import CheckedText, check_text, tip_paths_of_line
@@ -36,7 +36,7 @@ else:
             "cldata.options": "CONTOUR_DATA DIALECTS",
             "editing": "TextFile renumbered",
             "gcode.cycles": "CycleSeries Strokes cycle_fault cycle_strokes",
-            "highlighting": "Colour coloured_spans underlined",
+            "highlighting": "Colour coloured_spans shown_language underlined",
             "listing": "listing_lines",
             "mesh_file": "MESH_READERS STEP_SUFFIXES mesh_of_triangles read_mesh",
             "preview": "CheckedText check_text tip_paths_of_line",
@@ -82,6 +82,7 @@ __all__ = [
     "read_mesh",
     "read_part_program",
     "renumbered",
+    "shown_language",
     "tip_paths_of_line",
     "underlined",
 ]

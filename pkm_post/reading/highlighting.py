@@ -15,7 +15,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from pkm_post.reading.language import Language
+from pkm_post.reading.language import Language, language_of
 
 LONGEST = 10_000
 """Maximum number of coloured characters of a line."""
@@ -108,12 +108,57 @@ CLDATA: tuple[Row, ...] = (
 )
 """Colour table of CL data."""
 
-TABLES: dict[Language, tuple[Row, ...]] = {Language.GCODE: GCODE, Language.CLDATA: CLDATA}
+_NO_LETTER = r"(?<![\w$])"
+_SIEMENS_FLOW = (
+    r"IF|ELSE|ENDIF|FOR|TO|ENDFOR|WHILE|ENDWHILE|LOOP|ENDLOOP|REPEATB?|UNTIL|CASE|OF|DEFAULT|GOTO[BCFS]?"
+    r"|DEF|PROC|RET|MCALL"
+)
+_SIEMENS_FUNCTIONS = (
+    r"A?SIN|A?COS|TAN|ATAN2|SQRT|ABS|POT|TRUNC|ROUND(?:UP)?|LN|EXP|MINVAL|MAXVAL|BOUND|[AID]C|AC[NP]"  # AC(1) as well
+)
+SIEMENS: tuple[Row, ...] = (
+    Row(Colour.TEXT, ("text",), r"\"[^\"]*\"?"),
+    Row(Colour.COMMENT, (), r";.*"),
+    Row(Colour.LINE_NUMBER, ("letter", "number", "name", "sign"), rf"{_NO_LETTER}(?:N\s*\d+|[A-Z_][A-Z_]\w*\s*:(?!=))"),
+    Row(Colour.OPERATOR, ("name",), rf"{_NO_LETTER}(?:DIV|MOD|AND|X?OR|NOT|B_(?:AND|X?OR|NOT))(?!\w)"),
+    Row(Colour.KEYWORD, ("name",), rf"{_NO_LETTER}(?:{_SIEMENS_FLOW})(?!\w)"),
+    Row(Colour.KEYWORD, ("sign", "name"), r"%_N_\w+"),
+    Row(Colour.FUNCTION, ("name",), rf"{_NO_LETTER}(?:{_SIEMENS_FUNCTIONS})(?=\s*\()"),
+    Row(Colour.PARAMETER, ("letter", "number", "name"), rf"{_NO_LETTER}(?:R\s*\d+|R(?=\s*\[)|\$[A-Z_]+\w*)"),
+    Row(Colour.WORD, ("letter", "number", "name"), r"[A-Z]\d+(?=\s*=(?!=))|[A-Z_][A-Z_]\w*(?=\s*=(?!=))"),
+    Row(Colour.KEYWORD, ("name",), r"[A-Z_][A-Z_]\w*"),
+    Row(Colour.WORD, ("letter",), r"[A-Z]"),
+    Row(Colour.NUMBER, ("number",), r"'[HB][0-9A-F]+'|(?:\d+\.?\d*|\.\d+)(?:EX[+-]?\d+)?"),
+    Row(Colour.OPERATOR, ("sign",), r"<<|<>|[<>=]=|[-+*/(),\[\]=<>:%.]"),
+)
+"""Colour table of Siemens's language; its terminals are the kinds of ``siemens.tokens``, and several rows have one."""
+
+TABLES: dict[Language, tuple[Row, ...]] = {
+    Language.GCODE: GCODE,
+    Language.CLDATA: CLDATA,
+    Language.SIEMENS: SIEMENS,
+}
 
 _COMPILED = {
     language: re.compile("|".join(f"(?P<r{number}>{row.pattern})" for number, row in enumerate(rows)), re.I | re.A)
     for language, rows in TABLES.items()
 }
+
+
+def shown_language(file: str, content: bytes, flavour: str | None) -> Language:
+    """The language in whose colours a text is shown.
+
+    Args:
+        file: name, with a known suffix.
+        content: of the file, or as much as tells its language.
+        flavour: as chosen, None to guess it.
+    """
+    from pkm_post.reading.siemens import siemens_evidence
+
+    language = language_of(file, content)
+    if language is not Language.GCODE or flavour not in (None, "siemens"):
+        return language
+    return Language.SIEMENS if flavour or siemens_evidence(content, file) else language
 
 
 def coloured_spans(line: str, language: Language) -> Iterator[Span]:

@@ -18,6 +18,8 @@ class Language(enum.Enum):
 
     GCODE = "G-code"
     CLDATA = "CL data"
+    SIEMENS = "Siemens's language"
+    """Counts as G-code by its name and among options; the content tells it."""
 
 
 SUFFIXES: dict[str, Language | None] = {

@@ -147,6 +147,29 @@ def editor_colours_the_lines_in_sight_of_a_large_file():
     return reported
 
 
+@step
+def editor_shows_siemens_language_in_colours_of_its_own():
+    editor = _editor()
+    before, file = editor.widget.file, editor.widget.file.with_name("part.nc")
+    text = 'MSG("A")\nG0 X0 Y0 Z5\nCYCLE81(10,0,2,-5)\nM30\n'
+    file.write_text(text, encoding="ascii")
+    editor.open_file(file)
+
+    def colours():
+        formats = editor.widget.text.document().firstBlock().layout().formats()
+        return [each.format.foreground().color().name() for each in formats if each.start == 4]
+
+    until(lambda: not editor.widget.busy() and colours())
+    from pkm_post.freecad_gui.editor.text_view import DARK, LIGHT
+    from pkm_post.reading import Colour
+
+    expected = (DARK if editor.widget.text.is_dark() else LIGHT)[Colour.TEXT]
+    until(lambda: colours() == [expected])
+    reported = {"colours": colours(), "expected": expected}
+    reported["back"] = editor.open_file(before)
+    return reported
+
+
 def _widest_gap(call, done):
     """Milliseconds that the window had no turn at the most, from a call until it is done; for the log.
 

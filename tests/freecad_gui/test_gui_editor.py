@@ -44,6 +44,11 @@ def test_editor_colours_only_the_lines_in_sight(session):
     assert (found["size"], found["back"]) == ("19998 blocks, 0 arcs, 0.0 mm", True)
 
 
+def test_siemens_language_has_its_colours(session):
+    found = session["editor_shows_siemens_language_in_colours_of_its_own"]
+    assert (found["colours"], found["back"]) == ([found["expected"]], True)
+
+
 def test_100000_lines_are_loaded_and_changed_in_slices_and_undone_in_one_step(session):
     found = session["editor_leaves_the_window_its_turns_in_100000_lines"]
     print("widest gaps between two turns of the window, ms by the clock and of the processor:", found["gaps"])

@@ -10,8 +10,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from pkm_post.reading.grammar import BLOCK, STATEMENT, parser_of
-from pkm_post.reading.highlighting import LONGEST, TABLES, Colour, coloured_spans
+from pkm_post.reading.highlighting import LONGEST, TABLES, Colour, coloured_spans, shown_language
 from pkm_post.reading.language import Language
+from pkm_post.reading.siemens.tokens import tokens_of
 
 BLANKS = {"BLANKS", "BLANK"}
 GRAMMARS = {Language.GCODE: BLOCK, Language.CLDATA: STATEMENT}
@@ -23,7 +24,7 @@ def colour_of(terminal, language):
     return colour
 
 
-@pytest.mark.parametrize("language", Language)
+@pytest.mark.parametrize("language", GRAMMARS)
 def test_every_terminal_has_one_colour_and_no_colour_a_terminal_that_is_none(language):
     named = [terminal for row in TABLES[language] for terminal in row.terminals]
     assert sorted(named) == sorted({terminal.name for terminal in parser_of(GRAMMARS[language]).terminals} - BLANKS)
@@ -100,6 +101,46 @@ def test_gcode_is_coloured_as_it_is_read(line):
 def test_cl_data_is_coloured_as_it_is_read(line):
     parser_of(STATEMENT).parse(line)
     assert_coloured_as_read(line, Language.CLDATA)
+
+
+S_LINES = {
+    "N10 G90 G54": "N10:line number G:word 90:number G:word 54:number",
+    '/1 N5 MSG("A;B") ; TO THE END': '/:operator 1:number N5:line number MSG:keyword (:operator "A;B":text ):operator',
+    "X=AC(R1+2.5) CR=.5 A3=-1": "X:word =:operator AC:function (:operator R1:parameter +:operator 2.5:number ):operator"
+    " CR:word =:operator .5:number A3:word =:operator -:operator 1:number",
+    "IF (R1==5) AND NOT B_OR GOTOF END_1": "IF:keyword (:operator R1:parameter ==:operator 5:number"
+    " ):operator AND:operator NOT:operator B_OR:operator GOTOF:keyword END_1:keyword",
+    "END_1: R[R2]=SIN(30) MOD 2": "END_1::line number R:parameter [:operator R2:parameter ]:operator =:operator"
+    " SIN:function (:operator 30:number ):operator MOD:operator 2:number",
+    "CYCLE81(10,,2,-5)": "CYCLE81:keyword (:operator 10:number ,:operator ,:operator 2:number ,:operator -:operator"
+    " 5:number ):operator",
+    "%_N_PART_MPF": "%_N_PART_MPF:keyword",
+    "DEF REAL DEPTH=1EX-3 $P_UIFR='HFF'": "DEF:keyword REAL:keyword DEPTH:word =:operator 1EX-3:number"
+    " $P_UIFR:parameter =:operator 'HFF':number",
+    "G1X10F=R1": "G:word 1:number X:word 10:number F:word =:operator R1:parameter",
+}
+
+
+@pytest.mark.parametrize("line", S_LINES)
+def test_siemens_language_is_coloured(line):
+    spans = [*coloured_spans(line, Language.SIEMENS)]
+    found = [f"{line[span.start : span.end]}:{span.colour.value}" for span in spans]
+    assert " ".join(each for each in found if not each.endswith(":comment")) == S_LINES[line]
+    program = line.split(" ; ")[0]
+    tokens = [(each.column - 1, each.column - 1 + len(each.text)) for each in tokens_of(program)]
+    edges = {span.start for span in spans} | {span.end for span in spans}
+    assert all(any(span.start <= start and end <= span.end for span in spans) for start, end in tokens)
+    assert edges - {len(line)} <= {edge for token in tokens for edge in token} | {len(program) + 1}
+
+
+def test_the_language_is_that_of_name_flavour_and_content():
+    text = b'N10 MSG("A")\nTRAORI\nCYCLE81(10,0,2,-5)\n'
+    assert shown_language("part.nc", text, None) is Language.SIEMENS
+    assert shown_language("part.nc", text, "fanuc") is Language.GCODE
+    assert shown_language("part.nc", b"G1 X1\n", None) is Language.GCODE
+    assert shown_language("part.nc", b"G1 X1\n", "siemens") is Language.SIEMENS
+    assert shown_language("part.mpf", b"G1 X1\n", None) is Language.SIEMENS
+    assert shown_language("part.cls", text, "siemens") is Language.CLDATA
 
 
 _FUNCTIONS = st.sampled_from(["sin", "EXP", "tan", "ln", "round", "sqrt"])

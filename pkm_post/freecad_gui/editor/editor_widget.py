@@ -29,6 +29,7 @@ from pkm_post.reading import (
     is_part_program,
     language_of,
     renumbered,
+    shown_language,
     tip_paths_of_line,
 )
 
@@ -36,6 +37,8 @@ translate = FreeCAD.Qt.translate
 
 _NEW = "new.ngc"
 """The name of a text without a file: it counts as G-code."""
+_HEAD = 65536
+"""Characters of a text that tell its language."""
 _NUMBERED = re.compile(r"^[ \t]*/?[ \t]*N\d", re.M)
 """The start of a block that ``renumbered`` has numbered."""
 
@@ -77,8 +80,13 @@ class EditorWidget(QtWidgets.QWidget):
         return str(self.file or _NEW)
 
     def language(self) -> Language:
-        """The language of the text."""
+        """The language of the text by its name: Siemens's is G-code."""
         return language_of(self.name())
+
+    def _shown_language(self) -> Language:
+        """The language in whose colours the text is shown."""
+        head = self.text.toPlainText()[:_HEAD].encode("utf-8", "surrogatepass")
+        return shown_language(self.name(), head, self.reading.chosen().flavour)
 
     def set_file(self, file: Path | None) -> None:
         """Attach the text to this file."""
@@ -89,7 +97,7 @@ class EditorWidget(QtWidgets.QWidget):
             self.reading.chosen(), unit=None, contour_data=None, cl_dialect=None, cycle_values=(), allow_open_end=False
         )
         self.reading.show_reading(kept if obj is None else reading_of(obj))
-        self.text.set_language(self.language())
+        self.text.set_language(self._shown_language())
         self.reading.offer_for(self.language())
         self.checker.request()
 
@@ -141,8 +149,9 @@ class EditorWidget(QtWidgets.QWidget):
     def _show_status(self, checked: CheckedText) -> None:
         self.program, size = checked.program, checked.size
         self.findings.show_all(checked.diagnostics)
-        lines = self.text.toPlainText().split("\n")
-        self.text.set_marks(marks_of(checked.diagnostics, lines, self.language()))
+        lines, language = self.text.toPlainText().split("\n"), self._shown_language()
+        self.text.set_language(language)
+        self.text.set_marks(marks_of(checked.diagnostics, lines, language))
         text = translate("PKM_Editor", "{} blocks, {} arcs, {:.1f} mm")
         self.size.setText("" if size is None else text.format(size.blocks, size.arcs, size.length))
         self._show_block()

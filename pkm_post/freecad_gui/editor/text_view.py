@@ -174,7 +174,7 @@ class TextView(QtWidgets.QPlainTextEdit):
     def _colour_lines_in_sight(self) -> None:
         formats = _formats(self.is_dark())
         for block, _ in self.lines_in_sight():
-            state = 2 * block.revision() + (self._language is Language.CLDATA)
+            state = len(Language) * block.revision() + [*Language].index(self._language)
             if block.userState() != state:
                 block.setUserState(state)
                 spans = coloured_spans(block.text(), self._language)
