@@ -13,6 +13,8 @@ FUZZ_VENV := .venv-fuzz
 TRANSLATIONS_VENV := .venv-translations
 PACKAGE_VENV := .venv-package
 OLDEST_VENV := .venv-oldest
+OLDEST_TESTS := tests/writing tests/report tests/system/test_decimals.py tests/posting/test_verify.py \
+	tests/cli/test_batch.py tests/test_executors.py
 DOCS_VENV := .venv-docs
 CONFORMANCE := .conformance
 NPM_PACKAGES := kaitai-struct-compiler@0.11.0 kaitai-struct@0.11.0 js-yaml@5.5.0
@@ -91,9 +93,8 @@ package: $(VENV)/made ## build a wheel in dist/, and post G-code and a document 
 	"$$run" post first.ngc trial.FCStd --tool-length 1=120 --work-offset=0,0,250 --out out; \
 	test -s out/first.pmc -a -s out/trial.pmc
 
-oldest: $(OLDEST_VENV)/made ## run a part of the tests with the oldest NumPy that is allowed
-	@PYTHONPATH=. $(OLDEST_VENV)/bin/python -m pytest -q -p no:cacheprovider -n 2 tests/options tests/writing tests/report \
-		tests/system/test_decimals.py tests/posting/test_verify.py $(ARGS)
+oldest: $(OLDEST_VENV)/made ## run a part of the tests with the oldest NumPy that is allowed, and those of executors with Dask
+	@PYTHONPATH=. MPLBACKEND=Agg $(OLDEST_VENV)/bin/python -m pytest -q -p no:cacheprovider -n 2 $(OLDEST_TESTS) $(ARGS)
 
 docs: $(DOCS_VENV)/made ## make the pages as a site in site/, with every link checked
 	@$(DOCS_VENV)/bin/python tools/make_site.py $(DOCS_VENV)/pages
@@ -116,6 +117,7 @@ $(CONFORMANCE)/made: Makefile
 	@touch $@
 
 # A virtual environment with the packages of one dependency group of pyproject.toml.
+$(OLDEST_VENV)/made: LATEST = 3.12
 $(VENV)/made: GROUP = dev
 $(FUZZ_VENV)/made: GROUP = fuzz
 $(TRANSLATIONS_VENV)/made: GROUP = translations
@@ -124,6 +126,8 @@ $(DOCS_VENV)/made: GROUP = docs
 $(VENV)/made $(FUZZ_VENV)/made $(TRANSLATIONS_VENV)/made $(OLDEST_VENV)/made $(DOCS_VENV)/made: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or newer is needed: make PYTHON=python3.NN" >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] > tuple(map(int, "$(or $(LATEST),9.9)".split("."))))' || \
+		{ echo "$(@D) is for Python up to $(LATEST): make PYTHON=python$(LATEST)" >&2; exit 1; }
 	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \
 		{ echo "$(PYTHON) cannot make a virtual environment. Please type: sudo apt-get install python3-venv" >&2; exit 1; }
 	@echo "making $(@D)"

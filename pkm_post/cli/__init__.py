@@ -23,7 +23,9 @@ from pkm_post.system import MEMORY_FAULTS, THREADS, ThreadCountError, memory_dia
 
 __all__ = ["main", "run_batch"]
 
-if not TYPE_CHECKING:
+if TYPE_CHECKING:
+    from pkm_post.cli.batch import run_batch
+else:
     __getattr__ = at_first_use(__name__, {"batch": "run_batch"})
 
 _COMMANDS = {

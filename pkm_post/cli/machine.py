@@ -27,6 +27,18 @@ def add_commands(commands: Any) -> None:
     calibrating.add_argument("file", metavar="NAME_OR_FILE")
     calibrating.add_argument("measurements", type=Path, metavar="MEASUREMENTS.csv", help="see docs/machine-file.md")
     calibrating.add_argument("--out", required=True, type=Path, metavar="NEW.toml", help="the machine file to write")
+    calibrating.add_argument(
+        "--runs",
+        type=partial(_whole_number, 2, 1_000_000),
+        metavar="N",
+        help="repeat it with noise N times, to see how far the tool tip may be off",
+    )
+    calibrating.add_argument(
+        "--noise",
+        type=_noise,
+        metavar="MM,DEG,MM",
+        help="standard deviations of measured tip, axis and length (default: of the lengths, by what is left of them)",
+    )
     calibrating.set_defaults(run=_calibrate)
     exporting = actions.add_parser("export", help="write the kinematics of a machine for its controller")
     exporting.add_argument("file", metavar="NAME_OR_FILE")
@@ -70,6 +82,22 @@ def _length(text: str) -> float:
 _LONGEST = 10000.0
 
 
+def _noise(text: str) -> tuple[float, ...]:
+    words = text.split(",")
+    try:
+        values = tuple(float(word) for word in words)
+    except ValueError:
+        values = ()
+    if len(values) != 3 or not all(0.0 <= value <= _LARGEST_NOISE for value in values):
+        raise argparse.ArgumentTypeError(
+            f"expected MM,DEG,MM, three numbers from 0 to {_LARGEST_NOISE:g}, got {text!r}"
+        )
+    return values
+
+
+_LARGEST_NOISE = 10.0
+
+
 def _list(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.machine import presets, templates
 
@@ -94,9 +122,17 @@ def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 
 def _calibrate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.machine import calibrate_file
+    from pkm_post.machine import MeasurementNoise, Repetition, calibrate_file
 
-    report, diagnostics = calibrate_file(namespace.file, namespace.measurements, namespace.out)
+    if namespace.noise and not namespace.runs:
+        print("--noise: say with --runs how often the calibration is repeated", file=sys.stderr)
+        return 2
+    noise = None
+    if namespace.noise:
+        tip, angle, length = namespace.noise
+        noise = MeasurementNoise(tip, math.radians(angle), length)
+    repetition = Repetition(namespace.runs, noise) if namespace.runs else None
+    report, diagnostics = calibrate_file(namespace.file, namespace.measurements, namespace.out, repetition)
     print_diagnostics(diagnostics)
     if report is None:
         return 1

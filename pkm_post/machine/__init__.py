@@ -38,7 +38,9 @@ from pkm_post.machine.reach.pose_path import PosePath
 from pkm_post.machine.spin.policy import ZERO_TORSION, SpinPolicy, SpinRule
 
 if TYPE_CHECKING:
-    from pkm_post.machine.calibration.calibrate_file import calibrate_file
+    from pkm_post.machine.calibration.calibrate_file import Repetition, calibrate_file, read_measurements
+    from pkm_post.machine.calibration.identification import MeasuredPoses, calibrate
+    from pkm_post.machine.calibration.uncertainty import MeasurementNoise, calibration_uncertainty
     from pkm_post.machine.collisions.check import find_collisions, placed_workpiece, setup_names
     from pkm_post.machine.collisions.coverage import NO_SETUP
     from pkm_post.machine.reach.best_position import best_position
@@ -51,7 +53,9 @@ else:
     __getattr__ = at_first_use(
         __name__,
         {
-            "calibration.calibrate_file": "calibrate_file",
+            "calibration.calibrate_file": "Repetition calibrate_file read_measurements",
+            "calibration.identification": "MeasuredPoses calibrate",
+            "calibration.uncertainty": "MeasurementNoise calibration_uncertainty",
             "collisions.check": "find_collisions placed_workpiece setup_names",
             "collisions.coverage": "NO_SETUP",
             "reach.best_position": "best_position",
@@ -70,12 +74,15 @@ __all__ = [
     "DRIFT_SHARES",
     "Demand",
     "KnotState",
+    "MeasuredPoses",
+    "MeasurementNoise",
     "ToolPoses",
     "ToolPoses",
     "CollisionMesh",
     "SpinPolicy",
     "ToolPoses",
     "ReachReport",
+    "Repetition",
     "ReachFinding",
     "SpinRule",
     "ForwardSolution",
@@ -84,7 +91,9 @@ __all__ = [
     "attitude_rates",
     "best_position",
     "bounded_demand",
+    "calibrate",
     "calibrate_file",
+    "calibration_uncertainty",
     "map_to_tool",
     "finding_diagnostics",
     "find_collisions",
@@ -110,6 +119,7 @@ __all__ = [
     "reach_faults",
     "reach_findings",
     "reach_map",
+    "read_measurements",
     "reach_margins",
     "scaled_jacobian",
     "solve_regular",

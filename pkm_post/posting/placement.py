@@ -7,6 +7,7 @@ spin; and the effective set-up, where files named by the user override those of 
 
 from __future__ import annotations
 
+from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
@@ -21,8 +22,13 @@ from pkm_post.toolpath import compensate, place, with_copies, with_surface_speed
 Findings = tuple[Diagnostic, ...]
 
 
-def trajectory_of(program: Program, machine: Machine, options: Options) -> tuple[Trajectory | None, Findings]:
-    """The compensated program and its copies on the machine, with their spin; or None with diagnostics."""
+def trajectory_of(
+    program: Program, machine: Machine, options: Options, executor: Executor | None = None
+) -> tuple[Trajectory | None, Findings]:
+    """The compensated program and its copies on the machine, with their spin; or None with diagnostics.
+
+    An executor distributes the search for a spin, if there is one.
+    """
     offset, diagnostics = work_offset(machine, options)
     moved, faults = compensate(program, options.contours, options.actual_tools)
     diagnostics += faults
@@ -42,7 +48,7 @@ def trajectory_of(program: Program, machine: Machine, options: Options) -> tuple
     diagnostics += faults
     if placed is None:
         return None, diagnostics
-    turned, faults = with_spin(placed, machine, options.spin)
+    turned, faults = with_spin(placed, machine, options.spin, executor)
     return turned, diagnostics + faults
 
 

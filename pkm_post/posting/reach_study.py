@@ -7,6 +7,7 @@ after each option. No file is written.
 
 from __future__ import annotations
 
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -59,7 +60,12 @@ class Study:
 
 
 def study(
-    program: Program, machine: Machine, options: Options, free: str = ""
+    program: Program,
+    machine: Machine,
+    options: Options,
+    free: str = "",
+    starts: int = 1,
+    executor: Executor | None = None,
 ) -> tuple[Study | None, tuple[Diagnostic, ...]]:
     """Check a program on a machine.
 
@@ -68,6 +74,8 @@ def study(
         machine: geometry and limits.
         options: work offset, spin and compensation, and the set-up.
         free: letters of ``position.FREEDOMS`` in which the workpiece may be moved; empty for none.
+        starts: number of positions from which a better one is looked for.
+        executor: distributes the searches for position and spin; by default they run in this process.
 
     Returns:
         The study, or None when the program cannot be placed; and the diagnostics, those of the checks included.
@@ -79,14 +87,14 @@ def study(
     stages = [("as it is, zero torsion", least_normalised_margins(placed, machine))]
     if free:
         of_machine = placed.operation >= len(program.operations)  # the routes to tool changes and back
-        offset = best_position(placed, machine, free, fixed=of_machine).machine_from_work
+        offset = best_position(placed, machine, free, None, of_machine, starts, executor).machine_from_work
         untwisted, options = replace(untwisted, work_offset=offset), replace(options, work_offset=offset)
         placed, diagnostics = trajectory_of(program, machine, untwisted)
         if placed is None:
             return None, diagnostics
         stages.append((f"moved in {', '.join(free)}", least_normalised_margins(placed, machine)))
     if options.spin.rule is not SpinRule.ZERO:
-        placed, diagnostics = trajectory_of(program, machine, options)
+        placed, diagnostics = trajectory_of(program, machine, options, executor)
         if placed is None:
             return None, diagnostics
         stages.append((f"spin {options.spin.rule.value}", least_normalised_margins(placed, machine)))

@@ -9,7 +9,7 @@ are started together share what there is.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 VARIABLE = "PKM_THREADS"
@@ -68,19 +68,41 @@ def quotas(groups: Path, group_of_this_process: Path) -> Iterator[int]:
 
     Args:
         groups: where control groups are mounted.
-        group_of_this_process: the file that names the group. [Linux, Documentation/admin-guide/cgroup-v2, cpu.max]
+        group_of_this_process: the file that names the groups, a line ``number:controllers:path`` for each hierarchy;
+            that of version 2 names no controllers. [Linux, Documentation/admin-guide/cgroup-v2, cpu.max;
+            Documentation/scheduler/sched-bwc, cpu.cfs_quota_us]
     """
     try:
-        line = next(line for line in group_of_this_process.read_text().splitlines() if line.startswith("0::"))
-    except (OSError, StopIteration):
+        lines = group_of_this_process.read_text().splitlines()
+    except OSError:
         return
-    group = groups / line[3:].strip().lstrip("/")
+    for line in lines:
+        controllers, _, path = line.partition(":")[2].partition(":")
+        if not controllers:
+            yield from _quotas_above(groups, path, _quota_of_version_2)
+        elif "cpu" in controllers.split(","):
+            yield from _quotas_above(groups / "cpu", path, _quota_of_version_1)  # a link where several share a mount
+
+
+def _quotas_above(mounted: Path, path: str, quota_of: Callable[[Path], list[str]]) -> Iterator[int]:
+    """Yield the limits of a group and of those that it is in; in a container some of these are not to be seen."""
+    group = mounted / path.strip().lstrip("/")
     for folder in (group, *group.parents):
-        if not folder.is_relative_to(groups):
+        if not folder.is_relative_to(mounted):
             return
         try:
-            quota, period = (folder / "cpu.max").read_text().split()
+            quota, period = quota_of(folder)
         except (OSError, ValueError):
             continue
         if quota.isdigit() and period.isdigit() and int(period) > 0:
             yield max(1, -(-int(quota) // int(period)))
+
+
+def _quota_of_version_2(folder: Path) -> list[str]:
+    """Time of all processors in a period, and the period; the word max where there is no limit."""
+    return (folder / "cpu.max").read_text().split()
+
+
+def _quota_of_version_1(folder: Path) -> list[str]:
+    """The same; -1 where there is no limit."""
+    return [(folder / name).read_text().strip() for name in ("cpu.cfs_quota_us", "cpu.cfs_period_us")]

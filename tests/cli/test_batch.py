@@ -2,10 +2,10 @@
 """A list of files is posted by any executor to the same bytes, and goes on where it was interrupted."""
 
 import csv
-import sys
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from executors import EXECUTORS, AtOnce
 
 from pkm_post.cli import batch as batch_command
 from pkm_post.cli import main, run_batch
@@ -43,36 +43,22 @@ def posted_files(monkeypatch):
     return posted
 
 
-class AtOnce(Executor):
-    """An executor that does the work when it is submitted."""
-
-    def submit(self, function, /, *arguments, **more):
-        future = Future()
-        future.set_result(function(*arguments, **more))
-        return future
-
-
 def contents(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-def test_the_bytes_are_those_of_any_executor_and_of_posting(jobs, tmp_path):
-    tables, results = [], []
-    # Python starts the processes of a pool with the running program, which in FreeCAD is FreeCAD.
-    pool = ThreadPoolExecutor(2) if "FreeCAD" in sys.modules else ProcessPoolExecutor(2)
-    for executor in (AtOnce(), pool):
-        with executor:
-            rows = run_batch(jobs, executor, 2)
-        assert [row.state for row in rows] == ["posted", "posted"], rows
-        tables.append((tmp_path / "jobs-results.csv").read_bytes())
-        results.append(contents(tmp_path / "results"))
-        for path in (tmp_path / "results").iterdir():
-            path.unlink()
-    assert tables[0] == tables[1]
-    assert results[0] == results[1]
-    words = ["post", str(tmp_path / "a.ngc"), "--tool-length", "1=120", "--work-offset=0,0,250"]
-    assert main([*words, "--out", str(tmp_path / "alone")]) == 0
-    assert {name: results[0][name] for name in contents(tmp_path / "alone")} == contents(tmp_path / "alone")
+@pytest.mark.parametrize("name", EXECUTORS)
+def test_the_bytes_are_those_of_any_executor_and_of_posting(jobs, tmp_path, name):
+    with EXECUTORS[name]() as executor:
+        rows = run_batch(jobs, executor, 2)
+    assert [(row.file, row.state, row.programs) for row in rows] == [
+        ("a.ngc", "posted", "a.pmc"),
+        ("b.ngc", "posted", "b.pmc"),
+    ]
+    for file, more in (("a.ngc", []), ("b.ngc", ["--tip-tolerance", "0.002"])):
+        words = ["post", str(tmp_path / file), "--tool-length", "1=120", "--work-offset=0,0,250", *more]
+        assert main([*words, "--out", str(tmp_path / "alone")]) == 0
+    assert contents(tmp_path / "results") == contents(tmp_path / "alone")
 
 
 def test_it_goes_on_where_it_was_interrupted(jobs, tmp_path, posted_files, capsys):
@@ -103,7 +89,7 @@ def test_a_refused_file_stops_no_other_and_is_in_the_table(jobs, tmp_path, monke
     with ThreadPoolExecutor(2) as pool:
         rows = run_batch(jobs, pool, 2)
     assert [(row.file, row.state) for row in rows] == [("a.ngc", "refused"), ("b.ngc", "posted")]
-    assert "a.ngc: line 1:1: error G420" in rows[0].messages
+    assert "a.ngc: line 2:1: error G436" in rows[0].messages
     assert {variables["PKM_THREADS"] for _, variables in posted_files} == {"3"}
     assert main(["batch", str(jobs)]) == 1
 

@@ -69,6 +69,20 @@ def test_control_groups_limit_it(tmp_path):
     assert list(quotas(tmp_path, tmp_path / "missing")) == []
 
 
+def test_control_groups_of_version_1_limit_it(tmp_path):
+    job = tmp_path / "cpu" / "slurm" / "job"
+    job.mkdir(parents=True)
+    named = tmp_path / "named"
+    named.write_text("9:cpuset:/other\n4:cpu,cpuacct:/slurm/job\n1:name=systemd:/x\n")
+    assert list(quotas(tmp_path, named)) == []
+    for folder, quota in ((job, -1), (job.parent, 350000), (tmp_path / "cpu", 900000)):
+        (folder / "cpu.cfs_quota_us").write_text(f"{quota}\n")
+        (folder / "cpu.cfs_period_us").write_text("100000\n")
+    assert list(quotas(tmp_path, named)) == [4, 9]
+    named.write_text("4:cpu,cpuacct:/docker/of-the-host\n0::/\n")
+    assert list(quotas(tmp_path, named)) == [9]
+
+
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system has no affinity")
 def test_affinity_limits_it():
     before = os.sched_getaffinity(0)

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator
+from concurrent.futures import Executor
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +21,13 @@ from pkm_post.machine.calibration.identification import (
     MeasuredPoses,
     calibrate,
     combination_text,
+)
+from pkm_post.machine.calibration.uncertainty import (
+    CalibrationUncertainty,
+    MeasurementNoise,
+    calibration_uncertainty,
+    noise_of_residuals,
+    parameters_of,
 )
 from pkm_post.machine.description.presets import find_machine, machine_named
 from pkm_post.machine.description.reader import machine_of
@@ -113,13 +122,36 @@ _WRITTEN = 1e-6
 """mm: largest change of a number by formatting."""
 
 
-def calibrate_file(machine_file: str, measurements: Path, out: Path) -> tuple[str | None, tuple[Diagnostic, ...]]:
+@dataclass(frozen=True)
+class Repetition:
+    """Repeat a calibration with noise, to see how far the machine may be off.
+
+    Attributes:
+        runs: how often, 2 or more.
+        noise: of a measurement; None for noise of the lengths alone, as what is left of them shows.
+        executor: distributes the runs; by default they run in this process.
+    """
+
+    runs: int
+    noise: MeasurementNoise | None = None
+    executor: Executor | None = None
+
+    def of(self, found: Calibration, measured: MeasuredPoses) -> CalibrationUncertainty:
+        """The uncertainty of a calibration."""
+        noise = self.noise or noise_of_residuals(found)
+        return calibration_uncertainty(found, measured, noise, self.runs, executor=self.executor)
+
+
+def calibrate_file(
+    machine_file: str, measurements: Path, out: Path, repetition: Repetition | None = None
+) -> tuple[str | None, tuple[Diagnostic, ...]]:
     """Calibrate a machine and write its new file.
 
     Args:
         machine_file: name of a preset or path of a machine file.
         measurements: CSV file of poses and lengths.
         out: the machine file to write.
+        repetition: for the uncertainty in the report.
 
     Returns:
         A report for the user, or None when nothing was written; and the diagnostics.
@@ -137,17 +169,18 @@ def calibrate_file(machine_file: str, measurements: Path, out: Path) -> tuple[st
     diagnostics += faults
     if text is None:
         return None, diagnostics
+    uncertainty = repetition.of(found, measured) if repetition else None
     try:
         with staged(out.parent) as folder:
             (folder / out.name).write_text(text, encoding="utf-8", newline="")
     except OSError as fault:
         return None, (*diagnostics, write_fault(out, fault))
-    return report(machine, found, len(measured)), diagnostics
+    return report(machine, found, len(measured), uncertainty), diagnostics
 
 
-def report(machine: Machine, found: Calibration, poses: int) -> str:
+def report(machine: Machine, found: Calibration, poses: int, uncertainty: CalibrationUncertainty | None = None) -> str:
     """Format the result, strut by strut: change of each parameter, and its standard deviation below."""
-    change = _parameters(found.machine) - _parameters(machine)
+    change = parameters_of(found.machine) - parameters_of(machine)
     worst, worst_strut = np.unravel_index(np.abs(found.left_over).argmax(), found.left_over.shape)
     rows = [
         f"poses {poses}, rank {found.rank} of 42, condition {found.condition:.4g}",
@@ -160,7 +193,19 @@ def report(machine: Machine, found: Calibration, poses: int) -> str:
         rows.append(" ".join([f"strut {strut + 1}", *(f"{value:10.4f}" for value in change[strut])]))
         rows.append(" ".join([" " * 7, *(f"{value:10.4f}" for value in found.deviation[strut])]))
     rows += [f"not determined: {combination_text(strut, shares)}" for strut, shares in found.undetermined]
-    return "\n".join(rows)
+    return "\n".join([*rows, *(_uncertainty_rows(uncertainty) if uncertainty else [])])
+
+
+def _uncertainty_rows(uncertainty: CalibrationUncertainty) -> list[str]:
+    noise, spread, half, most = uncertainty.noise, uncertainty.deviation, uncertainty.tip_median, uncertainty.tip_most
+    strut, number = np.unravel_index(spread.argmax(), spread.shape)
+    tip_axis_and_length = f"{noise.tip:.4g} mm, {np.degrees(noise.angle):.4g} deg and {noise.length:.4g} mm"
+    rows = [
+        f"{uncertainty.runs} calibrations again, with noise of {tip_axis_and_length} in tip, axis and length:",
+        f"tool tip off by {half:.4f} mm in half of the poses, by less than {most:.4f} mm in 95 of 100",
+        f"largest standard deviation {spread.max():.4f} mm: {PARAMETERS[number]} of strut {strut + 1}",
+    ]
+    return rows + ([f"{uncertainty.failed} more did not converge"] if uncertainty.failed else [])
 
 
 def _diagnostics(found: Calibration, file: str) -> tuple[Diagnostic, ...]:
@@ -193,10 +238,6 @@ def _calibrated_text(
     written, faults = machine_of(text.encode("utf-8"), out)
     if written is None:
         return None, faults
-    if np.abs(_parameters(written) - _parameters(found.machine)).max() > _WRITTEN:
+    if np.abs(parameters_of(written) - parameters_of(found.machine)).max() > _WRITTEN:
         return None, (Diagnostic("M204", Place(str(path)), "its entries were not found again"),)
     return text, ()
-
-
-def _parameters(machine: Machine) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-    return np.hstack([machine.base_joints, machine.platform_joints, machine.length_offset[:, None]])

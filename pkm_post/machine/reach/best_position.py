@@ -4,13 +4,16 @@
 Takes a trajectory with the work offset it was placed with; returns another work offset, with the margins before and
 after. The job includes its mirrored and rotated copies, since they are in the trajectory; it excludes the path from the
 home pose to its first point. Only a few poses are decisive: the search uses this active set, and whenever its result
-makes another pose the worst one, that pose is added.
+makes another pose the worst one, that pose is added. The search climbs from one start or several; these are
+independent, so any executor of ``concurrent.futures`` can distribute them.
 """
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
+from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,6 +67,8 @@ _POSES_THAT_JOIN = 8
 _ROUNDS = 50
 _EQUAL = 1e-6
 """Score difference that counts as zero."""
+_START_RANGE = np.array([200.0, 200.0, 200.0, *np.radians([10.0, 10.0, 180.0])])
+"""mm, rad: how far starts are from the position as it is, in each freedom."""
 
 
 @dataclass(frozen=True)
@@ -110,6 +115,8 @@ def best_position(
     free: str = "xyzc",
     weights: dict[int, float] | None = None,
     fixed: Array | None = None,
+    starts: int = 1,
+    executor: Executor | None = None,
 ) -> WorkpiecePosition:
     """Search for the work offset.
 
@@ -119,16 +126,41 @@ def best_position(
         free: letters of ``FREEDOMS`` that may change.
         weights: weights of the shares, by column; the stroke by default.
         fixed: (N,) segments that stay on the machine when the workpiece moves: those of tool changes; none by default.
+        starts: number of positions to climb from: that of the trajectory, and others at random but always the same;
+            the best result counts, of equal ones the first.
+        executor: distributes the climbs; by default they run in this process.
 
     Raises:
-        ValueError: a letter is unknown, or there is none.
+        ValueError: a letter is unknown, or there is none; or there is no start.
     """
     if not free or set(free) - set(FREEDOMS):
         raise ValueError(f"free: expected letters of {FREEDOMS!r}, got {free!r}")
+    if starts < 1:
+        raise ValueError(f"starts: expected 1 or more, got {starts}")
     job = _job(trajectory, machine, np.zeros(len(trajectory), dtype=bool) if fixed is None else fixed)
-    every, weights = np.arange(len(job.tip)), weights or {STROKE: 1.0}
     chosen = np.array([letter in free for letter in FREEDOMS])
-    move, active = np.zeros(6), _first_poses(job)
+    task = functools.partial(_climb, job, weights or {STROKE: 1.0}, chosen)
+    moves = _starts(starts) * chosen
+    climbs = list(executor.map(task, moves) if executor else map(task, moves))
+    move = climbs[int(np.argmax([least for _, least in climbs]))][0]
+    every = np.arange(len(job.tip))
+    return WorkpiecePosition(
+        machine_from_work=_matrix(move, job.middle) @ trajectory.machine_from_work,
+        before=job.normalised_margins(np.zeros((1, 6)), every)[0].min(axis=0),
+        after=job.normalised_margins(move[None], every)[0].min(axis=0),
+    )
+
+
+def _starts(count: int) -> Array:
+    """Moves to climb from, (count, 6), the first of them none; more starts begin with the same ones."""
+    random = np.random.default_rng(_SEED)
+    return np.vstack([np.zeros(len(FREEDOMS)), random.uniform(-_START_RANGE, _START_RANGE, (count - 1, len(FREEDOMS)))])
+
+
+def _climb(job: _Job, weights: dict[int, float], chosen: Array, start: Array) -> tuple[Array, float]:
+    """The move that a climb from a start ends with, (6,), and the score of its worst pose."""
+    every = np.arange(len(job.tip))
+    move, active, least = start, _first_poses(job), -math.inf
     # Even if the rounds do not suffice, the reported result is evaluated at every pose.
     for _ in range(_ROUNDS):
 
@@ -139,14 +171,11 @@ def best_position(
 
         move = pattern_search(worst, move, _FIRST_STEP * chosen, _LAST_STEP)
         scores = score(job.normalised_margins(move[None], every)[0], weights)
-        if scores.min() >= worst(move[None])[0] - _EQUAL:
+        least = float(scores.min())
+        if least >= worst(move[None])[0] - _EQUAL:
             break
         active = np.union1d(active, np.argsort(scores)[:_POSES_THAT_JOIN])
-    return WorkpiecePosition(
-        machine_from_work=_matrix(move, job.middle) @ trajectory.machine_from_work,
-        before=job.normalised_margins(np.zeros((1, 6)), every)[0].min(axis=0),
-        after=job.normalised_margins(move[None], every)[0].min(axis=0),
-    )
+    return move, least
 
 
 def _job(trajectory: Trajectory, machine: Machine, fixed: Array) -> _Job:

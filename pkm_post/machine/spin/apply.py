@@ -7,6 +7,7 @@ in rad, or diagnostics where the policy leaves the spin undefined.
 
 from __future__ import annotations
 
+from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
@@ -45,7 +46,7 @@ _SAME = 1e-6
 
 
 def with_spin(
-    trajectory: Trajectory, machine: Machine, policy: SpinPolicy
+    trajectory: Trajectory, machine: Machine, policy: SpinPolicy, executor: Executor | None = None
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """The trajectory with the spin of a policy, or diagnostics where the policy leaves it undefined.
 
@@ -55,8 +56,9 @@ def with_spin(
         trajectory: at least one segment.
         machine: geometry and limits, for a search.
         policy: rule of the spin and its parameters.
+        executor: distributes the search; by default it runs in this process.
     """
-    turned, diagnostics = _by_policy(trajectory, machine, policy)
+    turned, diagnostics = _by_policy(trajectory, machine, policy, executor)
     return (None if turned is None else _as_tools_change(turned, machine)), diagnostics
 
 
@@ -73,14 +75,15 @@ def _as_tools_change(trajectory: Trajectory, machine: Machine) -> Trajectory:
 
 
 def _by_policy(
-    trajectory: Trajectory, machine: Machine, policy: SpinPolicy
+    trajectory: Trajectory, machine: Machine, policy: SpinPolicy, executor: Executor | None
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     if policy.rule is SpinRule.FILE:
         return trajectory, ()
     if policy.rule is SpinRule.OPTIMISED:
         from pkm_post.machine.spin.optimise import optimise_spin
 
-        return optimise_spin(replace(trajectory, spin=np.zeros(len(trajectory))), machine, policy), ()
+        untwisted = replace(trajectory, spin=np.zeros(len(trajectory)))
+        return optimise_spin(untwisted, machine, policy, executor), ()
     if policy.rule is SpinRule.ZERO:
         return replace(trajectory, spin=np.zeros(len(trajectory))), ()
     spin = spin_in_plane(trajectory.axis, policy.heading, of_y=policy.rule is SpinRule.Y_IN_PLANE)

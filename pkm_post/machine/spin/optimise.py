@@ -2,12 +2,15 @@
 """Optimise: the spin along a whole path with the largest margins.
 
 Takes a trajectory; returns it with another spin. The search first maximises the score at the worst place of the path,
-then minimises the change of spin that this needs. It starts coarse and is refined around its result. [Merlet2000]
+then minimises the change of spin that this needs. It starts coarse and is refined around its result. The scores of the
+candidates are most of the work; any executor of ``concurrent.futures`` can distribute them. [Merlet2000]
 """
 
 from __future__ import annotations
 
+import functools
 import math
+from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
@@ -77,16 +80,19 @@ _REFINEMENT = 4
 """Each search refines the step by this factor, within one step of the previous search."""
 _REFINEMENTS = 2
 _BLOCK = 1 << 16
-"""Poses per pass, samples times candidates: limits memory."""
+"""Poses per pass and per task of an executor, samples times candidates: limits memory."""
 
 
-def optimise_spin(trajectory: Trajectory, machine: Machine, policy: SpinPolicy) -> Trajectory:
+def optimise_spin(
+    trajectory: Trajectory, machine: Machine, policy: SpinPolicy, executor: Executor | None = None
+) -> Trajectory:
     """Search for the spin.
 
     Args:
         trajectory: at least one segment; its spin at the start stays.
         machine: geometry and limits.
         policy: objective, and range and rate of the spin.
+        executor: distributes the scores of candidates; by default they are computed in this process.
     """
     samples, home = SampledPoses.of(trajectory), trajectory.start_spin
     node_s = samples.row_s[_nodes(samples.row_s, policy.step / policy.rate)]
@@ -96,7 +102,7 @@ def optimise_spin(trajectory: Trajectory, machine: Machine, policy: SpinPolicy) 
     for _ in range(1 + _REFINEMENTS):
         candidates = course[:, None] + step * np.arange(-count, count + 1)
         np.clip(candidates, home - policy.widest, home + policy.widest, out=candidates)
-        scores = _scores(samples, node_s, machine, policy, candidates)
+        scores = _scores(samples, node_s, machine, policy, candidates, executor)
         best = best_sequence(candidates, scores, home, policy.rate * extent, extent)
         course = candidates[np.arange(len(course)), best]
         step, count = step / _REFINEMENT, _REFINEMENT
@@ -122,20 +128,31 @@ def _nodes(row_s: Array, least: float) -> list[int]:
     return nodes
 
 
-def _scores(samples: SampledPoses, node_s: Array, machine: Machine, policy: SpinPolicy, candidates: Array) -> Array:
+def _scores(
+    samples: SampledPoses,
+    node_s: Array,
+    machine: Machine,
+    policy: SpinPolicy,
+    candidates: Array,
+    executor: Executor | None,
+) -> Array:
     """Score of each candidate at each node, (K, M): the worst of the samples nearest to the node."""
     halfway = (np.append(0.0, node_s[:-1]) + node_s) / 2
     # Samples nearest to the start of the path have the spin of the start.
     chosen = np.flatnonzero(samples.s >= halfway[0])
     node = np.searchsorted(halfway, samples.s[chosen], side="right") - 1
-    choices = candidates.shape[1]
-    scores = np.empty((len(chosen), choices))
-    block = max(1, _BLOCK // choices)
-    for first in range(0, len(chosen), block):
-        rows = chosen[first : first + block]
-        tip, axis, length = (
-            np.repeat(column[rows], choices, axis=0) for column in (samples.tip, samples.axis, samples.tool_length)
-        )
-        left = normalised_margins(machine, tip, axis, candidates[node[first : first + block]].ravel(), length)
-        scores[first : first + block] = score(left, policy.weights).reshape(-1, choices)
+    columns = samples.tip[chosen], samples.axis[chosen], samples.tool_length[chosen], candidates[node]
+    parts = np.arange(0, len(chosen), max(1, _BLOCK // candidates.shape[1]))[1:]
+    task, split = functools.partial(_scores_of, machine, policy), [np.split(column, parts) for column in columns]
+    scores = np.concatenate(list(executor.map(task, *split) if executor else map(task, *split)))
     return np.asarray(np.minimum.reduceat(scores, np.searchsorted(node, np.arange(len(node_s))), axis=0))
+
+
+def _scores_of(
+    machine: Machine, policy: SpinPolicy, tip: Array, axis: Array, tool_length: Array, spins: Array
+) -> Array:
+    """Scores of the spins (P, M) to choose from at some samples, (P, M)."""
+    choices = spins.shape[1]
+    tip, axis, tool_length = (np.repeat(column, choices, axis=0) for column in (tip, axis, tool_length))
+    left = normalised_margins(machine, tip, axis, spins.ravel(), tool_length)
+    return score(left, policy.weights).reshape(spins.shape)
