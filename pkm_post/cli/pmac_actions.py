@@ -44,22 +44,20 @@ def probe(session: Session, target: Target | None, namespace: argparse.Namespace
             print(f"{query}: {' '.join(session.query(query))}")
         except RefusedError as refused:
             print(f"{query}: {refused}")
-    _print_motion(session, target, is_power)
-    if target is not None and is_power:
-        print("the set-up of a Power PMAC is not compared: how it reports its axis definitions is unknown")
-    elif target is not None:
+    _print_motion(session, target)
+    if target is not None:
         check_setup(session, target.settings, target.machine.strut_stroke)
         print(f"set up for {target.machine.name}")
     return 0
 
 
-def _print_motion(session: Session, target: Target | None, is_power: bool) -> None:
+def _print_motion(session: Session, target: Target | None) -> None:
     """Print whether the machine moves; approximate without a machine, as coordinate system and scale are unknown."""
     from pkm_post.control import activity_text, is_busy, settled_status
 
     if target is not None:
         print(activity_text(settled_status(session, target.settings)))
-    elif not is_power:
+    else:
         print("a program runs, or a motor moves" if is_busy(session) else "no program runs, and no motor moves")
 
 
@@ -221,9 +219,8 @@ ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
 }
 """For each action its description, and the inputs it needs: a named machine or program."""
 
-OF_POWER_PMAC = ("probe", "hold", "abort", "status", "monitor", "terminal")
+OF_POWER_PMAC = (
+    "probe", "download", "run", "hold", "resume", "abort", "override", "status", "monitor", "terminal",
+)  # fmt: skip
 """Actions that work with the known features of a Power PMAC."""
-NOT_OF_POWER_PMAC = (
-    "how it lists a program back, and what it answers to the rest of what this needs, is not known to this program,"
-    " and nothing is sent to a machine on a guess"
-)
+NOT_OF_POWER_PMAC = "it sends programs in the words of a Turbo PMAC; post the motion and run it"

@@ -16,6 +16,7 @@ from pkm_post.control.link.ports import Port, port_named
 from pkm_post.control.link.program import Job
 from pkm_post.control.link.run import check_setup, resume_program, set_feed_override, start_program
 from pkm_post.control.link.session import Session
+from pkm_post.control.link.ssh_link import PASSWORD, ssh_package
 from pkm_post.control.link.status import Array, Bits, Status, is_busy, read_status, settled_status
 from pkm_post.control.link.stopping import EMERGENCY_STEPS, NOT_AT_REST, REST_DEADLINE_S, abort, hold
 from pkm_post.control.link.stream import stream
@@ -47,6 +48,8 @@ from pkm_post.control.player.play import Player, PlayResult
 from pkm_post.control.player.playable import first_row, read_playable
 from pkm_post.control.simulator.controller import LEAST_MEMORY, Controller, SimulatorSettings
 from pkm_post.control.simulator.errors import ERROR_TEXTS
+from pkm_post.control.simulator.gpascii_shell import refused_line
+from pkm_post.control.simulator.power_online import PowerPmac
 from pkm_post.control.simulator.serial_port import SerialPort
 from pkm_post.control.simulator.server import Server
 
@@ -69,6 +72,8 @@ __all__ = [
     "CartesianJog",
     "Connection",
     "Controller",
+    "PASSWORD",
+    "PowerPmac",
     "PanelState",
     "Homing",
     "Job",
@@ -117,6 +122,8 @@ __all__ = [
     "set_feed_override",
     "start_program",
     "owned",
+    "refused_line",
+    "ssh_package",
     "port_named",
     "pose_text",
     "read_status",

@@ -20,7 +20,15 @@ from pkm_post.control.link.program import Job, read_job
 from pkm_post.model import Diagnostic, Machine, Place, Refused
 from pkm_post.posting import verify_texts
 from pkm_post.system import result_files
-from pkm_post.writing import PmacSettings, controller_of, manifest, program_files, read_text, read_texts
+from pkm_post.writing import (
+    PmacSettings,
+    PowerPmacSettings,
+    controller_of,
+    manifest,
+    program_files,
+    read_text,
+    read_texts,
+)
 
 Findings = tuple[Diagnostic, ...]
 
@@ -59,9 +67,9 @@ def certified(program: Path, machine: Machine) -> tuple[Certified | None, Findin
 
 
 def job_to_load(
-    program: Path, machine: Machine, settings: PmacSettings, uncertified: bool = False
+    program: Path, machine: Machine, settings: PmacSettings | PowerPmacSettings, uncertified: bool = False
 ) -> tuple[Job | None, Findings]:
-    """Convert a program file to a job for a Turbo PMAC.
+    """Convert a program file to a job for the controller.
 
     Args:
         program: the file of a motion program, or of one of its parts.

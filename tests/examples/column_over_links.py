@@ -8,11 +8,12 @@ do it with the upper part of the column, which is built, posted and certified in
 """
 
 import math
+import os
 import sys
 import threading
 import time
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -27,14 +28,15 @@ from pkm_post.control.link.ports import port_named
 from pkm_post.control.link.program import read_job
 from pkm_post.control.link.run import check_setup
 from pkm_post.control.link.session import Session
+from pkm_post.control.link.ssh_link import PASSWORD, ssh_package
 from pkm_post.control.link.status import read_status
-from pkm_post.control.simulator import Controller, SerialPort, Server
+from pkm_post.control.simulator import Controller, PowerPmac, Server
+from pkm_post.control.simulator.gpascii_shell import refused_line
 from pkm_post.control.simulator.moves import PvtMove
 from pkm_post.geometry import hermite_lengths
 from pkm_post.machine import forward, machine_named
 from pkm_post.planning import plan
-from pkm_post.writing import trajectory_file
-from pkm_post.writing.controllers.pmac import settings_of
+from pkm_post.writing import pmac, power_pmac, trajectory_file
 
 MACHINE = "example_6tps"
 SPEED = 8.0
@@ -47,13 +49,14 @@ LONGEST_S = 600.0
 class Recorded(Controller):
     """Keeps where its program wants the struts, at each tick within a PVT move; time is scaled while a program runs."""
 
-    def __init__(self, speed):
-        super().__init__()
-        self._speed = speed
+    speed = SPEED
+
+    def initialize(self):
+        super().initialize()
         self.times, self.places, self.since = [], [], None
 
     def advance(self, ms):
-        super().advance(self._speed * ms if self.runs_program() else ms)
+        super().advance(self.speed * ms if self.runs_program() else ms)
 
     def _tick(self, ms):
         super()._tick(ms)
@@ -90,22 +93,27 @@ class Followed:
     words: tuple[str, ...]
 
 
+TURBO_DRIVES = "I{0}11=320000 I{0}15=10 I{0}16=6000 I{0}17=20 I{0}19=5 I{0}22=200"
+POWER_DRIVES = ("FatalFeLimit=20000", "AbortTa=-0.1", "MaxSpeed=6000", "InvAmax=0.05", "JogTa=-0.2", "JogSpeed=200")
+
+
 @contextmanager
-def served(machine, settings, setup, kind, speed):
-    """A controller that was set up and homed, behind a link; it and the name of its port."""
-    made = Recorded(speed)
-    made.load(setup.splitlines())
-    line = SerialPort(made)
+def served(setup, kind, speed, folder):
+    """A controller that was set up and homed, behind a link; it and its port."""
+    machine = PowerPmac(form=Recorded) if kind == "ssh" else None
+    made = machine.controller if machine else Recorded()
+    made.speed = speed
+    lines = setup.splitlines()
     for motor in range(1, 7):
-        fast = f"I{motor}11=320000 I{motor}15=10 I{motor}16=6000 I{motor}17=20 I{motor}19=5 I{motor}22=200"
-        for text in (fast, f"#{motor}J/", f"#{motor}HMZ"):
-            assert not line.refusal(text)
+        drives = [f"Motor[{motor}].{drive}" for drive in POWER_DRIVES] if machine else [TURBO_DRIVES.format(motor)]
+        lines += [*drives, f"#{motor}J/", f"#{motor}HMZ"]
+    assert refused_line(machine or made, lines) is None
     made.advance(100)
     server, ended = Server(made), threading.Event()
-    port = f"tcp:127.0.0.1:{server.add_tcp(0)}" if kind == "tcp" else f"serial:{server.add_pty()}"
     thread = threading.Thread(target=server.run, args=(ended.is_set,))
-    thread.start()
     try:
+        port = _port(server, machine, kind, folder)
+        thread.start()
         yield made, port
     finally:
         ended.set()
@@ -113,21 +121,32 @@ def served(machine, settings, setup, kind, speed):
         server.close()
 
 
-def follow(program, kind, speed=SPEED):
+def _port(server, machine, kind, folder):
+    if machine is None:
+        return port_named(f"tcp:127.0.0.1:{server.add_tcp(0)}" if kind == "tcp" else f"serial:{server.add_pty()}")
+    os.environ[PASSWORD] = "of the simulated user"
+    door = server.add_ssh(machine, ssh_package(), 0, os.environ[PASSWORD])
+    known = folder / "known_hosts"
+    known.write_text(f"{door.known_host}\n")
+    return replace(port_named(f"ssh:{door.user}@127.0.0.1:{door.number}"), known_hosts=known)
+
+
+def follow(program, kind, speed=SPEED, machine=MACHINE):
     """Download a posted program over a link, run it to its end, and measure where it went.
 
     Args:
         program: path of the motion program; set-up and trajectory stand beside it.
-        kind: ``"tcp"`` or ``"serial"``.
+        kind: ``"tcp"``, ``"serial"`` or, for a Power PMAC, ``"ssh"``.
         speed: simulated seconds in a second.
+        machine: name or file of the machine.
     """
-    machine, _ = machine_named(MACHINE)
-    settings, _ = settings_of(machine)
+    machine, _ = machine_named(str(machine))
+    settings, _ = (power_pmac if kind == "ssh" else pmac).settings_of(machine)
     job, faults = read_job(program.read_text(), settings, program.name)
     assert not faults
-    setup = program.with_name(f"{program.stem}-setup.pmc").read_text()
-    with served(machine, settings, setup, kind, speed) as (made, port):
-        with Session(port_named(port), PATIENCE_S) as session:
+    setup = program.with_name(f"{program.stem}-setup.{'cfg' if kind == 'ssh' else 'pmc'}").read_text()
+    with served(setup, kind, speed, program.parent) as (made, port):
+        with Session(port, PATIENCE_S) as session:
             check_setup(session, settings, machine.strut_stroke)
             assert download(session, job.program).digest == job.program.digest
             operate.start_program(session, settings, job.program, job.first)

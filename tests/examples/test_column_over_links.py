@@ -7,6 +7,7 @@ by ``column_over_links.py``. What is shorter is the number of passes: they are b
 
 import importlib.util
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -14,6 +15,8 @@ import FreeCAD as App
 import pytest
 from column_over_links import follow
 from Path.Post.Processor import PostProcessorFactory
+
+from pkm_post.machine import find_machine
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "tapered_column"
 LOWEST = 76.0
@@ -25,25 +28,40 @@ COUNT = 1e-4
 
 
 @pytest.fixture(scope="module")
-def program(tmp_path_factory):
-    """The motion program of the upper part of the column, posted as CAM's Post Process command does it."""
-    folder = tmp_path_factory.mktemp("upper")
+def power_machine(tmp_path_factory):
+    """The example machine with a Power PMAC."""
+    file = tmp_path_factory.mktemp("machine") / "power.toml"
+    text = find_machine("example_6tps").read_text(encoding="utf-8")
+    file.write_text(text.replace('kind = "turbo_pmac"', 'kind = "power_pmac"'), encoding="utf-8")
+    return file
+
+
+@pytest.fixture(scope="module", params=["tcp", "serial", "ssh"])
+def posted(request, power_machine, tmp_path_factory):
+    """A kind of link, the machine, and the motion program of the upper part of the column for its controller."""
+    machine = power_machine if request.param == "ssh" else "example_6tps"
+    return request.param, machine, _program(tmp_path_factory.mktemp("upper"), machine)
+
+
+def _program(folder, machine):
+    """Post the upper part of the column as CAM's Post Process command does it."""
     spec = importlib.util.spec_from_file_location("tapered_column_build_upper", EXAMPLE / "build.py")
     build = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = build
     spec.loader.exec_module(build)
     document, job = build.build(build.Column(lowest_contact=LOWEST), out=folder)
+    job.PostProcessorArgs = re.sub(r"--machine \S+", "", job.PostProcessorArgs) + f" --machine {machine}"
     job.PostProcessorOutputFile = str(folder / "upper.pmc")
     PostProcessorFactory.get_post_processor(job, "hexapod_pmac").export()
     App.closeDocument(document.Name)
     return folder / "upper.pmc"
 
 
-@pytest.mark.parametrize("kind", ["tcp", "serial"])
-def test_the_tool_keeps_to_the_programmed_path_within_the_certificate(program, kind):
+def test_the_tool_keeps_to_the_programmed_path_within_the_certificate(posted):
+    kind, machine, program = posted
     report = json.loads(program.with_name("upper-report.json").read_text())
     reported = {finding["what"]: finding["value"] for finding in report["certificate"]["findings"]}
-    followed = follow(program, kind)
+    followed = follow(program, kind, machine=machine)
     assert followed.part > 0.99 and followed.samples > 1000 and followed.words == ()
     assert followed.off < LAST_BITS
     assert followed.tip <= reported["deviation of the tool tip"] <= report["tolerances"]["tip_mm"]

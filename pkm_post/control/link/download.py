@@ -15,17 +15,17 @@ import logging
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pkm_post.control.link.errors import CancelledError, DownloadError, LinkLostError, PmacError, RefusedError
+from pkm_post.control.link.errors import CancelledError, DownloadError, LinkLostError, PmacError
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.program import ListingComparison, PmacProgram, compare_listing
-from pkm_post.control.link.session import Session, free_memory
+from pkm_post.control.link.program_memory import memory_of
+from pkm_post.control.link.session import Session
 
 ATTEMPTS = 5
 """How often a download is tried before it is given up."""
 CLEAR_S = 20.0
 CLEAR_ROUNDS = 12
 """Seconds, and attempts, to clear a program number."""
-_NO_SUCH_PROGRAM = (3, 5, 15)
 _LINES_IN_VIEW = 200
 _log = logging.getLogger(__name__)
 
@@ -52,14 +52,7 @@ class DownloadResult:
 
 def verify_listing(session: Session, program: PmacProgram) -> ListingComparison:
     """Compare the controller's listing of a program with the program."""
-    most = 3 * sum(map(len, program.lines)) + (1 << 16)
-    try:
-        listed = session.query(f"LIST PROG {program.number}", most)
-    except RefusedError as refused:
-        if refused.number not in _NO_SUCH_PROGRAM:
-            raise
-        listed = ()
-    return compare_listing(program.lines, listed)
+    return compare_listing(program.lines, memory_of(session).listed(session, program))
 
 
 def download(
@@ -89,13 +82,14 @@ def download(
 def _download(
     session: Session, program: PmacProgram, progress: Progress, is_cancelled: Callable[[], bool]
 ) -> DownloadResult:
+    memory = memory_of(session)
     try:
-        _open(session, program.number)
+        memory.open(session, program.number)
     except LinkLostError as lost:
         _log.warning("the link failed: %s", lost)
     try:
         clear(session, program.number)
-        _check_room(session, program)
+        memory.check_room(session, program)
         resumptions = _fill(session, program, progress, is_cancelled)
     except (PmacError, KeyboardInterrupt) as fault:
         left = _clear_away(session, program.number)
@@ -131,16 +125,12 @@ def clear(session: Session, number: int) -> None:
 
 
 def _cleared(session: Session, number: int) -> bool:
-    _open(session, number)
-    session.command("CLEAR")
-    session.command("CLOSE")
+    memory = memory_of(session)
+    memory.open(session, number)
+    memory.empty(session)
+    memory.close(session)
     # Checked twice: a missing program shows as a refusal, which a corrupted byte causes as well.
-    return free_memory(session) >= 0 and all(verify_listing(session, PmacProgram(number, ())).same for _ in range(2))
-
-
-def _open(session: Session, number: int) -> None:
-    for line in ("CLOSE", "DELETE GATHER", f"OPEN PROG {number}"):
-        session.command(line)
+    return memory.is_closed(session) and all(verify_listing(session, PmacProgram(number, ())).same for _ in range(2))
 
 
 def _clear_away(session: Session, number: int) -> bool:
@@ -152,31 +142,20 @@ def _clear_away(session: Session, number: int) -> bool:
     return True
 
 
-def _check_room(session: Session, program: PmacProgram) -> None:
-    """Compare the program's size with the free memory, while nothing is under its number.
-
-    Raises:
-        PmacError: it is too large.
-    """
-    free = free_memory(session)
-    if free < program.words:
-        raise PmacError(f"the program takes about {program.words} words, the controller has {free}")
-
-
 def _fill(session: Session, program: PmacProgram, progress: Progress, is_cancelled: Callable[[], bool]) -> int:
     """Send the lines until the listing matches; return how often the link failed or the listing differed."""
-    held = 0
+    held, memory = 0, memory_of(session)
     for attempt in range(ATTEMPTS):
         try:
             _send(session, program, held, progress, is_cancelled)
         except LinkLostError as lost:
             _log.warning("the link failed: %s", lost)
-        is_closed = free_memory(session) >= 0
+        is_closed = memory.is_closed(session)
         there = verify_listing(session, program)  # asked last, so that it reveals a reset in between
         if there.same and is_closed:
             return attempt
         _log.warning("the listing differs, or the buffer is still open: %s", there.difference)
-        held = there.lines if there.nothing_else else 0
+        held = there.lines if there.nothing_else and memory.goes_on else 0
     raise PmacError(f"sent {ATTEMPTS} times and still not there; {there.difference}")
 
 
@@ -184,13 +163,13 @@ def _send(
     session: Session, program: PmacProgram, held: int, progress: Progress, is_cancelled: Callable[[], bool]
 ) -> None:
     """Send the lines after those that the controller holds."""
-    lines = program.lines
-    _open(session, program.number)
+    lines, memory = program.lines, memory_of(session)
+    memory.open(session, program.number)
     if not held:
-        session.command("CLEAR")
+        memory.empty(session)
     while held < len(lines):
         if is_cancelled():
             raise CancelledError("the download was stopped")
         held += session.load(lines[held : held + _LINES_IN_VIEW])
         progress(held, len(lines))
-    session.command("CLOSE")
+    memory.close(session)

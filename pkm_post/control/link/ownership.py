@@ -89,7 +89,7 @@ class Ownership:
         Args:
             session: through which it was claimed.
             lock: on this computer; None for a port that no other process can use.
-            owner: the number in the controller; 0 if the controller keeps none.
+            owner: the number in the controller.
         """
         self._session, self._lock, self._owner = session, lock, owner
         self._verified_at, self._connections, self._is_querying = session.now(), session.connections, False
@@ -110,11 +110,14 @@ class Ownership:
     def check(self) -> None:
         """Verify ownership, if it was not seen recently or the link was lost meanwhile.
 
+        A Power PMAC answers no question to a thread that has a program open; the next check is after it is closed.
+
         Raises:
             NotOwnerError: another client has claimed it.
             LinkLostError: it cannot be verified.
         """
-        if self._is_querying or not self._owner or self.is_certain():
+        is_mute = self._session.has_open_buffer and not self._session.has_handshake
+        if self._is_querying or not self._owner or self.is_certain() or is_mute:
             return
         self._is_querying = True
         try:
@@ -142,7 +145,7 @@ class Ownership:
 
     def _verify(self) -> None:
         there = read_record(self._session)
-        if not there.owner and not there.since and free_memory(self._session) >= 0:
+        if not there.owner and not there.since and not _has_abandoned_buffer(self._session):
             self._session.query(_exchange_owner(0, self._owner))  # a controller that was reset has lost all of it
             there = read_record(self._session)
         if there.owner != self._owner:
@@ -198,7 +201,7 @@ def claim(session: Session, what: str, concurrent: tuple[str, ...] = ()) -> Owne
     """
     lock = _claim_lock(session, what) if session.port_name else None
     try:
-        owner = _claim_in_controller(session, what, concurrent) if session.has_handshake else 0
+        owner = _claim_in_controller(session, what, concurrent)
     except BaseException:
         if lock is not None:
             lock.release()
@@ -249,7 +252,7 @@ def _claim_lock(session: Session, what: str) -> Lock:
 def _claim_in_controller(session: Session, what: str, concurrent: tuple[str, ...]) -> int:
     """Claim ownership in the controller; return the number of this client."""
     before = read_record(session)
-    is_open = free_memory(session) < 0
+    is_open = _has_abandoned_buffer(session)
     if before.owner or is_open:
         _wait_for_silence(session, before, concurrent)
     if is_open:
@@ -298,7 +301,14 @@ def _wait_for_silence(session: Session, record: Owner, concurrent: tuple[str, ..
 
 def _signs_of_life(session: Session, record: Owner) -> tuple[object, ...]:
     """Signs of life of an owner: its count, free memory while it loads, lines ahead while it streams."""
+    if not session.has_handshake:
+        return record.owner, record.count
     return record.owner, record.count, session.query("SIZE"), session.query("PR")
+
+
+def _has_abandoned_buffer(session: Session) -> bool:
+    """Whether a program buffer of a Turbo PMAC is open; that of a Power PMAC belongs to the thread of its client."""
+    return session.has_handshake and free_memory(session) < 0
 
 
 def _close_abandoned_buffer(session: Session) -> None:

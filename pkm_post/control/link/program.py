@@ -20,14 +20,15 @@ from decimal import Decimal
 
 from pkm_post.control.link.status import Array
 from pkm_post.model import Diagnostic, StrutMotion
-from pkm_post.writing import PmacSettings, read_part
+from pkm_post.writing import PmacSettings, PowerPmacSettings, power_pmac, read_part
 
-_TOKEN = re.compile(r"\d+(?:\.\d*)?|\.\d+|[A-Z]+|\S")
+_TOKEN = re.compile(r"(?:\d+(?:\.\d*)?|\.\d+)(?:E[-+]?\d+)?|[A-Z]+|\S")
 _WORD = re.compile(r"[A-Z]+|\d+(?:\.\d+)?")
 _PRECISION = Decimal(2) ** -35
 """Relative precision of a number in the controller: 36 bits, rounded or truncated."""
 _RETURN = ("RET", "RETURN")
-_OPENING = re.compile(r"CLOSE\nDELETE GATHER\nOPEN PROG (\d+)\nCLEAR\n(.+\n)CLOSE", re.DOTALL)
+_TURBO_FRAME = re.compile(r"CLOSE\nDELETE GATHER\nOPEN PROG (\d+)\nCLEAR\n(.+\n)CLOSE", re.DOTALL)
+_POWER_FRAME = re.compile(r"open prog (\d+)\n(.+\n)close", re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class PmacProgram:
 
     Attributes:
         number: of its program buffer.
-        lines: the text between CLEAR and CLOSE, without comments.
+        lines: the text between opening and closing it, without comments.
     """
 
     number: int
@@ -64,10 +65,23 @@ def parse_program(text: str) -> PmacProgram:
     Raises:
         ValueError: the text lacks the frame of a program.
     """
-    lines = (line.split(";", 1)[0].strip() for line in text.split("\n"))
-    found = _OPENING.fullmatch("\n".join(line for line in lines if line))
+    return _framed(text, ";", _TURBO_FRAME, "CLOSE, DELETE GATHER, OPEN PROG, CLEAR, lines and CLOSE")
+
+
+def parse_power_program(text: str) -> PmacProgram:
+    """Parse a text written by ``controllers.power_pmac``.
+
+    Raises:
+        ValueError: the text lacks the frame of a program.
+    """
+    return _framed(text, "//", _POWER_FRAME, "open prog, lines and close")
+
+
+def _framed(text: str, comment: str, frame: re.Pattern[str], expected: str) -> PmacProgram:
+    lines = (line.split(comment, 1)[0].strip() for line in text.split("\n"))
+    found = frame.fullmatch("\n".join(line for line in lines if line))
     if found is None:
-        raise ValueError("text: expected CLOSE, DELETE GATHER, OPEN PROG, CLEAR, lines and CLOSE")
+        raise ValueError(f"text: expected {expected}")
     return PmacProgram(int(found[1]), tuple(found[2].removesuffix("\n").split("\n")))
 
 
@@ -151,7 +165,9 @@ class Job:
         return self.motion.length[0]
 
 
-def read_job(text: str, settings: PmacSettings, file: str) -> tuple[Job | None, tuple[Diagnostic, ...]]:
+def read_job(
+    text: str, settings: PmacSettings | PowerPmacSettings, file: str
+) -> tuple[Job | None, tuple[Diagnostic, ...]]:
     """Read a program file.
 
     Args:
@@ -159,7 +175,8 @@ def read_job(text: str, settings: PmacSettings, file: str) -> tuple[Job | None, 
         settings: of the machine's controller.
         file: its name, for diagnostics.
     """
+    if isinstance(settings, PowerPmacSettings):
+        motion, faults = power_pmac.read_parts([(file, text)], settings)
+        return (None, faults) if motion is None else (Job(parse_power_program(text), motion), faults)
     motion, faults = read_part(text, settings, file)
-    if motion is None:
-        return None, faults
-    return Job(parse_program(text), motion), faults
+    return (None, faults) if motion is None else (Job(parse_program(text), motion), faults)

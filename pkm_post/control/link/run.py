@@ -18,23 +18,24 @@ from decimal import Decimal
 import numpy as np
 
 from pkm_post.control.link.download import verify_listing
-from pkm_post.control.link.errors import LinkLostError, NotReadyError, OutcomeUnknownError, PmacError
+from pkm_post.control.link.errors import NotReadyError, OutcomeUnknownError, PmacError
 from pkm_post.control.link.ownership import RESUMED_BY_ALL, owned
+from pkm_post.control.link.power_setup import setup_faults
 from pkm_post.control.link.program import PmacProgram
+from pkm_post.control.link.queries import query_line, read_number
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import MOTORS, Array, Status, read_status, settled_status
+from pkm_post.control.link.status import MOTORS, AnySettings, Array, Status, read_status, settled_status
 from pkm_post.control.link.tool_pose import start_faults
 from pkm_post.model import Machine
 from pkm_post.options import START_TOLERANCE_MM
-from pkm_post.writing import PmacSettings
+from pkm_post.writing import PmacSettings, PowerPmacSettings
 
 _UNSIGNED = r"(?:\d+\.?\d*|\.\d+)"
 _DEFINITION = re.compile(rf"([-+]?{_UNSIGNED})?([A-Z])([-+]{_UNSIGNED})?")
-_REAL = r"[-+]?\d+(?:\.\d*)?"
 _ROTARY = "ABC"
 
 
-def check_setup(session: Session, settings: PmacSettings, stroke: tuple[float, float]) -> None:
+def check_setup(session: Session, settings: AnySettings, stroke: tuple[float, float]) -> None:
     """Compare the controller with the setup that programs of this machine rely on.
 
     Args:
@@ -45,11 +46,14 @@ def check_setup(session: Session, settings: PmacSettings, stroke: tuple[float, f
     Raises:
         NotReadyError: lists all differences.
     """
-    reasons = [
-        *_axis_faults(session, settings),
-        *_variable_faults(session, settings),
-        *_limit_faults(session, settings, stroke),
-    ]
+    if isinstance(settings, PowerPmacSettings):
+        reasons = list(setup_faults(session, settings, stroke))
+    else:
+        reasons = [
+            *_axis_faults(session, settings),
+            *_variable_faults(session, settings),
+            *_limit_faults(session, settings, stroke),
+        ]
     if reasons:
         raise NotReadyError(reasons)
 
@@ -83,18 +87,6 @@ def check_start(status: Status, first: Array, near: float = START_TOLERANCE_MM, 
         raise NotReadyError(tuple(dict.fromkeys(reasons)))
 
 
-def read_number(session: Session, name: str) -> float:
-    """The value of a variable of the controller.
-
-    Raises:
-        LinkLostError: the answer is not a number.
-    """
-    answer = _query_line(session, name)
-    if not re.fullmatch(_REAL, answer):
-        raise LinkLostError(f"{name}: expected a number, got {answer!r}")
-    return float(answer)
-
-
 def _motor_faults(status: Status) -> Iterator[str]:
     expected = {
         "homed": "not homed",
@@ -105,7 +97,7 @@ def _motor_faults(status: Status) -> Iterator[str]:
     }
     for motor, bits in zip(MOTORS, status.motors, strict=True):
         for name, otherwise in expected.items():
-            if not bits.has(name):
+            if name in bits.BIT_NUMBERS and not bits.has(name):
                 yield f"strut {motor}: {otherwise}"
 
 
@@ -114,7 +106,7 @@ def _axis_faults(session: Session, settings: PmacSettings) -> Iterator[str]:
     scale = Decimal(repr(float(settings.counts_per_mm)))
     for motor, letter, zero in zip(MOTORS, settings.letters, settings.zero_length, strict=True):
         wanted = (scale, letter, -scale * Decimal(repr(float(zero))))
-        answer = _query_line(session, f"&{settings.coordinate_system}#{motor}->").replace(" ", "")
+        answer = query_line(session, f"&{settings.coordinate_system}#{motor}->").replace(" ", "")
         found = _DEFINITION.fullmatch(answer.removeprefix(f"#{motor}->").upper())
         got = found and (Decimal(found[1] or 1), found[2], Decimal(found[3] or 0))
         if got != wanted:
@@ -148,13 +140,6 @@ def _limit_faults(session: Session, settings: PmacSettings, stroke: tuple[float,
                 yield f"{name}: expected {within} and not 0, which is no limit; the controller has {got:g}"
 
 
-def _query_line(session: Session, query: str) -> str:
-    answer = session.query(query)
-    if len(answer) != 1:
-        raise PmacError(f"{query}: expected one line, got {len(answer)}")
-    return answer[0].strip()
-
-
 OVERRIDE_S = 5.0
 """Seconds for the time base to reach an override."""
 SHOWN_S = 0.5
@@ -166,7 +151,7 @@ _POLL_S = 0.02
 
 def start_program(
     session: Session,
-    settings: PmacSettings,
+    settings: AnySettings,
     program: PmacProgram,
     first: Array,
     near: float = START_TOLERANCE_MM,
@@ -196,7 +181,7 @@ def start_program(
         return _start_motion(session, settings, f"B{program.number}R", lambda status: status.running)
 
 
-def resume_program(session: Session, settings: PmacSettings) -> Status:
+def resume_program(session: Session, settings: AnySettings) -> Status:
     """Resume a held program.
 
     Raises:
@@ -209,7 +194,7 @@ def resume_program(session: Session, settings: PmacSettings) -> Status:
         return _resume(session, settings)
 
 
-def _resume(session: Session, settings: PmacSettings) -> Status:
+def _resume(session: Session, settings: AnySettings) -> Status:
     status = read_status(session, settings)
     reasons = list(status.fault_texts())
     if not status.held:
@@ -220,7 +205,7 @@ def _resume(session: Session, settings: PmacSettings) -> Status:
 
 
 def set_feed_override(
-    session: Session, settings: PmacSettings, percent: float, meanwhile: Callable[[], None] = lambda: None
+    session: Session, settings: AnySettings, percent: float, meanwhile: Callable[[], None] = lambda: None
 ) -> Status:
     """Set the override of the time base and verify that it takes effect.
 
@@ -243,7 +228,7 @@ def set_feed_override(
         return _override(session, settings, percent, meanwhile)
 
 
-def _override(session: Session, settings: PmacSettings, percent: float, meanwhile: Callable[[], None]) -> Status:
+def _override(session: Session, settings: AnySettings, percent: float, meanwhile: Callable[[], None]) -> Status:
     if read_status(session, settings).held:
         raise NotReadyError(["a program is held: resume it, or abort it, before the override is changed"])
     session.command(f"&{settings.coordinate_system}%{percent:.2f}")
@@ -255,13 +240,15 @@ def _override(session: Session, settings: PmacSettings, percent: float, meanwhil
     if is_reached(status):
         return status
     session.check_preemption()
-    taken_from = f"I{50 + settings.coordinate_system}93"
+    system = settings.coordinate_system
+    is_power = isinstance(settings, PowerPmacSettings)
+    source = f"the time base of coordinate system {system}" if is_power else f"I{50 + system}93"
     raise PmacError(
-        f"the time base stays at {status.override:g} % after %{percent:g}: {taken_from} may select another source"
+        f"the time base stays at {status.override:g} % after %{percent:g}: {source} may select another source"
     )
 
 
-def _start_motion(session: Session, settings: PmacSettings, order: str, goes: Callable[[Status], bool]) -> Status:
+def _start_motion(session: Session, settings: AnySettings, order: str, goes: Callable[[Status], bool]) -> Status:
     """Send a command that moves the machine, once, unless a stop waits; if its answer is lost, the state decides."""
     session.check_preemption()
     try:
@@ -276,7 +263,7 @@ def _start_motion(session: Session, settings: PmacSettings, order: str, goes: Ca
 
 def _wait_until(
     session: Session,
-    settings: PmacSettings,
+    settings: AnySettings,
     holds: Callable[[Status], bool],
     seconds: float,
     is_over: Callable[[], bool] = lambda: False,

@@ -171,9 +171,9 @@ class Session:
             PmacError: ownership is lost; it was not sent. A stop needs no ownership.
         """
         self._check()
-        self.has_open_buffer |= text.startswith("OPEN")
+        self.has_open_buffer |= text.upper().startswith("OPEN")
         answer = self._exchange(Command(text, CommandKind.SET, self._answer_timeout))
-        self.has_open_buffer &= text != "CLOSE"
+        self.has_open_buffer &= text.upper() != "CLOSE"
         return answer
 
     @contextmanager

@@ -64,7 +64,7 @@ class SshLink(SocketLink):
             ImportError: paramiko is not installed.
         """
         self.close()
-        ssh = _paramiko()
+        ssh = ssh_package()
         try:
             self._log_in(ssh)
         except ssh.AuthenticationException as fault:
@@ -179,7 +179,12 @@ def _has_listener() -> bool:
     return here and sys.stdin is not None and sys.stdin.isatty()
 
 
-def _paramiko() -> ModuleType:
+def ssh_package() -> ModuleType:
+    """paramiko, for whoever speaks ssh.
+
+    Raises:
+        ImportError: it is not installed; the text says how to get it.
+    """
     try:
         import paramiko
     except ImportError as missing:

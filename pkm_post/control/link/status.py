@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from pkm_post.control.link.session import Session
 from pkm_post.writing import PmacSettings, PowerPmacSettings
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
-AnySettings = TypeVar("AnySettings", PmacSettings, PowerPmacSettings)
+AnySettings = PmacSettings | PowerPmacSettings
 
 MOTORS = range(1, 7)
 SETTLING_S = 0.1
@@ -192,7 +192,7 @@ class PowerSystemBits(SystemBits):
     }
 
 
-def read_status(session: Session, settings: PmacSettings | PowerPmacSettings) -> Status:
+def read_status(session: Session, settings: AnySettings) -> Status:
     """Query everything in one line, so that it is consistent.
 
     Raises:
@@ -255,7 +255,7 @@ def _power_motor(value: int) -> PowerMotorBits:
     return PowerMotorBits(value | (1 - is_closed) << PowerMotorBits.BIT_NUMBERS["open_loop"])
 
 
-def _lengths_and_errors(answer: tuple[str, ...], settings: PmacSettings | PowerPmacSettings) -> tuple[Array, Array]:
+def _lengths_and_errors(answer: tuple[str, ...], settings: AnySettings) -> tuple[Array, Array]:
     """Lengths and following errors of the struts, (6,) each in mm.
 
     Args:
@@ -296,21 +296,44 @@ def settled_status(session: Session, settings: AnySettings) -> Status:
 
 
 def is_busy(session: Session) -> bool:
-    """Whether a program runs or is held in the port's coordinate system, or a motor is commanded to move.
+    """Whether a program runs or is held, or a motor is commanded to move; on a Turbo PMAC in the port's own system.
 
     It sends no coordinate system address: lines for a rotary buffer go to the last one addressed.
 
     Raises:
         LinkLostError: the answer makes no sense.
     """
-    answer = session.query(" ".join(f"#{motor}?" for motor in MOTORS) + " ??")
+    kind: type[MotorBits] = MotorBits if session.has_handshake else PowerMotorBits
+    motors = " ".join(f"#{motor}?" for motor in MOTORS)
+    answer = session.query(f"{motors} ??" if session.has_handshake else motors)
     try:
-        *motors, system = answer
-        bits = [MotorBits(_parse_bits(line, MotorBits.DIGITS)) for line in motors]
-        runs = SystemBits(_parse_bits(system, SystemBits.DIGITS)).has("running")
+        bits = [kind(_parse_bits(line, kind.DIGITS)) for line in answer[: len(MOTORS)]]
+        if session.has_handshake:
+            (system,) = answer[len(MOTORS) :]
+            runs = SystemBits(_parse_bits(system, SystemBits.DIGITS)).has("running")
+        else:
+            runs = _runs_in_power_pmac(session)
     except ValueError as fault:
         raise LinkLostError(f"state: {fault}") from None
     return runs or not all(motor.has("standing") for motor in bits)
+
+
+_SYSTEMS_AT_ONCE = 7
+
+
+def _runs_in_power_pmac(session: Session) -> bool:
+    """Whether a program runs in any coordinate system of a Power PMAC.
+
+    Raises:
+        ValueError: the answer makes no sense.
+    """
+    (most,) = session.query("Sys.MaxCoords")
+    for first in range(1, int(float(most)), _SYSTEMS_AT_ONCE):
+        systems = range(first, min(first + _SYSTEMS_AT_ONCE, int(float(most))))
+        answer = session.query(" ".join(f"Coord[{system}].ProgRunning" for system in systems))
+        if any(float(line) for line in answer):
+            return True
+    return False
 
 
 def _rests_in_both(before: MotorBits, now: MotorBits) -> MotorBits:

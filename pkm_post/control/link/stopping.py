@@ -21,10 +21,8 @@ from dataclasses import dataclass
 from pkm_post.control.link.errors import CancelledError, NoAccessError, PmacError
 from pkm_post.control.link.ownership import read_record
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import MOTORS, Status, read_status
-from pkm_post.writing import PmacSettings, PowerPmacSettings
-
-AnySettings = PmacSettings | PowerPmacSettings
+from pkm_post.control.link.status import MOTORS, AnySettings, Status, read_status
+from pkm_post.writing import PowerPmacSettings
 
 SHOWN_S = 0.5
 """Seconds for the state to show that a stop was accepted; then it is resent."""

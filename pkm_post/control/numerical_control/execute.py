@@ -17,7 +17,8 @@ from pkm_post.control.link.download import download
 from pkm_post.control.link.errors import NotReadyError, PmacError
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.program import Job, PmacProgram, read_job
-from pkm_post.control.link.run import check_setup, check_start, read_number
+from pkm_post.control.link.queries import read_number
+from pkm_post.control.link.run import check_setup, check_start
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import Array, Status, read_status
 from pkm_post.control.numerical_control.plan import LONGEST_MOVE_MS

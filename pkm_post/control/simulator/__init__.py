@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A simulated Turbo PMAC with six motors, for tests and training.
+"""A simulated PMAC with six motors, Turbo or Power, for tests and training.
 
 It is written from the manuals and imports no other room: its verdict on a program must not rest on the code that wrote
 the program.
@@ -8,7 +8,19 @@ the program.
 from pkm_post.control.simulator.controller import Controller, SimulatorSettings
 from pkm_post.control.simulator.errors import ERROR_TEXTS, CommandError
 from pkm_post.control.simulator.ethernet_port import EthernetPort
+from pkm_post.control.simulator.gpascii_shell import GpasciiShell
+from pkm_post.control.simulator.power_online import PowerPmac
 from pkm_post.control.simulator.serial_port import SerialPort
 from pkm_post.control.simulator.server import Server
 
-__all__ = ["ERROR_TEXTS", "CommandError", "Controller", "SerialPort", "EthernetPort", "Server", "SimulatorSettings"]
+__all__ = [
+    "ERROR_TEXTS",
+    "CommandError",
+    "Controller",
+    "EthernetPort",
+    "GpasciiShell",
+    "PowerPmac",
+    "SerialPort",
+    "Server",
+    "SimulatorSettings",
+]

@@ -21,7 +21,7 @@ from pkm_post.control.simulator.machine_state import PortSession
 from pkm_post.control.simulator.memory import Memory
 from pkm_post.control.simulator.motors import Motors
 from pkm_post.control.simulator.online import execute
-from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SYSTEMS, Variables
+from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SYSTEMS, WORDS, Numbers, Variables
 
 _M_CODE_STATEMENTS = {
     0: "STOP", 1: "STOP", 3: "P7001=1", 4: "P7001=-1", 5: "P7001=0", 7: "P7002=2", 8: "P7002=1", 9: "P7002=0",
@@ -61,6 +61,7 @@ class SimulatorSettings:
         identity: answer to CID.
         password: protects programs from 1000 on; empty for none.
         machine_codes: lines loaded at a reset: the programs behind G, M, T and D codes.
+        numbers: how numbers are kept.
     """
 
     memory_words: int = 237_568
@@ -73,6 +74,7 @@ class SimulatorSettings:
     identity: str = "602413"
     password: str = ""
     machine_codes: tuple[str, ...] = MACHINE_CODES
+    numbers: Numbers = WORDS
 
     def __post_init__(self) -> None:
         if self.memory_words < LEAST_MEMORY:
@@ -106,7 +108,7 @@ class Controller:
 
     def initialize(self) -> None:
         """Reset to factory defaults: ``$$$***``."""
-        self._start(Variables(), Memory(self.settings.memory_words))
+        self._start(Variables(self.settings.numbers), Memory(self.settings.memory_words))
         self.unlocked = True
         self.load(self.settings.machine_codes)
         self.unlocked = False

@@ -16,9 +16,7 @@ from functools import cache
 from typing import Protocol
 
 from pkm_post.control.simulator.errors import DATA, CommandError
-from pkm_post.control.simulator.variables import constant_value, printed, stored
-
-CONSTANT = r"\$[0-9A-F]{1,12}|[0-9]+\.?[0-9]*|\.[0-9]+"
+from pkm_post.control.simulator.variables import WORDS, Numbers
 
 
 @cache
@@ -27,10 +25,16 @@ def _compiled(pattern: str) -> re.Pattern[str]:
 
 
 class Scanner:
-    """A line and the read position; spaces between tokens are skipped, and case is ignored."""
+    """A line and the read position; spaces between tokens are skipped, and case is ignored.
 
-    def __init__(self, text: str) -> None:
-        self.text = text.replace("\t", " ")
+    Attributes:
+        text: the line.
+        position: of the next token.
+        numbers: how the controller keeps the numbers in it.
+    """
+
+    def __init__(self, text: str, numbers: Numbers = WORDS) -> None:
+        self.text, self.numbers = text.replace("\t", " "), numbers
         self.position = 0
 
     def take(self, pattern: str) -> re.Match[str] | None:
@@ -104,10 +108,10 @@ COMPARISONS: dict[str, Comparison] = {
 }
 
 
-def safely(compute: Callable[[], float]) -> float:
-    """A result as a stored word; an undefined one (division by zero, root of a negative number) is refused."""
+def safely(compute: Callable[[], float], numbers: Numbers) -> float:
+    """A result as it is kept; an undefined one (division by zero, root of a negative number) is refused."""
     try:
-        return stored(float(compute()))
+        return numbers.stored(float(compute()))
     except (ArithmeticError, ValueError):
         raise CommandError(DATA) from None
 
@@ -156,7 +160,7 @@ def expression(scanner: Scanner, depth: int = 0) -> Expression:
         raise CommandError(DATA)
     left = _chain(scanner, depth)
     while match := scanner.take(r"(?P<sign>[+\-|^])(?!=)"):
-        left = _joined(left, match["sign"], LOOSE_OPERATORS, _chain(scanner, depth))
+        left = _joined(left, match["sign"], LOOSE_OPERATORS, _chain(scanner, depth), scanner.numbers)
     return left
 
 
@@ -164,14 +168,14 @@ def argument(scanner: Scanner) -> Expression:
     """Read what follows the letter of a word: a signed or unsigned number, or an expression in brackets."""
     if scanner.take(r"\("):
         return _closed(scanner, 0)
-    return constant(scanner.expect(rf"(?P<number>[+-]?(?:{CONSTANT}))")["number"])
+    return constant(scanner.expect(rf"(?P<number>[+-]?(?:{scanner.numbers.constant}))")["number"], scanner.numbers)
 
 
-def constant(text: str) -> Expression:
+def constant(text: str, numbers: Numbers = WORDS) -> Expression:
     """The expression of a single number."""
     sign = -1.0 if text.startswith("-") else 1.0
-    number = sign * constant_value(text.lstrip("+-"))
-    return Expression(printed(number), 1, lambda scope: number, constant=True)
+    number = sign * numbers.constant_value(text.lstrip("+-"))
+    return Expression(numbers.printed(number), 1, lambda scope: number, constant=True)
 
 
 def condition(scanner: Scanner) -> Expression:
@@ -186,7 +190,7 @@ def condition(scanner: Scanner) -> Expression:
 def _comparison(scanner: Scanner) -> Expression:
     left = expression(scanner)
     match = scanner.expect(r"(?P<sign>!=|!>|!<|=|>|<)")
-    return _joined(left, match["sign"], COMPARISONS, expression(scanner))
+    return _joined(left, match["sign"], COMPARISONS, expression(scanner), scanner.numbers)
 
 
 def _either(left: Expression, right: Expression, word: str, choose: Binary) -> Expression:
@@ -199,18 +203,18 @@ def _either(left: Expression, right: Expression, word: str, choose: Binary) -> E
 def _chain(scanner: Scanner, depth: int) -> Expression:
     left = _factor(scanner, depth)
     while match := scanner.take(r"(?P<sign>[*/%&])(?!=)"):
-        left = _joined(left, match["sign"], CLOSE_OPERATORS, _factor(scanner, depth))
+        left = _joined(left, match["sign"], CLOSE_OPERATORS, _factor(scanner, depth), scanner.numbers)
     return left
 
 
 def _factor(scanner: Scanner, depth: int) -> Expression:
-    if match := scanner.take(rf"(?P<number>{CONSTANT})"):
-        return constant(match["number"])
+    if match := scanner.take(rf"(?P<number>{scanner.numbers.constant})"):
+        return constant(match["number"], scanner.numbers)
     if scanner.take(r"\("):
         inner = _closed(scanner, depth)
         return Expression(f"({inner.text})", inner.words + 1, inner.value)
     if match := scanner.take(rf"(?P<name>{'|'.join(FUNCTIONS)})\("):
-        return _applied(match["name"].upper(), _closed(scanner, depth))
+        return _applied(match["name"].upper(), _closed(scanner, depth), scanner.numbers)
     if scanner.take("-"):
         inner = expression_factor(scanner, depth)
         return Expression(f"-{inner.text}", inner.words, lambda scope: -inner.value(scope), inner.constant)
@@ -246,18 +250,20 @@ def variable_number(scanner: Scanner, depth: int = 0) -> Expression:
 
 
 def _joined(
-    left: Expression, sign: str, table: dict[str, Binary] | dict[str, Comparison], right: Expression
+    left: Expression, sign: str, table: dict[str, Binary] | dict[str, Comparison], right: Expression, numbers: Numbers
 ) -> Expression:
     operation = table[sign]
 
     def value(scope: Scope) -> float:
-        return safely(lambda: operation(left.value(scope), right.value(scope)))
+        return safely(lambda: operation(left.value(scope), right.value(scope)), numbers)
 
     return Expression(left.text + sign + right.text, left.words + right.words + 1, value)
 
 
-def _applied(name: str, inner: Expression) -> Expression:
+def _applied(name: str, inner: Expression, numbers: Numbers) -> Expression:
     function = FUNCTIONS[name]
-    return Expression(
-        f"{name}({inner.text})", inner.words + 1, lambda scope: safely(lambda: function(inner.value(scope)))
-    )
+
+    def value(scope: Scope) -> float:
+        return safely(lambda: function(inner.value(scope)), numbers)
+
+    return Expression(f"{name}({inner.text})", inner.words + 1, value)

@@ -113,7 +113,14 @@ class Memory:
         Raises:
             CommandError: the line is not a program line, or there is no room for it.
         """
-        line = parse_statements(text)
+        self.append(parse_statements(text), system)
+
+    def append(self, line: tuple[Statement, ...], system: int) -> None:
+        """Append the statements of a line to the open buffer.
+
+        Raises:
+            CommandError: there is no room for them, or they do not belong into it.
+        """
         if not line:
             return
         assert self.opened is not None

@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from pkm_post.control.simulator.errors import DATA, CommandError
-from pkm_post.control.simulator.expressions import CONSTANT, Expression, Scanner
+from pkm_post.control.simulator.expressions import Expression, Scanner
 from pkm_post.control.simulator.moves import BlendedMove, Move, PvtMove, ramps_of
 from pkm_post.control.simulator.programs import LETTERS
-from pkm_post.control.simulator.variables import SIMULATED_MOTORS, Array, SystemScope, constant_value, printed
+from pkm_post.control.simulator.variables import SIMULATED_MOTORS, WORDS, Array, Numbers, SystemScope
 
 
 @dataclass(frozen=True)
@@ -30,10 +30,10 @@ class AxisDefinition:
     scale: float
     offset: float
 
-    def text(self) -> str:
+    def text(self, numbers: Numbers = WORDS) -> str:
         """The definition as reported."""
-        scale = "" if self.scale == 1 else printed(self.scale)
-        offset = f"{'+' if self.offset > 0 else ''}{printed(self.offset)}" if self.offset else ""
+        scale = "" if self.scale == 1 else numbers.printed(self.scale)
+        offset = f"{'+' if self.offset > 0 else ''}{numbers.printed(self.offset)}" if self.offset else ""
         return f"{scale}{self.letter}{offset}"
 
 
@@ -45,17 +45,19 @@ def parse_axis_definition(scanner: Scanner) -> AxisDefinition | None:
     """
     if scanner.take(r"0+(?![0-9.]| *[A-CU-Z])"):
         return None
-    scale = scanner.take(rf"(?P<sign>[+-]?) *(?P<number>{CONSTANT})?(?= *[{LETTERS}])")
+    numbers = scanner.numbers
+    scale = scanner.take(rf"(?P<sign>[+-]?) *(?P<number>{numbers.constant})?(?= *[{LETTERS}])")
     letter = scanner.expect(rf"(?P<letter>[{LETTERS}])(?![{LETTERS}])")["letter"].upper()
-    offset = scanner.take(rf"(?P<sign>[+-]) *(?P<number>{CONSTANT})")
-    factor = _signed(scale["sign"], scale["number"] or "1") if scale else 1.0
+    offset = scanner.take(rf"(?P<sign>[+-]) *(?P<number>{numbers.constant})")
+    factor = _signed(scale["sign"], scale["number"] or "1", numbers) if scale else 1.0
     if factor == 0:
         raise CommandError(DATA)
-    return AxisDefinition(letter, factor, _signed(offset["sign"], offset["number"]) if offset else 0.0)
+    return AxisDefinition(letter, factor, _signed(offset["sign"], offset["number"], numbers) if offset else 0.0)
 
 
-def _signed(sign: str, number: str) -> float:
-    return -constant_value(number) if sign == "-" else constant_value(number)
+def _signed(sign: str, number: str, numbers: Numbers) -> float:
+    value = numbers.constant_value(number)
+    return -value if sign == "-" else value
 
 
 class Axes:

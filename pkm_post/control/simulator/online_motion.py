@@ -29,7 +29,8 @@ def position_text(controller: MachineState, what: str, motor: int) -> str:
     return printed(float(np.round(column[motor - 1], DECIMALS)) + 0.0)
 
 
-def _report(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+def report(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+    """P, V and F report position, speed and following error."""
     return [position_text(session.controller, match["what"].upper(), session.motor)]
 
 
@@ -51,7 +52,7 @@ def _free_motor(session: PortSession) -> int:
     return session.motor - 1
 
 
-def _jog(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+def jog(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """J/ stops, J+ and J- jog, J= returns, J=n goes to a position, J:n and J^n move by a distance [TurboPMAC, J]."""
     motors, index, how = session.controller.motors, _free_motor(session), match["how"]
     if how == "/":
@@ -67,7 +68,8 @@ def _jog(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[s
     return []
 
 
-def _home(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+def home(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+    """HM searches home, HMZ makes the present position home."""
     index = _free_motor(session)
     if match["here"]:
         session.controller.motors.home_here(index)
@@ -76,7 +78,7 @@ def _home(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[
     return []
 
 
-def _kill(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+def kill(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """K is refused while a program moves the motor; it takes an A first [TurboPMAC, K]."""
     system = session.controller.system_of(session.motor)
     if system is not None and system.running:
@@ -86,7 +88,7 @@ def _kill(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[
     return []
 
 
-def _open_loop(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+def open_loop(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """O0 opens the loop; the output level itself moves nothing here."""
     if abs(constant(match["percent"]).value(SystemScope(session.controller.variables, session.system))) > 100:
         raise CommandError(DATA)
@@ -94,7 +96,7 @@ def _open_loop(session: PortSession, match: re.Match[str], scanner: Scanner) -> 
     return []
 
 
-def _enable(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+def enable(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """E closes the loops of all motors of the coordinate system."""
     system = _system(session)
     if system.running:
@@ -104,7 +106,8 @@ def _enable(session: PortSession, match: re.Match[str], scanner: Scanner) -> lis
     return []
 
 
-def _run(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+def run_or_step(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+    """R runs, S runs one move."""
     run(session.controller, session.system, step=match["letter"].upper() == "S")
     return []
 
@@ -122,23 +125,25 @@ def run(controller: MachineState, number: int, step: bool) -> None:
     system.run(step)
 
 
-def _hold(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+def hold(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """H, and the quick stop (backslash), which is equivalent outside look-ahead."""
     _system(session).hold()
     return []
 
 
-def _quit(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+def quit_program(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+    """Q ends after the moves already computed."""
     _system(session).quit()
     return []
 
 
-def _abort(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+def abort(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+    """A ends the program, each motor on its own ramp."""
     _system(session).abort()
     return []
 
 
-def _point(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+def point(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """B10 selects a program, B10.5 its label N50000 [TurboPMAC, B]."""
     system = _system(session)
     if system.running:
@@ -148,7 +153,7 @@ def _point(session: PortSession, match: re.Match[str], scanner: Scanner) -> list
     return []
 
 
-def _override(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
+def override(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
     """%n sets the override, % reports its current value."""
     system = _system(session)
     if match["percent"] is None:
@@ -160,16 +165,16 @@ def _override(session: PortSession, match: re.Match[str], scanner: Scanner) -> l
 _ALONE = r"(?![-+A-Z0-9.$(:])"
 
 COMMANDS: tuple[tuple[str, Handler], ...] = (
-    (rf"(?P<what>[PVF]){_ALONE}", _report),
-    (r"J(?P<how>[-+/=:^])", _jog),
-    (r"(?:HOME|HM)(?P<here>Z)?(?![A-Z0-9])", _home),
-    (rf"K{_ALONE}", _kill),
-    (r"O(?P<percent>-?[0-9]{1,3}(?:\.[0-9]*)?)(?![A-Z])", _open_loop),
-    (rf"E{_ALONE}", _enable),
-    (rf"(?P<letter>[RS]){_ALONE}", _run),
-    (rf"(?:H{_ALONE}|\\)", _hold),
-    (rf"Q{_ALONE}", _quit),
-    (rf"A{_ALONE}", _abort),
-    (r"B *(?P<number>[0-9]{1,5})(?:\.(?P<fraction>[0-9]*))?", _point),
-    (r"%(?P<percent>[0-9]{1,3}(?:\.[0-9]*)?)?", _override),
+    (rf"(?P<what>[PVF]){_ALONE}", report),
+    (r"J(?P<how>[-+/=:^])", jog),
+    (r"(?:HOME|HM)(?P<here>Z)?(?![A-Z0-9])", home),
+    (rf"K{_ALONE}", kill),
+    (r"O(?P<percent>-?[0-9]{1,3}(?:\.[0-9]*)?)(?![A-Z])", open_loop),
+    (rf"E{_ALONE}", enable),
+    (rf"(?P<letter>[RS]){_ALONE}", run_or_step),
+    (rf"(?:H{_ALONE}|\\)", hold),
+    (rf"Q{_ALONE}", quit_program),
+    (rf"A{_ALONE}", abort),
+    (r"B *(?P<number>[0-9]{1,5})(?:\.(?P<fraction>[0-9]*))?", point),
+    (r"%(?P<percent>[0-9]{1,3}(?:\.[0-9]*)?)?", override),
 )

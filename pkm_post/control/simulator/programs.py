@@ -16,6 +16,7 @@ from typing import Any
 
 from pkm_post.control.simulator.errors import DATA, STRUCTURE, CommandError
 from pkm_post.control.simulator.expressions import Expression, Scanner, argument, condition, expression, variable_number
+from pkm_post.control.simulator.variables import WORDS, Numbers
 
 LETTERS = "ABCUVWXYZ"
 """Axes of a coordinate system, in the order of all axis columns."""
@@ -61,13 +62,17 @@ WITH_CONDITION = {"IF": "IF", "WHILE": "WHILE"}
 WITH_TEXT = {"COMMAND": "CMD", "SEND": "SEND"}
 
 
-def parse_statements(line: str) -> tuple[Statement, ...]:
+def parse_statements(line: str, numbers: Numbers = WORDS) -> tuple[Statement, ...]:
     """Parse a line.
+
+    Args:
+        line: its text.
+        numbers: how the controller keeps the numbers in it.
 
     Raises:
         CommandError: part of the line is not a statement, or a comment has no end.
     """
-    scanner = Scanner(line)
+    scanner = Scanner(line, numbers)
     found: list[Statement] = []
     while not scanner.at_end():
         found.append(_statement(scanner))
@@ -188,6 +193,7 @@ class Program:
         labels: number of the statement after each label.
         jumps: for each branch or loop statement the number of the statement it may jump to.
         sound: whether its structure is valid.
+        source: its lines as a Power PMAC lists them.
     """
 
     statements: list[Statement] = field(default_factory=list)
@@ -196,6 +202,7 @@ class Program:
     labels: dict[int, int] = field(default_factory=dict)
     jumps: dict[int, int] = field(default_factory=dict)
     sound: bool = True
+    source: list[str] = field(default_factory=list)
 
     def append(self, line: tuple[Statement, ...]) -> None:
         """Add a line."""

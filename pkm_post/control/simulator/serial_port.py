@@ -164,14 +164,14 @@ class SerialPort:
     def command(self, text: str) -> bytes:
         """Execute a line and frame its answer."""
         try:
-            return self._framed(self._carry_out(text), text)
+            return self._framed(self.carry_out(text), text)
         except CommandError as error:
             return self.refused(error.number)
 
     def refusal(self, text: str) -> int:
         """Execute a line without its answer; return the number of its error, or 0."""
         try:
-            self._carry_out(text)
+            self.carry_out(text)
         except CommandError as error:
             return error.number
         return 0
@@ -191,7 +191,12 @@ class SerialPort:
             return self.refused(error.number)
         return b"" if lines is None else self._framed(lines, "")
 
-    def _carry_out(self, text: str) -> list[str]:
+    def carry_out(self, text: str) -> list[str]:
+        """Execute a line and return the lines of its answer.
+
+        Raises:
+            CommandError: it is refused.
+        """
         if len(text) > self.controller.settings.line_limit:
             raise CommandError(DATA)
         return execute(self.session, text)

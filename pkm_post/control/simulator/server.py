@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Serve: the simulated controller on a local TCP port or a pseudo terminal, in real or scaled time.
+"""Serve: the simulated controller on a local TCP port, a pseudo terminal or ssh, in real or scaled time.
 
 Enters: bytes from clients and the computer's clock. Leaves: bytes. A single thread does everything, so access to the
 controller is serialized. Connections from other computers are not accepted.
@@ -16,11 +16,15 @@ import socket
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from types import ModuleType
 from typing import Protocol
 
 from pkm_post.control.simulator.controller import Controller
 from pkm_post.control.simulator.ethernet_port import EthernetPort
+from pkm_post.control.simulator.gpascii_shell import GpasciiShell
+from pkm_post.control.simulator.power_online import PowerPmac
 from pkm_post.control.simulator.serial_port import SerialPort
+from pkm_post.control.simulator.ssh_server import SshServer
 
 LOOPBACK = "127.0.0.1"
 WITHOUT_SIGNAL = getattr(socket, "MSG_NOSIGNAL", 0)
@@ -84,6 +88,7 @@ class Server:
         self._closers: list[Callable[[], None]] = []
         self._listeners: dict[socket.socket, float] = {}
         self._serial: list[tuple[SerialPort, Channel]] = []
+        self._log_ins: list[tuple[socket.socket, GpasciiShell]] = []
 
     def add_tcp(self, port: int) -> int:
         """Listen on a local TCP port; 0 selects a free one.
@@ -125,6 +130,26 @@ class Server:
         self._watch(ours, channel)
         return os.ttyname(theirs)
 
+    def add_ssh(self, machine: PowerPmac, ssh: ModuleType, port: int, password: str) -> SshServer:
+        """Let users log in to the computer of a Power PMAC, whose controller is the one that is served.
+
+        Args:
+            machine: the Power PMAC.
+            ssh: paramiko.
+            port: local TCP port; 0 selects a free one.
+            password: of the one user.
+
+        Raises:
+            OSError: the port is taken.
+        """
+
+        def attach(connection: socket.socket) -> None:  # in another thread: the shell begins in ours
+            self._log_ins.append((connection, GpasciiShell(machine)))
+
+        door = SshServer(ssh, port, password, attach)
+        self._closers.append(door.close)
+        return door
+
     def run(self, ended: Callable[[], bool]) -> None:
         """Serve until ``ended`` returns true."""
         before = time.monotonic()
@@ -133,6 +158,7 @@ class Server:
             now = time.monotonic()
             self._pass(1000 * self._speed * min(now - before, LONGEST_LAPSE_S))
             before = now
+            self._take_log_ins()
             for key, _ in ready:
                 key.data()
             for line, channel in self._serial:
@@ -180,11 +206,16 @@ class Server:
             return
         connection.setblocking(False)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        port = EthernetPort(self._ethernet)
+        self._watch(connection, Channel(connection.recv, _sender(connection), connection.close, port))
 
-        def send(data: bytes) -> int:
-            return connection.send(data, WITHOUT_SIGNAL)
-
-        self._watch(connection, Channel(connection.recv, send, connection.close, EthernetPort(self._ethernet)))
+    def _take_log_ins(self) -> None:
+        while self._log_ins:
+            connection, shell = self._log_ins.pop(0)
+            connection.setblocking(False)
+            channel = Channel(connection.recv, _sender(connection), _ender(connection, shell), shell)
+            channel.unsent += shell.greeting()
+            self._watch(connection, channel)
 
     def _watch(self, source: int | socket.socket, channel: Channel) -> None:
         self._channels[source] = channel
@@ -227,3 +258,15 @@ class Server:
             if source in self._selector.get_map():
                 self._selector.unregister(source)
             channel.close()
+
+
+def _sender(connection: socket.socket) -> Callable[[bytes], int]:
+    return lambda data: connection.send(data, WITHOUT_SIGNAL)
+
+
+def _ender(connection: socket.socket, shell: GpasciiShell) -> Callable[[], None]:
+    def end() -> None:
+        shell.end()
+        connection.close()
+
+    return end

@@ -20,43 +20,63 @@ from numpy.typing import NDArray
 
 from pkm_post.control.simulator.errors import DATA, CommandError
 
-MANTISSA_BITS = 35
+MANTISSA_BITS, DOUBLE_BITS = 35, 53
 LARGEST_EXPONENT = 1023
 
 
-def stored(value: float) -> float:
-    """A value as stored in a word of the controller.
+@dataclass(frozen=True)
+class Numbers:
+    """How a controller keeps numbers.
 
-    Raises:
-        CommandError: it exceeds the range of a word, or is not finite.
+    Attributes:
+        bits: of the mantissa, without the sign.
+        digits: significant decimals that tell any two numbers apart.
+        constant: pattern of an unsigned constant.
     """
-    if not math.isfinite(value) or abs(value) >= 2.0**LARGEST_EXPONENT:
-        raise CommandError(DATA)
-    mantissa, exponent = math.frexp(value)
-    return math.ldexp(round(math.ldexp(mantissa, MANTISSA_BITS)), exponent - MANTISSA_BITS)
+
+    bits: int
+    digits: int
+    constant: str
+
+    def stored(self, value: float) -> float:
+        """A value as stored in a word of the controller.
+
+        Raises:
+            CommandError: it exceeds the range of a word, or is not finite.
+        """
+        if not math.isfinite(value) or abs(value) >= 2.0**LARGEST_EXPONENT:
+            raise CommandError(DATA)
+        mantissa, exponent = math.frexp(value)
+        return math.ldexp(round(math.ldexp(mantissa, self.bits)), exponent - self.bits)
+
+    def printed(self, value: float) -> str:
+        """The shortest plain decimal stored as the same word; no exponent, a digit before the point."""
+        word = self.stored(value)
+        for digits in range(9, self.digits + 1):
+            text = f"{word:.{digits}g}"
+            if self.stored(float(text)) == word:
+                break
+        plain = format(Decimal(text), "f")
+        if "." in plain:
+            plain = plain.rstrip("0").rstrip(".")
+        return "0" if plain == "-0" else plain
+
+    def constant_value(self, text: str) -> float:
+        """The value of a constant: decimal, or hexadecimal after a dollar sign."""
+        return self.stored(float(int(text[1:], 16)) if text.startswith("$") else float(text))
 
 
-def printed(value: float) -> str:
-    """The shortest plain decimal stored as the same word; no exponent, a digit before the point."""
-    word = stored(value)
-    for digits in range(9, 17):
-        text = f"{word:.{digits}g}"
-        if stored(float(text)) == word:
-            break
-    plain = format(Decimal(text), "f")
-    if "." in plain:
-        plain = plain.rstrip("0").rstrip(".")
-    return "0" if plain == "-0" else plain
+_DECIMAL = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
+WORDS = Numbers(MANTISSA_BITS, 16, rf"\$[0-9A-F]{{1,12}}|{_DECIMAL}")
+"""Of a Turbo PMAC: words of 48 bits."""
+DOUBLES = Numbers(DOUBLE_BITS, 17, rf"\$[0-9A-F]{{1,16}}|{_DECIMAL}(?:E[-+]?[0-9]+)?")
+"""Of a Power PMAC [PowerPMAC, Computational Features]."""
+stored, printed = WORDS.stored, WORDS.printed
 
 
 def hexadecimal(*words: int) -> str:
     """Status words of 24 bits, six digits each."""
     return "".join(f"{word & 0xFFFFFF:06X}" for word in words)
-
-
-def constant_value(text: str) -> float:
-    """The value of a constant: decimal, or hexadecimal after a dollar sign."""
-    return stored(float(int(text[1:], 16)) if text.startswith("$") else float(text))
 
 
 Array = NDArray[Any]
@@ -114,10 +134,12 @@ class Variables:
     """All variables of a controller. Those never written are zero, or the default.
 
     Attributes:
+        numbers: how they are kept.
         definitions: text after ``Mn->``, by number.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, numbers: Numbers = WORDS) -> None:
+        self.numbers = numbers
         self._values: dict[str, dict[int, float]] = {"I": _defaults(), "P": {}, "M": {}}
         self._q: list[dict[int, float]] = [{} for _ in range(SYSTEMS)]
         self._columns: dict[int, Array] = {}
@@ -140,7 +162,7 @@ class Variables:
         table = self._table(letter, number, system)
         if letter == "I" and number in CHOICES and value not in range(CHOICES[number] + 1):
             raise CommandError(DATA)
-        table[number] = stored(value)
+        table[number] = self.numbers.stored(value)
         if letter == "I":
             self._columns.clear()
 

@@ -162,8 +162,7 @@ def test_without_paramiko_it_is_said_what_to_install(monkeypatch, capsys):
     assert packages.cure("paramiko") in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("action", ["resume", "download", "run", "stream"])
-def test_what_is_not_known_of_a_power_pmac_is_refused_by_name(action, capsys):
-    program = [] if action == "resume" else ["none.pmc"]
-    assert main(["pmac", action, "--port", "ssh:me@127.0.0.1:1", "--machine", "example_6tps", *program]) == 1
-    assert f"{action} is not for a Power PMAC: how it lists a program back" in capsys.readouterr().err
+@pytest.mark.parametrize(("action", "more"), [("stream", ["none.pmc"]), ("continue", ["--stop", "1", "none.pmc"])])
+def test_what_is_in_words_of_a_turbo_pmac_is_refused_by_name(action, more, capsys):
+    assert main(["pmac", action, "--port", "ssh:me@127.0.0.1:1", "--machine", "example_6tps", *more]) == 1
+    assert f"{action} is not for a Power PMAC: it sends programs in the words of a Turbo" in capsys.readouterr().err

@@ -155,6 +155,6 @@ def test_the_commands(server, port, monkeypatch, capsys):
 
     assert pmac("probe") == 0
     assert capsys.readouterr().out.startswith("CID: 604020\nSys.MaxCoords: 16\n")
-    assert pmac("resume", "--machine", "example_6tps") == 1
-    assert "resume is not for a Power PMAC" in capsys.readouterr().err
+    assert pmac("stream", "--machine", "example_6tps", "none.pmc") == 1
+    assert "stream is not for a Power PMAC" in capsys.readouterr().err
     assert not any("r" in line for line in server.shell.said if line.startswith("&"))

@@ -61,7 +61,7 @@ def test_a_port_that_is_taken_is_reported(capsys):
 @pytest.mark.parametrize(
     ("arguments", "reported"),
     [
-        ([], "one of the arguments --pty --tcp is required"),
+        ([], "one of the arguments --pty --tcp --ssh is required"),
         (["--pty", "--tcp", "1"], "not allowed with argument --pty"),
         (["--tcp", "65536"], "expected a port from 0 to 65535, got '65536'"),
         (["--tcp", "x"], "expected a port from 0 to 65535, got 'x'"),
