@@ -27,11 +27,12 @@ from pkm_post.freecad_app.document_object import print_diagnostics
 from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_settings import JobSettings, settings_of
+from pkm_post.freecad_app.job_study import JobStudy, study_of
 from pkm_post.freecad_app.machine_object import machine_of
 from pkm_post.freecad_app.mesh import mesh_of
 from pkm_post.freecad_app.tools import millimetres
 from pkm_post.machine import CollisionMesh, find_machine, machine_named, placed_workpiece
-from pkm_post.model import Diagnostic, Machine, Mesh, Place, Refused, Setup, Shank, Tolerances, Trajectory
+from pkm_post.model import Diagnostic, Machine, Mesh, Place, Refused, Setup, Shank, Tolerances, Trajectory, errors
 from pkm_post.options import Options, Override, argument_values, flag_of, format_value
 from pkm_post.posting import Prepared, Study, effective_setup, study, work_offset, work_offset_text
 
@@ -46,14 +47,23 @@ class PlacedJob:
     Attributes:
         trajectory: of the job, in {M}, with its spin.
         machine: the machine it runs on.
-        part: the model of the job in {M}; None if it has no faces.
+        setup: part, stock, fixtures and shanks, in {C}.
         tolerances: for rounded corners.
     """
 
     trajectory: Trajectory
     machine: Machine
-    part: CollisionMesh | None
+    setup: Setup
     tolerances: Tolerances
+
+    @property
+    def part(self) -> CollisionMesh | None:
+        """The model of the job in {M}; None if it has no faces."""
+        return placed_workpiece(self.setup, self.trajectory)
+
+    def study(self) -> JobStudy:
+        """All checks of the job, shared by whatever shows it."""
+        return study_of(self.trajectory, self.machine, self.setup, self.tolerances)
 
 
 def prepared_job(job: Any, settings: JobSettings, machine_object: Any = None) -> Prepared:
@@ -130,8 +140,10 @@ def placed_job(job: Any, machine_object: Any = None) -> PlacedJob:
     print_diagnostics(each for each in prepared.found if each.code == "J125")
     trajectory, _ = prepared.placed()
     program, machine = prepared.sound
-    setup, _ = effective_setup(prepared.options, program)
-    return PlacedJob(trajectory, machine, placed_workpiece(setup, trajectory), prepared.options.tolerances)
+    setup, faults = effective_setup(prepared.options, program)
+    if errors(faults):
+        raise Refused((*prepared.found, *faults))
+    return PlacedJob(trajectory, machine, setup, prepared.options.tolerances)
 
 
 def study_job(job: Any, free: str = "") -> Study:

@@ -21,9 +21,9 @@ from pkm_post.freecad_app.document_checks import require_computed
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_settings import JobSettings
 from pkm_post.freecad_app.job_setup import prepared_job
+from pkm_post.freecad_app.job_study import study_of
 from pkm_post.freecad_app.post_job import post_to
 from pkm_post.freecad_app.progress import Progress
-from pkm_post.machine import check_reach, find_collisions
 from pkm_post.model import Diagnostic, Place, Refused, Trajectory, errors
 from pkm_post.posting import Posted, effective_setup, step_names
 from pkm_post.system import require_usable, result_files, staged, write_fault
@@ -145,8 +145,8 @@ def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:
     trajectory, found = _require(prepared.placed())
     program, machine = prepared.sound
     setup, found = _require(effective_setup(prepared.options, program), found)
-    collisions = find_collisions(trajectory, machine, setup, prepared.options.tolerances)
-    return _require((trajectory, (*check_reach(trajectory, machine).faults(), *collisions.faults)), found)
+    study = study_of(trajectory, machine, setup, prepared.options.tolerances)
+    return _require((trajectory, study.findings), found)
 
 
 def _require(result: tuple[T | None, Findings], found: Findings = ()) -> tuple[T, Findings]:

@@ -25,17 +25,20 @@ from pkm_post.freecad_app.document_object import (
 )
 from pkm_post.freecad_app.frames import apply, vectors_of
 from pkm_post.freecad_app.job_setup import placed_job
+from pkm_post.freecad_app.job_study import JobStudy
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.freecad_app.window import add_view
 from pkm_post.geometry import Array
-from pkm_post.machine import DISPLAY_UNITS, ReachReport, check_reach
-from pkm_post.model import errors
+from pkm_post.machine import DISPLAY_UNITS, ReachReport
+from pkm_post.model import RULES, Severity
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
 _MOST_POINTS = 100_000
 """Largest number of path points that are stored and drawn."""
 _C, _R, _W = "Reach", "Result", "Way"
+WORST = "worst check"
+"""The choice of colours by the least margin of all checks, each as a share of its largest."""
 
 PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyLink", "Job", _C, QT_TRANSLATE_NOOP("App::Property", "The CAM job that is checked"), None),
@@ -45,7 +48,7 @@ PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyBool", "Active", _C,
      QT_TRANSLATE_NOOP("App::Property", "Switch this off to check no more when the job changes"), True),
     ("App::PropertyEnumeration", "ColourBy", _C,
-     QT_TRANSLATE_NOOP("App::Property", "The check whose margins colour the path"), ["shortest struts"]),
+     QT_TRANSLATE_NOOP("App::Property", "The check whose margins colour the path"), [WORST]),
 )  # fmt: skip
 RESULTS: tuple[Row, ...] = (
     ("App::PropertyBool", "Reachable", _R,
@@ -65,8 +68,14 @@ RESULTS: tuple[Row, ...] = (
      QT_TRANSLATE_NOOP("App::Property", "Number of the command in the operation"), []),
     ("App::PropertyVectorList", "WorstPoints", _R,
      QT_TRANSLATE_NOOP("App::Property", "Where the tool tip is then"), []),
+    ("App::PropertyStringList", "ViolationOperations", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Operation of each violation"), []),
+    ("App::PropertyIntegerList", "ViolationLines", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Number of the command in the operation"), []),
+    ("App::PropertyVectorList", "ViolationPoints", _R,
+     QT_TRANSLATE_NOOP("App::Property", "Where the tool tip is then"), []),
     ("App::PropertyStringList", "Violations", _R,
-     QT_TRANSLATE_NOOP("App::Property", "Violated limits, the worst of each operation"), []),
+     QT_TRANSLATE_NOOP("App::Property", "Violated limits and collisions, the worst of each operation"), []),
     ("App::PropertyStringList", "Report", _R, QT_TRANSLATE_NOOP("App::Property", "The report for people"), []),
 )  # fmt: skip
 WAY: tuple[Row, ...] = (
@@ -81,8 +90,8 @@ class ReachObject(PropertyProxy):
 
     properties = PROPERTIES
     results = (*RESULTS, *WAY)
-    _found: tuple[ReachReport, Array] | None = None
-    """The last result, and its stored rows; lost when the document is closed."""
+    study: JobStudy | None = None
+    """The last result; lost when the document is closed."""
 
     def add_missing_properties(self, obj: Any) -> None:
         """Add the properties; the path is for drawing only and hidden, and recolouring needs no new check."""
@@ -96,23 +105,25 @@ class ReachObject(PropertyProxy):
         if not obj.Active:
             return
         self.clear_results(obj)
-        self._found = None
+        self.study = None
         if obj.Job is None:
             return
         with Progress(obj.Label, 2) as bar:
             placed = placed_job(obj.Job, obj.Machine)
             bar.step()
-            found = check_reach(placed.trajectory, placed.machine, placed.part)
+            found = placed.study()
             bar.step()
         _set_results(obj, found)
-        self._found = found, thinned(_least_by_row(found), _MOST_POINTS)
-        _store_path(obj, *self._found)
+        self.study = found
+        _store_path(obj, found)
 
     def onChanged(self, obj: Any, name: str) -> None:
         """Colour by another check, without a new check run."""
-        if name == "ColourBy" and self._found is not None and obj.ColourBy in obj.Checks:
-            _store_path(obj, *self._found)
-        elif name == "ColourBy" and "Restore" not in obj.State and obj.ColourBy in getattr(obj, "Checks", ()):
+        if name != "ColourBy" or obj.ColourBy not in (WORST, *getattr(obj, "Checks", ())):
+            return
+        if self.study is not None:
+            _store_path(obj, self.study)
+        elif "Restore" not in obj.State and obj.Checks:
             obj.touch()  # the result was lost with the session
 
 
@@ -159,12 +170,12 @@ def _least_by_row(found: ReachReport) -> Array:
     return np.min([np.where(column < 0.0, column, column - column.min()) for column in columns], axis=0)
 
 
-def _set_results(obj: Any, found: ReachReport) -> None:
+def _set_results(obj: Any, study: JobStudy) -> None:
     """Fill in the findings."""
+    found = study.reach
     checks = found.as_dict()["checks"]
     document_from_machine = np.linalg.inv(found.trajectory.machine_from_work)
     worst = np.array([found.tip[finding.worst_row] for finding in found.findings])
-    faults = found.faults()
     obj.Checks = [check["name"] for check in checks]
     obj.Units = [DISPLAY_UNITS[finding.subject.unit][0] for finding in found.findings]
     obj.LeastMargins = [check["margin"] for check in checks]
@@ -174,20 +185,35 @@ def _set_results(obj: Any, found: ReachReport) -> None:
     obj.WorstOperations = [check["worst"]["operation"] for check in checks]
     obj.WorstLines = [check["worst"]["line"] for check in checks]
     obj.WorstPoints = vectors_of(apply(document_from_machine, worst))
-    obj.Violations = [str(fault) for fault in faults]
+    _set_violations(obj, study, document_from_machine)
     obj.Report = found.text().splitlines()
-    obj.Reachable = not errors(faults)
-    if obj.getEnumerationsOfProperty("ColourBy") != obj.Checks:
+    obj.Reachable = study.holds
+    choices = [WORST, *obj.Checks]
+    if obj.getEnumerationsOfProperty("ColourBy") != choices:
         chosen = str(obj.ColourBy)
-        obj.ColourBy = obj.Checks
-        obj.ColourBy = chosen if chosen in obj.Checks else obj.Checks[0]
+        obj.ColourBy = choices
+        obj.ColourBy = chosen if chosen in choices else WORST
 
 
-def _store_path(obj: Any, found: ReachReport, rows: Array) -> None:
-    """Store the path with the margins of the selected check, in the displayed unit."""
-    chosen = list(obj.Checks).index(str(obj.ColourBy))
-    finding = found.findings[chosen]
-    points = apply(np.linalg.inv(found.trajectory.machine_from_work), found.tip[rows])
+def _set_violations(obj: Any, study: JobStudy, document_from_machine: Array) -> None:
+    """Fill in the findings with their places, errors first."""
+    found = sorted(study.findings, key=lambda each: RULES[each.code].severity is not Severity.ERROR)
+    tips = np.array([study.reach.tip[study.row_of(each)] for each in found]).reshape(-1, 3)
+    obj.ViolationOperations = [each.place.operation for each in found]
+    obj.ViolationLines = [each.place.line for each in found]
+    obj.ViolationPoints = vectors_of(apply(document_from_machine, tips))
+    obj.Violations = [str(each) for each in found]
+
+
+def _store_path(obj: Any, study: JobStudy) -> None:
+    """Store the path with the margins of the selected check in the displayed unit, or the shares of the worst."""
+    found, chosen = study.reach, str(obj.ColourBy)
+    rows = thinned(_least_by_row(found), _MOST_POINTS)
+    if chosen == WORST:
+        margin = study.worst_margin()[rows]
+    else:
+        finding = found.findings[list(obj.Checks).index(chosen)]
+        margin = finding.margin[rows] * DISPLAY_UNITS[finding.subject.unit][1]
     obj.Margins = []  # keep points and margins consistent at all times
-    obj.Points = vectors_of(points)
-    obj.Margins = (finding.margin[rows] * DISPLAY_UNITS[finding.subject.unit][1]).tolist()
+    obj.Points = vectors_of(apply(np.linalg.inv(found.trajectory.machine_from_work), found.tip[rows]))
+    obj.Margins = margin.tolist()

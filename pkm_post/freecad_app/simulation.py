@@ -20,10 +20,23 @@ import numpy as np
 
 from pkm_post.freecad_app.document_checks import require_computed
 from pkm_post.freecad_app.job_setup import PlacedJob, placed_job
+from pkm_post.freecad_app.job_study import JobStudy
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.geometry import Array, hermite_accelerations, hermite_lengths, hermite_speeds, norm, unit
-from pkm_post.machine import ReachFinding, ReachReport, ToolPoses, check_reach
-from pkm_post.model import RULES, EventKind, Machine, Motion, Place, Refused, Severity, StrutMotion, Tool, Trajectory
+from pkm_post.machine import ReachFinding, ReachReport, ToolPoses
+from pkm_post.model import (
+    RULES,
+    Diagnostic,
+    EventKind,
+    Machine,
+    Motion,
+    Place,
+    Refused,
+    StrutMotion,
+    Tool,
+    Trajectory,
+    errors,
+)
 from pkm_post.planning import interpolate, plan_feed
 
 translate = App.Qt.translate
@@ -66,7 +79,8 @@ class Simulation:
         machine: the machine that executes it.
         motion: poses by time.
         struts: lengths and speeds by time.
-        problems: violations, by time.
+        problems: violations and collisions, by time.
+        study: the checks that found them; None until they have run.
     """
 
     trajectory: Trajectory
@@ -74,6 +88,7 @@ class Simulation:
     motion: Motion
     struts: StrutMotion
     problems: tuple[Problem, ...]
+    study: JobStudy | None = None
 
     @property
     def duration(self) -> float:
@@ -217,16 +232,31 @@ def simulation_of(placed: PlacedJob) -> Simulation:
         plan = interpolate(feed_plan)
         bar.step()
         planned = Simulation(trajectory, machine, plan.motion, plan.struts, ())
-        problems = _problems(check_reach(trajectory, machine, placed.part), planned)
+        study = placed.study()
+        problems = _problems(study, planned)
         bar.step()
-    return replace(planned, problems=problems)
+    return replace(planned, problems=problems, study=study)
 
 
-def _problems(checked: ReachReport, planned: Simulation) -> tuple[Problem, ...]:
-    """One problem for each check and stretch of violating blocks."""
-    errors = [item for item in checked.findings if RULES[item.subject.code].severity is Severity.ERROR]
-    problems = [problem for finding in errors for problem in _stretches(finding, checked, planned)]
+def _problems(study: JobStudy, planned: Simulation) -> tuple[Problem, ...]:
+    """One problem for each check and stretch of violating blocks, and one for each collision that no margin shows."""
+    problems = [problem for finding in study.margins for problem in _stretches(finding, study.reach, planned)]
+    shown = {finding.subject.code for finding in study.margins}
+    problems += [_collision(each, study, planned) for each in errors(study.findings) if each.code not in shown]
     return tuple(sorted(problems, key=lambda problem: (problem.time, problem.text)))
+
+
+def _collision(found: Diagnostic, study: JobStudy, planned: Simulation) -> Problem:
+    row = study.row_of(found)
+    segment = int(study.reach.segment[row])
+    return Problem(
+        time=float(planned.motion.joint_time[segment - 1]) if segment else _FIRST_INSTANT,
+        place=found.place,
+        worst_time=_time_of(row, segment, study.reach, planned),
+        worst_place=found.place,
+        worst_tip=study.reach.tip[row],
+        text=f"{RULES[found.code].cause}: {found.found}",
+    )
 
 
 def _stretches(finding: ReachFinding, checked: ReachReport, planned: Simulation) -> list[Problem]:

@@ -12,6 +12,7 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtGui, QtWidgets
 
+from pkm_post.freecad_gui.verdict import FindingRows, Verdict
 from pkm_post.model import RULES, Diagnostic, Severity
 from pkm_post.posting import Posted
 
@@ -37,27 +38,26 @@ class PostOutcome(QtWidgets.QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.verdict = QtWidgets.QLabel()
+        self.verdict = Verdict()
         self.report = QtWidgets.QPushButton(translate("PostOutcome", "Open the report"))
         self.report.setToolTip(translate("PostOutcome", "Shows the report in the web browser; no network is needed"))
         self._page = ""
-        self.findings, self.diagnostics = _table(), QtWidgets.QListWidget()
+        self.findings, self.diagnostics = _table(), FindingRows()
+        self._places: list[tuple[str, int]] = []
         self.meaning = QtWidgets.QLabel()
-        self.verdict.setWordWrap(True)
         self.meaning.setWordWrap(True)
-        self.diagnostics.setWordWrap(True)
         layout = QtWidgets.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         for part in (self.verdict, self.report, self.diagnostics, self.meaning, self.findings):
             layout.addWidget(part)
-        self.diagnostics.itemClicked.connect(self._choose)
+        self.diagnostics.picked.connect(lambda row: self.chosen.emit(*self._places[row]))
         self.findings.itemClicked.connect(self._choose)
         self.report.clicked.connect(self._open)
         self.show_nothing("")
 
     def show_nothing(self, text: str) -> None:
         """Show only a line of text."""
-        self.verdict.setText(text)
+        self.verdict.say(text)
         self._show_diagnostics(())
         self.meaning.hide()
         self.findings.hide()
@@ -65,7 +65,8 @@ class PostOutcome(QtWidgets.QWidget):
 
     def show_refused(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Show why nothing was written."""
-        self.show_nothing(translate("PostOutcome", "Refused. Nothing was written."))
+        self.show_nothing("")
+        self.verdict.say(translate("PostOutcome", "Refused. Nothing was written."), holds=False)
         self._show_diagnostics(diagnostics)
 
     def show_posted(self, posted: Posted) -> None:
@@ -75,7 +76,7 @@ class PostOutcome(QtWidgets.QWidget):
             "PostOutcome",
             "Certified, as far as the lines below say ({} poses computed). {} s at the machine, {} files.",
         )
-        self.verdict.setText(text.format(certificate["instants"], seconds, len(posted.files)))
+        self.verdict.say(text.format(certificate["instants"], seconds, len(posted.files)), holds=True)
         self._show_diagnostics(posted.diagnostics)
         self.meaning.setText("\n".join(certificate["meaning"]))
         self.meaning.show()
@@ -92,13 +93,10 @@ class PostOutcome(QtWidgets.QWidget):
         self.chosen.emit(*item.data(_PLACE))
 
     def _show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
-        self.diagnostics.clear()
-        for each in diagnostics:
-            item = QtWidgets.QListWidgetItem(_icon(self, each), str(each))
-            item.setToolTip(RULES[each.code].cure)
-            item.setData(_PLACE, (each.place.operation, each.place.line))
-            self.diagnostics.addItem(item)
-        self.diagnostics.setVisible(bool(diagnostics))
+        self._places = [(each.place.operation, each.place.line) for each in diagnostics]
+        self.diagnostics.take([
+            (str(each), each.severity is Severity.ERROR, RULES[each.code].cure) for each in diagnostics
+        ])  # fmt: skip
 
 
 def _table() -> QtWidgets.QTableWidget:
@@ -121,12 +119,6 @@ def _fill(table: QtWidgets.QTableWidget, findings: Sequence[dict[str, Any]]) -> 
             item.setData(_PLACE, (each["operation"], each["line"]))
             table.setItem(row, column, item)
     table.resizeColumnsToContents()
-
-
-def _icon(widget: QtWidgets.QWidget, diagnostic: Diagnostic) -> Any:
-    sign = QtWidgets.QStyle.StandardPixmap
-    chosen = sign.SP_MessageBoxCritical if diagnostic.severity is Severity.ERROR else sign.SP_MessageBoxWarning
-    return widget.style().standardIcon(chosen)
 
 
 STEPS = {

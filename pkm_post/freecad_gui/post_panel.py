@@ -72,10 +72,10 @@ class PostPanel:
         layout, buttons = QtWidgets.QVBoxLayout(self.form), QtWidgets.QHBoxLayout()
         for button in (self.post, self.stop, self.folder, self.simulate):
             buttons.addWidget(button)
-        layout.addWidget(self.choices)
         layout.addLayout(buttons)
-        for part in (self.step, self.bar, self.outcome):
+        for part in (self.step, self.bar, self.outcome, self.choices):
             layout.addWidget(part)
+        layout.addStretch()
 
     def begin(self) -> None:
         """Store the choices, read the job, and start posting it."""

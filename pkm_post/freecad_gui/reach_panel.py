@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reach panel: the findings of a reach object as a table; a click on one shows its worst point.
+"""Reach panel: verdict, findings and margins of a reach object; a click on one shows where it is.
 
-Takes the object; colours its path by the clicked check, and selects the operation with the worst point. The colouring
-is part of the document, so the panel is one undo step.
+Takes the object; selects operation and command, marks the point, moves the machine there if the document has it, and
+colours the path by the clicked check. The colouring is part of the document, so the panel is one undo step.
 """
 
 from __future__ import annotations
@@ -13,8 +13,12 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
+from pkm_post.freecad_app.reach_object import WORST
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.job_choices import show_place
+from pkm_post.freecad_gui.shown_pose import ShownPose, look_at
+from pkm_post.freecad_gui.verdict import FindingRows, Verdict
+from pkm_post.model import RULES, Severity
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -30,46 +34,87 @@ _RED = QtGui.QColor(200, 0, 0)
 
 
 class ReachPanel:
-    """The task panel."""
+    """The task panel.
+
+    Attributes:
+        verdict: whether the machine can follow.
+        violations: what forbids it, and what is slower.
+        table: margin of each check.
+    """
 
     def __init__(self, obj: Any) -> None:
         self.obj = obj
+        self._pose = ShownPose(obj.Machine)
         obj.Document.openTransaction(translate("PKM_Reach", "Colour by a check"))
         self.form = QtWidgets.QWidget()
         self.form.setWindowTitle(obj.Label)
         self.form.setWindowIcon(QtGui.QIcon(str(ICONS / "reach.svg")))
+        self.verdict, self.violations, self.table = Verdict(), FindingRows(), _table(obj)
+        self.verdict.say(*_verdict(obj))
+        self.violations.take([_row(text) for text in obj.Violations])
         layout = QtWidgets.QVBoxLayout(self.form)
-        self.table, self.violations = _table(obj), QtWidgets.QPlainTextEdit("\n".join(obj.Violations))
-        self.violations.setReadOnly(True)
-        self.violations.setPlaceholderText(translate("PKM_Reach", "Nothing is out of limits"))
-        layout.addWidget(QtWidgets.QLabel(_verdict(obj)))
-        layout.addWidget(self.table)
-        layout.addWidget(self.violations)
+        worst = QtWidgets.QPushButton(translate("PKM_Reach", "Colour by the worst check"))
+        worst.clicked.connect(self.show_all)
+        for part in (self.verdict, self.violations, self.table, worst):
+            layout.addWidget(part)
         self.table.cellClicked.connect(lambda row, _column: self.show_worst(row))
+        self.violations.picked.connect(self.show_violation)
+
+    def show_all(self) -> None:
+        """Colour by the worst check at each point."""
+        self.obj.ColourBy = WORST
 
     def show_worst(self, row: int) -> None:
-        """Colour by the check of a row and select the operation with its worst point."""
-        obj = self.obj
+        """Colour by the check of a row; select the operation with its worst point, and move the machine there."""
+        obj, study = self.obj, self.obj.Proxy.study
         obj.ColourBy = obj.Checks[row]
         show_place(obj.Job, obj.WorstOperations[row], obj.WorstLines[row])
+        self._look(obj.WorstPoints[row], None if study is None else study.reach.findings[row].worst_row)
+
+    def show_violation(self, row: int) -> None:
+        """Select the operation and the command of a violation, and move the machine there."""
+        obj, study = self.obj, self.obj.Proxy.study
+        if row >= len(obj.ViolationPoints):
+            return  # found by a version that stored no places
+        show_place(obj.Job, obj.ViolationOperations[row], obj.ViolationLines[row])
+        poses = [] if study is None else [each for each in study.findings if str(each) == obj.Violations[row]]
+        self._look(obj.ViolationPoints[row], study.row_of(poses[0]) if study is not None and poses else None)
+
+    def _look(self, point: Any, pose_row: int | None) -> None:
+        """Mark a point and turn the camera to it; the machine takes its pose if the job is still as it was checked."""
+        self.obj.ViewObject.Proxy.mark(point)
+        look_at(FreeCADGui.getDocument(self.obj.Document.Name), point)
+        if pose_row is not None:
+            self._pose.show(self.obj.Proxy.study, pose_row)
+
+    def end(self) -> None:
+        """Draw the machine at its own pose again."""
+        self._pose.end()
 
     def getStandardButtons(self) -> Any:
         """Only Close: there is nothing to accept or reject."""
         return QtWidgets.QDialogButtonBox.StandardButton.Close
 
     def reject(self) -> bool:
-        """Close the panel."""
+        """Close the panel; the view provider calls ``end`` then."""
         self.obj.Document.commitTransaction()
         FreeCADGui.getDocument(self.obj.Document.Name).resetEdit()
         return True
 
 
-def _verdict(obj: Any) -> str:
+def _verdict(obj: Any) -> tuple[str, bool | None]:
     if not obj.Checks:
-        return translate("PKM_Reach", "Not checked")
+        return (obj.getStatusString(), False) if not obj.isValid() else (translate("PKM_Reach", "Not checked"), None)
     if obj.Reachable:
-        return translate("PKM_Reach", "The machine can follow the job")
-    return translate("PKM_Reach", "The machine cannot follow the job")
+        return translate("PKM_Reach", "The machine can follow the job"), True
+    return translate("PKM_Reach", "The machine cannot follow the job"), False
+
+
+def _row(violation: str) -> tuple[str, bool, str]:
+    """Text, severity and cure of a stored violation, whose code stands after its severity."""
+    code = next((word.rstrip(":") for word in violation.split() if word.rstrip(":") in RULES), "")
+    is_error = bool(code) and RULES[code].severity is Severity.ERROR
+    return violation, is_error, RULES[code].cure if code else ""
 
 
 def _table(obj: Any) -> QtWidgets.QTableWidget:

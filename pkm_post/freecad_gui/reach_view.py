@@ -14,6 +14,7 @@ import FreeCADGui
 import numpy as np
 from pivy import coin
 
+from pkm_post.freecad_app.reach_object import WORST
 from pkm_post.freecad_gui.context_menu import add_commands, add_entry
 from pkm_post.freecad_gui.margin_colours import colours_of, largest, legend
 from pkm_post.freecad_gui.shapes import OUT, points_through
@@ -29,6 +30,7 @@ class ReachView(DrawnView):
     """Draws the path. A double click opens the findings."""
 
     icon, mode = "reach.svg", "Reach"
+    _panel: Any = None
 
     def updateData(self, _obj: Any, name: str) -> None:
         """Redraw when the path has its margins: these are set last."""
@@ -41,16 +43,20 @@ class ReachView(DrawnView):
         obj = self.Object
         margin = np.array(getattr(obj, "Margins", ()))
         points = [tuple(point) for point in getattr(obj, "Points", ())]
-        if not len(margin) or len(points) != len(margin) or obj.ColourBy not in obj.Checks:
+        if not len(margin) or len(points) != len(margin) or obj.ColourBy not in (WORST, *obj.Checks):
             return
-        chosen = list(obj.Checks).index(obj.ColourBy)
         self._root.addChild(_way(points, margin))
-        colour = OUT if obj.LeastMargins[chosen] < 0.0 else _WORST_IN_LIMITS
-        self._root.addChild(points_through([obj.WorstPoints[chosen]], colour, _MARK_SIZE))
+        worst, is_out, unit = _worst(obj, points, margin)
+        self._root.addChild(points_through([worst], OUT if is_out else _WORST_IN_LIMITS, _MARK_SIZE))
         shown = coin.SoType.fromName("SkipBoundingGroup")
         corner = shown.createInstance() if shown.canCreateInstance() else coin.SoGroup()
-        corner.addChild(legend(str(obj.ColourBy), largest(margin), obj.Units[chosen]))
+        corner.addChild(legend(str(obj.ColourBy), largest(margin), unit))
         self._root.addChild(corner)
+
+    def mark(self, point: Any) -> None:
+        """Mark another point than the worst one, until the path is drawn again."""
+        self.refresh()
+        self._root.addChild(points_through([point], OUT, _MARK_SIZE))
 
     def doubleClicked(self, vobj: Any) -> bool:
         """Open the findings."""
@@ -66,13 +72,26 @@ class ReachView(DrawnView):
         """Open the findings."""
         from pkm_post.freecad_gui.reach_panel import ReachPanel
 
-        FreeCADGui.Control.showDialog(ReachPanel(vobj.Object))
+        self._panel = ReachPanel(vobj.Object)
+        FreeCADGui.Control.showDialog(self._panel)
         return True
 
     def unsetEdit(self, _vobj: Any, _mode: int = 0) -> bool:
-        """Close the findings."""
+        """Close the findings; the machine takes its own pose again."""
+        if self._panel is not None:
+            self._panel.end()
+            self._panel = None
         FreeCADGui.Control.closeDialog()
         return True
+
+
+def _worst(obj: Any, points: list[tuple[float, ...]], margin: Any) -> tuple[Any, bool, str]:
+    """Point of the least margin that is shown, whether it is out of limits, and the unit of the margins."""
+    if obj.ColourBy == WORST:
+        row = int(np.argmin(margin))
+        return points[row], bool(margin[row] < 0.0), "of the largest"
+    chosen = list(obj.Checks).index(obj.ColourBy)
+    return obj.WorstPoints[chosen], obj.LeastMargins[chosen] < 0.0, obj.Units[chosen]
 
 
 def _way(points: list[tuple[float, ...]], margin: Any) -> coin.SoSeparator:

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from pkm_post.machine.reach.best_position import best_position
     from pkm_post.machine.reach.collision_mesh import CollisionMesh
     from pkm_post.machine.reach.reach_map import reach_map
-    from pkm_post.machine.reach.report import ReachReport, check_reach
+    from pkm_post.machine.reach.report import ReachReport, check_reach, poses_along
     from pkm_post.machine.spin.apply import with_spin
     from pkm_post.machine.spin.optimise import least_normalised_margins
 else:
@@ -61,7 +61,7 @@ else:
             "reach.best_position": "best_position",
             "reach.collision_mesh": "CollisionMesh",
             "reach.reach_map": "reach_map",
-            "reach.report": "ReachReport check_reach",
+            "reach.report": "ReachReport check_reach poses_along",
             "spin.apply": "with_spin",
             "spin.optimise": "least_normalised_margins",
         },
@@ -117,6 +117,7 @@ __all__ = [
     "presets",
     "check_reach",
     "reach_faults",
+    "poses_along",
     "reach_findings",
     "reach_map",
     "read_measurements",

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pkm_post.posting.cartesian_form import cartesian_program
     from pkm_post.posting.machine_check import format_table, machine_faults, machine_summary
     from pkm_post.posting.machine_export import export_machine
-    from pkm_post.posting.reach_study import Study, study, work_offset_text
+    from pkm_post.posting.reach_study import Study, check_path_of, study, work_offset_text
 else:
     __getattr__ = at_first_use(
         __name__,
@@ -25,7 +25,7 @@ else:
             "cartesian_form": "cartesian_program",
             "machine_check": "format_table machine_faults machine_summary",
             "machine_export": "export_machine",
-            "reach_study": "Study study work_offset_text",
+            "reach_study": "Study check_path_of study work_offset_text",
         },
     )
 
@@ -37,6 +37,7 @@ __all__ = [
     "Progress",
     "Study",
     "cartesian_program",
+    "check_path_of",
     "format_table",
     "effective_setup",
     "export_machine",

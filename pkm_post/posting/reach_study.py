@@ -24,7 +24,7 @@ from pkm_post.machine import (
     least_normalised_margins,
     placed_workpiece,
 )
-from pkm_post.model import Diagnostic, Machine, Program, errors
+from pkm_post.model import Diagnostic, Machine, Program, Setup, Tolerances, Trajectory, errors
 from pkm_post.options import Options
 from pkm_post.posting.placement import effective_setup, trajectory_of
 
@@ -101,10 +101,28 @@ def study(
     setup, faults = effective_setup(options, program)
     if errors(faults):
         return None, (*diagnostics, *faults)
-    checked = check_reach(placed, machine, placed_workpiece(setup, placed))
-    collisions = find_collisions(placed, machine, setup, options.tolerances)
-    both = (*checked.faults(), *(fault for fault in collisions.faults if fault.code not in _IN_REACH))
+    checked, both = check_path_of(placed, machine, setup, options.tolerances)
     return Study(checked, tuple(stages), placed.machine_from_work), (*diagnostics, *both)
+
+
+def check_path_of(
+    trajectory: Trajectory, machine: Machine, setup: Setup, tolerances: Tolerances
+) -> tuple[ReachReport, tuple[Diagnostic, ...]]:
+    """Run all checks of a trajectory on its machine.
+
+    Args:
+        trajectory: in {M}, at least one segment.
+        machine: its limits and bodies.
+        setup: part, stock and fixtures, and the shanks of the tools.
+        tolerances: allowed deviation of the tool from the trajectory.
+
+    Returns:
+        The margins along the path, and all findings: of reach, and of collisions that no margin stands for.
+    """
+    checked = check_reach(trajectory, machine, placed_workpiece(setup, trajectory))
+    collisions = find_collisions(trajectory, machine, setup, tolerances)
+    others = (fault for fault in collisions.faults if fault.code not in _IN_REACH)
+    return checked, (*checked.faults(), *others)
 
 
 _IN_REACH = ("K117", "K121")

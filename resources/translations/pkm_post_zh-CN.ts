@@ -232,8 +232,12 @@
         <translation>此时刀尖的位置</translation>
     </message>
     <message>
-        <source>Violated limits, the worst of each operation</source>
-        <translation>超出极限的项目，每个操作中最严重的一处</translation>
+        <source>Operation of each violation</source>
+        <translation>每个越限所在的操作</translation>
+    </message>
+    <message>
+        <source>Violated limits and collisions, the worst of each operation</source>
+        <translation>越限与碰撞，每个操作中最严重的</translation>
     </message>
     <message>
         <source>The report for people</source>
@@ -1474,8 +1478,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>按检查项着色</translation>
     </message>
     <message>
-        <source>Nothing is out of limits</source>
-        <translation>没有超出极限之处</translation>
+        <source>Colour by the worst check</source>
+        <translation>按最差的检查着色</translation>
     </message>
     <message>
         <source>Not checked</source>

@@ -21,10 +21,14 @@ ON_EXAMPLE = "--machine example_6tps --work-offset={}"
 """Arguments of a job, but for its work offset."""
 
 
-def new_job(document):
-    """A box and a job with one tool controller that lacks nothing."""
+BELOW = -5.0
+"""The top of a part that the tool meets neither in ARC nor in FIVE_AXIS, in mm."""
+
+
+def new_job(document, top=20.0):
+    """A box that ends at a height, and a job with one tool controller that lacks nothing."""
     box = document.addObject("Part::Feature", "Stock")
-    box.Shape = Part.makeBox(20, 20, 20)
+    box.Shape = Part.makeBox(20, 20, 20, App.Vector(0, 0, top - 20.0))
     document.recompute()
     job = Path.Main.Job.Create("Job", [box], None)
     controller = job.Tools.Group[0]
@@ -33,9 +37,9 @@ def new_job(document):
     return job
 
 
-def job_in_reach(document):
+def job_in_reach(document, top=20.0):
     """A job that the example machine is to do, where it can reach it."""
-    job = new_job(document)
+    job = new_job(document, top)
     job.PostProcessor, job.PostProcessorArgs = "hexapod_pmac", ON_EXAMPLE.format("0,0,250")
     return job
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from cam_jobs import ARC, FIVE_AXIS, ON_EXAMPLE, add_operation, add_tool_controller, job_in_reach
+from cam_jobs import ARC, BELOW, FIVE_AXIS, ON_EXAMPLE, add_operation, add_tool_controller, job_in_reach
 
 from pkm_post.freecad_app.machine_object import create_machine
 from pkm_post.freecad_app.simulation import simulate_job
@@ -19,7 +19,7 @@ FINE = 1e-4
 
 @pytest.fixture
 def job(document):
-    job = job_in_reach(document)
+    job = job_in_reach(document, BELOW)
     add_operation(job, ARC, "Arcs")
     add_operation(job, FIVE_AXIS, "Tilted")
     return job

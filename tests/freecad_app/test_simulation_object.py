@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from cam_jobs import ARC, FIVE_AXIS, ON_EXAMPLE, add_operation, job_in_reach, reopened
+from cam_jobs import ARC, BELOW, FIVE_AXIS, ON_EXAMPLE, add_operation, job_in_reach, reopened
 
 from pkm_post.freecad_app.document import is_operation, is_simulation
 from pkm_post.freecad_app.machine_object import create_machine
@@ -16,7 +16,7 @@ NANOMETRE = 1e-6
 
 @pytest.fixture
 def job(document):
-    job = job_in_reach(document)
+    job = job_in_reach(document, BELOW)
     add_operation(job, ARC, "Arcs")
     add_operation(job, [*FIVE_AXIS, "G4 P1.5"], "Tilted")
     return job

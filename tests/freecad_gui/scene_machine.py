@@ -5,16 +5,21 @@ import os
 
 import FreeCAD
 import FreeCADGui
-from gui import main, picture_of_all, press, settle, step
+from gui import FOLDER, main, new_document, picture_of_all, press, settle, step
+from pivy import coin
 from PySide import QtWidgets
+
+from pkm_post.freecad_app.post_job import post_job
+from pkm_post.freecad_gui.verdict import FindingRows, Verdict
+from pkm_post.model import Refused, errors
 
 
 @step
 def machine_from_its_button():
-    from cam_jobs import ARC, FIVE_AXIS, add_operation, new_job
+    from cam_jobs import ARC, BELOW, FIVE_AXIS, add_operation, new_job
 
     document = FreeCAD.newDocument("hexapod")
-    job = new_job(document)
+    job = new_job(document, BELOW)
     job.PostProcessor, job.PostProcessorArgs = "hexapod_pmac", "--work-offset=0,0,250"
     add_operation(job, ARC, "Arcs")
     add_operation(job, FIVE_AXIS, "Tilted")
@@ -73,15 +78,64 @@ def reach_from_its_button():
         "colour_by": found.ColourBy,
         "selected": [item.Label for item in FreeCADGui.Selection.getSelection()] == [found.WorstOperations[row]],
     }
+    scene = found.Machine.ViewObject.Proxy
+    camera, point = FreeCADGui.activeView().getCameraNode(), found.WorstPoints[row]
+    direction = camera.orientation.getValue().multVec(coin.SbVec3f(0, 0, -1)) * camera.focalDistance.getValue()
+    reported["seen"] = [a - b for a, b in zip((camera.position.getValue() + direction).getValue(), point, strict=True)]
+    reported["verdict"], reported["posed"] = _verdict(table.parentWidget()), scene.played
     found.Machine.ViewObject.Visibility = False
     reported["saved"] = picture_of_all("reach.png")
     found.Machine.ViewObject.Visibility = True
     FreeCADGui.getDocument("hexapod").resetEdit()
     settle()
+    reported["posed at rest again"] = not scene.played
     reported["panel_is_left_open"] = bool(FreeCADGui.Control.activeDialog())
     document.undo()
     reported["after_undo"] = found.ColourBy
     return reported
+
+
+def _verdict(panel):
+    (line,) = panel.findChildren(Verdict)
+    return [line.text(), "#1b7f3b" in line.styleSheet()]
+
+
+@step
+def reach_of_a_collision():
+    """A rapid move through the stock: struts and joints are in their limits, and posting refuses it."""
+    document = new_document("colliding")
+    job, operation = document.getObject("Job"), document.getObject("Custom")
+    operation.Gcode = ["G0 X0 Y0 Z60", "G0 Z-15", "G1 X2 Y1 Z-15 F25", "G0 Z60"]
+    document.recompute()
+    press("PKM_Reach", job)
+    found = document.getObject("Reach")
+    found.ViewObject.Proxy.doubleClicked(found.ViewObject)
+    settle()
+    (table,) = FreeCADGui.getMainWindow().findChildren(QtWidgets.QTableWidget, "PkmReachTable")
+    (rows,) = table.parentWidget().findChildren(FindingRows)
+    texts = [rows.item(number).text() for number in range(rows.count())]
+    rows.picked.emit(0)
+    settle()
+    message = FreeCADGui.getMainWindow().statusBar().currentMessage()
+    reported = {
+        "verdict": _verdict(table.parentWidget()),
+        "rows": sorted(text for text in texts if "error" in text),
+        "posting": _refusals(job),
+        "selected": [item.Label for item in FreeCADGui.Selection.getSelection()],
+        "reported": message,
+        "saved": picture_of_all("collision.png"),
+    }
+    FreeCADGui.getDocument("colliding").resetEdit()
+    settle()
+    return reported
+
+
+def _refusals(job):
+    try:
+        post_job(job, out=FOLDER)
+    except Refused as refused:
+        return sorted(str(each) for each in errors(refused.diagnostics))
+    return []
 
 
 main()

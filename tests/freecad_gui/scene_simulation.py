@@ -14,10 +14,10 @@ ARGUMENTS = "--work-offset={}"
 
 @step
 def simulation_from_its_button():
-    from cam_jobs import ARC, FIVE_AXIS, add_operation, new_job
+    from cam_jobs import ARC, BELOW, FIVE_AXIS, add_operation, new_job
 
     document = FreeCAD.newDocument("hexapod")
-    job = new_job(document)
+    job = new_job(document, BELOW)
     job.PostProcessor, job.PostProcessorArgs = "hexapod_pmac", ARGUMENTS.format("0,0,250")
     add_operation(job, ARC, "Arcs")
     add_operation(job, FIVE_AXIS, "Tilted")

@@ -23,5 +23,16 @@ def test_reach_is_coloured_and_its_panel_shows_where(session):
     assert (found["machine"], found["reachable"], found["nodes"]) == ("Machine", True, 3)
     assert (found["rows"], found["colour_by"], found["selected"]) == (True, "base joints", True)
     assert not found["panel_is_left_open"]
-    assert found["after_undo"] == "shortest struts"
+    assert found["after_undo"] == "worst check"
+    assert found["verdict"] == ["The machine can follow the job", True]
+    assert found["posed"] and found["posed at rest again"]
+    assert found["seen"] == pytest.approx([0.0] * 3, abs=1e-2)  # Coin counts in single precision
+
+
+def test_reach_says_in_red_what_posting_would_refuse(session):
+    found = session["reach_of_a_collision"]
+    assert found["posting"] == found["rows"] != []
+    assert found["verdict"] == ["The machine cannot follow the job", False]
+    assert found["selected"] == ["Cut"] and found["reported"].startswith("Cut, ")
+    assert session.drew("collision.png")
     assert session.drew("reach.png")

@@ -151,6 +151,11 @@ def check_reach(
     return ReachReport(trajectory, machine, way.tip, segment, findings)
 
 
+def poses_along(trajectory: Trajectory) -> ToolPoses:
+    """The poses of a reach report of a trajectory, row by row."""
+    return pose_path_of(trajectory)[0].rows(slice(None))
+
+
 def pose_path_of(trajectory: Trajectory) -> tuple[PosePath, Array, Array]:
     """The pose path of a trajectory, the segment of each of its rows (N,), and the time at feed of each cell (N,)."""
     segments, tool_length = Segments.of(trajectory), trajectory.tool_length()

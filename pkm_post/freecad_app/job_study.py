@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Job study: the one set of checks of a CAM job that Reach, Simulation and the post-processors share.
+
+Takes a job on its machine; returns the margins of reach along its path and all findings: reach, part, stock, holder,
+fixtures, gouges. Posting runs the same checks on what it writes.
+
+A study is a function of trajectory, machine, set-up and tolerances, and it is kept by their content: whatever changes
+one of them makes another study, and what changes none, such as a colour, makes none. It lives as long as something
+shows it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any
+from weakref import WeakValueDictionary
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.machine import ReachFinding, ReachReport, ToolPoses, poses_along
+from pkm_post.model import RULES, Diagnostic, Machine, Place, Setup, Severity, Tolerances, Trajectory, errors
+from pkm_post.posting import check_path_of
+
+_ROWS = 65536
+"""Rows of a column per step of the digest: some columns hold one row many times over in the memory of one."""
+_KEPT: WeakValueDictionary[bytes, JobStudy] = WeakValueDictionary()
+
+
+@dataclass(frozen=True)
+class JobStudy:
+    """The checks of a job on its machine.
+
+    Attributes:
+        reach: margins along the path.
+        findings: all errors and warnings, each with operation and line.
+    """
+
+    reach: ReachReport
+    findings: tuple[Diagnostic, ...]
+
+    @property
+    def holds(self) -> bool:
+        """Whether nothing forbids posting."""
+        return not errors(self.findings)
+
+    @property
+    def margins(self) -> tuple[ReachFinding, ...]:
+        """The margins whose violation forbids posting; slower motion does not."""
+        return tuple(each for each in self.reach.findings if RULES[each.subject.code].severity is Severity.ERROR)
+
+    def worst_margin(self) -> Array:
+        """The least margin of all checks at each pose, (N,), as a share of the largest of its check; out below 0."""
+        columns = [each.margin / max(float(each.margin.max(initial=0.0)), 1e-9) for each in self.margins]
+        least: Array = np.min([np.where(column < 0.0, np.minimum(column, -1e-9), column) for column in columns], axis=0)
+        return least
+
+    def row_of(self, finding: Diagnostic) -> int:
+        """The pose of a finding: that of its worst margin in its block, else where the block ends."""
+        report, place = self.reach, finding.place
+        rows = np.flatnonzero(np.isin(report.segment, _segments_at(report.trajectory, place)))
+        if not len(rows):
+            return 0
+        checks = [each for each in report.findings if finding.code in (each.subject.code, each.subject.rapid_code)]
+        if not checks:
+            return int(rows[-1])
+        least = np.min([each.margin[rows] for each in checks], axis=0)
+        return int(rows[np.argmin(least)])
+
+    def pose_at(self, row: int) -> ToolPoses:
+        """The pose of a row in {M}, as one row for kinematics."""
+        return ToolPoses(*(np.asarray(column)[row : row + 1] for column in poses_along(self.reach.trajectory)))
+
+
+def study_of(trajectory: Trajectory, machine: Machine, setup: Setup, tolerances: Tolerances) -> JobStudy:
+    """The checks of a trajectory, or the same ones from before if nothing that matters has changed.
+
+    Args:
+        trajectory: in {M}, at least one segment.
+        machine: its limits.
+        setup: part, stock, fixtures and shanks.
+        tolerances: allowed deviation of the tool from the trajectory.
+    """
+    key = digest((trajectory, machine, setup, tolerances))
+    kept = _KEPT.get(key)
+    if kept is None:
+        kept = JobStudy(*check_path_of(trajectory, machine, setup, tolerances))
+        _KEPT[key] = kept
+    return kept
+
+
+def digest(value: object) -> bytes:
+    """A fingerprint of the content of dataclasses, columns, mappings and plain values."""
+    found = hashlib.blake2b(digest_size=16)
+    _add(found, value)
+    return found.digest()
+
+
+def _add(found: Any, value: object) -> None:
+    found.update(type(value).__name__.encode())
+    if isinstance(value, np.ndarray):
+        found.update(f"{value.dtype} {value.shape}".encode())
+        for first in range(0, len(value) if value.ndim else 0, _ROWS):
+            found.update(np.ascontiguousarray(value[first : first + _ROWS]).tobytes())
+        found.update(value.tobytes() if not value.ndim else b"")
+    elif is_dataclass(value):
+        _add(found, tuple(getattr(value, each.name) for each in fields(value)))
+    elif isinstance(value, Mapping):
+        _add(found, tuple(sorted(value.items(), key=lambda pair: str(pair[0]))))
+    elif isinstance(value, tuple | list | set | frozenset):
+        found.update(f"{len(value)}".encode())
+        for each in sorted(value, key=str) if isinstance(value, set | frozenset) else value:
+            _add(found, each)
+    else:
+        found.update(repr(value).encode() + b"\0")
+
+
+def _segments_at(trajectory: Trajectory, place: Place) -> Array:
+    """The segments of a place in the source."""
+    named = [number for number, name in enumerate(trajectory.operations) if name == place.operation]
+    here: Array = np.flatnonzero(np.isin(trajectory.operation, named) & (trajectory.line == place.line))
+    return here

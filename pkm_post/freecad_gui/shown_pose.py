@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Shown pose: a machine of the document, drawn at a pose of a checked path, and the camera on a point.
+
+Takes a study and a row of its path. The document is not changed: the machine object keeps its pose, and is drawn by it
+again at the end.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from pivy import coin
+
+from pkm_post.freecad_app.job_study import JobStudy
+
+
+class ShownPose:
+    """The pose of a machine object while a panel is open.
+
+    Args:
+        machine: the machine object; None if the document has none, and nothing is drawn.
+    """
+
+    def __init__(self, machine: Any) -> None:
+        self._view = None if machine is None else machine.ViewObject.Proxy
+
+    def show(self, study: JobStudy, row: int) -> None:
+        """Draw the machine at a row of the checked path."""
+        view = self._view
+        if view is None or view.scene is None:
+            return
+        trajectory, view.played = study.reach.trajectory, True
+        tool = trajectory.tools[int(trajectory.tool[study.reach.segment[row]])]
+        view.scene.place(np.linalg.inv(trajectory.machine_from_work))
+        view.scene.take_tool(tool.diameter, tool.corner_radius, tool.length)
+        view.scene.show(study.pose_at(row))
+
+    def end(self) -> None:
+        """Draw the machine at its own pose again."""
+        if self._view is not None and self._view.played:
+            self._view.played = False
+            self._view.refresh()
+        self._view = None
+
+
+def look_at(document: Any, point: Any) -> None:
+    """Move the camera of the 3D view, without a turn, until a point of the document is in its middle."""
+    view = document.activeView()
+    if not hasattr(view, "getCameraNode"):
+        return
+    camera = view.getCameraNode()
+    direction = camera.orientation.getValue().multVec(coin.SbVec3f(0.0, 0.0, -1.0))
+    distance = camera.focalDistance.getValue()
+    camera.position = coin.SbVec3f(*point) - direction * distance
