@@ -5,7 +5,7 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo test oldest lint format translations fuzz soak conformance linuxcnc package docs release-check clean
+.PHONY: help demo test addon oldest lint format translations fuzz soak conformance linuxcnc package docs release-check clean
 
 PYTHON ?= python3
 VENV := .venv
@@ -79,19 +79,26 @@ conformance: $(VENV)/made $(CONFORMANCE)/made ## compile pkmt.ksy with Kaitai's 
 linuxcnc: $(VENV)/made ## run both outputs for LinuxCNC in LinuxCNC, without a screen, and compare (where it is installed)
 	@PYTHONPATH=. MPLBACKEND=Agg $(VENV)/bin/python tests/linuxcnc/compare.py
 
-package: $(VENV)/made ## build a wheel in dist/, and post G-code and a document with it in an empty environment
-	@rm -rf dist
+package: $(VENV)/made $(PACKAGE_VENV)/made ## build a wheel in dist/, and post G-code and a document with it by pipx run
+	@rm -f dist/*.whl
 	@$(VENV)/bin/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir dist .
-	@$(PYTHON) -m venv --clear $(PACKAGE_VENV)
 	@$(FREECAD) tests/freecad_app/save_one_job.py "$$PWD/$(PACKAGE_VENV)/trial.FCStd"
-	@wheel=$$(echo dist/*.whl); $(PACKAGE_VENV)/bin/python -m pip install --quiet --disable-pip-version-check "$$wheel[gcode]"
-	@trial=$$(mktemp -d); trap 'rm -rf "$$trial"' EXIT; run=$$PWD/$(PACKAGE_VENV)/bin/pkm-post; \
-	printf '#!/bin/sh\nunset FREECADCMD; exec "%s" "$$@"\n' "$$PWD/tools/freecad" >"$$trial/freecadcmd"; chmod +x "$$trial/freecadcmd"; \
-	cp examples/first.ngc $(PACKAGE_VENV)/trial.FCStd "$$trial"; cd "$$trial"; \
+	@wheel=$$(echo "$$PWD"/dist/*.whl); trial=$$(mktemp -d); trap 'rm -rf "$$trial"' EXIT; \
+	run() { "$$pipx" run --quiet --spec "$$wheel[gcode]" pkm-post "$$@"; }; pipx=$$PWD/$(PACKAGE_VENV)/bin/pipx; \
+	export PIPX_HOME=$$trial/pipx PIPX_BIN_DIR=$$trial/bin; \
+	printf '#!/bin/sh\nFREECADCMD="%s" exec "%s" "$$@"\n' "$${FREECADCMD-}" "$$PWD/tools/freecad" >"$$trial/freecadcmd"; \
+	chmod +x "$$trial/freecadcmd"; cp examples/first.ngc $(PACKAGE_VENV)/trial.FCStd "$$trial"; cd "$$trial"; \
 	export FREECADCMD="$$trial/freecadcmd"; \
-	"$$run" machine check example_6tps; \
-	"$$run" post first.ngc trial.FCStd --tool-length 1=120 --work-offset=0,0,250 --out out; \
+	run machine check example_6tps; \
+	run post first.ngc trial.FCStd --tool-length 1=120 --work-offset=0,0,250 --out out; \
 	test -s out/first.pmc -a -s out/trial.pmc
+
+addon: ## install an archive of the add-on with FreeCAD's Addon Manager, and post with it
+	@mkdir -p dist; tree=$$(git stash create); \
+	git archive --format=zip --prefix=pkm-post-main/ --output=dist/pkm-post-addon.zip "$${tree:-HEAD}"
+	@trial=$$(mktemp -d); trap 'rm -rf "$$trial"' EXIT; export FREECAD_USER_HOME=$$trial MPLBACKEND=Agg; \
+	tools/freecad tools/run_script.py -- tests/addon/install_addon.py dist/pkm-post-addon.zip; \
+	tools/freecad tools/run_script.py -- tests/addon/use_addon.py "$$trial"
 
 oldest: $(OLDEST_VENV)/made ## run a part of the tests with the oldest NumPy that is allowed, and those of executors with Dask
 	@PYTHONPATH=. MPLBACKEND=Agg $(OLDEST_VENV)/bin/python -m pytest -q -p no:cacheprovider -n 2 $(OLDEST_TESTS) $(ARGS)
@@ -123,7 +130,8 @@ $(FUZZ_VENV)/made: GROUP = fuzz
 $(TRANSLATIONS_VENV)/made: GROUP = translations
 $(OLDEST_VENV)/made: GROUP = oldest
 $(DOCS_VENV)/made: GROUP = docs
-$(VENV)/made $(FUZZ_VENV)/made $(TRANSLATIONS_VENV)/made $(OLDEST_VENV)/made $(DOCS_VENV)/made: pyproject.toml
+$(PACKAGE_VENV)/made: GROUP = package
+$(VENV)/made $(FUZZ_VENV)/made $(TRANSLATIONS_VENV)/made $(OLDEST_VENV)/made $(DOCS_VENV)/made $(PACKAGE_VENV)/made: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or newer is needed: make PYTHON=python3.NN" >&2; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] > tuple(map(int, "$(or $(LATEST),9.9)".split("."))))' || \

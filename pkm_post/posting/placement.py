@@ -7,8 +7,8 @@ spin; and the effective set-up, where files named by the user override those of 
 
 from __future__ import annotations
 
-from concurrent.futures import Executor
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from pkm_post.model import Diagnostic, Machine, Mesh, Place, Program, Setup, Tra
 from pkm_post.options import NO_MESH, Options
 from pkm_post.reading import read_mesh
 from pkm_post.toolpath import compensate, place, with_copies, with_surface_speed
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
 
 Findings = tuple[Diagnostic, ...]
 

@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Missing packages are installed from a folder with wheels, without a network, into FreeCAD's folder for packages."""
 
-import base64
-import hashlib
 import importlib
 import subprocess
 import sys
-import zipfile
 from pathlib import Path
 
 import pytest
+from wheels import NAME, wheel
 
 from pkm_post.cli import main
 from pkm_post.system import packages
-
-NAME = "pkm_wheel_of_a_test"
 
 
 @pytest.fixture
@@ -27,26 +23,6 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "path", list(sys.path))
     yield tmp_path / "AdditionalPythonPackages" / "py311"
     sys.modules.pop(NAME, None)
-
-
-def wheel(folder, version="1.0", module=f"{NAME}.py"):
-    """A wheel with one module, as PEP 427 lays it out."""
-    folder.mkdir(exist_ok=True)
-    info = f"{NAME}-{version}.dist-info"
-    files = {
-        module: f"VERSION = {version!r}\n",
-        f"{info}/METADATA": f"Metadata-Version: 2.1\nName: {NAME}\nVersion: {version}\n",
-        f"{info}/WHEEL": "Wheel-Version: 1.0\nGenerator: test\nRoot-Is-Purelib: true\nTag: py3-none-any\n",
-    }
-    record = [
-        f"{name},sha256={base64.urlsafe_b64encode(hashlib.sha256(text.encode()).digest()).rstrip(b'=').decode()},{len(text)}"
-        for name, text in files.items()
-    ]
-    files[f"{info}/RECORD"] = "\n".join([*record, f"{info}/RECORD,,"]) + "\n"
-    with zipfile.ZipFile(folder / f"{NAME}-{version}-py3-none-any.whl", "w") as archive:
-        for name, text in files.items():
-            archive.writestr(name, text)
-    return folder
 
 
 @pytest.fixture(params=["with pip, where there is one", "without pip"])

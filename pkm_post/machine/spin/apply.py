@@ -7,14 +7,17 @@ in rad, or diagnostics where the policy leaves the spin undefined.
 
 from __future__ import annotations
 
-from concurrent.futures import Executor
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pkm_post.geometry import Array, cross, norm, torsion
 from pkm_post.machine.spin.policy import SpinPolicy, SpinRule
 from pkm_post.model import Diagnostic, EventKind, Machine, Trajectory
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
 
 _NO_DIRECTION = 1e-6
 """Below this sine the tool axis is normal to the plane, which leaves the spin undefined."""
