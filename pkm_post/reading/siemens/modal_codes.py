@@ -179,12 +179,16 @@ def _compensate(machine: Machine, block: Block, code: int) -> None:
     machine.path.radius = tool.diameter / 2
 
 
-def _work_offset(machine: Machine, block: Block, code: int) -> None:
-    """Without places of settable offsets, the only one in which a program moves is {C} itself."""
+def _work_offset(machine: Machine, _: Block, code: int) -> None:
+    """Without places of settable offsets, the only one in which a program moves is {C} itself.
+
+    One whose place is not known is a fault where the program moves in it: many programs end with G500.
+    """
     state, places = machine.state, machine.options.work_offsets
+    if places and f"G{code}" not in places:
+        state.unplaced = f"G{code}"
+        return
     if places:
-        if f"G{code}" not in places:
-            raise BlockFault("G609", f"G{code}", block.columns[f"G{code}"])
         x, y, z, degrees = places[f"G{code}"]
         turn = about(2, degrees)
         state.set_frames(Frame(turn, np.array([x, y, z]), turn), state.swivel, state.programmed)

@@ -168,7 +168,7 @@ class _Arcs:
     def _opening_angles(self) -> None:
         """Replace AR= by the words of the centre, and by the end where the centre is given."""
         angle, moves = self.columns.words.get(_OPENING_ANGLE), self.moves
-        if angle is None:
+        if angle is None or np.isnan(angle).all():
             return
         if len(self.columns) > 1:
             raise BlockFault("G601", "AR= with others")  # its end is the start of the next one: carried out one by one

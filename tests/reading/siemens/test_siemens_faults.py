@@ -177,7 +177,16 @@ def test_work_offsets_have_their_places():
     program, diagnostics = found(HEAD + "G1 X1 Y2\nG505 X1 Y2", work_offsets=offsets)
     assert not diagnostics
     assert program.position[1:].round(12).tolist() == [[1, 2, 10], [98, 1, 10]]
-    assert found(HEAD + "G55", work_offsets=offsets)[1][0][::3] == ("G609", "G55")
+    assert found(HEAD + "G55 X1", work_offsets=offsets)[1][0][::3] == ("G609", "G55")
+    assert not found(HEAD + "G1 X1\nG500", work_offsets=offsets)[1]
+    assert found(HEAD + "G500\nG1 X1", work_offsets=offsets)[1][0][::3] == ("G609", "G500")
+    assert not found(HEAD + "G500\nG54 G1 X1", work_offsets=offsets)[1]
+
+
+def test_an_arc_by_its_angle_leaves_other_arcs_beside_it_alone():
+    program, diagnostics = found(HEAD + "G3 I5 J0 AR=180\nG3 X20 I5 J0\nG2 X10 CR=5")
+    assert not diagnostics
+    assert program.position[1:].round(9).tolist() == [[10, 0, 10], [20, 0, 10], [10, 0, 10]]
 
 
 def test_subprograms_in_other_files(tmp_path):
