@@ -9,9 +9,12 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.terminal import print_diagnostics
+
+if TYPE_CHECKING:
+    from pkm_post.model import Diagnostic, Machine
 
 
 def add_commands(commands: Any) -> None:
@@ -56,10 +59,13 @@ def add_commands(commands: Any) -> None:
         metavar="MM",
         help="gauge length of the tool that is set at first (default: that of the rest pose)",
     )
+    help_text = "a posted program for a project of a Power PMAC, with its set-up in place of the kinematics"
+    exporting.add_argument("--program", type=Path, metavar="PROGRAM.pmc", help=help_text)
     exporting.set_defaults(run=_export)
 
 
-_TARGETS = ("turbo-pmac", "power-pmac", "linuxcnc")
+_PROJECT = "power-pmac-project"
+_TARGETS = ("turbo-pmac", "power-pmac", _PROJECT, "linuxcnc")
 _SEGMENT_TIME = 10
 
 
@@ -149,13 +155,27 @@ def _export(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     if namespace.to == "linuxcnc" and namespace.segment_time is not None:
         print("--segment-time: LinuxCNC has no segments", file=sys.stderr)
         return 2
+    if namespace.program is not None and namespace.to != _PROJECT:
+        print(f"--program: of --to {_PROJECT} alone", file=sys.stderr)
+        return 2
     machine, diagnostics = machine_named(namespace.file)
     files: tuple[Path, ...] = ()
-    if machine is not None:
+    program: tuple[str, str] | None = None
+    if machine is not None and namespace.program is not None:
+        program, diagnostics = _certified_program(namespace.program, machine)
+    if machine is not None and (program is not None or namespace.program is None):
         tool_length = machine.rest_tool_length if namespace.tool_length is None else namespace.tool_length
-        export = kinematics.Export(namespace.segment_time or _SEGMENT_TIME, tool_length)
+        export = kinematics.Export(namespace.segment_time or _SEGMENT_TIME, tool_length, program=program)
         files, diagnostics = export_machine(machine, namespace.file, namespace.to, namespace.out, export)
     print_diagnostics(diagnostics)
     for file in files:
         print(file)
     return 0 if files else 1
+
+
+def _certified_program(path: Path, machine: Machine) -> tuple[tuple[str, str] | None, tuple[Diagnostic, ...]]:
+    """Name and text of a program that is certified for a machine, or the reasons why it is not."""
+    from pkm_post.control import certified
+
+    found, faults = certified(path, machine)
+    return (None, faults) if found is None else ((path.name, found.text), faults)

@@ -21,7 +21,7 @@ from pkm_post.control.link.status import Array, Bits, Status, is_busy, read_stat
 from pkm_post.control.link.stopping import EMERGENCY_STEPS, NOT_AT_REST, REST_DEADLINE_S, abort, hold
 from pkm_post.control.link.stream import stream
 from pkm_post.control.link.tool_pose import ToolPoseReadout, activity_text, pose_text, state_text
-from pkm_post.control.loading import job_to_load
+from pkm_post.control.loading import certified, job_to_load
 from pkm_post.control.numerical_control.connection import (
     SIMULATED_HOMING,
     Connection,
@@ -105,6 +105,7 @@ __all__ = [
     "first_row",
     "read_blocks",
     "read_playable",
+    "certified",
     "check_setup",
     "check_trigger",
     "connect",

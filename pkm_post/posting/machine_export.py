@@ -15,7 +15,7 @@ import numpy as np
 from pkm_post.machine import ToolPoses, reach_margins, strut_lengths
 from pkm_post.model import Diagnostic, Machine, errors
 from pkm_post.posting.machine_check import machine_faults
-from pkm_post.system import staged, write_fault
+from pkm_post.system import staged, staged_folder, write_fault
 from pkm_post.writing import kinematics
 
 _SHIFT, _TURN = 20.0, 5.0
@@ -46,13 +46,16 @@ def export_machine(
     diagnostics += faults
     if texts is None:
         return (), diagnostics
+    is_tree = target == kinematics.PROJECT
+    place = folder / Path(file).stem if is_tree else folder
     try:
-        with staged(folder) as private:
+        with staged_folder(place) if is_tree else staged(folder) as private:
             for name, text in texts.items():
+                (private / name).parent.mkdir(parents=True, exist_ok=True)
                 (private / name).write_text(text, encoding="utf-8", newline="\n")
     except OSError as fault:
-        return (), (*diagnostics, write_fault(folder, fault))
-    return tuple(folder / name for name in texts), diagnostics
+        return (), (*diagnostics, write_fault(place, fault))
+    return tuple(place / name for name in texts), diagnostics
 
 
 def _home_lengths(machine: Machine, tool_length: float) -> list[float]:

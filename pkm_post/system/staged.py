@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 from pkm_post.system.file_names import UnusableNameError
 from pkm_post.system.lock import Lock, try_lock
+from pkm_post.system.staged_folder import FolderExistsError
 
 if TYPE_CHECKING:
     from pkm_post.model import Diagnostic
@@ -233,6 +234,7 @@ _CODES = (
     (MixedError, "F110"),
     (OpenElsewhereError, "F113"),
     (UnusableNameError, "F114"),
+    (FolderExistsError, "F119"),
     (OSError, "F101"),
 )
 

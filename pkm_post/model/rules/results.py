@@ -176,6 +176,10 @@ RESULT_RULES: dict[str, Rule] = {
     "F114": error("a result cannot have this name", "choose another name for the program or the job"),
     "F115": error("the number of threads is not a whole number above zero", "set PKM_THREADS to one, or do not set it"),
     "F116": error("the list of jobs is not valid", "write it as docs/workbench.md describes it"),
+    "F119": error(
+        "there is something of this name already",
+        "choose another folder for the result, or remove what is there",
+    ),
     "F130": error(
         "there is not enough memory",
         "close other programs, do fewer operations or files at a time, or use a computer with more memory",

@@ -7,6 +7,6 @@
 
 from pkm_post.writing.kinematics.controller_file import Export
 from pkm_post.writing.kinematics.sign_off import CheckPoses
-from pkm_post.writing.kinematics.targets import TARGETS, export_files
+from pkm_post.writing.kinematics.targets import PROJECT, TARGETS, export_files
 
-__all__ = ["TARGETS", "CheckPoses", "Export", "export_files"]
+__all__ = ["PROJECT", "TARGETS", "CheckPoses", "Export", "export_files"]

@@ -43,11 +43,13 @@ class Export:
         segment_time: of the coarse interpolation, whole ms.
         tool_length: gauge length of the tool that is set at first, mm.
         home_lengths: counted strut lengths at home with that tool, mm; for controllers that home by them.
+        program: name and text of a posted program, for a project that has one in place of the kinematics.
     """
 
     segment_time: int
     tool_length: float
     home_lengths: tuple[float, ...] = ()
+    program: tuple[str, str] | None = None
 
 
 def parameters_of(machine: Machine, kind: str, export: Export) -> list[Variable]:

@@ -15,6 +15,7 @@ from functools import partial
 from typing import Any
 
 from pkm_post.model import Diagnostic, Machine, Place
+from pkm_post.writing.controllers import power_pmac, power_project
 from pkm_post.writing.controllers.pmac.settings import PmacSettings
 from pkm_post.writing.controllers.power_pmac import PowerPmacSettings
 from pkm_post.writing.controllers.pvt.settings import settings_of
@@ -77,12 +78,36 @@ def _linuxcnc(machine: Machine, stem: str, export: Export, poses: CheckPoses) ->
     return {**files, f"{stem}{SIGN_OFF}": linuxcnc_sheet(machine, digests(files), poses)}, ()
 
 
+def _power_project(machine: Machine, stem: str, export: Export, poses: CheckPoses) -> tuple[Files | None, Findings]:
+    """A project for the IDE: with a program of strut lengths and its set-up, or else with the kinematics."""
+    if export.program is None:
+        made, faults = TARGETS["power-pmac"](machine, stem, export, poses)
+        if made is None:
+            return None, faults
+        routines = {f"{power_project.KINEMATICS}/{stem}-kinematics.kin": made[f"{stem}-kinematics.cfg"]}
+        return power_project.project_files(stem, routines, made[f"{stem}{SIGN_OFF}"]), faults
+    settings, faults = settings_of(PowerPmacSettings, machine)
+    if settings is None:
+        return None, faults
+    name, text = export.program
+    setup = power_pmac.setup_text(settings, machine.name, machine.strut_stroke)
+    scripts = {f"{power_project.INCLUDES}/{stem}-setup.pmh": setup, f"{power_project.MOTION}/{name}": text}
+    note = (
+        f"Program {settings.program} of strut lengths for {machine.name}, with the set-up it needs.\n"
+        f"SHA-256 of {name}: {hashlib.sha256(text.encode('utf-8')).hexdigest()}\n"
+        "Before it is started, pkm-post pmac run lists the program in the controller and compares it.\n"
+    )
+    return power_project.project_files(stem, scripts, note), faults
+
+
+PROJECT = "power-pmac-project"
 TARGETS: dict[str, Target] = {
     "turbo-pmac": partial(_pmac, PmacSettings, turbo_text, "turbo-pmac", "-kinematics.pmc"),
     "power-pmac": partial(_pmac, PowerPmacSettings, power_text, "power-pmac", "-kinematics.cfg"),
+    PROJECT: _power_project,
     "linuxcnc": _linuxcnc,
 }
-"""Writers by the value of ``--to``."""
+"""Writers by the value of ``--to``; the files of ``PROJECT`` are in folders."""
 
 
 def export_files(

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Staged folder: a tree of files that appears as a whole, under a name that was free.
+
+Input: the name. Output: the tree, or nothing.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+_PREFIX = ".staged-folder-"
+
+
+class FolderExistsError(OSError):
+    """There is something of this name already."""
+
+
+@contextmanager
+def staged_folder(folder: Path) -> Iterator[Path]:
+    """Yield a new private folder, which becomes ``folder`` when the block ends; nothing appears when it raises.
+
+    Raises:
+        FolderExistsError: there is something of this name; nothing of it is changed.
+        OSError: a folder cannot be made, or not be renamed.
+    """
+    if folder.exists():
+        raise FolderExistsError(f"{folder} is there already")
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    private = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder.parent))
+    try:
+        private.chmod(0o755)
+        yield private
+        private.rename(folder)
+    finally:
+        shutil.rmtree(private, ignore_errors=True)
