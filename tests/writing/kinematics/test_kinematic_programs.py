@@ -112,6 +112,27 @@ def test_forward_program_finds_every_pose_of_a_grid_within_reach(machine, kind, 
     assert steps.max() <= MOST_STEPS - 1
 
 
+def test_forward_program_finds_random_poses_within_reach(machine, axes):
+    there = axes[reached(machine, axes)]
+    assert len(there) > 0.9 * POSES
+    found, outcome, steps, _ = forward(machine, "turbo", counts_of(machine, there))
+    assert not outcome.any() and np.abs(found - there).max() < 1e-9
+    assert steps.max() <= MOST_STEPS - 2
+
+
+def test_beyond_reach_a_pose_that_is_found_has_the_counts(machine):
+    """There another pose may have the same strut lengths; what has others is never found."""
+    grid = made.grid(machine, OFFSET)
+    beyond = grid[~reached(machine, grid)]
+    counts = counts_of(machine, beyond)
+    found, outcome, _, _ = forward(machine, "turbo", counts)
+    is_found = outcome == 0
+    off = (counts_of(machine, found[is_found]) - counts[is_found]) / machine.controller["counts_per_mm"]
+    assert np.abs(off).max() < 1e-6
+    others = np.abs(found[is_found] - beyond[is_found]).max(axis=1) > 1e-6
+    assert np.count_nonzero(~is_found) <= 25 and np.count_nonzero(others) <= 5
+
+
 @pytest.mark.parametrize("kind", ["turbo", "power"])
 def test_counts_of_no_pose_are_reported(kind):
     """Three struts of 900 mm and three of 100 mm fit no pose; the next row does."""
