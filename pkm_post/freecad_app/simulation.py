@@ -25,6 +25,7 @@ from pkm_post.freecad_app.progress import Progress
 from pkm_post.geometry import Array, hermite_accelerations, hermite_lengths, hermite_speeds, norm, unit
 from pkm_post.machine import ReachFinding, ReachReport, ToolPoses
 from pkm_post.model import (
+    EMPTY_SETUP,
     RULES,
     Diagnostic,
     EventKind,
@@ -32,6 +33,7 @@ from pkm_post.model import (
     Motion,
     Place,
     Refused,
+    Setup,
     StrutMotion,
     Tool,
     Trajectory,
@@ -45,6 +47,8 @@ _BATCH = 16384
 """Cubics per pass: the working arrays of one pass stay in the processor's cache."""
 _SAMPLES = 200
 """Samples per block, to find the time of a tip position."""
+_MOMENT = 5e-4
+"""s before and after an instant, for the speed."""
 _FIRST_INSTANT = 1e-3
 """s: when the first block has begun; at 0 no motion has taken place that could be stopped."""
 
@@ -60,6 +64,8 @@ class Problem:
         worst_place: of the block with the worst violation.
         worst_tip: (3,) tool tip in {M} at that time.
         text: description of the worst violation.
+        end: when the stretch ends, s.
+        bodies: the two bodies that come too close, if it is that.
     """
 
     time: float
@@ -68,6 +74,8 @@ class Problem:
     worst_place: Place
     worst_tip: Array
     text: str
+    end: float
+    bodies: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -81,6 +89,7 @@ class Simulation:
         struts: lengths and speeds by time.
         problems: violations and collisions, by time.
         study: the checks that found them; None until they have run.
+        setup: part, stock and shanks, in {C}.
     """
 
     trajectory: Trajectory
@@ -89,6 +98,7 @@ class Simulation:
     struts: StrutMotion
     problems: tuple[Problem, ...]
     study: JobStudy | None = None
+    setup: Setup = EMPTY_SETUP
 
     @property
     def duration(self) -> float:
@@ -167,6 +177,25 @@ class Simulation:
         before = self.motion.joint_time[: np.searchsorted(self.motion.joint_time, seconds)]
         return float(before[-1]) if len(before) else 0.0
 
+    def line_begins(self, operation: int, line: int) -> float:
+        """Start time of the first block of an operation at or behind one of its lines; its end if there is none, s."""
+        rows = np.flatnonzero(self.trajectory.operation == operation)
+        lines = self.trajectory.line[rows]
+        behind = rows[lines >= line]
+        row = int(behind[0]) if len(behind) else int(rows[-1]) + 1
+        return float(self.motion.joint_time[row - 1]) if row else 0.0
+
+    def feed_at(self, seconds: float) -> float:
+        """Speed of the tool tip at a time, mm/s."""
+        ends = np.clip(seconds + np.array([-_MOMENT, _MOMENT]), 0.0, self.duration)
+        nose, axis, _, length = self.pose_at(ends)
+        tip = nose + (length - length[1])[:, None] * axis  # of the same tool, also beside a tool change
+        return float(norm(tip[1] - tip[0]) / max(ends[1] - ends[0], _MOMENT))
+
+    def problems_at(self, seconds: float) -> list[Problem]:
+        """The problems whose stretch a time is in."""
+        return [problem for problem in self.problems if problem.time <= seconds <= problem.end]
+
     def problem_between(self, start: float, end: float) -> Problem | None:
         """The first problem after a time, up to another time."""
         return next((problem for problem in self.problems if start < problem.time <= end), None)
@@ -231,7 +260,7 @@ def simulation_of(placed: PlacedJob) -> Simulation:
         bar.step()
         plan = interpolate(feed_plan)
         bar.step()
-        planned = Simulation(trajectory, machine, plan.motion, plan.struts, ())
+        planned = Simulation(trajectory, machine, plan.motion, plan.struts, (), setup=placed.setup)
         study = placed.study()
         problems = _problems(study, planned)
         bar.step()
@@ -256,6 +285,8 @@ def _collision(found: Diagnostic, study: JobStudy, planned: Simulation) -> Probl
         worst_place=found.place,
         worst_tip=study.reach.tip[row],
         text=f"{RULES[found.code].cause}: {found.found}",
+        end=float(planned.motion.joint_time[segment]),
+        bodies=tuple(found.found.split(", ")[:2]),
     )
 
 
@@ -274,9 +305,28 @@ def _stretches(finding: ReachFinding, checked: ReachReport, planned: Simulation)
             worst_place=checked.trajectory.place(is_worst),
             worst_tip=checked.tip[worst],
             text=f"{finding.subject.name}: {text}",
+            end=float(planned.motion.joint_time[int(checked.segment[group[-1]])]),
+            bodies=pair_of(finding, int(finding.part[worst])),
         )
         problems.append(problem)
     return problems
+
+
+_PAIRS = {
+    "K113": ("strut {}", "strut {}"),
+    "K114": ("strut {}", "{}"),
+    "K115": ("strut {}", "{}"),
+    "K116": ("{}", "{}"),
+    "K117": ("{}", "part"),
+    "K121": ("strut {}", "part"),
+}
+"""Names of the two bodies by the code of a check; one of its parts has a number or a name for each."""
+
+
+def pair_of(finding: ReachFinding, part: int) -> tuple[str, ...]:
+    """The two bodies of a check of clearance; none for other checks."""
+    forms, names = _PAIRS.get(finding.subject.code, ()), finding.subject.parts[part].split(" and ", 1)
+    return tuple(form.format(*names[row : row + 1]) for row, form in enumerate(forms))
 
 
 def _time_of(row: int, segment: int, checked: ReachReport, planned: Simulation) -> float:

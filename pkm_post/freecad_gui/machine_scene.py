@@ -7,13 +7,14 @@ file. Dimensions missing from the file are drawn in proportion to it.
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import FreeCADGui
 import numpy as np
 from pivy import coin
 
-from pkm_post.freecad_app.simulation import Simulation
+from pkm_post.freecad_app.simulation import Problem, Simulation
 from pkm_post.freecad_gui.shapes import Colour, aim, ball, beam, cutter, cylinder, group, material
 from pkm_post.geometry import Array, norm
 from pkm_post.machine import ToolPoses, platform_joints, platform_rotation, reach_margins
@@ -25,6 +26,7 @@ LIGHT: Colour = (0.8, 0.82, 0.85)
 GOLD: Colour = (0.85, 0.65, 0.2)
 BAD: Colour = (0.85, 0.1, 0.1)
 
+_TOOL_NAME = re.compile(r"\bT\d+\b")
 _TUBE_SHARE = 0.95
 """Share of the shortest strut: drawn length of its tube if the machine file does not state it."""
 
@@ -41,6 +43,9 @@ class MachineScene:
         self._size = float(norm(machine.platform_joints).mean())
         self._frame, self._platform, self._tool = coin.SoMatrixTransform(), coin.SoMatrixTransform(), coin.SoSeparator()
         self._struts = [_Strut(machine, number, self._size) for number in range(6)]
+        self._bodies: dict[str, tuple[coin.SoMaterial, Colour]] = {}
+        self._marked: set[str] = set()
+        self._gold = material(GOLD)
         self.root = group(self._frame, self._base(), *(strut.root for strut in self._struts), self._moving())
 
     def place(self, document_from_machine: Array) -> None:
@@ -54,7 +59,7 @@ class MachineScene:
             shift = coin.SoTranslation()
             shift.translation = (0.0, 0.0, -self.machine.spindle_nose - length)
             body = cutter(diameter or 0.1 * self._size, corner_radius, length)
-            for node in (material(GOLD), shift, body):
+            for node in (self._gold, shift, body):
                 self._tool.addChild(node)
 
     def show(self, pose: ToolPoses) -> None:
@@ -67,23 +72,36 @@ class MachineScene:
         self._platform.matrix = _coin_matrix(matrix)
         left = reach_margins(self.machine, *pose)
         least = np.min([left.shortest[0], left.longest[0], left.base[0], left.platform[0]], axis=0)
-        for strut, joint, margin in zip(self._struts, joints, least, strict=True):
-            strut.reach(joint, bad=bool(margin < 0.0))
+        for number, (strut, joint, margin) in enumerate(zip(self._struts, joints, least, strict=True), start=1):
+            strut.reach(joint, bad=bool(margin < 0.0) or f"strut {number}" in self._marked)
+
+    def mark(self, names: set[str]) -> None:
+        """Show the bodies of these names in red: struts by number, boxes and bodies of the machine file, the tool."""
+        self._marked = names
+        self._gold.diffuseColor = BAD if any(_TOOL_NAME.search(name) for name in names) else GOLD
+        for name, (look, colour) in self._bodies.items():
+            look.diffuseColor = BAD if name in names else colour
 
     def _base(self) -> coin.SoSeparator:
         """The fixed part: a frame through the base joints, and the boxes of the machine file."""
         beams = _ring(self.machine.base_joints, 0.15 * self._size)
-        boxes = [_box(box) for box in self.machine.fixtures]
-        return group(material(DARK), *beams, material(LIGHT), *boxes)
+        boxes = [node for box in self.machine.fixtures for node in (self._named(box.name, LIGHT), _box(box))]
+        return group(material(DARK), *beams, *boxes)
+
+    def _named(self, name: str, colour: Colour) -> coin.SoMaterial:
+        """The material of a body that may be marked."""
+        look, _ = self._bodies.setdefault(name, (material(colour), colour))
+        return look
 
     def _moving(self) -> coin.SoSeparator:
         """The moving part: the bodies of the machine file, or a plate and a spindle; and the tool."""
         machine, size = self.machine, self._size
-        shapes = [(body.radius, body.start, body.end) for body in machine.bodies]
-        shapes = shapes or [(1.05 * size, 0.0, 0.12 * size), (0.25 * size, -machine.spindle_nose, 0.6 * size)]
+        shapes = [(body.name, body.radius, body.start, body.end) for body in machine.bodies]
+        shapes = shapes or [("", 1.05 * size, 0.0, 0.12 * size), ("", 0.25 * size, -machine.spindle_nose, 0.6 * size)]
         bodies = []
-        for number, (radius, start, end) in enumerate(shapes):
-            bodies += [material(LIGHT if number == 0 else DARK), cylinder(radius, start, end)]
+        for number, (name, radius, start, end) in enumerate(shapes):
+            colour = LIGHT if number == 0 else DARK
+            bodies += [self._named(name, colour) if name else material(colour), cylinder(radius, start, end)]
         ring = _ring(machine.platform_joints, 0.08 * size)
         return group(self._platform, material(LIGHT), *ring, *bodies, self._tool)
 
@@ -147,8 +165,10 @@ class MovingMachine:
             self._graph.addChild(self._scene.root)
         self._scene.place(np.linalg.inv(simulation.trajectory.machine_from_work))
 
-    def show(self, seconds: float) -> None:
-        """Move the machine to its pose at a time."""
+    def show(self, seconds: float, problem: Problem | None = None) -> None:
+        """Move the machine to its pose at a time; bodies that come too close there are red."""
+        at_hand = self._simulation.problems_at(seconds) if problem is None else [problem]
+        self._scene.mark({body for each in at_hand for body in each.bodies})
         tool: Tool = self._simulation.tool_at(seconds)
         if tool is not self._tool:
             self._tool = tool

@@ -22,7 +22,7 @@ from pkm_post.freecad_gui.cam_simulator import open_cam_simulator
 from pkm_post.freecad_gui.job_choices import show_place
 from pkm_post.freecad_gui.machine_scene import MovingMachine
 from pkm_post.freecad_gui.observers import DeletionWatch, RecomputeWatch
-from pkm_post.freecad_gui.player_controls import PlayerContent
+from pkm_post.freecad_gui.player_content import PlayerContent
 from pkm_post.model import Place, Refused
 from pkm_post.system import memory_guard
 
@@ -38,7 +38,7 @@ def status_text(simulation: Simulation, seconds: float, problem: Problem | None,
     """
     place = simulation.trajectory.place(simulation.block_at(seconds))
     block = translate("PKM_Simulate", "{}, line {}").format(place.operation, place.line)
-    more = [problem.text] if problem else []
+    more = [each.text for each in ([problem] if problem else simulation.problems_at(seconds)[:1])]
     return "   ".join([
         f"{seconds:.3f} s / {simulation.duration:.3f} s", block, *more, *_too_fast(simulation, override)
     ])  # fmt: skip
@@ -83,7 +83,7 @@ class Player(QtWidgets.QDockWidget):
         self._watches.append(RecomputeWatch(self._follow, document))
         self._timer, self._last = QtCore.QTimer(self), 0.0
         self._timer.timeout.connect(self._tick)
-        self._content = PlayerContent(simulation)
+        self._content = PlayerContent(simulation, subject.Job)
         self.controls, self.lists = self._content.controls, self._content.lists
         self._connect()
         self.setWidget(self._content)
@@ -128,7 +128,7 @@ class Player(QtWidgets.QDockWidget):
         """Show the motion at a time."""
         self.seconds = min(max(seconds, 0.0), self.simulation.duration)
         if self._stage is not None:
-            self._stage.show(self.seconds)
+            self._stage.show(self.seconds, self.problem)
         self._content.show_time(self.seconds)
         override = self.controls.override.value() / 100.0
         self.controls.show_text(status_text(self.simulation, self.seconds, self.problem, override))
@@ -220,6 +220,7 @@ class Player(QtWidgets.QDockWidget):
         for watch in self._watches:
             watch.end()
         self._watches = []
+        self._content.end()
         if self._stage is not None:
             self._stage.strike()
             self._stage = None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Player controls: the player's buttons, its speed, and its status line.
+"""Player controls: the player's buttons, its speed, its status line, and its lists of problems and operations.
 
 Emits the user's commands as signals.
 """
@@ -12,7 +12,6 @@ import FreeCAD
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app.simulation import Problem, Simulation
-from pkm_post.freecad_gui.strut_plot import StrutPlot
 
 translate = FreeCAD.Qt.translate
 
@@ -41,29 +40,50 @@ class PlayerControls(QtWidgets.QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        layout = QtWidgets.QHBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        self._play = _button(layout, "SP_MediaPlay", translate("PKM_Simulate", "Play and pause"), self.play)
+        self._rows = QtWidgets.QBoxLayout(QtWidgets.QBoxLayout.Direction.LeftToRight, self)
+        self._rows.setContentsMargins(0, 0, 0, 0)
+        self.factor, self.override, self.stops = QtWidgets.QComboBox(), QtWidgets.QSpinBox(), QtWidgets.QCheckBox()
+        self._message = QtWidgets.QLabel()
+        self._set_up()
+        for row in (self._motion_row(), self._file_row()):
+            row.setContentsMargins(0, 0, 0, 0)
+            self._rows.addLayout(row)
+        self._rows.addWidget(self._message, 1)
+
+    def _motion_row(self) -> QtWidgets.QHBoxLayout:
+        """What plays, and how fast."""
+        row = QtWidgets.QHBoxLayout()
+        self._play = _button(row, "SP_MediaPlay", translate("PKM_Simulate", "Play and pause"), self.play)
         back, on = (
             translate("PKM_Simulate", "To the beginning of the block"),
             translate("PKM_Simulate", "To the end of the block"),
         )
-        _button(layout, "SP_MediaSkipBackward", back, self.back)
-        _button(layout, "SP_MediaSkipForward", on, self.forward)
-        self.factor, self.override, self.stops = QtWidgets.QComboBox(), QtWidgets.QSpinBox(), QtWidgets.QCheckBox()
-        self._message = QtWidgets.QLabel()
-        self._set_up()
-        for widget in (self.factor, QtWidgets.QLabel(translate("PKM_Simulate", "Override")), self.override, self.stops):
-            layout.addWidget(widget)
+        _button(row, "SP_MediaSkipBackward", back, self.back)
+        _button(row, "SP_MediaSkipForward", on, self.forward)
+        for widget in (self.factor, QtWidgets.QLabel(translate("PKM_Simulate", "Override")), self.override):
+            row.addWidget(widget)
+        row.addStretch(1)
+        return row
+
+    def _file_row(self) -> QtWidgets.QHBoxLayout:
+        """Where it stops, and what is written."""
+        row = QtWidgets.QHBoxLayout()
+        row.addWidget(self.stops)
         save, film = (
             translate("PKM_Simulate", "Write the frames as pictures"),
             translate("PKM_Simulate", "Write an animated PNG"),
         )
-        _button(layout, "SP_DialogSaveButton", save, self.pictures)
-        _button(layout, "SP_FileIcon", film, self.animation)
+        _button(row, "SP_DialogSaveButton", save, self.pictures)
+        _button(row, "SP_FileIcon", film, self.animation)
         removal = translate("PKM_Simulate", "Removal of material, in CAM's own simulator; it shows every tool upright")
-        _button(layout, "SP_ComputerIcon", removal, self.removal)
-        layout.addWidget(self._message, 1)
+        _button(row, "SP_ComputerIcon", removal, self.removal)
+        row.addStretch(1)
+        return row
+
+    def arrange(self, narrow: bool) -> None:
+        """Put the rows beside each other, or below each other where the dock is narrow."""
+        ways = QtWidgets.QBoxLayout.Direction
+        self._rows.setDirection(ways.TopToBottom if narrow else ways.LeftToRight)
 
     def _set_up(self) -> None:
         self.factor.addItems([f"{factor}x" for factor in FACTORS])
@@ -121,7 +141,7 @@ _WIDTH = 380
 
 
 class PlayerLists(QtWidgets.QTabWidget):
-    """Two lists as tabs."""
+    """Two lists as tabs; other pages may follow."""
 
     problem = QtCore.Signal(int)
     operation = QtCore.Signal(int)
@@ -165,49 +185,3 @@ def _fill(rows: Any, texts: list[str]) -> None:
 
 def _sender(rows: Any, wanted: Any) -> Any:
     return lambda item: wanted.emit(rows.row(item))
-
-
-_PER_SECOND = 1000
-"""Slider steps per second: one per millisecond of motion."""
-
-
-class PlayerContent(QtWidgets.QWidget):
-    """The content.
-
-    Attributes:
-        controls: the row of buttons.
-        slider: over the whole motion.
-        plot: lengths and speeds.
-        lists: problems and operations.
-    """
-
-    wanted = QtCore.Signal(float)
-
-    def __init__(self, simulation: Simulation) -> None:
-        super().__init__()
-        self.controls, self.lists = PlayerControls(), PlayerLists()
-        self.slider = QtWidgets.QSlider(QtCore.Qt.Orientation.Horizontal)
-        self.slider.valueChanged.connect(lambda value: self.wanted.emit(value / _PER_SECOND))
-        self.plot = StrutPlot(simulation, self.wanted.emit)
-        self.controls.overridden.connect(self.plot.show_override)
-        below, layout = QtWidgets.QHBoxLayout(), QtWidgets.QVBoxLayout(self)
-        below.addWidget(self.plot, 1)
-        below.addWidget(self.lists)
-        layout.addWidget(self.controls)
-        layout.addWidget(self.slider)
-        layout.addLayout(below, 1)
-
-    def take(self, simulation: Simulation) -> None:
-        """Show another simulation."""
-        self.plot.take(simulation)
-        self.lists.take(simulation)
-        self.slider.blockSignals(True)
-        self.slider.setRange(0, round(simulation.duration * _PER_SECOND))
-        self.slider.blockSignals(False)
-
-    def show_time(self, seconds: float) -> None:
-        """Move cursor and slider without signals of user input."""
-        self.plot.show_time(seconds)
-        self.slider.blockSignals(True)
-        self.slider.setValue(round(seconds * _PER_SECOND))
-        self.slider.blockSignals(False)

@@ -1623,6 +1623,86 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <source>Speeds in mm/s</source>
         <translation>速度，mm/s</translation>
     </message>
+    <message>
+        <source>Readout</source>
+        <translation>读数</translation>
+    </message>
+    <message>
+        <source>Program</source>
+        <translation>程序</translation>
+    </message>
+    <message>
+        <source>Material</source>
+        <translation>材料</translation>
+    </message>
+    <message>
+        <source>Colour by the distance from the part</source>
+        <translation>按与零件的距离着色</translation>
+    </message>
+    <message>
+        <source>No material</source>
+        <translation>不显示材料</translation>
+    </message>
+    <message>
+        <source>Material: {}</source>
+        <translation>材料：{}</translation>
+    </message>
+    <message>
+        <source>Cutting: {:.1f} of {:.1f} s</source>
+        <translation>切削中：{:.1f} / {:.1f} s</translation>
+    </message>
+    <message>
+        <source>Coarse, {}</source>
+        <translation>粗，{}</translation>
+    </message>
+    <message>
+        <source>Medium, {}</source>
+        <translation>中，{}</translation>
+    </message>
+    <message>
+        <source>Fine, {}</source>
+        <translation>细，{}</translation>
+    </message>
+    <message>
+        <source>The job has no stock: choose one in its Setup.</source>
+        <translation>作业没有毛坯：请在其“设置”中选择。</translation>
+    </message>
+    <message>
+        <source>The surface of the stock is not closed.</source>
+        <translation>毛坯的表面不封闭。</translation>
+    </message>
+    <message>
+        <source>Left over the part: {}, up to {} thick</source>
+        <translation>零件上的余量：{}，最厚 {}</translation>
+    </message>
+    <message>
+        <source>Missing of the part: {}, up to {} deep</source>
+        <translation>零件缺失：{}，最深 {}</translation>
+    </message>
+    <message>
+        <source>at least {}</source>
+        <translation>至少 {}</translation>
+    </message>
+    <message>
+        <source>Strut {}</source>
+        <translation>支链 {}</translation>
+    </message>
+    <message>
+        <source>Feed</source>
+        <translation>进给</translation>
+    </message>
+    <message>
+        <source>Asked</source>
+        <translation>要求</translation>
+    </message>
+    <message>
+        <source>Line</source>
+        <translation>行</translation>
+    </message>
+    <message>
+        <source>Left</source>
+        <translation>剩余</translation>
+    </message>
 </context>
 <context>
     <name>PKM_SurfaceFinish</name>

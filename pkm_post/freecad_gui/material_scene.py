@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Material scene: the surface of a stock in the 3D view, brick by brick; only what was cut is drawn again.
+
+Takes the stock and the numbers of changed bricks; keeps a Coin node. Colours: by what was cut, or by the distance from
+the part, from blue where material is left over green to red where the part is gouged.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from pivy import coin
+
+from pkm_post.freecad_app.material import Material
+from pkm_post.freecad_gui.shapes import group
+from pkm_post.geometry import Array
+from pkm_post.removal import Patch, patches
+
+_BLANK = (0.72, 0.60, 0.42)
+_GOUGE, _RIGHT, _LEFT = np.array([0.85, 0.0, 0.0]), np.array([0.25, 0.7, 0.3]), np.array([0.2, 0.4, 0.95])
+_CREASE = 0.5
+
+
+def deviation_colours(values: Array, scale: float) -> Array:
+    """Colours (V, 3) of distances from the part (V,): green at 0, blue from ``scale`` outside, red from it inside.
+
+    Args:
+        values: positive where material is left, mm.
+        scale: distance of full colour, mm.
+    """
+    share = np.clip(np.abs(values) / scale, 0.0, 1.0)[:, None]
+    return (1.0 - share) * _RIGHT + share * np.where(values[:, None] < 0.0, _GOUGE, _LEFT)
+
+
+class MaterialScene:
+    """The surface of a stock.
+
+    Attributes:
+        root: the node to add to a view.
+        scale: distance from the part that has full colour, mm; 0 shows the material without comparison.
+    """
+
+    def __init__(self, material: Material) -> None:
+        self.material, self.scale = material, 0.0
+        self._bricks: dict[int, _Brick] = {}
+        hints, look = coin.SoShapeHints(), coin.SoMaterial()
+        hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE  # not solid: a section shows the inner side
+        hints.creaseAngle = _CREASE
+        look.diffuseColor = _BLANK
+        look.specularColor = (0.1, 0.1, 0.1)
+        self._all = coin.SoSeparator()
+        self._all.renderCaching = coin.SoSeparator.OFF
+        self.root = group(hints, look, self._all)
+        self.show_all()
+
+    def show_all(self) -> None:
+        """Draw all bricks that the surface passes."""
+        stock = self.material.replay.stock
+        passed = (stock.field.min(axis=1) < stock.band) & (stock.field.max(axis=1) > -stock.band)
+        gone = np.array([brick for brick in self._bricks if not passed[brick]], dtype=np.int64)
+        self.show(np.concatenate([np.flatnonzero(passed), gone]))
+
+    def show(self, bricks: Array) -> None:
+        """Draw some bricks, whose values have changed."""
+        compared = self.material.part_distances if self.scale > 0.0 else None
+        for patch in patches(self.material.replay.stock, bricks, compared):
+            self._draw(patch)
+
+    def _draw(self, patch: Patch) -> None:
+        drawn = self._bricks.get(patch.brick)
+        if drawn is None:
+            if not len(patch.faces):
+                return
+            drawn = self._bricks[patch.brick] = _Brick()
+            self._all.addChild(drawn.shape)
+        drawn.take(patch, self.scale)
+
+
+class _Brick:
+    """The surface in one brick."""
+
+    def __init__(self) -> None:
+        self.shape, self._vertices = coin.SoIndexedFaceSet(), coin.SoVertexProperty()
+        self._vertices.normalBinding = coin.SoVertexProperty.PER_VERTEX_INDEXED
+        self.shape.vertexProperty = self._vertices
+
+    def take(self, patch: Patch, scale: float) -> None:
+        """Show another surface."""
+        vertices = self._vertices
+        corners = np.column_stack([patch.faces, np.full(len(patch.faces), -1)]).ravel()
+        self.shape.coordIndex.setNum(0)
+        for field, values in ((vertices.vertex, patch.points), (vertices.normal, patch.normals)):
+            field.setNum(len(values))
+            if len(values):
+                field.setValues(0, len(values), values.tolist())
+        if len(corners):
+            self.shape.coordIndex.setValues(0, len(corners), corners.tolist())
+        self._colour(patch.values, scale)
+
+    def _colour(self, values: Array, scale: float) -> None:
+        vertices = self._vertices
+        if not scale or not len(values):
+            vertices.materialBinding = coin.SoVertexProperty.OVERALL
+            vertices.orderedRGBA.setNum(0)
+            return
+        parts = (255 * deviation_colours(values, scale)).astype(np.uint32)
+        packed = (parts[:, 0] << 24) | (parts[:, 1] << 16) | (parts[:, 2] << 8) | np.uint32(255)
+        vertices.materialBinding = coin.SoVertexProperty.PER_VERTEX_INDEXED
+        vertices.orderedRGBA.setNum(len(packed))
+        vertices.orderedRGBA.setValues(0, len(packed), packed.tolist())

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Player content: controls, timeline, curves and pages of the player, beside or, in a narrow dock, below each other.
+
+Takes a simulation and its job; emits the times that the user asks for.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD
+from PySide import QtCore, QtWidgets
+
+from pkm_post.freecad_app.simulation import Simulation
+from pkm_post.freecad_gui.player_controls import PlayerControls, PlayerLists
+from pkm_post.freecad_gui.player_listing import Listing
+from pkm_post.freecad_gui.player_material import MaterialPage
+from pkm_post.freecad_gui.player_readout import Readout, reading_at
+from pkm_post.freecad_gui.strut_plot import StrutPlot
+from pkm_post.freecad_gui.timeline import Timeline
+
+translate = FreeCAD.Qt.translate
+
+_PER_SECOND = 1000
+"""Slider steps per second: one per millisecond of motion."""
+_NARROW, _LEAST = 760, (300, 240)
+"""Pixels: width below which rows stand below each other, and the least size."""
+
+
+class PlayerContent(QtWidgets.QWidget):
+    """The content.
+
+    Attributes:
+        controls: the buttons.
+        slider: over the whole motion.
+        timeline: bands of operations, tool changes and findings.
+        plot: lengths and speeds.
+        lists: problems and operations, and the pages of readout, program and material.
+    """
+
+    wanted = QtCore.Signal(float)
+
+    def __init__(self, simulation: Simulation, job: Any) -> None:
+        super().__init__()
+        self._simulation, self._job = simulation, job
+        self.controls, self.lists, self.timeline = PlayerControls(), PlayerLists(), Timeline()
+        self.readout, self.listing, self.material = Readout(), Listing(), MaterialPage(job)
+        self.slider = QtWidgets.QSlider(QtCore.Qt.Orientation.Horizontal)
+        self.plot = StrutPlot(simulation, self.wanted.emit)
+        self._below = QtWidgets.QSplitter(QtCore.Qt.Orientation.Horizontal)
+        self._lay_out()
+        self.slider.valueChanged.connect(lambda value: self.wanted.emit(value / _PER_SECOND))
+        self.controls.overridden.connect(self.plot.show_override)
+        for source in (self.timeline, self.listing):
+            source.wanted.connect(self.wanted.emit)
+
+    def _lay_out(self) -> None:
+        pages = (
+            (self.readout, translate("PKM_Simulate", "Readout")),
+            (self.listing, translate("PKM_Simulate", "Program")),
+            (self.material, translate("PKM_Simulate", "Material")),
+        )
+        for page, title in pages:
+            self.lists.addTab(page, title)
+        for widget in (self.plot, self.lists):
+            self._below.addWidget(widget)
+        self._below.setStretchFactor(0, 1)
+        layout = QtWidgets.QVBoxLayout(self)
+        layout.setContentsMargins(4, 4, 4, 4)
+        for widget in (self.controls, self.slider, self.timeline):
+            layout.addWidget(widget)
+        layout.addWidget(self._below, 1)
+
+    def minimumSizeHint(self) -> QtCore.QSize:
+        """Small enough for a dock at the side of the window."""
+        return QtCore.QSize(*_LEAST)
+
+    def resizeEvent(self, event: Any) -> None:
+        """Arrange the rows for the width."""
+        narrow = self.width() < _NARROW
+        self.controls.arrange(narrow)
+        ways = QtCore.Qt.Orientation
+        self._below.setOrientation(ways.Vertical if narrow else ways.Horizontal)
+        super().resizeEvent(event)
+
+    def take(self, simulation: Simulation) -> None:
+        """Show another simulation."""
+        self._simulation = simulation
+        for part in (self.plot, self.lists, self.timeline, self.material):
+            part.take(simulation)
+        self.listing.take(simulation, self._job)
+        self.slider.blockSignals(True)
+        self.slider.setRange(0, round(simulation.duration * _PER_SECOND))
+        self.slider.blockSignals(False)
+
+    def show_time(self, seconds: float) -> None:
+        """Move cursors, marks and slider without signals of user input."""
+        for part in (self.plot, self.timeline, self.listing, self.material):
+            part.show_time(seconds)
+        self.readout.show_reading(reading_at(self._simulation, seconds, self.controls.override.value() / 100.0))
+        self.slider.blockSignals(True)
+        self.slider.setValue(round(seconds * _PER_SECOND))
+        self.slider.blockSignals(False)
+
+    def end(self) -> None:
+        """Take out of the view what the pages put there."""
+        self.material.strike()

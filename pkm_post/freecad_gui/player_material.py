@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Material page: the player's tab for the stock: its resolution, its colours, and what differs from the part.
+
+Takes a simulation and times; shows the stock in the 3D view at the present time. Cutting never holds up the picture:
+while the stock is behind, the page says so, and a timer goes on.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import FreeCAD
+import FreeCADGui
+import numpy as np
+from PySide import QtCore, QtWidgets
+
+from pkm_post.freecad_app.material import RESOLUTIONS, Material, can_be_cut, material_of, step_of
+from pkm_post.freecad_app.simulation import Simulation
+from pkm_post.freecad_gui.material_scene import MaterialScene
+from pkm_post.freecad_gui.quantities import length_text, volume_text
+
+translate = FreeCAD.Qt.translate
+
+_TICK_MS = 15
+_BUDGET = 0.03
+"""s of cutting in a tick."""
+_POSES = 16
+"""Poses cut between two looks at the clock."""
+_REST_MS = 400
+"""Time without a change after which the stock is measured."""
+
+
+class MaterialPage(QtWidgets.QWidget):
+    """The tab.
+
+    Attributes:
+        resolution: choice of the grid; the first one shows no material.
+        compared: whether the colours show the distance from the part.
+        numbers: what was measured.
+        material: the stock; None if none is shown.
+    """
+
+    def __init__(self, job: Any) -> None:
+        super().__init__()
+        self._document, self._seconds = job.Document.Name, 0.0
+        models = [each for item in job.Model.Group for each in (item, *getattr(item, "Objects", ()))]
+        self._covered = [item.Name for item in (job.Stock, *models) if item is not None]
+        self._simulation: Simulation | None = None
+        self._graph: Any = None
+        self.material: Material | None = None
+        self._scene: MaterialScene | None = None
+        self._hidden: list[str] = []
+        self.resolution, self.compared = QtWidgets.QComboBox(), QtWidgets.QCheckBox()
+        self.numbers = QtWidgets.QLabel()
+        self.numbers.setWordWrap(True)
+        self.numbers.setTextInteractionFlags(QtCore.Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.compared.setText(translate("PKM_Simulate", "Colour by the distance from the part"))
+        layout = QtWidgets.QVBoxLayout(self)
+        for widget in (self.resolution, self.compared, self.numbers):
+            layout.addWidget(widget)
+        layout.addStretch(1)
+        self._timer, self._rest = QtCore.QTimer(self), QtCore.QTimer(self)
+        self._timer.timeout.connect(self._cut)
+        self._rest.setSingleShot(True)
+        self._rest.timeout.connect(self.measure)
+        self.resolution.currentIndexChanged.connect(lambda _index: self._choose())
+        self.compared.toggled.connect(lambda _on: self._recolour())
+
+    @property
+    def is_current(self) -> bool:
+        """Whether the stock is that of the present time."""
+        return self.material is None or self.material.replay.is_at(self._seconds)
+
+    def take(self, simulation: Simulation) -> None:
+        """Show the stock of another simulation, at the resolution chosen before."""
+        self._simulation = simulation
+        chosen = self.resolution.currentData()
+        self.resolution.blockSignals(True)
+        self.resolution.clear()
+        self.resolution.addItem(translate("PKM_Simulate", "No material"), "")
+        stock = simulation.setup.stock
+        if can_be_cut(stock):
+            for name, text in _names().items():
+                self.resolution.addItem(text.format(length_text(step_of(stock, RESOLUTIONS[name]))), name)
+        self.resolution.setCurrentIndex(max(self.resolution.findData(chosen), 0))
+        self.resolution.blockSignals(False)
+        self._choose()
+
+    def show_time(self, seconds: float) -> None:
+        """Cut up to a time, or go back to it."""
+        self._seconds = seconds
+        if self.material is not None and not self.is_current:
+            self._timer.start(_TICK_MS)
+
+    def strike(self) -> None:
+        """Take the stock out of the view, and show the stock object again."""
+        self._timer.stop()
+        self._rest.stop()
+        if self._scene is not None:
+            self._graph.removeChild(self._scene.root)
+        self._scene = self.material = None
+        for item in self._objects(self._hidden):
+            item.ViewObject.Visibility = True
+        self._hidden = []
+
+    def measure(self) -> None:
+        """Show the volumes, and the largest differences from the part."""
+        material = self.material
+        if material is None:
+            return
+        lines = [translate("PKM_Simulate", "Material: {}").format(volume_text(material.replay.stock.volume))]
+        found = material.compared() if self.compared.isChecked() else None
+        if found is not None:
+            lines += difference_lines(found)
+        self.numbers.setText("\n".join(lines))
+
+    def _choose(self) -> None:
+        self.strike()
+        self.numbers.setText(_reason(self._simulation))
+        name = self.resolution.currentData()
+        if not name:
+            self.compared.setEnabled(False)
+            return
+        QtWidgets.QApplication.setOverrideCursor(QtCore.Qt.CursorShape.WaitCursor)
+        try:
+            step = step_of(self._simulation.setup.stock, RESOLUTIONS[name])
+            self.material = material_of(self._simulation, step)
+            self._scene = MaterialScene(self.material)
+        finally:
+            QtWidgets.QApplication.restoreOverrideCursor()
+        self.compared.setEnabled(self.material.part is not None)
+        self._graph = FreeCADGui.getDocument(self._document).activeView().getSceneGraph()
+        self._graph.addChild(self._scene.root)
+        self._hide_objects()
+        self._recolour()
+        self.show_time(self._seconds)
+
+    def _hide_objects(self) -> None:
+        """Hide what the material covers: stock and model of the job, as in CAM's simulator."""
+        for item in self._objects(self._covered):
+            if item.ViewObject.Visibility:
+                self._hidden.append(item.Name)
+                item.ViewObject.Visibility = False
+
+    def _objects(self, names: list[str]) -> list[Any]:
+        """The objects of these names that are still there."""
+        document = FreeCAD.listDocuments().get(self._document)
+        found = [document.getObject(name) for name in names] if document is not None else []
+        return [item for item in found if item is not None]
+
+    def _recolour(self) -> None:
+        if self._scene is None:
+            return
+        on = self.compared.isChecked() and self.material.part is not None
+        self._scene.scale = self.material.replay.stock.grid.step if on else 0.0
+        self._scene.show_all()
+        self.measure()
+
+    def _cut(self) -> None:
+        """One portion of the work that is due."""
+        if self.material is None:
+            self._timer.stop()
+            return
+        end = time.perf_counter() + _BUDGET
+        bricks = []
+        while not self.is_current and time.perf_counter() < end:
+            bricks.append(self.material.replay.go_to(self._seconds, _POSES))
+        if bricks:
+            self._scene.show(np.unique(np.concatenate(bricks)))
+        if self.is_current:
+            self._timer.stop()
+            self._rest.start(_REST_MS)
+        else:
+            behind = translate("PKM_Simulate", "Cutting: {:.1f} of {:.1f} s")
+            self.numbers.setText(behind.format(self.material.replay.seconds, self._seconds))
+
+
+def _names() -> dict[str, str]:
+    return {
+        "coarse": translate("PKM_Simulate", "Coarse, {}"),
+        "medium": translate("PKM_Simulate", "Medium, {}"),
+        "fine": translate("PKM_Simulate", "Fine, {}"),
+    }
+
+
+def _reason(simulation: Simulation) -> str:
+    """Why there is no material to show, if so."""
+    if simulation.setup.stock is None:
+        return translate("PKM_Simulate", "The job has no stock: choose one in its Setup.")
+    if not can_be_cut(simulation.setup.stock):
+        return translate("PKM_Simulate", "The surface of the stock is not closed.")
+    return ""
+
+
+def difference_lines(found: Any) -> list[str]:
+    """A comparison in words, in the user's units."""
+    rows = (
+        (translate("PKM_Simulate", "Left over the part: {}, up to {} thick"), found.left, found.thickest),
+        (translate("PKM_Simulate", "Missing of the part: {}, up to {} deep"), found.gouged, found.deepest),
+    )
+    more = translate("PKM_Simulate", "at least {}")
+    lines = []
+    for text, volume, distance in rows:
+        shown = length_text(distance)
+        lines.append(text.format(volume_text(volume), more.format(shown) if distance >= found.limit else shown))
+    return lines

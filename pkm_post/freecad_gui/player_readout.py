@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Readout: numbers of a simulated motion at a time: pose, struts, feed, line and the time that is left.
+
+Positions are those of the tool tip in the work frame {C}, as the program has them, in the units of the user.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import FreeCAD
+import numpy as np
+from PySide import QtWidgets
+
+from pkm_post.freecad_app.frames import apply
+from pkm_post.freecad_app.simulation import Simulation
+from pkm_post.freecad_gui.quantities import length_text, speed_text, time_text
+from pkm_post.geometry import Array
+
+translate = FreeCAD.Qt.translate
+
+_STRUTS = 6
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Numbers at a time.
+
+    Attributes:
+        tip: (3,) tool tip in {C}, mm.
+        axis: (3,) unit tool axis in {C}.
+        lengths: (6,) strut lengths, mm.
+        feed: speed of the tip, mm/s.
+        asked: programmed speed of the tip, mm/s.
+        operation: name of the operation.
+        line: number of its command.
+        left: time to the end, s.
+    """
+
+    tip: Array
+    axis: Array
+    lengths: Array
+    feed: float
+    asked: float
+    operation: str
+    line: int
+    left: float
+
+
+def reading_at(simulation: Simulation, seconds: float, override: float = 1.0) -> Reading:
+    """The numbers at a time.
+
+    Args:
+        simulation: the motion.
+        seconds: time in the plan, s.
+        override: share of the planned speed.
+    """
+    tip, axis, _, _ = simulation.pose_at(np.array([seconds]))
+    lengths, _ = simulation.struts_at(np.array([seconds]))
+    work_from_machine = np.linalg.inv(simulation.trajectory.machine_from_work)
+    block = simulation.block_at(seconds)
+    place = simulation.trajectory.place(block)
+    return Reading(
+        tip=apply(work_from_machine, tip)[0],
+        axis=(axis @ work_from_machine[:3, :3].T)[0],
+        lengths=lengths[0],
+        feed=simulation.feed_at(seconds) * override,
+        asked=float(simulation.trajectory.feed[block]),
+        operation=place.operation,
+        line=place.line,
+        left=(simulation.duration - seconds) / override,
+    )
+
+
+class Readout(QtWidgets.QWidget):
+    """The tab: one line for each number."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        names = (
+            *"XYZIJK",
+            *(translate("PKM_Simulate", "Strut {}").format(number + 1) for number in range(_STRUTS)),
+            translate("PKM_Simulate", "Feed"),
+            translate("PKM_Simulate", "Asked"),
+            translate("PKM_Simulate", "Line"),
+            translate("PKM_Simulate", "Left"),
+        )
+        self.fields = [QtWidgets.QLabel() for _ in names]
+        grid = QtWidgets.QGridLayout(self)
+        grid.setContentsMargins(4, 4, 4, 4)
+        grid.setVerticalSpacing(1)
+        for row, (name, field) in enumerate(zip(names, self.fields, strict=True)):
+            half = (len(names) + 1) // 2
+            grid.addWidget(QtWidgets.QLabel(name), row % half, row // half * 2)
+            grid.addWidget(field, row % half, row // half * 2 + 1)
+            field.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Preferred)
+        grid.setColumnStretch(1, 1)
+        grid.setColumnStretch(3, 1)
+
+    def show_reading(self, reading: Reading) -> None:
+        """Show other numbers."""
+        texts = (
+            *(length_text(value) for value in reading.tip),
+            *(f"{value:.5f}" for value in reading.axis),
+            *(length_text(value) for value in reading.lengths),
+            speed_text(reading.feed),
+            speed_text(reading.asked),
+            f"{reading.operation}, {reading.line}",
+            time_text(reading.left),
+        )
+        for field, text in zip(self.fields, texts, strict=True):
+            field.setText(text)
+            field.setToolTip(text)

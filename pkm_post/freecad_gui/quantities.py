@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Quantities: numbers of our own, in mm, mm/s and degrees, as texts in the units that the user chose in FreeCAD."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from FreeCAD import Units
+
+
+def _text(value: float, kind: object) -> str:
+    shown = Units.Quantity(value, kind).UserString
+    return shown.decode() if isinstance(shown, bytes) else str(shown)
+
+
+def length_text(mm: float) -> str:
+    """A length."""
+    return _text(mm, Units.Length)
+
+
+def volume_text(cubic_mm: float) -> str:
+    """A volume."""
+    return _text(cubic_mm, Units.Volume)
+
+
+def speed_text(mm_per_second: float) -> str:
+    """A feed or a speed."""
+    return _text(mm_per_second, Units.Velocity)
+
+
+def point_text(mm: Iterable[float]) -> str:
+    """Coordinates of a point."""
+    return "  ".join(f"{name} {length_text(value)}" for name, value in zip("XYZ", mm, strict=True))
+
+
+def time_text(seconds: float) -> str:
+    """Hours, minutes and seconds."""
+    minutes, rest = divmod(max(seconds, 0.0), 60.0)
+    hours, minutes = divmod(int(minutes), 60)
+    return f"{hours}:{minutes:02d}:{rest:04.1f}" if hours else f"{minutes}:{rest:04.1f}"

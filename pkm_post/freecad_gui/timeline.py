@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Timeline: bands of operations, tool changes and findings over the time of a simulated motion; a click goes there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import FreeCAD
+import numpy as np
+from PySide import QtCore, QtGui, QtWidgets
+
+from pkm_post.freecad_app.simulation import Simulation
+
+translate = FreeCAD.Qt.translate
+
+_OPERATIONS = "#b8cfe6", "#dbe4ec"
+_TOOL, _FINDING, _CURSOR = "#5c3566", "#cc0000", "#204a87"
+_HEIGHT, _FINDINGS = 26, 8
+"""Pixels: of the widget, and of the band of findings at its lower end."""
+
+
+@dataclass(frozen=True)
+class Band:
+    """A stretch of time.
+
+    Attributes:
+        start: s.
+        end: s.
+        text: what it is.
+    """
+
+    start: float
+    end: float
+    text: str
+
+
+def operation_bands(simulation: Simulation) -> list[Band]:
+    """One band for each run of blocks of an operation."""
+    operation, ends = simulation.trajectory.operation, simulation.motion.joint_time
+    last = np.append(np.flatnonzero(np.diff(operation)), len(operation) - 1)
+    starts = np.append(0.0, ends[last[:-1]])
+    names = simulation.trajectory.operations
+    return [
+        Band(*row)
+        for row in zip(starts.tolist(), ends[last].tolist(), (names[n] for n in operation[last]), strict=True)
+    ]
+
+
+def tool_changes(simulation: Simulation) -> list[Band]:
+    """The moments at which another tool comes into the spindle."""
+    tool = simulation.trajectory.tool
+    rows = np.flatnonzero(np.diff(tool))
+    times = simulation.motion.joint_time[rows].tolist()
+    return [Band(at, at, f"T{number}") for at, number in zip(times, tool[rows + 1].tolist(), strict=True)]
+
+
+def finding_bands(simulation: Simulation) -> list[Band]:
+    """What the machine cannot follow, each from its beginning to its worst moment."""
+    return [Band(problem.time, problem.worst_time, problem.text) for problem in simulation.problems]
+
+
+class Timeline(QtWidgets.QWidget):
+    """The widget.
+
+    Attributes:
+        operations: bands of the operations.
+        tools: moments of tool changes.
+        findings: bands of the problems.
+    """
+
+    wanted = QtCore.Signal(float)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.operations: list[Band] = []
+        self.tools: list[Band] = []
+        self.findings: list[Band] = []
+        self._duration, self._seconds = 1.0, 0.0
+        self.setFixedHeight(_HEIGHT)
+        self.setMinimumWidth(100)
+
+    def take(self, simulation: Simulation) -> None:
+        """Show another simulation."""
+        self._duration = max(simulation.duration, 1e-9)
+        self.operations, self.tools = operation_bands(simulation), tool_changes(simulation)
+        self.findings = finding_bands(simulation)
+        self.update()
+
+    def show_time(self, seconds: float) -> None:
+        """Move the cursor."""
+        self._seconds = seconds
+        self.update()
+
+    def mousePressEvent(self, event: Any) -> None:
+        """Go to the clicked time."""
+        self.wanted.emit(self._time_at(event))
+
+    def event(self, event: Any) -> bool:
+        """Say what is under the mouse."""
+        if event.type() == QtCore.QEvent.Type.ToolTip:
+            self.setToolTip(self.text_at(event.pos().x() / max(self.width(), 1) * self._duration))
+        return bool(super().event(event))
+
+    def text_at(self, seconds: float) -> str:
+        """What there is at a time: the operation, and the findings and tool changes beside it."""
+        room = 3.0 / max(self.width(), 1) * self._duration
+        near = [
+            band.text
+            for bands in (self.operations, self.tools, self.findings)
+            for band in bands
+            if band.start - room <= seconds <= band.end + room
+        ]
+        return "\n".join(near)
+
+    def paintEvent(self, _event: Any) -> None:
+        """Paint the bands and the cursor."""
+        painter = QtGui.QPainter(self)
+        for number, band in enumerate(self.operations):
+            area = self._area(band, 0, _HEIGHT - _FINDINGS)
+            painter.fillRect(area, QtGui.QColor(_OPERATIONS[number % 2]))
+            painter.setPen(QtGui.QColor("black"))
+            painter.drawText(area.adjusted(3, 0, -3, 0), QtCore.Qt.AlignmentFlag.AlignVCenter, band.text)
+        for band in self.findings:
+            painter.fillRect(self._area(band, _HEIGHT - _FINDINGS, _FINDINGS), QtGui.QColor(_FINDING))
+        for band in self.tools:
+            painter.fillRect(self._area(band, 0, _HEIGHT), QtGui.QColor(_TOOL))
+        painter.setPen(QtGui.QPen(QtGui.QColor(_CURSOR), 2))
+        x = self._x(self._seconds)
+        painter.drawLine(x, 0, x, _HEIGHT)
+        painter.end()
+
+    def _area(self, band: Band, top: int, height: int) -> Any:
+        left = self._x(band.start)
+        return QtCore.QRect(left, top, max(self._x(band.end) - left, 2), height)
+
+    def _x(self, seconds: float) -> int:
+        return round(seconds / self._duration * (self.width() - 1))
+
+    def _time_at(self, event: Any) -> float:
+        position = event.position().x() if hasattr(event, "position") else event.x()
+        return min(max(position / max(self.width() - 1, 1), 0.0), 1.0) * self._duration

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The pages of the player: material that tools take, readout, program and timeline, in a wide dock and a narrow one."""
+
+import FreeCAD
+import FreeCADGui
+import numpy as np
+from gui import main, picture_of_all, press, settle, step, until
+from PySide import QtCore, QtWidgets
+
+SLOT = [
+    "G0 X-15 Y10 Z40 I0 J0 K1",
+    "G0 X-15 Y10 Z14 I0 J0.5 K0.8660254037844386",
+    "G1 X35 Y10 Z14 I0 J0.5 K0.8660254037844386 F20",
+    "G0 X35 Y10 Z40 I0 J0 K1",
+]
+"""A groove along the top of the block of 20 mm, the tool tilted by 30 degrees across it."""
+
+
+@step
+def player_opens_with_its_pages():
+    from cam_jobs import add_operation, add_tool_controller, job_in_reach
+
+    document = FreeCAD.newDocument("chips")
+    job = job_in_reach(document)
+    job.PostProcessorArgs = "--machine example_6tps --work-offset=0,0,250"
+    job.Stock.ExtXneg = job.Stock.ExtXpos = job.Stock.ExtYneg = job.Stock.ExtYpos = 0
+    job.Stock.ExtZneg = job.Stock.ExtZpos = 0
+    tool = job.Tools.Group[0].Tool
+    tool.Diameter, tool.CuttingEdgeHeight, tool.ShankDiameter = 10, 40, 10
+    add_operation(job, SLOT, "Groove")
+    other = add_operation(job, ["G0 X0 Y0 Z40", "G1 X5 Y0 Z30 F20"], "Above")
+    other.ToolController = add_tool_controller(job, 2)
+    document.recompute()
+    press("PKM_Machine", job)
+    press("PKM_Simulate", job)
+    content = _content()
+    return {
+        "tabs": [content.lists.tabText(number) for number in range(content.lists.count())],
+        "bands": [band.text for band in content.timeline.operations],
+        "tools": [band.text for band in content.timeline.tools],
+        "rows": [_row(number) for number in range(content.listing.model().rowCount())],
+        "material": [content.material.resolution.itemText(n) for n in range(content.material.resolution.count())],
+    }
+
+
+@step
+def material_is_taken_and_comes_back():
+    player, page = _player(), _content().material
+    covered = FreeCAD.getDocument("chips").getObject("Job").Model.Group[0].ViewObject
+    covered.Visibility = True
+    page.resolution.setCurrentIndex(page.resolution.findData("medium"))
+    whole = page.material.replay.stock.volume
+    player.go_to(player.simulation.duration)
+    until(lambda: page.is_current, 120)
+    cut = page.material.replay.stock.volume
+    page.compared.setChecked(True)
+    page.measure()
+    compared = page.numbers.text().splitlines()
+    saved = picture_of_all("material.png")
+    found = page.material.compared()
+    player.go_to(0.0)
+    until(lambda: page.is_current, 120)
+    back = page.material.replay.stock.volume
+    hidden = not covered.Visibility
+    page.resolution.setCurrentIndex(0)
+    return {
+        "whole": whole, "cut": cut, "back": back, "lines": compared, "saved": saved,
+        "gouged": found.gouged, "deepest": found.deepest, "left": found.left, "hidden": hidden,
+        "shown": covered.Visibility,
+    }  # fmt: skip
+
+
+@step
+def readout_and_program_go_together():
+    player, content = _player(), _content()
+    rows = [_row(number) for number in range(content.listing.model().rowCount())]
+    row = next(number for number, text in enumerate(rows) if "G1 " in text)
+    content.listing.clicked.emit(content.listing.model().index(row, 0))
+    begins = player.seconds
+    player.go_to(begins + 1.0)
+    marked = content.listing.currentIndex().row()
+    texts = [field.text() for field in content.readout.fields]
+    tip, axis, *_ = player.simulation.pose_at(np.array([player.seconds]))
+    return {
+        "begins": begins, "row": row, "marked": marked, "texts": texts,
+        "before": player.simulation.block_before(begins + 1e-6),
+        "tip": (tip[0] - [0, 0, 250]).tolist(), "axis": axis[0].tolist(),
+        "lengths": player.simulation.struts_at(np.array([player.seconds]))[0][0].tolist(),
+        "left": player.simulation.duration - player.seconds,
+    }  # fmt: skip
+
+
+@step
+def readout_follows_the_units_of_the_user():
+    player, content = _player(), _content()
+    before = FreeCAD.Units.getSchema()
+    FreeCAD.Units.setSchema(3)  # imperial decimal
+    player.go_to(player.seconds)
+    texts = [field.text() for field in content.readout.fields]
+    FreeCAD.Units.setSchema(before)
+    player.go_to(player.seconds)
+    return {"texts": texts}
+
+
+@step
+def timeline_goes_to_a_click():
+    player, content = _player(), _content()
+    content.timeline.wanted.emit(content.timeline.operations[-1].start)
+    at = player.seconds
+    text = content.timeline.text_at(content.timeline.operations[-1].start + 0.1)
+    return {"at": at, "start": content.timeline.operations[-1].start, "text": text}
+
+
+@step
+def narrow_dock_hides_nothing():
+    player, content = _player(), _content()
+    window = FreeCADGui.getMainWindow()
+    window.removeDockWidget(player)
+    window.addDockWidget(QtCore.Qt.DockWidgetArea.RightDockWidgetArea, player)
+    player.show()
+    window.resizeDocks([player], [380], QtCore.Qt.Orientation.Horizontal)
+    settle()
+    buttons = content.controls.findChildren(QtWidgets.QAbstractButton)
+    outside = [
+        button.toolTip() or button.text()
+        for button in buttons
+        if button.mapTo(content, QtCore.QPoint(button.width(), 0)).x() > content.width()
+    ]
+    return {"width": content.width(), "outside": outside, "saved": picture_of_all("narrow.png")}
+
+
+@step
+def player_closes():
+    _player().close()
+    settle()
+    FreeCAD.closeDocument("chips")
+    settle()
+    return {}
+
+
+def _player():
+    return FreeCADGui.getMainWindow().findChild(QtWidgets.QDockWidget, "PkmPlayer")
+
+
+def _content():
+    return _player().widget()
+
+
+def _row(number):
+    model = _content().listing.model()
+    return model.data(model.index(number, 0))
+
+
+main()
