@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reading G-code of Fanuc's controls word by word, as plainly as it can be written, and programs of it made at random.
+"""Reading G-code of Fanuc's controls word by word, as plainly as it can be written.
 
 What the columns of the reader are compared with. Nothing here is shared with it: the text is split by one regular
 expression, and the codes of group 01 (motion) and of group 09 (cycles) are two variables, as the manual has them. The
@@ -7,11 +7,15 @@ programs are right; no faults are reported.
 """
 
 import math
-import random
+import operator
 import re
 
 PLANES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}
 PECKING = (73, 83)
+COMMON = 100
+"""Variables from here on are not local to a macro."""
+COMPARED = {"EQ": operator.eq, "NE": operator.ne, "LT": operator.lt, "LE": operator.le, "GT": operator.gt,
+            "GE": operator.ge}  # fmt: skip
 BACK = 0.254
 """mm by which G73 goes back and G83 stops before the depth reached."""
 
@@ -33,10 +37,13 @@ class Control:
         """Blocks from a line on, until M30 or M99."""
         while True:
             line, at = self.lines[at], at + 1
+            if (to := self.flow(line, at)) is not None:
+                at = to
+                continue
             if "G65" in line or "G66" in line:
                 self.call(line)
                 continue
-            if self.variables:
+            if "#" in line:
                 line = self.substituted(line)
             words = [(letter, float(value)) for letter, value in re.findall(r"([A-Z])([-+]?[\d.]+)", line)]
             codes = {round(10 * value) for letter, value in words if letter == "G"}
@@ -57,13 +64,41 @@ class Control:
                     self.call(modal)
                     self.modal = modal
 
+    def flow(self, line, at):
+        """The row behind an assignment, a jump or a loop, None for another block; ``at`` is the row behind it."""
+        if found := re.match(r"#(\d+)=(.*)", line):
+            self.variables[int(found[1])] = self.value(found[2])
+            return at
+        if found := re.match(r"IF \[(.*)\] GOTO (\d+)", line):
+            places = [row for row, text in enumerate(self.lines) if text.startswith(f"N{found[2]} ")]
+            return min(row for row in places if row >= at) if self.holds(found[1]) else at
+        if found := re.match(r"WHILE \[(.*)\] DO(\d)", line):
+            return at if self.holds(found[1]) else self.lines.index(f"END{found[2]}", at) + 1
+        if line.startswith("END"):
+            begins = [row for row, text in enumerate(self.lines[:at]) if text.endswith(f"] DO{line[3]}")]
+            return begins[-1]
+        return None
+
+    def holds(self, condition):
+        left, sign, right = condition.split()
+        return COMPARED[sign](self.value(left), self.value(right))
+
+    def value(self, text):
+        """The sum of products of numbers and variables in brackets or without."""
+        factors = [term.split("*") for term in text.strip("[]").split("+")]
+        return sum(math.prod(map(self.operand, each)) for each in factors)
+
+    def operand(self, text):
+        return self.variables.get(int(text[1:]), 0.0) if text.startswith("#") else float(text)
+
     def call(self, line):
         """G65 runs a macro; G66 keeps it for the blocks that move."""
         if "G66" in line:
             self.modal = line.replace("G66", "G65")
             return
         words = re.findall(r"([A-Z])([-+]?[\d.]+)", line.replace("G65", ""))
-        before, self.variables = self.variables, {}
+        common = {number: value for number, value in self.variables.items() if number >= COMMON}
+        before, self.variables = self.variables, common
         sets = 0
         for letter, value in words:
             if letter == "I":
@@ -80,7 +115,7 @@ class Control:
         """A line with values in place of variables, and without words of vacant ones."""
 
         def total(found):
-            return str(sum(self.variables.get(int(number), 0.0) for number in re.findall(r"#(\d+)", found[0])))
+            return f"{self.value(found[0]):.9f}"
 
         def word(found):
             value = self.variables.get(int(found[2]))
@@ -104,7 +139,7 @@ class Control:
         if 40 in codes:
             self.rows.append([4, words["X"] if "X" in words else words["P"] / 1000])
             return
-        motion, cycle = codes & {0, 10}, [code // 10 for code in codes if 730 <= code <= 890 and code != 800]
+        motion, cycle = codes & {0, 10, 20, 30}, [code // 10 for code in codes if 730 <= code <= 890 and code != 800]
         if motion or 800 in codes or cycle:
             self.motion = min(motion) // 10 if motion else self.motion
             was = self.cycle
@@ -119,7 +154,7 @@ class Control:
         elif self.cycle and (place or cycle):
             self.drill(place, {letter: value * self.scale for letter, value in words.items() if letter in "RQ"}, words)
         elif place:
-            self.move(self.motion, self.target(place))
+            self.move(min(self.motion, 2), self.target(place))
 
     def home(self, place):
         if place:
@@ -212,101 +247,3 @@ MODES = {
     160: ("polar", True),
 }
 """Attribute and value by code, in tenths."""
-
-
-def program(seed):
-    """A program of moves, cycles, places of the machine, polar coordinates and subprograms; the same for one seed."""
-    chance = random.Random(seed)
-    inch = chance.random() < 0.15
-    plane, axes = chance.choice(((17, "XYZ"), (17, "XYZ"), (18, "ZXY"), (19, "YZX")))
-
-    def number(low, high):
-        return f"{chance.uniform(low, high) / (25.4 if inch else 1):.3f}"
-
-    def place(letters, low=-30, high=30):
-        chosen = [letter for letter in letters if chance.random() < 0.6] or [letters[0]]
-        return " ".join(letter + number(low, high) for letter in chosen)
-
-    def cycle():
-        code = chance.choice((73, 81, 82, 83, 85, 89))
-        heights = f"{axes[2]}{number(-20, -5)} R{number(-4, 4)}"
-        peck = f" Q{number(2, 6)}" if code in PECKING else ""
-        if peck and chance.random() < 0.4:
-            peck = f" I{number(5, 6)} J{number(0.4, 1.5)} K{number(2, 3)}"
-        dwell = f" P{chance.randint(10, 900)}" if code in (82, 89) and chance.random() < 0.7 else ""
-        stored = chance.random() < 0.15 and not peck.startswith(" I")
-        first = f"G{chance.choice((98, 99))} G{code} {'' if stored else place(axes[:2])} {heights}{peck}{dwell}"
-        lines = [first + (chance.choice((" K0", " L0")) if stored else "")]
-        for _ in range(chance.randint(0, 4)):
-            lines.append(
-                chance.choice((place(axes[:2]), f"G{code} {place(axes[:2])}", f"{place(axes[:2])} L2", "G4 P50"))
-            )
-        if chance.random() < 0.4:  # the words hold for another cycle
-            lines.append(f"G{chance.choice((81, 85))} {place(axes[:2])}")
-        return [
-            *lines,
-            *chance.choice((["G80"], ["G80", f"{axes[2]}{number(10, 30)}"], ["G0 G80"], [f"G1 {place('XYZ')}"])),
-        ]
-
-    def incremental():
-        return ["G91", place("XYZ", -5, 5), f"G0 {place('XYZ', -5, 5)}", "G90"]
-
-    def series():
-        top, bottom = number(-40, -30), number(-9, -3)
-        hole = f"G91 G99 G81 {place(axes[:2], -5, 5)} {axes[2]}{bottom} R{top} {chance.choice(('K2', '', 'L3'))}"
-        return [f"G90 G0 {axes[2]}{number(20, 40)}", hole, place(axes[:2], -5, 5), "G80 G90"]
-
-    def polar():
-        turn = f"G0 {axes[0]}{number(5, 30)} {axes[1]}{chance.uniform(-180, 180):.3f}"
-        holes = [
-            f"G81 {axes[1]}{chance.uniform(-180, 180):.3f} {axes[2]}-9.5 R1.5 P100",
-            f"{axes[0]}{number(3, 9)}",
-            "G80",
-        ]
-        return ["G16", turn, *(holes if chance.random() < 0.6 else [turn.replace("G0", "G1")]), "G15"]
-
-    def machine():
-        return chance.choice((
-            [f"G91 G28 {axes[2]}0", "G90"],
-            [f"G0 G28 {place('XYZ')}"],
-            ["G28"],
-            [f"G30 P2 {place('XYZ')}"],
-            [f"G53 {place('XYZ')}"],
-            ["G5.1 Q1", f"G1 {place('XYZ')}", "G5.1 Q0"],
-            ["G187 P2 E0.01", f"G4 X{chance.randint(1, 9)}.5"],
-        ))  # fmt: skip
-
-    def called():
-        return ["G91", f"M98 P{chance.choice(('', '2', '3'))}0007", "G90"]
-
-    def scaled():
-        centre = " ".join(letter + number(-9, 9) for letter in "XYZ")
-        factors = [f"{chance.choice((-1, 1)) * chance.uniform(0.5, 2):.4f}" for _ in "IJK"]
-        by = chance.choice((f"P{factors[0]}", " ".join(map("".join, zip("IJK", factors, strict=True)))))
-        moves = [f"G{chance.randint(0, 1)} {place('XYZ', -9, 9)}", *incremental()]
-        return [f"G51 {centre} {by}", *moves, "G50"]
-
-    def macro():
-        arguments = f"{place('XYZ', -9, 9)} I{number(1, 3)} " + chance.choice(("", f"I{number(2, 4)}"))
-        if chance.random() < 0.5:
-            return [f"G65 P8 {arguments}"]
-        return [f"G66 P8 {arguments}", f"G0 {place('XYZ', -9, 9)}", "G4 P20", place("XYZ", -9, 9), "G67"]
-
-    parts = (
-        scaled,
-        macro,
-        cycle,
-        cycle,
-        incremental,
-        series,
-        polar,
-        machine,
-        called,
-        lambda: [f"G{chance.randint(0, 1)} {place('XYZ')}"],
-    )
-    lines = ["O1001", f"G{20 if inch else 21} G0 G{plane} G40 G49 G80 G90 F100 S500 M3", "G0 X1. Y2. Z30."]
-    for _ in range(12):
-        lines += chance.choice(parts)()
-    end = chance.choice(("M30", "M99"))
-    return "\n".join([*lines, end, "O7", f"G0 {place('XYZ', -3, 3)}", "M99",
-                      "O8", "G0 X#24 Y#25", f"G1 {axes[2]}[#4+#7+#26]", "M99", ""])  # fmt: skip

@@ -12,7 +12,8 @@ import pytest
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[3]), str(Path(__file__).parent)]
 
-from fanuc_reference import Control, program  # noqa: E402 - the path comes first
+from fanuc_reference import Control  # noqa: E402 - the path comes first
+from random_fanuc import program  # noqa: E402
 
 from pkm_post.model import EventKind, Tool  # noqa: E402
 from pkm_post.reading.gcode import ReadOptions, read  # noqa: E402
@@ -70,7 +71,25 @@ def test_the_programs_have_what_they_are_for():
     text = "".join(program(seed) for seed in range(60))
     assert all(
         text.count(word) > 5
-        for word in ("G80", "G16", "G28", "G53", "K0", "M98", "G5.1", "G4 X", "G20", "M99", "G51", "G65", "G66")
+        for word in (
+            "G80",
+            "G16",
+            "G28",
+            "G53",
+            "K0",
+            "M98",
+            "G5.1",
+            "G4 X",
+            "G20",
+            "M99",
+            "G51",
+            "G65",
+            "G66",
+            "G2",
+            "G3",
+            "WHILE",
+            "GOTO",
+        )
     )
 
 
