@@ -15,7 +15,7 @@ from typing import Any
 
 from pkm_post.cli.inputs import add_reading, one_of, part_program, print_misplaced, read_machine, reading_from
 from pkm_post.cli.terminal import print_diagnostics
-from pkm_post.options import add_machine, add_part_program
+from pkm_post.options import add_machine, add_part_program, between
 
 
 def add_commands(commands: Any) -> None:
@@ -52,6 +52,9 @@ def add_commands(commands: Any) -> None:
     turning.add_argument("program", type=Path, metavar="PROGRAM.pmc")
     turning.add_argument("--against", type=Path, required=True, metavar="FILE.pkmt", help="its trajectory file")
     turning.add_argument("--out", type=Path, required=True, metavar="FILE", help="the file to write")
+    for name, what in (("tool", "the gauge length in Q50"), ("origin", "each of Q51 to Q53")):
+        help_text = f"how far {what} may be changed at the machine; certified at all corners (%(default)s)"
+        turning.add_argument(f"--{name}-range", type=between(0, 100), default=0.0, metavar="MM", help=help_text)
     add_machine(turning)
     turning.set_defaults(run=_cartesian)
 
@@ -119,13 +122,14 @@ def _finding_line(what: str, value: float, limit: float, unit: str) -> str:
 
 def _cartesian(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.model import Refused
-    from pkm_post.posting import cartesian_program
+    from pkm_post.posting import Allowance, cartesian_program
 
     machine = read_machine(namespace.machine)
     if machine is None:
         return 1
     try:
-        made = cartesian_program(namespace.program, namespace.against, machine, namespace.out)
+        allowance = Allowance(namespace.tool_range, namespace.origin_range)
+        made = cartesian_program(namespace.program, namespace.against, machine, namespace.out, allowance)
     except Refused as refused:
         print_diagnostics([refused])
         return 1

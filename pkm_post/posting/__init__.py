@@ -15,6 +15,7 @@ from pkm_post.posting.verify import verify, verify_texts
 
 if TYPE_CHECKING:
     from pkm_post.posting.cartesian_form import cartesian_program
+    from pkm_post.posting.cartesian_guard import Allowance
     from pkm_post.posting.machine_check import format_table, machine_faults, machine_summary
     from pkm_post.posting.machine_export import export_machine
     from pkm_post.posting.reach_study import Study, check_path_of, study, work_offset_text
@@ -23,6 +24,7 @@ else:
         __name__,
         {
             "cartesian_form": "cartesian_program",
+            "cartesian_guard": "Allowance",
             "machine_check": "format_table machine_faults machine_summary",
             "machine_export": "export_machine",
             "reach_study": "Study check_path_of study work_offset_text",
@@ -31,6 +33,7 @@ else:
 
 __all__ = [
     "SUFFIX",
+    "Allowance",
     "Log",
     "Posted",
     "Prepared",

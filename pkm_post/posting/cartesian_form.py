@@ -5,12 +5,13 @@ In PVT mode the controller runs its inverse program once for each point, with th
 motor a cubic between two points [Turbo PMAC User Manual, p. 265 and 266]: the same cubics as in a program of strut
 lengths. So the new program has the same points and times, X Y Z in mm and A B C in degrees in {M}. It is read back from
 its text, taken through the kinematics, and certified as what the struts then do. Doubles here, 36 bits in the
-controller: the lengths differ by less than 2e-7 mm (docs/controller-kinematics.md).
+controller: the lengths differ by less than 2e-7 mm (docs/controller-kinematics.md). A guard ends it where the
+kinematics are off, or with another tool or work frame than it is certified for.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -19,6 +20,7 @@ import numpy as np
 from pkm_post.geometry import Array
 from pkm_post.machine import forward_along_path, linearise, platform_rotation
 from pkm_post.model import Certificate, Diagnostic, Machine, Place, Refused, StrutMotion, Trajectory
+from pkm_post.posting.cartesian_guard import Allowance, guard_lines, guarded, unguarded
 from pkm_post.posting.verify import certified, read_motion, verify
 from pkm_post.report import summary
 from pkm_post.system import staged, write_fault
@@ -41,7 +43,9 @@ class CartesianProgram(NamedTuple):
     off: float
 
 
-def cartesian_program(program: Path, trajectory: Path, machine: Machine, out: Path) -> CartesianProgram:
+def cartesian_program(
+    program: Path, trajectory: Path, machine: Machine, out: Path, allowance: Allowance | None = None
+) -> CartesianProgram:
     """Write a program in X Y Z A B C that moves the struts as a posted one does.
 
     Args:
@@ -49,6 +53,7 @@ def cartesian_program(program: Path, trajectory: Path, machine: Machine, out: Pa
         trajectory: the trajectory file it was made from.
         machine: the machine it was made for; its controller is a Turbo PMAC.
         out: the file to write; further parts stand beside it.
+        allowance: what may be changed at the machine; nothing by default.
 
     Raises:
         Refused: a file cannot be read, the certificate of either program does not hold, the controller or the tools
@@ -56,25 +61,86 @@ def cartesian_program(program: Path, trajectory: Path, machine: Machine, out: Pa
     """
     settings = _settings(machine)
     verify(program, trajectory, machine)
-    planned, faults = trajectory_file.read(trajectory)
-    if planned is None:
-        raise Refused(faults)
-    struts, tool_length = read_motion(program, machine), _tool_length(planned, program.name)
-    axes = axis_motion(machine, struts, tool_length, planned)
-    heading = _heading(planned, tool_length, settings, manifest.fingerprint_of_file(trajectory), machine)
-    texts = tuple(map(program_files.with_own_hash, pmac.program_parts(axes, settings, heading)))
+    source = _Source(read_motion(program, machine), trajectory, _planned(trajectory, program.name), machine, settings)
     try:
         with staged(out.parent) as folder:
-            names = outputs.write_parts(folder / out.name, texts)
-            written, faults = pmac.read_parts(outputs.read_parts(folder / out.name, names), settings)
-            if written is None:
-                raise Refused(faults)
-            played = strut_motion(machine, written, tool_length)
-            certificate, _ = certified(played, out.name, trajectory, machine, [])
+            return source.written(folder / out.name, out, allowance or Allowance())
     except OSError as fault:
         raise Refused([write_fault(out, fault)]) from fault
-    off = float(np.abs(played.length - struts.length).max())
-    return CartesianProgram(tuple(out.parent / name for name in names), certificate, off)
+
+
+def write_cartesian(private: Path, out: Path, struts: StrutMotion, trajectory: Path, machine: Machine) -> float:
+    """Write the form of a motion that was certified into a private folder, beside its other results.
+
+    Args:
+        private: the file to write; further parts stand beside it.
+        out: what it will be.
+        struts: the motion, as it was read back.
+        trajectory: the trajectory file it was made from.
+        machine: the machine it was made for.
+
+    Returns:
+        The largest difference of a strut at a point, mm.
+
+    Raises:
+        Refused: as ``cartesian_program``.
+    """
+    source = _Source(struts, trajectory, _planned(trajectory, out.name), machine, _settings(machine))
+    return source.written(private, out, Allowance()).off
+
+
+@dataclass(frozen=True)
+class _Source:
+    """A motion that was posted, and what it was posted for.
+
+    Attributes:
+        struts: the motion.
+        file: its trajectory file.
+        planned: what is in there; all tools have one length.
+        machine: the machine.
+        settings: of its controller, with the axes of the form.
+    """
+
+    struts: StrutMotion
+    file: Path
+    planned: Trajectory
+    machine: Machine
+    settings: PmacSettings
+
+    def written(self, private: Path, out: Path, allowance: Allowance) -> CartesianProgram:
+        """Write the parts, read them back, and certify what they do at each corner of the allowance."""
+        tool_length = float(self.planned.tool_length()[0])
+        guard, opening = guard_lines(self.settings, tool_length, allowance), pmac.buffer_opening(self.settings)
+        axes = axis_motion(self.machine, self.struts, tool_length, self.planned)
+        heading = self._heading(allowance.words(tool_length))
+        parts = (guarded(text, opening, guard) for text in pmac.program_parts(axes, self.settings, heading))
+        names = outputs.write_parts(private, tuple(map(program_files.with_own_hash, parts)))
+        read = [(name, unguarded(text, opening, guard)) for name, text in outputs.read_parts(private, names)]
+        written, faults = pmac.read_parts(read, self.settings)
+        if written is None:
+            raise Refused(faults)
+        played = strut_motion(self.machine, written, tool_length)
+        certificate, _ = certified(played, out.name, self.file, self.machine, [])
+        for words, corner in allowance.corners(self.machine):
+            self._certify_corner(written, tool_length, out.name, words, corner)
+        off = float(np.abs(played.length - self.struts.length).max())
+        return CartesianProgram(tuple(out.parent / name for name in names), certificate, off)
+
+    def _certify_corner(self, written: StrutMotion, tool_length: float, name: str, words: str, corner: Machine) -> None:
+        try:
+            certified(strut_motion(corner, written, tool_length), name, self.file, corner, [])
+        except Refused as refused:
+            raise Refused((Diagnostic("C115", Place(name), words), *refused.diagnostics)) from None
+
+    def _heading(self, allowed: str) -> list[str]:
+        enabled = f"I{50 + self.settings.coordinate_system}50"
+        digest = manifest.fingerprint_of_file(self.file)
+        return [
+            *(line for line in summary.heading(self.planned) if not line.startswith("axis values are strut lengths")),
+            "X Y Z are the tip in mm, A B C the platform in degrees, in the machine frame; do not edit",
+            f"runs with {enabled}=1, {allowed}, never with {enabled}=0: there A is a strut",
+            *program_files.source_hash_lines(digest, self.machine.fingerprint),
+        ]
 
 
 def _settings(machine: Machine) -> PmacSettings:
@@ -95,24 +161,16 @@ def _settings(machine: Machine) -> PmacSettings:
         raise Refused([Diagnostic("M104", Place(machine.name), f"controller.{fault}")]) from fault
 
 
-def _tool_length(planned: Trajectory, name: str) -> float:
+def _planned(file: Path, name: str) -> Trajectory:
+    """The trajectory of a program, whose tools have one length."""
+    planned, faults = trajectory_file.read(file)
+    if planned is None:
+        raise Refused(faults)
     lengths = np.unique(planned.tool_length())
     if len(lengths) > 1:
         found = ", ".join(f"{length:g} mm" for length in lengths)
         raise Refused([Diagnostic("C111", Place(name), f"gauge lengths {found}")])
-    return float(lengths[0])
-
-
-def _heading(
-    planned: Trajectory, tool_length: float, settings: PmacSettings, trajectory_hash: str, machine: Machine
-) -> list[str]:
-    enabled = f"I{50 + settings.coordinate_system}50"
-    return [
-        *(line for line in summary.heading(planned) if not line.startswith("axis values are strut lengths")),
-        "X Y Z are the tip in mm, A B C the platform in degrees, in the machine frame; do not edit",
-        f"runs with {enabled}=1, Q50={tool_length:g} and Q51 to Q54 zero, never with {enabled}=0: there A is a strut",
-        *program_files.source_hash_lines(trajectory_hash, machine.fingerprint),
-    ]
+    return planned
 
 
 def axis_motion(machine: Machine, struts: StrutMotion, tool_length: float, planned: Trajectory) -> StrutMotion:

@@ -2,6 +2,7 @@
 """The form in tip and axis: struts and certificate are those of the program it was made from."""
 
 import dataclasses
+import itertools
 import re
 import sys
 from pathlib import Path
@@ -11,10 +12,11 @@ import programs
 import pytest
 
 from pkm_post.cli import main
-from pkm_post.machine import machine_named
+from pkm_post.control.simulator import Controller
+from pkm_post.machine import machine_named, strut_lengths
 from pkm_post.model import Event, EventKind, Refused
 from pkm_post.options import Options
-from pkm_post.posting import cartesian_program, post
+from pkm_post.posting import Allowance, cartesian_program, post
 from pkm_post.posting.verify import read_motion
 
 sys.path.append(str(Path(__file__).parents[1] / "writing" / "kinematics"))
@@ -25,6 +27,7 @@ from kinematic_language import DOUBLE, TURBO  # noqa: E402
 ROUNDING = 5e-7 * (np.sqrt(3) + np.sqrt(3) * np.radians(283.0))
 """mm: half a digit of X Y Z, and of A B C in degrees at the platform joints, 283 mm from the tip; speeds have two
 decimals less."""
+ALLOWANCE = Allowance(2.0, 1.5)
 MOVE = re.compile(r"^" + " ".join(rf"{letter}(-?[\d.]+):(-?[\d.]+)" for letter in "XYZABC") + "$", re.M)
 
 
@@ -66,6 +69,81 @@ def test_heading_says_what_it_runs_with(posted):
     text = posted[2].files[0].read_text()
     assert "; runs with I5150=1, Q50=120 and Q51 to Q54 zero, never with I5150=0" in text
     assert "FRAX(X,Y,Z,A,B,C)" in text and "strut lengths" not in text
+
+
+SWITCHES = "I5150=1 Q50=120 Q51=0 Q52=0 Q53=0 Q54=0"
+
+
+def on_the_simulator(text, switches):
+    """Whether the program begins to move, with these values at the machine, and what it says."""
+    controller, said = Controller(), []
+    controller.listeners.append(said.append)
+    controller.load([*(f"#{motor}->100{letter}" for motor, letter in enumerate("XYZABC", 1)), *SWITCHES.split()])
+    controller.load([f"#{motor}J/ #{motor}HMZ" for motor in range(1, 7)])
+    controller.load(switches.split())
+    controller.load([line.split(";")[0] for line in text.splitlines()])
+    controller.load(["&1B10R"])
+    controller.advance(100)
+    return controller.systems[0].running, said
+
+
+@pytest.mark.parametrize(
+    ("switches", "said"),
+    [
+        ("", None),
+        ("I5150=0", "KINEMATICS ARE OFF: I5150"),
+        ("Q50=120.001", "ANOTHER TOOL LENGTH: Q50"),
+        ("Q50=119.999", "ANOTHER TOOL LENGTH: Q50"),
+        ("Q52=-0.001", "ANOTHER WORK FRAME: Q51 TO Q53"),
+        ("Q54=0.001", "ANOTHER WORK FRAME: Q54"),
+    ],
+)
+def test_it_ends_before_its_first_move_where_the_controller_is_set_up_otherwise(posted, switches, said):
+    running, heard = on_the_simulator(posted[2].files[0].read_text(), switches)
+    assert (running, heard) == ((True, []) if said is None else (False, [said]))
+
+
+@pytest.fixture(scope="module")
+def allowed(posted, tmp_path_factory):
+    """The same form for tools that are up to 2 mm off, and a work frame that is up to 1.5 mm off."""
+    machine, folder, _ = posted
+    out = tmp_path_factory.mktemp("allowed") / "tip.pmc"
+    return cartesian_program(folder / "job.pmc", folder / "job.pkmt", machine, out, ALLOWANCE)
+
+
+@pytest.mark.parametrize(
+    ("switches", "runs"),
+    [("Q50=121.9 Q51=1.4 Q52=-1.4 Q53=1.4", True), ("Q50=118.1", True), ("Q50=122.1", False), ("Q53=1.6", False)],
+)
+def test_what_is_allowed_at_the_machine_runs(allowed, switches, runs):
+    text = allowed.files[0].read_text()
+    assert "Q50=120 up to 2 more or less, Q51 to Q53 up to 1.5 from zero, Q54 zero" in text
+    assert on_the_simulator(text, switches)[0] is runs
+
+
+def test_the_corners_are_what_the_exported_kinematics_do(posted):
+    """Counts of the inverse program with other variables, against the strut lengths of the machine of the corner."""
+    machine = posted[0]
+    axes = np.random.default_rng(2).uniform(-1, 1, (50, 6)) * [50, 50, 40, 8, 8, 5]
+    axes[:, :3] += machine.home_tip
+    corners = dict(ALLOWANCE.corners(machine))
+    assert len(corners) == 16
+    place = made.tool_poses(axes)
+    for x, y, z, longer in itertools.product((-1.5, 1.5), (-1.5, 1.5), (-1.5, 1.5), (-2.0, 2.0)):
+        values = {"Q50": 120.0 + longer, "Q51": x, "Q52": y, "Q53": z, "Q10": 0.0}
+        given = dict(zip(("Q7", "Q8", "Q9", "Q1", "Q2", "Q3"), axes.T, strict=True))
+        run = made.controller_of(machine, "turbo").run("inverse", given | values)
+        corner = corners[f"work frame at {x:+g}, {y:+g}, {z:+g}, tool {longer:+g} mm"]
+        found = np.stack([run[f"P{motor}"] for motor in range(1, 7)], axis=1) / machine.controller["counts_per_mm"]
+        lengths = strut_lengths(corner, *place) - np.array(machine.controller["zero_length"])
+        np.testing.assert_allclose(found, lengths, rtol=0, atol=1e-9)
+
+
+def test_an_allowance_beyond_the_machine_is_refused(posted, tmp_path):
+    machine, folder, _ = posted
+    with pytest.raises(Refused, match=r"C115.*tip.pmc|tip.pmc.*C115") as refused:
+        cartesian_program(folder / "job.pmc", folder / "job.pkmt", machine, tmp_path / "tip.pmc", Allowance(0.0, 90.0))
+    assert "work frame at -90, -90, -90, tool +0 mm" in str(refused.value) and not list(tmp_path.iterdir())
 
 
 def test_a_changed_program_is_refused(posted, tmp_path):

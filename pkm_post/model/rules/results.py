@@ -47,6 +47,10 @@ RESULT_RULES: dict[str, Rule] = {
         "the program has tools of several lengths, and the form in tip and axis knows one",
         "post the operations of each tool as a program of their own, or load the program of strut lengths",
     ),
+    "C115": error(
+        "with what may be changed at the machine the program does not hold",
+        "allow less, by --tool-range and --origin-range, or move the part; the faults that follow are those there",
+    ),
     # C2: moves by hand, at the controller
     "C201": error("the command moves nothing", "give a direction and a distance"),
     "C202": error("no pose of the platform belongs to the strut lengths on the way", "jog less far, or jog the tool"),

@@ -4,7 +4,13 @@
 from pkm_post.model import Diagnostic, StrutMotion
 from pkm_post.system import result_files
 from pkm_post.writing.controllers.pmac.memory import memory_faults
-from pkm_post.writing.controllers.pmac.program import program_parts, program_text, rotary_opening, rotary_text
+from pkm_post.writing.controllers.pmac.program import (
+    buffer_opening,
+    program_parts,
+    program_text,
+    rotary_opening,
+    rotary_text,
+)
 from pkm_post.writing.controllers.pmac.reader import read_part, read_parts, read_program
 from pkm_post.writing.controllers.pmac.settings import PmacSettings, settings_of, setup_text
 from pkm_post.writing.controllers.pvt.codes import event_faults
@@ -13,6 +19,7 @@ from pkm_post.writing.controllers.pvt.parts import stated_part
 __all__ = [
     "SETUP_SUFFIX",
     "PmacSettings",
+    "buffer_opening",
     "event_faults",
     "faults",
     "memory_faults",
