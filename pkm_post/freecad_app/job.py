@@ -9,8 +9,10 @@ and at tool changes. FreeCAD newer than 1.1 offers selections in CAM's Post Proc
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
-from collections.abc import Mapping, Sequence
+import gc
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -92,6 +94,18 @@ def read_job(
     return dataclasses.replace(builder.program(tools), reading=(summary,)), tuple(faults)
 
 
+@contextlib.contextmanager
+def _no_collections() -> Iterator[None]:
+    """No collections of garbage meanwhile: hundreds of thousands of commands come at once, and none of them is any."""
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()
+
+
 def is_active(operation: Any) -> bool:
     """Whether an operation is part of the program."""
     return opProperty(operation, "Active") is not False
@@ -127,7 +141,8 @@ class _ProgramBuilder:
         """Append an operation, with its placement applied to points and tool axes."""
         work_from_operation = matrix_of(operation.Placement)
         start = np.linalg.solve(work_from_operation, [*self._tip, 1.0])[:3]
-        program, read_faults = read_commands(operation.Path.Commands, self.source, operation.Label, start)
+        with _no_collections():
+            program, read_faults = read_commands(operation.Path.Commands, self.source, operation.Label, start)
         faults = list(read_faults)
         if program is None:
             return faults

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from pkm_post.machine.calibration.calibrate_file import Repetition, calibrate_file, read_measurements
     from pkm_post.machine.calibration.identification import MeasuredPoses, calibrate
     from pkm_post.machine.calibration.uncertainty import MeasurementNoise, calibration_uncertainty
-    from pkm_post.machine.collisions.check import find_collisions, placed_workpiece, setup_names
+    from pkm_post.machine.collisions.check import Collisions, find_collisions, placed_workpiece, setup_names
     from pkm_post.machine.collisions.coverage import NO_SETUP
     from pkm_post.machine.reach.best_position import best_position
     from pkm_post.machine.reach.collision_mesh import CollisionMesh
@@ -56,7 +56,7 @@ else:
             "calibration.calibrate_file": "Repetition calibrate_file read_measurements",
             "calibration.identification": "MeasuredPoses calibrate",
             "calibration.uncertainty": "MeasurementNoise calibration_uncertainty",
-            "collisions.check": "find_collisions placed_workpiece setup_names",
+            "collisions.check": "Collisions find_collisions placed_workpiece setup_names",
             "collisions.coverage": "NO_SETUP",
             "reach.best_position": "best_position",
             "reach.collision_mesh": "CollisionMesh",
@@ -79,6 +79,7 @@ __all__ = [
     "ToolPoses",
     "ToolPoses",
     "CollisionMesh",
+    "Collisions",
     "SpinPolicy",
     "ToolPoses",
     "ReachReport",

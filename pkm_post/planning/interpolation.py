@@ -19,7 +19,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, length_of, unit
 from pkm_post.machine import DRIFT_SHARES, Demand, KnotState, ToolCubics, ToolPoses, bounded_demand, measured_demand
-from pkm_post.model import Machine, Poses, Tolerances, checkpoint
+from pkm_post.model import Machine, Poses, Tolerances, checkpoint, pieces
 from pkm_post.planning.check_points import CheckPoints, Intervals
 from pkm_post.planning.fast_poses import fast_poses, fast_poses_within
 from pkm_post.planning.schedule import Schedule, by_time
@@ -43,6 +43,8 @@ _NEGLIGIBLE_DRIFT = 0.1
 """Share of the cubics' tolerance: a drift bounded below it is left to the remaining tolerance."""
 _POINTS_AT_ONCE = 16384
 """Places in one pass: the working arrays of one pass stay in the processor's cache."""
+_INTERVALS_AT_ONCE = 2048
+"""Intervals in one pass where machine limits are checked: the matrices of their struts take a thousand bytes each."""
 _Deviation = Callable[[Intervals, ToolCubics, Array], Array]
 
 
@@ -122,8 +124,9 @@ class InterpolationCheck:
         worst = self._in_passes(self._deviation_at_joints, intervals, cubics, np.zeros((2, len(start))))
         worst = np.maximum(worst, self._backward(first, last, intervals.duration))
         within = np.flatnonzero(worst <= 1)
-        if len(within):
-            worst[within] = np.maximum(worst[within], self._closely(intervals[within], cubics[within]))
+        for part in pieces(len(within), _INTERVALS_AT_ONCE) if len(within) else ():
+            rows = within[part]
+            worst[rows] = np.maximum(worst[rows], self._closely(intervals[rows], cubics[rows]))
         return worst
 
     def _closely(self, intervals: Intervals, cubics: ToolCubics) -> Array:

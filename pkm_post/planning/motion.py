@@ -26,7 +26,6 @@ from pkm_post.model import (
     Tolerances,
     Trajectory,
     errors,
-    in_pieces,
     read_only,
 )
 from pkm_post.planning.fast_poses import fast_poses_within
@@ -40,7 +39,7 @@ from pkm_post.planning.slower import Slower, limits_jerk, required, too_coarse
 from pkm_post.planning.speed_limits import PLANNED_SHARE
 from pkm_post.planning.speed_profile import Stations, cell_times, stations
 from pkm_post.planning.tool_path import ToolPath
-from pkm_post.system import in_workers
+from pkm_post.system import columns_in_workers, in_workers
 from pkm_post.toolpath import Segments, compress
 
 _FOR_CORNERS = 0.4
@@ -55,7 +54,7 @@ _STATIONS_AT_ONCE = 4096
 """Stations in one pass: their working arrays stay in the processor's cache."""
 _KNOTS_AT_ONCE = 4096
 """Knots in one pass: the derivatives of their poses take more memory than the result."""
-_STRETCH_MS, _STRETCH_ROWS = 1 << 20, 1 << 13
+_STRETCH_MS, _STRETCH_ROWS = 1 << 20, 1 << 15
 """ms, and segments, of the stretches of the motion whose knots are determined separately, with up to a mark more: few
 passes over long columns, and what they compute on the way is small beside the motion."""
 
@@ -195,7 +194,7 @@ def _way(path: ToolPath, marks: Stations) -> tuple[PosePath, Array]:
         poses = fast_poses_within(path, marks.segment[rows], marks.u[rows])
         return poses.tip, poses.axis, poses.spin, poses.tool_length
 
-    return PosePath.straight(*in_pieces(len(marks.s), _STATIONS_AT_ONCE, columns)), marks.segment
+    return PosePath.straight(*columns_in_workers(len(marks.s), _STATIONS_AT_ONCE, columns)), marks.segment
 
 
 def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
@@ -274,7 +273,7 @@ def _motion(feed_plan: FeedPlan, time_ms: Array, joint_time: Array) -> Motion:
         of_tool = poses.tip, poses.axis, poses.spin, poses.tip_1, poses.axis_1, poses.spin_1
         return *of_tool, poses.tool_length, poses.segment.astype(np.int32)
 
-    tip, axis, spin, tip_rate, axis_rate, spin_rate, tool_length, segment = in_pieces(
+    tip, axis, spin, tip_rate, axis_rate, spin_rate, tool_length, segment = columns_in_workers(
         len(time_ms), _KNOTS_AT_ONCE, columns
     )
     return Motion(
@@ -301,5 +300,9 @@ def _by_knot(events: tuple[Event, ...], schedule: Schedule, time_ms: Array) -> t
 
 def strut_motion(motion: Motion, machine: Machine) -> StrutMotion:
     """Strut lengths and speeds of a motion."""
-    length, speed = in_pieces(len(motion), _KNOTS_AT_ONCE, lambda rows: strut_rates(machine, motion.poses(rows))[:2])
+
+    def columns(rows: slice) -> tuple[Array, ...]:
+        return strut_rates(machine, motion.poses(rows))[:2]
+
+    length, speed = columns_in_workers(len(motion), _KNOTS_AT_ONCE, columns)
     return StrutMotion(motion.time_ms, length, speed, motion.events)

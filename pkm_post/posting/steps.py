@@ -8,12 +8,13 @@ the frame, which all steps share.
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from pkm_post.certificate import certify
-from pkm_post.machine import find_collisions, setup_names
+from pkm_post.machine import Collisions, find_collisions, setup_names
 from pkm_post.model import (
     Certificate,
     Coverage,
@@ -35,7 +36,7 @@ from pkm_post.posting.machine_check import home_faults
 from pkm_post.posting.placement import effective_setup, trajectory_of
 from pkm_post.posting.run import Findings, Log, PostContext, Posted, Progress, Run, no_log, no_progress
 from pkm_post.report import Results, draw_report, summary, write_page
-from pkm_post.system import memory_guard, require_usable, result_files, staged, write_fault
+from pkm_post.system import beside, memory_guard, require_usable, result_files, staged, write_fault
 from pkm_post.writing import TABLES, controller_settings, manifest, outputs, program_files, read_texts, trajectory_file
 
 SUFFIX = result_files.PROGRAM
@@ -163,8 +164,9 @@ def _written_program(
 
 def _planned(run: Run, frame: PostContext, trajectory: Trajectory, setup: Setup) -> tuple[Plan, tuple[Coverage, ...]]:
     """Tool poses and strut lengths by time, and the coverage."""
-    feed_plan = _feed_plan(run, frame, trajectory)
-    covered = _collisions(run, frame, trajectory, setup)
+    with beside(lambda: find_collisions(trajectory, frame.machine, setup, frame.tolerances)) as found:
+        feed_plan = _feed_plan(run, frame, trajectory)
+        covered = _collisions(run, found, setup)
     return _interpolation(run, frame, feed_plan), covered
 
 
@@ -179,10 +181,10 @@ def _feed_plan(run: Run, frame: PostContext, trajectory: Trajectory) -> FeedPlan
     return feed_plan
 
 
-def _collisions(run: Run, frame: PostContext, trajectory: Trajectory, setup: Setup) -> tuple[Coverage, ...]:
-    """Check collisions with part, stock and fixtures; return the coverage for the certificate."""
+def _collisions(run: Run, found: Callable[[], Collisions], setup: Setup) -> tuple[Coverage, ...]:
+    """Wait for the collisions with part, stock and fixtures; return the coverage for the certificate."""
     with run.step(_COLLISIONS) as notes:
-        collisions = find_collisions(trajectory, frame.machine, setup, frame.tolerances)
+        collisions = found()
         run.accept(collisions.faults)
         notes.extend(setup_names(setup) or ["part and stock are not known"])
     return collisions.coverage

@@ -18,7 +18,7 @@ from pkm_post.system.staged_folder import staged_folder
 from pkm_post.system.thread_count import VARIABLE as THREADS
 from pkm_post.system.thread_count import ThreadCountError, threads
 from pkm_post.system.thread_count import share as thread_share
-from pkm_post.system.workers import in_workers, workers
+from pkm_post.system.workers import beside, columns_in_workers, in_workers, workers
 
 if TYPE_CHECKING:
     from pkm_post.system.decimals import DecimalReader
@@ -46,6 +46,8 @@ __all__ = [
     "Lock",
     "OwnerRecord",
     "ThreadCountError",
+    "beside",
+    "columns_in_workers",
     "freecad_command",
     "lock_owner",
     "memory_diagnostic",

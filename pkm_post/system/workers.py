@@ -11,11 +11,18 @@ from __future__ import annotations
 import functools
 import threading
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor, wait
-from typing import TypeVar
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from itertools import chain, islice
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from pkm_post.system.thread_count import threads
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Column = np.ndarray[Any, Any]
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -25,6 +32,8 @@ _FOR_EACH = 112 << 20
 _MATRICES, _ROWS = 8, 96
 """Matrices that keep a thread busy for a millisecond or more, so that all compute at once, and the rows of each: few
 enough for OpenBLAS to take no further threads, which would wait busily for more work for a tenth of a second."""
+_AHEAD = 4
+"""Items for each thread that are taken ahead: with fewer, a thread would wait where items differ in length."""
 _BETWEEN_CHECKPOINTS = 0.1
 """s between two checkpoints of a caller that waits."""
 
@@ -63,37 +72,97 @@ class _EndedError(Exception):
 def in_workers(function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:
     """The results of a function for items, in order, computed by the pool, with checkpoints while the caller waits.
 
-    A single item is computed in the thread of the caller. When the caller leaves, as by an exception from a
-    checkpoint, workers stop at their next checkpoint.
+    A single item is computed in the thread of the caller. Few items are taken ahead of the results that the caller has,
+    so that these do not fill the memory. When the caller leaves, as by an exception from a checkpoint, workers stop at
+    their next checkpoint.
 
     Args:
         function: must not submit work to the pool.
         items: what it is called with.
     """
-    from pkm_post.model import checkpoint, checkpoints
+    from pkm_post.model import checkpoint
 
-    waiting, ended = deque(items), threading.Event()
+    remaining = iter(items)
+    first = deque(islice(remaining, 2))
+    if len(first) < 2:
+        yield from map(function, first)
+        return
+    ended = threading.Event()
+
+    def begin(item: Item) -> Future[Result]:
+        return workers().submit(_until, ended, function, item)
+
+    futures = deque(map(begin, chain(first, islice(remaining, _AHEAD * threads()))))
+    try:
+        while futures:
+            checkpoint()
+            result = _awaited(futures.popleft())
+            futures.extend(map(begin, islice(remaining, 1)))
+            yield result
+    finally:
+        ended.set()
+        for future in futures:
+            future.cancel()
+
+
+@contextmanager
+def beside(function: Callable[[], Result]) -> Iterator[Callable[[], Result]]:
+    """Let a worker compute something while the block goes on; the block gets a function that waits for the result.
+
+    With one thread it is computed when the result is asked for. When the block ends earlier, the worker stops at its
+    next checkpoint.
+
+    Args:
+        function: must not submit work to the pool.
+    """
+    if threads() == 1:
+        yield function
+        return
+    ended = threading.Event()
+    future = workers().submit(_until, ended, lambda _: function(), None)
+    try:
+        yield lambda: _awaited(future)
+    finally:
+        ended.set()
+        future.cancel()
+
+
+def columns_in_workers(rows: int, at_once: int, compute: Callable[[slice], Sequence[Column]]) -> tuple[Column, ...]:
+    """As ``model.in_pieces``, with pieces computed by the pool.
+
+    Args:
+        rows: of the columns.
+        at_once: rows of a piece, except the last one.
+        compute: columns of some rows, each row independent of the others; must not submit work to the pool.
+    """
+    from pkm_post.model import ColumnBuilder, pieces
+
+    columns: list[ColumnBuilder] = []
+    begin = 0
+    for piece in in_workers(compute, pieces(rows, at_once)):
+        columns = columns or [ColumnBuilder(rows) for _ in piece]
+        for column, values in zip(columns, piece, strict=True):
+            column.put(begin, values)
+        begin += at_once
+    return tuple(column.whole() for column in columns)
+
+
+def _until(ended: threading.Event, function: Callable[[Item], Result], item: Item) -> Result:
+    """The result of a function, unless its caller leaves before."""
+    from pkm_post.model import checkpoints
 
     def leave() -> None:
         if ended.is_set():
             raise _EndedError
 
-    def work(item: Item) -> Result:
-        with checkpoints(leave):
-            return function(item)
+    with checkpoints(leave):
+        return function(item)
 
-    if len(waiting) == 1:
-        yield function(waiting.pop())
-        return
-    futures = deque(workers().submit(work, item) for item in waiting)
-    try:
-        while futures:
-            future = futures.popleft()
-            checkpoint()
-            while not wait([future], _BETWEEN_CHECKPOINTS).done:
-                checkpoint()
-            yield future.result()
-    finally:
-        ended.set()
-        for future in futures:
-            future.cancel()
+
+def _awaited(future: Future[Result]) -> Result:
+    """The result of a future, with checkpoints until it is there."""
+    from pkm_post.model import checkpoint
+
+    while not wait([future], _BETWEEN_CHECKPOINTS).done:
+        checkpoint()
+    return future.result()

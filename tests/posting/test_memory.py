@@ -11,7 +11,7 @@ import pytest
 
 from pkm_post.certificate import diagnosis, dynamics, joints, struts, tool_spline
 from pkm_post.options.choices import Options
-from pkm_post.planning import acceleration_limits, fastest_profile, motion, schedule, speed_profile
+from pkm_post.planning import acceleration_limits, fastest_profile, interpolation, motion, schedule, speed_profile
 from pkm_post.posting.post_file import post_file
 from pkm_post.posting.run import give_back_memory
 from pkm_post.reading.part_program import ReadingOptions
@@ -28,6 +28,7 @@ PIECES = (
     (motion, "_STATIONS_AT_ONCE"),
     (motion, "_STRETCH_MS"),
     (motion, "_STRETCH_ROWS"),
+    (interpolation, "_INTERVALS_AT_ONCE"),
     (acceleration_limits, "_AT_ONCE"),
     (fastest_profile, "_CELLS_AT_ONCE"),
     (speed_profile, "_AT_ONCE"),

@@ -3,10 +3,11 @@
 
 import threading
 
+import numpy as np
 import pytest
 
 from pkm_post.model import checkpoint, checkpoints
-from pkm_post.system import in_workers
+from pkm_post.system import beside, columns_in_workers, in_workers
 
 LONG_S = 60
 
@@ -41,3 +42,45 @@ def test_callers_are_visited_while_they_wait_and_workers_stop_when_they_leave():
         list(in_workers(work, range(2)))
     assert ended.acquire(timeout=LONG_S)
     assert list(in_workers(abs, [-1, -2, -3])) == [1, 2, 3]
+
+
+def test_few_items_are_taken_ahead_of_the_caller():
+    taken = []
+    results = in_workers(abs, (taken.append(item) or item for item in range(1000)))
+    assert next(results) == 0
+    assert len(taken) < 1000
+    assert list(results) == list(range(1, 1000))
+
+
+@pytest.mark.parametrize("threads", ["1", "2"])
+def test_a_result_beside_a_block_is_there_when_it_is_asked_for(monkeypatch, threads):
+    monkeypatch.setenv("PKM_THREADS", threads)
+    with beside(lambda: 6 * 7) as result:
+        assert result() == 42
+    with pytest.raises(ZeroDivisionError), beside(lambda: 1 / 0) as result:
+        result()
+
+
+def test_a_worker_beside_a_block_stops_when_the_block_fails(monkeypatch):
+    monkeypatch.setenv("PKM_THREADS", "2")
+    began, ended = threading.Event(), threading.Event()
+
+    def work():
+        began.set()
+        try:
+            while True:
+                checkpoint()
+        finally:
+            ended.set()
+
+    with pytest.raises(KeyError), beside(work):
+        assert began.wait(LONG_S)
+        raise KeyError
+    assert ended.wait(LONG_S)
+
+
+@pytest.mark.parametrize("rows", [0, 1, 10, 11])
+def test_columns_in_workers_are_those_of_the_whole(rows):
+    square, same = columns_in_workers(rows, 5, lambda part: (np.arange(rows)[part] ** 2, np.full(rows, 3.0)[part]))
+    assert np.array_equal(square, np.arange(rows) ** 2)
+    assert np.array_equal(same, np.full(rows, 3.0))

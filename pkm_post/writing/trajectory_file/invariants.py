@@ -31,12 +31,17 @@ from pkm_post.model import (
     checkpoint,
     gauge_lengths,
 )
+from pkm_post.system import in_workers
 
 SEGMENTS_PER_CHUNK = 1 << 13
 """Some megabytes of records, which stay in the processor's cache."""
 
 
-def chunks(trajectory: Trajectory) -> Iterator[tuple[int, Trajectory]]:
+Chunk = tuple[int, Trajectory]
+"""A part of a trajectory, and the index of its first segment."""
+
+
+def chunks(trajectory: Trajectory) -> Iterator[Chunk]:
     """Chunks of a trajectory in order, each with the index of its first segment; their columns are views.
 
     Work on the columns of a chunk takes little memory. Events and names are those of the whole trajectory.
@@ -142,7 +147,13 @@ def _tool_violations(tools: dict[int, Tool]) -> Iterator[str]:
 
 
 def _segment_violations(trajectory: Trajectory) -> Iterator[str]:
-    yield from first_segments((begin, _segment_rules(part)) for begin, part in chunks(trajectory))
+    yield from first_segments(in_workers(_rules_of_chunk, chunks(trajectory)))
+
+
+def _rules_of_chunk(chunk: Chunk) -> tuple[int, dict[str, Array]]:
+    begin, part = chunk
+    with np.errstate(all="ignore"):  # any numbers may occur, and threads have states of their own
+        return begin, _segment_rules(part)
 
 
 def first_segments(found: Iterable[tuple[int, dict[str, Array]]]) -> Iterator[str]:

@@ -22,6 +22,7 @@ import numpy as np
 
 from pkm_post.model import (
     TRAJECTORY_COLUMNS,
+    Array,
     ColumnBuilder,
     Diagnostic,
     Event,
@@ -32,9 +33,11 @@ from pkm_post.model import (
     Trajectory,
     checkpoint,
 )
+from pkm_post.system import in_workers
 from pkm_post.writing.trajectory_file.interpolation import blocks, deviating_columns
 from pkm_post.writing.trajectory_file.invariants import (
     SEGMENTS_PER_CHUNK,
+    Chunk,
     chunks,
     contradictions,
     first_segments,
@@ -221,8 +224,12 @@ def decode(content: Content, file: str) -> tuple[Trajectory | None, tuple[Diagno
 def _broken_advance(trajectory: Trajectory, tables: dict[str, Records]) -> Iterator[str]:
     """Precomputed data that does not follow from the trajectory."""
     records = tables["segments"]
-    found = ((begin, deviating_columns(part, records[begin : begin + len(part)])) for begin, part in chunks(trajectory))
-    for words in first_segments(found):
+
+    def deviating(chunk: Chunk) -> tuple[int, dict[str, Array]]:
+        begin, part = chunk
+        return begin, deviating_columns(part, records[begin : begin + len(part)])
+
+    for words in first_segments(in_workers(deviating, chunks(trajectory))):
         yield f"{words} does not follow from the rest"
     if not np.array_equal(blocks(trajectory), tables["blocks"]):
         yield "the table blocks does not have the first segment of every line"
