@@ -14,7 +14,7 @@ from typing import Any
 
 import FreeCAD
 import numpy as np
-from PySide import QtWidgets
+from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app.progress import Progress, Stopped
 from pkm_post.report import animate
@@ -23,6 +23,9 @@ translate = FreeCAD.Qt.translate
 
 _PICTURES, _ANIMATION = (30.0, 1280, 720), (15.0, 800, 450)
 """Frame rate, width and height. An animation is one file, in which each picture is compressed separately."""
+
+_STRIPS, _LEAST_STRIP, _STRIP = 20, 16, "#2e3436"
+"""Share of the height and least height in pixels of the strip for the caption, and its colour."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,7 @@ class Animation:
         per_second: pictures per second of film.
         width: of a picture, pixels.
         height: of a picture, pixels.
+        caption: the text for the instant that is shown, drawn along the lower edge.
     """
 
     view: Any
@@ -48,6 +52,7 @@ class Animation:
     per_second: float
     width: int
     height: int
+    caption: Callable[[], str]
 
     def write_pictures(self, folder: Path) -> int:
         """Write frame_00001.png and so on; return their number, which is smaller if the user cancelled."""
@@ -58,6 +63,7 @@ class Animation:
                     self.show(seconds)
                     target = str(folder / f"frame_{number:05d}.png")
                     self.view.saveImage(target, self.width, self.height, "Current")
+                    write_caption(target, self.caption())
                     written = number
                     bar.step()
         except Stopped:
@@ -73,6 +79,24 @@ class Animation:
             if written:
                 animate(sorted(Path(folder).glob("*.png")), target, self.per_second)
         return written
+
+
+def write_caption(picture: str, text: str) -> None:
+    """Draw a line of text into a PNG file, light on a dark strip along its lower edge."""
+    image = QtGui.QImage(picture).convertToFormat(QtGui.QImage.Format.Format_RGB32)
+    height = max(image.height() // _STRIPS, _LEAST_STRIP)
+    strip = QtCore.QRect(0, image.height() - height, image.width(), height)
+    painter = QtGui.QPainter(image)
+    font = painter.font()
+    font.setPixelSize(round(0.6 * height))
+    painter.setFont(font)
+    painter.fillRect(strip, QtGui.QColor(_STRIP))
+    painter.setPen(QtGui.QColor("white"))
+    room = strip.adjusted(height // 2, 0, -height // 2, 0)
+    shown = painter.fontMetrics().elidedText(text, QtCore.Qt.TextElideMode.ElideRight, room.width())
+    painter.drawText(room, QtCore.Qt.AlignmentFlag.AlignVCenter, shown)
+    painter.end()
+    image.save(picture, "PNG")
 
 
 Shooting = Callable[[float, int, int], Animation]

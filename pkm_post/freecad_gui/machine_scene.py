@@ -15,10 +15,10 @@ import numpy as np
 from pivy import coin
 
 from pkm_post.freecad_app.simulation import Problem, Simulation
-from pkm_post.freecad_gui.shapes import Colour, aim, ball, beam, cutter, cylinder, group, material
+from pkm_post.freecad_gui.shapes import Colour, aim, ball, beam, cutter, cylinder, fade, group, material, mill
 from pkm_post.geometry import Array, norm
 from pkm_post.machine import ToolPoses, platform_joints, platform_rotation, reach_margins
-from pkm_post.model import Box, Machine, Tool
+from pkm_post.model import Box, Machine, Shank, Tool
 
 STEEL: Colour = (0.62, 0.65, 0.7)
 DARK: Colour = (0.25, 0.28, 0.33)
@@ -26,6 +26,8 @@ LIGHT: Colour = (0.8, 0.82, 0.85)
 GOLD: Colour = (0.85, 0.65, 0.2)
 BAD: Colour = (0.85, 0.1, 0.1)
 
+COMPONENTS = ("base", "struts", "platform", "tool")
+"""Parts of a machine that can be shown, faded and hidden each by itself."""
 _TOOL_NAME = re.compile(r"\bT\d+\b")
 _TUBE_SHARE = 0.95
 """Share of the shortest strut: drawn length of its tube if the machine file does not state it."""
@@ -42,25 +44,46 @@ class MachineScene:
         self.machine = machine
         self._size = float(norm(machine.platform_joints).mean())
         self._frame, self._platform, self._tool = coin.SoMatrixTransform(), coin.SoMatrixTransform(), coin.SoSeparator()
+        self._switches = {name: coin.SoSwitch() for name in COMPONENTS}
         self._struts = [_Strut(machine, number, self._size) for number in range(6)]
         self._bodies: dict[str, tuple[coin.SoMaterial, Colour]] = {}
         self._marked: set[str] = set()
         self._gold = material(GOLD)
-        self.root = group(self._frame, self._base(), *(strut.root for strut in self._struts), self._moving())
+        for name, nodes in (("base", [self._base()]), ("struts", [strut.root for strut in self._struts])):
+            for node in nodes:
+                self._switches[name].addChild(node)
+        self.root = group(self._frame, self._switches["base"], self._switches["struts"], self._moving())
+        for switch in self._switches.values():
+            switch.whichChild = coin.SO_SWITCH_ALL
 
     def place(self, document_from_machine: Array) -> None:
         """Place the machine by a (4, 4) matrix."""
         self._frame.matrix = _coin_matrix(document_from_machine)
 
     def take_tool(self, diameter: float, corner_radius: float, length: float) -> None:
-        """Put a tool into the spindle; mm."""
+        """Put a straight tool into the spindle; mm."""
+        self._put(cutter(diameter or 0.1 * self._size, corner_radius, length) if length > 0.0 else None, length)
+
+    def take_mill(self, tool: Tool, shank: Shank | None) -> None:
+        """Put a tool with its own outline into the spindle, and with its shank, if that is known."""
+        try:
+            self._put(mill(tool, shank), tool.length)
+        except ValueError:  # its size is unknown
+            self.take_tool(tool.diameter, tool.corner_radius, tool.length)
+
+    def _put(self, body: coin.SoSeparator | None, length: float) -> None:
         self._tool.removeAllChildren()
-        if length > 0.0:
+        if body is not None:
             shift = coin.SoTranslation()
             shift.translation = (0.0, 0.0, -self.machine.spindle_nose - length)
-            body = cutter(diameter or 0.1 * self._size, corner_radius, length)
             for node in (self._gold, shift, body):
                 self._tool.addChild(node)
+
+    def show_component(self, name: str, transparency: float) -> None:
+        """Show a part of ``COMPONENTS`` with a transparency from 0 to 1; at 1 it is hidden."""
+        switch = self._switches[name]
+        switch.whichChild = coin.SO_SWITCH_ALL if transparency < 1.0 else coin.SO_SWITCH_NONE
+        fade(switch, min(transparency, 0.99))
 
     def show(self, pose: ToolPoses) -> None:
         """Move to a pose in {M}, one row for ``kinematics``; struts out of limits are red."""
@@ -103,7 +126,9 @@ class MachineScene:
             colour = LIGHT if number == 0 else DARK
             bodies += [self._named(name, colour) if name else material(colour), cylinder(radius, start, end)]
         ring = _ring(machine.platform_joints, 0.08 * size)
-        return group(self._platform, material(LIGHT), *ring, *bodies, self._tool)
+        self._switches["platform"].addChild(group(material(LIGHT), *ring, *bodies))
+        self._switches["tool"].addChild(self._tool)
+        return group(self._platform, self._switches["platform"], self._switches["tool"])
 
 
 class _Strut:
@@ -165,6 +190,11 @@ class MovingMachine:
             self._graph.addChild(self._scene.root)
         self._scene.place(np.linalg.inv(simulation.trajectory.machine_from_work))
 
+    @property
+    def scene(self) -> MachineScene:
+        """The scene that is moved."""
+        return self._scene
+
     def show(self, seconds: float, problem: Problem | None = None) -> None:
         """Move the machine to its pose at a time; bodies that come too close there are red."""
         at_hand = self._simulation.problems_at(seconds) if problem is None else [problem]
@@ -172,7 +202,7 @@ class MovingMachine:
         tool: Tool = self._simulation.tool_at(seconds)
         if tool is not self._tool:
             self._tool = tool
-            self._scene.take_tool(tool.diameter, tool.corner_radius, tool.length)
+            self._scene.take_mill(tool, self._simulation.setup.shanks.get(tool.number))
         self._scene.show(self._simulation.pose_at(np.array([seconds])))
 
     def strike(self) -> None:

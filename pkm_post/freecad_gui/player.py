@@ -23,6 +23,7 @@ from pkm_post.freecad_gui.job_choices import show_place
 from pkm_post.freecad_gui.machine_scene import MovingMachine
 from pkm_post.freecad_gui.observers import DeletionWatch, RecomputeWatch
 from pkm_post.freecad_gui.player_content import PlayerContent
+from pkm_post.freecad_gui.quantities import time_text
 from pkm_post.model import Place, Refused
 from pkm_post.system import memory_guard
 
@@ -42,6 +43,13 @@ def status_text(simulation: Simulation, seconds: float, problem: Problem | None,
     return "   ".join([
         f"{seconds:.3f} s / {simulation.duration:.3f} s", block, *more, *_too_fast(simulation, override)
     ])  # fmt: skip
+
+
+def caption_text(simulation: Simulation, seconds: float) -> str:
+    """Time, operation and line, for a picture."""
+    place = simulation.trajectory.place(simulation.block_at(seconds))
+    block = translate("PKM_Simulate", "{}, line {}").format(place.operation, place.line)
+    return f"{time_text(seconds)} / {time_text(simulation.duration)}   {block}"
 
 
 def _too_fast(simulation: Simulation, override: float) -> list[str]:
@@ -113,7 +121,7 @@ class Player(QtWidgets.QDockWidget):
         if self._stage is not None:
             self._stage.strike()
         self._stage = MovingMachine(simulation, self.subject.Document, self.subject.Machine)
-        self._content.take(simulation)
+        self._content.take(simulation, self._stage.scene)
         self.go_to(self.seconds)
 
     def _follow(self) -> None:
@@ -201,7 +209,8 @@ class Player(QtWidgets.QDockWidget):
         self.pause()
         return Animation(
             view=FreeCADGui.getDocument(self._document).activeView(),
-            show=self.go_to,
+            show=self._show_finished,
+            caption=lambda: caption_text(self.simulation, self.seconds),
             now=self.seconds,
             duration=self.simulation.duration,
             pace=self.controls.pace(),
@@ -209,6 +218,11 @@ class Player(QtWidgets.QDockWidget):
             width=width,
             height=height,
         )
+
+    def _show_finished(self, seconds: float) -> None:
+        """Show a time, with all that is cut until then."""
+        self.go_to(seconds)
+        self._content.material.finish()
 
     def _show_removal(self) -> None:
         self.pause()
@@ -241,4 +255,5 @@ def open_player(subject: Any) -> Player | None:
         return None
     player = Player(subject, simulation)
     window.addDockWidget(QtCore.Qt.DockWidgetArea.BottomDockWidgetArea, player)
+    FreeCADGui.SendMsgToActiveView("ViewFit")
     return player

@@ -12,10 +12,12 @@ import FreeCAD
 from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_app.simulation import Simulation
+from pkm_post.freecad_gui.machine_scene import MachineScene
 from pkm_post.freecad_gui.player_controls import PlayerControls, PlayerLists
 from pkm_post.freecad_gui.player_listing import Listing
 from pkm_post.freecad_gui.player_material import MaterialPage
 from pkm_post.freecad_gui.player_readout import Readout, reading_at
+from pkm_post.freecad_gui.player_view import ViewPage
 from pkm_post.freecad_gui.strut_plot import StrutPlot
 from pkm_post.freecad_gui.timeline import Timeline
 
@@ -35,7 +37,7 @@ class PlayerContent(QtWidgets.QWidget):
         slider: over the whole motion.
         timeline: bands of operations, tool changes and findings.
         plot: lengths and speeds.
-        lists: problems and operations, and the pages of readout, program and material.
+        lists: problems and operations, and the pages of readout, program, material and view.
     """
 
     wanted = QtCore.Signal(float)
@@ -45,6 +47,7 @@ class PlayerContent(QtWidgets.QWidget):
         self._simulation, self._job = simulation, job
         self.controls, self.lists, self.timeline = PlayerControls(), PlayerLists(), Timeline()
         self.readout, self.listing, self.material = Readout(), Listing(), MaterialPage(job)
+        self.view = ViewPage(job.Document)
         self.slider = QtWidgets.QSlider(QtCore.Qt.Orientation.Horizontal)
         self.plot = StrutPlot(simulation, self.wanted.emit)
         self._below = QtWidgets.QSplitter(QtCore.Qt.Orientation.Horizontal)
@@ -59,6 +62,7 @@ class PlayerContent(QtWidgets.QWidget):
             (self.readout, translate("PKM_Simulate", "Readout")),
             (self.listing, translate("PKM_Simulate", "Program")),
             (self.material, translate("PKM_Simulate", "Material")),
+            (self.view, translate("PKM_Simulate", "View")),
         )
         for page, title in pages:
             self.lists.addTab(page, title)
@@ -83,9 +87,10 @@ class PlayerContent(QtWidgets.QWidget):
         self._below.setOrientation(ways.Vertical if narrow else ways.Horizontal)
         super().resizeEvent(event)
 
-    def take(self, simulation: Simulation) -> None:
-        """Show another simulation."""
+    def take(self, simulation: Simulation, scene: MachineScene) -> None:
+        """Show another simulation on its machine."""
         self._simulation = simulation
+        self.view.take(simulation, scene)
         for part in (self.plot, self.lists, self.timeline, self.material):
             part.take(simulation)
         self.listing.take(simulation, self._job)
@@ -97,7 +102,9 @@ class PlayerContent(QtWidgets.QWidget):
         """Move cursors, marks and slider without signals of user input."""
         for part in (self.plot, self.timeline, self.listing, self.material):
             part.show_time(seconds)
-        self.readout.show_reading(reading_at(self._simulation, seconds, self.controls.override.value() / 100.0))
+        reading = reading_at(self._simulation, seconds, self.controls.override.value() / 100.0)
+        self.readout.show_reading(reading)
+        self.view.show_tip(reading.tip)
         self.slider.blockSignals(True)
         self.slider.setValue(round(seconds * _PER_SECOND))
         self.slider.blockSignals(False)
@@ -105,3 +112,4 @@ class PlayerContent(QtWidgets.QWidget):
     def end(self) -> None:
         """Take out of the view what the pages put there."""
         self.material.strike()
+        self.view.strike()

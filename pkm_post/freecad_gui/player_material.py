@@ -93,6 +93,11 @@ class MaterialPage(QtWidgets.QWidget):
         if self.material is not None and not self.is_current:
             self._timer.start(_TICK_MS)
 
+    def finish(self) -> None:
+        """Cut all that is due at once, for a picture."""
+        if self.material is not None and not self.is_current:
+            self._scene.show(self.material.replay.go_to(self._seconds))
+
     def strike(self) -> None:
         """Take the stock out of the view, and show the stock object again."""
         self._timer.stop()

@@ -12,6 +12,8 @@ import numpy as np
 from pivy import coin
 
 from pkm_post.geometry import Array
+from pkm_post.model import Shank, Tool
+from pkm_post.toolpath import Cutter
 
 Colour = tuple[float, float, float]
 """Red, green and blue from 0 to 1."""
@@ -85,6 +87,24 @@ def cutter(diameter: float, corner_radius: float, length: float) -> coin.SoSepar
     return revolved(np.vstack([(0.0, 0.0), arc, (radius, length), (0.0, length)]))
 
 
+def mill(tool: Tool, shank: Shank | None) -> coin.SoSeparator:
+    """A tool of known diameter with its tip at the origin: its cutting part, and its shank up to the gauge length.
+
+    Args:
+        tool: with its angles and its corner.
+        shank: None if it is unknown: the side then goes up to the gauge length.
+    """
+    outline = Cutter.of(tool)
+    top = tool.length if shank is None else min(shank.start, tool.length)
+    angle = np.linspace(outline.corner_start, outline.corner_end, _ARC_STEPS + 1)
+    radius = outline.radial_offset + outline.corner_radius * np.sin(angle)
+    height = outline.axial_offset - outline.corner_radius * np.cos(angle)
+    side = max(radius[-1] + max(top - height[-1], 0.0) * np.tan(tool.side_angle), 0.0)
+    upper = side if shank is None else shank.diameter / 2.0
+    above = [(side, top), (upper, top), (upper, tool.length), (0.0, tool.length)]
+    return revolved(np.vstack([(0.0, 0.0), np.column_stack([np.maximum(radius, 0.0), height]), above]))
+
+
 def group(*children: coin.SoNode) -> coin.SoSeparator:
     """Nodes whose state does not leak."""
     separator = coin.SoSeparator()
@@ -110,6 +130,34 @@ Point = Sequence[float]
 
 OUT: Colour = (0.85, 0.0, 0.0)
 """Colour for violated limits."""
+
+
+def segments(start: Array, end: Array, colour: Colour) -> coin.SoSeparator:
+    """Straight lines between points.
+
+    Args:
+        start: (N, 3) their beginnings.
+        end: (N, 3) their ends.
+        colour: of all of them.
+    """
+    light, ink, coordinates, lines = coin.SoLightModel(), coin.SoBaseColor(), coin.SoCoordinate3(), coin.SoLineSet()
+    light.model = coin.SoLightModel.BASE_COLOR
+    ink.rgb = colour
+    points = np.stack([start, end], axis=1).reshape(-1, 3)
+    coordinates.point.setValues(0, len(points), points.tolist())
+    lines.numVertices.setValues(0, len(start), [2] * len(start))
+    return group(light, ink, coordinates, lines)
+
+
+def fade(node: coin.SoNode, transparency: float) -> None:
+    """Give all materials of a scene the same transparency, 0 to 1."""
+    search = coin.SoSearchAction()
+    search.setType(coin.SoMaterial.getClassTypeId())
+    search.setInterest(coin.SoSearchAction.ALL)
+    search.apply(node)
+    paths = search.getPaths()
+    for number in range(paths.getLength()):
+        paths[number].getTail().transparency = transparency
 
 
 def points_through(points: Sequence[Point], colour: Colour, size: float) -> coin.SoSeparator:

@@ -1636,6 +1636,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>材料</translation>
     </message>
     <message>
+        <source>View</source>
+        <translation>视图</translation>
+    </message>
+    <message>
         <source>Colour by the distance from the part</source>
         <translation>按与零件的距离着色</translation>
     </message>
@@ -1702,6 +1706,50 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>Left</source>
         <translation>剩余</translation>
+    </message>
+    <message>
+        <source>Shown</source>
+        <translation>显示</translation>
+    </message>
+    <message>
+        <source>Transparent</source>
+        <translation>透明</translation>
+    </message>
+    <message>
+        <source>Hidden</source>
+        <translation>隐藏</translation>
+    </message>
+    <message>
+        <source>Follow the tool</source>
+        <translation>跟随刀具</translation>
+    </message>
+    <message>
+        <source>Section plane</source>
+        <translation>剖切平面</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation>无</translation>
+    </message>
+    <message>
+        <source>Tool axis every ... blocks</source>
+        <translation>每 … 个程序段显示刀轴</translation>
+    </message>
+    <message>
+        <source>Base</source>
+        <translation>底座</translation>
+    </message>
+    <message>
+        <source>Struts</source>
+        <translation>支链</translation>
+    </message>
+    <message>
+        <source>Platform and spindle</source>
+        <translation>动平台与主轴</translation>
+    </message>
+    <message>
+        <source>Tool</source>
+        <translation>刀具</translation>
     </message>
 </context>
 <context>

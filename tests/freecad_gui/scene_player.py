@@ -4,8 +4,11 @@
 import FreeCAD
 import FreeCADGui
 import numpy as np
-from gui import main, picture_of_all, press, settle, step, until
-from PySide import QtCore, QtWidgets
+from gui import FOLDER, main, picture_of_all, press, settle, step, until
+from pivy import coin
+from PySide import QtCore, QtGui, QtWidgets
+
+from pkm_post.freecad_gui.player_view import tool_axes
 
 SLOT = [
     "G0 X-15 Y10 Z40 I0 J0 K1",
@@ -109,6 +112,89 @@ def timeline_goes_to_a_click():
     at = player.seconds
     text = content.timeline.text_at(content.timeline.operations[-1].start + 0.1)
     return {"at": at, "start": content.timeline.operations[-1].start, "text": text}
+
+
+@step
+def view_is_chosen():
+    player, page = _player(), _content().view
+    scene = page._scene
+    reported = {}
+    for name, choice in page.components.items():
+        reported[name] = []
+        for row in range(choice.count()):
+            choice.setCurrentIndex(row)
+            shown = scene._switches[name].whichChild.getValue() == coin.SO_SWITCH_ALL
+            reported[name].append([shown, *_transparencies(scene._switches[name])])
+        choice.setCurrentIndex(0)
+    page.every.setValue(2)
+    ends = tool_axes(player.simulation, 2, 15.0)
+    reported["axes"] = [page._axes.getNumChildren(), len(ends[0]), len(player.simulation.trajectory)]
+    camera = FreeCADGui.activeView().getCameraNode()
+    player.go_to(1.0)
+    page.follows.setChecked(True)
+    before, tip = _position(camera), page._tip
+    player.go_to(2.0)
+    reported["followed"] = bool(np.allclose(_position(camera) - before, page._tip - tip, atol=1e-3))
+    page.follows.setChecked(False)
+    page.section.setChecked(True)
+    reported["section"] = FreeCADGui.activeView().hasClippingPlane()
+    page.section.setChecked(False)
+    reported["whole"] = not FreeCADGui.activeView().hasClippingPlane()
+    page.every.setValue(0)
+    reported["no axes"] = page._axes.getNumChildren() == 0
+    return reported
+
+
+def _position(camera):
+    return np.array(camera.position.getValue().getValue())
+
+
+def _transparencies(node):
+    search = coin.SoSearchAction()
+    search.setType(coin.SoMaterial.getClassTypeId())
+    search.setInterest(coin.SoSearchAction.ALL)
+    search.setSearchingAll(True)
+    search.apply(node)
+    paths = search.getPaths()
+    found = {round(paths[n].getTail().transparency.getValues(0)[0], 3) for n in range(paths.getLength())}
+    return sorted(found)
+
+
+@step
+def bodies_that_come_too_close_are_red():
+    player = _player()
+    scene = player._stage.scene
+    scene.mark({"strut 2", "shank of T1"})
+    scene.show(player.simulation.pose_at(np.array([player.seconds])))
+    red = [number for number, strut in enumerate(scene._struts, start=1) if _colour(strut._tube) == [0.85, 0.1, 0.1]]
+    tool = _colour(scene._gold)
+    player.go_to(player.seconds)
+    return {"red": red, "tool": tool, "after": [_colour(scene._struts[1]._tube), _colour(scene._gold)]}
+
+
+def _colour(look):
+    return [round(value, 2) for value in look.diffuseColor.getValues(0)[0].getValue()]
+
+
+@step
+def film_has_a_caption():
+    player, frames = _player(), FOLDER / "film"
+    frames.mkdir()
+    player.controls.factor.setCurrentText("10x")
+    page = _content().material
+    page.resolution.setCurrentIndex(page.resolution.findData("coarse"))
+    written = player.film(4, 320, 240).write_pictures(frames)
+    images = [QtGui.QImage(str(file)) for file in sorted(frames.glob("*.png"))]
+    strips = [image.copy(0, image.height() - 16, image.width(), 16) for image in images]
+    dark = QtGui.QColor("#2e3436").rgb()
+    light = [sum(QtGui.qGray(strip.pixel(x, 8)) > 128 for x in range(strip.width())) for strip in strips]
+    page.resolution.setCurrentIndex(0)
+    return {
+        "written": written,
+        "ground": all(strip.pixel(0, 0) == dark for strip in strips),
+        "light": light,
+        "differ": strips[0] != strips[-1],
+    }
 
 
 @step

@@ -16,7 +16,7 @@ def session(scene):
 
 def test_the_player_has_pages_bands_and_the_program(session):
     found = session["player_opens_with_its_pages"]
-    assert found["tabs"][2:5] == ["Readout", "Program", "Material"]
+    assert found["tabs"][2:6] == ["Readout", "Program", "Material", "View"]
     assert found["bands"] == ["Groove", "Above"]
     assert found["tools"] == ["T2"]
     assert "(Groove)" in found["rows"] and "(Above)" in found["rows"]
@@ -61,6 +61,33 @@ def test_a_click_in_the_timeline_goes_there(session):
     found = session["timeline_goes_to_a_click"]
     assert found["at"] == pytest.approx(found["start"])
     assert "Above" in found["text"]
+
+
+def test_parts_of_the_machine_are_shown_faded_and_hidden_each_by_itself(session):
+    found = session["view_is_chosen"]
+    for name in ("base", "struts", "platform", "tool"):
+        (shown, *solid), (faded, *clear), (hidden, *_) = found[name]
+        assert (shown, solid, faded, clear, hidden) == (True, [0.0], True, [0.7], False)
+
+
+def test_the_view_has_tool_axes_follows_the_tool_and_is_cut_open(session):
+    found = session["view_is_chosen"]
+    children, axes, blocks = found["axes"]
+    assert (children, axes) == (1, blocks // 2)
+    assert found["followed"] and found["section"] and found["whole"] and found["no axes"]
+
+
+def test_bodies_that_come_too_close_are_red_until_they_part(session):
+    found = session["bodies_that_come_too_close_are_red"]
+    assert found["red"] == [2]
+    assert found["tool"] == [0.85, 0.1, 0.1]
+    assert found["after"] == [[0.62, 0.65, 0.7], [0.85, 0.65, 0.2]]
+
+
+def test_a_film_says_time_operation_and_line(session):
+    found = session["film_has_a_caption"]
+    assert found["written"] >= 2
+    assert found["ground"] and found["differ"] and min(found["light"]) > 5
 
 
 def test_a_dock_of_380_pixels_hides_no_button(session):

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""View page: the player's tab for what the 3D view shows: parts of the machine, section, camera, tool axes.
+
+Takes the player's machine scene and the tool tip; changes the view and no document. How many commands lie between two
+drawn tool axes is a preference.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD
+import FreeCADGui
+import numpy as np
+from pivy import coin
+from PySide import QtWidgets
+
+from pkm_post.freecad_app.frames import apply
+from pkm_post.freecad_app.simulation import Simulation
+from pkm_post.freecad_gui.machine_scene import COMPONENTS, MachineScene
+from pkm_post.freecad_gui.preferences import GROUP
+from pkm_post.freecad_gui.shapes import segments
+from pkm_post.geometry import Array
+
+translate = FreeCAD.Qt.translate
+
+_TRANSPARENT = 0.7
+_EVERY = "ToolAxisEvery"
+_AXIS_LENGTH = 15.0
+"""mm: length of a drawn tool axis."""
+_AXIS_COLOUR = (0.36, 0.21, 0.4)
+
+
+class ViewPage(QtWidgets.QWidget):
+    """The tab.
+
+    Attributes:
+        components: a choice for each part of the machine: shown, transparent or hidden.
+        follows: whether the camera goes with the tool.
+        section: whether a plane cuts the view open.
+        every: commands from one drawn tool axis to the next; 0 draws none.
+    """
+
+    def __init__(self, document: Any) -> None:
+        super().__init__()
+        self._document = document.Name
+        self._scene: MachineScene | None = None
+        self._simulation: Simulation | None = None
+        self._tip: Array | None = None
+        self._axes = coin.SoSeparator()
+        self._graph: Any = None
+        self.components = {name: QtWidgets.QComboBox() for name in COMPONENTS}
+        self.follows, self.section, self.every = QtWidgets.QCheckBox(), QtWidgets.QCheckBox(), QtWidgets.QSpinBox()
+        self._lay_out()
+        self.section.toggled.connect(self._cut_open)
+        self.every.valueChanged.connect(self._draw_axes)
+
+    def _lay_out(self) -> None:
+        form = QtWidgets.QFormLayout(self)
+        for name, title in _titles().items():
+            choice = self.components[name]
+            choice.addItem(translate("PKM_Simulate", "Shown"), 0.0)
+            choice.addItem(translate("PKM_Simulate", "Transparent"), _TRANSPARENT)
+            choice.addItem(translate("PKM_Simulate", "Hidden"), 1.0)
+            choice.currentIndexChanged.connect(lambda _index: self._show_components())
+            form.addRow(title, choice)
+        self.follows.setText(translate("PKM_Simulate", "Follow the tool"))
+        self.section.setText(translate("PKM_Simulate", "Section plane"))
+        self.every.setRange(0, 100_000)
+        self.every.setSpecialValueText(translate("PKM_Simulate", "none"))
+        self.every.setValue(FreeCAD.ParamGet(GROUP).GetInt(_EVERY, 0))
+        for box in (self.follows, self.section):
+            form.addRow(box)
+        form.addRow(translate("PKM_Simulate", "Tool axis every ... blocks"), self.every)
+
+    def take(self, simulation: Simulation, scene: MachineScene) -> None:
+        """Show another simulation on its machine."""
+        self._simulation, self._scene, self._tip = simulation, scene, None
+        if self._graph is None:
+            self._graph = self._view().getSceneGraph()
+            self._graph.addChild(self._axes)
+        self._show_components()
+        self._draw_axes()
+
+    def show_tip(self, tip: Array) -> None:
+        """Move the camera by as much as the tool tip, (3,) in the document, has moved, if it follows."""
+        if self.follows.isChecked() and self._tip is not None:
+            camera = self._view().getCameraNode()
+            moved = np.array(camera.position.getValue().getValue()) + tip - self._tip
+            camera.position = tuple(moved.tolist())
+        self._tip = tip
+
+    def strike(self) -> None:
+        """Take axes and section out of the view, and show the whole machine."""
+        if self._document in FreeCAD.listDocuments():
+            self.section.setChecked(False)
+        if self._scene is not None:
+            for name in COMPONENTS:
+                self._scene.show_component(name, 0.0)
+        if self._graph is not None:
+            self._graph.removeChild(self._axes)
+        self._graph = self._scene = None
+
+    def _show_components(self) -> None:
+        for name, choice in self.components.items():
+            if self._scene is not None:
+                self._scene.show_component(name, float(choice.currentData()))
+
+    def _cut_open(self, on: bool) -> None:
+        tip = FreeCAD.Vector(*(self._tip if self._tip is not None else (0.0, 0.0, 0.0)))
+        across = FreeCAD.Rotation(FreeCAD.Vector(0, 0, 1), FreeCAD.Vector(0, 1, 0))
+        self._view().toggleClippingPlane(int(on), False, False, FreeCAD.Placement(tip, across))
+
+    def _draw_axes(self) -> None:
+        FreeCAD.ParamGet(GROUP).SetInt(_EVERY, self.every.value())
+        self._axes.removeAllChildren()
+        if self._simulation is not None and self.every.value():
+            self._axes.addChild(segments(*tool_axes(self._simulation, self.every.value(), _AXIS_LENGTH), _AXIS_COLOUR))
+
+    def _view(self) -> Any:
+        return FreeCADGui.getDocument(self._document).activeView()
+
+
+def tool_axes(simulation: Simulation, every: int, length: float) -> tuple[Array, Array]:
+    """Ends of tool axes at the ends of every nth block, (K, 3) each in {C}.
+
+    Args:
+        simulation: the motion.
+        every: n, from 1.
+        length: of a drawn axis, mm.
+    """
+    trajectory = simulation.trajectory
+    work_from_machine = np.linalg.inv(trajectory.machine_from_work)
+    tip, axis = trajectory.tip[every - 1 :: every], trajectory.axis[every - 1 :: every]
+    return apply(work_from_machine, tip), apply(work_from_machine, tip + length * axis)
+
+
+def _titles() -> dict[str, str]:
+    return {
+        "base": translate("PKM_Simulate", "Base"),
+        "struts": translate("PKM_Simulate", "Struts"),
+        "platform": translate("PKM_Simulate", "Platform and spindle"),
+        "tool": translate("PKM_Simulate", "Tool"),
+    }
