@@ -21,6 +21,7 @@ NPM_PACKAGES := kaitai-struct-compiler@0.11.0 kaitai-struct@0.11.0 js-yaml@5.5.0
 FUZZ_SECONDS ?= 120
 SOAK_DOWNLOADS ?= 10000
 SOAK_KILLS ?= 1000
+SOAK_PLAYS ?= 60
 OUT ?= out
 ARGS ?=
 
@@ -68,10 +69,11 @@ fuzz: $(FUZZ_VENV)/made ## feed the readers with bytes, and verify with trajecto
 		-timeout=20 -rss_limit_mb=2048 -print_final_stats=1
 	@PYTHONPATH=. $(FUZZ_VENV)/bin/python tests/lying_trajectories.py $(FUZZ_SECONDS)
 
-soak: $(VENV)/made ## sessions and downloads over faulty links, killed posts (SOAK_DOWNLOADS=10000 SOAK_KILLS=1000)
+soak: $(VENV)/made ## sessions and downloads over faulty links, killed posts (SOAK_DOWNLOADS=10000 SOAK_KILLS=1000 SOAK_PLAYS=60)
 	@folder=$$(mktemp -d); trap 'rm -rf "$$folder"' EXIT; \
 	PYTHONPATH=. $(VENV)/bin/python tests/system/killed_posts.py "$$folder" $(SOAK_KILLS)
 	@PYTHONPATH=. $(VENV)/bin/python tests/control/link/soak.py $(SOAK_DOWNLOADS)
+	@PYTHONPATH=. $(VENV)/bin/python tests/control/player/soak.py luck $(SOAK_PLAYS)
 
 conformance: $(VENV)/made $(CONFORMANCE)/made ## compile pkmt.ksy with Kaitai's compiler, and read files with it
 	@$(VENV)/bin/python tests/writing/trajectory_file/conformance.py $(CONFORMANCE)

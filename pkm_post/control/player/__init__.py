@@ -2,6 +2,7 @@
 """Player: plays a trajectory on a controller while it is being planned, at any feed override.
 
 ``docs/numerical-control.md`` has the design. The way of the data: a trajectory in ``sections``; ``pieces`` with a stop
-each, certified against its ``subpath`` of the trajectory; the ``knot_list`` in the controller, kept filled by
-``list_feed``; ``play`` runs them all, with the ``stop_events`` between parts, and ``start_line`` begins at a line.
+each, both ``legs`` that are certified against their ``subpath`` of the trajectory; the ``knot_list`` in the controller,
+kept filled by ``list_feed``; ``play`` runs them all, with the ``stop_events`` between parts, and ``start_line`` begins
+at a line.
 """

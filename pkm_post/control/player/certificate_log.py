@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.control.player.pieces import Leg
+from pkm_post.control.player.legs import Leg
 from pkm_post.geometry import Array
 from pkm_post.model import Finding
 

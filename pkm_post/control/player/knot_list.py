@@ -31,6 +31,8 @@ POINT_VARIABLES = 14
 FIRST_VARIABLE, LAST_VARIABLE = 1000, 8186
 """The variables behind them keep the owner of the machine (``ownership``)."""
 _HEAD_VARIABLES = 2
+_LEAST_POINTS = 32
+"""Points of two short pieces with their stops."""
 _LINE = 200
 """Characters of a line: several assignments in one exchange."""
 _ASSIGNMENT = re.compile(r"P(\d+)=(-?\d+(?:\.\d+)?)")
@@ -47,6 +49,10 @@ class Layout:
 
     first: int = FIRST_VARIABLE
     last: int = LAST_VARIABLE
+
+    def __post_init__(self) -> None:
+        if len(self.points()) < _LEAST_POINTS:
+            raise ValueError(f"first: expected room for {_LEAST_POINTS} points up to P{self.last}, got {self.first}")
 
     @property
     def next(self) -> int:

@@ -23,7 +23,8 @@ from pkm_post.control.player.knot_list import (
     point_assignments,
     read_assignments,
 )
-from pkm_post.control.player.pieces import Leg, Piece
+from pkm_post.control.player.legs import Leg
+from pkm_post.control.player.pieces import Piece
 from pkm_post.writing import PmacSettings
 
 _KEPT = 2
@@ -103,6 +104,11 @@ class ListFeed:
         self.current, self.stopped_at = None, None
 
     @property
+    def capacity(self) -> int:
+        """Points of the longest piece, with its stop."""
+        return len(self._layout.points())
+
+    @property
     def ahead_ms(self) -> int:
         """Time until the last stop begins, from the end of the move that was computed last."""
         return sum(point.ms for point in islice(self._points, self._at + 1 - self._first, None))
@@ -114,7 +120,7 @@ class ListFeed:
 
     def has_room(self, piece: Piece) -> bool:
         """Whether a piece fits, besides what is ahead."""
-        return self._entry is not None or _size(piece) <= len(self._free)
+        return self._entry is not None or piece.size <= len(self._free)
 
     def append(self, piece: Piece) -> None:
         """Take a piece in; after a lost link, again with the same piece.
@@ -240,9 +246,3 @@ class ListFeed:
             self._session.command(line)
         except OutcomeUnknownError:
             self._session.query(line)
-
-
-def _size(piece: Piece) -> int:
-    """Points of a piece."""
-    stop = 0 if piece.stop is None else len(piece.stop.struts) - 1
-    return len(piece.leg.struts) - 1 + stop

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Pieces: what a player sends next, planned from where the motion before it is left, and certified.
 
-A piece is a fraction of a second of motion and the stop from its end. Both are certified by themselves, in the points
-that the controller gets: against the trajectory as programmed between their ends, and against the limits of the
-machine. A piece that a certificate refuses is never sent; the stop that the controller has already is what happens.
+A piece is a fraction of a second of motion and the stop from its end, both certified by themselves (``legs``). A piece
+that a certificate refuses is never sent; the stop that the controller has already is what happens.
 
 Enters: a part of a trajectory, where the motion is, an override. Leaves: points with their certificates.
 """
@@ -15,72 +14,24 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.certificate import certify
+from pkm_post.control.player.legs import At, Leg, LegMaker
 from pkm_post.control.player.sections import Part, Section, sections_of
-from pkm_post.control.player.subpath import PathPoint, subpath
-from pkm_post.geometry import Array
 from pkm_post.machine import strut_lengths
-from pkm_post.model import (
-    Certificate,
-    Kind,
-    Machine,
-    Motion,
-    Refused,
-    StrutMotion,
-    Tolerances,
-    Trajectory,
-    errors,
-)
-from pkm_post.planning import Course, PathState, Schedule, course, strut_motion
+from pkm_post.model import Machine, Refused, Tolerances, Trajectory
+from pkm_post.planning import Course, PathState, Schedule, course
 from pkm_post.writing import PmacSettings
 
 HIGHEST_OVERRIDE = 1.5
-LONGEST_MS = 128
-"""Longest interval: the controller computes two moves ahead, and a new way on has to come before."""
 PIECE_MS = 250
-"""Duration of the shortest piece."""
+"""Duration of a piece where planning is quick."""
+SHORTEST_PIECE_MS = 40
+"""Duration of a piece where the list of points is short."""
 _FOLLOWED_MS = 40
 """Part of a stop that is followed before the wanted motion is tried again."""
 _BRAKING = 0.1
 """Share of the lowest limit of acceleration with which the horizon of a window is estimated."""
 _LEAST = 1e-6
 """mm: places that are nearer are the same."""
-
-
-@dataclass(frozen=True)
-class At:
-    """Where a motion is.
-
-    Attributes:
-        section: number of the section of the part.
-        state: place, speed and override on its path.
-        length: (6,) strut lengths, as sent, mm.
-        speed: (6,) strut speeds, as sent, mm/s.
-    """
-
-    section: int
-    state: PathState
-    length: Array
-    speed: Array
-
-
-@dataclass(frozen=True)
-class Leg:
-    """A motion between two points, as the controller gets it.
-
-    Attributes:
-        struts: its points, the first one that of the motion before.
-        row: (M,) row of the trajectory at each point.
-        share: (M,) share of that row that is behind it.
-        certificate: of its motion.
-        end: where it ends.
-    """
-
-    struts: StrutMotion
-    row: Array
-    share: Array
-    certificate: Certificate
-    end: At
 
 
 @dataclass(frozen=True)
@@ -98,6 +49,11 @@ class Piece:
     stop: Leg | None
     reached: float
     is_end: bool
+
+    @property
+    def size(self) -> int:
+        """Points that are sent."""
+        return sum(len(leg.struts) - 1 for leg in (self.leg, self.stop) if leg is not None)
 
 
 class PiecePlanner:
@@ -122,7 +78,8 @@ class PiecePlanner:
             tolerances: limits for the certificate.
             planned_for: the machine with lower limits, such as the block rate of a link; by default the same.
         """
-        self._machine, self._settings, self._tolerances = machine, settings, tolerances
+        self._machine, self._tolerances = machine, tolerances
+        self._legs = LegMaker(machine, settings, tolerances)
         self._planned_for = planned_for or machine
         self._coming = sections_of(trajectory, part, tolerances)
         self._next: Section | None = None
@@ -175,7 +132,7 @@ class PiecePlanner:
         shortest = self._machine.shortest_interval
         most = min(most, self._time_to_limit(section, along, schedule))
         until = end_ms if end_ms < most + max(shortest, 2) else most
-        leg = self._leg(at, schedule, until, override)
+        leg = self._legs.leg(section, along, at, schedule, until, override)
         rests = until == end_ms
         stop = None if rests else self._stop(leg.end)
         return Piece(leg, stop, self._reached(along, state, leg), rests and self._is_end(section, along, leg.end))
@@ -213,62 +170,9 @@ class PiecePlanner:
         return 1.5 * speed * piece_ms / 1000 + speed**2 / (2 * slowest)
 
     def _stop(self, at: At) -> Leg:
-        _, along = self._section(at.section)
-        schedule = along.stop(at.state)
-        return self._leg(at, schedule, int(schedule.rests_ms[-1]), at.state.override)
-
-    def _leg(self, at: At, schedule: Schedule, until_ms: int, override: float) -> Leg:
-        """The motion of a schedule up to a time, certified.
-
-        Raises:
-            Refused: the certificate does not hold.
-        """
         section, along = self._section(at.section)
-        motion = along.motion(schedule, until_ms, override, LONGEST_MS)
-        struts = self._as_sent(strut_motion(motion, self._machine), at)
-        s, speed, _ = schedule.at(motion.time_ms / 1000)
-        rests = not at.speed.any(), until_ms == int(schedule.rests_ms[-1])
-        certificate = self._certified(section, along, struts, motion, s[[0, -1]], override, rests)
-        starts = along.path.starts
-        row = np.clip(np.searchsorted(starts, s, side="right") - 1, 0, len(along.programmed) - 1)
-        share = np.minimum((s - starts[row]) / np.diff(starts)[row], 1.0)
-        state = PathState(float(s[-1]), 0.0 if rests[1] else float(speed[-1]), override)
-        end = At(at.section, state, struts.length[-1], struts.speed[-1])
-        return Leg(struts, section.first + row, share, certificate, end)
-
-    def _as_sent(self, struts: StrutMotion, at: At) -> StrutMotion:
-        """The motion with the decimals that are sent, from the point that was sent before."""
-        length = np.round(struts.length, self._settings.length_decimals)
-        speed = np.round(struts.speed, self._settings.speed_decimals) + 0.0
-        length[0], speed[0] = at.length, at.speed
-        return replace(struts, length=length, speed=speed)
-
-    def _certified(
-        self,
-        section: Section,
-        along: Course,
-        struts: StrutMotion,
-        motion: Motion,
-        s: Array,
-        override: float,
-        rests: tuple[bool, bool],
-    ) -> Certificate:
-        starts, rows = along.path.starts, section.trajectory
-        first = int(np.searchsorted(starts, s[0], side="right")) - 1
-        last = int(np.searchsorted(starts, s[1])) - 1
-        share = [(at - starts[row]) / (starts[row + 1] - starts[row]) for at, row in zip(s, (first, last), strict=True)]
-        programmed = subpath(rows, PathPoint(first, float(share[0])), PathPoint(last, float(share[1])))
-        factor = np.where(programmed.kind == Kind.RAPID, min(override, 1.0), override)
-        programmed = replace(programmed, feed=programmed.feed * factor)
-        joints = np.append(motion.joint_time[first:last], motion.time_ms[-1] / 1000)
-        segment = np.clip(motion.segment - first, 0, last - first)
-        local = replace(motion, segment=segment, joint_time=joints)
-        found, diagnostics = certify(
-            struts, rows.source, programmed, self._machine, local, self._tolerances, rests=rests
-        )
-        if found is None or errors(diagnostics):
-            raise Refused(diagnostics)
-        return found
+        schedule = along.stop(at.state)
+        return self._legs.leg(section, along, at, schedule, int(schedule.rests_ms[-1]), at.state.override)
 
     def _reached(self, along: Course, state: PathState, leg: Leg) -> float:
         """Mean speed of a leg by the programmed feed."""

@@ -23,14 +23,15 @@ from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import Status, read_status
 from pkm_post.control.player.certificate_log import CertificateLog
 from pkm_post.control.player.knot_list import Layout, resident_program
+from pkm_post.control.player.legs import At
 from pkm_post.control.player.list_feed import ListFeed
 from pkm_post.control.player.operator_input import OperatorInput
 from pkm_post.control.player.orders import Order, PlayOptions, PlayState, Way
-from pkm_post.control.player.pieces import At, PiecePlanner
+from pkm_post.control.player.pieces import PiecePlanner
 from pkm_post.control.player.run_to_rest import RunToRest, Timing
 from pkm_post.control.player.sections import Part, parts_of
 from pkm_post.control.player.start_line import go_to_row
-from pkm_post.control.player.stop_events import run_events
+from pkm_post.control.player.stop_events import Task, run_events
 from pkm_post.model import EventKind, Machine, Tolerances, Trajectory
 from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings
@@ -94,6 +95,7 @@ class Player:
         self._session, self._machine, self._settings = session, machine, settings
         self._choices = choices or PlayOptions()
         self._trajectory, self._tolerances = self._choices.applied_to(trajectory), tolerances
+        self._task = Task(session, machine, settings, self._trajectory)
         self._planning_machine = replace(machine, block_rate=min(machine.block_rate, _MOST_RATE))
         self._way, self._show, self._planning = Way(self._trajectory), show, planning
         self._operator, self._timing = OperatorInput(self._choices), Timing()
@@ -142,7 +144,7 @@ class Player:
             tool = self._trajectory.tools[int(self._trajectory.tool[row])]
             self._wait(f"T{tool.number}, {tool.length:g} mm long, in the spindle", row)
             if not self._operator.is_over:
-                go_to_row(self._session, self._machine, self._settings, self._trajectory, row)
+                go_to_row(self._task, row)
 
     def _between(self, part: Part) -> None:
         """Carry out the events before a part; its stops wait for the operator."""
@@ -150,9 +152,7 @@ class Player:
         while events and not self._operator.is_over:
             at = next((n for n, each in enumerate(events) if each.kind is EventKind.STOP), len(events))
             if at:
-                run_events(
-                    self._session, self._machine, self._settings, self._trajectory, part.first, tuple(events[:at])
-                )
+                run_events(self._task, part.first, tuple(events[:at]))
             if at < len(events):
                 self._wait("M1" if events[at].value else "M0", part.first)
             events = events[at + 1 :]

@@ -7,7 +7,8 @@ The list reaches at least so far ahead of the point that was computed last:
 
 Two, for one piece may just have missed its turn; the intervals, for the controller computes two moves ahead. A piece
 lasts two and a half times as long as planning one, from a quarter of a second to one second: what planning takes hardly
-depends on it.
+depends on it. The list has room for three pieces with their stops at least, so pieces with many points are shorter;
+where it has no room for all of the lead, it starts when it is full.
 
 Enters: a planner, a place at rest, the operator's input. Leaves: the place at rest where the motion has ended.
 """
@@ -23,16 +24,18 @@ import numpy as np
 
 from pkm_post.control.link.errors import PmacError
 from pkm_post.control.link.session import Session
+from pkm_post.control.player.legs import LONGEST_MS, At, Leg
 from pkm_post.control.player.list_feed import ListFeed
 from pkm_post.control.player.operator_input import OperatorInput
-from pkm_post.control.player.pieces import LONGEST_MS, PIECE_MS, At, Leg, Piece, PiecePlanner
+from pkm_post.control.player.pieces import PIECE_MS, SHORTEST_PIECE_MS, Piece, PiecePlanner
 from pkm_post.model import Refused
 
 LEAST_LEAD_S = 0.25
 _AHEAD = 2.5
 """Duration of a piece by that of its planning."""
 _LONGEST_PIECE_MS = 1000
-"""The list has room for the points of two such pieces at the highest rate."""
+_PIECES_IN_LIST = 3
+"""Pieces with their stops that fit into the list together: one runs, one follows, one is written."""
 _PIECES_TIMED = 8
 """Last pieces of which the longest planning and sending count."""
 
@@ -101,8 +104,9 @@ class RunToRest:
         self._pending: Future[Planned] | None = None
         self._planned: Planned | None = None
         self._last: Leg | None = None
-        self._fault: Refused | None = None
+        self._fault: Refused | PmacError | None = None
         self._is_block_end, self._section = False, -1
+        self._fitting_ms = _LONGEST_PIECE_MS
         self.reached, self.is_started = 0.0, False
 
     @property
@@ -124,8 +128,8 @@ class RunToRest:
         if self._pending is not None and self._pending.done():
             try:
                 self._planned = self._pending.result()
-            except Refused as refused:
-                self._fault = refused
+            except (Refused, PmacError) as fault:
+                self._fault = fault
             self._pending = None
 
     def send(self, timing: Timing) -> None:
@@ -155,15 +159,16 @@ class RunToRest:
             self.reached = piece.reached
 
     def may_start(self, lead_s: float) -> bool:
-        """Whether the list is long enough to be started, or complete."""
+        """Whether the list is long enough to be started, complete, or full."""
         ahead = self._feed.ahead_ms / 1000
-        return not self.is_started and (ahead >= lead_s or (ahead > 0 and not self.is_wanted))
+        is_full = self._planned is not None and not self._feed.has_room(self._planned[0])
+        return not self.is_started and (ahead >= lead_s or (ahead > 0 and (is_full or not self.is_wanted)))
 
     def is_void(self) -> bool:
         """Whether it ends before it has begun, because nothing is wanted any more.
 
         Raises:
-            Refused: its first piece is not certified.
+            Refused, PmacError: its first piece is not certified, or does not fit.
         """
         if self.is_started or self.is_wanted or self._pending is not None or self._feed.ahead_ms:
             return False
@@ -193,7 +198,21 @@ class RunToRest:
         return self._feed.stopped_at is not None and self._operator.override > 0 and not self._operator.is_over
 
     def _next_piece(self, at: At, piece_ms: int) -> Planned:
-        """Plan a piece; in a thread that plans."""
+        """Plan a piece that leaves room for two more in the list; in a thread that plans.
+
+        Raises:
+            PmacError: the list is too short for the shortest piece and its stop.
+        """
         began = self._session.now()
-        piece = self._planner.next_piece(at, self._operator.override, self._operator.single_block, piece_ms)
+        piece_ms = min(piece_ms, 2 * self._fitting_ms)
+        while True:
+            piece = self._planner.next_piece(at, self._operator.override, self._operator.single_block, piece_ms)
+            is_shortest = piece_ms <= SHORTEST_PIECE_MS
+            if is_shortest or piece.size <= self._feed.capacity // _PIECES_IN_LIST:
+                break
+            piece_ms = max(piece_ms // 2, SHORTEST_PIECE_MS)
+        self._fitting_ms = piece_ms
+        if piece.size > self._feed.capacity:
+            room = f"the list has {self._feed.capacity} points, a piece and its stop take {piece.size}"
+            raise PmacError(f"{room}: choose lower --variables")
         return piece, self._session.now() - began

@@ -16,16 +16,14 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.control.link.errors import NotReadyError, PmacError
-from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import settled_status
 from pkm_post.control.link.tool_pose import pose_from_home
 from pkm_post.control.numerical_control.execute import execute, wait_for_rest
 from pkm_post.control.numerical_control.manual_moves import approach_trajectory
 from pkm_post.control.numerical_control.plan import Plan, planned
-from pkm_post.control.player.stop_events import TOLERANCES, pose_before, run_events
-from pkm_post.model import Event, EventKind, Machine, Refused, Trajectory
+from pkm_post.control.player.stop_events import TOLERANCES, Task, pose_before, run_events
+from pkm_post.model import Event, EventKind, Refused, Trajectory
 from pkm_post.options import APPROACH_MM_S
-from pkm_post.writing import PmacSettings
 
 _MODAL = (EventKind.SPINDLE, EventKind.COOLANT)
 _THERE = "C201"
@@ -54,21 +52,11 @@ def modal_events(trajectory: Trajectory, row: int) -> tuple[Event, ...]:
     return tuple(last.values())
 
 
-def go_to_row(
-    session: Session,
-    machine: Machine,
-    settings: PmacSettings,
-    trajectory: Trajectory,
-    row: int,
-    feed: float = APPROACH_MM_S,
-) -> None:
+def go_to_row(task: Task, row: int, feed: float = APPROACH_MM_S) -> None:
     """Bring the tool to the start of a row, with what has to be switched on.
 
     Args:
-        session: an open session.
-        machine: its geometry and limits.
-        settings: of its controller.
-        trajectory: the program.
+        task: the program and the machine.
         row: where to begin.
         feed: of the tip, mm/s; while the tip stands, degrees per second.
 
@@ -77,34 +65,27 @@ def go_to_row(
         Refused: the way is not certified.
         PmacError: it did not arrive.
     """
-    events = modal_events(trajectory, row)
-    plan = approach_to_row(session, machine, settings, trajectory, row, events, feed)
+    events = modal_events(task.trajectory, row)
+    plan = approach_to_row(task, row, events, feed)
     if plan is None:
         if events:
-            run_events(session, machine, settings, trajectory, row, events)
+            run_events(task, row, events)
         return
-    execute(session, machine, settings, plan.job)
-    status = wait_for_rest(session, settings, _MORE_S + plan.seconds / _SLOWEST)
+    execute(task.session, task.machine, task.settings, plan.job)
+    status = wait_for_rest(task.session, task.settings, _MORE_S + plan.seconds / _SLOWEST)
     if status.running or status.fault_texts():
         raise PmacError("the approach did not arrive: " + "; ".join(status.fault_texts() or ("it is held",)))
 
 
-def approach_to_row(
-    session: Session,
-    machine: Machine,
-    settings: PmacSettings,
-    trajectory: Trajectory,
-    row: int,
-    events: tuple[Event, ...],
-    feed: float,
-) -> Plan | None:
+def approach_to_row(task: Task, row: int, events: tuple[Event, ...], feed: float) -> Plan | None:
     """The way to the start of a row, with events above it; None where the tool is there.
 
     Raises:
         NotReadyError, Refused: as ``go_to_row``.
     """
-    start, length = pose_before(trajectory, row)
-    here = pose_from_home(machine, settled_status(session, settings).commanded, length)
+    machine, settings = task.machine, task.settings
+    start, length = pose_before(task.trajectory, row)
+    here = pose_from_home(machine, settled_status(task.session, settings).commanded, length)
     if here is None:
         raise NotReadyError(["no pose of the platform reachable in small steps from home has these strut lengths"])
     way, diagnostics = approach_trajectory(machine, here, start, length, feed)

@@ -7,6 +7,8 @@ the tip by a millionth of a millimetre, so that there is something to be certifi
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.control.link.errors import PmacError
@@ -33,21 +35,32 @@ def pose_before(trajectory: Trajectory, row: int) -> tuple[ToolPose, float]:
     return ToolPose(trajectory.tip[-1], trajectory.axis[-1], float(trajectory.spin[-1])), float(lengths[-1])
 
 
-def run_events(
-    session: Session,
-    machine: Machine,
-    settings: PmacSettings,
-    trajectory: Trajectory,
-    row: int,
-    events: tuple[Event, ...],
-) -> None:
+@dataclass(frozen=True)
+class Task:
+    """What is played, and where.
+
+    Attributes:
+        session: an open session.
+        machine: its geometry and limits.
+        settings: of its controller.
+        trajectory: the program.
+    """
+
+    session: Session
+    machine: Machine
+    settings: PmacSettings
+    trajectory: Trajectory
+
+
+def run_events(task: Task, row: int, events: tuple[Event, ...]) -> None:
     """Carry out events before a row, and wait until they are done.
 
     Raises:
         Refused: they cannot be planned.
         PmacError: machine or link are not ready, or it takes too long.
     """
-    here, length = pose_before(trajectory, row)
+    session, machine, settings = task.session, task.machine, task.settings
+    here, length = pose_before(task.trajectory, row)
     at_rest = tuple(Event(0, each.kind, each.value) for each in events)
     plan, diagnostics = planned(stationary_trajectory(machine, here, length, at_rest), machine, settings, TOLERANCES)
     if plan is None:

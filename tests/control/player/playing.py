@@ -28,6 +28,8 @@ from pkm_post.toolpath.place import place  # noqa: E402
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 TOOL = 120.0
 RECTANGLE = [[0, 0, 60], [30, 0, 60], [30, 20, 60], [0, 20, 60], [0, 0, 60]]
+LONGEST_S = 300.0
+"""A play that takes longer by the clock of its wire stands."""
 HOOK = [[0, 0, 90], [25, 0, 90], [25, 15, 90]]
 
 
@@ -74,8 +76,8 @@ class Playing:
     lengths: list = field(default_factory=list)
 
     @classmethod
-    def of(cls, trajectory=None, at=None, **arguments):
-        wire = Wire(copy.deepcopy(set_up()), "tcp", moves=True, **arguments)
+    def of(cls, trajectory=None, at=None, kind="tcp", **arguments):
+        wire = Wire(copy.deepcopy(set_up()), kind, moves=True, **arguments)
         made = cls(wire, trajectory or trajectory_of(), at or {})
         wire.sleep = made._sleep
         return made
@@ -98,6 +100,7 @@ class Playing:
     def _sleep(self, seconds):
         for _ in range(max(1, round(1000 * seconds))):
             self.wire.now += 1e-3
+            assert self.wire.now < LONGEST_S, "it stands"
             self.wire.controller.advance(1.0)
             self.lengths.append(np.array(self.wire.controller.motors.commanded))
 

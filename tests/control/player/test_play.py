@@ -2,14 +2,19 @@
 """Trajectories played on the simulated controller; whatever happens, the tool stays on the path."""
 
 import itertools
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from bad_luck import by_chance
 from playing import RECTANGLE, SETTINGS, Playing, trajectory_of
 
 from pkm_post.control.link import stopping
 from pkm_post.control.link.errors import LinkLostError, PmacError
-from pkm_post.control.player.orders import Order
+from pkm_post.control.player.knot_list import Layout
+from pkm_post.control.player.operator_input import OperatorInput
+from pkm_post.control.player.orders import Order, PlayOptions
+from pkm_post.control.player.run_to_rest import RunToRest
 from pkm_post.model import Event, EventKind
 
 
@@ -47,6 +52,34 @@ def test_a_planner_that_is_too_late_ends_in_a_stop_on_the_path():
     done = playing.play(delay=lambda: 1.5 if next(calls) in (4, 5) else 0.0)
     playing.check()
     assert done.finished and done.stops >= 1 and playing.arrived() < 1e-3
+
+
+def test_a_list_too_short_for_so_slow_a_planner_is_started_when_it_is_full():
+    playing = Playing.of(trajectory_of(RECTANGLE))
+    done = playing.play(delay=lambda: 1.2, first_variable=7600)
+    playing.check()
+    assert done.finished and playing.arrived() < 1e-3
+
+
+def test_a_list_too_short_for_a_piece_and_its_stop_is_refused():
+    with pytest.raises(ValueError, match="expected room for 32 points"):
+        Layout(8000)
+    asked = []
+    planner = SimpleNamespace(next_piece=lambda *arguments: asked.append(arguments[-1]) or SimpleNamespace(size=50))
+    feed, session, operator = (
+        SimpleNamespace(capacity=41),
+        SimpleNamespace(now=lambda: 0.0),
+        OperatorInput(PlayOptions()),
+    )
+    run = RunToRest(session, feed, planner, None, operator, None)
+    with pytest.raises(PmacError, match="41 points, a piece and its stop take 50: choose lower --variables"):
+        run._next_piece(None, 250)
+    assert asked == [250, 125, 62, 40]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_bad_luck(seed):
+    by_chance(seed)
 
 
 @pytest.mark.parametrize("at", (18_000, 24_000))

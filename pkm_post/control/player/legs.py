@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Legs: motions between two points, in the numbers that the controller gets, each with a certificate of its own.
+
+It holds against the trajectory as programmed between the ends of the leg, and against the limits of the machine.
+
+Enters: a schedule along a section, and where the motion before it ends. Leaves: points with a certificate.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pkm_post.certificate import certify
+from pkm_post.control.player.sections import Section
+from pkm_post.control.player.subpath import PathPoint, subpath
+from pkm_post.geometry import Array
+from pkm_post.model import Certificate, Kind, Machine, Motion, Refused, StrutMotion, Tolerances, errors
+from pkm_post.planning import Course, PathState, Schedule, strut_motion
+from pkm_post.writing import PmacSettings
+
+LONGEST_MS = 128
+"""Longest interval: the controller computes two moves ahead, and a new way on has to come before."""
+
+
+@dataclass(frozen=True)
+class At:
+    """Where a motion is.
+
+    Attributes:
+        section: number of the section of the part.
+        state: place, speed and override on its path.
+        length: (6,) strut lengths, as sent, mm.
+        speed: (6,) strut speeds, as sent, mm/s.
+    """
+
+    section: int
+    state: PathState
+    length: Array
+    speed: Array
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A motion between two points, as the controller gets it.
+
+    Attributes:
+        struts: its points, the first one that of the motion before.
+        row: (M,) row of the trajectory at each point.
+        share: (M,) share of that row that is behind it.
+        certificate: of its motion.
+        end: where it ends.
+    """
+
+    struts: StrutMotion
+    row: Array
+    share: Array
+    certificate: Certificate
+    end: At
+
+
+@dataclass(frozen=True)
+class LegMaker:
+    """Makes the legs of a machine.
+
+    Attributes:
+        machine: geometry and limits.
+        settings: of its controller; decimals of what is sent.
+        tolerances: limits for the certificate.
+    """
+
+    machine: Machine
+    settings: PmacSettings
+    tolerances: Tolerances
+
+    def leg(self, section: Section, along: Course, at: At, schedule: Schedule, until_ms: int, override: float) -> Leg:
+        """The motion of a schedule up to a time, certified.
+
+        Args:
+            section: of the trajectory.
+            along: its path.
+            at: where the motion before it ends.
+            schedule: from there to a rest.
+            until_ms: whole ms that are sent of it.
+            override: factor of the feed.
+
+        Raises:
+            Refused: the certificate does not hold.
+        """
+        motion = along.motion(schedule, until_ms, override, LONGEST_MS)
+        struts = self._as_sent(strut_motion(motion, self.machine), at)
+        s, speed, _ = schedule.at(motion.time_ms / 1000)
+        rests = not at.speed.any(), until_ms == int(schedule.rests_ms[-1])
+        certificate = self._certified(section, along, struts, motion, s[[0, -1]], override, rests)
+        starts = along.path.starts
+        row = np.clip(np.searchsorted(starts, s, side="right") - 1, 0, len(along.programmed) - 1)
+        share = np.minimum((s - starts[row]) / np.diff(starts)[row], 1.0)
+        state = PathState(float(s[-1]), 0.0 if rests[1] else float(speed[-1]), override)
+        end = At(at.section, state, struts.length[-1], struts.speed[-1])
+        return Leg(struts, section.first + row, share, certificate, end)
+
+    def _as_sent(self, struts: StrutMotion, at: At) -> StrutMotion:
+        """The motion with the decimals that are sent, from the point that was sent before."""
+        length = np.round(struts.length, self.settings.length_decimals)
+        speed = np.round(struts.speed, self.settings.speed_decimals) + 0.0
+        length[0], speed[0] = at.length, at.speed
+        return replace(struts, length=length, speed=speed)
+
+    def _certified(
+        self,
+        section: Section,
+        along: Course,
+        struts: StrutMotion,
+        motion: Motion,
+        s: Array,
+        override: float,
+        rests: tuple[bool, bool],
+    ) -> Certificate:
+        starts, rows = along.path.starts, section.trajectory
+        first = int(np.searchsorted(starts, s[0], side="right")) - 1
+        last = int(np.searchsorted(starts, s[1])) - 1
+        share = [(at - starts[row]) / (starts[row + 1] - starts[row]) for at, row in zip(s, (first, last), strict=True)]
+        programmed = subpath(rows, PathPoint(first, float(share[0])), PathPoint(last, float(share[1])))
+        factor = np.where(programmed.kind == Kind.RAPID, min(override, 1.0), override)
+        programmed = replace(programmed, feed=programmed.feed * factor)
+        joints = np.append(motion.joint_time[first:last], motion.time_ms[-1] / 1000)
+        segment = np.clip(motion.segment - first, 0, last - first)
+        local = replace(motion, segment=segment, joint_time=joints)
+        found, diagnostics = certify(struts, rows.source, programmed, self.machine, local, self.tolerances, rests=rests)
+        if found is None or errors(diagnostics):
+            raise Refused(diagnostics)
+        return found
