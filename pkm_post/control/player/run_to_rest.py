@@ -7,7 +7,7 @@ The list reaches at least so far ahead of the point that was computed last:
 
 Two, for one piece may just have missed its turn; the intervals, for the controller computes two moves ahead. A piece
 lasts two and a half times as long as planning one, from a quarter of a second to one second: what planning takes hardly
-depends on it. The list has room for three pieces with their stops at least, so pieces with many points are shorter;
+depends on it. The list has room for two pieces with their stops at least, so pieces with many points are shorter;
 where it has no room for all of the lead, it starts when it is full.
 
 Enters: a planner, a place at rest, the operator's input. Leaves: the place at rest where the motion has ended.
@@ -34,8 +34,8 @@ LEAST_LEAD_S = 0.25
 _AHEAD = 2.5
 """Duration of a piece by that of its planning."""
 _LONGEST_PIECE_MS = 1000
-_PIECES_IN_LIST = 3
-"""Pieces with their stops that fit into the list together: one runs, one follows, one is written."""
+_PIECES_IN_LIST = 2
+"""Pieces with their stops that fit into the list together: one runs while the other one is written."""
 _PIECES_TIMED = 8
 """Last pieces of which the longest planning and sending count."""
 
@@ -198,7 +198,7 @@ class RunToRest:
         return self._feed.stopped_at is not None and self._operator.override > 0 and not self._operator.is_over
 
     def _next_piece(self, at: At, piece_ms: int) -> Planned:
-        """Plan a piece that leaves room for two more in the list; in a thread that plans.
+        """Plan a piece that leaves room for another one in the list; in a thread that plans.
 
         Raises:
             PmacError: the list is too short for the shortest piece and its stop.
