@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 import pkm_post
 from pkm_post import at_first_use
+from pkm_post.cli.console import interrupt_on_break
 from pkm_post.cli.processes import INTERRUPTED, diagnostic_text
 from pkm_post.system import MEMORY_FAULTS, THREADS, ThreadCountError, memory_diagnostic, packages
 
@@ -44,6 +45,7 @@ def main(arguments: Sequence[str]) -> int:
     """Run one command and return its exit code."""
     try:
         _prepare_streams()
+        interrupt_on_break()
         namespace = _parser(arguments[:1]).parse_args(arguments)
         code: int = namespace.run(namespace, arguments)
         sys.stdout.flush()

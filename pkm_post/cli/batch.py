@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import Any
 
 import pkm_post
+from pkm_post.cli.console import flags_with_us
 from pkm_post.cli.post import items_of
 from pkm_post.cli.processes import command_inside, command_outside, is_inside, needs_freecad, outcome
 from pkm_post.cli.terminal import ProgressLine, print_diagnostics
@@ -200,7 +201,7 @@ def post_one(job: BatchJob, variables: dict[str, str]) -> BatchRow:
         encoding="utf-8",
         errors="replace",
         env=os.environ | variables | {"PYTHONIOENCODING": "utf-8"},
-        creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+        creationflags=flags_with_us(),
         check=False,
     )
     code, fault = outcome(command, ran.returncode)

@@ -21,6 +21,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+from pkm_post.cli import console
 from pkm_post.cli.terminal import ProgressLine, print_diagnostics
 from pkm_post.system import FREECADCMD, FreeCADCommand, freecad_command, thread_share
 
@@ -43,8 +44,6 @@ _TIME_TO_END = 10.0
 """Seconds for a process to clean up before it is killed."""
 _HAS_GROUPS = os.name == "posix"
 """Whether a process can lead a process group, so that all its children end with it."""
-_NO_WINDOW = getattr(subprocess, "CREATE_NO_WINDOW", 0)
-"""On Windows each process of a program without a console would open a console window."""
 
 
 def is_inside() -> bool:
@@ -74,7 +73,7 @@ def run_inside(arguments: Sequence[str]) -> int:
     if not command:
         return 1
     try:
-        ended = subprocess.run(command, check=False, creationflags=_window_flags()).returncode
+        ended = _run_with_us(command)
     except OSError as fault:
         print_diagnostics([start_fault(command, fault)])
         return 1
@@ -84,9 +83,17 @@ def run_inside(arguments: Sequence[str]) -> int:
     return code
 
 
-def _window_flags() -> int:
-    """No window for a process whose output goes to ours, if we have no console that it could share."""
-    return 0 if sys.stdout is not None and sys.stdout.isatty() else _NO_WINDOW
+def _run_with_us(command: Sequence[str]) -> int:
+    """Run a command that Ctrl-C reaches as well, and return its exit code; after Ctrl-C it gets time to clean up."""
+    process = subprocess.Popen(command, creationflags=console.flags_with_us())
+    try:
+        return process.wait()
+    except KeyboardInterrupt:
+        try:
+            process.wait(_TIME_TO_END)
+        except (KeyboardInterrupt, subprocess.TimeoutExpired):
+            process.kill()
+        raise
 
 
 def command_inside(arguments: Sequence[str]) -> list[str]:
@@ -184,14 +191,20 @@ class _Child:
             errors="replace",
             env=os.environ | self.variables | {"PYTHONIOENCODING": "utf-8"},  # independent of the locale
             start_new_session=_HAS_GROUPS,
-            creationflags=_NO_WINDOW,
+            creationflags=console.flags_by_us(),
         )
 
     def interrupt(self) -> None:
         """Interrupt it as by Ctrl-C, so that it cleans up."""
         self.is_wanted = False
-        if self.process is not None and self.process.poll() is None:
-            self._signal(signal.SIGINT) if _HAS_GROUPS else self.process.terminate()
+        if self.process is None or self.process.poll() is not None:
+            return
+        if _HAS_GROUPS:
+            self._signal(signal.SIGINT)
+        elif console.BREAK is not None and console.has_console():
+            self.process.send_signal(console.BREAK)
+        else:
+            self.process.terminate()
 
     def end(self) -> None:
         """Wait for its end, with a timeout."""

@@ -1,15 +1,33 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""File names: which ones the system would take for something else than a file of that name.
+"""File names: which ones the system would take for something else than a file of that name, and too long paths.
 
-Windows opens a device, an alternate stream or a file of another name, and reports nothing. [Microsoft Learn, Naming
-Files, Paths, and Namespaces]
+Windows opens a device, an alternate stream or a file of another name, and reports nothing. It takes paths of at most
+259 characters, unless they are prefixed or long paths are switched on. [Microsoft Learn, Naming Files, Paths, and
+Namespaces; Maximum Path Length Limitation]
 """
 
 from __future__ import annotations
 
+import ntpath
 import re
 import sys
 
+if sys.platform == "win32":
+    import ctypes
+
+    def has_long_paths() -> bool:
+        """Whether this process may use paths of any length."""
+        switched_on = getattr(ctypes.WinDLL("ntdll"), "RtlAreLongPathsEnabled", None)  # not before Windows 10
+        return switched_on is not None and bool(switched_on() & 0xFF)
+else:
+
+    def has_long_paths() -> bool:
+        """Whether this process may use paths of any length."""
+        return True
+
+
+_LONGEST_PATH, _LONGEST_FOLDER = 259, 247
+_PREFIX, _PREFIX_OF_SHARES = "\\\\?\\", "\\\\?\\UNC\\"
 _DEVICE = re.compile(r"(con|prn|aux|nul|conin\$|conout\$|(com|lpt)[0-9\u00b9\u00b2\u00b3]) *(\..*)?", re.IGNORECASE)
 _CHARACTERS = re.compile(r'[<>:"|?*\\\x00-\x1f]')
 
@@ -31,6 +49,31 @@ def unusable_name(name: str, system: str = sys.platform) -> str:
     return f"Windows drops the end of {name!r}" if name.endswith((".", " ")) else ""
 
 
+def unusable_path(path: str, long_paths: bool | None = None) -> str:
+    """Why other programs could not open a file of this path; empty if they can.
+
+    Args:
+        path: absolute.
+        long_paths: whether paths of any length may be used; None to find out.
+    """
+    if len(path) <= _LONGEST_PATH or (has_long_paths() if long_paths is None else long_paths):
+        return ""
+    return f"Windows takes paths of {_LONGEST_PATH} characters, and this one has {len(path)}: {path}"
+
+
+def prefixed(folder: str, longest_name: int) -> str:
+    """A folder of Windows such that files below it can be opened, however long their paths are.
+
+    Args:
+        folder: absolute.
+        longest_name: characters of the longest path below it.
+    """
+    folder = ntpath.normpath(folder)  # with the prefix, nothing in a path is interpreted
+    if folder.startswith(_PREFIX) or len(folder) + 1 + longest_name <= _LONGEST_FOLDER:
+        return folder
+    return _PREFIX_OF_SHARES + folder[2:] if folder.startswith("\\\\") else _PREFIX + folder
+
+
 class UnusableNameError(OSError):
     """A file cannot have the name that was chosen for it."""
 
@@ -42,5 +85,16 @@ def require_usable(name: str, system: str = sys.platform) -> None:
         UnusableNameError: the system would not make a file of this name.
     """
     fault = unusable_name(name, system)
+    if fault:
+        raise UnusableNameError(fault)
+
+
+def require_short(path: str) -> None:
+    """Check the path of a result.
+
+    Raises:
+        UnusableNameError: other programs could not open it.
+    """
+    fault = unusable_path(path)
     if fault:
         raise UnusableNameError(fault)

@@ -12,6 +12,7 @@ import errno
 import os
 import re
 import shutil
+import sys
 import tempfile
 import time
 from collections.abc import Iterator
@@ -19,7 +20,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pkm_post.system.file_names import UnusableNameError
+from pkm_post.system.file_names import UnusableNameError, prefixed, require_short
 from pkm_post.system.lock import Lock, try_lock
 from pkm_post.system.staged_folder import FolderExistsError
 
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 _Move = tuple[Path, Path]
 """Source and destination."""
 _PREFIX = ".staged-"
+_LONGEST_NAME = 150
+"""Characters of the longest path in a folder of results, that of its private folder included."""
 _PRIVATE = re.compile(re.escape(_PREFIX) + "[a-z0-9_]{8}")
 """Names of private folders, as ``tempfile.mkdtemp`` makes them."""
 _LOCK = _PREFIX + "lock"
@@ -81,8 +84,10 @@ def staged(folder: Path, last: str = "") -> Iterator[Path]:
         BusyError: another process is still moving files.
         OpenElsewhereError: another program has one of the files open.
         MixedError: files could not be moved, and not all earlier ones could be restored.
+        UnusableNameError: the path of a file would be too long for other programs.
         OSError: a folder cannot be made, the block left more than files, or one cannot be synchronised or moved.
     """
+    stated, folder = folder.absolute(), _any_length(folder)
     folder.mkdir(parents=True, exist_ok=True)
     with _private(folder) as private:
         new, aside = private / "new", private / "aside"
@@ -90,9 +95,15 @@ def staged(folder: Path, last: str = "") -> Iterator[Path]:
         aside.mkdir()
         yield new
         for name in sorted(os.listdir(new)):
+            require_short(str(stated / name))
             _synchronise(new / name)
         with _lock_of(folder / _LOCK):
             _move_files(new, folder, aside, last)
+
+
+def _any_length(folder: Path) -> Path:
+    """The folder by a path to which private names can be added: on Windows they could make it too long."""
+    return Path(prefixed(str(folder.absolute()), _LONGEST_NAME)) if sys.platform == "win32" else folder
 
 
 @contextmanager

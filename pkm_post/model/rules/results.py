@@ -177,7 +177,10 @@ RESULT_RULES: dict[str, Rule] = {
         "a file is open in another program",
         "close it there, or wait until a virus scanner or a cloud folder has done with it, and try again",
     ),
-    "F114": error("a result cannot have this name", "choose another name for the program or the job"),
+    "F114": error(
+        "a result cannot have this name",
+        "choose another name for the program or the job, or a folder with a shorter path",
+    ),
     "F115": error("the number of threads is not a whole number above zero", "set PKM_THREADS to one, or do not set it"),
     "F116": error("the list of jobs is not valid", "write it as docs/workbench.md describes it"),
     "F119": error(
