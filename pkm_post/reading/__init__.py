@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from pkm_post.reading.check import check_file, checks_as_json, checks_as_text
     from pkm_post.reading.cldata.options import CONTOUR_DATA, DIALECTS
     from pkm_post.reading.editing import TextFile, renumbered
-    from pkm_post.reading.gcode.cycles import CycleSeries, Strokes, cycle_fault, cycle_strokes
     from pkm_post.reading.highlighting import Colour, coloured_spans, shown_language, underlined
     from pkm_post.reading.listing import listing_lines
     from pkm_post.reading.mesh_file import MESH_READERS, STEP_SUFFIXES, mesh_of_triangles, read_mesh
@@ -35,7 +34,6 @@ else:
             "check": "check_file checks_as_json checks_as_text",
             "cldata.options": "CONTOUR_DATA DIALECTS",
             "editing": "TextFile renumbered",
-            "gcode.cycles": "CycleSeries Strokes cycle_fault cycle_strokes",
             "highlighting": "Colour coloured_spans shown_language underlined",
             "listing": "listing_lines",
             "mesh_file": "MESH_READERS STEP_SUFFIXES mesh_of_triangles read_mesh",
@@ -60,10 +58,8 @@ __all__ = [
     "VERSIONED",
     "CheckedText",
     "Colour",
-    "CycleSeries",
     "Language",
     "ReadingOptions",
-    "Strokes",
     "TextFile",
     "axis_of",
     "check_file",
@@ -71,8 +67,6 @@ __all__ = [
     "checks_as_json",
     "checks_as_text",
     "coloured_spans",
-    "cycle_fault",
-    "cycle_strokes",
     "gcode",
     "is_part_program",
     "language_of",

@@ -6,7 +6,9 @@ Execute, parameters computed, loops and calls unrolled: ``execute``, ``interpret
 ``parameters``, ``o_words``. Resolve, blocks to motions and events: ``resolve`` and all other files.
 """
 
+from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.options import FLAVOUR_NAMES, ExecutionLimits, ReadOptions
 from pkm_post.reading.gcode.read import read
+from pkm_post.reading.gcode.resolve import resolve
 
-__all__ = ["FLAVOUR_NAMES", "ExecutionLimits", "ReadOptions", "read"]
+__all__ = ["FLAVOUR_NAMES", "Blocks", "ExecutionLimits", "ReadOptions", "read", "resolve"]

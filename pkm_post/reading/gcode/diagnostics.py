@@ -18,9 +18,7 @@ import numpy as np
 from pkm_post.model import RULES, Array, Diagnostic, DiagnosticLog, Place, Severity
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import Word
-
-_MOST_REPORTED = 50
-"""Faults of a kind that are reported with their own place."""
+from pkm_post.reading.gcode.options import DEFAULT_OPTIONS
 
 _WORD = re.compile(
     r"([ABC][ \t]*3(?=[ \t]*=)|[NT][ \t]*[XYZ]|[A-Z@^])[ \t]*=?[ \t]*([+-]?(?:\d+\.?\d*|\.\d+))", re.IGNORECASE
@@ -39,13 +37,18 @@ class BlockDiagnostics:
     Attributes:
         blocks: the program.
         text: its source text, empty if unknown: without it diagnostics have no columns.
+        most: faults of a kind that are reported with their own place.
         faulty: rows with an error.
     """
 
     blocks: Blocks
     text: bytes | str = ""
+    most: int = DEFAULT_OPTIONS.most_reported
     faulty: set[int] = field(default_factory=set)
-    _log: DiagnosticLog = field(default_factory=lambda: DiagnosticLog(_MOST_REPORTED))
+    _log: DiagnosticLog = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._log = DiagnosticLog(self.most)
 
     def add(self, code: str, row: int, found: Found, kind: str = "") -> None:
         """Add a diagnostic of one block, or of the whole file if there are no blocks; kinds are counted apart."""
@@ -68,11 +71,11 @@ class BlockDiagnostics:
         """
         rows = np.flatnonzero(wrong)
         kind = str(found(int(rows[0]))) if len(rows) else ""
-        for row in rows[:_MOST_REPORTED].tolist():
+        for row in rows[: self.most].tolist():
             self.add(code, row, found(row), kind)
         if RULES[code].severity is Severity.ERROR:
-            self.faulty.update(rows[_MOST_REPORTED:].tolist())
-        self._log.count(len(rows[_MOST_REPORTED:]), (code, kind))
+            self.faulty.update(rows[self.most :].tolist())
+        self._log.count(len(rows[self.most :]), (code, kind))
 
     def source_line(self, row: int) -> str | None:
         """The line of a block, without comments; None if it is unknown."""

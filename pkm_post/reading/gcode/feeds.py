@@ -19,6 +19,7 @@ from pkm_post.reading.gcode.codes import Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
 from pkm_post.reading.gcode.modal import Modal, changed, forward_fill
 from pkm_post.reading.gcode.motions import Motions
+from pkm_post.reading.gcode.options import ReadOptions
 
 INVERSE_TIME, _BY_MINUTE, _BY_TURN = 930, 940, 950
 
@@ -30,7 +31,7 @@ def feeds(
     motions: Motions,
     path_length: Array,
     rotates: Array,
-    first: float | None,
+    options: ReadOptions,
     faults: BlockDiagnostics,
 ) -> Array:
     """Speed of each motion, (n,), mm/s; NaN on rapids.
@@ -42,13 +43,15 @@ def feeds(
         motions: of the program.
         path_length: (n,) distance travelled by the tip, mm; used with G93 only.
         rotates: (n,) whether the tool axis rotates; used with G93 only.
-        first: speed before the first F of a program that begins in units per minute, mm/s; None if unknown.
+        options: read options: the feed before the first F, and the unit of time of F.
         faults: collects cutting moves without a feed.
     """
     mode, word = modal.active[Group.FEED_MODE], blocks.word("F")
-    rows = np.flatnonzero(blocks.has("F") | changed(mode, mode[0]))
-    before = np.nan if first is None or mode[0] != _BY_MINUTE else first
-    speed = motions.of_blocks(forward_fill(rows, word[rows] * modal.scale[rows] / 60, before, len(blocks)))
+    rows = np.flatnonzero(blocks.has("F") | changed(mode, _BY_MINUTE))
+    by_minute = bool((mode[:1] == _BY_MINUTE).all())
+    before = options.feed if options.feed is not None and by_minute else np.nan
+    speed = word[rows] * modal.scale[rows] / np.where(mode[rows] == _BY_MINUTE, options.feed_time, 60.0)
+    speed = motions.of_blocks(forward_fill(rows, speed, before, len(blocks)))
     cuts = motions.motion != 0
     by_turn, by_time = (motions.of_blocks(mode == code) for code in (_BY_TURN, INVERSE_TIME))
     if by_turn.any():

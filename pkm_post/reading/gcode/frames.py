@@ -81,7 +81,7 @@ class RowFrames:
     @classmethod
     def of(cls, frames: Sequence[Frame], frame: Array) -> RowFrames:
         """Create the frames of rows from frame indices."""
-        if is_uniform(frame):
+        if is_uniform(frame) and len(frame):
             frames, frame = [frames[frame[0]]], uniform(0, len(frame))
         return cls(np.array([one.turn for one in frames]), np.array([one.shift for one in frames]), frame)
 

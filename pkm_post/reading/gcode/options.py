@@ -71,6 +71,9 @@ class ReadOptions:
         folders: where files of subprograms that a program calls are looked for, in this order.
         needs_end: whether the text is a complete program, which must end with M2, M30 or a percent sign; an MDI line is
             not.
+        needs_motion: whether a program without motion is refused.
+        feed_time: s in the unit of time of F per minute (G94).
+        most_reported: faults of a kind that are reported with their own place.
     """
 
     tools: Mapping[int, Tool] = field(default_factory=dict)
@@ -90,6 +93,9 @@ class ReadOptions:
     feed: float | None = None
     folders: tuple[Path, ...] = ()
     needs_end: bool = False
+    needs_motion: bool = True
+    feed_time: float = 60.0
+    most_reported: int = 50
 
     def __post_init__(self) -> None:
         if self.feed is not None and not 0 < self.feed < math.inf:

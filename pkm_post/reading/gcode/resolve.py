@@ -75,7 +75,7 @@ def resolve(
     flavour = FLAVOURS[options.flavour or RS274.name]
     blocks, ended = _up_to_end(blocks, options)
     blocks, notes = adapted(blocks, flavour, options.left_out)
-    faults = BlockDiagnostics(blocks, text)
+    faults = BlockDiagnostics(blocks, text, options.most_reported)
     modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), flavour)
     check(blocks, modal, options, faults)
     if (modal.programmed[Group.SCALING] != NONE).any():
@@ -105,7 +105,7 @@ def _faults_behind(
         return ()
     blocks = blocks.selected(rest)
     modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), modal.flavour)
-    others = BlockDiagnostics(blocks, faults.text)
+    others = BlockDiagnostics(blocks, faults.text, options.most_reported)
     check(blocks, modal, options, others)
     if others.has_errors():
         return ()
@@ -194,7 +194,7 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
     path_length = _path_lengths(modal, motions, centre, axis)
     first = motions.block[:1].tolist()
     motions, (centre, axis, path_length) = with_known_ends(motions, [centre, axis, path_length])
-    if not len(motions):
+    if not len(motions) and options.needs_motion:
         _report_no_motion(blocks, first, tracker.known, faults)
         return None
     columns = _directions(blocks, modal, states, motions, axis, faults)
@@ -202,7 +202,7 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
     columns |= {
         "kind": _KIND[motions.motion],
         "position": _frames(motions).points(motions.end),
-        "feed": feeds(blocks, modal, states.spindle, motions, path_length, rotates, options.feed, faults),
+        "feed": feeds(blocks, modal, states.spindle, motions, path_length, rotates, options, faults),
         "arc_centre": _frames(motions).points(centre),
         "operation": uniform(0, len(motions), np.int32),
         "line": motions.of_blocks(blocks.line),
