@@ -33,7 +33,7 @@ EXAMPLES = {
     "--copies": ("xz,180", "yz"),
     "--surface-speed": ("120", "150.5"),
     "--spin": ("x-in-plane=20", "optimise=joints"),
-    "--also": ("csv", "halstreamer,linuxcnc"),
+    "--also": ("csv", "halstreamer,linuxcnc,cartesian"),
 }
 """Each with an effect of its own, so that one is not mistaken for the other."""
 SWITCHES = {

@@ -93,6 +93,7 @@ _ALSO = {
     "halstreamer": QT_TRANSLATE_NOOP("PostChoices", "Table for LinuxCNC's halstreamer"),
     "linuxcnc": QT_TRANSLATE_NOOP("PostChoices", "G-code for LinuxCNC's hexapod, not certified"),
     "picture": QT_TRANSLATE_NOOP("PostChoices", "Picture of the report (PNG)"),
+    "cartesian": QT_TRANSLATE_NOOP("PostChoices", "Program in X Y Z A B C, for kinematics in the controller"),
 }
 
 

@@ -133,6 +133,7 @@ STEPS = {
     "also csv": QT_TRANSLATE_NOOP("PostSteps", "Table of the strut motion"),
     "also halstreamer": QT_TRANSLATE_NOOP("PostSteps", "Table for halstreamer"),
     "also linuxcnc": QT_TRANSLATE_NOOP("PostSteps", "G-code for LinuxCNC"),
+    "also cartesian": QT_TRANSLATE_NOOP("PostSteps", "Program in X Y Z A B C"),
     "": QT_TRANSLATE_NOOP("PostSteps", "Moving the files to their folder"),
 }
 """Displayed name of each step, by its name in ``pkm_post.posting`` and ``pkm_post.options``."""

@@ -62,11 +62,12 @@ from pkm_post.options.layers import (
 from pkm_post.options.result_names import PostItem, job_stem, missing_results, overwritten_sources, result_conflicts
 
 if TYPE_CHECKING:
-    from pkm_post.options.choices import LINUXCNC, NO_MESH, PICTURE, MeshFiles, Options
+    from pkm_post.options.choices import CARTESIAN, LINUXCNC, NO_MESH, PICTURE, MeshFiles, Options
 
 __all__ = [
     "APPROACH_MM_S",
     "FIXTURE_OF_THE_JOB",
+    "CARTESIAN",
     "LINUXCNC",
     "LONGEST_TOOL",
     "MANUAL_MOVE_PROGRAM",
@@ -128,7 +129,7 @@ __all__ = [
     "whole_from",
 ]
 
-_WITH_NUMPY = ("LINUXCNC", "NO_MESH", "PICTURE", "MeshFiles", "Options")
+_WITH_NUMPY = ("CARTESIAN", "LINUXCNC", "NO_MESH", "PICTURE", "MeshFiles", "Options")
 
 if not TYPE_CHECKING:
 

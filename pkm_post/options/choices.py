@@ -13,6 +13,8 @@ from pkm_post.model import EMPTY_SETUP, Setup, Tolerances, Tool
 from pkm_post.system import result_files
 from pkm_post.toolpath import Copies, OffsetOptions, SurfaceSpeed
 
+CARTESIAN = "cartesian"
+"""The side output of a program in X Y Z A B C."""
 LINUXCNC = "linuxcnc"
 """The name in ``Options.also`` of a program for LinuxCNC's hexapod, which is not a table of the motion."""
 

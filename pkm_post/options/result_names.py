@@ -25,7 +25,7 @@ _REQUIRED = (
 """Endings of the files that every posting writes, whatever its options."""
 _POSSIBLE = (*_REQUIRED, *result_files.SETUPS.values())
 """Endings of the files that a posting without side outputs may write, for any controller."""
-_IN_PARTS = (result_files.PROGRAM, result_files.SIDE_OUTPUTS["halstreamer"])
+_IN_PARTS = (result_files.PROGRAM, *(result_files.SIDE_OUTPUTS[name] for name in ("halstreamer", "cartesian")))
 _PART = re.compile(r"(.*)-part[1-9][0-9]*(\.[a-z]+)")
 
 

@@ -69,12 +69,11 @@ def cartesian_program(
         raise Refused([write_fault(out, fault)]) from fault
 
 
-def write_cartesian(private: Path, out: Path, struts: StrutMotion, trajectory: Path, machine: Machine) -> float:
-    """Write the form of a motion that was certified into a private folder, beside its other results.
+def write_cartesian(file: Path, struts: StrutMotion, trajectory: Path, machine: Machine) -> float:
+    """Write the form of a motion that was certified, beside its other results.
 
     Args:
-        private: the file to write; further parts stand beside it.
-        out: what it will be.
+        file: the file to write; further parts stand beside it.
         struts: the motion, as it was read back.
         trajectory: the trajectory file it was made from.
         machine: the machine it was made for.
@@ -85,8 +84,8 @@ def write_cartesian(private: Path, out: Path, struts: StrutMotion, trajectory: P
     Raises:
         Refused: as ``cartesian_program``.
     """
-    source = _Source(struts, trajectory, _planned(trajectory, out.name), machine, _settings(machine))
-    return source.written(private, out, Allowance()).off
+    source = _Source(struts, trajectory, _planned(trajectory, file.name), machine, _settings(machine))
+    return source.written(file, file, Allowance()).off
 
 
 @dataclass(frozen=True)

@@ -30,8 +30,9 @@ from pkm_post.model import (
     Trajectory,
     errors,
 )
-from pkm_post.options import LINUXCNC, PICTURE, Options
+from pkm_post.options import CARTESIAN, LINUXCNC, PICTURE, Options
 from pkm_post.planning import FeedPlan, Plan, interpolate, plan_feed
+from pkm_post.posting.cartesian_form import write_cartesian
 from pkm_post.posting.machine_check import home_faults
 from pkm_post.posting.placement import effective_setup, trajectory_of
 from pkm_post.posting.run import Findings, Log, PostContext, Posted, Progress, Run, no_log, no_progress
@@ -285,6 +286,11 @@ def _write_another(run: Run, frame: PostContext, name: str, results: Results) ->
             return
         if name == PICTURE:
             run.accept(draw_report(frame.beside(result_files.PICTURE), results))
+            return
+        if name == CARTESIAN:
+            file = frame.beside(result_files.SIDE_OUTPUTS[CARTESIAN])
+            off = write_cartesian(file, results.struts, frame.trajectory, frame.machine)
+            notes.append(f"struts at most {off:.1e} mm from those of the program at its points")
             return
         note, faults = outputs.write_table(frame.path, TABLES[name], results.struts, summary.origin(trajectory))
         run.accept(faults)

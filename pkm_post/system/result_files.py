@@ -19,6 +19,7 @@ SIDE_OUTPUTS = {
     "halstreamer": "-halstreamer.txt",
     "linuxcnc": "-linuxcnc.ngc",
     "picture": PICTURE,
+    "cartesian": "-tip.pmc",
 }
-"""Optional files by the names of ``--also``: two tables of the strut motion, G-code for LinuxCNC's hexapod, and the
-report as a picture."""
+"""Optional files by the names of ``--also``: two tables of the strut motion, G-code for LinuxCNC's hexapod, the report
+as a picture, and the program in X Y Z A B C for kinematics in the controller."""

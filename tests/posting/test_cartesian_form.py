@@ -18,6 +18,7 @@ from pkm_post.model import Event, EventKind, Refused
 from pkm_post.options import Options
 from pkm_post.posting import Allowance, cartesian_program, post
 from pkm_post.posting.verify import read_motion
+from pkm_post.writing import manifest
 
 sys.path.append(str(Path(__file__).parents[1] / "writing" / "kinematics"))
 
@@ -27,6 +28,7 @@ from kinematic_language import DOUBLE, TURBO  # noqa: E402
 ROUNDING = 5e-7 * (np.sqrt(3) + np.sqrt(3) * np.radians(283.0))
 """mm: half a digit of X Y Z, and of A B C in degrees at the platform joints, 283 mm from the tip; speeds have two
 decimals less."""
+JOB = dataclasses.replace(programs.cone(30, turns=0.4), events=(Event(12, EventKind.STOP, 0.0),))
 ALLOWANCE = Allowance(2.0, 1.5)
 MOVE = re.compile(r"^" + " ".join(rf"{letter}(-?[\d.]+):(-?[\d.]+)" for letter in "XYZABC") + "$", re.M)
 
@@ -35,8 +37,7 @@ MOVE = re.compile(r"^" + " ".join(rf"{letter}(-?[\d.]+):(-?[\d.]+)" for letter i
 def posted(tmp_path_factory):
     """A job that tilts the tool and stops in between, its folder, and its form in tip and axis."""
     machine, folder = machine_named("example_6tps")[0], tmp_path_factory.mktemp("posted")
-    job = dataclasses.replace(programs.cone(30, turns=0.4), events=(Event(12, EventKind.STOP, 0.0),))
-    post(job, machine, folder / "job.pmc", Options())
+    post(JOB, machine, folder / "job.pmc", Options())
     return machine, folder, cartesian_program(folder / "job.pmc", folder / "job.pkmt", machine, folder / "tip.pmc")
 
 
@@ -63,6 +64,31 @@ def test_the_exported_inverse_program_makes_the_struts_of_it(posted, bits):
     np.testing.assert_allclose(found, struts.length[1:], rtol=0, atol=ROUNDING)
     np.testing.assert_allclose(speeds, struts.speed[1:], rtol=0, atol=100 * ROUNDING)
     assert np.ptp(axes, axis=0).min() > 1.0
+
+
+def test_a_posting_writes_it_beside_the_program(posted, tmp_path):
+    """The same text as the command makes of the same program, and the manifest has it."""
+    machine, folder, form = posted
+    lines = []
+    post(JOB, machine, tmp_path / "job.pmc", Options(also=("cartesian",)), lines.append)
+    assert (tmp_path / "job.pmc").read_bytes() == (folder / "job.pmc").read_bytes()
+    assert (tmp_path / "job-tip.pmc").read_bytes() == form.files[0].read_bytes()
+    assert manifest.check(tmp_path / "job.pmc")[0].fingerprint_of("job-tip.pmc")
+    assert lines[-1].startswith("also cartesian") and "struts at most" in lines[-1]
+
+
+@pytest.mark.parametrize(
+    ("change", "code"), [({"kind": "power_pmac"}, "M104"), ({"letters": ["X", "Y", "Z", "U", "V", "W"]}, None)]
+)
+def test_a_posting_without_it_is_none(tmp_path, change, code):
+    machine = machine_named("example_6tps")[0]
+    other = dataclasses.replace(machine, controller={**machine.controller, **change})
+    if code is None:
+        assert post(JOB, other, tmp_path / "job.pmc", Options(also=("cartesian",)))
+        return
+    with pytest.raises(Refused, match=code):
+        post(JOB, other, tmp_path / "job.pmc", Options(also=("cartesian",)))
+    assert not list(tmp_path.iterdir())
 
 
 def test_heading_says_what_it_runs_with(posted):

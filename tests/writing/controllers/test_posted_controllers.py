@@ -141,7 +141,7 @@ def test_the_command_line_knows_all_that_can_be_written():
 
 def test_a_name_that_is_not_known_is_refused_before_anything_is_done():
     with pytest.raises(
-        ValueError, match="also: expected names out of csv, halstreamer, linuxcnc, picture, got csv, excel"
+        ValueError, match="also: expected names out of csv, halstreamer, linuxcnc, picture, cartesian, got csv, excel"
     ):
         Options(also=("csv", "excel"))
 
