@@ -1985,6 +1985,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>报告图片 (PNG)</translation>
     </message>
     <message>
+        <source>Program in X Y Z A B C, for kinematics in the controller</source>
+        <translation>X Y Z A B C 程序，用于控制器中的运动学</translation>
+    </message>
+    <message>
         <source>Machine</source>
         <translation>机床</translation>
     </message>
@@ -2235,6 +2239,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>G-code for LinuxCNC</source>
         <translation>LinuxCNC 的 G 代码</translation>
+    </message>
+    <message>
+        <source>Program in X Y Z A B C</source>
+        <translation>X Y Z A B C 程序</translation>
     </message>
     <message>
         <source>Moving the files to their folder</source>
