@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The commands ``pmac``: load a program into a Turbo PMAC, start, monitor and stop it.
+"""The commands ``pmac``: load a program into a Turbo PMAC or a Power PMAC, start, monitor and stop it.
 
 Exit code 0 on success, 1 when controller, machine or link refused; the last lines on the standard error then state the
 reason.
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from pkm_post.cli import pmac_manual, pmac_play, pmac_simulate
 from pkm_post.cli.inputs import NO_AXIS_WORDS, axis_words
-from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, OF_POWER_PMAC, ROTARY_WORDS
+from pkm_post.cli.pmac_actions import ACTIONS, NO_MOVE_BY_HAND, NOT_OF_POWER_PMAC, OF_POWER_PMAC, ROTARY_WORDS
 from pkm_post.cli.pmac_stop import JobTarget, Target
 from pkm_post.options import LONGEST_TOOL, above_zero, between, count, positive, tool_length, whole
 
@@ -144,7 +144,7 @@ _STOPS = ("hold", "abort")
 
 def add_commands(commands: Any) -> None:
     """Add the command ``pmac`` with its actions to a parser."""
-    pmac = commands.add_parser("pmac", help="talk to a Turbo PMAC, or simulate one")
+    pmac = commands.add_parser("pmac", help="talk to a Turbo PMAC or a Power PMAC, or simulate one")
     actions = pmac.add_subparsers(required=True, metavar="ACTION")
     for name, (action, text, needs) in (ACTIONS | pmac_manual.ACTIONS | pmac_play.ACTIONS).items():
         parser = actions.add_parser(name, help=text)
@@ -210,7 +210,8 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
     logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stderr)
     if namespace.port.is_power and namespace.name not in OF_POWER_PMAC:
-        print(f"{namespace.name} is not for a Power PMAC: {NOT_OF_POWER_PMAC}", file=sys.stderr)
+        why = NOT_OF_POWER_PMAC.get(namespace.name, NO_MOVE_BY_HAND)
+        print(f"{namespace.name} is not for a Power PMAC: {why}; use run or play", file=sys.stderr)
         return 1
     target = None if namespace.machine is None else _target(namespace)
     if target is None and namespace.machine is not None:

@@ -220,7 +220,13 @@ ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
 """For each action its description, and the inputs it needs: a named machine or program."""
 
 OF_POWER_PMAC = (
-    "probe", "download", "run", "hold", "resume", "abort", "override", "status", "monitor", "terminal",
+    "probe", "download", "run", "play", "continue", "home", "hold", "resume", "abort", "override", "status", "monitor",
+    "terminal",
 )  # fmt: skip
 """Actions that work with the known features of a Power PMAC."""
-NOT_OF_POWER_PMAC = "it sends programs in the words of a Turbo PMAC; post the motion and run it"
+NOT_OF_POWER_PMAC = {"stream": "it is for the rotary buffer of a Turbo PMAC"}
+"""Why an action is not for a Power PMAC; any other is a move by hand."""
+NO_MOVE_BY_HAND = (
+    "a move by hand has to hold itself when nobody looks on, and how long a Power PMAC takes to hold is not known to"
+    " this program"
+)

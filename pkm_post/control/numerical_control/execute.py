@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -20,11 +21,11 @@ from pkm_post.control.link.program import Job, PmacProgram, read_job
 from pkm_post.control.link.queries import read_number
 from pkm_post.control.link.run import check_setup, check_start
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import Array, Status, read_status
+from pkm_post.control.link.status import AnySettings, Array, Status, read_status
 from pkm_post.control.numerical_control.plan import LONGEST_MOVE_MS
 from pkm_post.model import EventKind, Machine, StrutMotion
 from pkm_post.options import START_TOLERANCE_MM
-from pkm_post.writing import PmacSettings, program_text, split_motion
+from pkm_post.writing import PmacSettings, PowerPmacSettings, pmac, power_pmac, split_motion
 
 CREDIT_MS = 600
 """Time a program may run after a renewal: several readings over a serial line."""
@@ -119,7 +120,7 @@ _POLL_S = 0.05
 
 
 def execute(
-    session: Session, machine: Machine, settings: PmacSettings, job: Job, near: float = START_TOLERANCE_MM
+    session: Session, machine: Machine, settings: AnySettings, job: Job, near: float = START_TOLERANCE_MM
 ) -> Status:
     """Load a program and start it.
 
@@ -150,7 +151,7 @@ def execute_watched(session: Session, machine: Machine, settings: PmacSettings, 
 
 
 def wait_for_rest(
-    session: Session, settings: PmacSettings, seconds: float, meanwhile: Callable[[], None] = lambda: None
+    session: Session, settings: AnySettings, seconds: float, meanwhile: Callable[[], None] = lambda: None
 ) -> Status:
     """Poll until no program runs and the struts stand.
 
@@ -210,7 +211,7 @@ def program_stops(job: Job) -> tuple[ProgramStop, ...]:
     )
 
 
-def remaining_job(job: Job, stop: ProgramStop, settings: PmacSettings) -> Job:
+def remaining_job(job: Job, stop: ProgramStop, settings: AnySettings) -> Job:
     """The part of a program after a stop, under the number of the job.
 
     Args:
@@ -224,7 +225,7 @@ def remaining_job(job: Job, stop: ProgramStop, settings: PmacSettings) -> Job:
     return job_of(motion, replace(settings, program=job.program.number), f"after stop {stop.number}")
 
 
-def job_of(motion: StrutMotion, settings: PmacSettings, name: str) -> Job:
+def job_of(motion: StrutMotion, settings: AnySettings, name: str) -> Job:
     """Turn part of a program into a program.
 
     Args:
@@ -235,7 +236,8 @@ def job_of(motion: StrutMotion, settings: PmacSettings, name: str) -> Job:
     Raises:
         ValueError: its text does not reproduce its motion.
     """
-    job, faults = read_job(program_text(motion, settings, [name]), settings, name)
+    kind: Any = power_pmac if isinstance(settings, PowerPmacSettings) else pmac
+    job, faults = read_job(kind.program_text(motion, settings, [name]), settings, name)
     if job is None or not same(job.motion, motion):
         raise ValueError(f"{name}: expected a text that gives its motion back, got {faults}")
     return job
@@ -249,7 +251,7 @@ def same(one: StrutMotion, other: StrutMotion) -> bool:
 
 
 def continue_after_stop(
-    session: Session, machine: Machine, settings: PmacSettings, job: Job, number: int, near: float = START_TOLERANCE_MM
+    session: Session, machine: Machine, settings: AnySettings, job: Job, number: int, near: float = START_TOLERANCE_MM
 ) -> Status:
     """Load the part of a program after a stop and start it.
 

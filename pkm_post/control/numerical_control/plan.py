@@ -10,6 +10,7 @@ sent.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +31,7 @@ from pkm_post.options import MANUAL_MOVE_PROGRAM
 from pkm_post.planning import plan
 from pkm_post.report import heading
 from pkm_post.toolpath import ToolPose
-from pkm_post.writing import pmac
+from pkm_post.writing import PmacSettings, PowerPmacSettings, pmac, power_pmac
 
 Findings = tuple[Diagnostic, ...]
 
@@ -71,7 +72,7 @@ class Plan:
 def planned(
     trajectory: Trajectory,
     machine: Machine,
-    settings: pmac.PmacSettings,
+    settings: PmacSettings | PowerPmacSettings,
     tolerances: Tolerances,
     number: int = MANUAL_MOVE_PROGRAM,
 ) -> tuple[Plan | None, Findings]:
@@ -107,17 +108,18 @@ def planned(
 
 
 def _program(
-    trajectory: Trajectory, machine: Machine, settings: pmac.PmacSettings, tolerances: Tolerances
+    trajectory: Trajectory, machine: Machine, settings: PmacSettings | PowerPmacSettings, tolerances: Tolerances
 ) -> tuple[str | None, Motion | None, Findings]:
     made, diagnostics = plan(trajectory, machine, tolerances, LONGEST_MOVE_MS)
     if made is None:
         return None, None, diagnostics
-    diagnostics += pmac.faults(made.struts, settings, trajectory.source)
+    kind: Any = power_pmac if isinstance(settings, PowerPmacSettings) else pmac
+    diagnostics += kind.faults(made.struts, settings, trajectory.source)
     if errors(diagnostics):
         return None, None, diagnostics
-    parts = pmac.program_parts(made.struts, settings, heading(trajectory))
+    parts = kind.program_parts(made.struts, settings, heading(trajectory))
     if len(parts) > 1:
-        found = f"{len(parts)} programs of {settings.memory_words} words"
+        found = f"{len(parts)} programs, each as large as the memory for programs"
         return None, None, (*diagnostics, Diagnostic("C204", Place(trajectory.source), found))
     return parts[0], made.motion, diagnostics
 

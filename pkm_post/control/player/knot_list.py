@@ -23,9 +23,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.control.link.program import PmacProgram
-from pkm_post.control.link.status import Array
+from pkm_post.control.link.status import AnySettings, Array
 from pkm_post.model import StrutMotion
-from pkm_post.writing import PmacSettings
+from pkm_post.writing import PowerPmacSettings
 
 POINT_VARIABLES = 14
 FIRST_VARIABLE, LAST_VARIABLE = 1000, 8186
@@ -70,27 +70,32 @@ class Layout:
         return range(begin, self.last + 2 - POINT_VARIABLES, POINT_VARIABLES)
 
 
-def resident_program(layout: Layout, settings: PmacSettings, number: int) -> PmacProgram:
-    """The program that runs the list: one PVT move for each point, to its end."""
+def resident_program(layout: Layout, settings: AnySettings, number: int) -> PmacProgram:
+    """The program that runs the list: one PVT move for each point, to its end.
+
+    A Power PMAC has braces for the loop, and reads and writes the same variables [PowerPMAC, Script Language].
+    """
     current = f"P{layout.current}"
     axes = " ".join(
         f"{letter}(P({current}+{2 + strut})):(P({current}+{8 + strut}))"
         for strut, letter in enumerate(settings.letters)
     )
+    is_power = isinstance(settings, PowerPmacSettings)
+    absolute, interval, dwell = ("abs", "pvt", "dwell0") if is_power else ("ABS", "PVT", "DWELL0")
     lines = (
-        "ABS",
-        f"WHILE(P{layout.next}>0)",
+        absolute,
+        f"while(P{layout.next}>0) {{" if is_power else f"WHILE(P{layout.next}>0)",
         f"{current}=P{layout.next}",
-        f"PVT(P({current}+1))",
+        f"{interval}(P({current}+1))",
         axes,
         f"P{layout.next}=P({current})",
-        "ENDWHILE",
-        "DWELL0",
+        "}" if is_power else "ENDWHILE",
+        dwell,
     )
     return PmacProgram(number, lines)
 
 
-def point_assignments(motion: StrutMotion, places: Sequence[int], settings: PmacSettings) -> list[str]:
+def point_assignments(motion: StrutMotion, places: Sequence[int], settings: AnySettings) -> list[str]:
     """The assignments that write the points after the first one of a motion, the last one as the end of the list.
 
     Args:

@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.certificate import certify
+from pkm_post.control.link.status import AnySettings
 from pkm_post.control.player.sections import Section
 from pkm_post.control.player.subpath import PathPoint, subpath
 from pkm_post.geometry import Array
 from pkm_post.model import Certificate, Kind, Machine, Motion, Refused, StrutMotion, Tolerances, errors
 from pkm_post.planning import Course, PathState, Schedule, strut_motion
-from pkm_post.writing import PmacSettings
 
 LONGEST_MS = 128
 """Longest interval: the controller computes two moves ahead, and a new way on has to come before."""
@@ -71,7 +71,7 @@ class LegMaker:
     """
 
     machine: Machine
-    settings: PmacSettings
+    settings: AnySettings
     tolerances: Tolerances
 
     def leg(self, section: Section, along: Course, at: At, schedule: Schedule, until_ms: int, override: float) -> Leg:

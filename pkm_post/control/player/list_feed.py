@@ -17,6 +17,7 @@ from itertools import islice
 
 from pkm_post.control.link.errors import LinkLostError, OutcomeUnknownError, PmacError
 from pkm_post.control.link.session import Session
+from pkm_post.control.link.status import AnySettings
 from pkm_post.control.player.knot_list import (
     Layout,
     assignment_lines,
@@ -25,7 +26,6 @@ from pkm_post.control.player.knot_list import (
 )
 from pkm_post.control.player.legs import Leg
 from pkm_post.control.player.pieces import Piece
-from pkm_post.writing import PmacSettings
 
 _KEPT = 2
 """Points before the current one that are not written over."""
@@ -83,7 +83,7 @@ class ListFeed:
         stopped_at: the motion to rest that the controller has taken instead of what was planned; None otherwise.
     """
 
-    def __init__(self, session: Session, settings: PmacSettings, layout: Layout) -> None:
+    def __init__(self, session: Session, settings: AnySettings, layout: Layout) -> None:
         self._session, self._settings, self._layout = session, settings, layout
         self._free: deque[int] = deque()
         self._points: deque[Point] = deque()

@@ -11,9 +11,9 @@ import queue
 
 from pkm_post.control.link import run, stopping
 from pkm_post.control.link.session import Session
+from pkm_post.control.link.status import AnySettings
 from pkm_post.control.player.orders import Order, PlayOptions
 from pkm_post.control.player.pieces import HIGHEST_OVERRIDE
-from pkm_post.writing import PmacSettings
 
 
 class OperatorInput:
@@ -35,7 +35,7 @@ class OperatorInput:
         """Give an order, from any thread."""
         self._orders.put(order)
 
-    def carry_out(self, session: Session, settings: PmacSettings) -> None:
+    def carry_out(self, session: Session, settings: AnySettings) -> None:
         """Carry out what was ordered.
 
         Raises:

@@ -14,12 +14,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pkm_post.control.link.status import AnySettings
 from pkm_post.control.player.legs import At, Leg, LegMaker
 from pkm_post.control.player.sections import Part, Section, sections_of
 from pkm_post.machine import strut_lengths
 from pkm_post.model import Machine, Refused, Tolerances, Trajectory
 from pkm_post.planning import Course, PathState, Schedule, course
-from pkm_post.writing import PmacSettings
 
 HIGHEST_OVERRIDE = 1.5
 PIECE_MS = 250
@@ -64,7 +64,7 @@ class PiecePlanner:
         trajectory: Trajectory,
         part: Part,
         machine: Machine,
-        settings: PmacSettings,
+        settings: AnySettings,
         tolerances: Tolerances,
         planned_for: Machine | None = None,
     ) -> None:

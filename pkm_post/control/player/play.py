@@ -20,7 +20,7 @@ from pkm_post.control.link.errors import LinkLostError
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.run import check_setup, set_feed_override, start_program
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import Status, read_status
+from pkm_post.control.link.status import AnySettings, Status, read_status
 from pkm_post.control.player.certificate_log import CertificateLog
 from pkm_post.control.player.knot_list import Layout, resident_program
 from pkm_post.control.player.legs import At
@@ -34,7 +34,6 @@ from pkm_post.control.player.start_line import go_to_row
 from pkm_post.control.player.stop_events import Task, run_events
 from pkm_post.model import EventKind, Machine, Tolerances, Trajectory
 from pkm_post.options import START_TOLERANCE_MM
-from pkm_post.writing import PmacSettings
 
 _POLL_S = 0.02
 _THREADS = 2
@@ -73,7 +72,7 @@ class Player:
         self,
         session: Session,
         machine: Machine,
-        settings: PmacSettings,
+        settings: AnySettings,
         trajectory: Trajectory,
         tolerances: Tolerances,
         choices: PlayOptions | None = None,

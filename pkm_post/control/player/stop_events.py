@@ -13,13 +13,13 @@ import numpy as np
 
 from pkm_post.control.link.errors import PmacError
 from pkm_post.control.link.session import Session
+from pkm_post.control.link.status import AnySettings
 from pkm_post.control.numerical_control.execute import execute, wait_for_rest
 from pkm_post.control.numerical_control.manual_moves import stationary_trajectory
 from pkm_post.control.numerical_control.plan import planned
 from pkm_post.control.player.sections import rows_of
 from pkm_post.model import Event, EventKind, Machine, Refused, Tolerances, Trajectory
 from pkm_post.toolpath import ToolPose
-from pkm_post.writing import PmacSettings
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 _LONGEST_S = 120.0
@@ -48,7 +48,7 @@ class Task:
 
     session: Session
     machine: Machine
-    settings: PmacSettings
+    settings: AnySettings
     trajectory: Trajectory
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The commands on a simulated Power PMAC over ssh: a posted program is loaded, verified, started and stopped."""
 
+import io
 import re
 import threading
 import time
@@ -126,3 +127,13 @@ def test_a_set_up_line_that_is_refused_is_reported_with_its_place(tmp_path, monk
     file.write_text("&1\nCoord[1].Foo=1\n")
     assert main(["pmac", "simulate", "--ssh", "0", "--setup", str(file)]) == 1
     assert capsys.readouterr().err == f"{file}:2: error #20, ILLEGAL CMD: Coord[1].Foo=1\n"
+
+
+def test_a_posted_trajectory_is_played(pmac, posted, capsys, monkeypatch):
+    machine, program = posted
+    monkeypatch.setattr("sys.stdin", io.StringIO("override 120\n"))
+    assert pmac("play", "--machine", str(machine), str(program.with_suffix(".pkmt"))) == 0
+    said = capsys.readouterr()
+    assert "deviation of the tool tip" in said.out and not said.err
+    system = pmac.machine.controller.systems[0]
+    assert not system.running and not system.runtime_error and system.path.abrupt_stops == 0

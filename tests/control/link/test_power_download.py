@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A Power PMAC: programs are loaded, listed back and compared, started, and refused when anything is otherwise."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from power_rig import DRIVES, FIRST, SETTINGS, STROKE, Wire, power_pmac, small_program
@@ -9,9 +11,13 @@ from pkm_post.control.link import stopping
 from pkm_post.control.link.download import download, verify_listing
 from pkm_post.control.link.errors import DownloadError, NotOwnerError, NotReadyError, PmacError
 from pkm_post.control.link.ownership import RECORD, claim
-from pkm_post.control.link.program import PmacProgram
+from pkm_post.control.link.program import PmacProgram, read_job
 from pkm_post.control.link.run import check_setup, resume_program, set_feed_override, start_program
 from pkm_post.control.link.status import is_busy, read_status
+from pkm_post.control.numerical_control.execute import continue_after_stop
+from pkm_post.machine import machine_named
+from pkm_post.model import Event, EventKind, StrutMotion
+from pkm_post.writing.controllers.power_pmac import program_text
 
 PROGRAM = small_program()
 LONGEST_S = 300.0
@@ -193,3 +199,21 @@ def test_the_drives_of_the_tests_are_those_of_the_controller(session):
     for drive in DRIVES:
         name, value = drive.split("=")
         assert float(session.query(f"Motor[6].{name}")[0]) == pytest.approx(float(value))
+
+
+def test_a_program_goes_on_after_its_stop(wire, session):
+    machine, _ = machine_named("example_6tps")
+    times = np.array([0, 500, 1000])
+    length = np.array([[500.0] * 6, [501.0, *[500.0] * 5], [500.0] * 6])
+    motion = StrutMotion(times, length, np.zeros((3, 6)), events=(Event(1, EventKind.STOP, 0.0),))
+    job, faults = read_job(program_text(motion, SETTINGS, ["of the test"]), SETTINGS, "job")
+    assert not faults and "M0" in job.program.lines
+    download(session, job.program)
+    start_program(session, SETTINGS, job.program, job.first)
+    wire.sleep(3)
+    assert np.allclose(read_status(session, SETTINGS).length, length[1], atol=1e-4)
+    held = dataclasses.replace(machine, strut_stroke=STROKE)
+    assert continue_after_stop(session, held, SETTINGS, job, 1).running
+    wire.sleep(3)
+    status = read_status(session, SETTINGS)
+    assert not status.running and np.allclose(status.length, length[2], atol=1e-4)
