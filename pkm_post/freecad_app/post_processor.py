@@ -54,13 +54,17 @@ class HexapodPost(PostProcessor):
     def export(self) -> list[tuple[str, str]]:
         """The text for CAM to write; binary files are written to its folder. Empty if the user cancelled.
 
+        In a window a refusal is shown with its reasons as rows, and the list is empty as well: CAM then takes back its
+        transaction, where an exception would leave it open and a traceback in the Report view.
+
         Raises:
-            Refused: the job cannot be posted; CAM writes nothing then.
+            Refused: without a window, or for the dialog of FreeCAD newer than 1.1, the job cannot be posted.
         """
         from pkm_post.freecad_app.job_settings import settings_of
         from pkm_post.freecad_app.post_outputs import output_of
         from pkm_post.freecad_app.post_properties import values_of_properties
         from pkm_post.freecad_app.progress import Stopped
+        from pkm_post.freecad_app.window import shows_refusal
         from pkm_post.model import Refused
         from pkm_post.system import memory_guard
 
@@ -72,8 +76,11 @@ class HexapodPost(PostProcessor):
                 output = output_of(self.name, for_dialog=getattr(self, "_dialog_handled", False))
                 text, diagnostics = output(self._job, settings, program_path(self._job))
         except Refused as refused:
-            _report(refused)
-            raise
+            if getattr(self, "_dialog_handled", False) or not shows_refusal(self._job, refused.diagnostics):
+                _report(refused)
+                raise
+            App.Console.PrintMessage(f"The job was not posted.\n{refused}\n")
+            return []
         except Stopped as stopped:
             App.Console.PrintWarning(f"{stopped}\n")
             return []
@@ -134,8 +141,6 @@ def program_path(job: Any) -> FilePath:
 
 
 def _report(refused: Exception) -> None:
-    """Show the reasons in the report view, and in the notification area if there is a window."""
+    """Print the reasons."""
     for line in str(refused).splitlines():
         App.Console.PrintError(f"{line}\n")
-    if App.GuiUp:
-        App.Console.PrintUserError(f"The job was not posted.\n{refused}\n")

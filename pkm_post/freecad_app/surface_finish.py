@@ -24,7 +24,8 @@ from pkm_post.freecad_app.face_surface import face_surface
 from pkm_post.freecad_app.model_faces import NamedFace, model_faces
 from pkm_post.freecad_app.progress import Progress
 from pkm_post.freecad_app.surface_check import check_faces
-from pkm_post.freecad_app.surface_finish_settings import add_missing_properties, read_inputs
+from pkm_post.freecad_app.surface_finish_choice import choose_lead_and_cone
+from pkm_post.freecad_app.surface_finish_settings import CHECK_SPACING, add_missing_properties, read_inputs
 from pkm_post.freecad_app.tools import has_upright_side, preselected
 from pkm_post.freecad_app.window import add_view
 from pkm_post.model import Diagnostic, Place, Program, Refused
@@ -50,8 +51,9 @@ class SurfaceFinish(Path.Op.Base.ObjectOp):
         return int(_FEATURES)
 
     def initOperation(self, obj: Any) -> None:
-        """Add the properties of a new object."""
+        """Add the properties of a new object, whose gouges are measured."""
         add_missing_properties(obj)
+        obj.CheckSpacing = CHECK_SPACING
 
     def opOnDocumentRestored(self, obj: Any) -> None:
         """Add the properties that documents of older versions lack."""
@@ -85,21 +87,28 @@ def create_surface_finish(
     faces: Iterable[tuple[Any, Sequence[str]]] = (),
     label: str = "Surface Finish",
     controller: Any = None,
+    fit: bool = False,
 ) -> Any:
-    """Add the operation to a job.
+    """Add the operation to a job. It is not computed until the document is.
 
     Args:
         job: the CAM job.
         faces: pairs of an object of the job's model and names of its faces, such as ``(clone, ["Face1"])``.
         label: displayed name.
-        controller: the tool controller; if None, CAM chooses it or opens its dialog; the first one without a window.
+        controller: the tool controller; if None, the first one of the job whose tool the operation supports; if there
+            is none, CAM opens its dialog in a window, and without a window the first one is taken.
+        fit: whether to choose lead and cone limit by faces, tool and machine, as the button does.
     """
+    fitting = (each for each in job.Tools.Group if has_upright_side(each.Tool))
+    controller = controller or next(fitting, None)
     obj = job.Document.addObject("Path::FeaturePython", "SurfaceFinish")
     with preselected(controller or (None if App.GuiUp else next(iter(job.Tools.Group), None))):
         obj.Proxy = SurfaceFinish(obj, "SurfaceFinish", job)
     obj.Label, obj.Base = label, [(thing, tuple(names)) for thing, names in faces]
     if controller is not None:
         obj.ToolController = controller
+    if fit:
+        choose_lead_and_cone(obj, job)
     add_view("surface_finish", obj)
     return obj
 

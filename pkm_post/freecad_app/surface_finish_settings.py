@@ -99,6 +99,10 @@ PROPERTIES: tuple[Row, ...] = (
      QT_TRANSLATE_NOOP("App::Property", "Distance of the points of the model at which gouges and material left "
                        "are measured; 0 to measure nothing"), 0.0),
 )  # fmt: skip
+CHECK_SPACING = 1.0
+"""mm, of new operations. Between points s apart, a cutter that is round there with radius R goes unseen to at most
+s^2 / (8 R): its footprint at depth d is sqrt(2 R d) wide to either side, and no point of a face is farther than s / 2
+from a measured one. Operations of documents that have no spacing are not measured."""
 
 RESULTS: tuple[Row, ...] = (
     ("App::PropertyInteger", "PassCount", _R, QT_TRANSLATE_NOOP("App::Property", "Number of passes"), 0),
@@ -154,15 +158,21 @@ def _cone(obj: Any, job: Any, faces: Sequence[NamedFace], place: Place) -> tuple
         return limit, ()
     if not _is_upright(obj.ConeAxis):
         return limit, (Diagnostic("N309", place, "a machine limits the tilt from upright: ConeAxis is not (0, 0, 1)"),)
-    boxes = [named.face.BoundBox for named in faces]
-    low = np.array([min(getattr(box, side) for box in boxes) for side in ("XMin", "YMin", "ZMin")])
-    high = np.array([max(getattr(box, side) for box in boxes) for side in ("XMax", "YMax", "ZMax")])
-    high[2] = max(high[2], obj.ClearanceHeight.Value)
-    tilt, faults = _reachable_tilt(obj.Machine, job, obj.ToolController, (low, high), place)
+    box = box_of(faces, obj.ClearanceHeight.Value)
+    tilt, faults = reachable_tilt(obj.Machine, job, obj.ToolController, box, place)
     return (limit if tilt is None else min(limit, tilt)), faults
 
 
-def _reachable_tilt(
+def box_of(faces: Sequence[NamedFace], clearance: float) -> tuple[Array, Array]:
+    """Lowest and highest corner of the region of the tip over faces, up to the clearance height, (3,) each, mm."""
+    boxes = [named.face.BoundBox for named in faces]
+    low = np.array([min(getattr(box, side) for box in boxes) for side in ("XMin", "YMin", "ZMin")])
+    high = np.array([max(getattr(box, side) for box in boxes) for side in ("XMax", "YMax", "ZMax")])
+    high[2] = max(high[2], clearance)
+    return low, high
+
+
+def reachable_tilt(
     name: str, job: Any, controller: Any, box: tuple[Array, Array], place: Place
 ) -> tuple[float | None, tuple[Diagnostic, ...]]:
     """The largest tilt from upright that the machine reaches at the part in every direction.

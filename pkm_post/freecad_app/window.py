@@ -16,6 +16,17 @@ ESCAPE_WATCHES: list[Callable[[], Any]] = []
 """At most one: makes a watch with ``begin``, ``end`` and ``pressed``."""
 
 
+REFUSALS: list[Callable[[Any, Any], object]] = []
+"""At most one: shows a job and the diagnostics for which it was not posted."""
+
+
+def shows_refusal(job: Any, diagnostics: Any) -> bool:
+    """Show why a job was not posted, if there is a window; whether it was shown."""
+    for show in REFUSALS:
+        show(job, diagnostics)
+    return bool(REFUSALS)
+
+
 def add_view(kind: str, obj: Any) -> None:
     """Attach the view provider of a kind to an object, if there is a window."""
     if kind in VIEWS:

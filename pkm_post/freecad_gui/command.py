@@ -69,6 +69,7 @@ class Command:
         keys: keyboard shortcut; all begin with P, K, since CAM has P and one other key.
         page: the file in docs that F1 opens.
         alone: whether it also runs without any object; the action then gets None.
+        computes: whether the document is recomputed; an operation with a panel waits until the user applies it.
     """
 
     name: str
@@ -80,6 +81,7 @@ class Command:
     keys: str
     page: str = "workbench.md"
     alone: bool = False
+    computes: bool = True
 
     def GetResources(self) -> dict[str, str]:
         """Texts, icon and shortcut. FreeCAD itself translates the texts, again after a change of language."""
@@ -109,7 +111,8 @@ class Command:
         with show_lack_of_memory(translate(self.name, self.text)):
             with transaction(document, translate(self.name, self.text)):
                 self.action(subject)
-            document.recompute()
+            if self.computes:
+                document.recompute()
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ def finish(item: FreeCAD.DocumentObject) -> None:
     document = f"FreeCAD.getDocument({job.Document.Name!r})"
     chosen = ", ".join(f"({document}.getObject({name!r}), {faces!r})" for name, faces in _selected_faces(job))
     FreeCADGui.addModule(module)
-    FreeCADGui.doCommand(f"{module}.create_surface_finish({document}.getObject({job.Name!r}), [{chosen}])")
+    FreeCADGui.doCommand(f"{module}.create_surface_finish({document}.getObject({job.Name!r}), [{chosen}], fit=True)")
     made = job.Operations.Group[-1]
     QtCore.QTimer.singleShot(0, lambda: made.ViewObject.Document.setEdit(made.ViewObject, 0))
 

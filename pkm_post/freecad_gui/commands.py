@@ -55,6 +55,7 @@ COMMANDS = (
         command_actions.finish,
         "P, K, F",
         "surface-finish.md",
+        computes=False,
     ),
     Command(
         "PKM_Machine",

@@ -14,20 +14,44 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
+_CALM_MS = 700
+"""ms without Escape after which it has its usual meaning again: longer than the first pause of a key that repeats."""
+
+
+_CALMING: list[EscapeWatch] = []
+"""Watches whose computation has ended; nothing else holds them."""
+
 
 class EscapeWatch(QtCore.QObject):
     """Filters every key from ``begin`` to ``end``."""
 
     _was_pressed = False
+    _calm: QtCore.QTimer | None = None
 
     def begin(self) -> None:
         """Filter keys ahead of FreeCAD's progress bar, which would ask a question at the end of the recompute."""
         QtWidgets.QApplication.instance().installEventFilter(self)
 
     def end(self) -> None:
-        """Stop filtering."""
-        QtWidgets.QApplication.instance().removeEventFilter(self)
+        """Stop filtering; after an Escape not before the key has been left alone for a moment.
+
+        Pressed twice or held, it would otherwise close the panel of a new operation, which deletes the operation.
+        """
         FreeCADGui.getMainWindow().statusBar().clearMessage()
+        if not self._was_pressed:
+            self._remove()
+            return
+        _CALMING.append(self)
+        self._calm = QtCore.QTimer()
+        self._calm.setSingleShot(True)
+        self._calm.timeout.connect(self._remove)
+        self._calm.start(_CALM_MS)
+
+    def _remove(self) -> None:
+        QtWidgets.QApplication.instance().removeEventFilter(self)
+        self._calm = None
+        if self in _CALMING:
+            _CALMING.remove(self)
 
     def pressed(self, text: str) -> bool:
         """Show a text in the status bar, process events, and return whether Escape was pressed so far."""
@@ -45,6 +69,8 @@ class EscapeWatch(QtCore.QObject):
             return False
         if event.type() == QtCore.QEvent.Type.KeyPress and event.key() == QtCore.Qt.Key.Key_Escape:
             self._was_pressed = True
+            if self._calm is not None:
+                self._calm.start(_CALM_MS)
             return True
         return False
 

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import FreeCAD
 import FreeCADGui
 
-from pkm_post.freecad_app.window import ESCAPE_WATCHES, VIEWS
+from pkm_post.freecad_app.window import ESCAPE_WATCHES, REFUSALS, VIEWS
 from pkm_post.freecad_gui.icons import ICONS
 
 _RESOURCES = Path(__file__).parents[2] / "resources"
@@ -87,6 +87,7 @@ def install() -> None:
     register()
     preferences.install()
     VIEWS.update({kind: partial(_attach, *where) for kind, where in _VIEWS.items()})
+    REFUSALS[:] = [partial(_attach, "pkm_post.freecad_gui.refusal", "show_refusal")]
     ESCAPE_WATCHES[:] = [partial(_attach, "pkm_post.freecad_gui.observers", "EscapeWatch")]
     FreeCADGui.addWorkbench(PkmPostWorkbench())
     CamMenu.registered.append(CamMenu())

@@ -2115,6 +2115,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <source>Certified, as far as the lines below say ({} poses computed). {} s at the machine, {} files.</source>
         <translation>已验证，范围如下各行所述（计算了 {} 个位姿）。加工用时 {} 秒，{} 个文件。</translation>
     </message>
+    <message>
+        <source>{}: not posted</source>
+        <translation>{}：未输出</translation>
+    </message>
 </context>
 <context>
     <name>PostPanel</name>

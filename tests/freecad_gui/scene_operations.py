@@ -7,7 +7,7 @@ import time
 import FreeCAD
 import FreeCADGui
 from gui import main, new_document, press, select, settle, step
-from PySide import QtCore, QtGui
+from PySide import QtCore, QtGui, QtWidgets
 
 
 @step
@@ -89,6 +89,8 @@ def surface_finish_from_its_button():
         "icon": os.path.basename(view.getIcon()),
         "faces": [name for _, names in operation.Base for name in names],
         "valid": operation.isValid(),
+        "computed": operation.Path.Size > 0,
+        "measured": operation.CheckSpacing.Value,
         "panel_is_open": view.panel is not None,
     }
     reported["stepover_shown"] = _change_stepover(view.panel, 2.0)
@@ -147,6 +149,69 @@ def escape_stops_a_long_computation():
     item.Proxy.execute(item)
     reported = {"inside a recompute": inside, "alone": item.Label2}
     FreeCAD.closeDocument("waiting")
+    return reported
+
+
+@step
+def escape_pressed_twice_leaves_the_operation():
+    import Part
+    import Path.Main.Gui.Job
+
+    from pkm_post.freecad_app import surface_finish
+    from pkm_post.freecad_app.progress import Stopped
+
+    document = FreeCAD.newDocument("twice")
+    block = document.addObject("Part::Feature", "Block")
+    block.Shape = Part.makeBox(20, 20, 20)
+    document.recompute()
+    Path.Main.Gui.Job.Create([block.Name], None, openTaskPanel=False)
+    job = document.getObject("Job")
+    controller = job.Tools.Group[0]
+    controller.HorizFeed = controller.VertFeed = "600 mm/min"
+    document.UndoMode = 1
+    select(block, "Face6")
+    press("PKM_SurfaceFinish")
+    (operation,) = job.Operations.Group
+    panel, steps = operation.ViewObject.Proxy.panel, surface_finish._steps
+    field = panel.featurePages[-1].form.fields["Lines"]
+
+    def escape():
+        for kind in (QtCore.QEvent.Type.KeyPress, QtCore.QEvent.Type.KeyRelease):
+            key = QtGui.QKeyEvent(kind, QtCore.Qt.Key.Key_Escape, QtCore.Qt.KeyboardModifier.NoModifier)
+            QtCore.QCoreApplication.postEvent(field, key)
+
+    def stopping(bar):
+        escape()
+        return steps(bar)
+
+    kind, stopped = surface_finish.SurfaceFinish, []
+    compute = kind.opExecute
+
+    def without_report(proxy, item):
+        """FreeCAD would write the exception to the Report view, and no scene may have one there."""
+        try:
+            compute(proxy, item)
+        except Stopped as fault:
+            stopped.append(str(fault))
+
+    surface_finish._steps, kind.opExecute = stopping, without_report
+    try:
+        panel.clicked(QtWidgets.QDialogButtonBox.StandardButton.Apply)
+        escape()
+        settle()
+    finally:
+        surface_finish._steps, kind.opExecute = steps, compute
+    reported = {
+        "operations": len(job.Operations.Group),
+        "open": bool(FreeCADGui.Control.activeDialog()),
+        "stopped": stopped,
+    }
+    operation.touch()  # as it stays after an exception
+    panel.clicked(QtWidgets.QDialogButtonBox.StandardButton.Apply)
+    reported["computed later"] = operation.isValid() and operation.PassCount > 0
+    panel.accept()
+    settle()
+    FreeCAD.closeDocument("twice")
     return reported
 
 

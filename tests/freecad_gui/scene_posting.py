@@ -156,6 +156,34 @@ def refused_job_is_reported_and_leaves_nothing():
     return found
 
 
+@step
+def refusal_of_cams_own_command_is_shown_once():
+    """Its rows stand in a window; the document, its undo steps and the folder are as before."""
+    FreeCADGui.activateWorkbench("CAMWorkbench")
+    document, folder = saved("cam_refused")
+    job = document.getObject("Job")
+    job.PostProcessorOutputFile = str(folder / "cam_refused.pmc")
+    document.getObject("Custom").Gcode = ["G0 X0 Y0 Z30", "G1 X10 F0"]
+    document.recompute()
+    before, FreeCAD.ActiveDocument = document.UndoCount, document
+    press("CAM_Post", job)
+    press("CAM_Post", job)
+    windows = FreeCADGui.getMainWindow().findChildren(QtWidgets.QDialog, "PkmRefusal")
+    (shown,) = [each for each in windows if each.isVisible()]
+    rows = shown.outcome.diagnostics
+    found = {
+        "files": names_in(folder),
+        "rows": [rows.item(number).text() for number in range(rows.count())],
+        "verdict": shown.outcome.verdict.text(),
+        "undo steps": document.UndoCount - before,
+        "transaction is open": document.HasPendingTransaction,
+        "drawn": picture("cam_refused.png"),
+        "clicked": clicked(rows, rows.item(0)),
+    }
+    shown.reject()
+    return found
+
+
 def lacking(*_, **__):
     raise MemoryError("Unable to allocate 7 GiB")
 

@@ -33,7 +33,8 @@ def test_surface_finish_is_made_of_selected_faces_and_edited_in_cams_panel(sessi
     assert found["active"] == {"job": True, "face": True, "controller": True}  # each means the job
     assert (found["view"], found["icon"]) == ("SurfaceFinishView", "surface_finish.svg")
     assert (found["faces"], found["valid"]) == (["Face6"], True)
-    assert found["panel_is_open"]
+    assert found["panel_is_open"] and not found["computed"]  # not before the user applies it
+    assert found["measured"] == 1.0
     assert (found["stepover_shown"], found["accepted"], found["passes"]) == (1.0, 2.0, 11)
     assert found["rejected"] == 2.0
     assert not found["panel_is_left_open"]
@@ -45,3 +46,10 @@ def test_escape_stops_a_long_computation_in_a_recompute_and_outside(session):
     for reported in (found["inside a recompute"], found["alone"]):
         assert reported.startswith("Waiting")
         assert 20 <= int(reported.split()[-1]) < 100
+
+
+def test_escape_stops_the_computing_and_never_deletes_the_operation(session):
+    found = session["escape_pressed_twice_leaves_the_operation"]
+    assert (found["operations"], found["open"]) == (1, True)
+    assert len(found["stopped"]) == 1 and "stopped at" in found["stopped"][0]
+    assert found["computed later"]

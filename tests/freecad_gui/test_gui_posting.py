@@ -49,6 +49,15 @@ def test_refused_job_is_reported_and_leaves_nothing(session):
     assert reported.startswith("Cut, 4: G1")
 
 
+def test_refusal_of_cams_own_command_is_shown_once_and_changes_nothing(session):
+    found = session["refusal_of_cams_own_command_is_shown_once"]
+    assert found["files"] == ["cam_refused.FCStd"]
+    assert len(found["rows"]) == 1 and "J105" in found["rows"][0]
+    assert found["verdict"].startswith("Refused")
+    assert (found["undo steps"], found["transaction is open"]) == (0, False)
+    assert found["clicked"][0] == ["Custom"]
+
+
 def test_lack_of_memory_is_reported_and_leaves_nothing(session):
     found = session["lack_of_memory_is_reported_and_leaves_nothing"]
     assert found["files"] == ["lacking.FCStd"]
