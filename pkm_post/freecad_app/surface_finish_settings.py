@@ -100,9 +100,9 @@ PROPERTIES: tuple[Row, ...] = (
                        "are measured; 0 to measure nothing"), 0.0),
 )  # fmt: skip
 CHECK_SPACING = 1.0
-"""mm, of new operations. Between points s apart, a cutter that is round there with radius R goes unseen to at most
-s^2 / (8 R): its footprint at depth d is sqrt(2 R d) wide to either side, and no point of a face is farther than s / 2
-from a measured one. Operations of documents that have no spacing are not measured."""
+"""mm, of new operations. Between points s apart, a ball of radius R goes unseen in a flat face to at most s^2 / (4 R):
+at depth d its footprint has the radius sqrt(2 R d), and no point is farther than s / sqrt(2) from a measured one.
+Operations of documents that have no spacing are not measured."""
 
 RESULTS: tuple[Row, ...] = (
     ("App::PropertyInteger", "PassCount", _R, QT_TRANSLATE_NOOP("App::Property", "Number of passes"), 0),
