@@ -13,6 +13,7 @@ EXAMPLES = {
     "--leads": ("B", "A"),
     "--swallowed": ("remove", "refuse"),
     "--tool": ("1=10,5", "1=12"),
+    "--tool-table": ("tools.tbl,mm", "tools.csv,inch"),
     "--unit": ("inch", "mm"),
     "--feed": ("300", "450.5"),
     "--flavour": ("fanuc", "rs274"),

@@ -24,7 +24,7 @@ from pkm_post.freecad_app.document_object import PropertyProxy, Row, print_diagn
 from pkm_post.freecad_app.tools import preselected
 from pkm_post.freecad_app.window import add_view
 from pkm_post.model import Diagnostic, EventKind, Place, Program, Refused
-from pkm_post.options import MOST_FEED, above_zero, format_value, goto_values, origin
+from pkm_post.options import MOST_FEED, above_zero, cycle_kinds, format_value, goto_values, origin
 from pkm_post.reading import (
     AXIS_WORDS,
     CONTOUR_DATA,
@@ -50,7 +50,8 @@ FROM_FILE = "file"
 CYCLE_ORDERS = ("depth,feed,clearance", "depth,feed,clearance,step", "depth,feed")
 """The usual meanings of cycle parameters; the command line accepts others."""
 
-_TYPED = {"Origins": origin, "FirstFeed": above_zero(MOST_FEED), "GotoValues": goto_values}
+_TYPED = {"Origins": origin, "FirstFeed": above_zero(MOST_FEED), "GotoValues": goto_values,
+          "CycleKinds": cycle_kinds}  # fmt: skip
 """Properties that are typed as arguments are."""
 _DWELL_CHOICES = [FROM_FILE, *DWELL_UNITS]
 _G = "Program"
@@ -78,6 +79,11 @@ _PROPERTIES: tuple[Row, ...] = (
      0.0),
     ("App::PropertyString", "GotoValues", _G,
      QT_TRANSLATE_NOOP("App::Property", "What the values of GOTO statements of CL data are, as in x,y,z,i,j,k"), ""),
+    ("App::PropertyString", "ToolTable", _G,
+     QT_TRANSLATE_NOOP("App::Property", "File with the tools of the part program, as in tools.tbl,mm"), ""),
+    ("App::PropertyString", "CycleKinds", _G,
+     QT_TRANSLATE_NOOP("App::Property", "What kinds of CYCLE statements of CL data do, as in BORE=ream,DEEPHL=deep"),
+     ""),
     ("App::PropertyEnumeration", "Unit", _G,
      QT_TRANSLATE_NOOP("App::Property", "Unit of length of the part program"), [FROM_FILE, *UNITS]),
     ("App::PropertyEnumeration", "ContourData", _G,
@@ -181,6 +187,8 @@ def reading_of(obj: Any) -> ReadingOptions:
         block_delete=obj.BlockDelete,
         feed=next((feed / 60 for feed in _typed(obj, "FirstFeed")), None),
         goto_values=next(iter(_typed(obj, "GotoValues")), ()),
+        tool_table=obj.ToolTable or None,
+        cycle_kinds=dict(next(iter(_typed(obj, "CycleKinds")), ())),
     )
 
 
@@ -224,6 +232,8 @@ def set_reading(obj: Any, reading: ReadingOptions) -> None:
         "BlockDelete": reading.block_delete,
         "FirstFeed": float(f"{60 * (reading.feed or 0.0):.12g}"),
         "GotoValues": ",".join(reading.goto_values),
+        "ToolTable": reading.tool_table or "",
+        "CycleKinds": ",".join(map("=".join, reading.cycle_kinds.items())),
         "Unit": reading.unit or FROM_FILE,
         "ContourData": reading.contour_data or FROM_FILE,
         "ClDialect": reading.cl_dialect or FROM_FILE,

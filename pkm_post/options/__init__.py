@@ -41,6 +41,7 @@ from pkm_post.options.converters import (
     RULES_WITH_HEADING,
     SIDE_OUTPUTS,
     SPIN_WORDS,
+    cycle_kinds,
     goto_values,
     origin,
 )
@@ -103,6 +104,7 @@ __all__ = [
     "explicit_values",
     "flag_of",
     "format_value",
+    "cycle_kinds",
     "goto_values",
     "inapplicable_options",
     "input_kind",

@@ -100,6 +100,11 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "help": "diameter and corner radius in mm of the cutter a part program was made for, instead of those that it"
         " states: G41 and G42 need the diameter, --actual-tool both; may be repeated",
     },
+    "--tool-table": {
+        "metavar": "FILE[,UNIT]",
+        "help": "tools of a part program that are not given one by one: a tool table of LinuxCNC (.tbl) or a .csv, with"
+        " mm or inch behind a comma, or a tool library of FreeCAD (.fctl)",
+    },
     "--actual-tool": {
         "metavar": "NUMBER=D[,R]",
         "type": numbered(sizes, "NUMBER=D[,R]"),
@@ -275,6 +280,7 @@ def add_part_program(parser: argparse.ArgumentParser) -> None:
         parser,
         (
             "--tool",
+            "--tool-table",
             "--unit",
             "--feed",
             "--flavour",

@@ -177,6 +177,7 @@ _KINDS: dict[str, tuple[InputKind, ...]] = {
     "cycle_kinds": (InputKind.CLDATA,),
     "goto_values": (InputKind.CLDATA,),
     "tools": _PART_PROGRAMS,
+    "tool_table": _PART_PROGRAMS,
     "unit": _PART_PROGRAMS,
     "feed": _PART_PROGRAMS,
     "allow_open_end": _PART_PROGRAMS,

@@ -37,7 +37,14 @@ from pkm_post.posting.machine_reading import with_machine
 from pkm_post.posting.placement import trajectory_of
 from pkm_post.posting.run import Findings, Log, Posted, Progress, beat, no_log, no_progress
 from pkm_post.posting.steps import SUFFIX, post
-from pkm_post.reading import AS_WRITTEN, ReadingOptions, program_stem, read_part_program
+from pkm_post.reading import (
+    AS_WRITTEN,
+    ReadingOptions,
+    language_of,
+    program_stem,
+    read_part_program,
+    with_tool_table,
+)
 
 
 @dataclass(frozen=True)
@@ -144,13 +151,14 @@ def prepared_file(
     choices = _at_first_fixture(options or options_from(chosen))
     asked = replace(_with_typed_options(reading, chosen), lengths=lengths)
     asked = asked if model is None else with_machine(asked, model, choices)
-    program, diagnostics = read_part_program(Path(file), asked)
+    asked, of_table = with_tool_table(asked, language_of(file))
+    program, diagnostics = (None, of_table) if of_table else read_part_program(Path(file), asked)
     faults = [fault for fault in diagnostics if fault.code != _ASKED_FOR]
     strangers = inapplicable_options(given, {input_kind(Path(file))})
     faults += [Diagnostic("L442", Place(str(file)), each) for each in strangers]
     if program is not None:
-        faults += [*_replaced(program, lengths), *_unknown(program, lengths)]
-        program = _with_lengths(program, lengths)
+        faults += [*_replaced(program, asked.lengths, lengths), *_unknown(program, lengths)]
+        program = _with_lengths(program, asked.lengths)
         faults += _missing_lengths(program)
     return Prepared(program, model, choices, (*found, *faults))
 
@@ -183,11 +191,12 @@ def _with_lengths(program: Program, lengths: Mapping[int, float]) -> Program:
     return replace(program, tools=tools)
 
 
-def _replaced(program: Program, lengths: Mapping[int, float]) -> Iterator[Diagnostic]:
-    """J125 for each gauge length of the file that is overridden."""
+def _replaced(program: Program, lengths: Mapping[int, float], typed: Mapping[int, float]) -> Iterator[Diagnostic]:
+    """J125 for each gauge length of the file that is overridden, one by one or by the tool table."""
     for number, tool in program.tools.items():
         if tool.length > 0 and lengths.get(number, tool.length) != tool.length:
-            override = Override(flag_of("tool_length"), f"{tool.length:.12g} of T{number}", _shown(number, lengths))
+            flag = flag_of("tool_length" if number in typed else "tool_table")
+            override = Override(flag, f"{tool.length:.12g} of T{number}", _shown(number, lengths))
             yield Diagnostic("J125", Place(program.source), str(override))
 
 

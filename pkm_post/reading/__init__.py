@@ -16,6 +16,7 @@ from pkm_post.reading.part_program import (
     FLAVOUR_NAMES,
     ReadingOptions,
     read_part_program,
+    with_tool_table,
 )
 from pkm_post.reading.units import UNITS
 
@@ -79,4 +80,5 @@ __all__ = [
     "shown_language",
     "tip_paths_of_line",
     "underlined",
+    "with_tool_table",
 ]

@@ -25,6 +25,7 @@ from pkm_post.geometry import dot
 from pkm_post.model import Diagnostic, EventKind, Kind, Place, Program, Tool
 from pkm_post.reading import gcode, siemens
 from pkm_post.reading.language import Language, language_of
+from pkm_post.reading.tool_table import read_tool_table
 
 _Result = tuple[Program | None, tuple[Diagnostic, ...]]
 
@@ -62,6 +63,8 @@ class ReadingOptions:
         machine_offsets: those of the machine, likewise, for a program that uses several.
         block_delete: whether what stands behind / in blocks of G-code is left out.
         subprograms: folders where files of subprograms of G-code are looked for before that of the program.
+        tool_table: path of a tool table, with its unit behind a comma, as ``read_tool_table`` takes it; ``tools`` and
+            ``lengths`` go before what it states. None for none.
         allow_open_end: whether a file may lack an end statement, such as M2 or FINI.
     """
 
@@ -85,6 +88,7 @@ class ReadingOptions:
     machine_offsets: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
     block_delete: bool = False
     subprograms: tuple[str, ...] = ()
+    tool_table: str | None = None
 
 
 AS_WRITTEN = ReadingOptions()
@@ -131,11 +135,30 @@ def read_content(content: bytes, name: str, reading: ReadingOptions, folder: Pat
     """
     if folder is None and Path(name).is_absolute():
         folder = Path(name).parent
-    if language_of(name, content) is Language.GCODE:
+    language = language_of(name, content)
+    reading, faults = with_tool_table(reading, language)
+    if faults:
+        return None, faults
+    if language is Language.GCODE:
         program, diagnostics = _read_gcode(content, name, reading, folder)
     else:
         program, diagnostics = _read_cldata(content, name, reading)
     return program, diagnostics if program is None else (*diagnostics, *end_warnings(program))
+
+
+def with_tool_table(reading: ReadingOptions, language: Language) -> tuple[ReadingOptions, tuple[Diagnostic, ...]]:
+    """Reading options with the tools of their table, below those that are given one by one; or its faults.
+
+    CL data state the cutters that they were made for: there the table gives gauge lengths alone.
+    """
+    if reading.tool_table is None:
+        return reading, ()
+    table, faults = read_tool_table(reading.tool_table)
+    if table is None:
+        return reading, faults
+    cutters = table.tools if language is Language.GCODE else {}
+    tools, lengths = cutters | dict(reading.tools), table.lengths | dict(reading.lengths)
+    return replace(reading, tools=tools, lengths=lengths, tool_table=None), ()
 
 
 FLAVOUR_NAMES = (*gcode.FLAVOUR_NAMES, SIEMENS)

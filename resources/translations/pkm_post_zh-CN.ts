@@ -156,6 +156,14 @@
         <translation>CL 数据 GOTO 语句中各数值的含义,例如 x,y,z,i,j,k</translation>
     </message>
     <message>
+        <source>File with the tools of the part program, as in tools.tbl,mm</source>
+        <translation>零件程序的刀具文件,例如 tools.tbl,mm</translation>
+    </message>
+    <message>
+        <source>What kinds of CYCLE statements of CL data do, as in BORE=ream,DEEPHL=deep</source>
+        <translation>CL 数据 CYCLE 语句各类型的动作,例如 BORE=ream,DEEPHL=deep</translation>
+    </message>
+    <message>
         <source>Unit of length of the part program</source>
         <translation>零件程序的长度单位</translation>
     </message>

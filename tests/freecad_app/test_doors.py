@@ -36,8 +36,8 @@ NO_EFFECT_HERE = {"--corners", "--leads", "--swallowed", "--keep-climb"}
 """They are for contours with the tool beside them, and for copies, which this job has not."""
 MESHES = {"far": -5000.0, "farther": -6000.0}
 """Files with a triangle so far below the part that nothing touches it, and its height, mm."""
-FOR_PART_PROGRAMS = {"--tool", "--unit", "--contour-data", "--wear", "--cl-dialect", "--cycle-values", "--cycle-kinds",
-                     "--goto-values", "--allow-open-end", "--feed", "--flavour", "--machine-zero",
+FOR_PART_PROGRAMS = {"--tool", "--tool-table", "--unit", "--contour-data", "--wear", "--cl-dialect", "--cycle-values",
+                     "--cycle-kinds", "--goto-values", "--allow-open-end", "--feed", "--flavour", "--machine-zero",
                      "--leave-out", "--origin", "--subprograms", "--block-delete"}  # fmt: skip
 """What G-code and CL data do not say; a job has nothing to be read so."""
 NORMALS = "--actual-tool"

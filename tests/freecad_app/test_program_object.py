@@ -12,7 +12,7 @@ from cam_jobs import add_tool_controller, moves, new_job, reopened
 from pkm_post.freecad_app import program_import
 from pkm_post.freecad_app.document import is_program
 from pkm_post.freecad_app.job import read_job
-from pkm_post.freecad_app.program_object import create_program, decode, read_program
+from pkm_post.freecad_app.program_object import create_program, decode, read_program, reading_of
 from pkm_post.model import Refused
 
 GCODE = """G21 G90 G17
@@ -184,6 +184,29 @@ def test_what_cycles_leave_open_is_said_by_properties(document, tmp_path, items,
         document.recompute()
         reached = [words["Z"] for kind, words in moves(obj) if kind == "G1" and "Z" in words]
         assert reached == ([depth] if depth else [])
+
+
+def test_kinds_of_cycles_are_said_by_a_property(document, tmp_path):
+    text = CYCLES.format("DEPTH,7,MMPM,85,CLEAR,2").replace("CYCLE/DRILL", "CYCLE/DEEPHL")
+    obj = create_program(document, written(tmp_path, "part.apt", text))
+    assert "L445" in [code_of(text) for text in obj.Found]
+    obj.CycleKinds = "DEEPHL=drill"
+    document.recompute()
+    assert [words["Z"] for kind, words in moves(obj) if kind == "G1" and "Z" in words] == [-7]
+    assert reading_of(obj).cycle_kinds == {"DEEPHL": "drill"}
+    obj.CycleKinds = "DEEPHL=fly"
+    document.recompute()
+    assert "J121" in [code_of(text) for text in obj.Found]
+
+
+def test_tools_come_from_a_table_that_a_property_names(document, tmp_path):
+    text = GCODE.replace("G1 X10 Y4 F900", "G41 D1 G1 X10 Y4 F900").replace("G2 X20 Y4 I5 J0\nG0", "G1 X20\nG40 G0 X30")
+    obj = create_program(document, written(tmp_path, "part.ngc", text))
+    assert [code_of(text) for text in obj.Found] == ["G411"]
+    obj.ToolTable = f"{written(tmp_path, 'tools.tbl', 'T1 P1 Z60 D6')},mm"
+    document.recompute()
+    assert not [text for text in obj.Found if "error" in text]
+    assert obj.Path.Commands
 
 
 def test_saved_document_keeps_the_path_without_the_file(document, file, tmp_path):

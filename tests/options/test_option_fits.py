@@ -25,7 +25,7 @@ CLDATA = "UNITS/MM\nLOADTL/1\nRAPID\nGOTO/0,0,30\nFEDRAT/600,MMPM\nGOTO/10,0,20\
 REACHED = ("--tool-length=1=60", "--work-offset=0,0,250")
 FOR_CLDATA = ("--contour-data", "--cl-dialect", "--cycle-values", "--cycle-kinds", "--goto-values")
 FOR_GCODE = ("--flavour", "--leave-out", "--origin", "--subprograms", "--block-delete")
-FOR_BOTH = ("--tool", "--unit", "--feed", "--allow-open-end", "--wear", "--machine-zero")
+FOR_BOTH = ("--tool", "--tool-table", "--unit", "--feed", "--allow-open-end", "--wear", "--machine-zero")
 FOR_PART_PROGRAMS = (*FOR_CLDATA, *FOR_GCODE, *FOR_BOTH)
 
 

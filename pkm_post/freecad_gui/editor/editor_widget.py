@@ -94,7 +94,13 @@ class EditorWidget(QtWidgets.QWidget):
         obj = program_link.object_of(file)
         # Options of other CL data do not apply to this file; G-code files mostly share theirs.
         kept = replace(
-            self.reading.chosen(), unit=None, contour_data=None, cl_dialect=None, cycle_values=(), allow_open_end=False
+            self.reading.chosen(),
+            unit=None,
+            contour_data=None,
+            cl_dialect=None,
+            cycle_values=(),
+            cycle_kinds={},
+            allow_open_end=False,
         )
         self.reading.show_reading(kept if obj is None else reading_of(obj))
         self.text.set_language(self._shown_language())

@@ -116,6 +116,7 @@ FIELDS: tuple[Field, ...] = (
     Field("work_offsets.*.matrix", forms.POSE, units.LENGTH, default=None),
     Field("part_programs.machine_zero", forms.POINT, units.LENGTH, default=None, attribute="machine_zero"),
     Field("part_programs.leave_out", forms.LEFT_OUT, default=(), attribute="left_out"),
+    Field("part_programs.tool_table", forms.NAME, default=None, attribute="tool_table"),
     Field("controller.kind", forms.choice("turbo_pmac", "power_pmac")),
     Field("controller.letters", forms.LETTERS),
     Field("controller.coordinate_system", forms.whole_number(1, 16), default=1),

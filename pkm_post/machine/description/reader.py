@@ -11,6 +11,7 @@ import hashlib
 import math
 import tomllib
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -86,7 +87,10 @@ def read_machine(path: Path) -> tuple[Machine | None, tuple[Diagnostic, ...]]:
             content = stream.read(MOST_BYTES + 1)
     except (OSError, ValueError) as fault:
         return None, (Diagnostic("M101", Place(file), getattr(fault, "strerror", None) or str(fault)),)
-    return machine_of(content, file)
+    machine, faults = machine_of(content, file)
+    if machine is not None and machine.tool_table is not None:
+        machine = replace(machine, tool_table=str(path.parent / machine.tool_table))
+    return machine, faults
 
 
 def machine_of(content: bytes, file: str) -> tuple[Machine | None, tuple[Diagnostic, ...]]:

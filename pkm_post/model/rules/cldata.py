@@ -85,5 +85,10 @@ CLDATA_RULES: dict[str, Rule] = {
         "the strokes of this kind of cycle are not known",
         "give them with --cycle-kinds, such as BORE=ream, or let the CAM system write single moves",
     ),
+    "L447": error(
+        "the tool table is not valid",
+        "write it as docs/g-code.md describes it: LinuxCNC's .tbl or .csv with the unit, as in --tool-table"
+        " tools.tbl,mm, or FreeCAD's .fctl",
+    ),
     "L446": error("the curve cannot be followed", "let the CAM system write the motion in plain points and arcs"),
 }

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tool table: cutters and gauge lengths of a magazine, from the file that a shop keeps them in.
+
+Enters: a tool table of LinuxCNC (.tbl), a table with headings (.csv), or a tool library of FreeCAD (.fctl with its
+.fctb). Leaves: cutters and gauge lengths by number, mm, or the faults of the file. Neither of the first two states its
+unit, which is therefore given with the name of the file. FreeCAD keeps no gauge lengths. [LinuxCNC, tool table]
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pkm_post.model import Diagnostic, Place, Tool
+from pkm_post.reading.units import UNITS
+
+MOST_BYTES = 10_000_000
+"""Size of a table. A row has about fifty bytes."""
+_MOST_NUMBER = 99_999_999
+
+
+@dataclass(frozen=True)
+class ToolTable:
+    """A tool table.
+
+    Attributes:
+        tools: cutters by number; those whose diameter is stated.
+        lengths: gauge lengths by number, mm; those that are stated.
+    """
+
+    tools: dict[int, Tool] = field(default_factory=dict)
+    lengths: dict[int, float] = field(default_factory=dict)
+
+
+class _TableError(ValueError):
+    """What is wrong with a line."""
+
+    def __init__(self, found: str, line: int = 0) -> None:
+        super().__init__(found)
+        self.line = line
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A tool as its file states it; lengths in mm, None where they are not stated."""
+
+    line: int
+    number: int
+    name: str = ""
+    diameter: float | None = None
+    corner: float | None = None
+    length: float | None = None
+
+
+def read_tool_table(named: str) -> tuple[ToolTable | None, tuple[Diagnostic, ...]]:
+    """Read a tool table.
+
+    Args:
+        named: its path; behind a comma the unit, a key of ``UNITS``, of a table that does not state it.
+    """
+    file, unit = split_unit(named)
+    suffix = Path(file).suffix.lower()
+    try:
+        if suffix not in _READERS:
+            raise _TableError(f"{suffix or 'no suffix'}, expected one of {', '.join(_READERS)}")
+        return _table_of(_READERS[suffix](_content(Path(file)), Path(file), unit)), ()
+    except OSError as fault:
+        return None, (Diagnostic("F103", Place(file), str(fault)),)
+    except _TableError as fault:
+        return None, (Diagnostic("L447", Place(file, line=fault.line), str(fault)),)
+
+
+def split_unit(named: str) -> tuple[str, str]:
+    """The path of a table, and the unit behind its last comma, empty if there is none."""
+    file, comma, unit = named.rpartition(",")
+    return (file, unit) if comma and unit in UNITS else (named, "")
+
+
+def _content(file: Path) -> str:
+    with file.open("rb") as stream:
+        content = stream.read(MOST_BYTES + 1)
+    if len(content) > MOST_BYTES:
+        raise _TableError(f"more than {MOST_BYTES} bytes")
+    return content.decode("utf-8-sig", "replace")
+
+
+def _table_of(rows: Iterator[_Row]) -> ToolTable:
+    table = ToolTable()
+    seen: set[int] = set()
+    for row in rows:
+        if row.number in seen:
+            raise _TableError(f"tool {row.number} for the second time", row.line)
+        seen.add(row.number)
+        if row.diameter is not None:
+            table.tools[row.number] = _cutter(row, row.diameter)
+        if row.length is not None:
+            table.lengths[row.number] = _within(row, "length", row.length)
+    if not seen:
+        raise _TableError("no tools")
+    return table
+
+
+def _cutter(row: _Row, diameter: float) -> Tool:
+    corner = 0.0 if row.corner is None else row.corner
+    if not 0 <= corner <= _within(row, "diameter", diameter) / 2:
+        raise _TableError(f"corner radius {corner:g} mm of tool {row.number}, diameter {diameter:g} mm", row.line)
+    return Tool(row.number, row.name, diameter, corner, 0.0, corner_known=row.corner is not None)
+
+
+def _within(row: _Row, name: str, value: float) -> float:
+    if not 0 < value < math.inf:
+        raise _TableError(f"{name} {value:g} mm of tool {row.number}, expected more than 0", row.line)
+    return value
+
+
+def _scale(unit: str, kind: str) -> float:
+    if not unit:
+        raise _TableError(f"{kind} does not state its unit: write it behind the name, as in tools.csv,mm")
+    return UNITS[unit]
+
+
+def _number(text: str, line: int) -> float:
+    if not re.fullmatch(r"[+-]?(\d+\.?\d*|\.\d+)", text):
+        raise _TableError(f"{text!r} instead of a number", line)
+    return float(text)
+
+
+def _tool_number(text: str, line: int) -> int:
+    if not text.isascii() or not text.isdigit() or int(text) > _MOST_NUMBER:
+        raise _TableError(f"{text!r} instead of the number of a tool", line)
+    return int(text)
+
+
+_WORD = re.compile(r"([A-Z])([-+.\d]*)$", re.IGNORECASE)
+_OFFSETS = "XYABCUVW"
+"""Offsets that G43 would apply as well, which no tool has that turns about its own axis."""
+_OF_LINUXCNC = f"TPZD{_OFFSETS}IJQ"
+"""Words of a row: tool, pocket, length, diameter, offsets, angles of turning tools and their orientation."""
+
+
+def _linuxcnc(text: str, _: Path, unit: str) -> Iterator[_Row]:
+    """``T1 P1 Z50 D6 ;remark``: Z is the length, D the diameter; 0 stands for what was not measured."""
+    scale = _scale(unit, "a tool table of LinuxCNC")
+    for line, content in enumerate(text.splitlines(), 1):
+        words, _semicolon, remark = content.partition(";")
+        if not words.strip():
+            continue
+        found = [_WORD.match(word) for word in words.split()]
+        given = {each[1].upper(): each[2] for each in found if each}
+        if len(given) != len(found) or "T" not in given or set(given) - set(_OF_LINUXCNC):
+            raise _TableError(f"{content.strip()[:40]!r}, expected words such as T1 P1 Z50 D6", line)
+        for letter in set(_OFFSETS) & set(given):
+            if _number(given[letter], line):
+                raise _TableError(f"offset {letter}{given[letter]}, expected 0: a tool has a length along Z", line)
+        length, diameter = (_number(given.get(letter, "0"), line) * scale for letter in "ZD")
+        number = _tool_number(given["T"], line)
+        yield _Row(line, number, remark.strip(), diameter or None, None, length or None)
+
+
+_COLUMNS = ("number", "name", "diameter", "corner_radius", "length")
+
+
+def _csv(text: str, _: Path, unit: str) -> Iterator[_Row]:
+    """Columns by their headings; others than ``_COLUMNS`` are remarks. An empty cell states nothing."""
+    scale = _scale(unit, "a table")
+    lines = text.splitlines()
+    heading = lines[0] if lines else ""
+    reader = csv.DictReader(lines, delimiter=";" if ";" in heading else ",")
+    names = {str(name).strip().lower().replace(" ", "_"): name for name in reader.fieldnames or ()}
+    if "number" not in names:
+        raise _TableError(f"no column number among {heading[:60]!r}; the columns are {', '.join(_COLUMNS)}", 1)
+    for row in reader:
+        line = reader.line_num
+        cells = {name: str(row.get(names[name]) or "").strip() for name in _COLUMNS if name in names}
+        if not any(cells.values()):
+            continue
+        lengths = [
+            _number(cells[name], line) * scale if cells.get(name) else None
+            for name in ("diameter", "corner_radius", "length")
+        ]
+        yield _Row(line, _tool_number(cells["number"], line), cells.get("name", ""), *lengths)
+
+
+_QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)) ?(mm|cm|m|in|\")")
+_OF_FREECAD = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, '"': 25.4}
+
+
+def _freecad(text: str, file: Path, unit: str) -> Iterator[_Row]:
+    """The numbers of a library, and the diameter and corner of each bit, which is in a file of its own."""
+    if unit:
+        raise _TableError(f"a library of FreeCAD states its units: leave out {unit}")
+    entries = _json(text, file).get("tools")
+    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+        raise _TableError("no list of tools")
+    for entry in entries:
+        number, path = entry.get("nr"), str(entry.get("path", ""))
+        bit = _bit_file(file, path)
+        content = _json(_content(bit), bit)
+        diameter, corner = _sizes(content, bit)
+        yield _Row(0, _tool_number(str(number), 0), str(content.get("name", "")), diameter, corner)
+
+
+def _json(text: str, file: Path) -> dict[str, Any]:
+    try:
+        content = json.loads(text)
+    except (ValueError, RecursionError) as fault:
+        raise _TableError(f"{file.name} is no JSON: {fault}") from None
+    if not isinstance(content, dict):
+        raise _TableError(f"{file.name} is no library of FreeCAD")
+    return content
+
+
+def _bit_file(library: Path, path: str) -> Path:
+    """The file of a bit: as named, beside the library, or in the folder Bit beside that of the library."""
+    folders = (library.parent, library.parent.parent / "Bit", library.parent / "Bit")
+    found = next((folder / path for folder in folders if path and (folder / path).is_file()), None)
+    if found is None:
+        raise _TableError(f"the file {path!r} of a tool is not beside the library nor in Bit beside its folder")
+    return found
+
+
+def _sizes(content: dict[str, Any], bit: Path) -> tuple[float | None, float | None]:
+    """Diameter and corner radius in mm, None where they are not stated or the shape has another bottom.
+
+    FreeCAD 1.0 keeps the radius of the flat of a bull nose, newer versions that of its corner.
+    """
+    stated = content.get("parameter")
+    parameters = stated if isinstance(stated, dict) else {}
+    diameter = _quantity(parameters, "Diameter", bit)
+    shape = str(content.get("shape-type") or Path(str(content.get("shape", ""))).stem).lower()
+    if diameter is None:
+        return None, None
+    if shape == "bullnose":
+        corner, flat = (_quantity(parameters, name, bit) for name in ("CornerRadius", "FlatRadius"))
+        return diameter, corner if corner is not None or flat is None else diameter / 2 - flat
+    return diameter, {"endmill": 0.0, "ballend": diameter / 2}.get(shape)
+
+
+def _quantity(parameters: dict[str, Any], name: str, bit: Path) -> float | None:
+    if name not in parameters:
+        return None
+    found = _QUANTITY.fullmatch(str(parameters[name]).strip())
+    if found is None:
+        raise _TableError(f"{name} {parameters[name]!r} in {bit.name}, expected a length such as 6.0 mm")
+    return float(found[1]) * _OF_FREECAD[found[2]]
+
+
+_READERS: dict[str, Callable[[str, Path, str], Iterator[_Row]]] = {".tbl": _linuxcnc, ".csv": _csv, ".fctl": _freecad}
+"""Readers by suffix."""

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tool tables: LinuxCNC's, with headings, and FreeCAD's libraries; what they give, and what of them is refused."""
+
+import json
+
+import pytest
+
+from pkm_post.machine import find_machine
+from pkm_post.model import Tool, errors
+from pkm_post.posting.post_file import prepared_file
+from pkm_post.reading import ReadingOptions, read_part_program
+from pkm_post.reading.tool_table import read_tool_table
+
+# rows as the manual of LinuxCNC 2.9 shows them, with words in any case and order
+LINUXCNC = "; tools of the router\nT1 P17 Z120.5 D6 ;mill\n\nt2 d0 p2 z+90.25\nT99999 P3 D3.175 Z+0\n"
+WITH_HEADINGS = "Number;Name;Diameter;Corner radius;Length;Holder\n1;mill;6;;120.5;ER20\n2;ball;8;4;;\n;;;;;\n"
+
+
+def table(tmp_path, name, text, unit=""):
+    (tmp_path / name.partition(",")[0]).write_text(text, encoding="utf-8")
+    return read_tool_table(f"{tmp_path / name}{unit}")
+
+
+def test_a_table_of_linuxcnc(tmp_path):
+    found, faults = table(tmp_path, "tools.tbl", LINUXCNC, ",mm")
+    assert not faults
+    assert found.lengths == {1: 120.5, 2: 90.25}
+    assert found.tools == {
+        1: Tool(1, "mill", 6.0, 0.0, 0.0, corner_known=False),
+        99999: Tool(99999, "", 3.175, 0.0, 0.0, corner_known=False),
+    }
+
+
+def test_a_table_in_inches(tmp_path):
+    found, _ = table(tmp_path, "tools.TBL", "T1 P1 Z2 D.25\n", ",inch")
+    assert (found.lengths[1], found.tools[1].diameter) == (50.8, 6.35)
+
+
+def test_a_table_with_headings(tmp_path):
+    found, faults = table(tmp_path, "tools.csv", WITH_HEADINGS, ",mm")
+    assert not faults
+    assert found.lengths == {1: 120.5}
+    assert found.tools == {1: Tool(1, "mill", 6.0, 0.0, 0.0, corner_known=False), 2: Tool(2, "ball", 8.0, 4.0, 0.0)}
+
+
+def bit(shape, **parameters):
+    return {"version": 2, "name": shape, "shape": f"{shape}.fcstd", "parameter": parameters, "attribute": {}}
+
+
+BITS = {
+    "end.fctb": bit("endmill", Diameter="5.0000 mm", Length="50.0000 mm"),
+    "ball.fctb": bit("ballend", Diameter="0.25 in"),
+    # FreeCAD 1.0 keeps the radius of the flat, 1.1 that of the corner
+    "bull.fctb": bit("bullnose", Diameter="10.0 mm", FlatRadius="3.0 mm"),
+    "new.fctb": bit("bullnose", Diameter="10.0 mm", CornerRadius="1.0 mm") | {"shape-type": "Bullnose"},
+    "drill.fctb": bit("drill", Diameter="5 mm", TipAngle="119.0 \u00b0"),
+}
+
+
+def test_a_library_of_freecad(tmp_path):
+    (tmp_path / "Library").mkdir()
+    (tmp_path / "Bit").mkdir()
+    for name, content in BITS.items():
+        (tmp_path / "Bit" / name).write_text(json.dumps(content), encoding="utf-8")
+    tools = [{"nr": number, "path": name} for number, name in enumerate(BITS, 1)]
+    library = tmp_path / "Library" / "shop.fctl"
+    library.write_text(json.dumps({"tools": tools, "version": 1}), encoding="utf-8")
+    found, faults = read_tool_table(str(library))
+    assert not faults
+    assert found.lengths == {}
+    sizes = [(tool.diameter, tool.corner_radius, tool.corner_known) for tool in found.tools.values()]
+    assert sizes == [(5, 0, True), (6.35, 3.175, True), (10, 2, True), (10, 1, True), (5, 0, False)]
+    (tmp_path / "Bit" / "end.fctb").unlink()
+    assert "'end.fctb'" in read_tool_table(str(library))[1][0].found
+
+
+FAULTS = {
+    ("tools.tbl", "", "T1 P1 Z5\n"): (0, "a tool table of LinuxCNC does not state its unit"),
+    ("tools.csv", "", "number,length\n1,5\n"): (0, "a table does not state its unit"),
+    ("tools.tbl", ",mm", "T1 P1 Z5\nT1 P2 Z6\n"): (2, "tool 1 for the second time"),
+    ("tools.tbl", ",mm", "T1 P1 Z-5\n"): (1, "length -5 mm of tool 1, expected more than 0"),
+    ("tools.tbl", ",mm", "P1 Z5\n"): (1, "'P1 Z5', expected words such as T1 P1 Z50 D6"),
+    ("tools.tbl", ",mm", "T1 P1 Z5 G1\n"): (1, "'T1 P1 Z5 G1', expected words"),
+    ("tools.tbl", ",mm", "T1 P1 Z5..2\n"): (1, "'5..2' instead of a number"),
+    ("tools.tbl", ",mm", "T1 P1 X0 Y-2 Z5\n"): (1, "offset Y-2, expected 0"),
+    ("tools.tbl", ",mm", "T1.5 P1 Z5\n"): (1, "'1.5' instead of the number of a tool"),
+    ("tools.tbl", ",mm", "; nothing\n"): (0, "no tools"),
+    ("tools.csv", ",mm", "tool,length\n1,5\n"): (1, "no column number among 'tool,length'"),
+    ("tools.csv", ",mm", "number,length\n1,abc\n"): (2, "'abc' instead of a number"),
+    ("tools.csv", ",mm", "number,diameter,corner_radius\n1,6,4\n"): (2, "corner radius 4 mm of tool 1"),
+    ("tools.fctl", ",mm", "{}"): (0, "a library of FreeCAD states its units: leave out mm"),
+    ("tools.fctl", "", "{"): (0, "tools.fctl is no JSON"),
+    ("tools.fctl", "", '{"tools": 3}'): (0, "no list of tools"),
+    ("tools.fctb", "", "{}"): (0, ".fctb, expected one of .tbl, .csv, .fctl"),
+}
+
+
+@pytest.mark.parametrize("given", FAULTS, ids=[f"{name} {text[:20]!r}" for name, _, text in FAULTS])
+def test_what_is_wrong_is_named(tmp_path, given):
+    name, unit, text = given
+    found, ((fault),) = table(tmp_path, name, text, unit)
+    line, beginning = FAULTS[given]
+    assert found is None
+    assert (fault.code, fault.place.line) == ("L447", line)
+    assert fault.found.startswith(beginning)
+
+
+def test_a_table_that_is_not_there(tmp_path):
+    assert read_tool_table(str(tmp_path / "none.tbl,mm"))[1][0].code == "F103"
+
+
+PART = "G21\nT1 M6\nS1000 M3\nG0 X0 Y0 Z30\nG41 D1 G1 X10 Y10 F300\nX20\nG40 Y30\nG0 Z40\nM5\nM2\n"
+
+
+def test_a_program_is_read_and_prepared_with_it(tmp_path):
+    part, tools = tmp_path / "part.ngc", tmp_path / "tools.tbl"
+    part.write_text(PART, encoding="ascii")
+    tools.write_text("T1 P1 Z60 D6\nT2 P2 Z70\n", encoding="ascii")
+    assert [fault.code for fault in errors(read_part_program(part, ReadingOptions())[1])] == ["G411"]
+    program, _ = read_part_program(part, ReadingOptions(tool_table=f"{tools},mm"))
+    assert sorted(set(program.side_offset.tolist())) == [0.0, 3.0]
+    prepared = prepared_file(part, arguments=f"--tool-table {tools},mm --tool 1=8")
+    assert not prepared.found
+    assert (prepared.program.tools[1].length, prepared.program.side_offset.max()) == (60.0, 4.0)
+
+
+def test_cl_data_have_gauge_lengths_of_it_and_keep_their_cutters(tmp_path):
+    part, tools = tmp_path / "part.apt", tmp_path / "tools.csv"
+    lines = ("UNITS/MM", "LOADTL/1,LENGTH,50", "CUTTER/10", "GOTO/0,0,30", "FEDRAT/600,MMPM", "GOTO/1,0,30", "FINI")
+    part.write_text("\n".join(lines), encoding="ascii")
+    tools.write_text("number,diameter,length\n1,6,60\n", encoding="ascii")
+    prepared = prepared_file(part, arguments=f"--tool-table {tools},mm")
+    (tool,) = prepared.program.tools.values()
+    assert (tool.diameter, tool.length) == (10.0, 60.0)
+    replaced = [fault.found for fault in prepared.found if fault.code == "J125"]
+    assert replaced == ["--tool-table 1=60 instead of 50 of T1"]
+
+
+def test_a_faulty_table_refuses_the_program(tmp_path):
+    part = tmp_path / "part.ngc"
+    part.write_text(PART, encoding="ascii")
+    (tmp_path / "tools.tbl").write_text("T1 P1 Z60 D6\n", encoding="ascii")
+    table = str(tmp_path / "tools.tbl")
+    assert [fault.code for fault in read_part_program(part, ReadingOptions(tool_table=table))[1]] == ["L447"]
+    assert [fault.code for fault in prepared_file(part, arguments=f"--tool-table {table}").found] == ["L447"]
+
+
+def test_the_machine_file_names_a_table_in_its_folder(tmp_path, monkeypatch):
+    text = find_machine("example_6tps").read_text(encoding="utf-8")
+    machine, part = tmp_path / "shop" / "machine.toml", tmp_path / "part.ngc"
+    machine.parent.mkdir()
+    machine.write_text(text + '\n[part_programs]\ntool_table = "tools.tbl,mm"\n', encoding="utf-8")
+    (machine.parent / "tools.tbl").write_text("T1 P1 Z60 D6\n", encoding="ascii")
+    (tmp_path / "own.tbl").write_text("T1 P1 Z70 D6\n", encoding="ascii")
+    part.write_text(PART, encoding="ascii")
+    monkeypatch.chdir(tmp_path)
+    assert prepared_file(part, machine).program.tools[1].length == 60.0
+    assert prepared_file(part, machine, arguments="--tool-table own.tbl,mm").program.tools[1].length == 70.0
