@@ -148,6 +148,7 @@ class Machine:
         longest_tool: largest gauge length that the spindle accepts, mm; infinite when no limit is stated.
         machine_zero: (3,) tool tip in {M} where G-code has X, Y and Z of G53, G28 and G30 at 0; None if not stated.
         left_out: codes of G-code, such as "M21", to leave out where they are not understood.
+        optional_stops: what becomes of M1: "written", "stop" or "leave-out".
         tool_table: path of the tool table for part programs, with its unit behind a comma; None if not stated.
     """
 
@@ -207,6 +208,7 @@ class Machine:
     machine_zero: Array | None = None
     left_out: tuple[str, ...] = ()
     tool_table: str | None = None
+    optional_stops: str = "written"
 
     def __post_init__(self) -> None:
         for name in ("base_cone", "platform_cone"):

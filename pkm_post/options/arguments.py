@@ -20,6 +20,7 @@ from pkm_post.options.converters import (
     GCODE_FLAVOURS,
     MOST_FEED,
     OBJECTIVES,
+    OPTIONAL_STOPS,
     SIDE_OUTPUTS,
     also,
     codes,
@@ -161,6 +162,12 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "default": (),
         "help": "G and M codes of G-code that do not move the tool and are not known here, such as M21,G187: left out"
         " with their words, and named in the report",
+    },
+    "--optional-stops": {
+        "choices": OPTIONAL_STOPS,
+        "help": "what becomes of M1 and OPSTOP: written as the code that the machine file has for them, so that the"
+        " switch of the controller decides, written as program stops, or left out (default: as the machine file says,"
+        " written if it says nothing)",
     },
     "--contour-data": {
         "choices": ("centre", "contour"),

@@ -53,6 +53,8 @@ class Options:
         actual_tools: by number, tools whose cutters differ from those the program was made for; a program with
             surface normals is compensated for them.
         copies: mirror images and rotations that follow the program.
+        optional_stops: what becomes of optional stops, one of ``toolpath.OPTIONAL_STOPS``; None as the machine file has
+            it.
         surface_speed: cutting speed to keep; None leaves the spindle as programmed.
         also: side outputs, keys of ``system.result_files.SIDE_OUTPUTS``.
         mesh_files: mesh files of the bodies in the collision check.
@@ -67,6 +69,7 @@ class Options:
     actual_tools: Mapping[int, Tool] = field(default_factory=dict)
     copies: Copies = Copies()
     surface_speed: SurfaceSpeed | None = None
+    optional_stops: str | None = None
     also: tuple[str, ...] = ()
     mesh_files: MeshFiles = MeshFiles()
     setup: Setup = EMPTY_SETUP

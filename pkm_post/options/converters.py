@@ -73,6 +73,9 @@ def also(text: str) -> tuple[str, ...]:
     return tuple(name for name in SIDE_OUTPUTS if name in chosen)
 
 
+OPTIONAL_STOPS = ("written", "stop", "leave-out")
+"""What becomes of optional stops, as in ``toolpath.OPTIONAL_STOPS``."""
+
 CL_DIALECTS = ("nx", "creo", "catia", "solidworks", "makino", "apt")
 """Sources of CL data, as in ``cldata.DIALECTS``."""
 CYCLE_VALUES = ("depth", "feed", "clearance", "return", "step", "dwell", "diameter")

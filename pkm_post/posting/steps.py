@@ -38,6 +38,7 @@ from pkm_post.posting.placement import effective_setup, trajectory_of
 from pkm_post.posting.run import Findings, Log, PostContext, Posted, Progress, Run, no_log, no_progress
 from pkm_post.report import Results, draw_report, summary, write_page
 from pkm_post.system import beside, memory_guard, require_usable, result_files, staged, write_fault
+from pkm_post.toolpath import with_optional_stops
 from pkm_post.writing import TABLES, controller_settings, manifest, outputs, program_files, read_texts, trajectory_file
 
 SUFFIX = result_files.PROGRAM
@@ -82,6 +83,7 @@ def post(
     found = (*found, *faults)
     if program is None or machine is None or errors(found):
         raise Refused(found)
+    program = with_optional_stops(program, options.optional_stops or machine.optional_stops)
     run = Run(log, progress, _shares(options), list(found))
     try:
         require_usable(program_path.name)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
     from pkm_post.toolpath.compensation.cutter import Cutter
     from pkm_post.toolpath.compensation.swept_volume import SweptVolume, stock_left
+    from pkm_post.toolpath.optional_stops import OPTIONAL_STOPS, with_optional_stops
     from pkm_post.toolpath.surface.moves import program_from_poses
     from pkm_post.toolpath.surface.options import CutMode, LeadMove, PassLines, PassOrder, SurfaceOptions
     from pkm_post.toolpath.surface.passes import surface_poses
@@ -42,6 +43,7 @@ else:
             "compensation.contour_elements": "OffsetOptions",
             "compensation.cutter": "Cutter",
             "compensation.swept_volume": "SweptVolume stock_left",
+            "optional_stops": "OPTIONAL_STOPS with_optional_stops",
             "surface.moves": "program_from_poses",
             "surface.options": "CutMode LeadMove PassLines PassOrder SurfaceOptions",
             "surface.passes": "surface_poses",
@@ -62,6 +64,8 @@ else:
 __all__ = [
     "CHORD_ERROR",
     "MIRRORS",
+    "OPTIONAL_STOPS",
+    "with_optional_stops",
     "with_chords",
     "with_copies",
     "AxisRule",

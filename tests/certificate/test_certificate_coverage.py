@@ -30,7 +30,7 @@ NO_LIMITS = {
     "singularity.characteristic_length", "tool_path.home_tip", "tool_path.home_axis", "tool_path.home_spin",
     "struts.velocity_gain", "tool_change.nose", "tool_change.axis", "tool_change.spin",
     "work_offsets.*.origin", "work_offsets.*.rotation_z", "work_offsets.*.matrix", "part_programs.machine_zero",
-    "part_programs.leave_out", "part_programs.tool_table", "controller.kind",
+    "part_programs.leave_out", "part_programs.tool_table", "part_programs.optional_stops", "controller.kind",
     "controller.letters", "controller.coordinate_system", "controller.program", "controller.length_decimals",
     "controller.speed_decimals", "controller.counts_per_mm", "controller.zero_length", "controller.codes.tool_change",
     "controller.codes.spindle_clockwise", "controller.codes.spindle_counterclockwise",

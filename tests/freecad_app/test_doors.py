@@ -29,7 +29,13 @@ from pkm_post.model import Refused
 from pkm_post.options import explicit_values, options_from, parse_text, tool_lengths_from
 from pkm_post.posting import post
 
-CUT = ["G0 X0 Y0 Z30 I0 J0 K1", "G1 X0 Y0 Z25 I0 J0.28 K0.96 F20", "G1 X4 Y2 Z25 I0.28 J0 K0.96 F25", "G0 Z30 I0 J0 K1"]
+CUT = [
+    "G0 X0 Y0 Z30 I0 J0 K1",
+    "G1 X0 Y0 Z25 I0 J0.28 K0.96 F20",
+    "G1 X4 Y2 Z25 I0.28 J0 K0.96 F25",
+    "M1",
+    "G0 Z30 I0 J0 K1",
+]
 ALWAYS = {"--work-offset": "--work-offset=0,0,250", "--surface-speed": "--surface-speed=100"}
 """Where the machine reaches, and what --keep-chip-load needs; in every job but where the option itself is tried."""
 NO_EFFECT_HERE = {"--corners", "--leads", "--swallowed", "--keep-climb"}

@@ -54,6 +54,8 @@ MOST_DECIMALS = 9
 MOST_WORDS = 2**24
 LONGEST_SHORTEST = 50
 """ms: intervals can be split evenly into pieces no shorter than that."""
+OPTIONAL_STOPS = ("written", "stop", "leave-out")
+"""As in ``toolpath.OPTIONAL_STOPS``."""
 JOINT_KIND = forms.choice("universal", "spherical")
 
 FIELDS: tuple[Field, ...] = (
@@ -117,6 +119,7 @@ FIELDS: tuple[Field, ...] = (
     Field("part_programs.machine_zero", forms.POINT, units.LENGTH, default=None, attribute="machine_zero"),
     Field("part_programs.leave_out", forms.LEFT_OUT, default=(), attribute="left_out"),
     Field("part_programs.tool_table", forms.NAME, default=None, attribute="tool_table"),
+    Field("part_programs.optional_stops", forms.choice(*OPTIONAL_STOPS), default="written", attribute="optional_stops"),
     Field("controller.kind", forms.choice("turbo_pmac", "power_pmac")),
     Field("controller.letters", forms.LETTERS),
     Field("controller.coordinate_system", forms.whole_number(1, 16), default=1),
