@@ -34,6 +34,7 @@ from pkm_post.options.converters import (
     sizes,
     spin,
     spin_words,
+    start_line,
     surface_speed_or_none,
     work_offset,
 )
@@ -236,6 +237,13 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     "--keep-chip-load": {
         "action": "store_true",
         "help": "change feeds as the spindle speed changes with --surface-speed; --no-keep-chip-load takes it back",
+    },
+    "--from-line": {
+        "metavar": "[OPERATION:]N",
+        "type": start_line,
+        "default": None,
+        "help": "begin at this line of the source, or number of the command in an operation: the way there comes down"
+        " along the tool axis, with spindle, coolant and tool of that line; none begins at the beginning, the default",
     },
     "--part": {
         "metavar": "FILE",

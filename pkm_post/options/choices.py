@@ -11,7 +11,7 @@ from pkm_post.geometry import Array
 from pkm_post.machine import ZERO_TORSION, SpinPolicy
 from pkm_post.model import EMPTY_SETUP, Setup, Tolerances, Tool
 from pkm_post.system import result_files
-from pkm_post.toolpath import Copies, OffsetOptions, SurfaceSpeed
+from pkm_post.toolpath import Copies, OffsetOptions, StartLine, SurfaceSpeed
 
 CARTESIAN = "cartesian"
 """The side output of a program in X Y Z A B C."""
@@ -56,6 +56,7 @@ class Options:
         optional_stops: what becomes of optional stops, one of ``toolpath.OPTIONAL_STOPS``; None as the machine file has
             it.
         surface_speed: cutting speed to keep; None leaves the spindle as programmed.
+        from_line: the line that the program begins at; None for its beginning.
         also: side outputs, keys of ``system.result_files.SIDE_OUTPUTS``.
         mesh_files: mesh files of the bodies in the collision check.
         setup: the set-up known without files, as from a CAM job.
@@ -70,6 +71,7 @@ class Options:
     copies: Copies = Copies()
     surface_speed: SurfaceSpeed | None = None
     optional_stops: str | None = None
+    from_line: StartLine | None = None
     also: tuple[str, ...] = ()
     mesh_files: MeshFiles = MeshFiles()
     setup: Setup = EMPTY_SETUP

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pkm_post.model import Tolerances, Tool
     from pkm_post.options.choices import Options
     from pkm_post.reading import ReadingOptions
-    from pkm_post.toolpath import SurfaceSpeed
+    from pkm_post.toolpath import StartLine, SurfaceSpeed
 
 
 def options_from(namespace: argparse.Namespace) -> Options:
@@ -36,6 +36,7 @@ def options_from(namespace: argparse.Namespace) -> Options:
         copies=Copies(tuple(map(_move, namespace.copies)), namespace.keep_climb),
         surface_speed=_surface_speed(namespace.surface_speed, namespace.keep_chip_load),
         optional_stops=namespace.optional_stops,
+        from_line=_start_line(namespace.from_line),
         also=namespace.also,
         actual_tools=_cutters(namespace.actual_tool),
         mesh_files=MeshFiles(namespace.part, namespace.stock, tuple(dict(namespace.fixture).values())),
@@ -73,6 +74,12 @@ def _surface_speed(metres_per_minute: float | None, keep_chip_load: bool) -> Sur
     from pkm_post.toolpath import SurfaceSpeed
 
     return None if metres_per_minute is None else SurfaceSpeed(metres_per_minute * 1000 / 60, keep_chip_load)
+
+
+def _start_line(start: tuple[int, str] | None) -> StartLine | None:
+    from pkm_post.toolpath import StartLine
+
+    return None if start is None else StartLine(*start)
 
 
 def _cutters(sizes: Iterable[tuple[int, tuple[float, float | None]]]) -> dict[int, Tool]:
@@ -144,6 +151,7 @@ def argument_values(options: Options) -> ArgumentValues:
         "surface_speed": None if speed is None else speed.speed * 60 / 1000,
         "keep_chip_load": speed is not None and speed.keep_chip_load,
         "optional_stops": options.optional_stops,
+        "from_line": None if options.from_line is None else (options.from_line.line, options.from_line.operation),
         "also": options.also,
         "part": options.mesh_files.part,
         "stock": options.mesh_files.stock,

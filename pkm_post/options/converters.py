@@ -179,6 +179,16 @@ def surface_speed_or_none(text: str) -> float | None:
     return None if text == NOTHING else above_zero(100_000)(text)
 
 
+def start_line(text: str) -> tuple[int, str] | None:
+    """A line, and the operation it belongs to, or nothing; None for the word for nothing."""
+    operation, _, line = text.rpartition(":")
+    if text == NOTHING:
+        return None
+    if not (line.isascii() and line.isdigit() and 0 < int(line) < 1 << 31):
+        raise argparse.ArgumentTypeError(f"expected N or OPERATION:N, a line from 1 on, got {text!r}")
+    return int(line), operation
+
+
 def listed(file: str) -> tuple[str, str]:
     """A file with its own name: named in two layers of options, it counts once."""
     return file, file

@@ -137,6 +137,13 @@ def _by_number(entry: tuple[int | str, Any]) -> str:
     return f"{number}={','.join(map(_plain, known))}"
 
 
+def _start_line(value: tuple[int, str] | None) -> str:
+    if value is None:
+        return NOTHING
+    line, operation = value
+    return f"{operation}:{line}" if operation else str(line)
+
+
 def _spin(value: tuple[str, float, str]) -> str:
     rule, heading, objective = value
     if rule == "optimise":
@@ -146,6 +153,7 @@ def _spin(value: tuple[str, float, str]) -> str:
 
 _FORMATS: dict[str, Callable[[Any], str]] = {
     "spin": _spin,
+    "from_line": _start_line,
     **dict.fromkeys(("tool_length", "tools", "actual_tool", "wear", "origin"), _by_number),
     **dict.fromkeys(("fixture", "subprograms"), lambda entry: str(entry[0])),
     "cycle_kinds": lambda pairs: ",".join(map("=".join, pairs)) or NOTHING,

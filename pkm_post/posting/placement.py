@@ -17,7 +17,7 @@ from pkm_post.machine import with_spin
 from pkm_post.model import Diagnostic, Machine, Mesh, Place, Program, Setup, Trajectory
 from pkm_post.options import NO_MESH, Options
 from pkm_post.reading import read_mesh
-from pkm_post.toolpath import compensate, place, with_copies, with_surface_speed
+from pkm_post.toolpath import begun_at, compensate, place, with_copies, with_surface_speed
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -52,7 +52,11 @@ def trajectory_of(
     if placed is None:
         return None, diagnostics
     turned, faults = with_spin(placed, machine, options.spin, executor)
-    return turned, diagnostics + faults
+    diagnostics += faults
+    if turned is None or options.from_line is None:
+        return turned, diagnostics
+    begun, faults = begun_at(turned, options.from_line, machine)
+    return begun, diagnostics + faults
 
 
 def work_offset(machine: Machine, options: Options) -> tuple[Array | None, Findings]:

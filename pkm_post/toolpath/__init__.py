@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
     from pkm_post.toolpath.compensation.cutter import Cutter
     from pkm_post.toolpath.compensation.swept_volume import SweptVolume, stock_left
+    from pkm_post.toolpath.from_line import StartLine, begun_at, modal_events, row_of_line
     from pkm_post.toolpath.optional_stops import OPTIONAL_STOPS, with_optional_stops
     from pkm_post.toolpath.surface.moves import program_from_poses
     from pkm_post.toolpath.surface.options import CutMode, LeadMove, PassLines, PassOrder, SurfaceOptions
@@ -43,6 +44,7 @@ else:
             "compensation.contour_elements": "OffsetOptions",
             "compensation.cutter": "Cutter",
             "compensation.swept_volume": "SweptVolume stock_left",
+            "from_line": "StartLine begun_at modal_events row_of_line",
             "optional_stops": "OPTIONAL_STOPS with_optional_stops",
             "surface.moves": "program_from_poses",
             "surface.options": "CutMode LeadMove PassLines PassOrder SurfaceOptions",
@@ -91,6 +93,10 @@ __all__ = [
     "mirror_gap",
     "pose_columns",
     "SplineBounds",
+    "StartLine",
+    "begun_at",
+    "modal_events",
+    "row_of_line",
     "Splines",
     "compensate",
     "compress",

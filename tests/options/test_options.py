@@ -18,10 +18,11 @@ from pkm_post.options import (
     tool_lengths_from,
 )
 from pkm_post.options.choices import Options
-from pkm_post.options.conversion import tools_from
+from pkm_post.options.conversion import argument_values, tools_from
 from pkm_post.reading import cldata
 from pkm_post.reading.part_program import AS_WRITTEN
 from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
+from pkm_post.toolpath.from_line import StartLine
 from pkm_post.toolpath.surface_speed import SurfaceSpeed
 
 
@@ -105,6 +106,16 @@ def test_surface_speed():
     assert wanted == SurfaceSpeed(2000.0, keep_chip_load=True)
 
 
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [("12", StartLine(12)), ("Finish: inside:3", StartLine(3, "Finish: inside")), (":7", StartLine(7)), ("none", None)],
+)
+def test_a_line_to_begin_at(text, wanted):
+    chosen = options_from(parsed("--from-line", text))
+    assert chosen.from_line == wanted and options_from(parsed()).from_line is None
+    assert argument_values(chosen)["from_line"] == (None if wanted is None else (wanted.line, wanted.operation))
+
+
 def test_every_rule_of_the_spin_can_be_chosen():
     assert set(converters._SPINS) == {rule.value for rule in SpinRule}
     assert set(converters.OBJECTIVES) == set(OBJECTIVES)
@@ -132,6 +143,9 @@ def test_the_numbers_of_the_spin():
         (["--axis-tolerance", "x"], "expected a number from 1e-06 to 45, got 'x'"),
         (["--axis-tolerance", "1e300"], "expected a number from 1e-06 to 45, got '1e300'"),
         (["--surface-speed", "1e308"], "expected a number above 0 and up to 100000, got '1e308'"),
+        (["--from-line", "0"], "expected N or OPERATION:N, a line from 1 on, got '0'"),
+        (["--from-line", "Finish"], "expected N or OPERATION:N, a line from 1 on, got 'Finish'"),
+        (["--from-line", "Finish:-3"], "expected N or OPERATION:N, a line from 1 on, got 'Finish:-3'"),
         (["--actual-tool", "3=1e300"], "expected a number above 0 and up to 10000, got '1e300'"),
         (["--actual-tool", "3=10,-1"], "expected a number from 0 to 5.0, got '-1'"),
         (["--tool", "3=10,5.001"], "expected a number from 0 to 5.0, got '5.001'"),

@@ -3,6 +3,7 @@
 
 import hashlib
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from pkm_post.model.certificate import Tolerances
 from pkm_post.options.choices import Options
 from pkm_post.posting.post_file import post_file
 from pkm_post.reading.part_program import ReadingOptions
+from pkm_post.toolpath import StartLine
 from pkm_post.writing import trajectory_file
 
 ADDON = Path(__file__).parents[2]
@@ -345,3 +347,47 @@ def test_arguments_are_typed_as_on_the_command_line(tmp_path, capsys):
         post_file(tmp_path / "a.ngc", out=tmp_path, arguments="--no-such-thing")
     with pytest.raises(ValueError, match="got both"):
         post_file(tmp_path / "a.ngc", out=tmp_path, arguments=typed, options=Options())
+
+
+BY_HAND = """\
+T1 M6 G43 H1
+G21 G90 G94
+G0 X{} Y0 Z{}
+G43.5 I0.1 J0 K1
+S8000 M3
+G1 X10 Y0 Z20 I0.1 J0 K1 F600
+G1 X20 Y5 Z20 I0.1 J0.1 K1
+G0 Z30
+M5
+M30
+"""
+"""The program below from its second cut on: down along the tool axis from above everything."""
+
+
+def test_a_program_from_a_line_is_what_one_would_write_by_hand(tmp_path):
+    rise = (30.0 - 20.0) / 1.0
+    texts = {"whole": G_CODE, "hand": BY_HAND.format(10 + 0.1 * rise, 30)}
+    options, reading = Options(work_offset=WORK_OFFSET), ReadingOptions("vector")
+    made = {}
+    for name, text in texts.items():
+        (tmp_path / f"{name}.ngc").write_text(text)
+        chosen = replace(options, from_line=StartLine(6)) if name == "whole" else options
+        file, out = tmp_path / f"{name}.ngc", tmp_path / "out"
+        report = post_file(file, out=out, options=chosen, tool_lengths={1: 120.0}, reading=reading).report
+        assert report["certificate"]["holds"]
+        made[name], faults = trajectory_file.read(tmp_path / "out" / f"{name}.pkmt")
+        assert not faults
+    begun, hand = made["whole"], made["hand"]
+    for name in ("tip", "axis", "feed", "kind"):
+        np.testing.assert_allclose(getattr(begun, name)[-3:], getattr(hand, name)[-3:], atol=1e-9, err_msg=name)
+    np.testing.assert_allclose(begun.tip[-4], hand.tip[-4], atol=1e-9)
+    spindle = [(len(one) - each.row, each.value) for one in (begun, hand) for each in one.events if each.value == 8000]
+    assert spindle == [(3, 8000.0), (3, 8000.0)]
+
+
+def test_a_line_that_is_not_there_is_refused(tmp_path):
+    options = Options(work_offset=WORK_OFFSET, from_line=StartLine(40))
+    with pytest.raises(Refused) as refused:
+        posted(tmp_path, "part.ngc", G_CODE, options=options, reading=ReadingOptions("vector"))
+    assert [each.code for each in refused.value.diagnostics if each.code == "K150"]
+    assert not list((tmp_path / "out").glob("*"))

@@ -10,8 +10,8 @@ import math
 from pathlib import Path
 
 from pkm_post.certificate import machine_fault, values_beyond_machine
-from pkm_post.control.player.start_line import row_of_line
 from pkm_post.model import Diagnostic, Machine, Place, Tolerances, Trajectory, errors
+from pkm_post.toolpath import StartLine, row_of_line
 from pkm_post.writing import trajectory_file
 
 Findings = tuple[Diagnostic, ...]
@@ -48,7 +48,7 @@ def first_row(trajectory: Trajectory, line: int, operation: str, file: Path) -> 
         operation: its name; empty for the first one with such a line.
         file: of the trajectory, for the diagnostic.
     """
-    row = row_of_line(trajectory, line, operation)
+    row = row_of_line(trajectory, StartLine(line, operation))
     if row is not None:
         return row, ()
     place = Place(str(file), operation, line)

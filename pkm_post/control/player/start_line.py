@@ -22,34 +22,15 @@ from pkm_post.control.numerical_control.execute import execute, wait_for_rest
 from pkm_post.control.numerical_control.manual_moves import approach_trajectory
 from pkm_post.control.numerical_control.plan import Plan, planned
 from pkm_post.control.player.stop_events import TOLERANCES, Task, pose_before, run_events
-from pkm_post.model import Event, EventKind, Refused, Trajectory
+from pkm_post.model import Event, Refused, Trajectory
 from pkm_post.options import APPROACH_MM_S
+from pkm_post.toolpath import modal_events
 
-_MODAL = (EventKind.SPINDLE, EventKind.COOLANT)
 _THERE = "C201"
 """The tool stands where the approach leads to."""
 _SLOWEST = 0.05
 """Override at which a move may still end in time, as for moves by hand."""
 _MORE_S = 30.0
-
-
-def row_of_line(trajectory: Trajectory, line: int, operation: str = "") -> int | None:
-    """The first row of a line, or of the first line after it; None if the source has no such line.
-
-    Args:
-        trajectory: with the lines of its rows.
-        line: line, or number of the command, in the source.
-        operation: its name, where several have such lines; by default the first one that does.
-    """
-    named = np.array([not operation or name == operation for name in trajectory.operations])
-    rows = np.flatnonzero(named[trajectory.operation] & (trajectory.line >= line))
-    return int(rows[0]) if len(rows) else None
-
-
-def modal_events(trajectory: Trajectory, row: int) -> tuple[Event, ...]:
-    """What the program has switched on before a row: the last event of each kind."""
-    last = {each.kind: each for each in trajectory.events if each.row <= row and each.kind in _MODAL}
-    return tuple(last.values())
 
 
 def go_to_row(task: Task, row: int, feed: float = APPROACH_MM_S) -> None:

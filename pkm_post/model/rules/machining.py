@@ -143,6 +143,15 @@ MACHINING_RULES: dict[str, Rule] = {
         "a copy of the program would be reached by a feed move",
         "begin the program with a rapid move (G0, RAPID) above the part",
     ),
+    # K15: a program that begins at a line
+    "K150": error(
+        "the program has no line to begin at",
+        "name a line up to the last one that moves, and its operation: --from-line OPERATION:N",
+    ),
+    "K151": error(
+        "the tool is tilted too far to come down to the line along its axis",
+        "begin at an earlier line, where it is tilted less",
+    ),
     # N1: surface normals, and compensation with them
     "N101": error("a contact point, normal or tool axis is not a number or has no direction", "regenerate the path"),
     "N102": error("the surface is undercut: the corner of the cutter does not touch it", "lean the tool further back"),

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""From line: a program that begins at a line of its source, after an abort or a loss of power.
+
+The rows before the line are left out. What they have switched on is found: the last spindle speed with its wait, the
+last coolant, and the tool. The way to the line begins where the whole program begins; it leads over the tool-change
+pose, if the machine file states one, above everything the program reaches to above the line, and down along the tool
+axis, with the feed of the line where that cuts. Spindle and coolant are switched on before that last move. As a part of
+the trajectory, the way is planned, checked for reach and collisions and certified like any move.
+
+Enters: a trajectory on its machine. Leaves: the trajectory from the line on. Units: mm, rad, mm/s.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from pkm_post.geometry import Array, angle_between, norm
+from pkm_post.model import (
+    TRAJECTORY_COLUMNS,
+    Diagnostic,
+    Event,
+    EventKind,
+    Kind,
+    Machine,
+    Place,
+    Trajectory,
+)
+from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
+
+APPROACH = "approach"
+"""Name of the operation that the way belongs to."""
+_MODAL = (EventKind.SPINDLE, EventKind.COOLANT)
+Findings = tuple[Diagnostic, ...]
+
+
+@dataclass(frozen=True)
+class StartLine:
+    """Where to begin.
+
+    Attributes:
+        line: line of the source, or number of the command in its operation.
+        operation: name of the operation; empty for the first one with such a line.
+    """
+
+    line: int
+    operation: str = ""
+
+
+@dataclass(frozen=True)
+class _Way:
+    """The way to a row: M poses.
+
+    Attributes:
+        start: (3,) tip before the first one.
+        poses: end of each move.
+        tools: number of the tool during each move.
+        changed: move before which the tool is changed; 0 also where it is in the spindle already.
+    """
+
+    start: Array
+    poses: list[ToolPose]
+    tools: list[int]
+    changed: int
+
+
+def row_of_line(trajectory: Trajectory, start: StartLine) -> int | None:
+    """The first row of a line, or of the first line after it; None if the source has no such line."""
+    named = np.array([not start.operation or name == start.operation for name in trajectory.operations])
+    rows = np.flatnonzero(named[trajectory.operation] & (trajectory.line >= start.line))
+    return int(rows[0]) if len(rows) else None
+
+
+def modal_events(trajectory: Trajectory, row: int) -> tuple[Event, ...]:
+    """What the program has switched on before a row: the last event of each kind."""
+    last = {each.kind: each for each in trajectory.events if each.row <= row and each.kind in _MODAL}
+    return tuple(last.values())
+
+
+def begun_at(trajectory: Trajectory, start: StartLine, machine: Machine) -> tuple[Trajectory | None, Findings]:
+    """The trajectory from a line on, with the way there; or what is against it.
+
+    Args:
+        trajectory: the whole program.
+        start: the line; with the first line that moves, the program stays as it is.
+        machine: its tool-change pose and safe height.
+    """
+    row = row_of_line(trajectory, start)
+    if row is None:
+        place = Place(trajectory.source, start.operation, start.line)
+        return None, (Diagnostic("K150", place, f"operations {', '.join(trajectory.operations) or 'without a name'}"),)
+    if row == 0:
+        return trajectory, ()
+    way = _way(trajectory, row, machine)
+    if way is None:
+        tilt = float(np.degrees(np.arccos(trajectory.axis_before()[row, 2])))
+        return None, (Diagnostic("K151", trajectory.place(row), f"{tilt:.3f} degrees from upright"),)
+    return _joined(trajectory, row, way), ()
+
+
+def _way(trajectory: Trajectory, row: int, machine: Machine) -> _Way | None:
+    """The way from where the program begins to a row; None if the tool is tilted too far to come down to it."""
+    begin = ToolPose(trajectory.start_tip, trajectory.start_axis, trajectory.start_spin)
+    tips, axes = trajectory.tip_before()[row], trajectory.axis_before()[row]
+    end = ToolPose(tips, axes, float(trajectory.spin_before()[row]))
+    first, tool, pose = int(trajectory.tool[0]), int(trajectory.tool[row]), machine.tool_change
+    lengths = [trajectory.tools[number].length for number in (first, tool)]
+    height = float(max(trajectory.tip[:, 2].max(), tips[2], -np.inf if pose is None else pose.safe_height))
+    if not end.rises_to(height):
+        return None
+    there = list[ToolPose]()
+    if pose is not None and any(each.kind is EventKind.TOOL_CHANGE for each in _before(trajectory, row)):
+        there = _moves(begin, clearance_path(begin, ToolPose(pose.tip(lengths[0]), pose.axis, pose.spin), height))
+    leaves = there[-1] if there else begin
+    changed = replace(leaves, tip=leaves.tip - (lengths[1] - lengths[0]) * leaves.axis)
+    back = _moves(changed, clearance_path(changed, end, height))
+    start = begin if there else changed
+    return _Way(start.tip, [*there, *back], [first] * len(there) + [tool] * len(back), len(there))
+
+
+def _before(trajectory: Trajectory, row: int) -> list[Event]:
+    return [each for each in trajectory.events if each.row <= row]
+
+
+def _moves(begin: ToolPose, way: tuple[ToolPose, ...]) -> list[ToolPose]:
+    """The poses of a way that are not where the one before is."""
+    found, last = [], begin
+    for pose in way:
+        if not last.is_at(pose):
+            found.append(pose)
+            last = pose
+    return found
+
+
+def _joined(trajectory: Trajectory, row: int, way: _Way) -> Trajectory:
+    """The way, and the rows from a row on."""
+    count, number = len(way.poses), len(trajectory.operations)
+    columns: dict[str, Any] = {
+        name: np.concatenate([added, getattr(trajectory, name)[row:]])
+        for name, added in _columns(trajectory, row, way, number).items()
+    }
+    later = (replace(each, row=each.row - row + count) for each in trajectory.events if each.row > row)
+    events = (*_events(trajectory, row, way), *later)
+    operations = (*trajectory.operations, APPROACH)
+    return replace(trajectory, **columns, events=events, operations=operations, start_tip=way.start)
+
+
+def _columns(trajectory: Trajectory, row: int, way: _Way, operation: int) -> dict[str, Array]:
+    """The columns of the way; its last move cuts if the row does."""
+    count = len(way.poses)
+    columns = {name: np.repeat(getattr(trajectory, name)[row : row + 1], count, axis=0) for name in TRAJECTORY_COLUMNS}
+    tip, axis, spin = pose_columns(way.poses)
+    none = np.full((count, 3), np.nan)
+    kind = np.full(count, Kind.RAPID)
+    feed = np.full(count, trajectory.feed[trajectory.kind == Kind.RAPID].max(initial=trajectory.feed[row]))
+    if count and trajectory.kind[row] != Kind.RAPID:
+        kind[-1], feed[-1] = Kind.LINE, trajectory.feed[row]
+    columns |= {"kind": kind, "feed": feed, "tip": tip, "axis": axis, "spin": spin}
+    columns |= {"arc_centre": none, "arc_axis": none, "sweep": np.zeros(count), "tool": np.array(way.tools)}
+    columns |= {"smooth": np.zeros(count, dtype=bool), "exact_stop": np.ones(count, dtype=bool)}
+    columns |= {"operation": np.full(count, operation), "tip_tolerance": np.zeros(count)}
+    return columns | _extents(trajectory, way, columns)
+
+
+def _extents(trajectory: Trajectory, way: _Way, columns: dict[str, Array]) -> dict[str, Array]:
+    """Length and angle of each move of the way."""
+    count = len(way.poses)
+    before = np.vstack([way.start, columns["tip"]])[:count]
+    axes = np.vstack([trajectory.start_axis, columns["axis"]])[:count]
+    lengths = np.array([trajectory.tools[tool].length for tool in (*way.tools[:1], *way.tools)])
+    before -= np.diff(lengths)[:, None] * axes
+    return {"length": norm(columns["tip"] - before), "angle": angle_between(axes, columns["axis"])}
+
+
+def _events(trajectory: Trajectory, row: int, way: _Way) -> tuple[Event, ...]:
+    """What has to be switched on: the tool where it is changed, spindle and coolant before the last move."""
+    earlier = _before(trajectory, row)
+    tools = [each for each in earlier if each.kind is EventKind.TOOL_CHANGE]
+    found = [replace(tools[-1], row=way.changed)] if tools else []
+    last = max(len(way.poses) - 1, 0)
+    for one in modal_events(trajectory, row):
+        found.append(replace(one, row=last))
+        if one.kind is EventKind.SPINDLE and one.value:
+            found += [replace(each, row=last) for each in _wait_after(earlier, one)]
+    return tuple(found)
+
+
+def _wait_after(events: list[Event], spindle: Event) -> list[Event]:
+    """The dwell that comes right after a spindle event: the spindle reaches its speed."""
+    after = events[events.index(spindle) + 1 :][:1]
+    return [each for each in after if each.kind is EventKind.DWELL and each.row == spindle.row]

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A program from a line on: the same motion from there, the same modal state, and a way down along the tool axis."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from machines import example
+from programs import ON_PALLET, cone, program
+
+from pkm_post.geometry import angle_between, norm
+from pkm_post.model import TRAJECTORY_COLUMNS, Event, EventKind, Kind, Tool, ToolChange
+from pkm_post.toolpath import StartLine, begun_at, place
+
+MACHINE = replace(example(), tool_change=None)
+POSE = ToolChange(np.array([0.0, 0.0, 600.0]), np.array([0.0, 0.0, 1.0]), 0.0, 320.0)
+STEPS = [[0, 0, 60], [30, 0, 60], [30, 20, 40], [0, 20, 40], [0, 0, 70]]
+EVENTS = (
+    Event(0, EventKind.SPINDLE, 1000.0),
+    Event(1, EventKind.COOLANT, 1.0),
+    Event(1, EventKind.SPINDLE, 3000.0),
+    Event(1, EventKind.DWELL, 0.5),
+    Event(2, EventKind.STOP, 0),
+    Event(2, EventKind.DWELL, 2.0),
+    Event(3, EventKind.COOLANT, 0.0),
+    Event(4, EventKind.SPINDLE, 0.0),
+)
+
+
+def placed(made=None, machine=MACHINE):
+    found, faults = place(made or program(STEPS, events=EVENTS), machine, ON_PALLET)
+    assert not faults
+    return found
+
+
+def begun(trajectory, line, operation="", machine=MACHINE):
+    found, faults = begun_at(trajectory, StartLine(line, operation), machine)
+    assert not faults
+    return found
+
+
+def consistent(trajectory):
+    """Lengths and angles are those of the poses."""
+    np.testing.assert_allclose(
+        norm(trajectory.tip - trajectory.tip_before())[trajectory.kind != Kind.ARC],
+        trajectory.length[trajectory.kind != Kind.ARC], atol=1e-9,
+    )  # fmt: skip
+    np.testing.assert_allclose(angle_between(trajectory.axis_before(), trajectory.axis), trajectory.angle, atol=1e-7)
+    assert (np.maximum(trajectory.length, trajectory.angle) > 0).all()
+
+
+@pytest.mark.parametrize("made", [program(STEPS, events=EVENTS), cone(40)], ids=["steps", "cone"])
+def test_what_follows_is_the_program_from_that_line_on(made):
+    whole = placed(made)
+    for row in range(1, len(whole)):
+        found = begun(whole, int(whole.line[row]))
+        consistent(found)
+        kept = len(whole) - int(np.flatnonzero(whole.line >= whole.line[row])[0])
+        for name in TRAJECTORY_COLUMNS:
+            np.testing.assert_array_equal(getattr(found, name)[-kept:], getattr(whole, name)[-kept:])
+        np.testing.assert_allclose(found.tip_before()[-kept], whole.tip_before()[-kept], atol=1e-12)
+        np.testing.assert_allclose(found.axis_before()[-kept], whole.axis_before()[-kept], atol=1e-12)
+        np.testing.assert_array_equal(found.start_tip, whole.start_tip)
+
+
+def test_it_comes_down_along_the_axis_from_above_the_whole_program_and_cuts_with_the_feed_of_the_line():
+    whole = placed(cone(40))
+    found = begun(whole, int(whole.line[20]))
+    down = int(np.flatnonzero(found.operation < len(whole.operations))[0]) - 1
+    way = found.tip_before()[down] - found.tip[down]
+    assert found.operations[found.operation[down]] == "approach"
+    assert norm(np.cross(way, found.axis[down])) < 1e-9 and way @ found.axis[down] > 0
+    assert found.tip_before()[down][2] == pytest.approx(whole.tip[:, 2].max())
+    assert found.kind[down] == Kind.LINE and found.feed[down] == whole.feed[20]
+    assert (found.kind[:down] == Kind.RAPID).all() and found.exact_stop[: down + 1].all()
+
+
+@pytest.mark.parametrize(
+    ("row", "wanted"),
+    [
+        (1, [("coolant", 1.0), ("spindle", 3000.0), ("dwell", 0.5)]),
+        (2, [("coolant", 1.0), ("spindle", 3000.0), ("dwell", 0.5)]),
+        (3, [("coolant", 0.0), ("spindle", 3000.0), ("dwell", 0.5)]),
+    ],
+)
+def test_spindle_and_coolant_are_on_above_the_line_and_stops_before_it_are_behind(row, wanted):
+    whole = placed()
+    found = begun(whole, int(whole.line[row]))
+    count = len(found) - (len(whole) - row)
+    there = [each for each in found.events if each.row < count]
+    assert {each.row for each in there} == {count - 1}
+    named = {EventKind.SPINDLE: "spindle", EventKind.COOLANT: "coolant", EventKind.DWELL: "dwell"}
+    assert sorted((named[each.kind], each.value) for each in there) == sorted(wanted)
+    later = [replace(each, row=each.row - row + count) for each in EVENTS if each.row > row]
+    assert list(found.events[len(there) :]) == later
+
+
+@pytest.mark.parametrize("machine", [MACHINE, replace(MACHINE, tool_change=POSE)], ids=["in place", "at a pose"])
+def test_the_tool_of_the_line_is_put_in_before_the_way_to_it(machine):
+    tools = {number: Tool(number, "", 6.0, 0.0, length) for number, length in ((1, 120.0), (2, 95.0))}
+    made = replace(placed(machine=machine), tools=tools)
+    number = np.where(np.arange(len(made)) >= 2, 2, 1)
+    events = (Event(0, EventKind.TOOL_CHANGE, 1.0), Event(2, EventKind.TOOL_CHANGE, 2.0))
+    whole = replace(made, tool=number, events=events)
+    found = begun(whole, int(whole.line[3]), machine=machine)
+    consistent(found)
+    (change,) = found.events
+    assert change.value == 2.0 and (found.tool[change.row :] == 2).all() and (found.tool[: change.row] == 1).all()
+    nose = found.nose_before([change.row])[0] if change.row else found.start_tip + 95.0 * found.start_axis
+    wanted = POSE.nose if machine.tool_change is not None else whole.start_tip + 120.0 * whole.start_axis
+    np.testing.assert_allclose(nose, wanted, atol=1e-9)
+    begun_first = begun(whole, int(whole.line[1]), machine=machine)
+    assert [each.value for each in begun_first.events] == [1.0, 2.0]
+
+
+def test_the_first_line_changes_nothing_and_others_are_refused():
+    whole = placed()
+    assert begun(whole, 1) is whole
+    for start in (StartLine(99), StartLine(1, "Another")):
+        found, faults = begun_at(whole, start, MACHINE)
+        assert found is None and [each.code for each in faults] == ["K150"]
+    flat = np.array(whole.axis)
+    flat[1:3] = [1.0, 0.0, 0.0]
+    found, faults = begun_at(replace(whole, axis=flat), StartLine(int(whole.line[2])), MACHINE)
+    assert found is None and [each.code for each in faults] == ["K151"]
