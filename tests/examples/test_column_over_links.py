@@ -11,11 +11,15 @@ import re
 import sys
 from pathlib import Path
 
+sys.path += [str(Path(__file__).parents[1] / "control" / room) for room in ("link", "numerical_control", "player")]
+
 import FreeCAD as App
 import pytest
 from column_over_links import follow
+from operated import MACHINE, check, play_operated
 from Path.Post.Processor import PostProcessorFactory
 
+from pkm_post.control.player.playable import read_playable
 from pkm_post.machine import find_machine
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "tapered_column"
@@ -68,3 +72,15 @@ def test_the_tool_keeps_to_the_programmed_path_within_the_certificate(posted):
     assert followed.axis <= reported["deviation of the tool axis"] <= report["tolerances"]["axis_deg"]
     assert followed.tip > 0.9 * reported["deviation of the tool tip"]  # it is the path that was measured
     assert followed.end < COUNT
+
+
+@pytest.mark.parametrize("kind", ["tcp", "serial"])
+def test_the_same_when_it_is_played_and_its_operator_never_rests(kind, tmp_path):
+    program = _program(tmp_path, "example_6tps")
+    trajectory, tolerances, faults = read_playable(program.with_suffix(".pkmt"), MACHINE)
+    assert not faults
+    follower, operator, results = play_operated(trajectory, tolerances, kind)
+    check(follower, results, MACHINE)
+    counts = {what: operator.done.count(what) for what in set(operator.done)}
+    assert counts["hold"] == 10 and counts["override"] > 5 and (counts["break"], counts["abort"]) == (1, 1)
+    assert {"held", "waits: override 0"} <= operator.phases and len(results) == 2

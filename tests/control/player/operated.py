@@ -32,6 +32,8 @@ DEAD_S = 2.0
 LONGEST_JOIN_S = 60.0
 HOLDS, OVERRIDES = 10, 12
 HELD_STATES = 4
+SLOWER = 0.1
+"""Factor of simulated time while the operator is behind: a busy computer shows few states."""
 SHARE_BEFORE_ABORT = 0.6
 LAST_BITS_MM, LAST_BITS_DEG = 2e-6, 2e-5
 """The controller keeps numbers in 36 bits, and struts are sent with six decimals; a start may be half a count off."""
@@ -124,10 +126,12 @@ class Operator:
     """
 
     follower: Follower
+    made: Followed
     port: BreakablePort
     first: int
     end: int
     seed: int = 1
+    rate: float = 1.0
     holds: int = HOLDS
     overrides: int = OVERRIDES
     breaks: int = 1
@@ -152,6 +156,8 @@ class Operator:
     def see(self, state):
         """Called with each state of the player."""
         self.follower.measure_if_enough()
+        overdue = sum(row <= state.row for row, _ in self.todo)
+        self.made.rate = self.rate if overdue < 2 else SLOWER * self.rate
         self.row, order = state.row, self.player.order
         self.phases.add(state.phase)
         self.memory.append(resident_mib())
@@ -164,6 +170,8 @@ class Operator:
         if state.phase.startswith("waits"):
             order(Order("override", 1.0)) if state.override == 0 else order(Order("start"))
             return
+        if state.override == 0:
+            return  # it comes to rest first
         is_back = time.monotonic() > self.port.until + DEAD_S  # a hold that gets no answer becomes an abort
         if self.todo and state.row >= self.todo[0][0] and state.phase == "runs" and is_back:
             _, kind = self.todo.pop(0)
@@ -172,6 +180,7 @@ class Operator:
 
     def _do(self, kind, order):
         if kind == "hold":
+            self.made.rate = self.rate  # a hold that takes too long becomes an abort
             order(Order("hold"))
         elif kind == "override":
             order(Order("override", self._factors.pop(0)))
@@ -196,7 +205,7 @@ def play_operated(trajectory, tolerances, kind, seed=1, rate=1.0, first_row=0, *
             return Player(session, MACHINE, SETTINGS, trajectory, tolerances, choices, see)
 
         end = first_row + math.ceil(SHARE_BEFORE_ABORT * (count - first_row))
-        operator = Operator(follower, port, first_row, end, seed, **numbers)
+        operator = Operator(follower, made, port, first_row, end, seed, rate, **numbers)
         operator.player = player = player_of(first_row, operator.see)
         try:
             results.append(player.play())
@@ -206,7 +215,9 @@ def play_operated(trajectory, tolerances, kind, seed=1, rate=1.0, first_row=0, *
             made.abrupt = made.systems[0].path.abrupt_stops
             row = int(np.flatnonzero(trajectory.line == trajectory.line[operator.row])[0])
             follower.interrupt(row)
-            further = Operator(follower, port, row, count - 1, seed + 1, holds=0, overrides=0, breaks=0, aborts=0)
+            further = Operator(
+                follower, made, port, row, count - 1, seed + 1, rate, holds=0, overrides=0, breaks=0, aborts=0
+            )
             further.player = player_of(row, further.see)
             results.append(further.player.play())
         assert made.systems[0].path.abrupt_stops == getattr(made, "abrupt", 0)
