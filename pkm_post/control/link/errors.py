@@ -97,7 +97,7 @@ class NotOwnerError(DiagnosedError):
     """Another client owns the machine, or has taken ownership.
 
     Attributes:
-        what: the other client's operation, as in ``ownership.WHAT``; empty if unknown.
+        what: the other client's operation, as in ``owner_record.OPERATIONS``; empty if unknown.
     """
 
     def __init__(self, diagnostic: Diagnostic, what: str = "") -> None:

@@ -12,29 +12,31 @@ is the owner before it sends anything.
 
 from __future__ import annotations
 
-import ipaddress
 import logging
 import os
 import random
-import socket
 import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
 from pkm_post.control.link.errors import DiagnosedError, LinkLostError, NotOwnerError, PmacError, RefusedError
+from pkm_post.control.link.owner_record import (
+    COUNT,
+    OPERATIONS,
+    VARIABLES,
+    Owner,
+    exchange_owner,
+    own_address,
+    owner_diagnostic,
+    read_record,
+    time_text,
+)
 from pkm_post.control.link.session import Session, free_memory
 from pkm_post.control.link.status import is_busy
-from pkm_post.model import Diagnostic, Place
 from pkm_post.system import Lock, OwnerRecord, lock_owner, try_lock
-
-VARIABLES = range(8187, 8192)
-"""Numbers of the P-variables: owner, count, address of its computer, time since 1970 in s, operation."""
-OWNER, COUNT, *_ = VARIABLES
-RECORD = f"P{VARIABLES[0]}..{VARIABLES[-1]}"
 
 BEAT_S = 1.0
 """Heartbeat period of the owner, s."""
@@ -42,42 +44,8 @@ SILENCE_S = 5.0
 """Seconds without a sign of life after which an owner is overridden."""
 POLL_S = 0.5
 ATTEMPTS = 3
-OPERATIONS = ("download", "run", "stream", "jog", "home", "resume", "override", "terminal", "play")
-"""Operations of an owner; the controller stores the index in this list, from 1. Append new ones at its end."""
-RESUMED_BY_ALL = ("stream", "play")
-"""What another client may resume after a hold, while its owner goes on feeding it."""
 _ERR_NOT_OPEN = 5
 _log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class Owner:
-    """The contents of the controller's variables.
-
-    Attributes:
-        owner: a unique number; 0 if there is none.
-        count: heartbeat.
-        address: of its computer, IPv4 as a number; 0 if it has none.
-        since: seconds since 1970.
-        what: index in ``OPERATIONS``, from 1.
-    """
-
-    owner: int
-    count: int
-    address: int
-    since: int
-    what: int
-
-    @property
-    def action(self) -> str:
-        """The owner's operation; empty if unknown."""
-        return OPERATIONS[self.what - 1] if 0 < self.what <= len(OPERATIONS) else ""
-
-    def __str__(self) -> str:
-        if not self.what:
-            return "an unidentified client"
-        where = f"at {ipaddress.IPv4Address(self.address)}" if 0 < self.address < 1 << 32 else "without an address"
-        return f"a client {where}, {self.action or 'something'}, since {_time_text(self.since)}"
 
 
 class Ownership:
@@ -136,7 +104,7 @@ class Ownership:
         try:
             if self._owner and not self._session.has_open_buffer:
                 with self._session.short_timeouts():
-                    self._session.query(_exchange_owner(self._owner, 0))
+                    self._session.query(exchange_owner(self._owner, 0))
         except PmacError as fault:
             _log.warning("ownership of the machine could not be released: %s", fault)
         finally:
@@ -146,10 +114,10 @@ class Ownership:
     def _verify(self) -> None:
         there = read_record(self._session)
         if not there.owner and not there.since and not _has_abandoned_buffer(self._session):
-            self._session.query(_exchange_owner(0, self._owner))  # a controller that was reset has lost all of it
+            self._session.query(exchange_owner(0, self._owner))  # a controller that was reset has lost all of it
             there = read_record(self._session)
         if there.owner != self._owner:
-            raise NotOwnerError(_diagnostic(self._session, "C211", str(there)), there.action)
+            raise NotOwnerError(owner_diagnostic(self._session, "C211", str(there)), there.action)
         self._verified_at, self._connections = self._session.now(), self._session.connections
 
     def _is_older_than(self, seconds: float) -> bool:
@@ -210,25 +178,6 @@ def claim(session: Session, what: str, concurrent: tuple[str, ...] = ()) -> Owne
     return ownership
 
 
-def read_record(session: Session) -> Owner:
-    """Read the owner's record from the controller.
-
-    Raises:
-        DiagnosedError: the variables hold values that no client writes.
-        LinkLostError: the answer makes no sense.
-    """
-    answer = session.query(RECORD)
-    try:
-        values = [float(line) for line in answer]
-        if len(values) != len(VARIABLES):
-            raise ValueError(f"expected {len(VARIABLES)} lines, got {len(values)}")
-    except ValueError as fault:
-        raise LinkLostError(f"{RECORD}: {fault}") from None
-    if not all(value.is_integer() and value >= 0 for value in values):
-        raise DiagnosedError(_diagnostic(session, "C213", f"{RECORD} is {' '.join(answer)}"))
-    return Owner(*map(int, values))
-
-
 def lock_path(port: str) -> Path:
     """Path of a port's lock file: the same for all users, and for all names of a serial line."""
     kind, _, address = port.partition(":")
@@ -241,10 +190,10 @@ def _claim_lock(session: Session, what: str) -> Lock:
     try:
         lock = try_lock(path)
     except OSError as fault:
-        raise DiagnosedError(_diagnostic(session, "C212", f"{path}: {fault.strerror}")) from fault
+        raise DiagnosedError(owner_diagnostic(session, "C212", f"{path}: {fault.strerror}")) from fault
     if lock is None:
         record = lock_owner(path)
-        raise NotOwnerError(_diagnostic(session, "C210", _process(record)), str(record.get("what", "")))
+        raise NotOwnerError(owner_diagnostic(session, "C210", _process(record)), str(record.get("what", "")))
     lock.describe({"user": _user(), "process": os.getpid(), "what": what, "since": int(time.time())})
     return lock
 
@@ -259,21 +208,16 @@ def _claim_in_controller(session: Session, what: str, concurrent: tuple[str, ...
         _close_abandoned_buffer(session)
     owner, seen = random.SystemRandom().randrange(1, 1 << 30), before.owner
     for _ in range(ATTEMPTS):
-        session.query(_exchange_owner(seen, owner))  # safe to repeat: it may arrive twice
+        session.query(exchange_owner(seen, owner))  # safe to repeat: it may arrive twice
         there = read_record(session)
         if there.owner not in (0, seen):
             break
         seen = there.owner  # a controller that was reset has lost it
     if there.owner != owner:
-        raise NotOwnerError(_diagnostic(session, "C210", str(there)), there.action)
-    words = (1, _own_address(session.port_name), int(time.time()), OPERATIONS.index(what) + 1)
+        raise NotOwnerError(owner_diagnostic(session, "C210", str(there)), there.action)
+    words = (1, own_address(session.port_name), int(time.time()), OPERATIONS.index(what) + 1)
     session.query(" ".join(f"P{number}={word}" for number, word in zip(VARIABLES[1:], words, strict=True)))
     return owner
-
-
-def _exchange_owner(old: int, new: int) -> str:
-    """Replace the owner if it is the expected one: INT is 1 then, and else 0."""
-    return f"P{OWNER}=P{OWNER}+({new}-{old})*INT(1/(ABS(P{OWNER}-{old})+1))"
 
 
 def _wait_for_silence(session: Session, record: Owner, concurrent: tuple[str, ...]) -> None:
@@ -290,7 +234,7 @@ def _wait_for_silence(session: Session, record: Owner, concurrent: tuple[str, ..
     while True:
         is_left_alone = record.action in concurrent or (not concurrent and is_busy(session))
         if is_left_alone or _signs_of_life(session, read_record(session)) != signs:
-            raise NotOwnerError(_diagnostic(session, "C210", known), record.action if record.owner else "")
+            raise NotOwnerError(owner_diagnostic(session, "C210", known), record.action if record.owner else "")
         if session.now() >= until:
             break
         session.check_preemption()
@@ -320,41 +264,16 @@ def _close_abandoned_buffer(session: Session) -> None:
             raise
     session.command("CLOSE")
     if free_memory(session) < 0:
-        raise DiagnosedError(_diagnostic(session, "C214", "SIZE is below zero after CLOSE"))
+        raise DiagnosedError(owner_diagnostic(session, "C214", "SIZE is below zero after CLOSE"))
     _log.warning("a program buffer was open after an interrupted download: it was cleared")
-
-
-def _diagnostic(session: Session, code: str, found: str) -> Diagnostic:
-    return Diagnostic(code, Place(session.port_name or "controller"), found)
 
 
 def _process(record: OwnerRecord) -> str:
     """The process that holds the lock on this computer, in plain text."""
     if not {"user", "process", "what", "since"} <= record.keys():
         return "an unidentified process of this computer"
-    return f"process {record['process']} of {record['user']}, {record['what']}, since {_time_text(record['since'])}"
-
-
-def _time_text(seconds: object) -> str:
-    try:
-        return time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(float(str(seconds))))
-    except (ValueError, OverflowError, OSError):
-        return "an unknown time"
+    return f"process {record['process']} of {record['user']}, {record['what']}, since {time_text(record['since'])}"
 
 
 def _user() -> str:
     return os.environ.get("USER") or os.environ.get("USERNAME") or "an unknown user"
-
-
-def _own_address(port: str) -> int:
-    """This computer's address towards a controller; 0 if there is none. Nothing is sent."""
-    kind, _, address = port.partition(":")
-    host, _, number = address.rpartition(":")
-    if kind != "tcp":
-        return 0
-    try:
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-            probe.connect((host, int(number)))
-            return int(ipaddress.IPv4Address(probe.getsockname()[0]))
-    except OSError:
-        return 0  # an IPv6 address does not fit into a variable

@@ -19,7 +19,8 @@ import numpy as np
 
 from pkm_post.control.link.download import verify_listing
 from pkm_post.control.link.errors import NotReadyError, OutcomeUnknownError, PmacError
-from pkm_post.control.link.ownership import RESUMED_BY_ALL, owned
+from pkm_post.control.link.owner_record import RESUMED_BY_ALL
+from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.power_setup import setup_faults
 from pkm_post.control.link.program import PmacProgram
 from pkm_post.control.link.queries import query_line, read_number

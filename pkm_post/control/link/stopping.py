@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from pkm_post.control.link.errors import CancelledError, NoAccessError, PmacError
-from pkm_post.control.link.ownership import read_record
+from pkm_post.control.link.owner_record import read_record
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import MOTORS, AnySettings, Status, read_status
 from pkm_post.writing import PowerPmacSettings

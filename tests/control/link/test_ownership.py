@@ -19,7 +19,8 @@ from pkm_post.control.link import ownership, stopping
 from pkm_post.control.link import run as operate
 from pkm_post.control.link.download import download
 from pkm_post.control.link.errors import DiagnosedError, LinkLostError, NotOwnerError, NotReadyError
-from pkm_post.control.link.ownership import SILENCE_S, claim, lock_path, owned, read_record
+from pkm_post.control.link.owner_record import read_record
+from pkm_post.control.link.ownership import SILENCE_S, claim, lock_path, owned
 from pkm_post.control.link.ports import port_named
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import read_status, settled_status

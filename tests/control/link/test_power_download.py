@@ -10,7 +10,8 @@ from power_rig import DRIVES, FIRST, SETTINGS, STROKE, Wire, power_pmac, small_p
 from pkm_post.control.link import stopping
 from pkm_post.control.link.download import download, verify_listing
 from pkm_post.control.link.errors import DownloadError, NotOwnerError, NotReadyError, PmacError
-from pkm_post.control.link.ownership import RECORD, claim
+from pkm_post.control.link.owner_record import RECORD
+from pkm_post.control.link.ownership import claim
 from pkm_post.control.link.program import PmacProgram, read_job
 from pkm_post.control.link.run import check_setup, resume_program, set_feed_override, start_program
 from pkm_post.control.link.status import is_busy, read_status

@@ -9,7 +9,7 @@ from rig import SETTINGS, STROKE, Wire, controller, served
 
 from pkm_post.cli import main
 from pkm_post.control.link.errors import PmacError
-from pkm_post.control.link.ownership import read_record
+from pkm_post.control.link.owner_record import read_record
 from pkm_post.control.link.rotary_buffer import RotaryBuffer
 from pkm_post.control.link.run import check_setup
 from pkm_post.control.link.status import read_status
