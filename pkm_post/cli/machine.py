@@ -175,7 +175,7 @@ def _export(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 def _certified_program(path: Path, machine: Machine) -> tuple[tuple[str, str] | None, tuple[Diagnostic, ...]]:
     """Name and text of a program that is certified for a machine, or the reasons why it is not."""
-    from pkm_post.control import certified
+    from pkm_post.control.loading import certified
 
     found, faults = certified(path, machine)
     return (None, faults) if found is None else ((path.name, found.text), faults)

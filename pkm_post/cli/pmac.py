@@ -23,7 +23,7 @@ from pkm_post.cli.pmac_stop import JobTarget, Target
 from pkm_post.options import LONGEST_TOOL, above_zero, between, count, positive, tool_length, whole
 
 if TYPE_CHECKING:
-    from pkm_post.control import Port, Session
+    from pkm_post.control.link import Port, Session
     from pkm_post.model import Diagnostic
 
 _HIGHEST_PROGRAM = 999
@@ -115,7 +115,7 @@ def _add_override(parser: argparse.ArgumentParser) -> None:
 
 
 def _trigger(text: str) -> str:
-    from pkm_post.control import check_trigger
+    from pkm_post.control.numerical_control import check_trigger
 
     try:
         check_trigger(text)
@@ -197,7 +197,7 @@ def _add_own(parser: argparse.ArgumentParser, name: str) -> None:
 
 
 def _port(text: str) -> Port:
-    from pkm_post.control import port_named
+    from pkm_post.control.link import port_named
 
     try:
         return port_named(text)
@@ -206,7 +206,7 @@ def _port(text: str) -> Port:
 
 
 def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.control import LinkLostError, PmacError
+    from pkm_post.control.link import LinkLostError, PmacError
 
     logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stderr)
     if namespace.port.is_power and namespace.name not in OF_POWER_PMAC:
@@ -237,7 +237,7 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 def _session(namespace: argparse.Namespace) -> Session:
     """Open a session on the given port."""
-    from pkm_post.control import OpenBufferPolicy, Session
+    from pkm_post.control.link import OpenBufferPolicy, Session
 
     port = replace(
         namespace.port,
@@ -252,7 +252,7 @@ def _session(namespace: argparse.Namespace) -> Session:
 
 def _target(namespace: argparse.Namespace) -> Target | None:
     """Resolve machine and program; None when they have faults, which are printed."""
-    from pkm_post.control import job_to_load
+    from pkm_post.control.loading import job_to_load
     from pkm_post.machine import machine_named
     from pkm_post.writing import pmac, power_pmac
 

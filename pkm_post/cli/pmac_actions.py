@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any
 from pkm_post.cli.pmac_stop import JobTarget, Target, abort, held_at_the_end, hold, signals_interrupt
 
 if TYPE_CHECKING:
-    from pkm_post.control import Session, Status
+    from pkm_post.control.link import Session, Status
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
-    from pkm_post.control import Session
+    from pkm_post.control.link import Session
 
 _IDENTITY = ("TYPE", "VER", "CID", "SIZE", "I42", "I68")
 _IDENTITY_OF_POWER_PMAC = ("CID", "Sys.MaxCoords")
@@ -36,7 +36,7 @@ _NEEDS_NO_OWNERSHIP = re.compile(
 
 def probe(session: Session, target: Target | None, namespace: argparse.Namespace) -> int:
     """Print the controller type; raise on settings that do not match the machine."""
-    from pkm_post.control import RefusedError, check_setup
+    from pkm_post.control.link import RefusedError, check_setup
 
     is_power = namespace.port.is_power
     for query in _IDENTITY_OF_POWER_PMAC if is_power else _IDENTITY:
@@ -53,7 +53,7 @@ def probe(session: Session, target: Target | None, namespace: argparse.Namespace
 
 def _print_motion(session: Session, target: Target | None) -> None:
     """Print whether the machine moves; approximate without a machine, as coordinate system and scale are unknown."""
-    from pkm_post.control import activity_text, is_busy, settled_status
+    from pkm_post.control.link import activity_text, is_busy, settled_status
 
     if target is not None:
         print(activity_text(settled_status(session, target.settings)))
@@ -63,7 +63,7 @@ def _print_motion(session: Session, target: Target | None) -> None:
 
 def download(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Load the program, list it back and compare."""
-    from pkm_post.control import check_setup, download
+    from pkm_post.control.link import check_setup, download
 
     check_setup(session, target.settings, target.machine.strut_stroke)
     loaded = download(session, target.job.program, _show_progress if sys.stderr.isatty() else _no_progress)
@@ -81,7 +81,7 @@ def _no_progress(done: int, lines: int) -> None:
 
 def start(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Start the program from its beginning."""
-    from pkm_post.control import check_setup, start_program
+    from pkm_post.control.link import check_setup, start_program
 
     check_setup(session, target.settings, target.machine.strut_stroke)
     job = target.job
@@ -93,20 +93,20 @@ def start(session: Session, target: JobTarget, namespace: argparse.Namespace) ->
 
 def resume(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Resume after a hold."""
-    from pkm_post.control import resume_program
+    from pkm_post.control.link import resume_program
 
     return _print_state(resume_program(session, target.settings))
 
 
 def status(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Print the state once."""
-    from pkm_post.control import read_status
+    from pkm_post.control.link import read_status
 
     return _print_state(read_status(session, target.settings))
 
 
 def _print_state(status: Status) -> int:
-    from pkm_post.control import state_text
+    from pkm_post.control.link import state_text
 
     print(state_text(status))
     return 0
@@ -114,7 +114,7 @@ def _print_state(status: Status) -> int:
 
 def monitor(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Print pose and state until the user interrupts."""
-    from pkm_post.control import ToolPoseReadout, pose_text, read_status, state_text
+    from pkm_post.control.link import ToolPoseReadout, pose_text, read_status, state_text
 
     length = namespace.tool_length
     readout = ToolPoseReadout(target.machine, target.machine.rest_tool_length if length is None else length)
@@ -133,7 +133,7 @@ def monitor(session: Session, target: Target, namespace: argparse.Namespace) -> 
 
 def terminal(session: Session, target: Target | None, namespace: argparse.Namespace) -> int:
     """Send each line once; all but known queries and stops need the right to move the machine."""
-    from pkm_post.control import NotOwnerError, PmacError, claim
+    from pkm_post.control.link import NotOwnerError, PmacError, claim
 
     refused = False
     for line in sys.stdin:
@@ -155,7 +155,7 @@ ROTARY_WORDS = 2600
 
 def stream(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Run the program from the rotary buffer."""
-    from pkm_post.control import check_setup, stream
+    from pkm_post.control.link import check_setup, stream
 
     check_setup(session, target.settings, target.machine.strut_stroke)
     job = target.job

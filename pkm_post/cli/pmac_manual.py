@@ -17,10 +17,12 @@ from pkm_post.cli.pmac_stop import held_at_the_end
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_stop import JobTarget, Target
-    from pkm_post.control import Jog, Session
+    from pkm_post.control.link import Session
+    from pkm_post.control.numerical_control import Jog
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
-    from pkm_post.control import Array, NumericalControl, Plan, Session, Status
+    from pkm_post.control.link import Array, Session, Status
+    from pkm_post.control.numerical_control import NumericalControl, Plan
     from pkm_post.model import Diagnostic
 
 _SLOWEST_OVERRIDE = 0.05
@@ -36,7 +38,8 @@ def control_of(session: Session, target: Target, namespace: argparse.Namespace) 
     Raises:
         NotReadyError: the program number for moves by hand is that of the jobs.
     """
-    from pkm_post.control import NotReadyError, NumericalControl
+    from pkm_post.control.link import NotReadyError
+    from pkm_post.control.numerical_control import NumericalControl
 
     if namespace.number == target.settings.program:
         raise NotReadyError([f"program {namespace.number} is that of the jobs: choose another --number"])
@@ -54,7 +57,8 @@ def execute_plan(
     near: float | None = None,
 ) -> int:
     """Print a plan, execute it, and print the position reached; ``near`` is as for ``execute``."""
-    from pkm_post.control import pose_text, target_deviation
+    from pkm_post.control.link import pose_text
+    from pkm_post.control.numerical_control import target_deviation
     from pkm_post.options import START_TOLERANCE_MM
 
     for diagnostic in diagnostics:
@@ -82,7 +86,7 @@ def wait_for_end(control: NumericalControl, seconds: float) -> Status:
 
 def ended_elsewhere(status: Status, lengths: Array) -> bool:
     """Whether a move ended away from its target lengths, which is printed."""
-    from pkm_post.control import target_deviation
+    from pkm_post.control.numerical_control import target_deviation
     from pkm_post.options import START_TOLERANCE_MM
 
     words = [_HELD] if status.held else list(status.fault_texts())
@@ -101,7 +105,8 @@ def home(session: Session, target: Target, namespace: argparse.Namespace) -> int
     """Print which struts are homed; with a trigger, start the machine's homing and monitor it."""
     import time
 
-    from pkm_post.control import HomingPhase, missing_homes, owned, read_status, start_homing
+    from pkm_post.control.link import owned, read_status
+    from pkm_post.control.numerical_control import HomingPhase, missing_homes, start_homing
 
     if namespace.trigger is None:
         missing = missing_homes(read_status(session, target.settings))
@@ -126,7 +131,7 @@ def jog(session: Session, target: Target, namespace: argparse.Namespace) -> int:
 
 
 def _jog_of(namespace: argparse.Namespace) -> Jog:
-    from pkm_post.control import CartesianJog, StrutJog
+    from pkm_post.control.numerical_control import CartesianJog, StrutJog
 
     if namespace.strut is not None:
         return StrutJog(namespace.strut, namespace.by)
@@ -136,7 +141,7 @@ def _jog_of(namespace: argparse.Namespace) -> Jog:
 
 def mdi(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Execute a line of G-code."""
-    from pkm_post.control import MdiSettings
+    from pkm_post.control.numerical_control import MdiSettings
 
     control = control_of(session, target, namespace)
     plan, diagnostics = control.plan_line(namespace.line, MdiSettings(namespace.work_offset, namespace.axis_words))
@@ -145,7 +150,8 @@ def mdi(session: Session, target: Target, namespace: argparse.Namespace) -> int:
 
 def approach(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Move the tool to the start of a program."""
-    from pkm_post.control import read_status, target_deviation
+    from pkm_post.control.link import read_status
+    from pkm_post.control.numerical_control import target_deviation
 
     if target_deviation(read_status(session, target.settings), target.job.first) <= _THERE_MM:
         print("the tool is at the start of the program")
@@ -157,7 +163,8 @@ def approach(session: Session, target: JobTarget, namespace: argparse.Namespace)
 
 def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Run a program line by line of its source; each line of the standard input starts one."""
-    from pkm_post.control import NotReadyError, read_blocks
+    from pkm_post.control.link import NotReadyError
+    from pkm_post.control.numerical_control import read_blocks
 
     control = control_of(session, target, namespace)
     blocks, diagnostics = read_blocks(namespace.program, target.machine)
@@ -182,7 +189,8 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
 
 def continue_after_stop(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
     """Continue after a stop (M0, M1) of the program."""
-    from pkm_post.control import continue_after_stop, state_text
+    from pkm_post.control.link import state_text
+    from pkm_post.control.numerical_control import continue_after_stop
 
     with held_at_the_end(session, target.settings):
         status = continue_after_stop(
@@ -194,7 +202,7 @@ def continue_after_stop(session: Session, target: JobTarget, namespace: argparse
 
 def override(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Set the time base of programs."""
-    from pkm_post.control import set_feed_override
+    from pkm_post.control.link import set_feed_override
 
     print(f"override {set_feed_override(session, target.settings, namespace.percent).override:g} %")
     return 0
@@ -222,7 +230,7 @@ def print_emergency_steps(name: str, connected: bool) -> None:
         name: of the action.
         connected: whether the controller had answered before.
     """
-    from pkm_post.control import EMERGENCY_STEPS
+    from pkm_post.control.link import EMERGENCY_STEPS
 
     if name in _OF_WHAT_RUNS or (connected and name in _STARTING):
         print(*EMERGENCY_STEPS, sep="\n", file=sys.stderr)

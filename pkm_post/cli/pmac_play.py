@@ -16,7 +16,8 @@ from pkm_post.options import between, count, positive, whole
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_stop import Target
-    from pkm_post.control import Player, PlayOptions, PlayResult, PlayState, Session
+    from pkm_post.control.link import Session
+    from pkm_post.control.player import Player, PlayOptions, PlayResult, PlayState
     from pkm_post.model import Trajectory
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
@@ -55,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def play(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Play a trajectory, with orders from the standard input."""
-    from pkm_post.control import Player, read_playable
+    from pkm_post.control.player import Player, read_playable
     from pkm_post.model import Refused
 
     trajectory, tolerances, diagnostics = read_playable(namespace.trajectory, target.machine)
@@ -77,7 +78,8 @@ def play(session: Session, target: Target, namespace: argparse.Namespace) -> int
 
 
 def _choices(trajectory: Trajectory, namespace: argparse.Namespace) -> PlayOptions | None:
-    from pkm_post.control import NotReadyError, PlayOptions, first_row
+    from pkm_post.control.link import NotReadyError
+    from pkm_post.control.player import PlayOptions, first_row
     from pkm_post.options import MANUAL_MOVE_PROGRAM
 
     if namespace.number == MANUAL_MOVE_PROGRAM:
@@ -137,7 +139,7 @@ class _Shown:
 
     def show(self, state: PlayState) -> None:
         """Print a state where its phase is another, and every second; without input questions go unanswered."""
-        from pkm_post.control import Order
+        from pkm_post.control.player import Order
 
         if state.phase != self.phase or self.now() >= self.due:
             print(state, flush=True)
@@ -148,7 +150,7 @@ class _Shown:
             self.player.order(Order("end"))
 
     def _read(self) -> None:
-        from pkm_post.control import Order
+        from pkm_post.control.player import Order
 
         assert self.player is not None
         for line in sys.stdin:

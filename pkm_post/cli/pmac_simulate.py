@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from pkm_post.options import between, whole, whole_from
 
 if TYPE_CHECKING:
-    from pkm_post.control import Controller, PowerPmac, Server
+    from pkm_post.control.simulator import Controller, PowerPmac, Server
 
 LOWEST_SPEED, HIGHEST_SPEED = 0.01, 100.0
 HIGHEST_PORT = 65_535
@@ -45,13 +45,13 @@ def add_action(actions: Any) -> None:
 
 
 def _words(text: str) -> int:
-    from pkm_post.control import LEAST_MEMORY
+    from pkm_post.control.simulator import LEAST_MEMORY
 
     return whole_from(LEAST_MEMORY, f"{LEAST_MEMORY} words or more")(text)
 
 
 def _simulate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
-    from pkm_post.control import Server
+    from pkm_post.control.simulator import Server
 
     machine = _power_pmac(namespace) if namespace.ssh is not None else None
     controller = machine.controller if machine is not None else _turbo_pmac(namespace)
@@ -73,13 +73,13 @@ def _simulate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 
 def _turbo_pmac(namespace: argparse.Namespace) -> Controller:
-    from pkm_post.control import Controller, SimulatorSettings
+    from pkm_post.control.simulator import Controller, SimulatorSettings
 
     return Controller(SimulatorSettings(memory_words=namespace.memory) if namespace.memory else SimulatorSettings())
 
 
 def _power_pmac(namespace: argparse.Namespace) -> PowerPmac:
-    from pkm_post.control import PowerPmac
+    from pkm_post.control.simulator import PowerPmac
 
     return PowerPmac(namespace.memory)
 
@@ -90,7 +90,7 @@ def _address(server: Server, machine: PowerPmac | None, namespace: argparse.Name
     Raises:
         OSError: the port is taken, or no password is set.
     """
-    from pkm_post.control import PASSWORD, ssh_package
+    from pkm_post.control.link import PASSWORD, ssh_package
 
     if machine is None:
         return f"serial:{server.add_pty()}" if namespace.pty else f"tcp:127.0.0.1:{server.add_tcp(namespace.tcp)}"
@@ -117,7 +117,7 @@ def _set_up(machine: Controller | PowerPmac, file: Path) -> bool:
 
     A set-up from a posting is refused if it has changed since. Without a manifest it may be any other file of lines.
     """
-    from pkm_post.control import refused_line
+    from pkm_post.control.simulator import refused_line
     from pkm_post.model import errors
     from pkm_post.writing import manifest, read_text
 

@@ -18,7 +18,7 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pkm_post.control import Job, Session, Status
+    from pkm_post.control.link import Job, Session, Status
     from pkm_post.model import Machine
     from pkm_post.writing import PmacSettings
 
@@ -52,7 +52,7 @@ class JobTarget(Target):
 
 def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Decelerate the program to rest on its path."""
-    from pkm_post.control import hold
+    from pkm_post.control.link import hold
 
     with advised():
         status = hold(session, target.settings)
@@ -61,7 +61,7 @@ def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int
 
 def abort(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Abort the program."""
-    from pkm_post.control import abort
+    from pkm_post.control.link import abort
 
     with advised():
         status = abort(session, target.settings, namespace.at_once)
@@ -69,7 +69,7 @@ def abort(session: Session, target: Target, namespace: argparse.Namespace) -> in
 
 
 def _print(session: Session, status: Status) -> int:
-    from pkm_post.control import state_text
+    from pkm_post.control.link import state_text
 
     print(state_text(status))
     return 0
@@ -78,7 +78,7 @@ def _print(session: Session, status: Status) -> int:
 @contextmanager
 def advised() -> Iterator[None]:
     """Print advice for the operator if the stop inside has not ended in time."""
-    from pkm_post.control import REST_DEADLINE_S
+    from pkm_post.control.link import REST_DEADLINE_S
 
     timer = threading.Timer(REST_DEADLINE_S, _advise)
     timer.daemon = True
@@ -90,7 +90,7 @@ def advised() -> Iterator[None]:
 
 
 def _advise() -> None:
-    from pkm_post.control import NOT_AT_REST
+    from pkm_post.control.link import NOT_AT_REST
 
     print(*NOT_AT_REST, sep="\n", file=sys.stderr, flush=True)
 
@@ -104,7 +104,7 @@ def held_at_the_end(session: Session, settings: PmacSettings) -> Iterator[None]:
     Raises:
         CancelledError: it was interrupted; the machine is held.
     """
-    from pkm_post.control import CancelledError, PmacError
+    from pkm_post.control.link import CancelledError, PmacError
 
     with signals_interrupt():
         try:
@@ -119,7 +119,7 @@ def held_at_the_end(session: Session, settings: PmacSettings) -> Iterator[None]:
 
 
 def _hold_machine(session: Session, settings: PmacSettings) -> None:
-    from pkm_post.control import hold
+    from pkm_post.control.link import hold
 
     with advised():
         hold(session, settings)

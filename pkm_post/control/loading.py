@@ -30,6 +30,8 @@ from pkm_post.writing import (
     read_texts,
 )
 
+__all__ = ["certified", "job_to_load"]
+
 Findings = tuple[Diagnostic, ...]
 
 _log = logging.getLogger(__name__)

@@ -1,2 +1,62 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The link to a PMAC: protocols for serial line, Ethernet and ssh, download, streaming, stops, status, readout."""
+
+from pkm_post.control.link.channel import OpenBufferPolicy
+from pkm_post.control.link.download import download
+from pkm_post.control.link.errors import (
+    CancelledError,
+    LinkLostError,
+    NotOwnerError,
+    NotReadyError,
+    PmacError,
+    RefusedError,
+)
+from pkm_post.control.link.ownership import claim, owned
+from pkm_post.control.link.ports import Port, port_named
+from pkm_post.control.link.program import Job
+from pkm_post.control.link.run import check_setup, resume_program, set_feed_override, start_program
+from pkm_post.control.link.session import Session
+from pkm_post.control.link.ssh_link import PASSWORD, ssh_package
+from pkm_post.control.link.status import Array, Bits, Status, is_busy, read_status, settled_status
+from pkm_post.control.link.stopping import EMERGENCY_STEPS, NOT_AT_REST, REST_DEADLINE_S, abort, hold
+from pkm_post.control.link.stream import stream
+from pkm_post.control.link.tool_pose import ToolPoseReadout, activity_text, pose_text, state_text
+
+__all__ = [
+    "Array",
+    "Bits",
+    "CancelledError",
+    "EMERGENCY_STEPS",
+    "Job",
+    "LinkLostError",
+    "NOT_AT_REST",
+    "NotOwnerError",
+    "NotReadyError",
+    "OpenBufferPolicy",
+    "PASSWORD",
+    "PmacError",
+    "Port",
+    "REST_DEADLINE_S",
+    "RefusedError",
+    "Session",
+    "Status",
+    "ToolPoseReadout",
+    "abort",
+    "activity_text",
+    "check_setup",
+    "claim",
+    "download",
+    "hold",
+    "is_busy",
+    "owned",
+    "port_named",
+    "pose_text",
+    "read_status",
+    "resume_program",
+    "set_feed_override",
+    "settled_status",
+    "ssh_package",
+    "start_program",
+    "state_text",
+    "stream",
+]

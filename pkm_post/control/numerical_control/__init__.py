@@ -1,2 +1,56 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Numerical control: monitor, jog and home the machine; start, step, override, hold and abort its program."""
+
+from pkm_post.control.numerical_control.connection import (
+    SIMULATED_HOMING,
+    Connection,
+    ConnectionTarget,
+    connect,
+    connection_target,
+)
+from pkm_post.control.numerical_control.control import ControlState, NumericalControl
+from pkm_post.control.numerical_control.execute import continue_after_stop, program_stops, target_deviation
+from pkm_post.control.numerical_control.homing import Homing, HomingPhase, check_trigger, missing_homes, start_homing
+from pkm_post.control.numerical_control.interlocks import (
+    Interlock,
+    OperatorCommand,
+    PanelState,
+    active_interlocks,
+    blocking_interlock,
+    may_move,
+)
+from pkm_post.control.numerical_control.manual_moves import CartesianJog, Jog, MdiSettings, StrutJog
+from pkm_post.control.numerical_control.plan import Plan
+from pkm_post.control.numerical_control.single_block import BlockDisplay, ProgramBlocks, read_blocks
+
+__all__ = [
+    "BlockDisplay",
+    "CartesianJog",
+    "Connection",
+    "ConnectionTarget",
+    "ControlState",
+    "Homing",
+    "HomingPhase",
+    "Interlock",
+    "Jog",
+    "MdiSettings",
+    "NumericalControl",
+    "OperatorCommand",
+    "PanelState",
+    "Plan",
+    "ProgramBlocks",
+    "SIMULATED_HOMING",
+    "StrutJog",
+    "active_interlocks",
+    "blocking_interlock",
+    "check_trigger",
+    "connect",
+    "connection_target",
+    "continue_after_stop",
+    "may_move",
+    "missing_homes",
+    "program_stops",
+    "read_blocks",
+    "start_homing",
+    "target_deviation",
+]

@@ -6,3 +6,17 @@ each, both ``legs`` that are certified against their ``subpath`` of the trajecto
 kept filled by ``list_feed``; ``play`` runs them all, with the ``stop_events`` between parts, and ``start_line`` begins
 at a line.
 """
+
+from pkm_post.control.player.orders import Order, PlayOptions, PlayState
+from pkm_post.control.player.play import Player, PlayResult
+from pkm_post.control.player.playable import first_row, read_playable
+
+__all__ = [
+    "Order",
+    "PlayOptions",
+    "PlayResult",
+    "PlayState",
+    "Player",
+    "first_row",
+    "read_playable",
+]

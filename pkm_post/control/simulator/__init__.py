@@ -5,22 +5,24 @@ It is written from the manuals and imports no other room: its verdict on a progr
 the program.
 """
 
-from pkm_post.control.simulator.controller import Controller, SimulatorSettings
+from pkm_post.control.simulator.controller import LEAST_MEMORY, Controller, SimulatorSettings
 from pkm_post.control.simulator.errors import ERROR_TEXTS, CommandError
 from pkm_post.control.simulator.ethernet_port import EthernetPort
-from pkm_post.control.simulator.gpascii_shell import GpasciiShell
+from pkm_post.control.simulator.gpascii_shell import GpasciiShell, refused_line
 from pkm_post.control.simulator.power_online import PowerPmac
 from pkm_post.control.simulator.serial_port import SerialPort
 from pkm_post.control.simulator.server import Server
 
 __all__ = [
-    "ERROR_TEXTS",
     "CommandError",
     "Controller",
+    "ERROR_TEXTS",
     "EthernetPort",
     "GpasciiShell",
+    "LEAST_MEMORY",
     "PowerPmac",
     "SerialPort",
     "Server",
     "SimulatorSettings",
+    "refused_line",
 ]

@@ -8,7 +8,7 @@ from typing import Any
 
 from PySide import QtWidgets
 
-from pkm_post.control import Interlock, OperatorCommand, blocking_interlock
+from pkm_post.control.numerical_control import Interlock, OperatorCommand, blocking_interlock
 from pkm_post.freecad_gui.control_panel.texts import why_text
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.control import ControlState, Interlock, connection_target
+from pkm_post.control.numerical_control import ControlState, Interlock, connection_target
 from pkm_post.freecad_gui.control_panel.buttons import plain_button, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.post_fields import editable_box, quantity_field, show_quantity, with_button

@@ -15,16 +15,15 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore
 
-from pkm_post.control import (
+from pkm_post.control.link import Job, PmacError
+from pkm_post.control.numerical_control import (
     Connection,
     ConnectionTarget,
     ControlState,
     Interlock,
-    Job,
     NumericalControl,
     PanelState,
     Plan,
-    PmacError,
     active_interlocks,
     connect,
     program_stops,

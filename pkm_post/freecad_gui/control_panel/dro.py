@@ -13,7 +13,7 @@ import FreeCAD
 import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.control import Status
+from pkm_post.control.link import Status
 from pkm_post.freecad_gui.control_panel.texts import strut_text
 from pkm_post.geometry import Array
 from pkm_post.toolpath import ToolPose

@@ -11,7 +11,14 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.control import ControlState, Interlock, MdiSettings, OperatorCommand, Plan, blocking_interlock
+from pkm_post.control.numerical_control import (
+    ControlState,
+    Interlock,
+    MdiSettings,
+    OperatorCommand,
+    Plan,
+    blocking_interlock,
+)
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.dro import angle_text, length_text

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.control import (
+from pkm_post.control.numerical_control import (
     SIMULATED_HOMING,
     CartesianJog,
     ControlState,

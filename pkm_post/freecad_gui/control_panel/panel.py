@@ -9,7 +9,7 @@ import FreeCAD
 import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.control import Connection, ControlState
+from pkm_post.control.numerical_control import Connection, ControlState
 from pkm_post.freecad_gui.control_panel.connect_page import ConnectPage
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.dro import PoseReadout, StrutTable

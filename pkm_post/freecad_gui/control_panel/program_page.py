@@ -11,14 +11,14 @@ from pathlib import Path
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.control import (
+from pkm_post.control.link import Job
+from pkm_post.control.loading import job_to_load
+from pkm_post.control.numerical_control import (
     ControlState,
     Interlock,
-    Job,
     OperatorCommand,
     Plan,
     ProgramBlocks,
-    job_to_load,
     read_blocks,
 )
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, plain_button, refresh_all, side_by_side

@@ -9,7 +9,7 @@ from functools import partial
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.control import ControlState, Interlock, OperatorCommand, blocking_interlock
+from pkm_post.control.numerical_control import ControlState, Interlock, OperatorCommand, blocking_interlock
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import FreeCAD
 
-from pkm_post.control import Bits, BlockDisplay, ControlState, Homing, HomingPhase, Interlock, Status
+from pkm_post.control.link import Bits, Status
+from pkm_post.control.numerical_control import BlockDisplay, ControlState, Homing, HomingPhase, Interlock
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
