@@ -74,14 +74,18 @@ def plucker_rows(along: Array, arm: Array) -> Array:
 
 
 def solve_regular(matrices: Array, right: Array) -> tuple[Array, Array]:
-    """Solutions x of A x = b, (N, 6), and which rows have one, (N,); exactly singular matrices yield zeros."""
+    """Solutions x of A x = b, (N, 6), and which rows have one, (N,); exactly singular matrices yield zeros.
+
+    What is singular is known by trying, in halves: LAPACK's determinant may differ from zero by its own rounding.
+    """
     try:
         return np.linalg.solve(matrices, right[..., None])[..., 0], np.ones(len(right), dtype=bool)
     except np.linalg.LinAlgError:
-        regular = np.abs(np.linalg.det(matrices)) > 0
-        solutions = np.zeros_like(right)
-        solutions[regular] = np.linalg.solve(matrices[regular], right[regular][..., None])[..., 0]
-        return solutions, regular
+        if len(right) == 1:
+            return np.zeros_like(right), np.zeros(1, dtype=bool)
+    half = len(right) // 2
+    begin, end = (solve_regular(matrices[rows], right[rows]) for rows in (slice(half), slice(half, None)))
+    return np.concatenate([begin[0], end[0]]), np.concatenate([begin[1], end[1]])
 
 
 _POSES_AT_ONCE = 8192

@@ -4,7 +4,7 @@ import pytest
 from machines import axis_and_spin, direction, example, nategh, random_poses, rotation_about, screwed
 
 from pkm_post.machine.kinematics.inverse import strut_lengths
-from pkm_post.machine.kinematics.jacobian import jacobian_of_platform, jacobian_of_tip, scaled_jacobian
+from pkm_post.machine.kinematics.jacobian import jacobian_of_platform, jacobian_of_tip, scaled_jacobian, solve_regular
 from pkm_post.model import Machine
 
 STEP = 1e-5
@@ -90,3 +90,27 @@ def test_the_determinant_has_one_sign_all_over_the_workspace():
     # Assembly modes are parted by singular poses: poses that the machine can go to from home share the sign.
     poses = random_poses(np.random.default_rng(9), 5000, tilt_deg=30)
     assert np.all(np.linalg.det(scaled_jacobian(example(), *poses)) < -0.1)
+
+
+@pytest.mark.parametrize("singular", [[], [0], [4], [0, 1, 6], range(7)])
+def test_singular_rows_leave_the_others_alone(singular):
+    random = np.random.default_rng(4)
+    matrices, right = random.normal(size=(7, 6, 6)), random.normal(size=(7, 6))
+    for row in singular:
+        matrices[row, :, 3] = 0.0
+    solutions, regular = solve_regular(matrices, right)
+    assert np.flatnonzero(~regular).tolist() == list(singular)
+    assert not solutions[~regular].any()
+    for row in np.flatnonzero(regular):
+        assert solutions[row].tobytes() == np.linalg.solve(matrices[row], right[row]).tobytes()
+
+
+def test_parallel_struts_are_singular_whatever_the_determinant_says():
+    """As with lengths far beyond the machine: a determinant of rounding alone, with NumPy 1.26, need not be zero."""
+    random = np.random.default_rng(0)
+    along = np.repeat(random.normal(size=(300, 1, 3)), 6, axis=1) * (1 + 2.0**-53 * random.integers(-1, 3, (300, 6, 3)))
+    along /= np.linalg.norm(along[:, :1], axis=2, keepdims=True)
+    arm = random.uniform(-300, 300, (300, 6, 3))
+    solutions, regular = solve_regular(np.concatenate([along, np.cross(arm, along)], axis=2), np.full((300, 6), 5e20))
+    assert 0 < regular.sum() < 300
+    assert not solutions[~regular].any()
