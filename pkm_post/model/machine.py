@@ -210,6 +210,12 @@ class Machine:
     tool_table: str | None = None
     optional_stops: str = "written"
 
+    @property
+    def functions(self) -> tuple[int, ...]:
+        """Numbers of the M codes of part programs that the controller has a code for."""
+        named = self.controller.get("codes", {})
+        return tuple(int(name[1:]) for name in named if name[0] == "M" and name[1:].isdigit())
+
     def __post_init__(self) -> None:
         for name in ("base_cone", "platform_cone"):
             object.__setattr__(self, name, np.broadcast_to(getattr(self, name), 6))

@@ -33,6 +33,8 @@ class EventKind(enum.IntEnum):
     """value: duration in s."""
     STOP = 5
     """value: 0 program stop, 1 optional stop."""
+    FUNCTION = 6
+    """value: number of an M code that the machine has for purposes of its own."""
 
 
 @dataclass(frozen=True)

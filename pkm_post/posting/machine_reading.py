@@ -2,7 +2,7 @@
 """Machine reading: what a machine file says about G-code, in the work frame of a post.
 
 Enters: the machine, the work offset chosen, and the reading options of the user, which go before. Leaves: reading
-options with the zero of the machine, its other work offsets, the codes to leave out and the tool table.
+options with the zero of the machine, its other work offsets, its functions, the codes to leave out and the tool table.
 """
 
 from __future__ import annotations
@@ -31,14 +31,16 @@ def with_machine(reading: ReadingOptions, machine: Machine, options: Options) ->
     """
     name = options.work_offset
     pose = machine.work_offsets.get(name) if isinstance(name, str) else name
-    left_out = tuple(dict.fromkeys((*reading.left_out, *machine.left_out)))
-    tool_table = reading.tool_table or machine.tool_table
+    reading = replace(
+        reading,
+        left_out=tuple(dict.fromkeys((*reading.left_out, *machine.left_out))),
+        functions=machine.functions,
+        tool_table=reading.tool_table or machine.tool_table,
+    )
     if pose is None:  # posting refuses a name that the machine does not have
-        return replace(reading, left_out=left_out, tool_table=tool_table)
+        return reading
     return replace(
         reading,
-        left_out=left_out,
-        tool_table=tool_table,
         machine_zero=reading.machine_zero or _zero(machine, pose),
         machine_offsets=_others(machine, pose) if isinstance(name, str) and _OF_GCODE.fullmatch(name) else {},
     )

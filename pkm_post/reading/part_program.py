@@ -57,6 +57,7 @@ class ReadingOptions:
         left_out: codes of G-code, such as "M21", to leave out where they are not understood.
         goto_values: meanings of the values of those GOTO statements of CL data that have as many, as in
             ``cldata.ReadOptions``.
+        functions: numbers of M codes of G-code that the machine has for purposes of its own: they become events.
         feed: speed of cutting moves before the first feed of the file, mm/s; None refuses such moves.
         lengths: gauge lengths of tools, and values of length offsets (H), by number, mm.
         work_offsets: by name, such as "G54" and "G54.1P7", origin in mm and rotation about z in degrees in {C}.
@@ -82,6 +83,7 @@ class ReadingOptions:
     flavour: str | None = None
     machine_zero: tuple[float, float, float] | None = None
     left_out: tuple[str, ...] = ()
+    functions: tuple[int, ...] = ()
     feed: float | None = None
     goto_values: tuple[str, ...] = ()
     work_offsets: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
@@ -192,6 +194,7 @@ def _read_gcode(content: bytes, file: str, reading: ReadingOptions, folder: Path
         dwell_unit=reading.dwell_unit,
         machine_zero=reading.machine_zero,
         left_out=reading.left_out,
+        functions=reading.functions,
         feed=reading.feed,
         work_offsets=reading.work_offsets,
         machine_offsets=reading.machine_offsets,

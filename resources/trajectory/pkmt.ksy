@@ -312,3 +312,4 @@ enums:
     3: coolant
     4: dwell
     5: stop
+    6: function

@@ -36,6 +36,7 @@ NO_LIMITS = {
     "controller.codes.spindle_clockwise", "controller.codes.spindle_counterclockwise",
     "controller.codes.spindle_stop", "controller.codes.coolant_flood", "controller.codes.coolant_mist",
     "controller.codes.coolant_off", "controller.codes.stop", "controller.codes.optional_stop",
+    "controller.codes.functions",
 }  # fmt: skip
 """Entries that say what the machine is, where things are and what its controller is set to."""
 

@@ -240,10 +240,12 @@ class MdiSettings:
         work_offset: name of a work offset in the machine file: the frame of the coordinates.
         axis_words: how the line states the tool axis, a key of ``gcode.options.AXIS_WORDS``; with ``"none"`` the axis
             stays as it is.
+        functions: numbers of the M codes that the machine file has a code for, whatever is given.
     """
 
     work_offset: str = "G54"
     axis_words: str = "none"
+    functions: tuple[int, ...] = ()
 
 
 def mdi_trajectory(
@@ -263,7 +265,7 @@ def mdi_trajectory(
     """
     if len(line.splitlines()) > 1:
         raise ValueError(f"line: expected one line, got {len(line.splitlines())}")
-    reading = reading or MdiSettings()
+    reading = replace(reading or MdiSettings(), functions=machine.functions)
     options = Options(work_offset=reading.work_offset, spin=SpinPolicy(SpinRule.FILE))
     offset, diagnostics = work_offset(machine, options)
     if offset is None:
@@ -315,6 +317,7 @@ def _read(
         default_tool=tool,
         start=_in_work(here, machine_from_work),
         axis_words=reading.axis_words,
+        functions=reading.functions,
         flavour="rs274",  # one line is no evidence, and the same words mean the same in every line
     )
     program, diagnostics = gcode.read(line, _MDI, options)

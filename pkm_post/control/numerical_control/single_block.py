@@ -47,6 +47,7 @@ _CODES: dict[EventKind, Callable[[float], str]] = {
     EventKind.SPINDLE: lambda speed: f"S{abs(speed):g} M{3 if speed > 0 else 4}" if speed else "M5",
     EventKind.COOLANT: lambda value: _COOLANT[int(value)],
     EventKind.DWELL: "G4 P{:g}".format,
+    EventKind.FUNCTION: "M{:g}".format,
 }
 """Events between moves as G-code, dwells in seconds; stops are left out."""
 

@@ -84,5 +84,7 @@ def _event_command(event: Event) -> Any:
         return Path.Command(code)
     if event.kind is EventKind.SPINDLE:
         return Path.Command("M3" if event.value > 0 else "M4", {"S": abs(event.value)})
+    if event.kind is EventKind.FUNCTION:
+        return Path.Command(f"M{event.value:.0f}")
     name, letter = {EventKind.DWELL: ("G4", "P"), EventKind.TOOL_CHANGE: ("M6", "T")}[event.kind]
     return Path.Command(name, {letter: event.value})

@@ -148,6 +148,7 @@ FIELDS: tuple[Field, ...] = (
     Field("controller.codes.coolant_off", forms.CODE),
     Field("controller.codes.stop", forms.CODE),
     Field("controller.codes.optional_stop", forms.CODE),
+    Field("controller.codes.functions", forms.FUNCTIONS, default={}),
 )
 
 

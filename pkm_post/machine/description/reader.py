@@ -183,7 +183,7 @@ def _machine(values: dict[str, Any], offsets: list[str], fingerprint: str) -> Ma
 
 
 def _controller(values: dict[str, Any]) -> dict[str, Any]:
-    """Entries below ``controller``, nested as in the file, in mm and mm/s."""
+    """Entries below ``controller``, nested as in the file, in mm and mm/s; functions are codes as the others are."""
     settings: dict[str, Any] = {}
     for field in FIELDS:
         if field.name[0] == CONTROLLER:
@@ -192,4 +192,5 @@ def _controller(values: dict[str, Any]) -> dict[str, Any]:
             for part in sections:
                 section = section.setdefault(part, {})
             section[key] = values[field.entry]
+    settings["codes"] |= settings["codes"].pop("functions")
     return settings

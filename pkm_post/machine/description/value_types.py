@@ -204,6 +204,20 @@ def _read_left_out(value: Any, scale: Scale) -> tuple[str, ...]:
 _CODE = re.compile(r"(?:[ -z|~]|\{value\}|\{value:d\}|\{value:\.[1-9]f\})+")
 """Printable ASCII, braces only around the number of the event."""
 
+_FUNCTION = re.compile(r"M[1-9]\d{1,3}")
+_OF_THE_LANGUAGE = {17, 29, 30, *range(47, 54), *range(60, 74), *range(96, 100)}
+"""M codes of two digits or more that say how a program runs, in one flavour of G-code or another."""
+
+
+def _read_functions(value: Any, scale: Scale) -> dict[str, str]:
+    given = value if isinstance(value, dict) else {"": value}
+    for name, text in given.items():
+        fits = isinstance(text, str) and _CODE.fullmatch(text) and "{" not in text
+        if not fits or not _FUNCTION.fullmatch(name) or int(name[1:]) in _OF_THE_LANGUAGE:
+            raise WrongValueError(f"{name} = {quoted(text)}" if name else quoted(text))
+    return dict(given)
+
+
 NUMBER = _numbers("a number", finish=float)
 POSITIVE = _numbers("a number above 0", (), lambda number: number > 0.0, float, is_positive=True)
 NOT_NEGATIVE = _numbers("a number, 0 or above", (), lambda number: number >= 0.0, float)
@@ -234,6 +248,9 @@ POSE = ValueType("4 rows of 4 numbers, a rotation and a shift", _read_pose)
 NAME = _text("a text of one line", lambda text: text.strip() and text.isprintable())
 PROSE = _text("a text", lambda text: True)
 CODE = _text("a line of ASCII, the number as {value}, {value:d} or {value:.3f}", _CODE.fullmatch)
+FUNCTIONS = ValueType(
+    'a table of texts such as M21 = "M21": M codes from M10 on that do not say how a program runs', _read_functions
+)
 LEFT_OUT = ValueType('texts such as "M21 chip conveyor": a G or M code and why it is left out', _read_left_out)
 LETTERS = ValueType(f"6 different letters out of {' '.join(AXIS_LETTERS)}", _read_letters)
 

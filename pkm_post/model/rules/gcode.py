@@ -78,7 +78,8 @@ GCODE_RULES: dict[str, Rule] = {
     "G401": error(
         "the code is not supported",
         "replace it by supported codes, or, if it does not move the tool, leave it out with --leave-out or with"
-        " part_programs.leave_out of the machine file",
+        " part_programs.leave_out of the machine file; M codes that the controller is to get belong into"
+        " controller.codes.functions there",
     ),
     "G402": error(
         "the code has no meaning on this machine",
@@ -167,6 +168,10 @@ GCODE_RULES: dict[str, Rule] = {
     "G436": error(
         "the place of no move is known",
         "give X, Y and Z in the first moves: a control would begin them wherever the tool stands",
+    ),
+    "G437": error(
+        "controls differ in whether this code acts before the move of its block or after it",
+        "write it in a block of its own",
     ),
     # G5: writing G-code
     "G501": error("the tool axis tilts, and this form of G-code cannot express it", "choose a form with five axes"),

@@ -50,6 +50,7 @@ def check(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagn
     _unused_words(blocks, modal, options, faults)
     _missing_words(blocks, modal, faults)
     _values(blocks, modal, faults)
+    _functions(modal, faults)
     _axis_words(blocks, modal, faults)
 
 
@@ -95,6 +96,13 @@ def _codes_of_one_group(blocks: Blocks, flavour: Flavour, faults: BlockDiagnosti
             here = (blocks.g_of(row) if letter == "G" else blocks.m_of(row)).tolist()
             words = [word_of(code, letter) for code in here if code in known and known[code].group is groups[of_group]]
             faults.add("G403", row, (*_spaced(words), f" ({groups[of_group].value})"))
+
+
+def _functions(modal: Modal, faults: BlockDiagnostics) -> None:
+    """Report functions of the machine beside a move: when they act is a matter of the control."""
+    codes = modal.programmed[Group.FUNCTION]
+    beside = (codes != NONE) & (modal.moves | (modal.takes_axes != NONE))
+    faults.add_where("G437", beside, lambda row: word_of(int(codes[row]), "M"))
 
 
 def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> None:

@@ -40,6 +40,7 @@ class Group(Enum):
     SPINDLE = "spindle"
     COOLANT = "coolant"
     OVERRIDE = "overrides"
+    FUNCTION = "functions of the machine"
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,9 @@
 """Events: M codes, S and dwells between motions.
 
 Enters: columns of codes, and P of G4 and of the cycles that dwell at the bottom. Leaves: events, and warnings about
-doubtful dwells. Order within a block: tool change, spindle and coolant, dwell, motion, program stop [LinuxCNC, order of
-execution]. P is in seconds on LinuxCNC and in milliseconds, without a decimal point, on Fanuc-style controls [LinuxCNC;
-Weihong]. With a point some of these read seconds [Haas], so it is refused there.
+doubtful dwells. Order within a block: tool change, spindle and coolant, functions of the machine, dwell, motion,
+program stop [LinuxCNC, order of execution]. P is in seconds on LinuxCNC and in milliseconds, without a decimal point,
+on Fanuc-style controls [LinuxCNC; Weihong]. With a point some of these read seconds [Haas], so it is refused there.
 """
 
 from __future__ import annotations
@@ -44,6 +44,9 @@ def events_of_blocks(blocks: Blocks, modal: Modal, tools: Array, spindle: Array,
     on_coolant = np.isin(blocks.m, list(_COOLANT))
     for row, code in zip(blocks.m_row[on_coolant].tolist(), blocks.m[on_coolant].tolist(), strict=True):
         events.append((row, -2, EventKind.COOLANT, _COOLANT[code]))
+    functions = modal.programmed[Group.FUNCTION]
+    for row in np.flatnonzero(functions != NONE).tolist():
+        events.append((row, -2, EventKind.FUNCTION, float(functions[row])))
     for row in blocks.g_row[blocks.g == _DWELL].tolist():
         events.append((row, -1, EventKind.DWELL, float(dwells[row])))
     for row in np.flatnonzero(stops != NONE).tolist():

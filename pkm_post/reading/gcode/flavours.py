@@ -191,5 +191,13 @@ FANUC = replace(
     unsupported=_FANUC_REFUSED,
 )
 
+
+def with_functions(flavour: Flavour, functions: tuple[int, ...]) -> Flavour:
+    """A flavour on a machine with M codes of its own, which no flavour understands."""
+    if not functions:
+        return flavour
+    return replace(flavour, m_codes={**dict.fromkeys(functions, Code(Group.FUNCTION)), **flavour.m_codes})
+
+
 FLAVOURS: dict[str, Flavour] = {flavour.name: flavour for flavour in (RS274, FANUC)}
 """By name."""

@@ -66,6 +66,7 @@ class ReadOptions:
         flavour: whose G-code it is, one of ``FLAVOUR_NAMES``; guessed from the program if None.
         dwell_unit: unit of P of G4 and of cycles, a key of ``DWELL_UNITS``; that of the flavour if None.
         left_out: codes, such as "M21", that are left out where the reader does not understand them.
+        functions: numbers of M codes that the machine has for purposes of its own, such as 21: they become events.
         feed: speed of cutting moves before the first F, mm/s, where F is per minute; None if unknown: such moves are
             refused.
         folders: where files of subprograms that a program calls are looked for, in this order.
@@ -90,6 +91,7 @@ class ReadOptions:
     flavour: str | None = None
     dwell_unit: str | None = None
     left_out: tuple[str, ...] = ()
+    functions: tuple[int, ...] = ()
     feed: float | None = None
     folders: tuple[Path, ...] = ()
     needs_end: bool = False

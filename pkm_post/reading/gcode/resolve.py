@@ -34,7 +34,7 @@ from pkm_post.reading.gcode.codes import NONE, Group
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, never_given
 from pkm_post.reading.gcode.events import ENDS, check_dwells, dwell_words, events_of_blocks, ordered_events
 from pkm_post.reading.gcode.feeds import INVERSE_TIME, feeds, path_modes
-from pkm_post.reading.gcode.flavours import FLAVOURS, RS274
+from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, with_functions
 from pkm_post.reading.gcode.frames import RowFrames, normal_coordinate
 from pkm_post.reading.gcode.modal import Modal, modal_state
 from pkm_post.reading.gcode.motions import Motions
@@ -72,7 +72,7 @@ def resolve(
     """
     if blocks.special:
         raise ValueError(f"expected plain blocks, got {len(blocks.special)} that have to be executed first")
-    flavour = FLAVOURS[options.flavour or RS274.name]
+    flavour = with_functions(FLAVOURS[options.flavour or RS274.name], options.functions)
     blocks, ended = _up_to_end(blocks, options)
     blocks, notes = adapted(blocks, flavour, options.left_out)
     faults = BlockDiagnostics(blocks, text, options.most_reported)

@@ -20,7 +20,7 @@ from pkm_post.reading.gcode.checks import check
 from pkm_post.reading.gcode.codes import FURTHER_OFFSET, Group
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.events import dwell_words
-from pkm_post.reading.gcode.flavours import FLAVOURS, RS274
+from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, with_functions
 from pkm_post.reading.gcode.modal import Modal, modal_state
 from pkm_post.reading.gcode.options import UNITS, ReadOptions, axis_names
 from pkm_post.reading.gcode.parameters import ExecutionFault
@@ -108,7 +108,7 @@ class ExecutedBlocks:
     def _state(self) -> tuple[Array, Array, Modal, Array]:
         """Coordinates of the tool, which are known, the codes, and the place in {C}."""
         options = self.options
-        flavour = FLAVOURS[options.flavour or RS274.name]
+        flavour = with_functions(FLAVOURS[options.flavour or RS274.name], options.functions)
         blocks, _ = adapted(self.blocks, flavour, options.left_out)
         faults = BlockDiagnostics(blocks)
         modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), flavour)

@@ -111,6 +111,10 @@ def m_code(machine: Machine, block: Block, code: int) -> None:
     elif code in _COOLANT:
         machine.state.coolant = _COOLANT[code]
         machine.path.add_event(EventKind.COOLANT, _COOLANT[code])
+    elif code in machine.options.functions:
+        if block.words.keys() & BUFFERED:
+            raise BlockFault("G437", f"M{code}", block.columns.get(f"M{code}", 0))
+        machine.path.add_event(EventKind.FUNCTION, float(code))
     elif code not in (*STOPS, *ENDS, RETURNS, *codes.SILENT_M):
         _leave_out(machine, block, f"M{code}", codes.REFUSED.get(f"M{code}"))
 

@@ -91,6 +91,7 @@ _EVENTS: dict[EventKind, Callable[[float], str]] = {
     EventKind.COOLANT: lambda value: _COOLANT[int(value)] + "\n",
     EventKind.DWELL: lambda seconds: f"G4 P{seconds:.4f}\n",  # without a point some controls read it as ms
     EventKind.STOP: lambda value: _STOP[int(value)] + "\n",
+    EventKind.FUNCTION: lambda number: f"M{int(number)}\n",
 }
 
 

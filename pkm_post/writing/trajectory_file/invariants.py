@@ -90,6 +90,7 @@ VALID_EVENT_VALUE: dict[EventKind, Callable[[float], bool]] = {
     EventKind.COOLANT: lambda value: value in (0, 1, 2),
     EventKind.DWELL: lambda value: value >= 0,
     EventKind.STOP: lambda value: value in (0, 1),
+    EventKind.FUNCTION: lambda value: value == int(value) and 0 <= value <= _LARGEST_NUMBER,
 }
 """Whether a finite value is valid, by kind of event."""
 

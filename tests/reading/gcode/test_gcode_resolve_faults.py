@@ -22,7 +22,7 @@ def options(words):
     if words == "G54=":
         return ReadOptions(tools=TOOLS, work_offsets={"G54": (0.0, 0.0, 0.0, 0.0)})
     name, _, value = (words or "axis_words=none").partition("=")
-    return ReadOptions(tools=TOOLS, **{name: value})
+    return ReadOptions(tools=TOOLS, **{name: (int(value),) if name == "functions" else value})
 
 
 def test_there_are_programs_for_every_code():

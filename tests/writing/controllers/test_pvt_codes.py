@@ -71,6 +71,10 @@ def test_the_codes_of_the_example_are_in_order_and_tell_all_meanings_apart():
         ({"tool_change": f"M6 {LETTERS[1]}{{value}}"}, f"got {LETTERS[1]} in"),
         ({"stop": ""}, "stop: expected"),
         ({"pallet": "M60"}, "expected the names"),
+        ({"M21": "M8"}, "got 'M8' for coolant_flood and M21"),
+        ({"M21": "S7 M3"}, "got 'S7 M3' for spindle_clockwise and M21"),
+        ({"M21": "M{value}"}, "M21: expected text without"),
+        ({"M21": "RAPID"}, "got RAPID in"),
     ],
 )
 def test_a_table_of_codes_must_be_well_formed_and_invertible(change, complaint):
@@ -90,8 +94,15 @@ def test_outputs_can_be_set_with_synchronous_assignments():
     assert code_text(Event(0, EventKind.SPINDLE, 900.5), codes) == "M70==900.5 DWELL0"
 
 
-def test_every_kind_of_event_but_the_dwell_has_a_code():
-    assert {meaning.kind for meaning in EVENT_CODES.values()} == set(EventKind) - {EventKind.DWELL}
+def test_every_kind_of_event_has_a_code_but_dwells_and_functions():
+    others = {EventKind.DWELL, EventKind.FUNCTION}
+    assert {meaning.kind for meaning in EVENT_CODES.values()} == set(EventKind) - others
+
+
+def test_functions_have_the_codes_that_the_machine_names():
+    codes = CODES | {"M21": "M21", "M10": "M60==1 DWELL0"}
+    check_codes(codes, LETTERS)
+    assert [code_text(Event(0, EventKind.FUNCTION, number), codes) for number in (21, 10)] == ["M21", "M60==1 DWELL0"]
 
 
 @pytest.mark.parametrize(
@@ -105,6 +116,7 @@ def test_every_kind_of_event_but_the_dwell_has_a_code():
         (EventKind.TOOL_CHANGE, -1, "tool_change -1: no code has this meaning"),
         (EventKind.SPINDLE, float("inf"), "spindle inf: no code has this meaning"),
         (EventKind.COOLANT, 3, "coolant 3: no code has this meaning"),
+        (EventKind.FUNCTION, 21, "function 21: no code has this meaning"),
         # 2^23 - 1 ms, the longest time of a move or dwell (PMAC User Manual, p. 169)
         (EventKind.DWELL, 8388.7, "dwell 8388.7: a dwell lasts 0 to 8388.607 s"),
         (EventKind.DWELL, float("nan"), "dwell nan: a dwell lasts 0 to 8388.607 s"),

@@ -21,6 +21,7 @@ VALUES = {
     EventKind.COOLANT: (0.0, 1.0, 2.0),
     EventKind.DWELL: (0.0, 0.25),
     EventKind.STOP: (0.0, 1.0),
+    EventKind.FUNCTION: (21.0, 999.0),
 }
 OTHER_NAN = np.array(0xFFF8_0000_DEAD_BEEF, np.uint64).view(np.float64)
 """A NaN with sign and payload: a reader that computes with it might lose them."""

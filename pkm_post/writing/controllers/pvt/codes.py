@@ -50,7 +50,16 @@ EVENT_CODES: dict[str, EventCode] = {
     "optional_stop": EventCode(EventKind.STOP, 1.0),
 }
 """The first entry that covers an event is its code: spindle stop comes before the two directions. The reader has
-its own definition of what each code does (``syntax.EFFECTS``)."""
+its own definition of what each code does (``syntax.effect``)."""
+
+FUNCTION_NAME = re.compile(r"M[0-9]+")
+"""Name of the code of a function of the machine: the M code of part programs."""
+
+
+def meaning_of(name: str) -> EventCode:
+    """The effect of the code with a name of ``EVENT_CODES``, or that of a function."""
+    return EVENT_CODES[name] if name in EVENT_CODES else EventCode(EventKind.FUNCTION, float(name[1:]))
+
 
 LONGEST_DWELL = 8388.607
 """s; the controller truncates longer dwells to this."""
@@ -76,19 +85,20 @@ def check_codes(codes: Mapping[str, str], letters: Sequence[str]) -> None:
     """Check that a table of codes is complete, well formed and invertible, and moves no strut.
 
     Args:
-        codes: text for each name of ``EVENT_CODES``, with one field if it states the value of the event.
+        codes: text for each name of ``EVENT_CODES``, with one field if it states the value of the event, and for the
+            functions of the machine.
         letters: letters of the axes.
 
     Raises:
         ValueError: a name is missing or unknown, a text is malformed, changes modes or moves an axis, or some text
             would stand for two events.
     """
-    if set(codes) != set(EVENT_CODES):
+    if {name for name in codes if not FUNCTION_NAME.fullmatch(name)} != set(EVENT_CODES):
         raise ValueError(f"codes: expected the names {', '.join(EVENT_CODES)}, got {', '.join(codes)}")
     for name, template in codes.items():
         form, expected = (
             (_VALUE_CODE, "text with one {value}, {value:d} or {value:.3f}, apart from other digits")
-            if EVENT_CODES[name].value is None
+            if meaning_of(name).value is None
             else (_FIXED_CODE, "text without ';' and braces")
         )
         reserved = template.upper().startswith(_RESERVED) or any(mark in template for mark in _COMMENTS)
@@ -145,7 +155,7 @@ def reason_unwritable(event: Event, codes: Mapping[str, str]) -> str:
     if event.kind == EventKind.DWELL:
         return "" if 0 <= event.value <= LONGEST_DWELL else f"a dwell lasts 0 to {LONGEST_DWELL} s"
     name = _name(event)
-    if not name or not math.isfinite(event.value):
+    if name not in codes or not math.isfinite(event.value):
         return "no code has this meaning"
     number = _number_text(codes[name], abs(event.value))
     return "" if float(number) == abs(event.value) else f"the code {name} = {codes[name]!r} would write it as {number}"
@@ -188,4 +198,6 @@ def event_faults(motion: StrutMotion, codes: Mapping[str, str], file: str) -> tu
 
 
 def _name(event: Event) -> str:
+    if event.kind == EventKind.FUNCTION:
+        return f"M{event.value:.0f}"
     return next((name for name, meaning in EVENT_CODES.items() if meaning.covers(event)), "")

@@ -17,7 +17,7 @@ from pkm_post.model import Array, Diagnostic, Event, EventKind, Place, StrutMoti
 from pkm_post.writing.controllers.pvt.moves import Lines, lines_of
 from pkm_post.writing.controllers.pvt.parts import join_motions, part_faults
 from pkm_post.writing.controllers.pvt.settings import PvtSettings
-from pkm_post.writing.controllers.pvt.syntax import EFFECTS, FINISHED, START, Grammar, effect, state_after
+from pkm_post.writing.controllers.pvt.syntax import FINISHED, START, Grammar, effect, is_code, state_after
 
 MOST_FAULTS = 20
 _INTERVAL_MS = 4095
@@ -105,7 +105,7 @@ class Reading:
         return "", None
 
     def _act(self, name: str, number: int, line: str, numbers: Sequence[str]) -> None:
-        if name in EFFECTS:
+        if is_code(name):
             self._events.append(Event(self._knots - 1, *effect(name, numbers)))
         elif name in self._acts:
             self._acts[name](number, line, numbers)
@@ -157,7 +157,7 @@ class Reading:
 
     def _expected(self) -> str:
         due = self._due[self._state]
-        names = [self.forms[name].name for name in due if name not in EFFECTS]
+        names = [self.forms[name].name for name in due if not is_code(name)]
         return " or ".join([*names, "a code"] if len(names) < len(due) else names) or "nothing more"
 
     def _fault(self, number: int, position: int, line: str, expected: str) -> None:
@@ -174,7 +174,7 @@ def _joined(pieces: list[Array]) -> Array:
 
 
 def _kind(name: str) -> str:
-    return "code" if name in EFFECTS else name
+    return "code" if is_code(name) else name
 
 
 _CHUNK = 1 << 20

@@ -128,7 +128,17 @@ EFFECTS: Mapping[str, _Effect] = {
     "coolant_off": (EventKind.COOLANT, 0.0),
 }
 """Effect of the code of each name: the kind of event, and its value, or the value by the number in the code. The names
-are those of ``[controller.codes]`` in machine files, which describe the action of the machine."""
+are those of ``[controller.codes]`` in machine files, which describe the action of the machine; those of ``functions``
+there are M codes."""
+
+
+_FUNCTION = re.compile(r"M(\d+)")
+"""Names of functions of the machine: the M codes that part programs have for them."""
+
+
+def is_code(name: str) -> bool:
+    """Whether a kind of line is the code of an event."""
+    return name in EFFECTS or _FUNCTION.fullmatch(name) is not None
 
 
 def effect(name: str, numbers: Sequence[str]) -> tuple[EventKind, float]:
@@ -138,6 +148,8 @@ def effect(name: str, numbers: Sequence[str]) -> tuple[EventKind, float]:
         name: name of the code.
         numbers: numbers in its line.
     """
+    if function := _FUNCTION.fullmatch(name):
+        return EventKind.FUNCTION, float(function[1])
     kind, value = EFFECTS[name]
     return kind, value(float(numbers[0])) if callable(value) else value
 
