@@ -61,7 +61,10 @@ GCODE_RULES: dict[str, Rule] = {
     "G313": error("the program does not end", "correct its loops, or raise the limit"),
     "G314": error("subprograms call each other too deeply", "correct the calls, or raise the limit"),
     "G315": error("a call has too many arguments", "pass at most 30"),
-    "G316": error("this is not a call of a subprogram", "write M98 P and L with whole numbers, P always, and no M99"),
+    "G316": error(
+        "this is not a call of a subprogram",
+        "write M98 P and L with whole numbers, P always, and no M99; G67 before what may not stand under G66",
+    ),
     "G317": error(
         "the tool axis or normal cannot be given in this way here", "write the tool axis alone, on straight moves"
     ),

@@ -127,7 +127,7 @@ _FANUC_CODES: dict[int, Code] = {
     500: Code(Group.SCALING),
     510: Code(Group.SCALING, "XYZIJKP", takes_axes=True),
     541: Code(Group.SYSTEM, "P", "P"),
-    682: Code(Group.ROTATION, "XYZIJKP", "XYZIJK", takes_axes=True),
+    682: Code(Group.ROTATION, "XYZIJKPQR", takes_axes=True),
     **{FURTHER_OFFSET - number: Code(Group.SYSTEM) for number in range(1, MOST_FURTHER_OFFSETS + 1)},
     **{code: Code(Group.MOTION, "XYZRLKPQ") for code in CYCLES},
     **{code: Code(Group.MOTION, "XYZRLKPQIJ") for code in (730, 830)},

@@ -53,12 +53,40 @@ def check_tilted_planes(blocks: Blocks, modal: Modal, axes: Array, faults: Block
     _report(faults, others[inside[others]], "G68 within the plane")
     turns = distinct(blocks.g_row[blocks.g == TURN_TO_PLANE])
     _report(faults, turns[~inside[turns]], "G53.1 without G68.2")
-    third = blocks.word("P")
-    for row in np.flatnonzero((modal.programmed[Group.ROTATION] == TILTED_PLANE) & (third > 0)).tolist():
-        if third[row] != 1 or sum(blocks.word(letter)[row] != 0 for letter in "IJK") > 1:
-            faults.add("G402", row, (word_of(TILTED_PLANE), " ", Word("P", third[row]), ": other angles than Euler's"))
+    for row in np.flatnonzero(modal.programmed[Group.ROTATION] == TILTED_PLANE).tolist():
+        _check_words(blocks, row, faults)
     for row in turns[inside[turns]].tolist():
         faults.add("G433", row, word_of(TURN_TO_PLANE))
+
+
+_EULER, _ROLL_PITCH_YAW = 0.0, 1.0
+_REFUSED = {
+    _ROLL_PITCH_YAW: "several of the angles roll, pitch and yaw; one alone is understood",
+    2.0: "a plane through three points",
+    3.0: "a plane by two vectors",
+    4.0: "a plane by projection angles",
+}
+"""By P [Fanuc, tilted working plane command; Mazak]."""
+
+
+def _check_words(blocks: Blocks, row: int, faults: BlockDiagnostics) -> None:
+    """Report words of G68.2 that are missing or of no use, and planes of another kind than Euler's angles.
+
+    Roll, pitch and yaw stand in the order of Q; one of them alone is a turn about its axis, in any order.
+    """
+    words = {letter: float(blocks.word(letter)[row]) for letter in "XYZIJKPQR"}
+    given = {letter for letter, value in words.items() if value == value}
+    kind = words["P"] if "P" in given else _EULER
+    several = sum(words[letter] != 0 for letter in given & set("IJK")) > 1
+    if kind in _REFUSED and (several or kind != _ROLL_PITCH_YAW):
+        faults.add("G402", row, (word_of(TILTED_PLANE), " ", Word("P", kind), f": {_REFUSED[kind]}"))
+    elif kind not in (_EULER, _ROLL_PITCH_YAW):
+        faults.add("G406", row, (word_of(TILTED_PLANE), " ", Word("P", kind)))
+    else:
+        for letter in sorted(set("XYZIJK") - given) if kind == _EULER else ():
+            faults.add("G405", row, (word_of(TILTED_PLANE), f" without {letter}"))
+        for letter in sorted(given & set("QR" if kind == _EULER else "R")):
+            faults.add("G404", row, Word(letter, words[letter]))
 
 
 def check_cuts_from_turns(blocks: Blocks, motions: Motions, faults: BlockDiagnostics) -> None:

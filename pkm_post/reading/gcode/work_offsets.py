@@ -31,6 +31,8 @@ TIP_CONTROL = (434, 435)
 """Codes that make X Y Z tool tip coordinates while the tool axis tilts."""
 
 TILTED_PLANE = 682
+EULER, ABOUT_AXES = (170, 190, 170), (190, 180, 170)
+"""Planes that I, J and K of G68.2 turn in: about Z, X and Z, and with P1 about X, Y and Z."""
 """Its Z is the tool axis from G53.1 on."""
 
 IN_ORDER = (Group.LENGTH, Group.SYSTEM, Group.ROTATION, Group.MIRROR)
@@ -255,12 +257,17 @@ class OffsetCodes:
         self.offsets.rotation = about, centre - about @ centre
 
     def _tilt(self, row: int) -> None:
-        """G68.2: X Y Z are the origin of the plane, I J K the Euler angles about Z, the new X and the new Z."""
+        """G68.2: X Y Z are the origin of the plane, I J K the Euler angles about Z, the new X and the new Z.
+
+        With P1 they are those about X, Y and Z, of which one is not 0 alone.
+        """
         offsets = self.offsets
         if offsets.length is not None and not np.allclose(offsets.length, (0.0, 0.0, offsets.own_length)):
             self._faults.add("G421", row, (word_of(TILTED_PLANE), f", the tool is {offsets.own_length:g} mm long"))
-        i, j, k = (math.radians(self._blocks.word(letter)[row]) for letter in "IJK")
-        offsets.rotation = rotation(170, i) @ rotation(190, j) @ rotation(170, k), self._words.at(row)
+        angles = np.nan_to_num([math.radians(self._blocks.word(letter)[row]) for letter in "IJK"]).tolist()
+        planes = ABOUT_AXES if self._blocks.word("P")[row] == 1 else EULER
+        first, second, third = map(rotation, planes, angles)
+        offsets.rotation = first @ second @ third, np.nan_to_num(self._words.at(row))
         offsets.tilted = True
 
     def _mirror(self, row: int, code: int, position: Array, known: Array, moved: bool) -> None:

@@ -4,8 +4,9 @@
 Enters: the arguments (_FR, _TC, _ST, _MODE, _X0, _Y0, _Z0, _A, _B, _C, _X1, _Y1, _Z1, _DIR, ...). Leaves: the frame of
 the plane in the state: shifted to X0 Y0 Z0, turned axis by axis about new axes, shifted to X1 Y1 Z1
 [SiemensCycles, CYCLE800]. The bits of _MODE name the axes: two each for _A, _B and _C, from the lowest, 1 X, 2 Y, 3 Z;
-the two above them are 0 for turns axis by axis, and other kinds are refused. Without arguments, or with data set "0",
-the plane is the first again.
+the two above them are 0 for turns axis by axis, and other kinds are refused. The digits of _ST say, from the lowest,
+whether the plane adds to the one before, whether the tip follows, and whether the tool is aligned, which is refused.
+Without arguments, or with data set "0", the plane is the first again.
 """
 
 from __future__ import annotations
@@ -40,6 +41,8 @@ def swivel(state: State, call: Call) -> bool:
     if not state.programmed.is_plain():
         raise BlockFault("G602", "CYCLE800 while TRANS, ROT, SCALE or MIRROR is in force", call.column)
     status = int(call.number(_STATUS, 0.0))
+    if status // 100 % 10:
+        raise BlockFault("G602", f"CYCLE800 that aligns the tool (_ST={status})", call.column)
     plane = _plane(state, call)
     frame = state.swivel.then(plane) if status % 10 else plane
     return _set(state, frame, turns=call.number(_DIRECTION, 0.0) != 0)

@@ -82,6 +82,11 @@ PLANE = "G68.2 X0. Y0. Z0. I0. J30. K0.\n"
         ("G68.2 X0. Y0. Z0. I0. J30.\nM30\n", [("G405", 1)]),
         ("G68.2 P1 X0. Y0. Z0. I10. J30. K0.\nG53.1\nM30\n", [("G402", 1), ("G433", 2)]),
         ("G68.2 P2 X0. Y0. Z0. I0. J30. K0.\nG53.1\nM30\n", [("G402", 1), ("G433", 2)]),
+        ("G68.2 P2 Q1 X0. Y0. Z0.\nG68.2 P2 Q2 X1.\nG53.1\nM30\n", [("G402", 1), ("G402", 2), ("G433", 3)]),
+        ("G68.2 P3 Q1 X0. I1.\nG53.1\nM30\n", [("G402", 1), ("G433", 2)]),
+        ("G68.2 P4 X0. Y0. Z0. I0. J30. K0.\nG53.1\nM30\n", [("G402", 1), ("G433", 2)]),
+        ("G68.2 P5 X0. Y0. Z0. I0. J30. K0.\nG53.1\nM30\n", [("G406", 1), ("G433", 2)]),
+        ("G68.2 X0. Y0. Z0. I0. J30. K0. Q1\nG53.1\nM30\n", [("G404", 1), ("G433", 2)]),
         (PLANE + "G53.1\nG0 X0. Y0.\nG1 Z1.\nM30\n", [("G433", 2), ("G416", 4)]),
     ],
 )
@@ -89,9 +94,20 @@ def test_where_it_is_not_clear_how_the_tool_stands(text, expected):
     assert codes(text) == expected
 
 
-def test_one_angle_of_roll_pitch_and_yaw_is_clear():
-    program, _ = taken("G68.2 P1 X0. Y0. Z0. I0. J0. K90.\nG53.1\nG0 X1. Y0. Z0.\nM30\n")
-    assert np.allclose(program.position[-1], [0.0, 1.0, 0.0])
+@pytest.mark.parametrize(
+    ("words", "x", "axis"),
+    [
+        ("I90.", [1, 0, 0], [0, -1, 0]),
+        ("I0. J90. K0.", [0, 0, -1], [1, 0, 0]),
+        ("Q321 I0. J0. K90.", [0, 1, 0], [0, 0, 1]),
+        ("Q123", [1, 0, 0], [0, 0, 1]),
+    ],
+)
+def test_one_angle_of_roll_pitch_and_yaw_is_clear(words, x, axis):
+    """I turns about X, J about Y and K about Z, and what is not given is 0 [Mazak]."""
+    program, _ = taken(f"G68.2 P1 X5. {words}\nG53.1\nG0 X1. Y0. Z0.\nM30\n")
+    assert np.allclose(program.position[-1], np.add([5.0, 0.0, 0.0], x))
+    assert np.allclose(program.tool_axis[-1], axis)
 
 
 CONTOUR = "G1 X{0} Y{1}\nG2 X{2} Y{1} I{3} J{4}\nG3 X{0} Y{5} R{6}\nG91 G1 X{7}\nG90\n"

@@ -73,6 +73,7 @@ FAULTS = {
         "CYCLE800 while TRANS, ROT, SCALE or MIRROR is in force",
     ),
     'CYCLE800(1,"",0,64,0,0,0,9,0,0,0,0,0,1)': ("G602", 1, "CYCLE800 by solid angles (_MODE=64)"),
+    'CYCLE800(1,"",100200,57,0,0,0,9,0,0,0,0,0,1)': ("G602", 1, "CYCLE800 that aligns the tool (_ST=100200)"),
     "G0 SUPA Z0": ("G609", 0, "SUPA, G53 or G153"),
     "G1 X1\nG55 X2": ("G609", 0, "G55 after G54"),
     "X5 CYCLE81(10,0,2,-5)": ("G601", 4, "CYCLE81 beside other words"),
