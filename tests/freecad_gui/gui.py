@@ -68,6 +68,41 @@ def click(button):
     button.click()
 
 
+def widget(kind, name):
+    """The widget with this name that can be seen."""
+    (found,) = [each for each in FreeCADGui.getMainWindow().findChildren(kind, name) if each.isVisible()]
+    return found
+
+
+def click_named(text):
+    """Press the button of the open panel with this text."""
+    buttons = FreeCADGui.getMainWindow().findChildren(QtWidgets.QPushButton)
+    (button,) = [each for each in buttons if each.isVisible() and each.text().replace("&", "") == text]
+    click(button)
+    settle()
+
+
+def agree():
+    """Accept each question that CAM asks while its command runs."""
+    asked, timer = [], QtCore.QTimer()
+
+    def look():
+        dialog = QtWidgets.QApplication.activeModalWidget()
+        if dialog is not None:
+            asked.append(dialog.windowTitle())
+            dialog.accept()
+
+    timer.timeout.connect(look)
+    timer.start(100)
+    return timer, asked
+
+
+def tab_of(form, text):
+    """The number of the tab with this text."""
+    (index,) = [index for index in range(form.count()) if form.tabText(index).replace("&", "") == text]
+    return index
+
+
 def picture(name):
     """Keep a picture of the whole screen; whether it could be saved."""
     settle()

@@ -9,7 +9,7 @@ import json
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, click, main, press, select, settle, step, until
+from gui import FOLDER, agree, click, click_named, main, press, select, settle, step, tab_of, until, widget
 from PySide import QtCore, QtGui, QtWidgets
 
 NAME = "tapered_column"
@@ -68,35 +68,6 @@ def _trimmed(image):
 def _save(name, image):
     """As small as it can be without loss."""
     image.convertToFormat(QtGui.QImage.Format.Format_RGB32).save(str(FOLDER / f"tutorial_{name}.png"), "PNG", 0)
-
-
-def widget(kind, name):
-    """The widget with this name that can be seen."""
-    (found,) = [each for each in FreeCADGui.getMainWindow().findChildren(kind, name) if each.isVisible()]
-    return found
-
-
-def click_named(text):
-    """Press the button of the open panel with this text."""
-    buttons = FreeCADGui.getMainWindow().findChildren(QtWidgets.QPushButton)
-    (button,) = [each for each in buttons if each.isVisible() and each.text().replace("&", "") == text]
-    click(button)
-    settle()
-
-
-def agree():
-    """Accept each question that CAM asks while its command runs."""
-    asked, timer = [], QtCore.QTimer()
-
-    def look():
-        dialog = QtWidgets.QApplication.activeModalWidget()
-        if dialog is not None:
-            asked.append(dialog.windowTitle())
-            dialog.accept()
-
-    timer.timeout.connect(look)
-    timer.start(100)
-    return timer, asked
 
 
 def document():
@@ -206,14 +177,14 @@ def job_is_made():
     timer.stop()
     panel = job().ViewObject.Proxy.taskPanel
     form = panel.form
-    form.setCurrentIndex(_tab(form, "Tools"))
+    form.setCurrentIndex(tab_of(form, "Tools"))
     table = form.toolControllerList
     for column, text in ((2, "1800 mm/min"), (3, "600 mm/min"), (4, "12000")):
         table.item(0, column).setText(text)
     widen(form)
     table.resizeColumnsToContents()
     keep("tools", form, 240)
-    form.setCurrentIndex(_tab(form, "Output"))
+    form.setCurrentIndex(tab_of(form, "Output"))
     form.postProcessor.setCurrentIndex(form.postProcessor.findText("hexapod_pmac"))
     form.postProcessorArguments.setText(ARGUMENTS)
     form.postProcessorArguments.editingFinished.emit()
@@ -249,11 +220,6 @@ def _type_gauge_length():
     click_named("Close")
 
 
-def _tab(form, text):
-    (index,) = [index for index in range(form.count()) if form.tabText(index).replace("&", "") == text]
-    return index
-
-
 @step
 def quarter_is_covered():
     (part,) = job().Model.Group
@@ -267,7 +233,8 @@ def quarter_is_covered():
     page = panel.featurePages[-1]
     fields = page.form.fields
     fields["Order"].setCurrentIndex(fields["Order"].findText("Zigzag"))
-    for name, value in (("Stepover", 20.0), ("ChordTolerance", 0.05), ("AxisTolerance", 1.0), ("Tilt", 59.0)):
+    values = {"Stepover": 20.0, "ChordTolerance": 0.05, "AxisTolerance": 1.0, "Lead": 0.0, "Tilt": 59.0}
+    for name, value in values.items():
         fields[name].setProperty("rawValue", value)
     page.pageGetFields()
     keep("surface_finish", page.form)
