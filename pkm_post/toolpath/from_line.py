@@ -97,7 +97,14 @@ def begun_at(trajectory: Trajectory, start: StartLine, machine: Machine) -> tupl
     if way is None:
         tilt = float(np.degrees(np.arccos(trajectory.axis_before()[row, 2])))
         return None, (Diagnostic("K151", trajectory.place(row), f"{tilt:.3f} degrees from upright"),)
-    return _joined(trajectory, row, way), ()
+    return _joined(trajectory, row, way), _not_repeated(trajectory, row)
+
+
+def _not_repeated(trajectory: Trajectory, row: int) -> Findings:
+    """K152 with the M codes of the machine before a row: what they do, and for how long, is not known."""
+    codes = [f"M{each.value:.0f}" for each in _before(trajectory, row) if each.kind is EventKind.FUNCTION]
+    found = ", ".join(dict.fromkeys(codes))
+    return (Diagnostic("K152", trajectory.place(row), found),) if found else ()
 
 
 def _way(trajectory: Trajectory, row: int, machine: Machine) -> _Way | None:

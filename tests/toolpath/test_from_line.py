@@ -113,6 +113,16 @@ def test_the_tool_of_the_line_is_put_in_before_the_way_to_it(machine):
     assert [each.value for each in begun_first.events] == [1.0, 2.0]
 
 
+def test_codes_of_the_machine_before_the_line_are_named_and_left_out():
+    functions = tuple(
+        Event(row, EventKind.FUNCTION, number) for row, number in ((0, 10.0), (1, 21.0), (1, 10.0), (3, 11.0))
+    )
+    whole = replace(placed(), events=functions)
+    found, (fault,) = begun_at(whole, StartLine(int(whole.line[2])), MACHINE)
+    assert (fault.code, fault.found, fault.place.line) == ("K152", "M10, M21", int(whole.line[2]))
+    assert [each.value for each in found.events] == [11.0]
+
+
 def test_the_first_line_changes_nothing_and_others_are_refused():
     whole = placed()
     assert begun(whole, 1) is whole

@@ -152,6 +152,10 @@ MACHINING_RULES: dict[str, Rule] = {
         "the tool is tilted too far to come down to the line along its axis",
         "begin at an earlier line, where it is tilted less",
     ),
+    "K152": warning(
+        "M codes of the machine before the line are not repeated",
+        "bring the machine into the state that they left it in, or begin at an earlier line",
+    ),
     # N1: surface normals, and compensation with them
     "N101": error("a contact point, normal or tool axis is not a number or has no direction", "regenerate the path"),
     "N102": error("the surface is undercut: the corner of the cutter does not touch it", "lean the tool further back"),
