@@ -16,7 +16,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from pkm_post.cli import pmac_manual, pmac_play, pmac_simulate
+from pkm_post.cli import pmac_manual, pmac_measure, pmac_play, pmac_simulate
 from pkm_post.cli.inputs import NO_AXIS_WORDS, axis_words
 from pkm_post.cli.pmac_actions import ACTIONS, NO_MOVE_BY_HAND, NOT_OF_POWER_PMAC, OF_POWER_PMAC, ROTARY_WORDS
 from pkm_post.cli.pmac_stop import JobTarget, Target
@@ -101,6 +101,12 @@ def _add_continue(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--near", type=positive, default=START_TOLERANCE_MM, metavar="MM", help=near)
 
 
+def _add_measure(parser: argparse.ArgumentParser) -> None:
+    pmac_measure.add_arguments(parser)
+    parser.add_argument("--tool-length", type=tool_length, metavar="MM", help="to the centre of the ball (rest pose)")
+    _add_number(parser)
+
+
 def _add_number(parser: argparse.ArgumentParser) -> None:
     from pkm_post.options import MANUAL_MOVE_PROGRAM
 
@@ -133,6 +139,7 @@ _OWN: dict[str, Callable[[argparse.ArgumentParser], None]] = {
     "continue": _add_continue,
     "override": _add_override,
     "play": pmac_play.add_arguments,
+    "measure": _add_measure,
 }
 
 
@@ -146,7 +153,9 @@ def add_commands(commands: Any) -> None:
     """Add the command ``pmac`` with its actions to a parser."""
     pmac = commands.add_parser("pmac", help="talk to a Turbo PMAC or a Power PMAC, or simulate one")
     actions = pmac.add_subparsers(required=True, metavar="ACTION")
-    for name, (action, text, needs) in (ACTIONS | pmac_manual.ACTIONS | pmac_play.ACTIONS).items():
+    for name, (action, text, needs) in (
+        ACTIONS | pmac_manual.ACTIONS | pmac_measure.ACTIONS | pmac_play.ACTIONS
+    ).items():
         parser = actions.add_parser(name, help=text)
         _add_port(parser)
         parser.add_argument("--machine", required="machine" in needs, metavar="NAME_OR_FILE", help="the machine")

@@ -219,7 +219,7 @@ ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
 }
 """Same form as ``pmac_actions.ACTIONS``."""
 
-_STARTING = ("run", "stream", "home", "jog", "mdi", "approach", "step", "continue", "play")
+_STARTING = ("run", "stream", "home", "jog", "mdi", "approach", "step", "continue", "play", "measure")
 _OF_WHAT_RUNS = ("hold", "resume", "abort", "override", "monitor")
 
 

@@ -13,10 +13,13 @@ from typing import TYPE_CHECKING, Any
 from pkm_post.options import between, whole, whole_from
 
 if TYPE_CHECKING:
+    from pkm_post.control.numerical_control import Body
     from pkm_post.control.simulator import Controller, PowerPmac, Server
 
 LOWEST_SPEED, HIGHEST_SPEED = 0.01, 100.0
 HIGHEST_PORT = 65_535
+PROBE_INPUT = 1000
+"""M-variable of a simulated touch probe."""
 
 
 def add_action(actions: Any) -> None:
@@ -41,7 +44,28 @@ def add_action(actions: Any) -> None:
         "--speed", type=between(LOWEST_SPEED, HIGHEST_SPEED), default=1.0, help="simulated seconds in a second (1)"
     )
     simulate.add_argument("--memory", type=_words, metavar="WORDS", help="memory for programs, in 48-bit words")
+    _add_probe(simulate)
     simulate.set_defaults(run=_simulate)
+
+
+def _add_probe(simulate: argparse.ArgumentParser) -> None:
+    from pkm_post.options import positive, tool_length
+
+    help_text = "have a touch probe at M1000, and what it touches: plane:Z, bore:X,Y,Z,D or boss:X,Y,Z,D in {M}"
+    simulate.add_argument("--probed", type=_body, metavar="BODY", help=help_text)
+    simulate.add_argument("--machine", metavar="NAME_OR_FILE", help="the machine that carries the probe")
+    help_text = "to the centre of the ball of the probe (that of the rest pose)"
+    simulate.add_argument("--tool-length", type=tool_length, metavar="MM", help=help_text)
+    simulate.add_argument("--ball", type=positive, default=6.0, metavar="MM", help="its diameter (%(default)s)")
+
+
+def _body(text: str) -> Body:
+    from pkm_post.control.numerical_control import body_of
+
+    try:
+        return body_of(text)
+    except ValueError as fault:
+        raise argparse.ArgumentTypeError(str(fault)) from None
 
 
 def _words(text: str) -> int:
@@ -56,6 +80,8 @@ def _simulate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     machine = _power_pmac(namespace) if namespace.ssh is not None else None
     controller = machine.controller if machine is not None else _turbo_pmac(namespace)
     if namespace.setup and not _set_up(machine or controller, namespace.setup):
+        return 1
+    if namespace.probed is not None and not _connect_probe(controller, namespace):
         return 1
     server = None
     try:
@@ -82,6 +108,28 @@ def _power_pmac(namespace: argparse.Namespace) -> PowerPmac:
     from pkm_post.control.simulator import PowerPmac
 
     return PowerPmac(namespace.memory)
+
+
+def _connect_probe(controller: Controller, namespace: argparse.Namespace) -> bool:
+    """Give a simulated touch probe to the controller; False when its machine has faults, which are printed."""
+    from pkm_post.control.link import ToolPoseReadout
+    from pkm_post.control.numerical_control import SimulatedProbe
+    from pkm_post.machine import machine_named
+    from pkm_post.writing import pmac
+
+    if namespace.machine is None or namespace.ssh is not None:
+        print("--probed: expected --machine, and a Turbo PMAC", file=sys.stderr)
+        return False
+    machine, faults = machine_named(namespace.machine)
+    settings, more = (None, ()) if machine is None else pmac.settings_of(machine)
+    for fault in (*faults, *more):
+        print(fault, file=sys.stderr)
+    if machine is None or settings is None:
+        return False
+    length = machine.rest_tool_length if namespace.tool_length is None else namespace.tool_length
+    readout = ToolPoseReadout(machine, length)
+    SimulatedProbe(controller, settings, readout, namespace.ball, namespace.probed).connect(PROBE_INPUT)
+    return True
 
 
 def _address(server: Server, machine: PowerPmac | None, namespace: argparse.Namespace) -> str:

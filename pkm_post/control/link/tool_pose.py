@@ -40,8 +40,12 @@ class ToolPoseReadout:
 
     def pose(self, status: Status) -> ToolPose | None:
         """The pose of the actual lengths nearest to the previous one; None if there is none nearby."""
+        return self.pose_of(status.length)
+
+    def pose_of(self, length: Array) -> ToolPose | None:
+        """The pose of strut lengths (6,) in mm, as ``pose``."""
         for tip, rotation in ((self._tip, self._rotation), self._home):
-            found = forward_from_rotation(self._machine, status.length[None], self._tool, tip, rotation)
+            found = forward_from_rotation(self._machine, length[None], self._tool, tip, rotation)
             if found.converged[0]:
                 self._tip, self._rotation = found.tip, found.rotation
                 return ToolPose(found.tip[0], found.axis[0], float(spin_of(found.rotation)[0]))

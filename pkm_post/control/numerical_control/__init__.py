@@ -9,7 +9,7 @@ from pkm_post.control.numerical_control.connection import (
     connection_target,
 )
 from pkm_post.control.numerical_control.control import ControlState, NumericalControl
-from pkm_post.control.numerical_control.execute import continue_after_stop, program_stops, target_deviation
+from pkm_post.control.numerical_control.execute import continue_after_stop, program_stops, silence_s, target_deviation
 from pkm_post.control.numerical_control.homing import Homing, HomingPhase, check_trigger, missing_homes, start_homing
 from pkm_post.control.numerical_control.interlocks import (
     Interlock,
@@ -21,14 +21,27 @@ from pkm_post.control.numerical_control.interlocks import (
 )
 from pkm_post.control.numerical_control.manual_moves import CartesianJog, Jog, MdiSettings, StrutJog
 from pkm_post.control.numerical_control.plan import Plan
+from pkm_post.control.numerical_control.probed_features import (
+    ALONG,
+    Feature,
+    measure_bore,
+    measure_boss,
+    measure_face,
+    origin_for,
+)
+from pkm_post.control.numerical_control.probing import Probe, ProbeInput, ProbeSettings
+from pkm_post.control.numerical_control.simulated_probe import Body, SimulatedProbe, body_of
 from pkm_post.control.numerical_control.single_block import BlockDisplay, ProgramBlocks, read_blocks
 
 __all__ = [
+    "ALONG",
     "BlockDisplay",
+    "Body",
     "CartesianJog",
     "Connection",
     "ConnectionTarget",
     "ControlState",
+    "Feature",
     "Homing",
     "HomingPhase",
     "Interlock",
@@ -38,19 +51,29 @@ __all__ = [
     "OperatorCommand",
     "PanelState",
     "Plan",
+    "Probe",
+    "ProbeInput",
+    "ProbeSettings",
     "ProgramBlocks",
     "SIMULATED_HOMING",
+    "SimulatedProbe",
     "StrutJog",
     "active_interlocks",
     "blocking_interlock",
+    "body_of",
     "check_trigger",
     "connect",
     "connection_target",
     "continue_after_stop",
     "may_move",
+    "measure_bore",
+    "measure_boss",
+    "measure_face",
     "missing_homes",
+    "origin_for",
     "program_stops",
     "read_blocks",
+    "silence_s",
     "start_homing",
     "target_deviation",
 ]

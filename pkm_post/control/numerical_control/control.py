@@ -156,7 +156,7 @@ class NumericalControl:
         Raises:
             NotReadyError: the tool pose is unknown, or the machine moves.
         """
-        here = self._standing_pose()
+        here = self.standing_pose()
         plan, diagnostics = self._plan(*manual_moves.jog_trajectory(jog, self._machine, here, self.tool_length, feed))
         return (None if plan is None else replace(plan, is_jog=True)), diagnostics
 
@@ -167,7 +167,7 @@ class NumericalControl:
             NotReadyError: the tool pose is unknown, or the machine moves.
         """
         return self._plan(
-            *manual_moves.mdi_trajectory(line, self._machine, self._standing_pose(), self.tool_length, reading)
+            *manual_moves.mdi_trajectory(line, self._machine, self.standing_pose(), self.tool_length, reading)
         )
 
     def plan_approach(self, job: Job, feed: float = APPROACH_MM_S) -> tuple[Plan | None, Findings]:
@@ -176,7 +176,7 @@ class NumericalControl:
         Raises:
             NotReadyError: the tool pose is unknown, the machine moves, or the start has no pose.
         """
-        here, start = self._standing_pose(), pose_from_home(self._machine, job.first, self.tool_length)
+        here, start = self.standing_pose(), pose_from_home(self._machine, job.first, self.tool_length)
         if start is None:
             raise NotReadyError(["no pose of the platform reachable in small steps from home is that of the start"])
         return self._plan(*manual_moves.approach_trajectory(self._machine, here, start, self.tool_length, feed))
@@ -323,8 +323,12 @@ class NumericalControl:
         self._may_move = True
         return done
 
-    def _standing_pose(self) -> ToolPose:
-        """The commanded pose of a machine at standstill."""
+    def standing_pose(self) -> ToolPose:
+        """The commanded pose of a machine at standstill.
+
+        Raises:
+            NotReadyError: a strut is not homed or moves, a program runs, or the pose is unknown.
+        """
         status = settled_status(self._session, self._settings)
         reasons = [f"strut {strut}: not homed" for strut in missing_homes(status)]
         reasons += ["a program runs, or is held"] if status.running else []

@@ -70,15 +70,24 @@ def watchdog_of(session: Session, settings: PmacSettings, program: PmacProgram) 
     Raises:
         NotReadyError: a hold would never finish on this controller.
     """
+    silence = silence_s(session, settings)
+    lines = with_watchdog(program.lines, program.number, settings.coordinate_system)
+    return Watchdog(PmacProgram(program.number, lines), program.number, silence)
+
+
+def silence_s(session: Session, settings: PmacSettings) -> float:
+    """Longest time from silence to standstill of a watched program, s, at an override of 100 %.
+
+    Raises:
+        NotReadyError: a hold would never finish on this controller.
+    """
     name = f"I{50 + settings.coordinate_system}95"
     slew = abs(read_number(session, name))
     if slew == 0:
         raise NotReadyError(
             [f"{name} is 0: a hold would not stop the struts, so nothing stops them when the link fails"]
         )
-    lines = with_watchdog(program.lines, program.number, settings.coordinate_system)
-    silence = (CREDIT_MS + _AHEAD_MS) / 1000 + _FULL_SLEW / slew
-    return Watchdog(PmacProgram(program.number, lines), program.number, silence)
+    return (CREDIT_MS + _AHEAD_MS) / 1000 + _FULL_SLEW / slew
 
 
 def with_watchdog(lines: Sequence[str], variable: int, coordinate_system: int) -> tuple[str, ...]:

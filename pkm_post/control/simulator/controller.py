@@ -21,7 +21,7 @@ from pkm_post.control.simulator.machine_state import PortSession
 from pkm_post.control.simulator.memory import Memory
 from pkm_post.control.simulator.motors import Motors
 from pkm_post.control.simulator.online import execute
-from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SYSTEMS, WORDS, Numbers, Variables
+from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SYSTEMS, WORDS, Inputs, Numbers, Variables
 
 _M_CODE_STATEMENTS = {
     0: "STOP", 1: "STOP", 3: "P7001=1", 4: "P7001=-1", 5: "P7001=0", 7: "P7002=2", 8: "P7002=1", 9: "P7002=0",
@@ -98,12 +98,14 @@ class Controller:
         systems: coordinate systems, from 1.
         unlocked: whether the password was entered.
         listeners: ports that receive the output of programs.
+        inputs: of the machine, by number of their M-variable.
     """
 
     def __init__(self, settings: SimulatorSettings | None = None) -> None:
         self.settings = settings or SimulatorSettings()
         self.time, self._owed_ms = 0.0, 0.0
         self.listeners: list[Listener] = []
+        self.inputs = Inputs()
         self.initialize()
 
     def initialize(self) -> None:
@@ -179,6 +181,7 @@ class Controller:
 
     def _start(self, variables: Variables, memory: Memory) -> None:
         self.variables, self.memory, self.unlocked = variables, memory, False
+        variables.inputs = self.inputs
         self.motors = Motors(variables, self.settings.lag_ms, self.settings.home_flag)
         self.systems = [
             CoordinateSystem(number, memory, variables, self.motors, self._output_of(number))

@@ -5,12 +5,13 @@ A value is a 48-bit word with a mantissa of 36 bits, of which one is the sign: a
 
 I-variables of motor xx are Ixx00 to Ixx99, those of coordinate system x are I(50+x)00 to I(50+x)99. Defaults and units
 follow the manual [TurboPMAC]; those that the simulator does not use start at 0. An M-variable has no address behind it:
-it stores what is written to it.
+it stores what is written to it, unless it is an input of the machine.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal
 from typing import Any
@@ -130,12 +131,20 @@ def _defaults() -> dict[int, float]:
     return values
 
 
+class Inputs(dict[int, Callable[[], float]]):
+    """What inputs of the machine read, by number of their M-variable. They belong to no saved state."""
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Inputs:
+        return Inputs()
+
+
 class Variables:
     """All variables of a controller. Those never written are zero, or the default.
 
     Attributes:
         numbers: how they are kept.
         definitions: text after ``Mn->``, by number.
+        inputs: M-variables that are inputs of the machine.
     """
 
     def __init__(self, numbers: Numbers = WORDS) -> None:
@@ -144,6 +153,7 @@ class Variables:
         self._q: list[dict[int, float]] = [{} for _ in range(SYSTEMS)]
         self._columns: dict[int, Array] = {}
         self.definitions: dict[int, str] = {}
+        self.inputs = Inputs()
 
     def read(self, letter: str, number: int, system: int = 1) -> float:
         """The value of a variable.
@@ -151,6 +161,8 @@ class Variables:
         Raises:
             CommandError: the variable does not exist.
         """
+        if letter == "M" and number in self.inputs:
+            return self.inputs[number]()
         return self._table(letter, number, system).get(number, 0.0)
 
     def write(self, letter: str, number: int, value: float, system: int = 1) -> None:

@@ -94,6 +94,18 @@ RESULT_RULES: dict[str, Rule] = {
         "the file with the known host keys cannot be read",
         "correct or remove that line, or name another file with --known-hosts",
     ),
+    "C220": error(
+        "the touch probe is touched before its move",
+        "jog it free; if it is free, state the value of its input with --input, as M1000=0",
+    ),
+    "C221": error("the touch probe met nothing", "begin closer, or allow a longer way with --within"),
+    "C222": error(
+        "the touch probe stays touched where its move began", "jog it free and look at the probe and its input"
+    ),
+    "C223": error(
+        "the touch probe was touched on a way that should be free",
+        "jog it free, and give --diameter, --depth and --clearance as the part has them",
+    ),
     # V1: the certificate
     "V101": error("the tool tip leaves the programmed path", "request a wider tolerance, or report this as a fault"),
     "V102": error("the tool axis leaves the programmed axis", "request a wider tolerance, or report this as a fault"),

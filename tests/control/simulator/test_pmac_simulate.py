@@ -67,6 +67,7 @@ def test_a_port_that_is_taken_is_reported(capsys):
         (["--tcp", "x"], "expected a port from 0 to 65535, got 'x'"),
         (["--pty", "--speed", "0"], "expected a number from 0.01 to 100.0, got '0'"),
         (["--pty", "--speed", "x"], "expected a number from 0.01 to 100.0, got 'x'"),
+        (["--pty", "--probed", "cone:1"], "expected plane:Z, bore:X,Y,Z,DIAMETER or boss:X,Y,Z,DIAMETER, got 'cone:1'"),
         (["--pty", "--memory", "999"], "expected 1000 words or more, got '999'"),
     ],
 )
@@ -75,6 +76,13 @@ def test_arguments_without_sense_are_refused(arguments, reported, capsys):
         main(["pmac", "simulate", *arguments])
     assert ended.value.code == 2
     assert reported in capsys.readouterr().err
+
+
+def test_a_probe_needs_the_machine_that_carries_it(capsys):
+    assert main(["pmac", "simulate", "--tcp", "0", "--probed", "plane:3"]) == 1
+    assert "--probed: expected --machine, and a Turbo PMAC" in capsys.readouterr().err
+    assert main(["pmac", "simulate", "--tcp", "0", "--probed", "plane:3", "--machine", "none_of_these"]) == 1
+    assert "none_of_these" in capsys.readouterr().err
 
 
 def test_a_set_up_that_has_changed_since_it_was_posted_is_refused(tmp_path, capsys):

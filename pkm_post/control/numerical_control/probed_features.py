@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Probed features: a face, a bore or a boss, measured in a work frame, and the work offset that follows.
+
+The ball meets a face at half its diameter, so a face is one half of the ball beyond the contact. A bore and a boss are
+touched on both sides along X, through the middle of that along Y, and again along X: the first chord along X need not
+go through the centre, and its middle does.
+
+Enters: a probe, a work frame. Leaves: coordinates in the frame in mm, and the origin of the frame in {M}.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.control.link.status import Array
+from pkm_post.control.numerical_control.probing import Contact, Probe
+
+ALONG = tuple(f"{letter}{sign}" for letter in "xyz" for sign in "-+")
+"""Directions of a work frame."""
+_X, _Y, _Z = np.eye(3)
+
+
+@dataclass(frozen=True)
+class Feature:
+    """What was measured.
+
+    Attributes:
+        position: (3,) in the work frame, mm; NaN in directions that were not measured.
+        diameters: along X and along Y, mm; none of a face.
+        half_width: how far a contact may be off by the width of the last trial, mm; the largest of all contacts.
+    """
+
+    position: Array
+    diameters: tuple[float, ...]
+    half_width: float
+
+    def shift(self, nominal: Array) -> Array:
+        """(3,) how far, in the work frame, its origin has to go for the feature to have nominal coordinates."""
+        return np.where(np.isnan(self.position), 0.0, self.position - nominal)
+
+
+def origin_for(feature: Feature, machine_from_work: Array, nominal: Array) -> Array:
+    """(3,) origin in {M} of the work frame in which the feature has its nominal coordinates, mm.
+
+    Args:
+        feature: measured in the frame.
+        machine_from_work: (4, 4) pose of the frame.
+        nominal: (3,) coordinates that the feature is to have; those not measured do not count.
+    """
+    origin: Array = machine_from_work[:3, 3] + machine_from_work[:3, :3] @ feature.shift(nominal)
+    return origin
+
+
+def measure_face(probe: Probe, machine_from_work: Array, along: str, within: float) -> Feature:
+    """The coordinate of a face that is square to an axis of the frame.
+
+    Args:
+        probe: before the face.
+        machine_from_work: (4, 4) pose of the frame.
+        along: direction towards the face, one of ``ALONG``.
+        within: longest way to the contact, mm.
+
+    Raises:
+        DiagnosedError, Refused, PmacError: as ``Probe.touch``.
+    """
+    axis, sign = "xyz".index(along[0]), 1.0 if along[1] == "+" else -1.0
+    contact = probe.touch(sign * machine_from_work[:3, axis], within)
+    position = np.full(3, np.nan)
+    position[axis] = _in_work(contact.tip, machine_from_work)[axis] + sign * probe.settings.ball / 2
+    return Feature(position, (), contact.half_width)
+
+
+def measure_bore(probe: Probe, machine_from_work: Array, within: float) -> Feature:
+    """Centre and diameters of a bore along Z of the frame; the probe ends at its centre.
+
+    Args:
+        probe: in the bore.
+        machine_from_work: (4, 4) pose of the frame.
+        within: longest way from the centre line to a contact, mm.
+
+    Raises:
+        DiagnosedError, Refused, PmacError: as ``Probe.touch``.
+    """
+
+    def touch(side: Array) -> Contact:
+        return probe.touch(machine_from_work[:3, :3] @ side, within)
+
+    return _round(probe, machine_from_work, touch, probe.settings.ball)
+
+
+def measure_boss(probe: Probe, machine_from_work: Array, diameter: float, depth: float, clearance: float) -> Feature:
+    """Centre and diameters of a boss along Z of the frame; the probe ends above its centre.
+
+    Args:
+        probe: above the boss, near its centre.
+        machine_from_work: (4, 4) pose of the frame.
+        diameter: of the boss, as far as it is known, mm.
+        depth: how far below the present place it is touched, mm.
+        clearance: how far beside the boss the ball goes down, and how far it may be off, mm.
+
+    Raises:
+        DiagnosedError, Refused, PmacError: as ``Probe.go`` and ``Probe.touch``.
+    """
+    rotation = machine_from_work[:3, :3]
+    out = (diameter + probe.settings.ball) / 2 + clearance
+
+    def touch(side: Array) -> Contact:
+        above = probe.tip
+        beside = above + out * rotation @ side
+        probe.go(beside)
+        probe.go(beside - depth * rotation @ _Z)
+        contact = probe.touch(-rotation @ side, 2 * clearance)
+        probe.go(beside)
+        probe.go(above)
+        return contact
+
+    return _round(probe, machine_from_work, touch, -probe.settings.ball)
+
+
+def _round(probe: Probe, machine_from_work: Array, touch: Callable[[Array], Contact], ball: float) -> Feature:
+    """Chords along X, Y and X again, each through the middle of the one before."""
+    half_width, chords = 0.0, []
+    for side in (_X, _Y, _X):
+        ends = [touch(-side), touch(side)]
+        direction = machine_from_work[:3, :3] @ side
+        low, high = (float(each.tip @ direction) for each in ends)
+        here = probe.tip
+        probe.go(here + ((low + high) / 2 - float(here @ direction)) * direction)
+        chords.append(abs(high - low) + ball)
+        half_width = max(half_width, *(each.half_width for each in ends))
+    position = _in_work(probe.tip, machine_from_work)
+    position[2] = math.nan
+    return Feature(position, (chords[2], chords[1]), half_width)
+
+
+def _in_work(tip: Array, machine_from_work: Array) -> Array:
+    """(3,) coordinates in the work frame, mm."""
+    coordinates: Array = machine_from_work[:3, :3].T @ (tip - machine_from_work[:3, 3])
+    return coordinates
