@@ -6,10 +6,36 @@ Enters: codes and what was found, by row. Leaves: diagnostics in line order.
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+
 from pkm_post.model import Diagnostic, DiagnosticLog, Place
 
 _MOST_REPORTED = 50
 """Faults of a kind that are reported with their own place."""
+
+
+_NAME = re.compile(r"[A-Z$_][A-Z0-9$_]*")
+_ARCS, _ARC_CODES = re.compile(r"G0*[23](?![0-9])|CIP|CT(?![A-Z])", re.IGNORECASE), ("G409", "G410")
+_FIRST_WORD = re.compile(r"[\s/0-9]*(?:N[0-9]+)?\s*(?=\S)", re.IGNORECASE)
+
+
+def with_column(fault: Diagnostic, text: str) -> Diagnostic:
+    """A diagnostic of a line with its column: that of the word which it names, of the arc, or of the first word.
+
+    Args:
+        fault: without a column where only the line was known.
+        text: of the line, without comments.
+    """
+    if fault.place.column or not fault.place.line or not text.strip():
+        return fault
+    name = _NAME.match(fault.found)
+    found = _ARCS.search(text) if fault.code in _ARC_CODES else None
+    if found is None and name is not None:
+        found = re.search(rf"(?<![A-Z$_]){re.escape(name[0])}", text, re.IGNORECASE)
+    first = _FIRST_WORD.match(text)
+    column = found.start() if found is not None else first.end() if first is not None else 0
+    return replace(fault, place=replace(fault.place, column=column + 1))
 
 
 class BlockFault(Exception):  # noqa: N818 - a fault of the input

@@ -16,11 +16,11 @@ from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, Exec
 from pkm_post.reading.gcode.recovery import merged
 from pkm_post.reading.gcode.scan import with_line_feeds
 from pkm_post.reading.gcode.subprograms import with_operations, with_places
-from pkm_post.reading.siemens.faults import Faults
+from pkm_post.reading.siemens.faults import Faults, with_column
 from pkm_post.reading.siemens.interpreter import Interpreter
 from pkm_post.reading.siemens.machine import Machine
 from pkm_post.reading.siemens.path import Path
-from pkm_post.reading.siemens.scan import scan
+from pkm_post.reading.siemens.scan import Lines, scan
 from pkm_post.reading.siemens.structure import structure_of
 from pkm_post.reading.siemens.subprograms import MissingProgram, Source, files_by_name
 from pkm_post.reading.siemens.tools import Tools
@@ -66,7 +66,8 @@ def _read(
         _report_no_motion(machine.path, len(lines), faults)
     elif options.needs_end and not interpreter.has_ended:
         faults.add(structure.main.end - 1, "G430", "no M2, M30, M17 or RET after it")
-    diagnostics = merged(with_places(_own(faults.in_order()), source.files))
+    found = [with_column(fault, _text_of(lines, fault)) for fault in _own(faults.in_order())]
+    diagnostics = merged(with_places(found, source.files))
     if errors(diagnostics):
         return None, diagnostics
     program = _program(machine, file, source.notes)
@@ -81,6 +82,10 @@ def _report_no_motion(path: Path, lines: int, faults: Faults) -> None:
         faults.add(path.waiting_row, "G436", never_given(path.state.known))
     else:
         faults.add(-1, "G420", f"{lines} lines")
+
+
+def _text_of(lines: Lines, fault: Diagnostic) -> str:
+    return lines.line(fault.place.line - 1) if fault.place.line else ""
 
 
 def _own(found: tuple[Diagnostic, ...]) -> list[Diagnostic]:

@@ -40,8 +40,8 @@ FAULTS = {
     'G1 X="A"': ("G606", 4, 'X="A"'),
     "DEF REAL AA[2]\nAA[2]=1": ("G606", 1, "AA[2] of [2]"),
     # flow
-    "GOTOF AA": ("G604", 0, "GOTOF AA"),
-    "AA: GOTOF AA": ("G604", 0, "GOTOF AA"),
+    "GOTOF AA": ("G604", 1, "GOTOF AA"),
+    "AA: GOTOF AA": ("G604", 5, "GOTOF AA"),
     "IF 1\nG1 X1": ("G605", 1, "IF without an end"),
     "ENDFOR": ("G605", 1, "ENDFOR without FOR"),
     "L77": ("G603", 1, "L77"),
@@ -57,15 +57,17 @@ FAULTS = {
     "CYCLE84(10,0,2,-9,,,3,,1,0,300,300)": ("G425", 1, "CYCLE84"),
     "MCALL CYCLE840(10,0,2,-9)": ("G425", 7, "CYCLE840"),
     "CYCLE86(10,0,2,-9,,0,3,1,1,1,0)": ("G602", 1, "CYCLE86: boring with an oriented spindle or by hand"),
-    "G2 X10 Y0": ("G410", 0, "neither R nor the centre words of the plane"),
-    "G2 X10 Y0 CR=4": ("G409", 0, "CR=4, and its ends are 10.0000 mm apart"),
-    "CIP X10 Y0 I1=5 J1=0": ("G409", 0, "start, intermediate point and end of CIP are on a line"),
-    "SCALE X2\nG2 X10 Y0 I5": ("G602", 0, "an arc under a SCALE that is not even in its plane"),
-    "G1 X1 A3=1": ("G404", 0, "A3= without TRAORI"),
-    "TRAORI\nG1 X1 A3=0 B3=0 C3=0": ("G415", 0, "A3=0 B3=0 C3=0"),
-    "TRAORI\nG1 X1 A2=1 B2=2": ("G608", 0, "A2= B2= C2="),
-    "TRAORI\nG1 X1 A30": ("G607", 0, "A30"),
-    "TRAORI\nG1 X1 A30 A3=1": ("G607", 0, "two notations of the tool axis in one block"),
+    "G2 X10 Y0": ("G410", 1, "neither R nor the centre words of the plane"),
+    "G2 X10 Y0 CR=4": ("G409", 1, "CR=4, and its ends are 10.0000 mm apart"),
+    "N30 X10 G2 Y0 CR=4": ("G409", 9, "CR=4, and its ends are 10.0000 mm apart"),
+    "N3 G2 X10 Y0": ("G410", 4, "neither R nor the centre words of the plane"),
+    "CIP X10 Y0 I1=5 J1=0": ("G409", 1, "start, intermediate point and end of CIP are on a line"),
+    "SCALE X2\nG2 X10 Y0 I5": ("G602", 1, "an arc under a SCALE that is not even in its plane"),
+    "G1 X1 A3=1": ("G404", 7, "A3= without TRAORI"),
+    "TRAORI\nG1 X1 A3=0 B3=0 C3=0": ("G415", 7, "A3=0 B3=0 C3=0"),
+    "TRAORI\nG1 X1 A2=1 B2=2": ("G608", 7, "A2= B2= C2="),
+    "TRAORI\nG1 X1 A30": ("G607", 7, "A30"),
+    "TRAORI\nG1 X1 A30 A3=1": ("G607", 1, "two notations of the tool axis in one block"),
     "TRAORI(2)": ("G602", 1, "TRAORI(2): only the first transformation is read"),
     'TRANS X1\nCYCLE800(1,"",0,57,0,0,0,9,0,0,0,0,0,1)': (
         "G602",
@@ -74,22 +76,22 @@ FAULTS = {
     ),
     'CYCLE800(1,"",0,64,0,0,0,9,0,0,0,0,0,1)': ("G602", 1, "CYCLE800 by solid angles (_MODE=64)"),
     'CYCLE800(1,"",100200,57,0,0,0,9,0,0,0,0,0,1)': ("G602", 1, "CYCLE800 that aligns the tool (_ST=100200)"),
-    "G0 SUPA Z0": ("G609", 0, "SUPA, G53 or G153"),
-    "G1 X1\nG55 X2": ("G609", 0, "G55 after G54"),
+    "G0 SUPA Z0": ("G609", 4, "SUPA, G53 or G153"),
+    "G1 X1\nG55 X2": ("G609", 1, "G55 after G54"),
     "X5 CYCLE81(10,0,2,-5)": ("G601", 4, "CYCLE81 beside other words"),
     "TRANS X1 G0": ("G601", 1, "TRANS beside other words"),
     "$P_UIFR[1]=CTRANS(X,5)": ("G602", 1, "$P_UIFR: variables of the system"),
-    "TRAORI ORIMKS\nROT Z90\nG1 X1 A3=1": ("G607", 0, "vectors or angles after ORIMKS in a turned frame"),
-    "T1 M6 D0\nG1 X1": ("G424", 0, "a cut after D0"),
+    "TRAORI ORIMKS\nROT Z90\nG1 X1 A3=1": ("G607", 1, "vectors or angles after ORIMKS in a turned frame"),
+    "T1 M6 D0\nG1 X1": ("G424", 1, "a cut after D0"),
     "G1 X12345678901": ("G406", 4, "X1.23457e+10"),
     "CYCLE81(1,0,2,-10)": ("G418", 1, "CYCLE81: RTP 1 is below RFP + SDIS"),
     "CYCLE81(10,0,2,5)": ("G418", 1, "CYCLE81: the depth 5 is not below RFP 0"),
     "HOLES1(0,0,0,0,1,3)": ("G418", 1, "HOLES1 without MCALL of a drilling cycle before it"),
     "T1\nG1 G41 X5\nTRANS X1": ("G419", 1, "TRANS"),
     "M3": ("G405", 1, "M3 without S"),
-    "M6": ("G405", 0, "M6 without T"),
-    "D0\nG1 X1": ("G424", 0, "a cut after D0"),
-    "SCALE X0": ("G606", 0, "a factor of 0"),
+    "M6": ("G405", 1, "M6 without T"),
+    "D0\nG1 X1": ("G424", 1, "a cut after D0"),
+    "SCALE X0": ("G606", 1, "a factor of 0"),
 }
 
 
@@ -107,7 +109,7 @@ def test_faults(text):
 
 def test_the_first_cut_needs_a_feed():
     text = "G90 G0 X0 Y0 Z1\nG1 X1\nX2"
-    assert found(text)[1] == [("G408", 2, 0, "no F"), ("G408", 3, 0, "no F")]
+    assert found(text)[1] == [("G408", 2, 1, "no F"), ("G408", 3, 1, "no F")]
     assert found(text, feed=5.0)[0].feed[1:].tolist() == [5, 5]
 
 
@@ -140,7 +142,7 @@ def test_a_drill_goes_along_the_tool():
 def test_a_long_dwell_is_a_warning():
     program, diagnostics = found(HEAD + "G4 F61\nG1 X1")
     assert program is not None
-    assert diagnostics == [("G428", 3, 0, "61 s")]
+    assert diagnostics == [("G428", 3, 1, "61 s")]
 
 
 def test_every_execution_ends():
@@ -152,13 +154,13 @@ def test_every_execution_ends():
 
 
 def test_a_program_needs_an_end():
-    assert found(HEAD + "G1 X1", needs_end=True)[1] == [("G430", 3, 0, "no M2, M30, M17 or RET after it")]
+    assert found(HEAD + "G1 X1", needs_end=True)[1] == [("G430", 3, 1, "no M2, M30, M17 or RET after it")]
     for end in ("M2", "M30", "M17", "RET", "N10 G0 X1 M30"):
         assert found(HEAD + "G1 X1\n" + end, needs_end=True)[0] is not None
 
 
 def test_moves_without_a_place_name_the_coordinate_that_was_never_given():
-    assert found("G90 G54\nG0 X1 Y2\nG1 X3 F100\nM30")[1] == [("G436", 2, 0, "Z was never given")]
+    assert found("G90 G54\nG0 X1 Y2\nG1 X3 F100\nM30")[1] == [("G436", 2, 1, "Z was never given")]
     assert found("G90 G54\nS100 M3\nM30")[1] == [("G420", 0, 0, "3 lines")]
 
 
