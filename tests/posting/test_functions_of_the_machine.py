@@ -54,6 +54,37 @@ def test_others_and_those_beside_moves_are_refused(tmp_path, machine, name, text
     assert [fault.code for fault in refused.value.diagnostics] == [code]
 
 
+ORIENTED = '\n[controller.codes.functions]\nM19 = "M19"\n'
+
+
+@pytest.mark.parametrize(("name", "text"), [("part.nc", G_CODE), ("part.mpf", SIEMENS)])
+def test_an_oriented_stop_stops_the_spindle_first(tmp_path, name, text):
+    machine = tmp_path / "oriented.toml"
+    machine.write_text(find_machine("example_6tps").read_text(encoding="utf-8") + ORIENTED, encoding="utf-8")
+    text = text.replace("M21\n", "", 1).replace("M10\n", "M19\n").replace("M5 M21", "S5000 M4\nG4 F1\nM19")
+    text = text if name == "part.mpf" else text.replace("G4 F1", "G4 P1000")
+    result = posted(tmp_path, name, text, machine)
+    lines = result.program.read_text(encoding="ascii").splitlines()
+    codes = [line for line in lines if line.startswith(("S", "M"))]
+    assert codes == ["S8000 M3", "M5", "M19", "S5000 M4", "M5", "M19"]
+
+
+@pytest.mark.parametrize(
+    ("line", "code"), [("M19 M3", "G403"), ("G1 X2. M19", "G437"), ("M19 R90.", "G404"), ("M19 P1", "G404")]
+)
+def test_an_oriented_stop_stands_by_itself(tmp_path, line, code):
+    machine = tmp_path / "oriented.toml"
+    machine.write_text(find_machine("example_6tps").read_text(encoding="utf-8") + ORIENTED, encoding="utf-8")
+    with pytest.raises(Refused) as refused:
+        posted(tmp_path, "part.nc", G_CODE.replace("M21\n", "").replace("M10", line).replace("M5 M21", "M5"), machine)
+    assert [fault.code for fault in refused.value.diagnostics] == [code]
+
+
+def test_a_machine_without_an_oriented_stop_says_where_to_name_it(tmp_path, machine):
+    with pytest.raises(Refused, match="M19: orienting the spindle; a machine that can has M19 in controller.codes"):
+        posted(tmp_path, "part.nc", G_CODE.replace("M10", "M19"), machine)
+
+
 @pytest.mark.parametrize(
     "entry", ['M30 = "M30"', 'M8 = "M88"', 'M98 = "M98"', 'G10 = "M10"', 'M21 = "M{value:d}"', "M21 = 21"]
 )

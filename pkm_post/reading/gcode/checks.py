@@ -23,6 +23,7 @@ from pkm_post.reading.gcode.codes import (
     word_of,
 )
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
+from pkm_post.reading.gcode.events import functions_of
 from pkm_post.reading.gcode.flavours import Flavour
 from pkm_post.reading.gcode.modal import Modal, is_cycle
 from pkm_post.reading.gcode.options import NORMAL_WORDS, VECTOR_WORDS, ReadOptions, axis_names
@@ -100,7 +101,7 @@ def _codes_of_one_group(blocks: Blocks, flavour: Flavour, faults: BlockDiagnosti
 
 def _functions(modal: Modal, faults: BlockDiagnostics) -> None:
     """Report functions of the machine beside a move: when they act is a matter of the control."""
-    codes = modal.programmed[Group.FUNCTION]
+    codes = functions_of(modal)
     beside = (codes != NONE) & (modal.moves | (modal.takes_axes != NONE))
     faults.add_where("G437", beside, lambda row: word_of(int(codes[row]), "M"))
 

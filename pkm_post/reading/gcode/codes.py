@@ -139,7 +139,7 @@ UNSUPPORTED: dict[str, str] = {
     "G87": "back boring, which needs an oriented spindle",
     "G88": "boring with retraction by hand",
     "G96": "constant cutting speed",
-    "M19": "orienting the spindle",
+    "M19": "orienting the spindle; a machine that can has M19 in controller.codes.functions of its file",
     "M50": "switches of the feed override",
     "M51": "switches of the spindle override",
     "M52": "adaptive feed",
@@ -150,6 +150,9 @@ UNSUPPORTED: dict[str, str] = {
 }
 """Purpose of well-known codes that this machine does not support."""
 
+ORIENTED_STOP = 19
+"""M19 stops the spindle at an angle, on machines whose file has it: a function of the machine in the group of the
+spindle [LinuxCNC, M19]."""
 SPINDLE_SYNCHRONISED = ("G33", "G33.1", "G74", "G84")
 """Threading codes: thread cutting, rigid tapping, and left-hand and right-hand tapping."""
 

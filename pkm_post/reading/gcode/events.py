@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.model import Array, Event, EventKind, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import NONE, Group, Word
+from pkm_post.reading.gcode.codes import NONE, ORIENTED_STOP, Group, Word
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
 from pkm_post.reading.gcode.modal import Modal, changed
 from pkm_post.reading.gcode.options import DWELL_UNITS, ReadOptions
@@ -32,6 +32,13 @@ CycleEvent = tuple[int, int, EventKind, float]
 """Row of the following motion, block, kind and value."""
 
 
+def functions_of(modal: Modal) -> Array:
+    """The M code of the machine in each block, (N,), ``NONE`` without one; an oriented stop is one."""
+    spindle, function = modal.programmed[Group.SPINDLE], modal.programmed[Group.FUNCTION]
+    oriented = map_rows(lambda codes: codes == ORIENTED_STOP, spindle)
+    return np.where(oriented, ORIENTED_STOP, function) if oriented.any() else function
+
+
 def events_of_blocks(blocks: Blocks, modal: Modal, tools: Array, spindle: Array, dwells: Array) -> list[BlockEvent]:
     """Events outside cycles, by block and rank; ``dwells`` are in s."""
     events: list[BlockEvent] = []
@@ -44,7 +51,7 @@ def events_of_blocks(blocks: Blocks, modal: Modal, tools: Array, spindle: Array,
     on_coolant = np.isin(blocks.m, list(_COOLANT))
     for row, code in zip(blocks.m_row[on_coolant].tolist(), blocks.m[on_coolant].tolist(), strict=True):
         events.append((row, -2, EventKind.COOLANT, _COOLANT[code]))
-    functions = modal.programmed[Group.FUNCTION]
+    functions = functions_of(modal)
     for row in np.flatnonzero(functions != NONE).tolist():
         events.append((row, -2, EventKind.FUNCTION, float(functions[row])))
     for row in blocks.g_row[blocks.g == _DWELL].tolist():

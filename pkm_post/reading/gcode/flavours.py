@@ -17,6 +17,7 @@ from pkm_post.reading.gcode.codes import (
     M_CODES,
     MOST_FURTHER_OFFSETS,
     NONE,
+    ORIENTED_STOP,
     UNSUPPORTED,
     Code,
     Group,
@@ -196,7 +197,8 @@ def with_functions(flavour: Flavour, functions: tuple[int, ...]) -> Flavour:
     """A flavour on a machine with M codes of its own, which no flavour understands."""
     if not functions:
         return flavour
-    return replace(flavour, m_codes={**dict.fromkeys(functions, Code(Group.FUNCTION)), **flavour.m_codes})
+    groups = {code: Group.SPINDLE if code == ORIENTED_STOP else Group.FUNCTION for code in functions}
+    return replace(flavour, m_codes={**{code: Code(group) for code, group in groups.items()}, **flavour.m_codes})
 
 
 FLAVOURS: dict[str, Flavour] = {flavour.name: flavour for flavour in (RS274, FANUC)}

@@ -26,6 +26,8 @@ STOPS = {0: 0.0, 1: 1.0}
 ENDS, RETURNS = (2, 30), 17
 _COOLANT = {7: 2.0, 8: 1.0, 9: 0.0}
 _SPINDLE = {3: 1.0, 4: -1.0, 5: 0.0}
+ORIENTED_STOP = 19
+"""M19 stops the spindle at an angle, on machines whose file has it."""
 _METRIC_ISO = 21
 
 
@@ -114,6 +116,9 @@ def m_code(machine: Machine, block: Block, code: int) -> None:
     elif code in machine.options.functions:
         if block.words.keys() & BUFFERED:
             raise BlockFault("G437", f"M{code}", block.columns.get(f"M{code}", 0))
+        if code == ORIENTED_STOP:
+            machine.state.sense = 0.0
+            machine.path.add_event(EventKind.SPINDLE, 0.0)
         machine.path.add_event(EventKind.FUNCTION, float(code))
     elif code not in (*STOPS, *ENDS, RETURNS, *codes.SILENT_M):
         _leave_out(machine, block, f"M{code}", codes.REFUSED.get(f"M{code}"))
