@@ -38,7 +38,9 @@ MACHINING_RULES: dict[str, Rule] = {
     "K104": error("a platform joint would swing too far", "tilt the tool less, or move the part"),
     "K105": error("the path comes too close to a singular pose", "tilt the tool less, or move the part"),
     "K106": error(
-        "the tool axis turns by half a turn in one move", "insert a move that defines the direction of rotation"
+        "the tool axis turns by half a turn in one move",
+        "insert a move that defines the direction of rotation; where the part is turned over, post each side as a"
+        " program of its own, with its work offset",
     ),
     "K107": error("the spindle does not support this speed", "program a speed within its limits"),
     "K108": error("the work offset is unknown to the machine", "add it to the machine file, or pass --work-offset"),
