@@ -3,6 +3,7 @@
 
 import gc
 import json
+import sys
 import tracemalloc
 from pathlib import Path
 
@@ -131,6 +132,7 @@ def peak_of(folder: Path, lines: int) -> int:
         tracemalloc.stop()
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="it asks the C library and the kernel of Linux")
 def test_what_is_free_between_columns_is_given_back_to_the_system():
     columns = [np.ones(12_000) for _ in range(2000)]
     kept = columns[::10]

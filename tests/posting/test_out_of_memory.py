@@ -259,6 +259,7 @@ def long_program(tmp_path_factory):
     return file
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such limit")
 @pytest.mark.parametrize(
     ("loaded", "megabytes"),
     [

@@ -29,6 +29,7 @@ def started(folder, *words):
     return subprocess.Popen(command, env=found, stdout=subprocess.PIPE, text=True)
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="it kills copies of a process")
 def test_no_kill_leaves_a_mixture(tmp_path):
     process = started(tmp_path, KILLS)
     reported, _ = process.communicate(timeout=120)

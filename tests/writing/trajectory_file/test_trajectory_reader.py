@@ -60,15 +60,18 @@ def in_header(table, field):
 
 
 def test_what_is_no_file_is_reported(tmp_path):
-    os.mkfifo(tmp_path / "pipe")
+    names = ["missing", ".", "nul\0name"]
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(tmp_path / "pipe")
+        names.append("pipe")
     found = {}
-    for name in ("missing", ".", "pipe", "nul\0name"):
+    for name in names:
         trajectory, (diagnostic,) = read(tmp_path / name)
         assert trajectory is None
         assert diagnostic.code == "T101"
         found[name] = diagnostic.found
     assert found["missing"] == "No such file or directory"
-    assert found["."] == found["pipe"] == "it is not a regular file"
+    assert found["."] == found.get("pipe", found["."]) == "it is not a regular file"
     assert "null" in found["nul\0name"]
 
 
