@@ -642,6 +642,10 @@
         <translation>程序</translation>
     </message>
     <message>
+        <source>Play</source>
+        <translation>播放</translation>
+    </message>
+    <message>
         <source>Not connected</source>
         <translation>未连接</translation>
     </message>
@@ -792,8 +796,92 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>至 {}，刀轴 {}，自转角 {}（机床坐标系）；{:.1f} s</translation>
     </message>
     <message>
+        <source>Approach first</source>
+        <translation>先接近</translation>
+    </message>
+    <message>
+        <source>Single block</source>
+        <translation>单段</translation>
+    </message>
+    <message>
+        <source>Stop at M1</source>
+        <translation>在 M1 处停止</translation>
+    </message>
+    <message>
+        <source>Dry run at</source>
+        <translation>空运行速度</translation>
+    </message>
+    <message>
+        <source>Bring the tool to the beginning; to a line always</source>
+        <translation>将刀具移到起点；从某一行开始时总是如此</translation>
+    </message>
+    <message>
+        <source>Rest at the end of each line, until Go on</source>
+        <translation>在每一行末尾停下，直到按“继续”</translation>
+    </message>
+    <message>
+        <source>This feed for all moves but rapid ones, without spindle, coolant and dwells</source>
+        <translation>除快速移动外所有移动都用此进给速度，不启动主轴和冷却，不暂停</translation>
+    </message>
+    <message>
         <source>Open</source>
         <translation>打开</translation>
+    </message>
+    <message>
+        <source>Open a trajectory that was posted</source>
+        <translation>打开后处理得到的轨迹</translation>
+    </message>
+    <message>
+        <source>Play it from the line on</source>
+        <translation>从该行开始播放</translation>
+    </message>
+    <message>
+        <source>Go on</source>
+        <translation>继续</translation>
+    </message>
+    <message>
+        <source>Go on after a stop, a block, a tool or an override of 0</source>
+        <translation>在停止、单段、换刀或倍率为 0 之后继续</translation>
+    </message>
+    <message>
+        <source>End</source>
+        <translation>结束</translation>
+    </message>
+    <message>
+        <source>End it at the next stop on the path</source>
+        <translation>在路径上的下一个停止点结束</translation>
+    </message>
+    <message>
+        <source>the beginning</source>
+        <translation>开头</translation>
+    </message>
+    <message>
+        <source>Feed along the path; rapid moves are not faster than at 100 %</source>
+        <translation>沿路径的进给；快速移动不会快于 100 % 时的速度</translation>
+    </message>
+    <message>
+        <source>Begin at line</source>
+        <translation>起始行</translation>
+    </message>
+    <message>
+        <source>Feed</source>
+        <translation>进给</translation>
+    </message>
+    <message>
+        <source>no trajectory was opened</source>
+        <translation>没有打开轨迹</translation>
+    </message>
+    <message>
+        <source>Open a trajectory</source>
+        <translation>打开轨迹</translation>
+    </message>
+    <message>
+        <source>Trajectories</source>
+        <translation>轨迹</translation>
+    </message>
+    <message>
+        <source>of any operation</source>
+        <translation>任意工序</translation>
     </message>
     <message>
         <source>Open a motion program</source>
@@ -976,6 +1064,18 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>程序尚未下载</translation>
     </message>
     <message>
+        <source>a trajectory is played</source>
+        <translation>正在播放轨迹</translation>
+    </message>
+    <message>
+        <source>no trajectory is played</source>
+        <translation>没有播放轨迹</translation>
+    </message>
+    <message>
+        <source>what is played does not wait</source>
+        <translation>播放没有在等待</translation>
+    </message>
+    <message>
         <source>no block comes next</source>
         <translation>没有下一程序段</translation>
     </message>
@@ -1122,6 +1222,74 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>no home yet: strut {}</source>
         <translation>尚未回零：支链 {}</translation>
+    </message>
+    <message>
+        <source>runs</source>
+        <translation>运行中</translation>
+    </message>
+    <message>
+        <source>held</source>
+        <translation>已保持</translation>
+    </message>
+    <message>
+        <source>rests</source>
+        <translation>静止</translation>
+    </message>
+    <message>
+        <source>no link: the machine comes to rest on the path</source>
+        <translation>没有连接：机床在路径上停下</translation>
+    </message>
+    <message>
+        <source>single block</source>
+        <translation>单段</translation>
+    </message>
+    <message>
+        <source>override 0</source>
+        <translation>倍率 0</translation>
+    </message>
+    <message>
+        <source>hold</source>
+        <translation>进给保持</translation>
+    </message>
+    <message>
+        <source>waits: {}</source>
+        <translation>等待：{}</translation>
+    </message>
+    <message>
+        <source>line {}</source>
+        <translation>第 {} 行</translation>
+    </message>
+    <message>
+        <source>feed {}, {:.0f} % reached</source>
+        <translation>进给 {}，达到 {:.0f} %</translation>
+    </message>
+    <message>
+        <source>{}; {} and {} to go</source>
+        <translation>{}；剩余 {}，{}</translation>
+    </message>
+    <message>
+        <source>Ended by the operator</source>
+        <translation>由操作者结束</translation>
+    </message>
+    <message>
+        <source>Played to the end</source>
+        <translation>播放完毕</translation>
+    </message>
+    <message>
+        <source>{:.1f} s of motion</source>
+        <translation>运动 {:.1f} 秒</translation>
+    </message>
+    <message>
+        <source>It came to rest {} times because nothing more had come in time</source>
+        <translation>因后续数据未及时到达而停下 {} 次</translation>
+    </message>
+    <message>
+        <source>at least</source>
+        <translation>至少</translation>
+    </message>
+    <message>
+        <source>at most</source>
+        <translation>至多</translation>
     </message>
 </context>
 <context>

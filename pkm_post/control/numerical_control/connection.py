@@ -146,6 +146,11 @@ class Connection:
     _simulated: SimulatedMachine | None
 
     @property
+    def session(self) -> Session:
+        """To the controller; for the thread of the worker alone."""
+        return self._session
+
+    @property
     def simulated(self) -> bool:
         """Whether the machine is simulated."""
         return self._simulated is not None

@@ -150,6 +150,11 @@ class NumericalControl:
         self._last = ControlState(status, self._readout.pose(status), homing=homing, block=self._block)
         return self._last
 
+    def see(self, status: Status) -> ControlState:
+        """The state by a status that an order in progress has read, such as a play."""
+        self._last = replace(self._last, status=status, pose=self._readout.pose(status), lost="", emergency=())
+        return self._last
+
     def plan_jog(self, jog: manual_moves.Jog, feed: float) -> tuple[Plan | None, Findings]:
         """Plan a jog from the current pose; ``feed`` in mm/s, for a turn in place in degrees per second.
 

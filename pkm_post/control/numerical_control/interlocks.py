@@ -31,6 +31,9 @@ class OperatorCommand(enum.Enum):
     RESUME = "resume"
     ABORT = "abort"
     OVERRIDE = "override"
+    PLAY = "play"
+    PLAY_ON = "play on"
+    PLAY_END = "end the play"
 
 
 class Interlock(enum.Enum):
@@ -42,6 +45,10 @@ class Interlock(enum.Enum):
     BUSY = "another order is being carried out"
     NO_JOB = "no program was opened"
     NOT_LOADED = "the program is not loaded"
+    NO_TRAJECTORY = "no trajectory was opened"
+    PLAYS = "a trajectory is played"
+    NOT_PLAYING = "no trajectory is played"
+    NOT_WAITING = "what is played does not wait"
     NO_BLOCK = "no block comes next"
     NO_STOP = "the program has no stop with moves after it"
     RUNS = "a program runs"
@@ -51,7 +58,7 @@ class Interlock(enum.Enum):
     NOT_HOMED = "not all struts are homed"
 
 
-_AT_REST = (Interlock.BUSY, Interlock.RUNS, Interlock.HELD, Interlock.MOVES)
+_AT_REST = (Interlock.BUSY, Interlock.PLAYS, Interlock.RUNS, Interlock.HELD, Interlock.MOVES)
 _READY = (*_AT_REST, Interlock.NOT_HOMED)
 _LINK, _ORDERS = (
     (Interlock.NOT_CONNECTED, Interlock.NO_ANSWER),
@@ -71,7 +78,10 @@ INTERLOCKS_OF: dict[OperatorCommand, tuple[Interlock, ...]] = {
     OperatorCommand.HOLD: (Interlock.NOT_CONNECTED,),
     OperatorCommand.RESUME: (*_ORDERS, Interlock.BUSY, Interlock.NOT_HELD),
     OperatorCommand.ABORT: (Interlock.NOT_CONNECTED,),
-    OperatorCommand.OVERRIDE: (*_ORDERS, Interlock.BUSY, Interlock.HELD),
+    OperatorCommand.OVERRIDE: (*_ORDERS, Interlock.BUSY, Interlock.PLAYS, Interlock.HELD),
+    OperatorCommand.PLAY: (*_ORDERS, Interlock.NO_TRAJECTORY, *_READY),
+    OperatorCommand.PLAY_ON: (Interlock.NOT_CONNECTED, Interlock.NOT_PLAYING, Interlock.NOT_WAITING),
+    OperatorCommand.PLAY_END: (Interlock.NOT_CONNECTED, Interlock.NOT_PLAYING),
 }
 """The last reading never blocks a stop: it may be stale."""
 
@@ -87,6 +97,9 @@ class PanelState:
         has_job: whether a program is open.
         loaded: whether it is in the controller, as far as known here.
         has_stops: whether it has stops (M0, M1) to continue after.
+        has_trajectory: whether a trajectory is open, to be played.
+        playing: whether one is played.
+        waiting: whether that waits for the operator.
         stepping: whether its blocks are open in single block mode.
         homing: whether a homing started here is being monitored.
     """
@@ -97,6 +110,9 @@ class PanelState:
     has_job: bool = False
     loaded: bool = False
     has_stops: bool = False
+    has_trajectory: bool = False
+    playing: bool = False
+    waiting: bool = False
     stepping: bool = False
     homing: bool = False
 
@@ -114,6 +130,10 @@ def active_interlocks(state: ControlState, panel: PanelState) -> frozenset[Inter
         Interlock.BUSY: panel.busy,
         Interlock.NO_JOB: not panel.has_job,
         Interlock.NOT_LOADED: not panel.loaded,
+        Interlock.NO_TRAJECTORY: not panel.has_trajectory,
+        Interlock.PLAYS: panel.playing,
+        Interlock.NOT_PLAYING: not panel.playing,
+        Interlock.NOT_WAITING: not panel.waiting,
         Interlock.NO_BLOCK: not panel.stepping or state.block is None or state.block.is_over,
         Interlock.NO_STOP: not panel.has_stops,
         Interlock.RUNS: status is not None and status.running and not held,

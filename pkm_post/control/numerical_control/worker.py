@@ -17,6 +17,7 @@ from concurrent.futures import Future
 from dataclasses import replace
 from typing import Any, TypeVar
 
+from pkm_post.control.link.status import Status
 from pkm_post.control.link.stopping import NOT_AT_REST, REST_DEADLINE_S
 from pkm_post.control.numerical_control.control import ControlState, NumericalControl
 
@@ -94,6 +95,20 @@ class Worker:
             self._change.notify()
         return future
 
+    def give_way(self) -> bool:
+        """Carry out the stops that wait, for an order in progress that goes on behind them; in the worker's thread.
+
+        Returns:
+            Whether it may go on; False when the worker is being closed.
+        """
+        while self._stops:
+            self._carry_out(self._stops)
+        return not self._ended
+
+    def see(self, status: Status) -> None:
+        """Show a status that an order in progress has read; in the worker's thread."""
+        self._state = self._control.see(status)
+
     def close(self) -> None:
         """End the thread after the current order; cancel waiting orders. The machine is not stopped.
 
@@ -140,6 +155,13 @@ class Worker:
             if not waits:
                 if not self._ended:
                     self._change.wait(max(due - time.monotonic(), 0.0))
+                return
+        self._carry_out(waits)
+
+    def _carry_out(self, waits: deque[_Order]) -> None:
+        """Carry out the first order of a queue, unless it was cancelled meanwhile."""
+        with self._change:
+            if not waits:
                 return
             self._stopping = waits is self._stops
             future, order = waits.popleft()

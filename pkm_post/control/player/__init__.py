@@ -7,16 +7,19 @@ kept filled by ``list_feed``; ``play`` runs them all, with the ``stop_events`` b
 at a line.
 """
 
-from pkm_post.control.player.orders import Order, PlayOptions, PlayState
+from pkm_post.control.player.orders import Order, OrderKind, PlayOptions, PlayState
 from pkm_post.control.player.play import Player, PlayResult
 from pkm_post.control.player.playable import first_row, read_playable
+from pkm_post.control.player.window_play import WindowPlay
 
 __all__ = [
     "Order",
+    "OrderKind",
     "PlayOptions",
     "PlayResult",
     "PlayState",
     "Player",
+    "WindowPlay",
     "first_row",
     "read_playable",
 ]

@@ -22,6 +22,8 @@ from pkm_post.planning import Course, PathState, Schedule, strut_motion
 
 LONGEST_MS = 128
 """Longest interval: the controller computes two moves ahead, and a new way on has to come before."""
+_SAME_MM = 1e-6
+"""A place so near the end of a row belongs to the next one."""
 
 
 @dataclass(frozen=True)
@@ -94,8 +96,8 @@ class LegMaker:
         rests = not at.speed.any(), until_ms == int(schedule.rests_ms[-1])
         certificate = self._certified(section, along, struts, motion, s[[0, -1]], override, rests)
         starts = along.path.starts
-        row = np.clip(np.searchsorted(starts, s, side="right") - 1, 0, len(along.programmed) - 1)
-        share = np.minimum((s - starts[row]) / np.diff(starts)[row], 1.0)
+        row = np.clip(np.searchsorted(starts, s + _SAME_MM, side="right") - 1, 0, len(along.programmed) - 1)
+        share = np.clip((s - starts[row]) / np.diff(starts)[row], 0.0, 1.0)
         state = PathState(float(s[-1]), 0.0 if rests[1] else float(speed[-1]), override)
         end = At(at.section, state, struts.length[-1], struts.speed[-1])
         return Leg(struts, section.first + row, share, certificate, end)

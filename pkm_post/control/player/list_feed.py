@@ -123,14 +123,16 @@ class ListFeed:
         return self._entry is not None or piece.size <= len(self._free)
 
     def append(self, piece: Piece) -> None:
-        """Take a piece in; after a lost link, again with the same piece.
+        """Take a piece in; after a lost link or a stop, again with the same piece.
 
         Raises:
             LinkLostError: it may be in the list or not.
+            CancelledError: a stop waits; it is not in the list.
             PmacError: what is read back differs; it is not in the list.
         """
         entry = self._entry = self._entry or self._prepared(piece)
         for line in entry.lines:
+            self._session.check_preemption()
             self._set(line)
         self._compare(entry)
         self._set(entry.commit)

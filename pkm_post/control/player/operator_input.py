@@ -24,11 +24,12 @@ class OperatorInput:
         single_block: whether to rest at the end of each line.
         is_over: whether to end at the next stop on the path.
         may_start: whether a start was ordered since this was cleared.
+        is_held_back: whether a hold found nothing that ran: nothing starts until it is resumed.
     """
 
     def __init__(self, choices: PlayOptions) -> None:
         self.override, self.single_block = choices.override, choices.single_block
-        self.is_over = self.may_start = False
+        self.is_over = self.may_start = self.is_held_back = False
         self._orders: queue.SimpleQueue[Order] = queue.SimpleQueue()
 
     def order(self, order: Order) -> None:
@@ -44,7 +45,9 @@ class OperatorInput:
         while not self._orders.empty():
             order = self._orders.get()
             if order.kind == "hold":
-                stopping.hold(session, settings)
+                self.is_held_back = not stopping.hold(session, settings).held
+            elif order.kind == "resume" and self.is_held_back:
+                self.is_held_back = False
             elif order.kind == "resume":
                 run.resume_program(session, settings)
             else:

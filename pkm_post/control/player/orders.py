@@ -16,6 +16,8 @@ from pkm_post.control.player.list_feed import Point
 from pkm_post.model import EventKind, Kind, Trajectory
 from pkm_post.options import PLAYER_PROGRAM
 
+WAITS = "waits: "
+"""Begins the phase of a player that waits for its operator; what for comes behind it."""
 OrderKind = Literal["override", "hold", "resume", "single", "start", "end"]
 
 
@@ -81,6 +83,7 @@ class PlayState:
         operation: that is played.
         line: of its source.
         row: of the trajectory.
+        feed: of the program there, mm/s; degrees a second where only the tool axis turns.
         to_go: way of the tip to the end of the program, mm.
         remaining: s to its end at this override, without corners, stops and dwells.
         override: that is asked for.
@@ -92,11 +95,17 @@ class PlayState:
     operation: str
     line: int
     row: int
+    feed: float
     to_go: float
     remaining: float
     override: float
     reached: float
     ahead: float
+
+    @property
+    def waits_for(self) -> str:
+        """What the player waits for its operator for; empty while it does not."""
+        return self.phase.removeprefix(WAITS) if self.phase.startswith(WAITS) else ""
 
     def __str__(self) -> str:
         where = " ".join(filter(None, (self.operation, f"line {self.line}")))
@@ -124,7 +133,8 @@ class Way:
         place = self._trajectory.place(row)
         to_go, seconds = (float(way[row] + share * (way[row + 1] - way[row])) for way in (self._length, self._seconds))
         remaining = seconds / override if override > 0 else np.inf
-        return PlayState(phase, place.operation, place.line, row, to_go, remaining, override, reached, ahead_ms / 1000)
+        where = place.operation, place.line, row, float(self._trajectory.feed[row])
+        return PlayState(phase, *where, to_go, remaining, override, reached, ahead_ms / 1000)
 
     def text(self, point: Point | None) -> str:
         """Where a point is, in words."""

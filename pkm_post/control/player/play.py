@@ -16,7 +16,7 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 from pkm_post.control.link.download import download
-from pkm_post.control.link.errors import LinkLostError
+from pkm_post.control.link.errors import CancelledError, LinkLostError
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.run import check_setup, set_feed_override, start_program
 from pkm_post.control.link.session import Session
@@ -24,9 +24,9 @@ from pkm_post.control.link.status import AnySettings, Status, read_status
 from pkm_post.control.player.certificate_log import CertificateLog
 from pkm_post.control.player.knot_list import Layout, resident_program
 from pkm_post.control.player.legs import At
-from pkm_post.control.player.list_feed import ListFeed
+from pkm_post.control.player.list_feed import ListFeed, Point
 from pkm_post.control.player.operator_input import OperatorInput
-from pkm_post.control.player.orders import Order, PlayOptions, PlayState, Way
+from pkm_post.control.player.orders import WAITS, Order, PlayOptions, PlayState, Way
 from pkm_post.control.player.pieces import PiecePlanner
 from pkm_post.control.player.run_to_rest import RunToRest, Timing
 from pkm_post.control.player.sections import Part, parts_of
@@ -61,6 +61,19 @@ class PlayResult:
     finished: bool
 
 
+@dataclass(frozen=True)
+class Host:
+    """What a thread that plays has beside it; by default nothing.
+
+    Attributes:
+        see: called with each status that was read.
+        give_way: carries out the stops that wait (``Session.preempt_when``); whether to play on behind them.
+    """
+
+    see: Callable[[Status], None] = lambda status: None
+    give_way: Callable[[], bool] = lambda: False
+
+
 class Player:
     """Plays one trajectory.
 
@@ -78,6 +91,7 @@ class Player:
         choices: PlayOptions | None = None,
         show: Callable[[PlayState], None] = lambda state: None,
         planning: Executor | None = None,
+        host: Host | None = None,
     ) -> None:
         """Prepare; ``play`` connects nothing and moves the machine.
 
@@ -90,12 +104,14 @@ class Player:
             choices: how to play it.
             show: called with the state some times a second.
             planning: where pieces are planned; by default a thread of its own.
+            host: of the thread that plays.
         """
         self._session, self._machine, self._settings = session, machine, settings
         self._choices = choices or PlayOptions()
         self._trajectory, self._tolerances = self._choices.applied_to(trajectory), tolerances
         self._task = Task(session, machine, settings, self._trajectory)
         self._planning_machine = replace(machine, block_rate=min(machine.block_rate, _MOST_RATE))
+        self._host = host or Host()
         self._way, self._show, self._planning = Way(self._trajectory), show, planning
         self._operator, self._timing = OperatorInput(self._choices), Timing()
         self._layout = Layout(self._choices.first_variable)
@@ -104,6 +120,7 @@ class Player:
         self._run: RunToRest | None = None
         self._stops, self._losses, self._is_waiting = 0, 0, False
         self._lost_at: float | None = None
+        self._point: Point | None = None
         self.log = CertificateLog()
 
     def order(self, order: Order) -> None:
@@ -116,6 +133,8 @@ class Player:
         Raises:
             NotReadyError: the machine is not ready, or not where the trajectory begins.
             Refused: a piece is not certified; the machine rests on the path.
+            CancelledError: a stop came first while the tool went to the beginning or codes were carried out, or the
+                host wants it to end; the list ends in a stop.
             PmacError: the controller or the link failed; the list ends in a stop.
         """
         session, settings = self._session, self._settings
@@ -151,6 +170,8 @@ class Player:
         while events and not self._operator.is_over:
             at = next((n for n, each in enumerate(events) if each.kind is EventKind.STOP), len(events))
             if at:
+                self._wait_if_held_back(part.first)
+            if at and not self._operator.is_over:
                 run_events(self._task, part.first, tuple(events[:at]))
             if at < len(events):
                 self._wait("M1" if events[at].value else "M0", part.first)
@@ -183,10 +204,14 @@ class Player:
             try:
                 run.plan(self._timing)
                 run.send(self._timing)
+                if not run.is_started:
+                    self._wait_if_held_back()
                 if run.may_start(self._timing.lead_s):
                     self._start(run)
             except LinkLostError as lost:
                 self._lose(lost)
+            except CancelledError:
+                continue  # a stop waits: it is carried out first
             self._session.sleep(_POLL_S)
 
     def _start(self, run: RunToRest) -> None:
@@ -196,7 +221,15 @@ class Player:
         run.is_started = True
 
     def _look(self, is_started: bool) -> Status | None:
-        """Carry out orders and read where the machine is; None while the link is lost."""
+        """Carry out stops and orders, and read where the machine is; None if nothing could be read.
+
+        Raises:
+            CancelledError: the host wants the play to end.
+        """
+        was_stopped = self._session.stop_pending()
+        if was_stopped and not self._host.give_way():
+            raise CancelledError("the play was ended; what the controller has leads to a stop on the path")
+        self._operator.is_held_back |= was_stopped
         try:
             self._operator.carry_out(self._session, self._settings)
             status = read_status(self._session, self._settings)
@@ -206,6 +239,10 @@ class Player:
         except LinkLostError as lost:
             self._lose(lost)
             return None
+        except CancelledError:
+            return None
+        self._host.see(status)
+        self._operator.is_held_back &= not status.held
         if self._lost_at is not None:
             self._losses, self._lost_at = self._losses + 1, None
             _log.warning("the link is back")
@@ -225,6 +262,7 @@ class Player:
             _log.warning("the link is lost; the machine comes to rest on the path: %s", lost)
         if now - self._lost_at > self._choices.patience_s:
             raise lost
+        self._show(self._state("no link"))
         self._session.sleep(_POLL_S)
 
     def _wait(self, what: str, row: int | None = None, until: Callable[[], bool] = lambda: False) -> None:
@@ -233,10 +271,20 @@ class Player:
         operator.may_start, self._is_waiting = False, True
         while not (operator.may_start or operator.is_over or until()):
             self._look(False)
-            self._show(self._state(f"waits: {what}", row))
+            self._show(self._state(WAITS + what, row))
             self._session.sleep(_POLL_S)
         self._is_waiting = False
+        operator.is_held_back &= not operator.may_start
+
+    def _wait_if_held_back(self, row: int | None = None) -> None:
+        """Where a hold found nothing that ran, wait until it is resumed."""
+        operator = self._operator
+        if operator.is_held_back:
+            self._wait("hold", row, lambda: not operator.is_held_back)
 
     def _state(self, phase: str, row: int | None = None) -> PlayState:
         reached = 0.0 if self._run is None else self._run.reached
-        return self._way.state(self._feed.current, phase, self._operator.override, reached, self._feed.ahead_ms, row)
+        self._point = self._feed.current or self._point  # an empty list says nothing of the place
+        if row is None and self._point is None:
+            row = self._choices.first_row
+        return self._way.state(self._point, phase, self._operator.override, reached, self._feed.ahead_ms, row)

@@ -162,7 +162,9 @@ class RunToRest:
         """Whether the list is long enough to be started, complete, or full."""
         ahead = self._feed.ahead_ms / 1000
         is_full = self._planned is not None and not self._feed.has_room(self._planned[0])
-        return not self.is_started and (ahead >= lead_s or (ahead > 0 and (is_full or not self.is_wanted)))
+        if self.is_started or self._operator.is_over:
+            return False
+        return ahead >= lead_s or (ahead > 0 and (is_full or not self.is_wanted))
 
     def is_void(self) -> bool:
         """Whether it ends before it has begun, because nothing is wanted any more.
@@ -170,6 +172,8 @@ class RunToRest:
         Raises:
             Refused, PmacError: its first piece is not certified, or does not fit.
         """
+        if not self.is_started and self._operator.is_over:
+            return True
         if self.is_started or self.is_wanted or self._pending is not None or self._feed.ahead_ms:
             return False
         if self._fault is not None:

@@ -28,7 +28,9 @@ from pkm_post.control.numerical_control import (
     connect,
     program_stops,
 )
+from pkm_post.control.player import Order, PlayResult, WindowPlay
 from pkm_post.freecad_gui.background import CallQueue, Then
+from pkm_post.freecad_gui.control_panel.play_texts import result_texts
 from pkm_post.model import Diagnostic, Refused
 
 translate = FreeCAD.Qt.translate
@@ -49,6 +51,8 @@ class Console(QtCore.QObject):
         loaded: whether this panel has loaded it.
         stops: number of stops (M0, M1) after which it can continue.
         stepping: whether its blocks are in use for single block.
+        has_trajectory: whether a trajectory is open, to be played.
+        play: the trajectory that is played; None if none is.
         progress: its loaded lines, and the total.
         calls: runs what needs no controller.
     """
@@ -62,6 +66,7 @@ class Console(QtCore.QObject):
         super().__init__(parent)
         self.connection: Connection | None = None
         self.take_job(None)
+        self.has_trajectory, self.play = False, None
         self._under_way: list[tuple[Future[Any], Then | None]] = []
         self.calls = CallQueue(self, lambda fault: self.message.emit(str(fault), True), _REPORTED)
         self.calls.changed.connect(self.refreshed)
@@ -94,6 +99,9 @@ class Console(QtCore.QObject):
             has_job=self.job is not None,
             loaded=self.loaded,
             has_stops=self.stops > 0,
+            has_trajectory=self.has_trajectory,
+            playing=self.play is not None,
+            waiting=self.play is not None and bool(self.play.waits_for),
             stepping=self.stepping,
             homing=self._homing,
         )
@@ -121,6 +129,7 @@ class Console(QtCore.QObject):
         self._timer.stop()
         self._under_way, self._homing = [], False
         self.take_job(None)
+        self.has_trajectory, self.play = False, None
         if connection is not None:
             self.calls.do(connection.close, lambda _ended: None)
 
@@ -139,9 +148,27 @@ class Console(QtCore.QObject):
         self.refreshed.emit()
 
     def abort(self, at_once: bool) -> None:
-        """Abort the program; a homing is no longer monitored."""
+        """Abort the program, and what is played; a homing is no longer monitored."""
         self._homing = False
         self.stop(lambda control: control.abort(at_once))
+        if self.play is not None:
+            self.play.order(Order("end"))
+
+    def resume(self) -> None:
+        """Go on after a hold."""
+        if self.play is not None:
+            self.play.order(Order("resume"))
+        else:
+            self.order(lambda control: control.resume())
+
+    def begin_play(self, play: WindowPlay) -> None:
+        """Show a play from now on, until it has ended."""
+        self.play = play
+        self.refreshed.emit()
+
+    def _played(self, result: PlayResult) -> None:
+        for text, is_bad in result_texts(result):
+            self.message.emit(text, is_bad)
 
     def home(self, trigger: str) -> None:
         """Start the homing of the machine."""
@@ -204,6 +231,9 @@ class Console(QtCore.QObject):
         while ended := next((each for each in self._under_way if each[0].done()), None):
             self._under_way.remove(ended)
             self._end(*ended)
+        if self.play is not None and self.play.done.done():
+            future, self.play = self.play.done, None
+            self._end(future, self._played)
         self.refreshed.emit()
 
     def _end(self, future: Future[Any], then: Then | None) -> None:

@@ -16,6 +16,7 @@ from pkm_post.freecad_gui.control_panel.dro import PoseReadout, StrutTable
 from pkm_post.freecad_gui.control_panel.machine_follower import Follower
 from pkm_post.freecad_gui.control_panel.mdi_page import MdiPage
 from pkm_post.freecad_gui.control_panel.motion_pages import HomingPage, JogPage
+from pkm_post.freecad_gui.control_panel.play_page import PlayPage
 from pkm_post.freecad_gui.control_panel.program_page import ProgramPage
 from pkm_post.freecad_gui.control_panel.stop_bar import StopBar
 from pkm_post.freecad_gui.control_panel.texts import activity_text, emergency_text
@@ -36,7 +37,7 @@ class PanelContent(QtWidgets.QWidget):
         banner: fault of the link, and the action to take.
         activity: current activity of the controller.
         readout, struts, stops: pose, struts, and the stop bar.
-        connecting, homing, jog, mdi, program: the pages.
+        connecting, homing, jog, mdi, program, play: the pages.
         follows: whether the machine object of the document follows the machine.
         messages: all messages, the newest last.
     """
@@ -54,6 +55,7 @@ class PanelContent(QtWidgets.QWidget):
         self.follows.toggled.connect(self._follow)
         self.connecting, self.homing, self.jog = ConnectPage(console, leave), HomingPage(console), JogPage(console)
         self.mdi, self.program = MdiPage(console, self.readout.work_offset), ProgramPage(console)
+        self.play = PlayPage(console)
         self.pages = self._pages()
         self._set_up()
         console.message.connect(self.show_message)
@@ -66,6 +68,7 @@ class PanelContent(QtWidgets.QWidget):
         pages.addTab(self.jog, translate("ControlPanel", "Jog"))
         pages.addTab(self.mdi, translate("ControlPanel", "MDI"))
         pages.addTab(self.program, translate("ControlPanel", "Program"))
+        pages.addTab(self.play, translate("ControlPanel", "Play"))
         return pages
 
     def _set_up(self) -> None:
@@ -111,7 +114,7 @@ class PanelContent(QtWidgets.QWidget):
         self.activity.setText(activity_text(state) if connection else translate("ControlPanel", "Not connected"))
         self.readout.refresh(state.pose, self._machine_from_work())
         self.struts.refresh(state.status)
-        for part in (self.connecting, self.homing, self.jog, self.mdi, self.program, self.stops):
+        for part in (self.connecting, self.homing, self.jog, self.mdi, self.program, self.play, self.stops):
             part.refresh(state, found)
         self._follower.show(state.pose, self.connecting.taken_length)
 

@@ -27,7 +27,7 @@ _BUTTONS: tuple[tuple[str, str, OperatorCommand, Callable[[Console], None]], ...
         QT_TRANSLATE_NOOP("ControlPanel", "Resume"),
         QT_TRANSLATE_NOOP("ControlPanel", "Go on after a hold"),
         OperatorCommand.RESUME,
-        lambda console: console.order(lambda control: control.resume()),
+        lambda console: console.resume(),
     ),
     (
         QT_TRANSLATE_NOOP("ControlPanel", "Abort"),

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Window play: a trajectory played by the worker of a connection, for windows that must not block.
+
+The worker reads nothing else meanwhile; what the player reads is its state. Stops that are ordered of the worker come
+first, and the play goes on behind a hold. When the worker is closed, the play ends, and the machine rests on the path.
+
+Enters: a connection, a trajectory, orders from the thread of the window. Leaves: the newest state, and a result.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import Future
+
+from pkm_post.control.numerical_control.connection import Connection
+from pkm_post.control.player.orders import Order, PlayOptions, PlayState
+from pkm_post.control.player.play import Host, Player, PlayResult
+from pkm_post.model import Tolerances, Trajectory
+
+
+class WindowPlay:
+    """One play.
+
+    Attributes:
+        state: the newest state; None before the first one.
+        done: the result, or why it ended.
+    """
+
+    def __init__(
+        self, connection: Connection, trajectory: Trajectory, tolerances: Tolerances, choices: PlayOptions
+    ) -> None:
+        """Queue the play; return at once.
+
+        Args:
+            connection: to a Turbo PMAC.
+            trajectory: what to play.
+            tolerances: limits for the certificate.
+            choices: how to play it.
+        """
+        worker, target = connection.worker, connection.target
+        self.state: PlayState | None = None
+        host = Host(worker.see, worker.give_way)
+        self._player = Player(
+            connection.session,
+            target.machine,
+            target.settings,
+            trajectory,
+            tolerances,
+            choices,
+            self._show,
+            host=host,
+        )
+        self.done: Future[PlayResult] = worker.submit(lambda _control: self._player.play())
+
+    @property
+    def waits_for(self) -> str:
+        """What it waits for the operator for; empty while it does not."""
+        return "" if self.state is None else self.state.waits_for
+
+    def order(self, order: Order) -> None:
+        """Give an order; return at once."""
+        self._player.order(order)
+
+    def _show(self, state: PlayState) -> None:
+        """Called in the worker's thread."""
+        self.state = state
