@@ -10,6 +10,7 @@ from station import MACHINE, SETTINGS, TOOL
 from pkm_post.control.numerical_control.control import TOLERANCES
 from pkm_post.control.numerical_control.manual_moves import CartesianJog, StrutJog, jog_trajectory, mdi_trajectory
 from pkm_post.control.numerical_control.plan import _end_pose, planned
+from pkm_post.model import EventKind
 from pkm_post.toolpath import ToolPose
 
 MICRON = 1e-3
@@ -74,6 +75,19 @@ def test_a_plan_is_one_program():
     small = dataclasses.replace(SETTINGS, memory_words=700)
     plan, reported = planned(trajectory, MACHINE, small, TOLERANCES)
     assert plan is None and [fault.code for fault in reported] == ["C204"]
+
+
+def test_a_line_may_have_codes_of_the_machine():
+    codes = MACHINE.controller["codes"] | {"M21": "P7003=21"}
+    machine = dataclasses.replace(MACHINE, controller=MACHINE.controller | {"codes": codes})
+    settings = dataclasses.replace(SETTINGS, codes=codes)
+    trajectory, reported = mdi_trajectory("M21", machine, HERE, TOOL)
+    assert [(each.kind, each.value) for each in trajectory.events] == [(EventKind.FUNCTION, 21.0)] and not reported
+    plan, reported = planned(trajectory, machine, settings, TOLERANCES)
+    assert reported == () and "P7003=21" in plan.job.program.lines
+    for line, where, code in (("M21", MACHINE, "G401"), ("G0 X15 M21", machine, "G437")):
+        trajectory, reported = mdi_trajectory(line, where, HERE, TOOL)
+        assert trajectory is None and [fault.code for fault in reported] == [code]
 
 
 def test_a_plan_without_room():
