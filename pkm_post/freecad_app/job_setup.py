@@ -13,7 +13,7 @@ not choose it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -24,7 +24,7 @@ from pkm_post.freecad_app.arguments import POST_PROCESSORS, replace_arguments
 from pkm_post.freecad_app.document import document_name
 from pkm_post.freecad_app.document_checks import require_computed
 from pkm_post.freecad_app.document_object import print_diagnostics
-from pkm_post.freecad_app.frames import matrix_of
+from pkm_post.freecad_app.frames import matrix_of, placement_of
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.job_study import JobStudy, study_of
@@ -34,7 +34,16 @@ from pkm_post.freecad_app.tools import millimetres
 from pkm_post.machine import CollisionMesh, find_machine, machine_named, placed_workpiece
 from pkm_post.model import Diagnostic, Machine, Mesh, Place, Refused, Setup, Shank, Tolerances, Trajectory, errors
 from pkm_post.options import Options, Override, argument_values, flag_of, format_value
-from pkm_post.posting import Prepared, Study, effective_setup, study, work_offset, work_offset_text
+from pkm_post.posting import (
+    FoundPlace,
+    Prepared,
+    Study,
+    effective_setup,
+    find_place,
+    study,
+    work_offset,
+    work_offset_text,
+)
 
 _SAME_PLACE = 1e-6
 """mm and directions: FreeCAD rounds placements when it stores them."""
@@ -178,12 +187,59 @@ def set_best_work_offset(job: Any, free: str = "xyzc") -> Study:
     """
     if set(free) - set("xyzc"):
         raise ValueError(f"free: expected letters of 'xyzc', got {free!r}")
+    _require_post_processor(job)
+    result = study_job(job, free)
+    if result.place is not None:
+        set_place(job, result.place)
+    return result
+
+
+def place_search(job: Any, machine_object: Any = None) -> Callable[[], FoundPlace]:
+    """Read a job, and return the search for a place at which the machine can follow it, which may run in any thread.
+
+    Args:
+        job: the CAM job, recomputed.
+        machine_object: from ``create_machine``; without one the arguments of the job define the machine.
+
+    Raises:
+        Refused: the job cannot be read, or placed at all; also by the search.
+    """
+    prepared = prepared_job(job, settings_of(job), machine_object)
+    program, machine = prepared.sound
+
+    def search() -> FoundPlace:
+        found, faults = find_place(program, machine, prepared.options)
+        if found is None:
+            raise Refused((*prepared.found, *faults))
+        return found
+
+    return search
+
+
+def set_place(job: Any, found: FoundPlace, machine_object: Any = None) -> None:
+    """Set the arguments of a job, and the work offset of a machine that has no job, to a place that was found.
+
+    Args:
+        job: the CAM job, for a post-processor of PKM Post.
+        found: the place.
+        machine_object: from ``create_machine``, on which it was found.
+
+    Raises:
+        ValueError: ``--work-offset`` cannot express the orientation of the part, or the job has another post-processor.
+    """
+    _require_post_processor(job)
+    offset = found.reach.trajectory.machine_from_work
+    flag, equals, text = work_offset_text(offset).partition("=")
+    if not equals:
+        raise ValueError(f"expected a work offset that is rotated only about z, got {flag}")
+    chosen = {flag: text} | ({flag_of("spin"): found.options.spin.rule.value} if found.spins else {})
+    if machine_object is not None and machine_object.Job is None:
+        document_from_work = matrix_of(machine_object.Frame) @ matrix_of(machine_object.WorkOffset)
+        machine_object.WorkOffset = placement_of(offset @ document_from_work)
+    job.PostProcessorArgs = replace_arguments(job.PostProcessorArgs, chosen)
+
+
+def _require_post_processor(job: Any) -> None:
     if job.PostProcessor not in POST_PROCESSORS:
         known = ", ".join(POST_PROCESSORS)
         raise ValueError(f"expected a job for {known}, got one for {job.PostProcessor or 'none'}")
-    result = study_job(job, free)
-    flag, equals, offset = work_offset_text(result.machine_from_work).partition("=")
-    if not equals:
-        raise ValueError(f"expected a work offset that is rotated only about z, got {flag}")
-    job.PostProcessorArgs = replace_arguments(job.PostProcessorArgs, {flag: offset})
-    return result

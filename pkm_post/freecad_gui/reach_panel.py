@@ -2,7 +2,8 @@
 """Reach panel: verdict, findings and margins of a reach object; a click on one shows where it is.
 
 Takes the object; selects operation and command, marks the point, moves the machine there if the document has it, and
-colours the path by the clicked check. The colouring is part of the document, so the panel is one undo step.
+colours the path by the clicked check. Colouring and a place that is taken are part of the document, so the panel is one
+undo step.
 """
 
 from __future__ import annotations
@@ -11,11 +12,15 @@ from typing import Any
 
 import FreeCAD
 import FreeCADGui
+import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
+from pkm_post.freecad_app.job_setup import set_place
+from pkm_post.freecad_app.job_study import JobStudy
 from pkm_post.freecad_app.reach_object import WORST
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.job_choices import show_place
+from pkm_post.freecad_gui.place_row import PlaceRow
 from pkm_post.freecad_gui.shown_pose import ShownPose, look_at
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
 from pkm_post.model import RULES, Severity
@@ -39,6 +44,7 @@ class ReachPanel:
     Attributes:
         verdict: whether the machine can follow.
         violations: what forbids it, and what is slower.
+        place: looks for another place.
         table: margin of each check.
     """
 
@@ -49,16 +55,42 @@ class ReachPanel:
         self.form = QtWidgets.QWidget()
         self.form.setWindowTitle(obj.Label)
         self.form.setWindowIcon(QtGui.QIcon(str(ICONS / "reach.svg")))
-        self.verdict, self.violations, self.table = Verdict(), FindingRows(), _table(obj)
-        self.verdict.say(*_verdict(obj))
-        self.violations.take([_row(text) for text in obj.Violations])
+        self.verdict, self.violations, self.table = Verdict(), FindingRows(), _table()
+        self.place = PlaceRow(obj)
         layout = QtWidgets.QVBoxLayout(self.form)
         worst = QtWidgets.QPushButton(translate("PKM_Reach", "Colour by the worst check"))
         worst.clicked.connect(self.show_all)
-        for part in (self.verdict, self.violations, self.table, worst):
+        for part in (self.verdict, self.violations, self.place, self.table, worst):
             layout.addWidget(part)
         self.table.cellClicked.connect(lambda row, _column: self.show_worst(row))
         self.violations.picked.connect(self.show_violation)
+        self.place.placed.connect(self.show_place_found)
+        self.place.taken.connect(self.take_place)
+        self._fill()
+
+    def _fill(self) -> None:
+        """Show what the object has."""
+        self.verdict.say(*_verdict(self.obj))
+        self.violations.take([_row(text) for text in self.obj.Violations])
+        _fill_table(self.table, self.obj)
+
+    def show_place_found(self) -> None:
+        """Draw the machine at the worst pose of the place that was found."""
+        found = self.place.found
+        assert found is not None
+        study = JobStudy(found.reach, found.findings)
+        self._pose.show(study, int(np.argmin(study.worst_margin())))
+
+    def take_place(self) -> None:
+        """Set the place that was found in the job, and check it there."""
+        found, obj = self.place.found, self.obj
+        assert found is not None
+        self.place.clear()
+        self._pose.end()
+        set_place(obj.Job, found, obj.Machine)
+        obj.Document.recompute()
+        self._pose = ShownPose(obj.Machine)
+        self._fill()
 
     def show_all(self) -> None:
         """Colour by the worst check at each point."""
@@ -89,6 +121,7 @@ class ReachPanel:
 
     def end(self) -> None:
         """Draw the machine at its own pose again."""
+        self.place.end()
         self._pose.end()
 
     def getStandardButtons(self) -> Any:
@@ -117,13 +150,20 @@ def _row(violation: str) -> tuple[str, bool, str]:
     return violation, is_error, RULES[code].cure if code else ""
 
 
-def _table(obj: Any) -> QtWidgets.QTableWidget:
-    table = QtWidgets.QTableWidget(len(obj.Checks), len(HEAD))
+def _table() -> QtWidgets.QTableWidget:
+    table = QtWidgets.QTableWidget(0, len(HEAD))
     table.setObjectName("PkmReachTable")
     table.setHorizontalHeaderLabels([translate("PKM_Reach", text) for text in HEAD])
     table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
     table.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
     table.verticalHeader().hide()
+    table.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarPolicy.ScrollBarAsNeeded)
+    return table
+
+
+def _fill_table(table: QtWidgets.QTableWidget, obj: Any) -> None:
+    """Show a row for each check."""
+    table.setRowCount(len(obj.Checks))
     where = translate("PKM_Reach", "{}, line {}")
     columns = (
         obj.Checks,
@@ -139,5 +179,3 @@ def _table(obj: Any) -> QtWidgets.QTableWidget:
                 item.setForeground(QtGui.QBrush(_RED))
             table.setItem(row, column, item)
     table.resizeColumnsToContents()
-    table.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarPolicy.ScrollBarAsNeeded)
-    return table

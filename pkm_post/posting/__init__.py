@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from pkm_post.posting.cartesian_guard import Allowance
     from pkm_post.posting.machine_check import format_table, machine_faults, machine_summary
     from pkm_post.posting.machine_export import export_machine
-    from pkm_post.posting.reach_study import Study, check_path_of, study, work_offset_text
+    from pkm_post.posting.path_check import check_path_of
+    from pkm_post.posting.place_search import FoundPlace, find_place
+    from pkm_post.posting.reach_study import Study, study, work_offset_text
 else:
     __getattr__ = at_first_use(
         __name__,
@@ -27,13 +29,16 @@ else:
             "cartesian_guard": "Allowance",
             "machine_check": "format_table machine_faults machine_summary",
             "machine_export": "export_machine",
-            "reach_study": "Study check_path_of study work_offset_text",
+            "path_check": "check_path_of",
+            "place_search": "FoundPlace find_place",
+            "reach_study": "Study study work_offset_text",
         },
     )
 
 __all__ = [
     "SUFFIX",
     "Allowance",
+    "FoundPlace",
     "Log",
     "Posted",
     "Prepared",
@@ -41,6 +46,7 @@ __all__ = [
     "Study",
     "cartesian_program",
     "check_path_of",
+    "find_place",
     "format_table",
     "effective_setup",
     "export_machine",

@@ -14,18 +14,11 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.machine import (
-    ZERO_TORSION,
-    ReachReport,
-    SpinRule,
-    best_position,
-    check_reach,
-    find_collisions,
-    least_normalised_margins,
-    placed_workpiece,
-)
-from pkm_post.model import Diagnostic, Machine, Program, Setup, Tolerances, Trajectory, errors
+from pkm_post.machine import ZERO_TORSION, ReachReport, SpinRule, least_normalised_margins
+from pkm_post.model import Diagnostic, Machine, Program, errors
 from pkm_post.options import Options
+from pkm_post.posting.path_check import check_path_of
+from pkm_post.posting.place_search import FoundPlace, find_place
 from pkm_post.posting.placement import effective_setup, trajectory_of
 
 _LABELS = ("stroke", "joints", "from singular")
@@ -39,23 +32,27 @@ class Study:
         reach: all checks of the path as it would be driven.
         stages: each option, in order, and the least shares (3,) after it.
         machine_from_work: (4, 4) the work offset of the last stage.
+        place: what was looked for, if the workpiece may be moved.
     """
 
     reach: ReachReport
     stages: tuple[tuple[str, Array], ...]
     machine_from_work: Array
+    place: FoundPlace | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """The study for JSON."""
         stages = [{"stage": name} | dict(zip(_LABELS, _rounded(left), strict=True)) for name, left in self.stages]
-        return self.reach.as_dict() | {"left": stages, "machine_from_work": self.machine_from_work.tolist()}
+        place = {"place": self.place.text()} if self.place else {}
+        return self.reach.as_dict() | {"left": stages, "machine_from_work": self.machine_from_work.tolist()} | place
 
     def text(self) -> str:
         """The study as text."""
         head = f"{'what is left (1 best, 0 at the limit)':<40}" + "".join(f"{label:>15}" for label in _LABELS)
         rows = [f"{name:<40}" + "".join(f"{share:>15.3f}" for share in left) for name, left in self.stages]
+        place = [f"place: {self.place.text()}"] if self.place else []
         return "\n".join(
-            [self.reach.text(), head, *rows, "", f"work offset: {work_offset_text(self.machine_from_work)}"]
+            [self.reach.text(), head, *rows, "", *place, f"work offset: {work_offset_text(self.machine_from_work)}"]
         )
 
 
@@ -74,22 +71,23 @@ def study(
         machine: geometry and limits.
         options: work offset, spin and compensation, and the set-up.
         free: letters of ``position.FREEDOMS`` in which the workpiece may be moved; empty for none.
-        starts: number of positions from which a better one is looked for.
+        starts: number of positions from which a better one is looked for; more, if no place is found from them.
         executor: distributes the searches for position and spin; by default they run in this process.
 
     Returns:
         The study, or None when the program cannot be placed; and the diagnostics, those of the checks included.
     """
-    untwisted = replace(options, spin=ZERO_TORSION)
-    placed, diagnostics = trajectory_of(program, machine, untwisted)
+    placed, diagnostics = trajectory_of(program, machine, replace(options, spin=ZERO_TORSION))
     if placed is None:
         return None, diagnostics
     stages = [("as it is, zero torsion", least_normalised_margins(placed, machine))]
+    place = None
     if free:
-        of_machine = placed.operation >= len(program.operations)  # the routes to tool changes and back
-        offset = best_position(placed, machine, free, None, of_machine, starts, executor).machine_from_work
-        untwisted, options = replace(untwisted, work_offset=offset), replace(options, work_offset=offset)
-        placed, diagnostics = trajectory_of(program, machine, untwisted)
+        place, diagnostics = find_place(program, machine, options, free, starts, executor)
+        if place is None:
+            return None, diagnostics
+        options = place.options
+        placed, diagnostics = trajectory_of(program, machine, replace(options, spin=ZERO_TORSION))
         if placed is None:
             return None, diagnostics
         stages.append((f"moved in {', '.join(free)}", least_normalised_margins(placed, machine)))
@@ -102,31 +100,7 @@ def study(
     if errors(faults):
         return None, (*diagnostics, *faults)
     checked, both = check_path_of(placed, machine, setup, options.tolerances)
-    return Study(checked, tuple(stages), placed.machine_from_work), (*diagnostics, *both)
-
-
-def check_path_of(
-    trajectory: Trajectory, machine: Machine, setup: Setup, tolerances: Tolerances
-) -> tuple[ReachReport, tuple[Diagnostic, ...]]:
-    """Run all checks of a trajectory on its machine.
-
-    Args:
-        trajectory: in {M}, at least one segment.
-        machine: its limits and bodies.
-        setup: part, stock and fixtures, and the shanks of the tools.
-        tolerances: allowed deviation of the tool from the trajectory.
-
-    Returns:
-        The margins along the path, and all findings: of reach, and of collisions that no margin stands for.
-    """
-    checked = check_reach(trajectory, machine, placed_workpiece(setup, trajectory))
-    collisions = find_collisions(trajectory, machine, setup, tolerances)
-    others = (fault for fault in collisions.faults if fault.code not in _IN_REACH)
-    return checked, (*checked.faults(), *others)
-
-
-_IN_REACH = ("K117", "K121")
-"""Diagnostics that reach also covers, by the margins of each pose."""
+    return Study(checked, tuple(stages), placed.machine_from_work, place), (*diagnostics, *both)
 
 
 def work_offset_text(machine_from_work: Array) -> str:

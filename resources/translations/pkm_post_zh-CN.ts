@@ -2111,6 +2111,57 @@ Is the way of all struts, of the platform and of the tool free?</source>
     </message>
 </context>
 <context>
+    <name>PlaceRow</name>
+    <message>
+        <source>Find a place</source>
+        <translation>寻找位置</translation>
+    </message>
+    <message>
+        <source>Look for a work offset, and if need be another spin, at which the machine can follow</source>
+        <translation>寻找机床能够跟随的工件偏置，必要时使用另一种自转角</translation>
+    </message>
+    <message>
+        <source>Take this place</source>
+        <translation>采用此位置</translation>
+    </message>
+    <message>
+        <source>Set it as --work-offset, and --spin, in the arguments of the job</source>
+        <translation>将其作为 --work-offset 和 --spin 写入作业的参数</translation>
+    </message>
+    <message>
+        <source>Looking for a place ...</source>
+        <translation>正在寻找位置……</translation>
+    </message>
+    <message>
+        <source>shift {} in {}</source>
+        <translation>沿 {1} 平移 {0}</translation>
+    </message>
+    <message>
+        <source>turn {} about {}</source>
+        <translation>绕 {1} 旋转 {0}</translation>
+    </message>
+    <message>
+        <source>where it is</source>
+        <translation>原位置</translation>
+    </message>
+    <message>
+        <source>spin optimised</source>
+        <translation>优化自转角</translation>
+    </message>
+    <message>
+        <source>No place was found. The last one tried: {}; there: {}</source>
+        <translation>未找到位置。尝试过的最后一个：{}；在那里：{}</translation>
+    </message>
+    <message>
+        <source>{} to spare</source>
+        <translation>余量 {}</translation>
+    </message>
+    <message>
+        <source>{}: the machine can follow, {}</source>
+        <translation>{}：机床能够跟随，{}</translation>
+    </message>
+</context>
+<context>
     <name>PostChoices</name>
     <message>
         <source>Shortest rotation from upright</source>

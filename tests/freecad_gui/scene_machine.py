@@ -5,11 +5,12 @@ import os
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, main, new_document, picture_of_all, press, settle, step
+from gui import FOLDER, click, main, new_document, picture_of_all, press, settle, step, until
 from pivy import coin
 from PySide import QtWidgets
 
 from pkm_post.freecad_app.post_job import post_job
+from pkm_post.freecad_gui.place_row import PlaceRow
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
 from pkm_post.model import Refused, errors
 
@@ -96,8 +97,49 @@ def reach_from_its_button():
 
 
 def _verdict(panel):
-    (line,) = panel.findChildren(Verdict)
+    (line,) = [each for each in panel.findChildren(Verdict) if each.parent() == panel]
     return [line.text(), "#1b7f3b" in line.styleSheet()]
+
+
+@step
+def a_place_is_found():
+    """The job stands where the machine does not reach; the panel finds where it does, previews and takes it."""
+    document = new_document("far_away")
+    job = document.getObject("Job")
+    job.PostProcessorArgs = "--machine example_6tps --work-offset=600,0,200,10 --part none --stock none"
+    document.recompute()
+    press("PKM_Machine", job)
+    press("PKM_Reach", job)
+    found, machine = document.getObject("Reach"), document.getObject("Machine")
+    found.ViewObject.Proxy.doubleClicked(found.ViewObject)
+    settle()
+    (row,) = FreeCADGui.getMainWindow().findChildren(PlaceRow)
+    reported = {"before": _verdict(row.parentWidget()), "take is shown at first": row.take.isVisible()}
+    click(row.search)
+    until(lambda: row.found is not None)
+    reported |= {
+        "text": row.result.text(),
+        "amounts": row.found.text(),
+        "posed": machine.ViewObject.Proxy.played,
+        "unchanged": job.PostProcessorArgs,
+        "saved": picture_of_all("place.png"),
+    }
+    offset = row.found.reach.trajectory.machine_from_work[:3, 3].tolist()
+    click(row.take)
+    settle()
+    reported |= {
+        "after": _verdict(row.parentWidget()),
+        "reachable": found.Reachable,
+        "arguments": job.PostProcessorArgs,
+        "moved": [a - b for a, b in zip(machine.WorkOffset.Base, offset, strict=True)],
+    }
+    FreeCADGui.getDocument("far_away").resetEdit()
+    settle()
+    document.undo()
+    document.recompute()
+    reported["after undo"] = [job.PostProcessorArgs, found.Reachable]
+    FreeCAD.closeDocument("far_away")
+    return reported
 
 
 @step

@@ -29,6 +29,19 @@ def test_reach_is_coloured_and_its_panel_shows_where(session):
     assert found["seen"] == pytest.approx([0.0] * 3, abs=1e-2)  # Coin counts in single precision
 
 
+def test_a_place_is_found_previewed_and_taken(session):
+    found = session["a_place_is_found"]
+    assert found["before"] == ["The machine cannot follow the job", False] and not found["take is shown at first"]
+    assert found["text"].startswith("shift -") and "to spare" in found["text"]
+    assert ": reaches, " in found["amounts"]
+    assert found["posed"] and "--work-offset=600,0,200,10" in found["unchanged"]
+    assert session.drew("place.png")
+    assert found["after"] == ["The machine can follow the job", True] and found["reachable"]
+    assert found["arguments"].count("--work-offset") == 1 and "600" not in found["arguments"]
+    assert found["moved"] == pytest.approx([0.0] * 3, abs=1e-6)
+    assert "--work-offset=600,0,200,10" in found["after undo"][0] and not found["after undo"][1]
+
+
 def test_reach_says_in_red_what_posting_would_refuse(session):
     found = session["reach_of_a_collision"]
     assert found["posting"] == found["rows"] != []

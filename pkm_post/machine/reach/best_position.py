@@ -77,11 +77,13 @@ class WorkpiecePosition:
 
     Attributes:
         machine_from_work: (4, 4) the work offset.
+        move: (6,) what was added: mm along, and rad about, the axes of {M} through the middle of the job.
         before: (3,) least shares of stroke, joints and distance to singular poses with the original work offset.
         after: (3,) the same with the new work offset.
     """
 
     machine_from_work: Array
+    move: Array
     before: Array
     after: Array
 
@@ -146,6 +148,7 @@ def best_position(
     every = np.arange(len(job.tip))
     return WorkpiecePosition(
         machine_from_work=_matrix(move, job.middle) @ trajectory.machine_from_work,
+        move=np.array(move.tolist()),  # a column of its own: the same bytes from every executor
         before=job.normalised_margins(np.zeros((1, 6)), every)[0].min(axis=0),
         after=job.normalised_margins(move[None], every)[0].min(axis=0),
     )

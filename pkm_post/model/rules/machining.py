@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from pkm_post.model.rules.rule import Rule, error, warning
 
+_PLACE = "; Find a place in the panel of Reach and python3 -m pkm_post reach --place look for one that suffices"
+
 MACHINING_RULES: dict[str, Rule] = {
     # M1: the machine file
     "M101": error("the machine file cannot be read", "check the path; python3 -m pkm_post machine list shows presets"),
@@ -32,11 +34,15 @@ MACHINING_RULES: dict[str, Rule] = {
     "M207": error("the machine file is nested too deeply", "write tables and lists as docs/machine-file.md has them"),
     "M208": error("there are more faults than are shown", "correct those that are shown, then check again"),
     # K1: what the machine can reach
-    "K101": error("a strut would be too short", "move or turn the part on the table, or use another tool length"),
-    "K102": error("a strut would be too long", "move or turn the part on the table, or use another tool length"),
-    "K103": error("a base joint would swing too far", "tilt the tool less, or move the part"),
-    "K104": error("a platform joint would swing too far", "tilt the tool less, or move the part"),
-    "K105": error("the path comes too close to a singular pose", "tilt the tool less, or move the part"),
+    "K101": error(
+        "a strut would be too short", f"move or turn the part on the table, or use another tool length{_PLACE}"
+    ),
+    "K102": error(
+        "a strut would be too long", f"move or turn the part on the table, or use another tool length{_PLACE}"
+    ),
+    "K103": error("a base joint would swing too far", f"tilt the tool less, or move the part{_PLACE}"),
+    "K104": error("a platform joint would swing too far", f"tilt the tool less, or move the part{_PLACE}"),
+    "K105": error("the path comes too close to a singular pose", f"tilt the tool less, or move the part{_PLACE}"),
     "K106": error(
         "the tool axis turns by half a turn in one move",
         "insert a move that defines the direction of rotation; where the part is turned over, post each side as a"

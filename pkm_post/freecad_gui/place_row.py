@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Place row: a button that looks for a place at which the machine can follow a job, and what it found.
+
+Takes a reach object; emits the place when it is found, and when the user takes it. The search runs in the background;
+closing the panel waits for its end.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD
+from PySide import QtCore, QtWidgets
+
+from pkm_post.freecad_app.arguments import POST_PROCESSORS
+from pkm_post.freecad_app.job_setup import place_search
+from pkm_post.freecad_gui.background import BackgroundCall
+from pkm_post.freecad_gui.verdict import Verdict
+from pkm_post.model import Refused, errors
+from pkm_post.posting import FoundPlace
+
+translate = FreeCAD.Qt.translate
+
+_STILL = 0.05
+"""mm and degrees: less is not shown."""
+
+
+class PlaceRow(QtWidgets.QWidget):
+    """Button, result, and the button that takes it.
+
+    Attributes:
+        found: the last place; None before.
+    """
+
+    placed = QtCore.Signal()
+    """A place was found, whether it holds or not."""
+    taken = QtCore.Signal()
+    """The user takes the place."""
+
+    def __init__(self, obj: Any) -> None:
+        super().__init__()
+        self._obj, self._task = obj, None
+        self.found: FoundPlace | None = None
+        self.search = QtWidgets.QPushButton(translate("PlaceRow", "Find a place"))
+        self.search.setToolTip(
+            translate(
+                "PlaceRow", "Look for a work offset, and if need be another spin, at which the machine can follow"
+            )
+        )
+        self.take = QtWidgets.QPushButton(translate("PlaceRow", "Take this place"))
+        self.take.setToolTip(translate("PlaceRow", "Set it as --work-offset, and --spin, in the arguments of the job"))
+        self.result = Verdict()
+        layout = QtWidgets.QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        for part in (self.search, self.result, self.take):
+            layout.addWidget(part)
+        self.search.clicked.connect(self._begin)
+        self.take.clicked.connect(self.taken.emit)
+        self.clear()
+
+    def clear(self) -> None:
+        """Show no place."""
+        self.found = None
+        self.result.say("")
+        self.take.hide()
+
+    def end(self) -> None:
+        """Wait for a search that is running; its result is not shown."""
+        if self._task is not None:
+            self._task.finished.disconnect(self._done)
+            self._task.finish()
+
+    def _begin(self) -> None:
+        self.clear()
+        try:
+            search = place_search(self._obj.Job, self._obj.Machine)
+        except Refused as refused:
+            self.result.say(str(refused), holds=False)
+            return
+        self._task = BackgroundCall(search, self)
+        self._task.finished.connect(self._done)
+        self.search.setEnabled(False)
+        self.result.say(translate("PlaceRow", "Looking for a place ..."))
+        self._task.start()
+
+    def _done(self) -> None:
+        task, self._task = self._task, None
+        self.search.setEnabled(True)
+        self.clear()
+        try:
+            self.found = task.value()
+        except Refused as refused:
+            self.result.say(str(refused), holds=False)
+            return
+        self.result.say(place_text(self.found), self.found.holds)
+        self.take.setVisible(self.found.holds and self._obj.Job.PostProcessor in POST_PROCESSORS)
+        self.placed.emit()
+
+
+def place_text(found: FoundPlace) -> str:
+    """The amounts of a place and what comes of it, in the language and the units of the user."""
+    shifted, turned = translate("PlaceRow", "shift {} in {}"), translate("PlaceRow", "turn {} about {}")
+    moves = [
+        text.format(_shown(value, unit), axis)
+        for text, values, unit in ((shifted, found.shift, "mm"), (turned, found.turn, "deg"))
+        for axis, value in zip("xyz", values, strict=True)
+        if abs(value) > _STILL
+    ] or [translate("PlaceRow", "where it is")]
+    if found.spins:
+        moves.append(translate("PlaceRow", "spin optimised"))
+    if not found.holds:
+        missing = translate("PlaceRow", "No place was found. The last one tried: {}; there: {}")
+        return missing.format(", ".join(moves), errors(found.findings)[0])
+    spare = translate("PlaceRow", "{} to spare")
+    left = [spare.format(_shown(value, unit[:3])) for unit, value in found.spare().items()]
+    return translate("PlaceRow", "{}: the machine can follow, {}").format(", ".join(moves), ", ".join(left))
+
+
+def _shown(value: float, unit: str) -> str:
+    return str(FreeCAD.Units.Quantity(f"{value:.1f} {unit}").UserString)
