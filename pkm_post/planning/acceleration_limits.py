@@ -67,8 +67,12 @@ def limits_at(path: ToolPath, segment: Array, u: Array, close: Array, rough: Pai
         machine: the limits.
     """
     after = following(path, segment, u)
-    near = np.flatnonzero(close[segment] & close[after])
-    found = rough_station_limits(*(np.minimum(one[segment], one[after]) for one in rough))
-    exact = limits_within(path, machine, segment[near], u[near])
-    found.speed[near], found.table[near] = exact.speed, exact.table
+    exact = close[segment] & close[after]
+    near, far = np.flatnonzero(exact), np.flatnonzero(~exact)
+    found = StationLimits(np.empty(len(u)), np.empty((len(u), 15), dtype=np.float32))
+    for rows, part in (
+        (near, limits_within(path, machine, segment[near], u[near])),
+        (far, rough_station_limits(*(np.minimum(one[segment[far]], one[after[far]]) for one in rough))),
+    ):
+        found.speed[rows], found.table[rows] = part.speed, part.table
     return found

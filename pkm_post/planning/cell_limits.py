@@ -59,6 +59,9 @@ class StationLimits:
         """The same of some of the struts, (C,), only."""
         return StationLimits(self.speed, self.table[:, np.concatenate([struts, struts, np.ones(3, dtype=np.bool_)])])
 
+    def __getitem__(self, rows: Array | slice) -> StationLimits:
+        return StationLimits(self.speed[rows], self.table[rows])
+
     def inserted(self, row: Array, other: StationLimits) -> StationLimits:
         """These stations with others, each before the station of a row (K,)."""
         return StationLimits(np.insert(self.speed, row, other.speed), np.insert(self.table, row, other.table, axis=0))
@@ -202,8 +205,13 @@ def demand(limits: StationLimits, along: Array, square: Array, share: Array) -> 
         square: (M,) speed squared.
         share: (M,) share of the limits of acceleration.
     """
+    return np.asarray(np.maximum(acceleration_demand(limits, along, square) / share, square / limits.speed))
+
+
+def acceleration_demand(limits: StationLimits, along: Array, square: Array) -> Array:
+    """The same by the whole limits of acceleration alone."""
     first, second, tip = (limits.table.T[rows] for rows in limits.columns)
     struts = functools.reduce(np.maximum, np.abs(first * along + second * square), np.zeros(len(along)))
     one, both, two = tip
     of_tip = np.sqrt(np.maximum(one * along**2 + 2 * both * along * square + two * square**2, 0.0))
-    return np.asarray(np.maximum(np.maximum(struts, of_tip) / share, square / limits.speed))
+    return np.asarray(np.maximum(struts, of_tip))

@@ -129,6 +129,12 @@ class InterpolationCheck:
             worst[rows] = np.maximum(worst[rows], self._closely(intervals[rows], cubics[rows]))
         return worst
 
+    def use_of_limits(self, start: Array, end: Array) -> Array:
+        """Largest share of a limit of the machine in intervals of whole ms, (N,): speeds and accelerations."""
+        duration = (end - start) / 1000
+        cubics = self._tool_cubics(self._rows(start), self._rows(end), duration)
+        return self._demand(Intervals.of(self._seen_time, start, end), cubics).limits
+
     def _closely(self, intervals: Intervals, cubics: ToolCubics) -> Array:
         """Check machine limits and the points between joints, for intervals that hold at their joints."""
         demand = self._demand(intervals, cubics)

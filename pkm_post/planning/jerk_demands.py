@@ -16,7 +16,7 @@ import numpy as np
 from pkm_post.geometry import Array, norm
 from pkm_post.model import Machine
 from pkm_post.planning.motion_limits import Limits
-from pkm_post.planning.speed_limits import PLANNED_SHARE, LimitedQuantity, feed_at, limited_quantities
+from pkm_post.planning.speed_limits import SAFE_SHARE, LimitedQuantity, feed_at, limited_quantities
 from pkm_post.planning.speed_profile import Stations
 from pkm_post.planning.speed_spline import SpeedSpline, highest_within, within_cells
 from pkm_post.planning.tool_path import ToolPath
@@ -133,7 +133,7 @@ def _planned(item: LimitedQuantity, interval: float) -> float:
     if not np.isfinite(item.acceleration):
         return item.acceleration
     by_jerk = _HIGHEST_SHARE * item.acceleration - _SWITCH * item.jerk * interval
-    return max(by_jerk, PLANNED_SHARE * item.acceleration)
+    return max(by_jerk, SAFE_SHARE * item.acceleration)
 
 
 def _of_acceleration(item: LimitedQuantity, rows: Array) -> Array:

@@ -32,12 +32,13 @@ from pkm_post.planning.fast_poses import fast_poses_within
 from pkm_post.planning.feed_study import feed_study
 from pkm_post.planning.interpolation import InterpolationCheck, poses_at
 from pkm_post.planning.knots import LONGEST_MS, even_marks, knots, slower_feed
-from pkm_post.planning.refinement import refined_profile
+from pkm_post.planning.refinement import refined
 from pkm_post.planning.rough_limits import DerivativeBounds, below_feed, deviates_in_blends, rough_limits
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.slower import Slower, limits_jerk, required, too_coarse
 from pkm_post.planning.speed_limits import PLANNED_SHARE
 from pkm_post.planning.speed_profile import Stations, cell_times, stations
+from pkm_post.planning.switches import with_lower_switches
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import columns_in_workers, in_workers
 from pkm_post.toolpath import Segments, compress
@@ -132,7 +133,7 @@ def _for_corners(trajectory: Trajectory, asked: float) -> Array:
 
 
 def plan_feed(
-    trajectory: Trajectory, machine: Machine, tolerances: Tolerances
+    trajectory: Trajectory, machine: Machine, tolerances: Tolerances, planned: float = PLANNED_SHARE
 ) -> tuple[FeedPlan | None, tuple[Diagnostic, ...]]:
     """The feed along the path, None if the motion takes too long; and diagnostics of unreachable poses.
 
@@ -140,12 +141,13 @@ def plan_feed(
         trajectory: the programmed trajectory, at least one segment.
         machine: geometry and limits.
         tolerances: the requested tolerances.
+        planned: share of the limits of acceleration to plan with.
     """
     path = tool_path(trajectory, tolerances)
     bounds = DerivativeBounds.of(path)
     faults = reach_faults(machine, trajectory, *_way(path, stations(path, deviates_in_blends(path, bounds))))
     try:
-        share = np.full(len(path.feed), PLANNED_SHARE)
+        share = np.full(len(path.feed), planned)
         schedule = _schedule(path, machine, bounds, share)
         return FeedPlan(path, schedule, share, trajectory, machine, tolerances), faults
     except _TooLongError as fault:
@@ -171,9 +173,11 @@ def _schedule(path: ToolPath, machine: Machine, bounds: DerivativeBounds, share:
         return _without_jumps(path, machine)
     rough = rough_limits(path, machine, bounds)
     close = below_feed(path, *rough) | (share < PLANNED_SHARE)
-    marks, profile = refined_profile(path, machine, close, rough, share)
-    _check_duration(marks.s, profile, marks)
-    return Schedule.of(marks, marks.s, marks.rest, profile, shortest_ms=machine.shortest_interval)
+    profile = refined(path, machine, close, rough, share)
+    marks, square = profile.complete()
+    _check_duration(marks.s, square, marks)
+    marks, square = with_lower_switches(path, machine, profile, share).complete()
+    return Schedule.of(marks, marks.s, marks.rest, square, shortest_ms=machine.shortest_interval)
 
 
 def _check_duration(s: Array, square: Array, marks: Stations) -> None:

@@ -59,6 +59,8 @@ class Profile:
         fresh: (M - 1,) cells whose speeds may have changed in the last round.
         struts: (6,) struts whose limits matter.
         close: (N,) which segments of the path have all of their stations.
+        others: stations of the other segments.
+        other_square: (K,) speed squared there.
     """
 
     marks: Stations
@@ -68,6 +70,39 @@ class Profile:
     fresh: Array
     struts: Array
     close: Array
+    others: Stations
+    other_square: Array
+
+    def complete(self) -> tuple[Stations, Array]:
+        """All stations, and the speeds squared at them, (M + K,)."""
+        row = np.searchsorted(self.marks.s, self.others.s)
+        return self.marks.inserted(row, self.others), np.insert(self.square, row, self.other_square)
+
+    def cut(self, path: ToolPath, machine: Machine, cell: Array, part: Array) -> Profile:
+        """The same motion with new stations.
+
+        Args:
+            path: the path.
+            machine: the limits.
+            cell: (K,) the cells in which they are, not decreasing.
+            part: (K,) the part of the cell before each of them, increasing within a cell.
+        """
+        marks, row = self.marks, cell + 1
+        width = np.diff(marks.s)[cell]
+        segment, u, s = marks.segment[row], marks.u[row] - (1 - part) * width, marks.s[cell] + part * width
+        added = limits_within(path, machine, segment, u).of_struts(self.struts)
+        marks = marks.inserted(row, Stations(segment, u, s, np.zeros(len(row), dtype=np.bool_), marks.edges))
+        limits = self.steps.limits.inserted(row, added)
+        share, ceiling, look, fresh = (
+            np.insert(one, cell, one[cell]) for one in (self.steps.share, self.steps.ceiling, self.look, self.fresh)
+        )
+        pieces = np.zeros(len(share), dtype=np.bool_)
+        new = row + np.arange(len(row))
+        pieces[new], pieces[new - 1] = True, True
+        ceiling[pieces] = ceilings(marks.s, limits, np.flatnonzero(pieces), share[pieces])
+        square = np.insert(self.square, row, self.square[cell] + part * np.diff(self.square)[cell])
+        steps = Steps(marks.s, marks.rest, limits, ceiling, share)
+        return replace(self, marks=marks, steps=steps, square=square, look=look, fresh=fresh)
 
 
 @dataclass(frozen=True)
@@ -100,7 +135,14 @@ class Span:
 def refined_profile(
     path: ToolPath, machine: Machine, close: Array, rough: Pair, share: Array, span: Span | None = None
 ) -> tuple[Stations, Array]:
-    """Stations, and the fastest speed squared at them, (M,).
+    """Stations, and the fastest speed squared at them, (M,); arguments as of ``refined``."""
+    return refined(path, machine, close, rough, share, span).complete()
+
+
+def refined(
+    path: ToolPath, machine: Machine, close: Array, rough: Pair, share: Array, span: Span | None = None
+) -> Profile:
+    """The fastest profile, with its stations.
 
     The motion comes to rest at the end of a span in time. If it is too fast for that at its start, the first speed is
     lower than that of the span.
@@ -116,30 +158,30 @@ def refined_profile(
     marks = stations(path, close, coarse=True)
     marks = marks if span is None else span.of(marks, path)
     needed = close[marks.segment] | close[following(path, marks.segment, marks.u)] | marks.rest
-    first = marks.some(needed)
+    first, others = marks.some(needed), marks.some(~needed)
     limits = limits_at(path, first.segment, first.u, close, rough, machine)
     if span is not None and span.square > 0:
         limits.speed[0] = min(limits.speed[0], span.square)
-    profile = _coarse(first, limits, share[first.segment[1:]], close)
+    profile = _coarse(first, limits, share[first.segment[1:]], close, others, rough[0][others.segment])
     for _ in range(_MOST_ROUNDS):
         cell, part, waiting = _places(profile)
         if not len(cell):
             break
         profile = _refined(path, machine, replace(profile, look=waiting), cell, part)
-    others = marks.some(~needed)
-    row = np.searchsorted(profile.marks.s, others.s)
-    return profile.marks.inserted(row, others), np.insert(profile.square, row, rough[0][others.segment])
+    return profile
 
 
-def _coarse(marks: Stations, limits: StationLimits, share: Array, close: Array) -> Profile:
-    """The profile at the first stations, with the share of each cell, (M - 1,)."""
+def _coarse(
+    marks: Stations, limits: StationLimits, share: Array, close: Array, others: Stations, other_square: Array
+) -> Profile:
+    """The profile at the first stations, with the share of each cell, (M - 1,); and the other stations."""
     limits.table[marks.rest] = 0.0  # derivatives there are those of one of two segments
     struts = limits.struts_that_matter(float(share.min()))
     limits, cells = limits.of_struts(struts), np.arange(len(marks.s) - 1)
     steps = Steps(marks.s, marks.rest, limits, ceilings(marks.s, limits, cells, share), share)
     square = steps.fastest_profile()
     every = np.ones(len(cells), dtype=np.bool_)
-    return Profile(marks, steps, square, every, every, struts, close)
+    return Profile(marks, steps, square, every, every, struts, close, others, other_square)
 
 
 def _places(profile: Profile) -> tuple[Array, Array, Array]:
@@ -198,30 +240,21 @@ def _meeting(gap: Array, slope: Array) -> Array:
 
 def _refined(path: ToolPath, machine: Machine, profile: Profile, cell: Array, part: Array) -> Profile:
     """The profile with new stations at parts of cells."""
-    marks, row = profile.marks, cell + 1
-    end, width = marks.u[row], np.diff(marks.s)[cell]
-    segment, u, s = marks.segment[row], end - (1 - part) * width, marks.s[cell] + part * width
-    added = limits_within(path, machine, segment, u).of_struts(profile.struts)
-    straight = profile.square[cell] + part * np.diff(profile.square)[cell]
-    along = np.diff(profile.square)[cell] / (2 * width)
-    share = profile.steps.share[cell]
+    cut = profile.cut(path, machine, cell, part)
+    new = cell + 1 + np.arange(len(cell))  # rows of the new stations
+    added, straight, share = cut.steps.limits[new], cut.square[new], profile.steps.share[cell]
+    along = np.diff(profile.square)[cell] / (2 * np.diff(profile.marks.s)[cell])
     beyond = demand(added, along, straight, share) - 1
     bent = _bent(profile, cell, part, added, along, straight) / share
 
-    new = cell + 1 + np.arange(len(cell))  # rows of the new stations
-    marks = marks.inserted(row, Stations(segment, u, s, np.zeros(len(row), dtype=np.bool_), marks.edges))
-    limits = profile.steps.limits.inserted(row, added)
-    share, ceiling = (np.insert(one, cell, one[cell]) for one in (profile.steps.share, profile.steps.ceiling))
-    cut = np.zeros(len(share), dtype=np.bool_)
-    cut[new], cut[new - 1] = True, True
-    ceiling[cut] = ceilings(marks.s, limits, np.flatnonzero(cut), share[cut])
-    steps = Steps(marks.s, marks.rest, limits, ceiling, share)
-    square, fresh = _renewed(steps, np.insert(profile.square, row, np.inf), new)
+    start = cut.square.copy()
+    start[new] = np.inf
+    square, fresh = _renewed(cut.steps, start, new)
     changed = np.abs(square[new] - straight) > _CHANGED * np.maximum(square[new], straight)
     again = new[changed | (beyond > _CHANGED) | ((bent > _CHANGED) & (beyond + _SHAPE * bent > 0))]
-    look = np.insert(profile.look, cell, profile.look[cell])
+    look = cut.look
     look[again], look[again - 1] = True, True
-    return Profile(marks, steps, square, look, fresh, profile.struts, profile.close)
+    return replace(cut, square=square, look=look, fresh=fresh)
 
 
 def _bent(profile: Profile, cell: Array, part: Array, added: StationLimits, along: Array, square: Array) -> Array:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array
+from pkm_post.geometry import Array, expand_counts
 from pkm_post.model import Machine, Motion
 from pkm_post.planning.interpolation import InterpolationCheck
 from pkm_post.planning.knots import SLOWDOWN, block_rate_factors
@@ -20,6 +20,8 @@ from pkm_post.planning.tool_path import ToolPath
 
 _AT_FEED = 0.95
 """Share of the feed from which on a motion is limited by the feed."""
+_ROOM = 0.99
+"""Share of a limit to aim for where it is exceeded, so that few rounds are needed."""
 
 
 @dataclass(frozen=True)
@@ -46,31 +48,39 @@ def limits_jerk(machine: Machine) -> bool:
 
 
 def too_coarse(times: Array, cubics: InterpolationCheck, shortest: int) -> Array:
-    """Starts and ends of intervals that cannot be cut for the controller but are out of tolerance, (2, R) ms.
+    """Intervals that cannot be cut for the controller but are beyond what is allowed, (3, R).
 
-    Intervals of one millisecond are exempt, as nothing is shorter.
+    In the rows are their starts and ends in ms, and the factor of the acceleration that mends them. In intervals of one
+    millisecond deviations do not count, as nothing is shorter, and limits of the machine make the factor.
     """
     start, end = times[:-1], times[1:]
-    rows = np.flatnonzero((end - start < 2 * shortest) & (end - start > 1))
-    rows = rows[cubics.error(start[rows], end[rows]) > 1] if len(rows) else rows
-    return np.stack([start[rows], end[rows]])
+    rows = np.flatnonzero(end - start < 2 * shortest)
+    start, end = start[rows], end[rows]
+    factor, wide = np.ones(len(rows)), end - start > 1
+    if wide.any():
+        factor[wide] = np.where(cubics.error(start[wide], end[wide]) > 1, SLOWDOWN**2, 1.0)
+    if not wide.all():
+        use = cubics.use_of_limits(start[~wide], end[~wide])
+        factor[~wide] = np.where(use > 1, _ROOM / np.maximum(use, 1.0), 1.0)
+    return np.stack([start, end, factor])[:, factor < 1]
 
 
 def required(path: ToolPath, schedule: Schedule, machine: Machine, motion: Motion, coarse: Array) -> Slower:
-    """What the controller requires, with the starts and ends of intervals that are too coarse, (2, R) ms.
+    """What the controller requires, by the intervals that are too coarse.
 
-    In these, time is to run slower by ``SLOWDOWN``: the accelerations go down by the square of it, and the feed where
-    they are at the feed, or jerk is limited. Where there are too many points, both go down.
+    In these the accelerations go down by their factor, and the feed by the square root of it where they are at the
+    feed, or jerk is limited. Where there are too many points, both go down.
     """
     joint_time = motion.joint_time
     feed = block_rate_factors(motion.time_ms, motion.segment, machine.block_rate, len(joint_time))
     acceleration = feed**2
-    first, last = (np.minimum(np.searchsorted(joint_time, ms / 1000), len(feed) - 1) for ms in coarse)
-    speed = np.maximum(*(schedule.at(ms / 1000)[1] for ms in coarse))
+    start, end, factor = coarse
+    first, last = (np.minimum(np.searchsorted(joint_time, ms / 1000), len(feed) - 1) for ms in (start, end))
+    speed = np.maximum(*(schedule.at(ms / 1000)[1] for ms in (start, end)))
     at_feed = speed > _AT_FEED * np.minimum(path.feed[first], path.feed[last])
     at_feed |= limits_jerk(machine)
-    for begin, end, fast in zip(first, last, at_feed, strict=True):
-        acceleration[begin : end + 1] = np.minimum(acceleration[begin : end + 1], SLOWDOWN**2)
-        if fast:
-            feed[begin : end + 1] = np.minimum(feed[begin : end + 1], SLOWDOWN)
+    interval, number = expand_counts(last - first + 1)
+    segment = first[interval] + number
+    np.minimum.at(acceleration, segment, factor[interval])
+    np.minimum.at(feed, segment, np.where(at_feed, np.sqrt(factor), 1.0)[interval])
     return Slower(feed, acceleration)

@@ -19,9 +19,11 @@ from pkm_post.machine import strut_rates
 from pkm_post.model import Machine, Poses
 from pkm_post.planning.tool_path import ToolPath
 
-PLANNED_SHARE = 0.6
-"""Share of each acceleration limit that is planned: the cubic that a controller runs across a switch from full
+SAFE_SHARE = 0.6
+"""Share of each acceleration limit that no plan has to fear: the cubic that a controller runs across a switch from full
 acceleration to full braking reaches 5/3 of it at its end (shown in docs/planning.md and in the tests)."""
+PLANNED_SHARE = 0.97
+"""Share of each acceleration limit that is planned where no switch is near (``switches``)."""
 FOR_CURVATURE = 0.5
 """Share of the planned acceleration that the curvature of the path may use; the rest accelerates and brakes."""
 _NEGLIGIBLE = 1e-12

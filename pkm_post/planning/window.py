@@ -24,7 +24,7 @@ from pkm_post.planning.motion_law import MotionLaw
 from pkm_post.planning.refinement import Span, refined_profile
 from pkm_post.planning.rough_limits import DerivativeBounds, rough_limits
 from pkm_post.planning.schedule import Schedule
-from pkm_post.planning.speed_limits import PLANNED_SHARE
+from pkm_post.planning.speed_limits import SAFE_SHARE
 from pkm_post.planning.speed_profile import Stations, cell_times
 from pkm_post.planning.tool_path import ToolPath
 
@@ -128,7 +128,7 @@ class Course:
         feed = np.minimum(self.feed(start.override), start.speed)
         # in blends the feed is that of the tip, which may travel farther than the path length
         feed[np.searchsorted(self.path.starts, start.s, side="right") - 1] = start.speed
-        fastest = PLANNED_SHARE * min(machine.tip_acceleration, machine.strut_acceleration)
+        fastest = SAFE_SHARE * min(machine.tip_acceleration, machine.strut_acceleration)
         end = start.s + _SHORTEST_STOP * start.speed**2 / (2 * fastest)
         for factor in _SHARES_OF_STOPS:
             share = np.minimum(self.feed_plan.share * factor, 1.0)
@@ -167,7 +167,7 @@ def course(
     rapid = trajectory.kind == Kind.RAPID
     highest = np.where(rapid, trajectory.feed, np.minimum(trajectory.feed * highest_override, machine.feed_speed))
     fast = replace(trajectory, feed=np.maximum(highest, trajectory.feed))
-    found, diagnostics = plan_feed(fast, machine, tolerances)
+    found, diagnostics = plan_feed(fast, machine, tolerances, SAFE_SHARE)
     if found is None or errors(diagnostics):
         return None, diagnostics
     feed_plan, _ = within_controller(found)

@@ -14,10 +14,11 @@ from pkm_post.planning import acceleration_limits, fastest_profile, motion, plan
 from pkm_post.planning.acceleration_limits import limits_within
 from pkm_post.planning.cell_limits import demand
 from pkm_post.planning.motion import tool_path
-from pkm_post.planning.refinement import refined_profile
+from pkm_post.planning.refinement import refined
 from pkm_post.planning.rough_limits import DerivativeBounds, below_feed, deviates_in_blends, rough_limits
-from pkm_post.planning.speed_limits import PLANNED_SHARE, following
+from pkm_post.planning.speed_limits import PLANNED_SHARE, SAFE_SHARE, following
 from pkm_post.planning.speed_profile import cell_times, stations
+from pkm_post.planning.switches import with_lower_switches
 from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
@@ -66,7 +67,8 @@ def rough_limits_of(path, machine):
 def everywhere(path, machine):
     """Stations, the highest speed squared at them, and the plan, with nothing left out."""
     close, share = np.ones(len(path.feed), dtype=bool), np.full(len(path.feed), PLANNED_SHARE)
-    marks, plan = refined_profile(path, machine, close, rough_limits_of(path, machine), share)
+    profile = refined(path, machine, close, rough_limits_of(path, machine), share)
+    marks, plan = with_lower_switches(path, machine, profile, share).complete()
     return marks, limits_within(path, machine, marks.segment, marks.u).speed, plan
 
 
@@ -131,7 +133,7 @@ def test_between_the_joints_of_a_segment_that_is_not_bent_the_path_is_straight(t
     assert (min(found) > 0.8) == (tolerance == 1e-3)  # bounds of both ends of a segment are taken together
 
 
-def test_planned_share_leaves_room_for_the_overshoot_of_a_cubic():
+def test_safe_share_leaves_room_for_the_overshoot_of_a_cubic():
     # Full acceleration that switches to full braking inside one interval; every switching time is tried. The integral
     # of |4 - 6x| over the interval, 5/3, is the bound for any such plan.
     worst = 0.0
@@ -142,4 +144,4 @@ def test_planned_share_leaves_room_for_the_overshoot_of_a_cubic():
         first, last = hermite_accelerations(*row, np.ones(1))
         worst = max(worst, np.abs(first).max(), np.abs(last).max())
     np.testing.assert_allclose(worst, 5 / 3, atol=1e-5)
-    assert worst * PLANNED_SHARE <= 1 + 1e-9
+    assert worst * SAFE_SHARE <= 1 + 1e-9

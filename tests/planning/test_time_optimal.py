@@ -8,38 +8,43 @@ import numpy as np
 import pytest
 from time_optimal_paths import LIMITS, PATHS, SPEED_SHARE, stations_of
 
-from pkm_post.planning.refinement import refined_profile
+from pkm_post.planning.refinement import refined
 from pkm_post.planning.rough_limits import DerivativeBounds, rough_limits
 from pkm_post.planning.speed_limits import PLANNED_SHARE
 from pkm_post.planning.speed_profile import cell_times
+from pkm_post.planning.switches import with_lower_switches
 
 SHORTEST = json.loads((Path(__file__).parents[1] / "data" / "time_optimal.json").read_text(encoding="ascii"))
 OPTIMUM_DIGITS = 1e-3
 """Relative: the shortest times have four decimals, and hold between grid points to about this."""
 SAME = 1e-2
 """Relative: what stations that are no grid points of TOPP-RA, and cells that bend, make of the same problem."""
-PLANNED = 1.31
+PLANNED = 1.06
 """What docs/feed.md says of these paths: with the share of acceleration that is planned."""
 
 
-def planned_time(name, limits_name, speed_share, share=PLANNED_SHARE):
+def profile_of(name, limits_name, speed_share, share):
     machine, path, _ = stations_of(name, limits_name, speed_share)
-    close = np.ones(len(path.feed), dtype=bool)
-    marks, square = refined_profile(
-        path, machine, close, rough_limits(path, machine, DerivativeBounds.of(path)), np.full(len(path.feed), share)
-    )
-    return float(cell_times(marks.s, square).sum())
+    close, shares = np.ones(len(path.feed), dtype=bool), np.full(len(path.feed), share)
+    rough = rough_limits(path, machine, DerivativeBounds.of(path))
+    return path, machine, refined(path, machine, close, rough, shares), shares
+
+
+def time_of(profile):
+    return float(cell_times(profile.marks.s, profile.square).sum())
 
 
 @pytest.mark.parametrize("limits_name", LIMITS)
 @pytest.mark.parametrize("name", PATHS)
 def test_under_whole_limits_the_plan_is_the_optimum(name, limits_name):
     shortest = SHORTEST[f"{name}, {limits_name}"]
-    assert planned_time(name, limits_name, 1 / SPEED_SHARE, share=1.0) == pytest.approx(shortest, rel=SAME)
+    _, _, profile, _ = profile_of(name, limits_name, 1 / SPEED_SHARE, 1.0)
+    assert time_of(profile) == pytest.approx(shortest, rel=SAME)
 
 
 @pytest.mark.parametrize("limits_name", LIMITS)
 @pytest.mark.parametrize("name", PATHS)
 def test_the_plan_is_no_faster_and_not_much_slower_than_the_optimum(name, limits_name):
     shortest = SHORTEST[f"{name}, {limits_name}"]
-    assert shortest * (1 - OPTIMUM_DIGITS) <= planned_time(name, limits_name, 1.0) <= PLANNED * shortest
+    planned = time_of(with_lower_switches(*profile_of(name, limits_name, 1.0, PLANNED_SHARE)))
+    assert shortest * (1 - OPTIMUM_DIGITS) <= planned <= PLANNED * shortest

@@ -12,7 +12,7 @@ from pkm_post.geometry import norm
 from pkm_post.machine import strut_lengths
 from pkm_post.model import Tolerances
 from pkm_post.planning import PathState, course, strut_motion
-from pkm_post.planning.speed_limits import PLANNED_SHARE
+from pkm_post.planning.speed_limits import SAFE_SHARE
 from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
@@ -75,7 +75,7 @@ def test_a_stop_on_a_line_takes_the_distance_of_the_planned_deceleration():
     along = course_of("line")
     state = PathState(along.length - 60.0, 100.0, 1.0)
     stop = along.stop(state)
-    least = state.speed**2 / (2 * PLANNED_SHARE * MACHINE.tip_acceleration)
+    least = state.speed**2 / (2 * SAFE_SHARE * MACHINE.tip_acceleration)
     assert least * 0.99 < stop.law.s[-1] - state.s < 2 * least
 
 

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Played acceleration: what the cubic of a controller makes of the accelerations of a plan, wherever it begins.
+
+In an interval of the length h the cubic through the places and speeds of the plan at both ends has, with g for the
+planned acceleration and x for the elapsed share, the acceleration
+
+    integral of (4 - 6 x) g dx  at its start,    integral of (6 x - 2) g dx  at its end
+
+and its extremes are there. Where g changes evenly in h, both are g; where it jumps or bends they are more, by most if
+the jump is at a third or at two thirds. So windows of that length are laid about every station. A rest is a point of
+the program: no window crosses one.
+
+Enters: stations of a path, and how a motion passes them. Leaves: windows in time, and the accelerations that are
+planned and played in them, by their limits. Units: mm, s.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import astuple, dataclass, fields
+
+import numpy as np
+
+from pkm_post.geometry import Array, length_of
+from pkm_post.machine import ROUNDED_SHARE
+from pkm_post.model import Machine, checkpoint, pieces
+from pkm_post.planning.speed_limits import limited_quantities
+from pkm_post.planning.speed_profile import Stations
+from pkm_post.planning.tool_path import ToolPath
+
+_SHARES = np.linspace(0, 1, 7)
+"""Where in windows their station is: a jump has the most effect at a third and at two thirds, a peak at the ends."""
+_AT_ONCE = 1024
+"""Stations in one pass: the working arrays of one pass stay in the processor's cache."""
+
+
+@dataclass(frozen=True)
+class Windows:
+    """W windows of one length.
+
+    Attributes:
+        station: (W,) time of the station about which each is, s.
+        start: (W,) s.
+        planned: (W,) largest planned acceleration, by the limits that shares are planned of.
+        played: (W,) largest acceleration of the cubic, by what is allowed.
+    """
+
+    station: Array
+    start: Array
+    planned: Array
+    played: Array
+
+    def some(self, rows: Array) -> Windows:
+        """Some of the windows."""
+        return Windows(*(getattr(self, field.name)[rows] for field in fields(self)))
+
+
+@dataclass(frozen=True)
+class Accelerations:
+    """Accelerations of C numbers by time, linear between K stations, with jumps at stations.
+
+    Attributes:
+        time: (K,) s, increasing.
+        first: (C, K - 1) at the starts of cells.
+        last: (C, K - 1) at their ends.
+        speed: (C, K) the integral.
+        place: (C, K) its integral.
+    """
+
+    time: Array
+    first: Array
+    last: Array
+    speed: Array
+    place: Array
+
+    @classmethod
+    def of(cls, time: Array, first: Array, last: Array) -> Accelerations:
+        """The accelerations with their integrals, from rest at the first station."""
+        dt, start = np.diff(time), np.zeros((len(first), 1))
+        speed = np.concatenate([start, np.cumsum((first + last) * (dt / 2), axis=1)], axis=1)
+        way = speed[:, :-1] * dt + (2 * first + last) * (dt**2 / 6)
+        return cls(time, first, last, speed, np.concatenate([start, np.cumsum(way, axis=1)], axis=1))
+
+    def played(self, start: Array, interval: float) -> Array:
+        """Accelerations at both ends of the cubics that begin at some times, (2, C, W)."""
+        (p0, v0), (p1, v1) = self._at(start), self._at(start + interval)
+        way = 6 * (p1 - p0) / interval**2
+        return np.stack([way - (4 * v0 + 2 * v1) / interval, (2 * v0 + 4 * v1) / interval - way])
+
+    def _at(self, time: Array) -> tuple[Array, Array]:
+        """Places and speeds at times, (C, W) each."""
+        cell = np.clip(np.searchsorted(self.time, time) - 1, 0, len(self.time) - 2)
+        since = time - self.time[cell]
+        first, speed, duration = self.first[:, cell], self.speed[:, cell], np.diff(self.time)[cell]
+        bend = (self.last[:, cell] - first) / duration
+        place = self.place[:, cell] + since * (speed + since * (first / 2 + since * bend / 6))
+        return place, speed + since * (first + since * bend / 2)
+
+
+def cells_in_windows(time: Array, start: Array, interval: float) -> tuple[Array, Array]:
+    """First and last of the cells between times, (M,), that windows touch, (W,) each."""
+    first = np.clip(np.searchsorted(time, start, side="right") - 1, 0, len(time) - 2)
+    return first, np.clip(np.searchsorted(time, start + interval) - 1, first, len(time) - 2)
+
+
+@dataclass(frozen=True)
+class StationMotion:
+    """How a motion passes M stations of a path.
+
+    Attributes:
+        path: the path.
+        marks: M stations.
+        time: (M,) s.
+        square: (M,) speed squared.
+    """
+
+    path: ToolPath
+    marks: Stations
+    time: Array
+    square: Array
+
+    def some(self, rows: Array) -> StationMotion:
+        """Some of the stations."""
+        return StationMotion(self.path, self.marks.some(rows), self.time[rows], self.square[rows])
+
+    def windows(self, machine: Machine, rows: Array, interval: float) -> Windows:
+        """The windows about some stations.
+
+        Args:
+            machine: the limits.
+            rows: (K,) stations, increasing. Windows end where the motion rests, and where a station is missing.
+            interval: length of the windows, s.
+        """
+        parts, time = [Windows(*np.empty((4, 0)))], self.time[rows]
+        for piece in pieces(len(rows), _AT_ONCE):
+            checkpoint()
+            first, last = np.searchsorted(time, time[piece][[0, -1]] + [-interval, interval])
+            first = max(first - 1, 0)
+            wide, inside = rows[first : last + 1], slice(piece.start - first, piece.stop - first)
+            parts.append(self.some(wide)._windows(machine, np.diff(wide) == 1, inside, interval))
+        columns = zip(*(astuple(part) for part in parts), strict=True)
+        return Windows(*(np.concatenate(column) for column in columns))
+
+    def _windows(self, machine: Machine, joined: Array, inside: slice, interval: float) -> Windows:
+        """The same about a slice of all stations, with (M - 1,) whether the next station of the path follows each."""
+        station, start = self._starts(joined, inside, interval)
+        first, last, allowed = self._accelerations(machine, joined)
+        planned = np.append(np.maximum(_largest(first, 1.0), _largest(last, 1.0)), 0.0)
+        cells = np.column_stack(cells_in_windows(self.time, start, interval)) + [0, 1]
+        played = Accelerations.of(self.time, first, last).played(start, interval)
+        return Windows(
+            self.time[station],
+            start,
+            np.maximum.reduceat(planned, cells.ravel())[::2] if len(start) else start,
+            np.maximum(*(_largest(ends, allowed) for ends in played)),
+        )
+
+    def _starts(self, joined: Array, inside: slice, interval: float) -> tuple[Array, Array]:
+        """Stations of windows, and the starts of these, (W,) each: between rests and missing stations."""
+        time, rest, end = self.time, self.marks.rest, np.array([True])
+        earliest = np.maximum.accumulate(np.where(rest | np.append(end, ~joined), time, -np.inf))
+        latest = np.where(rest | np.append(~joined, end), time, np.inf)
+        latest = np.minimum.accumulate(latest[::-1])[::-1]
+        station = np.repeat(np.arange(len(time))[inside], len(_SHARES))
+        start = time[station] - interval * np.tile(_SHARES, len(station) // len(_SHARES))
+        start = np.clip(start, earliest[station], latest[station] - interval)
+        kept = ~rest[station] & (start >= earliest[station])
+        return station[kept], start[kept]
+
+    def _accelerations(self, machine: Machine, joined: Array) -> tuple[Array, Array, Array]:
+        """Accelerations at both ends of cells by the limits that shares are planned of, (C, M - 1) each.
+
+        And what may be played by these limits, (C, 1). Derivatives at a rest are those of one of two segments: those at
+        the next station count. Of cells with missing stations nothing is known.
+        """
+        struts, tip, _ = limited_quantities(machine, self.path.within(self.marks.segment, self.marks.u))
+        first, second = (
+            np.concatenate([one.T / struts.acceleration, two.T / tip.acceleration])
+            for one, two in ((struts.first, tip.first), (struts.second, tip.second))
+        )
+        along, curved = np.diff(self.square) / (2 * np.diff(self.marks.s)), second * self.square
+        at_start = np.where(self.marks.rest[:-1], first[:, 1:], first[:, :-1]) * along + curved[:, :-1]
+        at_end = np.where(self.marks.rest[1:], first[:, :-1], first[:, 1:]) * along + curved[:, 1:]
+        real = (machine.strut_acceleration, struts.acceleration), (machine.tip_acceleration, tip.acceleration)
+        allowed = [ROUNDED_SHARE * whole / planned if np.isfinite(whole) else 1.0 for whole, planned in real]
+        return at_start * joined, at_end * joined, np.repeat(allowed, [6, 3])[:, None]
+
+
+def _largest(accelerations: Array, allowed: Array | float) -> Array:
+    """The largest acceleration of struts, and of the tip as a vector, (W,), by what is allowed."""
+    by_limit = accelerations / allowed
+    struts = functools.reduce(np.maximum, np.abs(by_limit[:6]))
+    return np.asarray(np.maximum(struts, length_of(*by_limit[6:])))

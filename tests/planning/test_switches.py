@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Plans use nearly all of the acceleration, and no cubic of a controller exceeds it, wherever its interval begins."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from machines import example, screwed
+from programs import ON_PALLET, cone, program, random_job
+
+from pkm_post.geometry import hermite_accelerations, norm
+from pkm_post.machine import strut_rates
+from pkm_post.model import Tolerances
+from pkm_post.planning import plan_feed
+from pkm_post.planning.interpolation import poses_at
+from pkm_post.planning.played_acceleration import Accelerations
+from pkm_post.planning.refinement import refined_profile
+from pkm_post.planning.rough_limits import DerivativeBounds, rough_limits
+from pkm_post.planning.speed_limits import SAFE_SHARE
+from pkm_post.planning.speed_profile import cell_times
+from pkm_post.toolpath.place import place
+
+TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
+MS = 1e-3
+PHASES = np.arange(0.0, 1.0, 1 / 16)
+HIDDEN = 1.02
+"""Of a limit: what windows about stations leave between them; the intervals of the program are looked at once more."""
+
+
+def zigzag():
+    x = np.arange(40) * 0.2
+    return program(np.column_stack([x, np.where(np.arange(40) % 2, 2.0, 0.0), np.full(40, 60.0)]), feed=100.0)
+
+
+def noisy_scan():
+    x, off = np.linspace(-20, 20, 201), np.random.default_rng(1).uniform(-0.02, 0.02, 201)
+    return program(np.column_stack([x, 0 * x, 60 + off]), feed=100.0)
+
+
+PATHS = {"zigzag": (zigzag, 1.05), "noise": (noisy_scan, 1.1), "cone": (lambda: cone(80), 1.12)}
+"""Programs, and the factor of the shortest time under whole limits that a plan may take; 60 % of the acceleration make
+1.29 of it."""
+
+
+def planned(made, machine=None, frame=ON_PALLET):
+    machine = machine or example()
+    trajectory, _ = place(made, machine, frame)
+    feed_plan, faults = plan_feed(trajectory, machine, TOLERANCES)
+    assert not faults
+    return feed_plan
+
+
+def shortest(feed_plan):
+    """The time under whole limits, s."""
+    path, machine = feed_plan.path, feed_plan.machine
+    every = np.ones(len(path.feed), dtype=np.bool_)
+    rough = rough_limits(path, machine, DerivativeBounds.of(path))
+    marks, square = refined_profile(path, machine, every, rough, np.ones(len(path.feed)))
+    return float(cell_times(marks.s, square).sum())
+
+
+def played(feed_plan):
+    """Largest accelerations of cubics of a millisecond by the limits, struts and tip, by kinematics, at many phases."""
+    worst = np.zeros(2)
+    machine, schedule = feed_plan.machine, feed_plan.schedule
+    for phase in PHASES:
+        time = np.arange(schedule.rests_ms[-1]) + phase
+        ends = [poses_at(feed_plan.path, schedule, one) for one in (time, time + 1)]
+        struts = [column for poses in ends for column in strut_rates(machine, poses)[:2]]
+        tip = [column for poses in ends for column in (poses.tip, poses.tip_1)]
+        inside = ~np.isin(np.ceil(time), schedule.rests_ms) | (phase == 0)
+        for row, (columns, limit) in enumerate(((struts, machine.strut_acceleration), (tip, machine.tip_acceleration))):
+            found = np.stack(hermite_accelerations(*columns, np.full(len(time), MS)))[:, inside]
+            size = norm(found.reshape(-1, 3)) if row else np.abs(found)
+            worst[row] = max(worst[row], size.max() / limit)
+    return worst
+
+
+@pytest.mark.parametrize("name", PATHS)
+def test_plans_take_little_longer_than_the_whole_limits_need(name):
+    make, factor = PATHS[name]
+    feed_plan = planned(make())
+    needed = shortest(feed_plan)
+    assert needed < feed_plan.schedule.rests_ms[-1] * MS < factor * needed
+
+
+@pytest.mark.parametrize("name", PATHS)
+def test_no_cubic_exceeds_the_limits_wherever_it_begins(name):
+    struts, tip = played(planned(PATHS[name][0]()))
+    assert struts < HIDDEN and 0.9 < tip < HIDDEN
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_cubic_exceeds_the_limits_of_struts(seed):
+    weak = dataclasses.replace(example(), strut_acceleration=800.0)
+    struts, tip = played(planned(random_job(np.random.default_rng(seed)), weak))
+    assert struts < HIDDEN and tip < HIDDEN
+
+
+def test_a_motion_that_keeps_the_safe_share_has_no_switches():
+    trajectory, _ = place(zigzag(), example(), ON_PALLET)
+    safe, _ = plan_feed(trajectory, example(), TOLERANCES, SAFE_SHARE)
+    marks, square = refined_profile(
+        safe.path, example(), np.ones(len(safe.path.feed), dtype=np.bool_),
+        rough_limits(safe.path, example(), DerivativeBounds.of(safe.path)), np.full(len(safe.path.feed), SAFE_SHARE),
+    )  # fmt: skip
+    np.testing.assert_array_equal(safe.schedule.law.s, marks.s)
+    assert safe.schedule.law.time[-1] - cell_times(marks.s, square).sum() < MS
+
+
+def test_a_mirrored_path_has_the_mirrored_plan():
+    mirror = np.diag([-1.0, 1.0, 1.0, 1.0])
+    alone = dataclasses.replace(example(), strut_acceleration=np.inf, strut_speed=np.inf)
+    made = noisy_scan()
+    other = dataclasses.replace(made, position=made.position @ mirror[:3, :3])
+    one, two = planned(made, alone), planned(other, alone)
+    np.testing.assert_allclose(two.schedule.law.time, one.schedule.law.time, rtol=1e-9)
+    np.testing.assert_allclose(two.schedule.law.speed, one.schedule.law.speed, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_cubics_are_those_through_the_integrals_of_the_acceleration(seed):
+    rng = np.random.default_rng(seed)
+    time = np.cumsum(rng.uniform(0.2, 1.0, 12))
+    first, last = rng.uniform(-1, 1, (2, 2, 11))
+    start, interval = rng.uniform(time[0], time[-1] - 1.5, 9), 1.5
+    found = Accelerations.of(time, first, last).played(start, interval)
+    for row, begin in enumerate(start):
+        # the moments of the acceleration by the midpoint rule; cells are cut at their ends
+        t = begin + interval * (np.arange(200_000) + 0.5) / 200_000
+        cell = np.searchsorted(time, t) - 1
+        x = (t - time[cell]) / np.diff(time)[cell]
+        g, share = first[:, cell] * (1 - x) + last[:, cell] * x, (t - begin) / interval
+        np.testing.assert_allclose(found[0, :, row], ((4 - 6 * share) * g).mean(axis=1), atol=1e-4)
+        np.testing.assert_allclose(found[1, :, row], ((6 * share - 2) * g).mean(axis=1), atol=1e-4)
+
+
+def test_a_machine_whose_limits_have_no_bounds_is_planned():
+    struts, tip = played(planned(cone(20), screwed(example())))
+    assert struts < HIDDEN and tip < HIDDEN
