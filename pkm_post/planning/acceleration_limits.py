@@ -12,7 +12,7 @@ import numpy as np
 from pkm_post.geometry import Array, dot
 from pkm_post.model import Machine, Poses, pieces
 from pkm_post.planning.cell_limits import StationLimits
-from pkm_post.planning.speed_limits import PLANNED_SHARE, Pair, feed_at, following, limited_quantities, lowered
+from pkm_post.planning.speed_limits import Pair, feed_at, following, limited_quantities, lowered
 from pkm_post.planning.tool_path import ToolPath
 
 _AT_ONCE = 4096
@@ -38,10 +38,10 @@ def station_limits(machine: Machine, poses: Poses, feed: Array) -> StationLimits
     return StationLimits.of(speed, struts.first / size, struts.second / size, products)
 
 
-def rough_station_limits(square: Array, along: Array) -> StationLimits:
-    """The limits of stations that allow a speed squared and an acceleration along the path, (M,) each."""
+def rough_station_limits(square: Array, along: Array, share: float) -> StationLimits:
+    """The limits of which a share allows a speed squared and an acceleration along the path, (M,) each."""
     still, products = np.zeros((len(square), 6)), np.zeros((len(square), 3))
-    products[:, 0] = (PLANNED_SHARE / along) ** 2  # as of a tip that reaches its limit there
+    products[:, 0] = (share / along) ** 2  # as of a tip that reaches its limit there
     return StationLimits.of(square, still, still, products)
 
 
@@ -55,7 +55,9 @@ def limits_within(path: ToolPath, machine: Machine, segment: Array, u: Array) ->
     return StationLimits(speed, table)
 
 
-def limits_at(path: ToolPath, segment: Array, u: Array, close: Array, rough: Pair, machine: Machine) -> StationLimits:
+def limits_at(
+    path: ToolPath, segment: Array, u: Array, close: Array, rough: Pair, share: float, machine: Machine
+) -> StationLimits:
     """The same, exact on close segments, else rough; where the two kinds meet, the rough ones hold.
 
     Args:
@@ -64,15 +66,18 @@ def limits_at(path: ToolPath, segment: Array, u: Array, close: Array, rough: Pai
         u: (M,) path lengths of the stations on them.
         close: (N,) which segments get exact limits.
         rough: limits of speed squared and acceleration that hold on the whole of each segment, (N,) each.
+        share: the share of the limits of acceleration that the rough ones are.
         machine: the limits.
     """
     after = following(path, segment, u)
     exact = close[segment] & close[after]
     near, far = np.flatnonzero(exact), np.flatnonzero(~exact)
-    found = StationLimits(np.empty(len(u)), np.empty((len(u), 15), dtype=np.float32))
-    for rows, part in (
+    square, along = (np.minimum(one[segment[far]], one[after[far]]) for one in rough)
+    parts = (
         (near, limits_within(path, machine, segment[near], u[near])),
-        (far, rough_station_limits(*(np.minimum(one[segment[far]], one[after[far]]) for one in rough))),
-    ):
+        (far, rough_station_limits(square, along, share)),
+    )
+    found = StationLimits(np.empty(len(u)), np.empty((len(u), 15), dtype=np.float32))
+    for rows, part in parts:
         found.speed[rows], found.table[rows] = part.speed, part.table
     return found

@@ -36,9 +36,8 @@ from pkm_post.planning.refinement import refined
 from pkm_post.planning.rough_limits import DerivativeBounds, below_feed, deviates_in_blends, rough_limits
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.slower import Slower, limits_jerk, required, too_coarse
-from pkm_post.planning.speed_limits import PLANNED_SHARE
 from pkm_post.planning.speed_profile import Stations, cell_times, stations
-from pkm_post.planning.switches import with_lower_switches
+from pkm_post.planning.switches import planned_share, with_lower_switches
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import columns_in_workers, in_workers
 from pkm_post.toolpath import Segments, compress
@@ -133,7 +132,7 @@ def _for_corners(trajectory: Trajectory, asked: float) -> Array:
 
 
 def plan_feed(
-    trajectory: Trajectory, machine: Machine, tolerances: Tolerances, planned: float = PLANNED_SHARE
+    trajectory: Trajectory, machine: Machine, tolerances: Tolerances, planned: float | None = None
 ) -> tuple[FeedPlan | None, tuple[Diagnostic, ...]]:
     """The feed along the path, None if the motion takes too long; and diagnostics of unreachable poses.
 
@@ -141,13 +140,13 @@ def plan_feed(
         trajectory: the programmed trajectory, at least one segment.
         machine: geometry and limits.
         tolerances: the requested tolerances.
-        planned: share of the limits of acceleration to plan with.
+        planned: share of the limits of acceleration to plan with; by default the highest that the machine allows.
     """
     path = tool_path(trajectory, tolerances)
     bounds = DerivativeBounds.of(path)
     faults = reach_faults(machine, trajectory, *_way(path, stations(path, deviates_in_blends(path, bounds))))
     try:
-        share = np.full(len(path.feed), planned)
+        share = np.full(len(path.feed), planned_share(machine) if planned is None else planned)
         schedule = _schedule(path, machine, bounds, share)
         return FeedPlan(path, schedule, share, trajectory, machine, tolerances), faults
     except _TooLongError as fault:
@@ -171,8 +170,9 @@ def _schedule(path: ToolPath, machine: Machine, bounds: DerivativeBounds, share:
     """
     if limits_jerk(machine):
         return _without_jumps(path, machine)
-    rough = rough_limits(path, machine, bounds)
-    close = below_feed(path, *rough) | (share < PLANNED_SHARE)
+    planned = float(share.max())
+    rough = rough_limits(path, machine, bounds, planned)
+    close = below_feed(path, *rough) | (share < planned)
     profile = refined(path, machine, close, rough, share)
     marks, square = profile.complete()
     _check_duration(marks.s, square, marks)

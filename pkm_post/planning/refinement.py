@@ -152,14 +152,14 @@ def refined(
         machine: the limits.
         close: (N,) which segments get exact limits.
         rough: limits of speed squared and acceleration that hold on the whole of each other segment, (N,) each.
-        share: (N,) share of the limits of acceleration that is planned on each segment.
+        share: (N,) share of the limits of acceleration that is planned on each segment; rough ones are for the largest.
         span: the part of the path to plan; its segments and their neighbours are all close. By default all of it.
     """
     marks = stations(path, close, coarse=True)
     marks = marks if span is None else span.of(marks, path)
     needed = close[marks.segment] | close[following(path, marks.segment, marks.u)] | marks.rest
     first, others = marks.some(needed), marks.some(~needed)
-    limits = limits_at(path, first.segment, first.u, close, rough, machine)
+    limits = limits_at(path, first.segment, first.u, close, rough, float(share.max()), machine)
     if span is not None and span.square > 0:
         limits.speed[0] = min(limits.speed[0], span.square)
     profile = _coarse(first, limits, share[first.segment[1:]], close, others, rough[0][others.segment])

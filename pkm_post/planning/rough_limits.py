@@ -114,16 +114,16 @@ def deviates_in_blends(path: ToolPath, bounds: DerivativeBounds) -> Array:
     return np.asarray((bounds.tip_2 * square > tip) | (bounds.axis_2 * square > axis))
 
 
-def rough_limits(path: ToolPath, machine: Machine, bounds: DerivativeBounds) -> Pair:
+def rough_limits(path: ToolPath, machine: Machine, bounds: DerivativeBounds, share: float = PLANNED_SHARE) -> Pair:
     """Speeds squared and accelerations along the path that are allowed on the whole of each segment, (N,) each.
 
     They keep the exact limits anywhere on the segment, in either direction: each term of the acceleration has a fixed
-    share.
+    part of the share of the limits that is planned.
     """
     square, along = feed_of_path_length(path.feed, bounds.tip_1) ** 2, np.full(len(path.feed), NO_LIMIT)
     for item in _quantities(machine, path, bounds):
         checkpoint()
-        planned = PLANNED_SHARE * item.acceleration
+        planned = share * item.acceleration
         square = lowered(square, item.speed, item.first, 2)
         square = lowered(square, FOR_CURVATURE * planned, item.second, 1)
         along = lowered(along, (1 - FOR_CURVATURE) * planned, item.first, 1)

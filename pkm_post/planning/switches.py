@@ -21,7 +21,7 @@ from pkm_post.planning.cell_limits import acceleration_demand
 from pkm_post.planning.fastest_profile import Steps, ceilings
 from pkm_post.planning.played_acceleration import StationMotion, Windows, cells_in_windows
 from pkm_post.planning.refinement import Profile
-from pkm_post.planning.speed_limits import SAFE_SHARE
+from pkm_post.planning.speed_limits import PLANNED_SHARE, SAFE_SHARE
 from pkm_post.planning.speed_profile import cell_times
 from pkm_post.planning.tool_path import ToolPath
 
@@ -38,13 +38,18 @@ _NARROWEST = 0.5
 """Part of an interval that is left alone."""
 _CELLS_AT_ONCE = 8192
 """Cells in one pass: their working arrays stay in the processor's cache."""
-_MS = 1e-3
+_INTERVAL = 1e-3
+"""s: the interval that cannot be cut."""
 _STARTS_AND_ENDS = slice(None, -1), slice(1, None)
 
 
-def longest_uncut(machine: Machine) -> float:
-    """The longest interval that cannot be cut for the controller of a machine, s."""
-    return (2 * machine.shortest_interval - 1) * _MS
+def planned_share(machine: Machine) -> float:
+    """The share of the limits of acceleration to begin with.
+
+    Intervals that cannot be cut are a millisecond long. Where the controller takes longer ones only, tolerances decide
+    in them: more acceleration would have to be taken back.
+    """
+    return PLANNED_SHARE if machine.shortest_interval == 1 else SAFE_SHARE
 
 
 def with_lower_switches(path: ToolPath, machine: Machine, profile: Profile, planned: Array) -> Profile:
@@ -58,20 +63,20 @@ def with_lower_switches(path: ToolPath, machine: Machine, profile: Profile, plan
     """
     if not (planned > SAFE_SHARE).any():
         return profile
-    interval, fresh = longest_uncut(machine), np.ones(len(profile.steps.share), dtype=np.bool_)
+    fresh = np.ones(len(profile.steps.share), dtype=np.bool_)
     for _ in range(_MOST_ROUNDS):
         time = np.concatenate([[0.0], np.cumsum(cell_times(profile.marks.s, profile.square))])
-        rows = _near(time, fresh & _demanding(profile), interval)
+        rows = _near(time, fresh & _demanding(profile))
         if not len(rows):
             break
-        found = StationMotion(path, profile.marks, time, profile.square).windows(machine, rows, interval)
+        found = StationMotion(path, profile.marks, time, profile.square).windows(machine, rows, _INTERVAL)
         found = found.some(np.flatnonzero(found.played > 1))
         if not len(found.start):
             break
-        profile, time = _cut(path, machine, profile, time, found, interval)
-        share = _lower_shares(profile.steps.share, time, found, interval)
+        profile, time = _cut(path, machine, profile, time, found)
+        share = _lower_shares(profile.steps.share, time, found)
         profile, fresh = _with_shares(profile, share)
-        fresh = _widened(fresh, time, interval)
+        fresh = _widened(fresh, time)
     return _with_edges(profile, planned)
 
 
@@ -98,11 +103,11 @@ def _demanding(profile: Profile) -> Array:
     return np.asarray(in_pieces(len(s) - 1, _CELLS_AT_ONCE, largest)[0] > _SAFE)
 
 
-def _near(time: Array, cells: Array, interval: float) -> Array:
+def _near(time: Array, cells: Array) -> Array:
     """Stations less than two intervals from some of the cells, (M - 1,), and one more on either side, increasing."""
     near = np.flatnonzero(cells)
-    first = np.searchsorted(time, time[near] - 2 * interval) - 1
-    last = np.searchsorted(time, time[near + 1] + 2 * interval, side="right") + 1
+    first = np.searchsorted(time, time[near] - 2 * _INTERVAL) - 1
+    last = np.searchsorted(time, time[near + 1] + 2 * _INTERVAL, side="right") + 1
     return _covered(np.maximum(first, 0), np.minimum(last, len(time)), len(time))
 
 
@@ -112,9 +117,7 @@ def _covered(first: Array, last: Array, count: int) -> Array:
     return np.flatnonzero(np.cumsum(change)[:count])
 
 
-def _cut(
-    path: ToolPath, machine: Machine, profile: Profile, time: Array, found: Windows, interval: float
-) -> tuple[Profile, Array]:
+def _cut(path: ToolPath, machine: Machine, profile: Profile, time: Array, found: Windows) -> tuple[Profile, Array]:
     """The same motion with stations about switches, and its times.
 
     Args:
@@ -123,13 +126,12 @@ def _cut(
         profile: M stations.
         time: (M,) s.
         found: windows in which cubics exceed a limit.
-        interval: length of the windows, s.
     """
-    place = (np.unique(found.station)[:, None] + interval * _STEPS).ravel()
+    place = (np.unique(found.station)[:, None] + _INTERVAL * _STEPS).ravel()
     place = place[(place > 0) & (place < time[-1])]
     cell = np.searchsorted(time, place) - 1
     since, left = place - time[cell], time[cell + 1] - place
-    least = _NARROWEST * interval
+    least = _NARROWEST * _INTERVAL
     kept = np.flatnonzero(profile.close[profile.marks.segment[cell + 1]] & (since > least) & (left > least))
     # of places that are close to one another the first counts
     _, first = np.unique(np.column_stack([cell, since // least])[kept], axis=0, return_index=True)
@@ -143,10 +145,10 @@ def _cut(
     return profile.cut(path, machine, cell, part), np.insert(time, cell + 1, place)
 
 
-def _lower_shares(share: Array, time: Array, found: Windows, interval: float) -> Array:
+def _lower_shares(share: Array, time: Array, found: Windows) -> Array:
     """Shares of cells, (M - 1,), with which the cubics in windows keep the limits."""
     highest = found.planned * _AIM / found.played
-    first, last = cells_in_windows(time, found.start, interval)
+    first, last = cells_in_windows(time, found.start, _INTERVAL)
     window, number = expand_counts(last - first + 1)
     lower = share.copy()
     np.minimum.at(lower, first[window] + number, highest[window])
@@ -167,9 +169,9 @@ def _with_shares(profile: Profile, share: Array) -> tuple[Profile, Array]:
     return replace(profile, steps=steps, square=square), changed | other[1:] | other[:-1]
 
 
-def _widened(cells: Array, time: Array, interval: float) -> Array:
+def _widened(cells: Array, time: Array) -> Array:
     """Cells less than two intervals from some of them, (M - 1,)."""
     wide = np.zeros(len(cells), dtype=np.bool_)
-    near = _near(time, cells, interval)
+    near = _near(time, cells)
     wide[np.minimum(near, len(cells) - 1)] = True
     return wide

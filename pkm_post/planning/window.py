@@ -110,7 +110,7 @@ class Course:
         first, last = np.searchsorted(path.starts, [start.s, end])
         close = np.zeros(len(path.feed), dtype=np.bool_)
         close[max(first - 2, 0) : last + 1] = True
-        rough = rough_limits(path, machine, self.bounds)
+        rough = rough_limits(path, machine, self.bounds, SAFE_SHARE)
         span = Span(start.s, end, square)
         marks, squares = refined_profile(path, machine, close, rough, share, span)
         if squares[0] < square * (1 - _SAME_SPEED):
