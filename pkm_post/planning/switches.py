@@ -36,6 +36,8 @@ _JUMP = 0.2
 """Part of an acceleration by which it changes where a point of the program is of use."""
 _NARROWEST = 0.5
 """Part of an interval that is left alone."""
+_FINEST = 2.0**-20
+"""Steps of shares: the last bits of sums, which pieces of other sizes begin elsewhere, make no other plan."""
 _CELLS_AT_ONCE = 8192
 """Cells in one pass: their working arrays stay in the processor's cache."""
 _INTERVAL = 1e-3
@@ -147,7 +149,7 @@ def _cut(path: ToolPath, machine: Machine, profile: Profile, time: Array, found:
 
 def _lower_shares(share: Array, time: Array, found: Windows) -> Array:
     """Shares of cells, (M - 1,), with which the cubics in windows keep the limits."""
-    highest = found.planned * _AIM / found.played
+    highest = np.floor(found.planned * _AIM / found.played / _FINEST) * _FINEST
     first, last = cells_in_windows(time, found.start, _INTERVAL)
     window, number = expand_counts(last - first + 1)
     lower = share.copy()

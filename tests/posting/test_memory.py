@@ -12,7 +12,16 @@ import pytest
 
 from pkm_post.certificate import diagnosis, dynamics, joints, struts, tool_spline
 from pkm_post.options.choices import Options
-from pkm_post.planning import acceleration_limits, fastest_profile, interpolation, motion, schedule, speed_profile
+from pkm_post.planning import (
+    acceleration_limits,
+    fastest_profile,
+    interpolation,
+    motion,
+    played_acceleration,
+    schedule,
+    speed_profile,
+    switches,
+)
 from pkm_post.posting.post_file import post_file
 from pkm_post.posting.run import give_back_memory
 from pkm_post.reading.part_program import ReadingOptions
@@ -32,6 +41,8 @@ PIECES = (
     (interpolation, "_INTERVALS_AT_ONCE"),
     (acceleration_limits, "_AT_ONCE"),
     (fastest_profile, "_CELLS_AT_ONCE"),
+    (played_acceleration, "_AT_ONCE"),
+    (switches, "_CELLS_AT_ONCE"),
     (speed_profile, "_AT_ONCE"),
     (schedule, "_AT_ONCE"),
     (struts, "_AT_ONCE"),
