@@ -30,14 +30,7 @@ from pkm_post.machine.kinematics.jacobian import (
 from pkm_post.machine.kinematics.placed_machine import has_strut_bodies
 from pkm_post.machine.kinematics.rates import strut_rate_bounds, strut_rates, tool_rates
 from pkm_post.machine.kinematics.strut_cubics import KnotState, map_to_tool, strut_state
-from pkm_post.machine.kinematics.tool_cubics import (
-    DRIFT_SHARES,
-    ROUNDED_SHARE,
-    Demand,
-    ToolCubics,
-    bounded_demand,
-    measured_demand,
-)
+from pkm_post.machine.kinematics.tool_cubics import DRIFT_SHARES, Demand, ToolCubics, bounded_demand, measured_demand
 from pkm_post.machine.reach.findings import DISPLAY_UNITS, ReachFinding, finding_diagnostics
 from pkm_post.machine.reach.limit_checks import reach_margins
 from pkm_post.machine.reach.path_checks import reach_faults, reach_findings
@@ -79,7 +72,6 @@ __all__ = [
     "DISPLAY_UNITS",
     "ZERO_TORSION",
     "DRIFT_SHARES",
-    "ROUNDED_SHARE",
     "Demand",
     "KnotState",
     "MeasuredPoses",

@@ -22,7 +22,6 @@ from dataclasses import astuple, dataclass, fields
 import numpy as np
 
 from pkm_post.geometry import Array, length_of
-from pkm_post.machine import ROUNDED_SHARE
 from pkm_post.model import Machine, checkpoint, pieces
 from pkm_post.planning.speed_limits import limited_quantities
 from pkm_post.planning.speed_profile import Stations
@@ -30,6 +29,9 @@ from pkm_post.planning.tool_path import ToolPath
 
 _SHARES = np.linspace(0, 1, 7)
 """Where in windows their station is: a jump has the most effect at a third and at two thirds, a peak at the ends."""
+_PLAYED_SHARE = 0.98
+"""Share of the limits that may be played in windows: a little more is played between them, and 99 % are allowed in the
+end, for printed digits."""
 _AT_ONCE = 1024
 """Stations in one pass: the working arrays of one pass stay in the processor's cache."""
 
@@ -182,7 +184,7 @@ class StationMotion:
         at_start = np.where(self.marks.rest[:-1], first[:, 1:], first[:, :-1]) * along + curved[:, :-1]
         at_end = np.where(self.marks.rest[1:], first[:, :-1], first[:, 1:]) * along + curved[:, 1:]
         real = (machine.strut_acceleration, struts.acceleration), (machine.tip_acceleration, tip.acceleration)
-        allowed = [ROUNDED_SHARE * whole / planned if np.isfinite(whole) else 1.0 for whole, planned in real]
+        allowed = [_PLAYED_SHARE * whole / planned if np.isfinite(whole) else 1.0 for whole, planned in real]
         return at_start * joined, at_end * joined, np.repeat(allowed, [6, 3])[:, None]
 
 

@@ -37,7 +37,7 @@ _CHANGED = 0.02
 left, as the error of straight lines goes with the square of the width."""
 _SHAPE = 4.0
 """How much more than at a new station limits may bend between it and the ends of its cell."""
-_BRIEF = 2.5e-4
+_BRIEF = 1e-4
 """s: what happens within a cell of this time is no concern of a controller that takes a point each millisecond."""
 _NARROW = 1e-6
 """Part of a cell that is no place for a station."""

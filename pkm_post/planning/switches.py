@@ -135,9 +135,7 @@ def _cut(path: ToolPath, machine: Machine, profile: Profile, time: Array, found:
     since, left = place - time[cell], time[cell + 1] - place
     least = _NARROWEST * _INTERVAL
     kept = np.flatnonzero(profile.close[profile.marks.segment[cell + 1]] & (since > least) & (left > least))
-    # of places that are close to one another the first counts
-    _, first = np.unique(np.column_stack([cell, since // least])[kept], axis=0, return_index=True)
-    kept = kept[first]
+    kept = kept[_apart(cell[kept], since[kept], least)]
     cell, since, place = cell[kept], since[kept], place[kept]
     if not len(cell):
         return profile, time
@@ -145,6 +143,15 @@ def _cut(path: ToolPath, machine: Machine, profile: Profile, time: Array, found:
     along = np.diff(profile.square)[cell] / (2 * width)
     part = since * (speed + since * along / 2) / width
     return profile.cut(path, machine, cell, part), np.insert(time, cell + 1, place)
+
+
+def _apart(cell: Array, since: Array, least: float) -> Array:
+    """Rows of places in cells that are not close to one another, in order: of those in a part of a cell the first."""
+    _, first = np.unique(np.column_stack([cell, since // least]), axis=0, return_index=True)
+    cell, since = cell[first], since[first]
+    apart = np.ones(len(first), dtype=np.bool_)
+    apart[1:] = (cell[1:] != cell[:-1]) | (since[1:] - since[:-1] > least / 4)
+    return np.asarray(first[apart])
 
 
 def _lower_shares(share: Array, time: Array, found: Windows) -> Array:
