@@ -9,6 +9,7 @@ from machines import example
 from programs import ON_PALLET, program
 
 from pkm_post.certificate import certify
+from pkm_post.model import Kind
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import interpolate, plan_feed, strut_motion
 from pkm_post.planning.motion import tool_path
@@ -84,14 +85,30 @@ def test_the_worst_is_the_largest_by_its_own_tolerance():
     assert set(np.unique(certificate.tip_tolerance)) == {ASKED.tip, 0.05, 0.0004}
 
 
-def test_cubics_keep_to_a_tolerance_that_is_tighter_than_was_asked_for():
-    _, coarse = planned(placed(np.zeros(6)))
-    tight = placed(np.full(6, 0.0001))
+def half_circle(tolerance):
+    """Where the path bends all along, tolerances decide how far apart points are; about corners accelerations do."""
+    kind, nowhere = [Kind.RAPID, Kind.ARC], [np.nan] * 3
+    made = program(
+        ZIGZAG[:2], kind=kind, centre=np.array([nowhere, [10, 0, 60]]), turn=np.array([nowhere, [0, 0, 1]]), feed=20.0
+    )
+    trajectory, faults = place(replace(made, tip_tolerance=np.full(2, tolerance)), example(), ON_PALLET)
+    assert not faults
+    return trajectory
+
+
+@pytest.mark.parametrize("of", [half_circle, lambda tolerance: placed(np.full(6, tolerance))])
+def test_cubics_keep_to_a_tolerance_that_is_tighter_than_was_asked_for(of):
+    tight = of(0.0001)
     _, motion = planned(tight)
-    assert len(motion.time_ms) > len(coarse.time_ms)
     certificate, faults = certified(tight, motion)
     assert not faults
     assert worst(certificate, "V101").limit == 0.0001
+
+
+def test_a_tighter_tolerance_takes_more_points():
+    _, coarse = planned(half_circle(0.0))
+    _, motion = planned(half_circle(0.0001))
+    assert len(motion.time_ms) > 1.3 * len(coarse.time_ms)
 
 
 def test_an_exact_path_is_at_rest_in_its_corners_and_on_the_path():
