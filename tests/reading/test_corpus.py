@@ -36,6 +36,7 @@ def _point(text):
 CONVERTED = {
     "machine_zero": _point,
     "feed": float,
+    "functions": lambda text: tuple(map(int, text.split(","))),
     "left_out": lambda text: tuple(text.split(",")),
     "cycle_values": lambda text: tuple(text.split(",")),
     "cycle_kinds": lambda text: dict(pair.split(":") for pair in text.split(",")),
