@@ -109,7 +109,7 @@ addon: ## install an archive of the add-on with FreeCAD's Addon Manager, and pos
 	tools/freecad tools/run_script.py -- tests/addon/install_addon.py dist/pkm-post-addon.zip; \
 	tools/freecad tools/run_script.py -- tests/addon/use_addon.py "$$trial"
 
-oldest: $(OLDEST_VENV)/made ## run some tests with the oldest NumPy that is allowed, and Dask (OLDEST_TESTS=tests/planning)
+oldest: $(OLDEST_VENV)/made ## run some tests with the oldest NumPy that is allowed, Dask and MPI (OLDEST_TESTS=tests/planning)
 	@PYTHONPATH=. MPLBACKEND=Agg $(OLDEST_VENV)/bin/python -m pytest -q -p no:cacheprovider -n 2 $(OLDEST_TESTS) $(ARGS)
 
 docs: $(DOCS_VENV)/made ## make the pages as a site in site/, with every link checked

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Whatever takes an executor gives the same bits with each one, and with none."""
 
+import os
 import pickle
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -91,14 +93,22 @@ def test_uncertainty_of_a_calibration(machine, executor):
 EXAMPLE = Path(__file__).parents[1] / "examples" / "many_computers.py"
 
 
-@pytest.mark.parametrize("name", ["processes", "dask"])
-def test_the_example_posts_a_list_and_maps_the_reach(tmp_path, name):
-    if name == "dask":
-        pytest.importorskip("distributed", reason="Dask is not installed; `make oldest` has it")
+def started_by_mpi():
+    """What starts three processes of MPI: mpiexec of the Python that runs, or that on the path."""
+    folders = os.pathsep.join([str(Path(PYTHON).parent), os.environ["PATH"]])
+    found = shutil.which("mpiexec", path=folders)
+    assert found, "mpi4py is installed, and there is no mpiexec"
+    return [found, "-n", "3", PYTHON, "-m", "mpi4py.futures"]
+
+
+@pytest.mark.parametrize(("name", "package"), [("processes", "concurrent"), ("dask", "distributed"), ("mpi", "mpi4py")])
+def test_the_example_posts_a_list_and_maps_the_reach(tmp_path, name, package):
+    pytest.importorskip(package, reason=f"{package} is not installed; `make oldest` has it")
     (tmp_path / "a.ngc").write_text("G21 G90\nT1 M6\nS8000 M3\nG0 X0 Y0 Z30\nG1 X5 Y5 Z20 F600\nM5\nM30\n")
     arguments = 'arguments = "--tool-length 1=120 --work-offset=0,0,250"'
     (tmp_path / "jobs.toml").write_text(f'{arguments}\n[[jobs]]\nfile = "a.ngc"\n')
-    words = [PYTHON, EXAMPLE, tmp_path / "jobs.toml", "--with", name, "--workers", "2"]
+    start = started_by_mpi() if name == "mpi" else [PYTHON]
+    words = [*start, EXAMPLE, tmp_path / "jobs.toml", "--with", name, "--workers", "2"]
     ran = subprocess.run(words, capture_output=True, text=True, check=False, timeout=120)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert ran.stdout.splitlines() == ["posted: a.ngc"]
