@@ -74,7 +74,7 @@ def test_the_tool_keeps_to_the_programmed_path_within_the_certificate(posted):
     assert followed.end < COUNT
 
 
-@pytest.mark.parametrize("kind", ["tcp", "serial"])
+@pytest.mark.parametrize("kind", ["tcp", "serial", "ssh"])
 def test_the_same_when_it_is_played_and_its_operator_never_rests(kind, tmp_path):
     program = _program(tmp_path, "example_6tps")
     trajectory, tolerances, faults = read_playable(program.with_suffix(".pkmt"), MACHINE)

@@ -5,26 +5,32 @@ What the operator does is drawn by chance of a seed, at rows of the trajectory; 
 """
 
 import math
+import os
 import random
 import resource
+import tempfile
 import threading
 import time
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 from follower import Followed, Follower
-from station import MACHINE, SETTINGS
+from power_rig import DRIVES
+from station import MACHINE
+from station import SETTINGS as TURBO_SETTINGS
 
 from pkm_post.control.link import stopping
 from pkm_post.control.link.errors import LinkLostError, PmacError
 from pkm_post.control.link.ports import port_named
 from pkm_post.control.link.session import Session
+from pkm_post.control.link.ssh_link import PASSWORD, ssh_package
 from pkm_post.control.player.orders import Order, PlayOptions
 from pkm_post.control.player.play import Player, PlayResult
-from pkm_post.control.simulator import SerialPort, Server
+from pkm_post.control.simulator import PowerPmac, Server, refused_line
 from pkm_post.options import PLAYER_PROGRAM
-from pkm_post.writing.controllers.pmac import setup_text
+from pkm_post.writing import pmac, power_pmac
 
 PATIENCE_S = 30.0
 """An answer comes late when the computer is busy."""
@@ -68,29 +74,56 @@ class BreakableLink:
         return getattr(self._link, name)
 
 
+def settings_of(kind):
+    """Of the example's controller behind a link of this kind: over ssh it is a Power PMAC."""
+    if kind != "ssh":
+        return TURBO_SETTINGS
+    settings, faults = power_pmac.settings_of(replace(MACHINE, controller=MACHINE.controller | {"kind": "power_pmac"}))
+    assert not faults
+    return settings
+
+
+def _set_up(kind):
+    """A machine that was set up and homed; over ssh the Power PMAC around it as well."""
+    outer = PowerPmac(form=Followed) if kind == "ssh" else None
+    made = outer.controller if outer else Followed()
+    lines = (power_pmac if outer else pmac).setup_text(settings_of(kind), "test", MACHINE.strut_stroke).splitlines()
+    for motor in range(1, 7):
+        turbo = f"I{motor}11=320000 I{motor}15=10 I{motor}16=6000 I{motor}17=20 I{motor}19=5 I{motor}22=200"
+        lines += [f"Motor[{motor}].{drive}" for drive in DRIVES] if outer else [turbo]
+        lines += [f"#{motor}J/", f"#{motor}HMZ"]
+    assert refused_line(outer or made, lines) is None
+    made.advance(100)
+    return made, outer
+
+
+def _port(server, outer, kind, folder):
+    if outer is None:
+        return port_named(f"tcp:127.0.0.1:{server.add_tcp(0)}" if kind == "tcp" else f"serial:{server.add_pty()}")
+    os.environ[PASSWORD] = "of the simulated user"
+    door = server.add_ssh(outer, ssh_package(), 0, os.environ[PASSWORD])
+    known = Path(folder) / "known_hosts"
+    known.write_text(f"{door.known_host}\n")
+    return replace(port_named(f"ssh:{door.user}@127.0.0.1:{door.number}"), known_hosts=known)
+
+
 @contextmanager
 def served(kind, follower, rate=1.0):
     """A homed machine that is followed, behind a link; it and its port."""
-    made = Followed()
-    made.load(setup_text(SETTINGS, "test", MACHINE.strut_stroke).splitlines())
-    line = SerialPort(made)
-    for motor in range(1, 7):
-        fast = f"I{motor}11=320000 I{motor}15=10 I{motor}16=6000 I{motor}17=20 I{motor}19=5 I{motor}22=200"
-        for text in (fast, f"#{motor}J/", f"#{motor}HMZ"):
-            assert not line.refusal(text)
-    made.advance(100)
+    made, outer = _set_up(kind)
     made.follower, made.number, made.rate = follower, PLAYER_PROGRAM, rate
     server, ended = Server(made), threading.Event()
-    port = f"tcp:127.0.0.1:{server.add_tcp(0)}" if kind == "tcp" else f"serial:{server.add_pty()}"
-    thread = threading.Thread(target=server.run, args=(ended.is_set,))
-    thread.start()
-    try:
-        yield made, BreakablePort(port_named(port))
-    finally:
-        ended.set()
-        thread.join(LONGEST_JOIN_S)
-        server.close()
-        assert not thread.is_alive()
+    with tempfile.TemporaryDirectory() as folder:
+        port = _port(server, outer, kind, folder)
+        thread = threading.Thread(target=server.run, args=(ended.is_set,))
+        thread.start()
+        try:
+            yield made, BreakablePort(port)
+        finally:
+            ended.set()
+            thread.join(LONGEST_JOIN_S)
+            server.close()
+            assert not thread.is_alive()
 
 
 def resident_mib():
@@ -112,7 +145,7 @@ def check(follower, results, machine):
 
 
 def follower_of(trajectory, tolerances):
-    return Follower(MACHINE, SETTINGS, trajectory, tolerances.tip, tolerances.axis)
+    return Follower(MACHINE, TURBO_SETTINGS, trajectory, tolerances.tip, tolerances.axis)
 
 
 @dataclass
@@ -187,7 +220,7 @@ class Operator:
         elif kind == "break":
             self.port.die()
         else:
-            stopping.abort(self.player._session, SETTINGS, at_once=True)
+            stopping.abort(self.player._session, self.player._settings, at_once=True)
 
 
 def play_operated(trajectory, tolerances, kind, seed=1, rate=1.0, first_row=0, **numbers):
@@ -202,7 +235,7 @@ def play_operated(trajectory, tolerances, kind, seed=1, rate=1.0, first_row=0, *
 
         def player_of(row, see):
             choices = PlayOptions(first_row=row, patience_s=PATIENCE_S)
-            return Player(session, MACHINE, SETTINGS, trajectory, tolerances, choices, see)
+            return Player(session, MACHINE, settings_of(kind), trajectory, tolerances, choices, see)
 
         end = first_row + math.ceil(SHARE_BEFORE_ABORT * (count - first_row))
         operator = Operator(follower, made, port, first_row, end, seed, rate, **numbers)

@@ -2,7 +2,7 @@
 """Plays for long, and with bad luck: ``make soak`` has the second part.
 
     PYTHONPATH=. python3 tests/control/player/soak.py luck [HOW_MANY [FIRST_SEED]]
-    PYTHONPATH=. python3 tests/control/player/soak.py play out/tapered_column.pkmt tcp|serial [SEED]
+    PYTHONPATH=. python3 tests/control/player/soak.py play out/tapered_column.pkmt tcp|serial|ssh [SEED]
     PYTHONPATH=. python3 tests/control/player/soak.py long [ROWS]
 
 ``luck`` draws faults by seeds (``bad_luck``). ``play`` plays a posted trajectory over a real link in real time, with an
