@@ -25,6 +25,7 @@ from pkm_post.model import (
     StrutMotion,
     Tolerances,
     Trajectory,
+    checkpoint,
     errors,
     read_only,
 )
@@ -117,6 +118,7 @@ def tool_path(trajectory: Trajectory, tolerances: Tolerances) -> ToolPath:
     segments = Segments.of(trajectory)
     for_curves = _FOR_CURVES * trajectory.tip_tolerances(tolerances.tip)
     segments = segments.smoothed(compress(trajectory, segments, for_curves, _FOR_CURVES * tolerances.axis))
+    checkpoint()
     return ToolPath.of(trajectory, _for_corners(trajectory, tolerances.tip), _FOR_CORNERS * tolerances.axis, segments)
 
 

@@ -84,6 +84,7 @@ class DerivativeBounds:
         """The bounds with those of smooth curves; blends at their ends have none."""
         splines = path.segments.splines
         row, of_row = splines.row, SplineBounds.of(splines)
+        checkpoint()
         columns = {field.name: np.array(getattr(self, field.name)) for field in fields(self)}
         for field in fields(of_row):
             columns[field.name][row] = getattr(of_row, field.name)

@@ -167,9 +167,13 @@ def _written_program(
 
 def _planned(run: Run, frame: PostContext, trajectory: Trajectory, setup: Setup) -> tuple[Plan, tuple[Coverage, ...]]:
     """Tool poses and strut lengths by time, and the coverage."""
-    with beside(lambda: find_collisions(trajectory, frame.machine, setup, frame.tolerances)) as found:
+    with (
+        beside(lambda: find_collisions(trajectory, frame.machine, setup, frame.tolerances)) as found,
+        beside(lambda: frame.trajectory_hash) as fingerprint,
+    ):
         feed_plan = _feed_plan(run, frame, trajectory)
         covered = _collisions(run, found, setup)
+        fingerprint()  # kept by the frame
     return _interpolation(run, frame, feed_plan), covered
 
 

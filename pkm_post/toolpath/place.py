@@ -213,10 +213,13 @@ def _columns(placed: Program, way: dict[str, Any], keep: Array, events: tuple[Ev
     del columns["longer"]
     stops = placed.exact_stop[keep] | _stops(events, int(keep.sum()))
     stops |= _exact_corners(placed.exact_path[keep], columns, tip_before)
+    checkpoint()
+    goes_on = smooth(columns, tip_before, axis_before)
+    checkpoint()
     return columns | {
         "exact_stop": stops,
         "tip_tolerance": placed.tip_tolerance[keep],
-        "smooth": ~stops & smooth(columns, tip_before, axis_before),
+        "smooth": ~stops & goes_on,
     }
 
 

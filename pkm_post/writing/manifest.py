@@ -18,7 +18,7 @@ from types import MappingProxyType
 from typing import BinaryIO
 
 import pkm_post
-from pkm_post.model import Diagnostic, Place
+from pkm_post.model import Diagnostic, Place, checkpoint
 from pkm_post.system import result_files
 
 Findings = tuple[Diagnostic, ...]
@@ -132,6 +132,7 @@ def _fingerprint(name: str, stream: BinaryIO) -> str:
 def _parts(stream: BinaryIO) -> Iterator[bytes]:
     """Yield the bytes of a stream in parts; a CR stays with the LF behind it."""
     while part := stream.read(_AT_ONCE):
+        checkpoint()
         while part.endswith(b"\r") and (more := stream.read(1)):
             part += more
         yield part

@@ -24,7 +24,7 @@ from pkm_post.machine.kinematics.inverse import lever_arms
 from pkm_post.machine.kinematics.placed_machine import PlacedMachine
 from pkm_post.machine.reach.findings import CheckedLimit, ReachFinding
 from pkm_post.machine.reach.pose_path import PosePath, turn_between
-from pkm_post.model import Machine, distinct
+from pkm_post.model import Machine, checkpoint, distinct
 from pkm_post.system import in_workers
 
 _AT_ONCE = 2048
@@ -216,12 +216,15 @@ def unproven_checks(
         way: the pose path, at least one row.
         checks_for: the checks, with slopes that hold where every strut's joints are at least this far apart, mm.
     """
+    checkpoint()
     stretches = _Stretches.of(machine, way)
+    checkpoint()
     shortest = max(_NEARER * float(PlacedMachine.of(machine, way.rows(stretches.row)).distance.min()), _NO_STRUT)
     checks = checks_for(shortest)
     doubts = {number: np.ones(1, dtype=bool) for number in range(len(checks))}
     violated = set()
     for groups in _partitions(machine, way, stretches):
+        checkpoint()
         for number, doubt in list(doubts.items()):
             doubts[number] = doubt = doubt[groups.parent]
             margin, least = groups.bounds(machine, way, checks[number], np.flatnonzero(doubt), shortest)

@@ -14,7 +14,11 @@ from math import comb
 import numpy as np
 
 from pkm_post.geometry import Array, length_of
+from pkm_post.system import columns_in_workers
 from pkm_post.toolpath.compressor.splines import AXIS, SPIN, TIP, Splines
+
+_PIECES_AT_ONCE = 4096
+"""Pieces in one pass: the working arrays of one pass stay in the processor's cache."""
 
 
 @dataclass(frozen=True)
@@ -31,23 +35,32 @@ class SplineBounds:
     @classmethod
     def of(cls, splines: Splines) -> SplineBounds:
         """The bounds of all rows of runs, each that of the pieces on which it lies."""
-        first, second = (_derivative(splines, order) for order in (1, 2))
-        tip = _largest(first[:, TIP]), _largest(second[:, TIP])
-        axis = spin = np.zeros((2, len(splines.begin)))
-        if splines.turns:
-            least = _shortest(splines.powers[:, AXIS])
-            rate = _largest(first[:, AXIS]) / least
-            axis = np.stack([rate, _largest(second[:, AXIS]) / least + 3 * rate**2])
-            spin = np.stack([np.abs(one[:, SPIN]).max(axis=(0, 1)) for one in (first, second)])
+
+        def columns(pieces: slice) -> tuple[Array, ...]:
+            return _of_pieces(splines.powers[..., pieces], splines.width[pieces])
+
+        of_pieces = columns_in_workers(len(splines.begin), _PIECES_AT_ONCE, columns)
         first_piece, last_piece = splines.pieces_of_rows()
-        return cls(*(_over(one, first_piece, last_piece) for one in (*tip, *axis, *spin)))
+        return cls(*(_over(one, first_piece, last_piece) for one in of_pieces))
 
 
-def _derivative(splines: Splines, order: int) -> Array:
+def _of_pieces(powers: Array, width: Array) -> tuple[Array, ...]:
+    """The same on K pieces with coefficients (6, C, K) and widths (K,), (K,) each."""
+    first, second = (_derivative(powers, width, order) for order in (1, 2))
+    tip = _largest(first[:, TIP]), _largest(second[:, TIP])
+    axis = spin = np.zeros((2, len(width)))
+    if powers.shape[1] > AXIS.start:
+        least = _shortest(powers[:, AXIS])
+        rate = _largest(first[:, AXIS]) / least
+        axis = np.stack([rate, _largest(second[:, AXIS]) / least + 3 * rate**2])
+        spin = np.stack([np.abs(one[:, SPIN]).max(axis=(0, 1)) for one in (first, second)])
+    return (*tip, *axis, *spin)
+
+
+def _derivative(powers: Array, width: Array, order: int) -> Array:
     """Bezier coefficients of a derivative by path length, (6 - order, C, K)."""
-    powers = splines.powers
     for _ in range(order):
-        powers = powers[1:] * np.arange(1, len(powers))[:, None, None] / splines.width
+        powers = powers[1:] * np.arange(1, len(powers))[:, None, None] / width
     return _bezier(powers)
 
 
