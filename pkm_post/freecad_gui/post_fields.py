@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from pkm_post.model import Place, Refused
 from pkm_post.options import FIXTURE_OF_THE_JOB, RULES_WITH_HEADING, SIDE_OUTPUTS, SPIN_WORDS
 
 _DECIMALS = 6
+_ROUNDING = 1e-9
 
 
 def editable_box(items: Iterable[str]) -> QtWidgets.QComboBox:
@@ -29,6 +31,13 @@ def editable_box(items: Iterable[str]) -> QtWidgets.QComboBox:
     return box
 
 
+def narrow_box() -> QtWidgets.QComboBox:
+    """A combo box that may be narrower than its widest choice."""
+    box = QtWidgets.QComboBox()
+    box.setSizeAdjustPolicy(QtWidgets.QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+    return box
+
+
 def quantity_field(unit: str) -> Any:
     """A field for a FreeCAD quantity."""
     field = FreeCADGui.UiLoader().createWidget("Gui::QuantitySpinBox")
@@ -37,13 +46,21 @@ def quantity_field(unit: str) -> Any:
 
 
 def show_quantity(field: Any, value: float, unit: str) -> None:
-    """Show a number with decimals for thousandths at least: a field drops digits that it does not show.
+    """Show a number with all of its decimals, at least those of the user: a field drops digits that it does not show.
 
     The field's own unit is its display unit, which may be another unit of its kind.
     """
     quantity = FreeCAD.Units.Quantity(f"{value:.9g} {unit}")
-    quantity.Format = {"Precision": _DECIMALS}
+    quantity.Format = {"Precision": _decimals(quantity)}
     field.setProperty("value", quantity)
+
+
+def _decimals(quantity: Any) -> int:
+    """The fewest decimals that show a quantity as it is, in the unit that it will be shown in."""
+    least = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Units").GetInt("Decimals", 2)
+    shown = quantity.Value / quantity.getUserPreferred()[1]
+    exact = (count for count in range(least, _DECIMALS) if math.isclose(round(shown, count), shown, rel_tol=_ROUNDING))
+    return next(exact, max(least, _DECIMALS))
 
 
 def number_text(field: Any) -> str:
@@ -93,7 +110,7 @@ _ALSO = {
     "halstreamer": QT_TRANSLATE_NOOP("PostChoices", "Table for LinuxCNC's halstreamer"),
     "linuxcnc": QT_TRANSLATE_NOOP("PostChoices", "G-code for LinuxCNC's hexapod, not certified"),
     "picture": QT_TRANSLATE_NOOP("PostChoices", "Picture of the report (PNG)"),
-    "cartesian": QT_TRANSLATE_NOOP("PostChoices", "Program in X Y Z A B C, for kinematics in the controller"),
+    "cartesian": QT_TRANSLATE_NOOP("PostChoices", "Program in X Y Z A B C"),
 }
 
 
@@ -144,6 +161,8 @@ _ROWS = (
     ),
 )
 """Attribute, label and tooltip of each field, from top to bottom."""
+_BELOW_THEIR_LABELS = ("also_box",)
+"""Fields too wide to stand beside a label in a task panel of 380 pixels."""
 
 
 class PostChoices(QtWidgets.QWidget):
@@ -153,7 +172,7 @@ class PostChoices(QtWidgets.QWidget):
         super().__init__()
         self.machine, self.work_offset = editable_box(presets()), editable_box(())
         self.tip_tolerance, self.axis_tolerance = quantity_field("mm"), quantity_field("deg")
-        self.heading, self.spin = quantity_field("deg"), QtWidgets.QComboBox()
+        self.heading, self.spin = quantity_field("deg"), narrow_box()
         self.also = {name: QtWidgets.QCheckBox(translate("PostChoices", _ALSO[name])) for name in SIDE_OUTPUTS}
         self.also_box = below_each_other(self.also.values())
         self.more, self.folder = QtWidgets.QLineEdit(), QtWidgets.QLineEdit()
@@ -172,7 +191,11 @@ class PostChoices(QtWidgets.QWidget):
             field = getattr(self, name)
             field.setToolTip(translate("PostChoices", tip))
             row = with_button(field, askers[name]) if name in askers else field
-            layout.addRow(translate("PostChoices", label), row)
+            if name in _BELOW_THEIR_LABELS:
+                layout.addRow(QtWidgets.QLabel(translate("PostChoices", label)))
+                layout.addRow(row)
+            else:
+                layout.addRow(translate("PostChoices", label), row)
 
     def show_text(self, text: str) -> None:
         """Show arguments in the fields; invalid ones stay unchanged, in the line for all others."""

@@ -32,6 +32,8 @@ translate = FreeCAD.Qt.translate
 
 NAME = "PkmPostPanel"
 _APPLY = QtWidgets.QDialogButtonBox.StandardButton.Apply
+_BUTTONS_IN_A_ROW = 2
+"""So that a task panel of 380 pixels shows all of them."""
 _PER_MILLE = 1000
 
 
@@ -69,9 +71,9 @@ class PostPanel:
         self._watch = DeletionWatch(self.reject, job.Document.Name, job.Name)
 
     def _lay_out(self) -> None:
-        layout, buttons = QtWidgets.QVBoxLayout(self.form), QtWidgets.QHBoxLayout()
-        for button in (self.post, self.stop, self.folder, self.simulate):
-            buttons.addWidget(button)
+        layout, buttons = QtWidgets.QVBoxLayout(self.form), QtWidgets.QGridLayout()
+        for number, button in enumerate((self.post, self.stop, self.folder, self.simulate)):
+            buttons.addWidget(button, *divmod(number, _BUTTONS_IN_A_ROW))
         layout.addLayout(buttons)
         for part in (self.step, self.bar, self.outcome, self.choices):
             layout.addWidget(part)

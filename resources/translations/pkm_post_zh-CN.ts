@@ -2212,8 +2212,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>报告图片 (PNG)</translation>
     </message>
     <message>
-        <source>Program in X Y Z A B C, for kinematics in the controller</source>
-        <translation>X Y Z A B C 程序，用于控制器中的运动学</translation>
+        <source>Program in X Y Z A B C</source>
+        <translation>X Y Z A B C 程序</translation>
     </message>
     <message>
         <source>Machine</source>

@@ -122,6 +122,31 @@ def posting_shows_the_certificate():
 
 
 @step
+def panel_fits_a_narrow_dock():
+    """Its least width, and its numbers with the decimals that they need."""
+    document, _ = saved("narrow")
+    document.getObject(
+        "Job"
+    ).PostProcessorArgs = "--tip-tolerance 0.001 --axis-tolerance 0.00123 --spin x-in-plane=12.3456"
+    panel = open_panel(document)
+    fields = panel.choices.tip_tolerance, panel.choices.axis_tolerance, panel.choices.heading
+    for field in fields:  # a field that was visited keeps its number
+        field.setFocus()
+        settle()
+        field.clearFocus()
+        field.editingFinished.emit()
+    found = {
+        "width": panel.form.minimumSizeHint().width(),
+        "shown": [field.property("text") for field in fields],
+        "text": panel.choices.text(),
+    }
+    panel.post()
+    found["width with a certificate"] = panel.form.minimumSizeHint().width()
+    close()
+    return found
+
+
+@step
 def job_keeps_what_was_chosen():
     from pkm_post.writing import manifest
 

@@ -5,6 +5,9 @@ import shlex
 
 import pytest
 
+DOCK, FRAME = 380, 42
+"""Pixels: FreeCAD's task panel, and of it borders and scroll bar."""
+
 
 @pytest.fixture(scope="module")
 def session(scene):
@@ -38,6 +41,16 @@ def test_job_keeps_what_was_chosen_and_cam_posts_the_same(session):
     assert found["same"] and found["listed"]
     assert found["again"] == {"text": text, "folder": str(session.folder / "gui")}
     assert found["undone"] == "--work-offset=0,0,250"
+
+
+def test_panel_fits_a_dock_of_380_pixels_and_shows_no_empty_decimals(session):
+    found = session["panel_fits_a_narrow_dock"]
+    assert max(found["width"], found["width with a certificate"]) <= DOCK - FRAME
+    tip, axis, heading = (text.replace(" ", "") for text in found["shown"])  # FreeCAD 1.0 has a blank before degrees
+    assert tip in ("1.00µm", "1.00μm", "0.001mm")
+    assert (axis, heading) == ("0.00123°", "12.3456°")
+    for option in ("--tip-tolerance=0.001", "--axis-tolerance=0.00123", "--spin=x-in-plane=12.3456"):
+        assert option in found["text"].split()
 
 
 def test_refused_job_is_reported_and_leaves_nothing(session):
