@@ -22,10 +22,11 @@ from dataclasses import astuple, dataclass, fields
 import numpy as np
 
 from pkm_post.geometry import Array, length_of
-from pkm_post.model import Machine, checkpoint, pieces
+from pkm_post.model import Machine, pieces
 from pkm_post.planning.speed_limits import limited_quantities
 from pkm_post.planning.speed_profile import Stations
 from pkm_post.planning.tool_path import ToolPath
+from pkm_post.system import in_workers
 
 _SHARES = np.linspace(0, 1, 7)
 """Where in windows their station is: a jump has the most effect at a third and at two thirds, a peak at the ends."""
@@ -133,13 +134,15 @@ class StationMotion:
             rows: (K,) stations, increasing. Windows end where the motion rests, and where a station is missing.
             interval: length of the windows, s.
         """
-        parts, time = [Windows(*np.empty((4, 0)))], self.time[rows]
-        for piece in pieces(len(rows), _AT_ONCE):
-            checkpoint()
+        time = self.time[rows]
+
+        def of(piece: slice) -> Windows:
             first, last = np.searchsorted(time, time[piece][[0, -1]] + [-interval, interval])
             first = max(first - 1, 0)
             wide, inside = rows[first : last + 1], slice(piece.start - first, piece.stop - first)
-            parts.append(self.some(wide)._windows(machine, np.diff(wide) == 1, inside, interval))
+            return self.some(wide)._windows(machine, np.diff(wide) == 1, inside, interval)
+
+        parts = [Windows(*np.empty((4, 0))), *in_workers(of, pieces(len(rows), _AT_ONCE))]
         columns = zip(*(astuple(part) for part in parts), strict=True)
         return Windows(*(np.concatenate(column) for column in columns))
 

@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.geometry import Array, expand_counts
-from pkm_post.model import Machine, in_pieces
+from pkm_post.model import Machine
 from pkm_post.planning.cell_limits import acceleration_demand
 from pkm_post.planning.fastest_profile import Steps, ceilings
 from pkm_post.planning.played_acceleration import StationMotion, Windows, cells_in_windows
@@ -24,6 +24,7 @@ from pkm_post.planning.refinement import Profile
 from pkm_post.planning.speed_limits import PLANNED_SHARE, SAFE_SHARE
 from pkm_post.planning.speed_profile import cell_times
 from pkm_post.planning.tool_path import ToolPath
+from pkm_post.system import columns_in_workers
 
 _MOST_ROUNDS = 16
 _SAFE = 1.02 * SAFE_SHARE
@@ -102,7 +103,7 @@ def _demanding(profile: Profile) -> Array:
         ends = (acceleration_demand(steps.limits[rows][side], along, square[rows][side]) for side in _STARTS_AND_ENDS)
         return (np.maximum(*ends),)
 
-    return np.asarray(in_pieces(len(s) - 1, _CELLS_AT_ONCE, largest)[0] > _SAFE)
+    return np.asarray(columns_in_workers(len(s) - 1, _CELLS_AT_ONCE, largest)[0] > _SAFE)
 
 
 def _near(time: Array, cells: Array) -> Array:
