@@ -5,13 +5,15 @@ import os
 import subprocess
 from pathlib import Path
 
+from interpreter import PYTHON
+
 ADDON = Path(__file__).parents[1]
 WITHOUT = "import sys; sys.modules['lark'] = sys.modules['serial'] = sys.modules['paramiko'] = None; "
 
 
 def python(code, *arguments):
     return subprocess.run(
-        ["python3", "-c", WITHOUT + code, *map(str, arguments)],
+        [PYTHON, "-c", WITHOUT + code, *map(str, arguments)],
         env=os.environ | {"PYTHONPATH": str(ADDON)},
         capture_output=True,
         text=True,
