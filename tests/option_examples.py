@@ -34,6 +34,7 @@ EXAMPLES = {
     "--actual-tool": ("1=9.5,4.75", "1=9"),
     "--copies": ("xz,180", "yz"),
     "--surface-speed": ("120", "150.5"),
+    "--side": ("1", "2"),
     "--from-line": ("Cut:5", "4"),
     "--spin": ("x-in-plane=20", "optimise=joints"),
     "--also": ("csv", "halstreamer,linuxcnc,cartesian"),

@@ -31,6 +31,7 @@ from pkm_post.options.converters import (
     listed,
     origin,
     point,
+    side,
     sizes,
     spin,
     spin_words,
@@ -244,6 +245,13 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         "default": None,
         "help": "begin at this line of the source, or number of the command in an operation: the way there comes down"
         " along the tool axis, with spindle, coolant and tool of that line; none begins at the beginning, the default",
+    },
+    "--side": {
+        "metavar": "N",
+        "type": side,
+        "default": None,
+        "help": "the side of a part that is turned over in one part program, counted from 1: a side ends where the tool"
+        " axis turns by half a turn; none posts the whole program, the default",
     },
     "--part": {
         "metavar": "FILE",

@@ -56,6 +56,7 @@ class Options:
         optional_stops: what becomes of optional stops, one of ``toolpath.OPTIONAL_STOPS``; None as the machine file has
             it.
         surface_speed: cutting speed to keep; None leaves the spindle as programmed.
+        side: number of the side to post, from 1, where a part is turned over; None for the whole program.
         from_line: the line that the program begins at; None for its beginning.
         also: side outputs, keys of ``system.result_files.SIDE_OUTPUTS``.
         mesh_files: mesh files of the bodies in the collision check.
@@ -71,6 +72,7 @@ class Options:
     copies: Copies = Copies()
     surface_speed: SurfaceSpeed | None = None
     optional_stops: str | None = None
+    side: int | None = None
     from_line: StartLine | None = None
     also: tuple[str, ...] = ()
     mesh_files: MeshFiles = MeshFiles()

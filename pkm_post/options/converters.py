@@ -189,6 +189,15 @@ def start_line(text: str) -> tuple[int, str] | None:
     return int(line), operation
 
 
+def side(text: str) -> int | None:
+    """The number of a side, from 1; None for the word for nothing."""
+    if text == NOTHING:
+        return None
+    if not (text.isascii() and text.isdigit() and 0 < int(text) < 1 << 31):
+        raise argparse.ArgumentTypeError(f"expected the number of a side, from 1, got {text!r}")
+    return int(text)
+
+
 def listed(file: str) -> tuple[str, str]:
     """A file with its own name: named in two layers of options, it counts once."""
     return file, file

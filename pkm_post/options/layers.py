@@ -189,6 +189,7 @@ _KINDS: dict[str, tuple[InputKind, ...]] = {
     "unit": _PART_PROGRAMS,
     "feed": _PART_PROGRAMS,
     "allow_open_end": _PART_PROGRAMS,
+    "side": _PART_PROGRAMS,
     "wear": _PART_PROGRAMS,  # L432 names the alternative when it is given for G-code
     "job": (InputKind.JOB,),
 }

@@ -45,6 +45,7 @@ from pkm_post.reading import (
     read_part_program,
     with_tool_table,
 )
+from pkm_post.toolpath import with_side
 
 
 @dataclass(frozen=True)
@@ -158,8 +159,8 @@ def prepared_file(
     faults += [Diagnostic("L442", Place(str(file)), each) for each in strangers]
     if program is not None:
         faults += [*_replaced(program, asked.lengths, lengths), *_unknown(program, lengths)]
-        program = _with_lengths(program, asked.lengths)
-        faults += _missing_lengths(program)
+        program, of_side = with_side(_with_lengths(program, asked.lengths), choices.side)
+        faults += [*of_side, *(_missing_lengths(program) if program is not None else ())]
     return Prepared(program, model, choices, (*found, *faults))
 
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from pkm_post.toolpath.compensation.swept_volume import SweptVolume, stock_left
     from pkm_post.toolpath.from_line import StartLine, begun_at, modal_events, row_of_line
     from pkm_post.toolpath.optional_stops import OPTIONAL_STOPS, with_optional_stops
+    from pkm_post.toolpath.sides import with_side
     from pkm_post.toolpath.surface.moves import program_from_poses
     from pkm_post.toolpath.surface.options import CutMode, LeadMove, PassLines, PassOrder, SurfaceOptions
     from pkm_post.toolpath.surface.passes import surface_poses
@@ -46,6 +47,7 @@ else:
             "compensation.swept_volume": "SweptVolume stock_left",
             "from_line": "StartLine begun_at modal_events row_of_line",
             "optional_stops": "OPTIONAL_STOPS with_optional_stops",
+            "sides": "with_side",
             "surface.moves": "program_from_poses",
             "surface.options": "CutMode LeadMove PassLines PassOrder SurfaceOptions",
             "surface.passes": "surface_poses",
@@ -68,6 +70,7 @@ __all__ = [
     "MIRRORS",
     "OPTIONAL_STOPS",
     "with_optional_stops",
+    "with_side",
     "with_chords",
     "with_copies",
     "AxisRule",

@@ -30,6 +30,7 @@ from pkm_post.model import (
     errors,
     gauge_lengths,
 )
+from pkm_post.toolpath.sides import HALF_TURN
 from pkm_post.toolpath.spindle_dwells import with_spindle_waits
 from pkm_post.toolpath.symmetry.transform import mirrors, transform
 from pkm_post.toolpath.tool_change import with_tool_changes
@@ -40,7 +41,6 @@ _NO_CORNER = 1e-6
 """rad, and rad/mm of the tool axis: smaller changes count as none."""
 _TANGENT = np.radians(0.1)
 """rad: rounding of tangents by the decimals of a program; an exact path does not stop for it."""
-_HALF_TURN = np.pi - 1e-6
 _BEYOND_REACH = 10
 """Multiple of the longest strut: positions farther from the base are out of reach and need no closer check."""
 _DAY = 86400.0
@@ -167,7 +167,7 @@ def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterat
     longest = _BEYOND_REACH * machine.strut_stroke[1]
     seconds, tolerance = way["length"] / way["feed"], program.tip_tolerance
     for code, wrong, values, text in (
-        ("K106", angle > _HALF_TURN, np.degrees(angle), "{:.3f} degrees"),
+        ("K106", angle > HALF_TURN, np.degrees(angle), "{:.3f} degrees"),
         ("K102", ~(away < longest), away, "{:.6g} mm from the middle of the base"),
         ("K126", arc & (np.abs(way["longer"]) > _NO_MOVE), way["longer"], "{:.6g} mm longer"),
         ("K146", (tolerance > 0) & (tolerance < MIN_TOLERANCE), tolerance, "{:.3g} mm"),

@@ -45,8 +45,8 @@ MACHINING_RULES: dict[str, Rule] = {
     "K105": error("the path comes too close to a singular pose", f"tilt the tool less, or move the part{_PLACE}"),
     "K106": error(
         "the tool axis turns by half a turn in one move",
-        "insert a move that defines the direction of rotation; where the part is turned over, post each side as a"
-        " program of its own, with its work offset",
+        "insert a move that defines the direction of rotation; where the part is turned over, post each side by"
+        " --side N, with its work offset",
     ),
     "K107": error("the spindle does not support this speed", "program a speed within its limits"),
     "K108": error("the work offset is unknown to the machine", "add it to the machine file, or pass --work-offset"),
@@ -164,6 +164,7 @@ MACHINING_RULES: dict[str, Rule] = {
         "M codes of the machine before the line are not repeated",
         "bring the machine into the state that they left it in, or begin at an earlier line",
     ),
+    "K153": error("the program has no such side", "name one of its sides, counted from 1: --side N"),
     # N1: surface normals, and compensation with them
     "N101": error("a contact point, normal or tool axis is not a number or has no direction", "regenerate the path"),
     "N102": error("the surface is undercut: the corner of the cutter does not touch it", "lean the tool further back"),

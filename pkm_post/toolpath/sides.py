@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Sides: a program for a part that is turned over by hand becomes one program for each clamping.
+
+CAM systems write all set-ups of a part into one file, in the frame of the part. Where it is turned over, the tool axis
+turns by half a turn from one row to the next, which no machine follows. A side begins with the spindle, the coolant and
+the tool that the rows before it have left, as the file does not say them again, and ends with spindle and coolant off.
+
+Enters: a program in {C}. Leaves: the rows and events of one side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+
+from pkm_post.geometry import Array, angle_between
+from pkm_post.model import Diagnostic, Event, EventKind, Kind, Place, Program
+
+HALF_TURN = np.pi - 1e-6
+"""rad: a tool axis that turns by this much in one row defines no direction of rotation."""
+_MODAL = (EventKind.TOOL_CHANGE, EventKind.SPINDLE, EventKind.COOLANT)
+_OFF = (EventKind.SPINDLE, EventKind.COOLANT)
+Findings = tuple[Diagnostic, ...]
+
+
+def with_side(program: Program, side: int | None) -> tuple[Program | None, Findings]:
+    """One side of a program.
+
+    Args:
+        program: rows with their tool axes in {C}.
+        side: its number, from 1; None for the program as it is.
+
+    Returns:
+        The side, or None and K153 if the program has no such side.
+    """
+    if side is None:
+        return program, ()
+    starts = side_starts(program)
+    if not 1 <= side <= len(starts):
+        count = f"{len(starts)} side{'s' * (len(starts) > 1)}"
+        return None, (Diagnostic("K153", Place(program.source), f"side {side} of {count}"),)
+    begin, end = starts[side - 1], [*starts, len(program)][side]
+    return _rows(program, begin, end, f"side {side} of {len(starts)}, as chosen"), ()
+
+
+def side_starts(program: Program) -> list[int]:
+    """The first row of each side."""
+    axis = program.tool_axis
+    turned = np.flatnonzero(angle_between(axis[:-1], axis[1:]) > HALF_TURN) + 1
+    return [0, *turned.tolist()]
+
+
+def _rows(program: Program, begin: int, end: int, note: str) -> Program:
+    columns: dict[str, Any] = {
+        field.name: value[begin:end]
+        for field in fields(program)
+        if isinstance(value := getattr(program, field.name), np.ndarray)
+    }
+    if begin:
+        columns |= _as_start(columns)
+    events = _events(program, begin, end)
+    used = {each.value for each in events if each.kind is EventKind.TOOL_CHANGE}
+    tools = {number: tool for number, tool in program.tools.items() if not used or number in used}
+    return replace(program, **columns, events=events, tools=tools, reading=(*program.reading, note))
+
+
+def _as_start(columns: dict[str, Array]) -> dict[str, Array]:
+    """Columns whose first row is the start of a path: reached by a rapid move."""
+    first = {"kind": Kind.RAPID, "feed": np.nan, "arc_centre": np.nan, "arc_axis": np.nan}
+    changed = {name: columns[name].copy() for name in first}
+    for name, value in first.items():
+        changed[name][0] = value
+    return changed
+
+
+def _events(program: Program, begin: int, end: int) -> tuple[Event, ...]:
+    """What earlier rows have switched on, the side's own events, and spindle and coolant off where it is not the last.
+
+    Events between the last row of a side and the first of the next prepare the next one.
+    """
+    before = {each.kind: each for each in program.events if each.row < begin and each.kind in _MODAL}
+    is_last = end == len(program)
+    own = [each for each in program.events if begin <= each.row < end or (is_last and each.row == end)]
+    started = (replace(before[kind], row=begin) for kind in _MODAL if kind in before)
+    found = [*started, *own]
+    if not is_last:
+        state = {each.kind: each.value for each in found}
+        found += [Event(end, kind, 0.0) for kind in _OFF if state.get(kind)]
+    return tuple(replace(each, row=each.row - begin) for each in found)
