@@ -4,7 +4,9 @@
 Enters: the path of a program, a trajectory, and the knots at which both rest. Leaves: a time for each joint. Between
 two rests the played path is as long as the programmed one, except for rounded corners: this gives an estimate for each
 joint, near which the best-fitting time is searched for. Joints already found refine the estimates of their neighbours.
-Times are no guarantee: the certificate measures the program with them, and wrong times can only increase a deviation.
+About a rounded corner between two feeds many times fit alike; there the joint is passed where the tool is no faster
+than the slower one. Times are no guarantee: the certificate measures the program with them, and wrong times can only
+increase a deviation.
 """
 
 from __future__ import annotations
@@ -29,6 +31,7 @@ _FITS = 1.5
 _WELL = 0.6
 """Deviation by tolerance within which no better time is searched for."""
 _NEWTON_STEPS = 8
+_STEPS_TO_FEED = 4
 _SPIN_COUNTS = 1e-3
 """Weight of the spin relative to the tool axis: in a pure turn about the tool axis, only the spin gives the time."""
 _AT_ONCE = 1 << 18
@@ -82,7 +85,9 @@ def joint_times(
     time[missing] = search.time_of(search.guess(missing, time))
     moving = np.setdiff1d(np.arange(len(trajectory)), joints)
     time[moving] = search.settled(moving, np.maximum.accumulate(time)[moving])
-    return np.asarray(np.maximum.accumulate(np.clip(time, 0.0, path.time[-1])))
+    time = np.maximum.accumulate(np.clip(time, 0.0, path.time[-1]))
+    time[moving] = search.at_feed(moving, time)
+    return np.asarray(np.maximum.accumulate(time))
 
 
 def _disorder(time: Array, joints: Array) -> Array:
@@ -106,6 +111,7 @@ class _Search:
         self._joint = np.vstack([trajectory.tip.T, trajectory.axis.T, trajectory.spin])
         by_tip = 1 / trajectory.tip_tolerances(tolerances.tip)
         by_axis = np.full(len(trajectory), 1 / tolerances.axis)
+        self._feed = trajectory.feed
         self._weight = np.vstack([by_tip, by_axis, _SPIN_COUNTS * by_axis])[[0, 0, 0, 1, 1, 1, 2]]
 
     def guess(self, rows: Array, time: Array) -> Array:
@@ -145,8 +151,7 @@ class _Search:
             longest = (self._path.time[interval + 1] - self._path.time[interval]) / _LOOKS
             time = np.clip(time - np.clip(late, -longest, longest), 0.0, self._path.time[-1])
             interval, share = self._place(self._instant_of(time) / _LOOKS)
-        off = (self._path.at(interval, share[None])[:, 0] - self._joint[:, rows]) * self._weight[:, rows]
-        return np.stack([time, np.maximum(norm(off[:3].T), norm(off[3:6].T))])
+        return np.stack([time, self._fit(rows, time)])
 
     def settled(self, rows: Array, time: Array) -> Array:
         """Times of joints, refined by one step to the best fit of the tool's exact poses."""
@@ -161,6 +166,32 @@ class _Search:
         late = self._late(rows, interval, share, place)
         step = (self._path.time[interval + 1] - self._path.time[interval]) / _LOOKS
         return np.where(pose.converged & (np.abs(late) < step), time - late, time)
+
+    def at_feed(self, rows: Array, time: Array) -> Array:
+        """Times of joints, moved into the faster segment where the tool is too fast for the slower one.
+
+        Args:
+            rows: (M,) segments with another one behind them.
+            time: (N,) times of all joints, never decreasing.
+        """
+        before, after = self._feed[rows], self._feed[rows + 1]
+        begin, end, slower = time[rows - 1] * (rows > 0), time[rows + 1], np.minimum(before, after)
+        later, found = np.where(before > after, 1.0, -1.0), time[rows]
+        for _ in range(_STEPS_TO_FEED):
+            interval, share = self._place(self._instant_of(found) / _LOOKS)
+            rate, bend = (one[:3] for one in self._path.rates_at(interval, share))
+            speed = norm(rate.T)
+            brakes = -later * (rate * bend).sum(axis=0)  # times the speed
+            excess = (before != after) & (speed > slower) & (brakes > 0)
+            step = np.divide((speed - slower) * speed, brakes, out=np.zeros(len(rows)), where=excess)
+            found = np.clip(found + later * step, begin, end)
+        return np.where(self._fit(rows, found) <= _WELL, found, time[rows])
+
+    def _fit(self, rows: Array, time: Array) -> Array:
+        """Deviations of the tool from joints, by tolerance."""
+        interval, share = self._place(self._instant_of(time) / _LOOKS)
+        off = (self._path.at(interval, share[None])[:, 0] - self._joint[:, rows]) * self._weight[:, rows]
+        return np.asarray(np.maximum(norm(off[:3].T), norm(off[3:6].T)))
 
     def _late(self, rows: Array, interval: Array, share: Array, place: Array) -> Array:
         """Delay, s, of a pose of an interval after the best fit to a joint, by Newton's method.

@@ -99,9 +99,10 @@ class PlaceRow(QtWidgets.QWidget):
 
 def place_text(found: FoundPlace) -> str:
     """The amounts of a place and what comes of it, in the language and the units of the user."""
-    shifted, turned = translate("PlaceRow", "shift {} in {}"), translate("PlaceRow", "turn {} about {}")
+    shifted = translate("PlaceRow", "shift {amount} in {axis}")
+    turned = translate("PlaceRow", "turn {amount} about {axis}")
     moves = [
-        text.format(_shown(value, unit), axis)
+        text.format(amount=_shown(value, unit), axis=axis)
         for text, values, unit in ((shifted, found.shift, "mm"), (turned, found.turn, "deg"))
         for axis, value in zip("xyz", values, strict=True)
         if abs(value) > _STILL

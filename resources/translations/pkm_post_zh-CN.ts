@@ -2133,12 +2133,12 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>正在寻找位置……</translation>
     </message>
     <message>
-        <source>shift {} in {}</source>
-        <translation>沿 {1} 平移 {0}</translation>
+        <source>shift {amount} in {axis}</source>
+        <translation>沿 {axis} 平移 {amount}</translation>
     </message>
     <message>
-        <source>turn {} about {}</source>
-        <translation>绕 {1} 旋转 {0}</translation>
+        <source>turn {amount} about {axis}</source>
+        <translation>绕 {axis} 旋转 {amount}</translation>
     </message>
     <message>
         <source>where it is</source>

@@ -79,6 +79,12 @@ def test_random_jobs_hold_when_their_plan_does(machine, tolerances, seed):
         assert not refusals(struts, trajectory, machine, asked)
 
 
+@pytest.mark.parametrize("seed", [13, 16, 35])
+def test_wide_corners_between_two_feeds_are_passed_where_the_slower_one_holds(machine, seed):
+    """The tool brakes in the corner: at the nearest place to the joint it is still faster than the next line allows."""
+    test_random_jobs_hold_when_their_plan_does(machine, WIDE, seed)
+
+
 def test_joints_are_passed_when_the_plan_passes_them(machine):
     trajectory = placed(cone(120), machine)
     motion, _ = planned(trajectory, machine, TOLERANCES)

@@ -8,7 +8,7 @@ from programs import program
 from test_nothing_exceeds import TOLERANCES, certified
 
 from pkm_post.certificate.deviation import TrajectoryRuler
-from pkm_post.geometry import hermite_lengths, hermite_speeds, norm
+from pkm_post.geometry import angle_between, hermite_lengths, hermite_speeds, norm
 from pkm_post.machine import forward, linearise
 
 MOMENT = 1e-9
@@ -93,7 +93,23 @@ def at_times(job, knot, time, segment):
 
     Deviations, mm and degrees, are those from segments of these times; speeds are of the tip, mm/s.
     """
-    machine, trajectory, motion, struts, _ = certified(job)
+    trajectory = certified(job)[1]
+    pose, velocity = played(job, knot, time)
+    tip, axis, _ = TrajectoryRuler(trajectory, TOLERANCES).deviation_from(pose.tip, pose.axis, segment)
+    return {"V101": tip, "V102": np.degrees(axis), "V108": norm(velocity)}
+
+
+def from_joint(job, knot, time, segment):
+    """Deviations, mm and degrees, from the programmed end of a segment: at a corner more than from its sides."""
+    trajectory = certified(job)[1]
+    pose, _ = played(job, knot, np.array([time]))
+    angle = angle_between(pose.axis[0], trajectory.axis[segment])
+    return {"V101": norm(pose.tip[0] - trajectory.tip[segment]), "V102": np.degrees(angle)}
+
+
+def played(job, knot, time):
+    """Poses of the tool at times in an interval, and velocities of the tip, (N, 3)."""
+    machine, _, motion, struts, _ = certified(job)
     begin, end = struts.time_ms[knot] / 1000, struts.time_ms[knot + 1] / 1000
     row, share = np.full(len(time), knot), (time - begin) / (end - begin)
     cubic = (column[at : at + 1] for at in (knot, knot + 1) for column in (struts.length, struts.speed))
@@ -103,9 +119,7 @@ def at_times(job, knot, time, segment):
     pose = forward(machine, length, tool, motion.tip[row], motion.axis[row], motion.spin[row])
     assert pose.converged.all()
     jacobian, _ = linearise(machine, pose.tip, pose.rotation, tool)
-    velocity = np.linalg.solve(jacobian, speed[..., None])[:, :3, 0]
-    tip, axis, _ = TrajectoryRuler(trajectory, TOLERANCES).deviation_from(pose.tip, pose.axis, segment)
-    return {"V101": tip, "V102": np.degrees(axis), "V108": norm(velocity)}
+    return pose, np.linalg.solve(jacobian, speed[..., None])[:, :3, 0]
 
 
 @pytest.mark.parametrize("job", JOBS)
@@ -120,6 +134,9 @@ def test_no_moment_of_the_interval_is_worse_than_the_one_reported(job):
             reported = under_way(motion, finding.time)
             there = at_times(job, knot, np.full(len(reported), finding.time), reported)[finding.code].max()
             assert there >= NEARLY * elsewhere, finding
-            assert finding.value <= (1 + FIGURE) * there, finding
+            most = there
+            if len(reported) > 1:
+                most = max(there, from_joint(job, knot, finding.time, reported[0]).get(finding.code, 0.0))
+            assert finding.value <= (1 + FIGURE) * most, finding
             if finding.time in apart_from_joints(motion, *struts.time_ms[[knot, knot + 1]] / 1000, finding.time):
                 assert finding.value >= (1 - FIGURE) * there, finding

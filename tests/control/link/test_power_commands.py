@@ -12,6 +12,7 @@ import pytest
 from power_rig import DRIVES
 
 from pkm_post.cli import main
+from pkm_post.control.link.program import parse_power_program
 from pkm_post.control.link.ssh_link import PASSWORD, ssh_package
 from pkm_post.control.simulator import PowerPmac, Server
 from pkm_post.control.simulator.gpascii_shell import refused_line
@@ -68,7 +69,8 @@ def test_a_posted_program_is_loaded_verified_and_run(pmac, posted, capsys):
     assert pmac("probe", "--machine", str(machine)) == 0
     assert "CID: 604020\n" in (said := capsys.readouterr().out) and "set up for Example 6-TPS" in said
     assert pmac("download", "--machine", str(machine), str(program)) == 0
-    assert "program 10: 161 lines, listed back as sent, SHA-256 " in capsys.readouterr().out
+    sent = parse_power_program(program.read_text()).lines
+    assert f"program 10: {len(sent)} lines, listed back as sent, SHA-256 " in capsys.readouterr().out
     assert pmac("run", "--machine", str(machine), str(program)) == 0
     assert "a program runs" in capsys.readouterr().out
     assert pmac("hold", "--machine", str(machine)) == 0

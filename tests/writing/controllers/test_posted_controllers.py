@@ -61,7 +61,7 @@ def test_codes_as_synchronous_assignments_are_certified(machine, tmp_path, kind)
 
 @pytest.fixture(scope="module")
 def in_parts(machine, tmp_path_factory):
-    small = of_kind(machine, "turbo_pmac", memory_words=1300)
+    small = of_kind(machine, "turbo_pmac", memory_words=1000)
     return small, post(job(), small, tmp_path_factory.mktemp("parts") / "job.pmc")
 
 
