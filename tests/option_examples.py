@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Two values for every option, for tests that go through all of them at every door."""
 
-from pkm_post.options.arguments import _ARGUMENTS
+from pkm_post.options.argument_table import ARGUMENTS
 
 EXAMPLES = {
     "--machine": ("slow.toml", "slower.toml"),
@@ -57,4 +57,4 @@ def words(flag: str, which: int) -> list[str]:
 
 
 FLAGS = [*EXAMPLES, *SWITCHES]
-assert set(FLAGS) == set(_ARGUMENTS), "every option has a row"
+assert set(FLAGS) == set(ARGUMENTS), "every option has a row"

@@ -7,6 +7,7 @@ The argument table imports nothing else: FreeCAD reads it for a tooltip.
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.options.argument_fields import ArgumentField, argument_fields, text_of_fields
+from pkm_post.options.argument_table import FIXTURE_OF_THE_JOB
 from pkm_post.options.argument_types import (
     LONGEST_TOOL,
     above_zero,
@@ -22,7 +23,6 @@ from pkm_post.options.argument_types import (
 )
 from pkm_post.options.arguments import (
     APPROACH_MM_S,
-    FIXTURE_OF_THE_JOB,
     MANUAL_MOVE_PROGRAM,
     PARITIES,
     PLAYER_PROGRAM,

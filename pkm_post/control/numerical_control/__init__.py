@@ -8,7 +8,8 @@ from pkm_post.control.numerical_control.connection import (
     connect,
     connection_target,
 )
-from pkm_post.control.numerical_control.control import ControlState, NumericalControl
+from pkm_post.control.numerical_control.control import NumericalControl
+from pkm_post.control.numerical_control.control_state import ControlState
 from pkm_post.control.numerical_control.execute import continue_after_stop, program_stops, silence_s, target_deviation
 from pkm_post.control.numerical_control.homing import Homing, HomingPhase, check_trigger, missing_homes, start_homing
 from pkm_post.control.numerical_control.interlocks import (

@@ -12,7 +12,7 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeVar
 
 from pkm_post.control.link import run, stopping
@@ -26,9 +26,9 @@ from pkm_post.control.link.status import Status, read_status, settled_status
 from pkm_post.control.link.stopping import emergency_text
 from pkm_post.control.link.tool_pose import ToolPoseReadout, pose_from_home
 from pkm_post.control.numerical_control import execute, manual_moves
+from pkm_post.control.numerical_control.control_state import ControlState
 from pkm_post.control.numerical_control.execute import Watchdog
 from pkm_post.control.numerical_control.homing import (
-    Homing,
     HomingPhase,
     HomingWatch,
     check_trigger,
@@ -49,27 +49,6 @@ _log = logging.getLogger(__name__)
 
 TOLERANCES = Tolerances(1e-3, math.radians(1e-3))
 """Tolerances of manual moves: the posting defaults."""
-
-
-@dataclass(frozen=True)
-class ControlState:
-    """A snapshot for display.
-
-    Attributes:
-        status: of struts and program; the last one read when the link is lost, None before the first reading.
-        pose: of the tool at the actual strut lengths; None if no pose fits, or before the first reading.
-        lost: why the link is lost; empty while it is up.
-        emergency: instructions for the operator when the link was lost while the machine may move.
-        homing: of a homing started here; None otherwise.
-        block: the next block; None outside single block mode.
-    """
-
-    status: Status | None
-    pose: ToolPose | None
-    lost: str = ""
-    emergency: tuple[str, ...] = ()
-    homing: Homing | None = None
-    block: BlockDisplay | None = None
 
 
 class NumericalControl:

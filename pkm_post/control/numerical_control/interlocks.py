@@ -11,7 +11,7 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass
 
-from pkm_post.control.numerical_control.control import ControlState
+from pkm_post.control.numerical_control.control_state import ControlState
 from pkm_post.control.numerical_control.homing import HomingPhase
 
 

@@ -19,7 +19,8 @@ from typing import Any, TypeVar
 
 from pkm_post.control.link.status import Status
 from pkm_post.control.link.stopping import NOT_AT_REST, REST_DEADLINE_S
-from pkm_post.control.numerical_control.control import ControlState, NumericalControl
+from pkm_post.control.numerical_control.control import NumericalControl
+from pkm_post.control.numerical_control.control_state import ControlState
 
 Done = TypeVar("Done")
 _Order = tuple[Future[Any], Callable[[NumericalControl], Any]]

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pkm_post.control.link.status import MotorBits, Status, SystemBits
-from pkm_post.control.numerical_control.control import ControlState
+from pkm_post.control.numerical_control.control_state import ControlState
 from pkm_post.control.numerical_control.homing import Homing, HomingPhase
 from pkm_post.control.numerical_control.interlocks import (
     INTERLOCKS_OF,

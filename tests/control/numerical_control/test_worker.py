@@ -9,7 +9,7 @@ import pytest
 
 from pkm_post.control.link.errors import NotReadyError
 from pkm_post.control.link.stopping import NOT_AT_REST
-from pkm_post.control.numerical_control.control import ControlState
+from pkm_post.control.numerical_control.control_state import ControlState
 from pkm_post.control.numerical_control.manual_moves import CartesianJog
 from pkm_post.control.numerical_control.worker import Worker
 

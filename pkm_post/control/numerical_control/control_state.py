@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a display shows of a controlled machine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pkm_post.control.link.status import Status
+from pkm_post.control.numerical_control.homing import Homing
+from pkm_post.control.numerical_control.single_block import BlockDisplay
+from pkm_post.toolpath import ToolPose
+
+
+@dataclass(frozen=True)
+class ControlState:
+    """A snapshot for display.
+
+    Attributes:
+        status: of struts and program; the last one read when the link is lost, None before the first reading.
+        pose: of the tool at the actual strut lengths; None if no pose fits, or before the first reading.
+        lost: why the link is lost; empty while it is up.
+        emergency: instructions for the operator when the link was lost while the machine may move.
+        homing: of a homing started here; None otherwise.
+        block: the next block; None outside single block mode.
+    """
+
+    status: Status | None
+    pose: ToolPose | None
+    lost: str = ""
+    emergency: tuple[str, ...] = ()
+    homing: Homing | None = None
+    block: BlockDisplay | None = None
