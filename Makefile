@@ -65,6 +65,8 @@ format: $(VENV)/made ## lay out the Python files and sort their imports
 
 translations: $(TRANSLATIONS_VENV)/made ## gather the texts that users see, and compile their translations
 	@find pkm_post/freecad_app pkm_post/freecad_gui -name '*.py' | LC_ALL=C sort >$(TRANSLATIONS_VENV)/sources
+	@$(TRANSLATIONS_VENV)/bin/python tools/core_texts.py $(TRANSLATIONS_VENV)/core_texts.py
+	@echo $(TRANSLATIONS_VENV)/core_texts.py >>$(TRANSLATIONS_VENV)/sources
 	@for texts in resources/translations/*.ts; do \
 		$(TRANSLATIONS_VENV)/bin/pyside6-lupdate -silent -no-obsolete -locations none -disable-heuristic sametext \
 			-disable-heuristic similartext @$(TRANSLATIONS_VENV)/sources -ts "$$texts"; \
@@ -81,6 +83,7 @@ soak: $(VENV)/made ## sessions and downloads over faulty links, killed posts (SO
 	PYTHONPATH=. $(VENV)/bin/python tests/system/killed_posts.py "$$folder" $(SOAK_KILLS)
 	@PYTHONPATH=. $(VENV)/bin/python tests/control/link/soak.py $(SOAK_DOWNLOADS)
 	@PYTHONPATH=. $(VENV)/bin/python tests/control/player/soak.py luck $(SOAK_PLAYS)
+	@PYTHONPATH=. timeout 600 $(VENV)/bin/python tests/control/player/soak.py links
 
 conformance: $(VENV)/made $(CONFORMANCE)/made ## compile pkmt.ksy with Kaitai's compiler, and read files with it
 	@$(VENV)/bin/python tests/writing/trajectory_file/conformance.py $(CONFORMANCE)

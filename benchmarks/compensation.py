@@ -22,9 +22,9 @@ from pkm_post.geometry.projection import nearest_on_nurbs  # noqa: E402
 from pkm_post.model import Event, EventKind, Kind, Program, Tool  # noqa: E402
 from pkm_post.toolpath.compensation.compensate import compensate_tips  # noqa: E402 - the path comes first
 from pkm_post.toolpath.compensation.contact import tip_from_contact, tip_shift  # noqa: E402 - the path comes first
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions  # noqa: E402 - the path comes first
 from pkm_post.toolpath.compensation.contour_offset import offset_contours  # noqa: E402 - the path comes first
 from pkm_post.toolpath.compensation.cutter import Cutter  # noqa: E402 - the path comes first
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions  # noqa: E402 - the path comes first
 from pkm_post.toolpath.compensation.swept_volume import stock_left  # noqa: E402 - the path comes first
 
 REPEATS = 3

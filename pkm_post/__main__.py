@@ -13,7 +13,9 @@ from pkm_post.cli import main  # noqa: E402 - NumPy reads the variable when it i
 
 def run() -> int:
     """Run with the arguments of the process; its exit code."""
-    return main(sys.argv[1:])
+    code = main(sys.argv[1:])
+    gc.freeze()  # at the exit Python would search all that was imported for cycles
+    return code
 
 
 if __name__ == "__main__":

@@ -8,5 +8,9 @@ from hypothesis import HealthCheck, settings
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-settings.register_profile("busy computer", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+from series import cases  # noqa: E402 - from this folder
+
+settings.register_profile(
+    "busy computer", deadline=None, max_examples=cases(60), suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("busy computer")

@@ -106,6 +106,25 @@ def with_tool_change(stated: Machine, **changes) -> Machine:
     return replace(stated, tool_change=ToolChange(**(pose | changes)))
 
 
+SPINDLE_AXIS = """
+[spindle.axis]
+motor = 7
+letter = "Z"
+counts_per_turn = 36000.0
+speed = 1500.0
+acceleration = 200.0
+lead_tolerance = 0.005
+"""
+SPINDLE_CODES = 'spindle_axis = "M29"\nspindle_speed = "M28"\n'
+
+
+def spindle_axis_text(table=SPINDLE_AXIS, codes=SPINDLE_CODES) -> str:
+    """The example's machine file with a spindle that is an axis."""
+    text = find_machine("example_6tps").read_text(encoding="utf-8")
+    assert text.count('optional_stop = "M1"\n') == 1
+    return text.replace('optional_stop = "M1"\n', f'optional_stop = "M1"\n{codes}') + table
+
+
 TOOL_CHANGE_TABLES = """
 spin_up_time = 2.0
 spin_down_time = 3.0

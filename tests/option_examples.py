@@ -37,12 +37,14 @@ EXAMPLES = {
     "--side": ("1", "2"),
     "--from-line": ("Cut:5", "4"),
     "--spin": ("x-in-plane=20", "optimise=joints"),
+    "--report-unit": ("inch", "mm"),
+    "--report-date": ("2026-11-28", "the second clamping"),
     "--also": ("csv", "halstreamer,linuxcnc,cartesian"),
 }
 """Each with an effect of its own, so that one is not mistaken for the other."""
 SWITCHES = {
     flag: (flag, f"--no-{flag[2:]}")
-    for flag in ("--keep-chip-load", "--keep-climb", "--allow-open-end", "--block-delete")
+    for flag in ("--keep-chip-load", "--keep-climb", "--allow-open-end", "--block-delete", "--repeat-codes")
 }
 """On and off."""
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Random jobs on the machines of the presets, planned, printed with some decimals, and certified."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,7 +10,6 @@ from programs import random_job
 from pkm_post.certificate import certify
 from pkm_post.geometry import hermite_lengths
 from pkm_post.machine import forward, machine_named
-from pkm_post.model import StrutMotion
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import plan
 from pkm_post.toolpath.place import place
@@ -74,7 +74,7 @@ def printed(machine, job, tolerances, decimals):
     trajectory, made = job
     motion, exact = made.motion, made.struts
     length, speed = (np.round(one, digits) for one, digits in zip((exact.length, exact.speed), decimals, strict=True))
-    struts = StrutMotion(exact.time_ms, length, speed, exact.events)
+    struts = replace(exact, length=length, speed=speed)
     certificate, found = certify(struts, "x.pmc", trajectory, machine, motion, _asked(tolerances))
     return machine, trajectory, motion, struts, certificate, found
 

@@ -56,6 +56,14 @@ def square_with_arc() -> Program:
     return program(position, kind=kind, centre=centre, turn=turn)
 
 
+def tapped_hole(lead=1.25) -> Program:
+    """A thread of 12 mm on a machine whose spindle is an axis: down, up, and away."""
+    kind = [Kind.RAPID, Kind.LINE, Kind.LINE, Kind.RAPID]
+    thread = Event(1, EventKind.SPINDLE_AXIS, lead), Event(3, EventKind.SPINDLE_AXIS, 0.0)
+    events = (Event(0, EventKind.TOOL_CHANGE, 1), *thread)
+    return program([[0, 0, 62], [0, 0, 50], [0, 0, 62], [0, 0, 70]], kind=kind, feed=12.5, events=events)
+
+
 def steep_helices() -> Program:
     """Three helices that rise and fall five times as far as their radius, with sharp corners between."""
     position = [[0, 0, 40], [5, 5, 70], [10, 10, 45], [15, 15, 70]]

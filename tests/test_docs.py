@@ -19,7 +19,7 @@ from pkm_post.machine import find_machine
 from pkm_post.machine.description.reader import read_machine
 from pkm_post.model import EventKind, Kind
 from pkm_post.model.certificate import Tolerances
-from pkm_post.model.diagnostics import RULES
+from pkm_post.model.rules import RULES
 from pkm_post.planning import plan
 from pkm_post.reading import ReadingOptions, read_part_program
 from pkm_post.toolpath.place import place

@@ -109,7 +109,7 @@ def test_the_example_posts_a_list_and_maps_the_reach(tmp_path, name, package):
     (tmp_path / "jobs.toml").write_text(f'{arguments}\n[[jobs]]\nfile = "a.ngc"\n')
     start = started_by_mpi() if name == "mpi" else [PYTHON]
     words = [*start, EXAMPLE, tmp_path / "jobs.toml", "--with", name, "--workers", "2"]
-    ran = subprocess.run(words, capture_output=True, text=True, check=False, timeout=120)
+    ran = subprocess.run(words, capture_output=True, text=True, check=False, timeout=300)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert ran.stdout.splitlines() == ["posted: a.ngc"]
     machine, _ = machine_named("example_6tps")

@@ -17,7 +17,7 @@ def python(code, *arguments):
         env=os.environ | {"PYTHONPATH": str(ADDON)},
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=300,
         check=False,
     )
 

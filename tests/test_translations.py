@@ -3,10 +3,14 @@
 
 import ast
 import re
+import runpy
 import xml.etree.ElementTree as ElementTree
+from functools import cache
 from pathlib import Path
 
 import pytest
+
+from pkm_post.model import RULES, Extent, Topic
 
 ROOT = Path(__file__).parents[1]
 SOURCES = [file for room in ("freecad_app", "freecad_gui") for file in (ROOT / "pkm_post" / room).rglob("*.py")]
@@ -31,6 +35,7 @@ def trees():
     return [(file.relative_to(ROOT), ast.parse(file.read_text(encoding="utf-8"))) for file in SOURCES]
 
 
+@cache
 def marked():
     """Context and text of every text in the sources; a text without a literal context is one that lupdate loses."""
     found, lost = set(), []
@@ -46,6 +51,17 @@ def marked():
     return found, lost
 
 
+@cache
+def core_texts():
+    """Context and text of what the core says: causes, cures, phrases."""
+    tool = runpy.run_path(str(ROOT / "tools" / "core_texts.py"))
+    return {(tool["CONTEXT"], text) for text in tool["core_texts"]()}
+
+
+def wanted():
+    return marked()[0] | core_texts()
+
+
 def messages(file):
     """Context, text and the element of the translation."""
     for context in ElementTree.parse(file).getroot().iter("context"):
@@ -59,6 +75,22 @@ def test_lupdate_sees_every_text():
     assert len(found) > 400
 
 
+def test_core_texts_are_rules_words_of_the_certificate_and_phrases():
+    texts = {text for _, text in core_texts()}
+    assert {text for rule in RULES.values() for text in (rule.cause, rule.cure)} <= texts
+    assert {word.value for table in (Topic, Extent) for word in table} <= texts
+    assert {"deviation of the tool tip", "strut {part} by {by}; it extends to {limit}"} <= texts
+
+
+@pytest.mark.parametrize("file", TRANSLATIONS, ids=lambda file: file.stem)
+def test_options_and_entries_that_a_cure_names_are_in_its_translation(file):
+    names, bad = re.compile(r"--[a-z-]+|[a-z_]+\.[a-z_]+(?:\.[a-z_]+)*|[A-Z]\d{3}\b|\b[A-Z]+/[A-Z]+\b"), []
+    for context, text, translation in messages(file):
+        if context == "Core" and sorted(names.findall(text)) != sorted(names.findall(translation.text)):
+            bad.append((text, translation.text))
+    assert bad == []
+
+
 def test_there_is_simplified_chinese():
     # FreeCAD asks for *_zh-CN.qm, with the name that it has for the language itself
     assert "pkm_post_zh-CN.ts" in [file.name for file in TRANSLATIONS]
@@ -68,8 +100,8 @@ def test_there_is_simplified_chinese():
 def test_translation_has_the_texts_of_the_sources_and_no_others(file):
     listed = [(context, text) for context, text, _ in messages(file)]
     assert len(listed) == len(set(listed))
-    assert marked()[0] - set(listed) == set(), "run make translations, and translate what is new"
-    assert set(listed) - marked()[0] == set(), "run make translations"
+    assert wanted() - set(listed) == set(), "run make translations, and translate what is new"
+    assert set(listed) - wanted() == set(), "run make translations"
 
 
 @pytest.mark.parametrize("file", TRANSLATIONS, ids=lambda file: file.stem)

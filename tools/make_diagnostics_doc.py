@@ -63,7 +63,7 @@ def _cell(text):
 
 if __name__ == "__main__":
     sys.path.insert(0, str(ROOT))
-    from pkm_post.model.diagnostics import RULES
+    from pkm_post.model.rules import RULES
 
     TARGET.write_text(page(RULES), encoding="utf-8", newline="\n")
     print(TARGET)

@@ -6,6 +6,7 @@ text are in the units of the command line. An error in the input raises ``Refuse
 is issued as ``DiagnosticWarning``. docs/api.md shows every function with an example.
 """
 
+from pkm_post.api.functions import certify, compensate, place, plan, post, reach, write
 from pkm_post.api.in_freecad import (
     add_machine,
     job,
@@ -17,7 +18,6 @@ from pkm_post.api.in_freecad import (
     symmetry,
 )
 from pkm_post.api.inputs import DiagnosticWarning, find_machine, read, read_machine, read_options
-from pkm_post.api.stages import certify, compensate, place, plan, post, reach, write
 from pkm_post.machine import (
     ReachReport,
 )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from pkm_post import at_first_use
 from pkm_post.certificate.certify import certify
 from pkm_post.certificate.consistency import machine_fault, values_beyond_machine
+from pkm_post.certificate.struts import AdjacentMotion, blocks_in_a_second
 
 if TYPE_CHECKING:
     from pkm_post.certificate.reconstruction import reconstruct
@@ -13,7 +14,9 @@ else:
     __getattr__ = at_first_use(__name__, {"reconstruction": "reconstruct"})
 
 __all__ = [
+    "AdjacentMotion",
     "values_beyond_machine",
+    "blocks_in_a_second",
     "certify",
     "machine_fault",
     "reconstruct",

@@ -22,20 +22,22 @@ from pkm_post.certificate.diagnosis import diagnose
 from pkm_post.certificate.dynamics import contour_error, count_at_tip, tip_jerk, tool_limits
 from pkm_post.certificate.joints import JointDeviations, measure_joints
 from pkm_post.certificate.playback import PlaybackBounds, Quantity, play, when_worst
-from pkm_post.certificate.struts import acceleration_steps, blocks_in_a_second, off_plan, strut_jerk
+from pkm_post.certificate.struts import AdjacentMotion, acceleration_steps, blocks_in_a_second, off_plan, strut_jerk
 from pkm_post.certificate.tool_spline import ToolSpline
-from pkm_post.certificate.tool_states import Task
+from pkm_post.certificate.tool_states import PlaybackTask
 from pkm_post.geometry import Array, norm
 from pkm_post.machine import NO_SETUP
 from pkm_post.model import (
     Certificate,
     Coverage,
     Diagnostic,
+    EventKind,
     Figure,
     Finding,
     Kind,
     Machine,
     Motion,
+    Phrase,
     StrutMotion,
     Tolerances,
     Trajectory,
@@ -44,7 +46,7 @@ from pkm_post.model import (
 
 
 def findings(
-    task: Task, played: PlaybackBounds, passed: JointDeviations, trajectory: Trajectory, tolerances: Tolerances
+    task: PlaybackTask, played: PlaybackBounds, passed: JointDeviations, trajectory: Trajectory, tolerances: Tolerances
 ) -> tuple[Finding, ...]:
     """One row for each quantity: code, name, unit, values, limit, and the time and place of each value."""
     struts, machine, motion = task.struts, task.machine, task.motion
@@ -54,60 +56,85 @@ def findings(
     at_ends = trajectory.tip_tolerances(tolerances.tip)
     axis_limit = math.degrees(tolerances.axis)
     at_worst = partial(_largest_sample, task, passed, played)
+    checkpoint()
     axis_speed, tip_acceleration = tool_limits(task)
     turning, axis_degrees = math.degrees(machine.axis_speed), np.degrees(played.axis)
+    checkpoint()
+    off = off_plan(struts, task.knots) + task.spin_deviation
+    checkpoint()
     rows: tuple[_Row, ...] = (
-        ("V107", "interval without a pose", "", 1.0 - played.found, 0.0, starts),
-        ("V101", "deviation of the tool tip", "mm", *at_worst(Quantity.TIP, played.tip, played.tip_tolerance)),
-        (
-            "V102",
-            "deviation of the tool axis",
-            "degrees",
-            *at_worst(Quantity.AXIS, axis_degrees, axis_limit),
-        ),
-        ("V110", "tool tip off a programmed point", "mm", passed.tip, at_ends, joints),
-        ("V110", "tool axis off a programmed one", "degrees", np.degrees(passed.axis), axis_limit, joints),
-        ("V111", "strut off its plan", "mm", off_plan(struts, task.knots) + task.spin_deviation, tolerances.tip, knots),
-        ("V108", "tip speed", "mm/s", *at_worst(Quantity.SPEED, played.tip_speed, task.ceiling)),
-        ("V103", "strut speed", "mm/s", played.strut_speed, machine.strut_speed, starts),
-        ("V104", "strut acceleration", "mm/s^2", played.strut_acceleration, machine.strut_acceleration, starts),
-        ("V113", "turning rate of the tool axis", "degrees/s", np.degrees(axis_speed), turning, starts),
-        ("V114", "tip acceleration", "mm/s^2", tip_acceleration, machine.tip_acceleration, starts),
-        ("V106", "shortest strut", "mm", played.shortest, machine.strut_stroke[0], starts),
-        ("V106", "longest strut", "mm", played.longest, machine.strut_stroke[1], starts),
-        ("V116", "shortest interval", "ms", np.diff(struts.time_ms), machine.shortest_interval, starts),
+        ("V107", Phrase("interval without a pose"), "", 1.0 - played.found, 0.0, starts),
+        ("V101", Phrase("deviation of the tool tip"), "mm", *at_worst(Quantity.TIP, played.tip, played.tip_tolerance)),
+        ("V102", Phrase("deviation of the tool axis"), "degrees", *at_worst(Quantity.AXIS, axis_degrees, axis_limit)),
+        ("V110", Phrase("tool tip off a programmed point"), "mm", passed.tip, at_ends, joints),
+        ("V110", Phrase("tool axis off a programmed one"), "degrees", np.degrees(passed.axis), axis_limit, joints),
+        ("V111", Phrase("strut off its plan"), "mm", off, tolerances.tip, knots),
+        ("V108", Phrase("tip speed"), "mm/s", *at_worst(Quantity.SPEED, played.tip_speed, task.ceiling)),
+        ("V103", Phrase("strut speed"), "mm/s", played.strut_speed, machine.strut_speed, starts),
+        ("V104", Phrase("strut acceleration"), "mm/s^2", played.strut_acceleration, machine.strut_acceleration, starts),
+        ("V113", Phrase("turning rate of the tool axis"), "degrees/s", np.degrees(axis_speed), turning, starts),
+        ("V114", Phrase("tip acceleration"), "mm/s^2", tip_acceleration, machine.tip_acceleration, starts),
+        ("V106", Phrase("shortest strut"), "mm", played.shortest, machine.strut_stroke[0], starts),
+        ("V106", Phrase("longest strut"), "mm", played.longest, machine.strut_stroke[1], starts),
+        ("V116", Phrase("shortest interval"), "ms", np.diff(struts.time_ms), machine.shortest_interval, starts),
     )
     if math.isfinite(machine.block_rate):
         blocks = blocks_in_a_second(struts.time_ms)
-        rows = (*rows, ("V117", "blocks in one second", "1/s", blocks, machine.block_rate, knots))
+        rows = (*rows, ("V117", Phrase("blocks in one second"), "1/s", blocks, machine.block_rate, knots))
     if math.isfinite(machine.strut_jerk):
-        rows = (*rows, ("V112", "strut jerk", "mm/s^3", strut_jerk(struts), machine.strut_jerk, knots))
+        jerk = strut_jerk(struts, task.adjacent)
+        rows = (*rows, ("V112", Phrase("strut jerk"), "mm/s^3", jerk, machine.strut_jerk, knots))
     if math.isfinite(machine.tip_jerk):
-        rows = (*rows, ("V115", "tip jerk", "mm/s^3", tip_jerk(task), machine.tip_jerk, knots))
+        rows = (*rows, ("V115", Phrase("tip jerk"), "mm/s^3", tip_jerk(task), machine.tip_jerk, knots))
+    if any(event.kind is EventKind.SPINDLE_AXIS for event in trajectory.events):
+        rows = (*rows, *_of_threads(task, trajectory, starts))
     return tuple(_worst(trajectory, *row) for row in rows)
 
 
-def figures(task: Task, trajectory: Trajectory) -> tuple[Figure, ...]:
+def _of_threads(task: PlaybackTask, trajectory: Trajectory, starts: _When) -> tuple[_Row, ...]:
+    """The rows of a spindle that is an axis; a machine without one has been refused (T107)."""
+    from pkm_post.certificate.lead import thread_bounds
+
+    axis, bounds = task.machine.spindle_axis, thread_bounds(task, trajectory)
+    if axis is None:
+        raise ValueError("machine: expected a spindle that is an axis, as the trajectory has threads, got none")
+    return (
+        ("V120", Phrase("depth of a thread off its turns"), "mm", bounds.lead, axis.lead_tolerance, starts),
+        ("V121", Phrase("spindle speed in a thread"), "1/min", 60 * bounds.speed, 60 * axis.speed, starts),
+        (
+            "V122",
+            Phrase("spindle acceleration in a thread"),
+            "turns/s^2",
+            bounds.acceleration,
+            axis.acceleration,
+            starts,
+        ),
+    )
+
+
+def figures(task: PlaybackTask, trajectory: Trajectory) -> tuple[Figure, ...]:
     """Measured quantities without a limit."""
     checkpoint()
     machine, struts, knots = task.machine, task.struts, _at_knots(task)
     rows = [
-        ("step of strut acceleration at a knot", "mm/s^2", acceleration_steps(struts), knots),
+        (Phrase("step of strut acceleration at a knot"), "mm/s^2", acceleration_steps(struts), knots),
     ]
     if not math.isfinite(machine.block_rate):
-        rows.append(("blocks in one second", "1/s", blocks_in_a_second(struts.time_ms), knots))
+        rows.append((Phrase("blocks in one second"), "1/s", blocks_in_a_second(struts.time_ms), knots))
     counts = machine.controller.get("counts_per_mm")
     if counts is not None:
-        rows.append(("tip moved by one count of each strut", "um", count_at_tip(task, counts), knots))
+        rows.append((Phrase("tip moved by one count of each strut"), "um", count_at_tip(task, counts), knots))
     checkpoint()
     if machine.velocity_gain is not None:
         cuts = trajectory.kind[task.motion.segment[1:]] != Kind.RAPID
+        checkpoint()
         error = np.where(cuts, contour_error(task, machine.velocity_gain), 0.0)
-        rows.append(("contour error by following errors", "um", error, partial(_start, task.motion)))
+        rows.append((Phrase("contour error by following errors"), "um", error, partial(_start, task.motion)))
     return tuple(_figure(trajectory, *row) for row in rows)
 
 
-def _figure(trajectory: Trajectory, name: str, unit: str, values: Array, when: _When) -> Figure:
+def _figure(trajectory: Trajectory, name: Phrase, unit: str, values: Array, when: _When) -> Figure:
+    checkpoint()
     row = int(np.argmax(values))
     time, segment = when(row)
     return Figure(name, unit, float(values[row]), time, trajectory.place(segment))
@@ -115,11 +142,16 @@ def _figure(trajectory: Trajectory, name: str, unit: str, values: Array, when: _
 
 _When = Callable[[int], tuple[float, int]]
 """Time of a row of a quantity, s, and the trajectory segment executed then. Evaluated for the worst row only."""
-_Row = tuple[str, str, str, Array, Array | float, _When]
+_Row = tuple[str, Phrase, str, Array, Array | float, _When]
 
 
 def _largest_sample(
-    task: Task, passed: JointDeviations, played: PlaybackBounds, quantity: Quantity, values: Array, limit: Array | float
+    task: PlaybackTask,
+    passed: JointDeviations,
+    played: PlaybackBounds,
+    quantity: Quantity,
+    values: Array,
+    limit: Array | float,
 ) -> tuple[Array, float, _When]:
     """The largest figure by its limit, assigned to the interval with the largest measured value; its limit and time.
 
@@ -137,7 +169,7 @@ def _start(motion: Motion, interval: int) -> tuple[float, int]:
     return time, int(np.searchsorted(motion.joint_time, time, side="right"))
 
 
-def _at_knots(task: Task) -> _When:
+def _at_knots(task: PlaybackTask) -> _When:
     return partial(_of_columns, task.struts.time_ms / 1000, task.motion.segment)
 
 
@@ -146,12 +178,14 @@ def _of_columns(time: Array, segment: Array, row: int) -> tuple[float, int]:
 
 
 def _worst(
-    trajectory: Trajectory, code: str, name: str, unit: str, values: Array, limit: Array | float, when: _When
+    trajectory: Trajectory, code: str, name: Phrase, unit: str, values: Array, limit: Array | float, when: _When
 ) -> Finding:
     """The finding at the worst value, by its limit if limits differ; NaN counts as a violation."""
+    checkpoint()
     is_least = name in _LEAST
     sign = -1.0 if is_least else 1.0
     values, limits = sign * np.where(np.isnan(values), sign * np.inf, values), np.broadcast_to(limit, values.shape)
+    checkpoint()
     row = int(np.argmax(values if np.ndim(limit) == 0 else values / limits))
     value, bound, (time, segment) = sign * float(values[row]), float(limits[row]), when(row)
     holds = value >= bound if is_least else value <= bound
@@ -181,6 +215,7 @@ def certify(
     collisions: tuple[Coverage, ...] = NO_SETUP,
     spin_deviation: Array | float = 0.0,
     rests: tuple[bool, bool] = (True, True),
+    adjacent: AdjacentMotion | None = None,
 ) -> tuple[Certificate | None, tuple[Diagnostic, ...]]:
     """Play a program and compare it with the trajectory it was made from.
 
@@ -195,7 +230,14 @@ def certify(
         spin_deviation: (K + 1,) mm of a strut due to spin error, if the motion was reconstructed and so has the spin
             of the program itself.
         rests: whether the program rests at its start, and at its end; a piece of a motion may not.
+        adjacent: the motion before and after such a piece; the jerk at its ends depends on it.
+
+    Raises:
+        ValueError: jerk is limited, and the motion before a piece is unknown.
     """
+    limits_jerk = math.isfinite(machine.strut_jerk) or math.isfinite(machine.tip_jerk)
+    if limits_jerk and rests != (True, True) and adjacent is None:
+        raise ValueError("adjacent: expected the motion before a piece, since the machine limits jerk")
     faults = structure_faults(struts, program_name, trajectory, machine, motion, rests)
     if faults:
         return None, faults
@@ -203,7 +245,9 @@ def certify(
 
     def measured(struts: StrutMotion) -> Certificate:
         spline, knots = ToolSpline.of(machine, struts, motion)
-        task = Task(struts, machine, ruler, motion, knots, spline, ceiling, spin_deviation)
+        task = PlaybackTask(
+            struts, machine, ruler, motion, knots, spline, ceiling, spin_deviation, adjacent or AdjacentMotion()
+        )
         return _certificate(task, trajectory, tolerances, collisions)
 
     certificate = measured(struts)
@@ -211,7 +255,7 @@ def certify(
 
 
 def _certificate(
-    task: Task, trajectory: Trajectory, tolerances: Tolerances, collisions: tuple[Coverage, ...]
+    task: PlaybackTask, trajectory: Trajectory, tolerances: Tolerances, collisions: tuple[Coverage, ...]
 ) -> Certificate:
     """Play a program and measure it."""
     struts = task.struts
@@ -236,8 +280,12 @@ def _feed_ceiling(trajectory: Trajectory, motion: Motion) -> Array:
     first, last = motion.segment[:-1], motion.segment[1:]
     # reduceat over pairs (first, last + 1): the maxima of the ranges are every second result.
     bounds = np.column_stack([first, last + 1]).ravel()
+    checkpoint()
     fastest = np.maximum.reduceat(np.append(trajectory.feed, 0.0), bounds)[::2]
     speed = norm(motion.tip_rate)
+    checkpoint()
     change = np.abs(np.minimum(speed[1:], fastest) - np.minimum(speed[:-1], fastest))
+    checkpoint()
     indivisible = np.diff(motion.time_ms) == 1
+    checkpoint()
     return fastest * _FEED_SHARE + _FEED_ROUNDING + np.where(indivisible, _SWING * change, 0.0)

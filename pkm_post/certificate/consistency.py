@@ -16,7 +16,7 @@ from typing import TypeVar
 import numpy as np
 
 from pkm_post.geometry import norm
-from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Motion, Place, StrutMotion, Trajectory
+from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Motion, Place, StrutMotion, Trajectory, threads
 
 _Thing = TypeVar("_Thing")
 _FARTHEST = 10
@@ -100,6 +100,7 @@ def values_beyond_machine(trajectory: Trajectory, machine: Machine) -> Iterator[
     yield from _of_segments(trajectory, machine)
     yield from _of_start(trajectory, machine)
     yield from _of_spindle(trajectory, machine)
+    yield from _of_threads(trajectory, machine)
 
 
 def _of_segments(trajectory: Trajectory, machine: Machine) -> Iterator[tuple[Place, str]]:
@@ -130,4 +131,14 @@ def _of_spindle(trajectory: Trajectory, machine: Machine) -> Iterator[tuple[Plac
         allowed = machine.spindle_least_speed <= speed <= machine.spindle_speed
         if event.kind is EventKind.SPINDLE and speed and not allowed:
             yield trajectory.place(min(event.row, len(trajectory) - 1)), f"the spindle turns at {speed:g} rpm"
+            return
+
+
+def _of_threads(trajectory: Trajectory, machine: Machine) -> Iterator[tuple[Place, str]]:
+    axis = machine.spindle_axis
+    for thread in threads(trajectory.events):
+        fastest = trajectory.feed[thread.first : thread.end].max() / abs(thread.lead)
+        if axis is None or fastest > axis.speed * (1 + _ROUNDING):
+            place = trajectory.place(thread.first)
+            yield place, "a thread, and the spindle is no axis" if axis is None else f"{60 * fastest:g} rpm in a thread"
             return

@@ -16,7 +16,7 @@ import numpy as np
 
 from pkm_post.geometry import norm
 from pkm_post.machine import NO_SETUP, has_strut_bodies
-from pkm_post.model import Coverage, EventKind, Extent, Kind, Machine, Topic, Trajectory
+from pkm_post.model import Coverage, EventKind, Extent, Machine, Phrase, Topic, Trajectory, cuts_by_speed
 
 _SAME = 1e-6
 """mm, and of unit axes: a tool change within this distance of the pose in the machine file counts as there."""
@@ -28,11 +28,11 @@ _Answer = tuple[str, str]
 
 def approach_and_tool_change_coverage(machine: Machine, trajectory: Trajectory) -> tuple[Coverage, ...]:
     """Coverage of the approach to the first point, of moves to and from tool changes, and of spindle acceleration."""
-    rows: tuple[tuple[str, _Answer], ...] = (
-        ("way to the start of the program", ("", _to_the_start(machine))),
-        ("approach from the start to the first point", (_from_the_start(trajectory), "")),
-        ("tool change", _tool_change_answer(machine, trajectory)),
-        ("spindle speed at the first cut", _spindle(machine, trajectory)),
+    rows: tuple[tuple[Phrase, _Answer], ...] = (
+        (Phrase("way to the start of the program"), ("", _to_the_start(machine))),
+        (Phrase("approach from the start to the first point"), (_from_the_start(trajectory), "")),
+        (Phrase("tool change"), _tool_change_answer(machine, trajectory)),
+        (Phrase("spindle speed at the first cut"), _spindle(machine, trajectory)),
     )
     return tuple(
         Coverage(Topic.AUXILIARY, subject, Extent.PROVEN if how else Extent.NOT_COVERED, how or why_not)
@@ -66,7 +66,7 @@ def _spindle(machine: Machine, trajectory: Trajectory) -> _Answer:
     if machine.spin_up_time is None:
         return "", "the machine file states no spindle.spin_up_time: the motion does not wait for the spindle"
     starts = [event.row for event in trajectory.events if event.kind is EventKind.SPINDLE and event.value]
-    cuts = np.flatnonzero(trajectory.kind != Kind.RAPID)
+    cuts = np.flatnonzero(cuts_by_speed(trajectory.kind, trajectory.events))
     if len(cuts) and (not starts or min(starts) > cuts[0]):
         return "", "the program cuts before it starts the spindle"
     return f"dwells for a spindle that takes {machine.spin_up_time:g} s to its highest speed", ""
@@ -77,21 +77,21 @@ def _event_rows(trajectory: Trajectory, kind: EventKind) -> list[int]:
 
 
 _PATH = (
-    ("tool tip and axis", "the program as written, played at every moment against the trajectory"),
-    ("feed", "the speed of the tip at every moment against the programmed feed"),
-    ("events", "their order and their place on the path"),
+    (Phrase("tool tip and axis"), "the program as written, played at every moment against the trajectory"),
+    (Phrase("feed"), "the speed of the tip at every moment against the programmed feed"),
+    (Phrase("events"), "their order and their place on the path"),
 )
 _LIMITS = (
-    ("strut length, speed and acceleration", "the program as written, at every moment"),
-    ("tip acceleration and turning rate of the tool axis", "the program as written, at every moment"),
-    ("intervals between points", "none is shorter than controller.shortest_interval"),
-    ("joints and singular poses", "the planned path with its rounded corners, between its points as well"),
+    (Phrase("strut length, speed and acceleration"), "the program as written, at every moment"),
+    (Phrase("tip acceleration and turning rate of the tool axis"), "the program as written, at every moment"),
+    (Phrase("intervals between points"), "none is shorter than controller.shortest_interval"),
+    (Phrase("joints and singular poses"), "the planned path with its rounded corners, between its points as well"),
 )
 _SETUP = (
-    ("geometry of the machine", "taken from the machine file"),
-    ("work offset and gauge lengths", "taken from the job"),
-    ("controller set-up, codes and override", "the set-up file states what the program relies on"),
-    ("stiffness, heat and cutting forces", "no model of them is computed"),
+    (Phrase("geometry of the machine"), "taken from the machine file"),
+    (Phrase("work offset and gauge lengths"), "taken from the job"),
+    (Phrase("controller set-up, codes and override"), "the set-up file states what the program relies on"),
+    (Phrase("stiffness, heat and cutting forces"), "no model of them is computed"),
 )
 
 
@@ -119,32 +119,34 @@ def coverage(
         *collisions,
         *approach_and_tool_change_coverage(machine, trajectory),
         *_rows(Topic.SETUP, Extent.NOT_COVERED, _SETUP),
-        _following(machine),
+        _following_error(machine),
     )
 
 
-def _rows(topic: Topic, extent: Extent, rows: tuple[tuple[str, str], ...]) -> tuple[Coverage, ...]:
+def _rows(topic: Topic, extent: Extent, rows: tuple[tuple[Phrase, str], ...]) -> tuple[Coverage, ...]:
     return tuple(Coverage(topic, subject, extent, detail) for subject, detail in rows)
 
 
 def _block_rate(machine: Machine) -> Coverage:
+    blocks, entry = Phrase("blocks in a second"), "controller.block_rate"
     if math.isfinite(machine.block_rate):
-        return Coverage(Topic.LIMITS, "blocks in a second", Extent.PROVEN, "every second of the program")
-    return Coverage(Topic.LIMITS, "blocks in a second", Extent.NOT_COVERED, _NO_LIMIT.format("controller.block_rate"))
+        return Coverage(Topic.LIMITS, blocks, Extent.PROVEN, "every second of the program")
+    return Coverage(Topic.LIMITS, blocks, Extent.NOT_COVERED, _NO_LIMIT.format(entry))
 
 
-def _following(machine: Machine) -> Coverage:
+def _following_error(machine: Machine) -> Coverage:
     """Following errors are reported as a contour error at the knots, without a limit."""
+    error, entry = Phrase("following error"), "struts.velocity_gain"
     if machine.velocity_gain is None:
-        return Coverage(Topic.SETUP, "following error", Extent.NOT_COVERED, _NO_LIMIT.format("struts.velocity_gain"))
-    return Coverage(Topic.SETUP, "following error", Extent.SAMPLED, "struts as first-order lags; a figure, no limit")
+        return Coverage(Topic.SETUP, error, Extent.NOT_COVERED, _NO_LIMIT.format(entry))
+    return Coverage(Topic.SETUP, error, Extent.SAMPLED, "struts as first-order lags; a figure, no limit")
 
 
 def _jerks(machine: Machine) -> tuple[Coverage, ...]:
     """Jerk is checked from one interval to the next if a limit is stated; steps at the knots have no limit."""
     limits = (
-        ("strut jerk", "struts.jerk", machine.strut_jerk),
-        ("tip jerk", "tool_path.tip_jerk", machine.tip_jerk),
+        (Phrase("strut jerk"), "struts.jerk", machine.strut_jerk),
+        (Phrase("tip jerk"), "tool_path.tip_jerk", machine.tip_jerk),
     )
     known = tuple(
         Coverage(Topic.LIMITS, subject, Extent.SAMPLED, _JERK)
@@ -152,17 +154,17 @@ def _jerks(machine: Machine) -> tuple[Coverage, ...]:
         else Coverage(Topic.LIMITS, subject, Extent.NOT_COVERED, _NO_LIMIT.format(entry))
         for subject, entry, limit in limits
     )
-    return (*known, Coverage(Topic.LIMITS, "steps of acceleration at knots", Extent.NOT_COVERED, _STEPS))
+    return (*known, Coverage(Topic.LIMITS, Phrase("steps of acceleration at knots"), Extent.NOT_COVERED, _STEPS))
 
 
 def _collisions(machine: Machine) -> tuple[Coverage, ...]:
     """The bodies in the machine file are checked on the planned path."""
     struts, bodies, fixtures = has_strut_bodies(machine), bool(machine.bodies), bool(machine.fixtures)
     pairs = (
-        ("strut and strut", struts, "tubes or rods of the struts"),
-        ("strut and platform", struts and bodies, "tubes or rods of the struts and bodies of the platform"),
-        ("strut and fixture", struts and fixtures, "tubes or rods of the struts and fixtures"),
-        ("spindle and fixture", bodies and fixtures, "bodies of the platform and fixtures"),
+        (Phrase("strut and strut"), struts, "tubes or rods of the struts"),
+        (Phrase("strut and platform"), struts and bodies, "tubes or rods of the struts and bodies of the platform"),
+        (Phrase("strut and fixture"), struts and fixtures, "tubes or rods of the struts and fixtures"),
+        (Phrase("spindle and fixture"), bodies and fixtures, "bodies of the platform and fixtures"),
     )
     return tuple(
         Coverage(Topic.COLLISIONS, subject, Extent.PROVEN, "the planned path, between its points as well")
@@ -184,6 +186,9 @@ CERTIFIED = {
     "tool_path.tip_acceleration": ("tip acceleration",),
     "tool_path.tip_jerk": ("tip jerk",),
     "tool_path.axis_speed": ("turning rate of the tool axis",),
+    "spindle.axis.lead_tolerance": ("depth of a thread off its turns",),
+    "spindle.axis.speed": ("spindle speed in a thread",),
+    "spindle.axis.acceleration": ("spindle acceleration in a thread",),
 }
 """Findings of the certificate, by name: figures of the written program."""
 

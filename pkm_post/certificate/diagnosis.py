@@ -49,7 +49,7 @@ def diagnose(
     if certificate.holds:
         return ()
     length, speed = in_pieces(len(motion), _AT_ONCE, lambda rows: strut_state(machine, motion.poses(rows))[:2])
-    exact = StrutMotion(struts.time_ms, length, speed, struts.events)
+    exact = replace(struts, length=length, speed=speed)
     decimals = _as_printed(struts, exact, machine)
     if decimals is None:
         return tuple(row.diagnostic() for row in certificate.findings if not row.holds)

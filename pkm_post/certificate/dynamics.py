@@ -22,10 +22,10 @@ import numpy as np
 
 from pkm_post.certificate.playback import chordal_deviation
 from pkm_post.certificate.struts import mean_changes
-from pkm_post.certificate.tool_states import Task
+from pkm_post.certificate.tool_states import PlaybackTask
 from pkm_post.geometry import Array, cross, hermite_accelerations, hermite_lengths, hermite_speeds, length_of
 from pkm_post.machine import forward, tool_rates
-from pkm_post.model import StrutMotion, pieces
+from pkm_post.model import StrutMotion, checkpoint, pieces
 
 _INSTANTS = (9, 17, 33, 65, 129, 257)
 """Instants of an interval that is checked closely; each step halves the spacing."""
@@ -47,7 +47,7 @@ _MOST_KNOTS = 2048
 _KNOTS_AT_ONCE = 4096
 
 
-def tool_limits(task: Task) -> tuple[Array, Array]:
+def tool_limits(task: PlaybackTask) -> tuple[Array, Array]:
     """Upper bounds on the turning rate of the tool axis, rad/s, and the tip acceleration, mm/s^2, of K intervals."""
     limits = np.array([[task.machine.axis_speed], [task.machine.tip_acceleration]])
     found, hidden = np.empty((2, 2, len(task.struts) - 1))
@@ -55,9 +55,10 @@ def tool_limits(task: Task) -> tuple[Array, Array]:
         rows = np.arange(piece.start, piece.stop)
         found[:, piece], hidden[:, piece] = (part / limits for part in task.spline.rates(rows))
     for instants in _INSTANTS:
+        checkpoint()
         rows = _unsettled(found, hidden)
-        for first in range(0, len(rows), _INSTANTS_AT_ONCE // instants):
-            some = rows[first : first + _INSTANTS_AT_ONCE // instants]
+        for part in pieces(len(rows), _INSTANTS_AT_ONCE // instants) if len(rows) else ():
+            some = rows[part]
             found[:, some], hidden[:, some] = (part / limits for part in _closely(task, some, instants))
     axis_speed, tip_acceleration = (found + hidden) * limits
     return axis_speed, tip_acceleration
@@ -71,7 +72,7 @@ def _unsettled(found: Array, hidden: Array) -> Array:
     return np.flatnonzero(((figure > enough) | undecided).any(axis=0))
 
 
-def _closely(task: Task, rows: Array, instants: int) -> tuple[Array, Array]:
+def _closely(task: PlaybackTask, rows: Array, instants: int) -> tuple[Array, Array]:
     """Values at even instants of N intervals, and bounds on the undetected excess between them, (2, N) each."""
     shares, machine, motion = np.linspace(0, 1, instants), task.machine, task.motion
     cubic = task.struts.cubics(rows)
@@ -95,20 +96,21 @@ def _closely(task: Task, rows: Array, instants: int) -> tuple[Array, Array]:
     return found, hidden
 
 
-def tip_jerk(task: Task) -> Array:
+def tip_jerk(task: PlaybackTask) -> Array:
     """Jerk of the tip about each knot, (K + 1,) mm/s^3, computed as in ``struts.strut_jerk``.
 
     Velocities at the knots are J^-1 times the printed speeds, with J of the planned pose; their error bound is added.
     """
     struts = task.struts
     miss = _SPEED_BY_RESIDUAL * np.abs(struts.length - task.knots.length).max(axis=1)
-    changes, apart = mean_changes(struts.time_ms, task.spline.rate[:3].T)
+    changes, apart = mean_changes(struts.time_ms, task.spline.rate[:3].T, task.adjacent, task.adjacent.tip)
     duration = np.diff(struts.time_ms) / 1000
+    checkpoint()
     of_interval = np.concatenate([[0.0], (miss[1:] + miss[:-1]) / duration, [0.0]])
     return np.asarray((length_of(*changes.T) + of_interval[1:] + of_interval[:-1]) / apart)
 
 
-def count_at_tip(task: Task, counts_per_mm: float) -> Array:
+def count_at_tip(task: PlaybackTask, counts_per_mm: float) -> Array:
     """Tip displacement by one count of each strut, (K + 1,) micrometres at sampled knots, 0 at the others.
 
     The Jacobian changes little from knot to knot: long programs are sampled evenly.
@@ -120,7 +122,7 @@ def count_at_tip(task: Task, counts_per_mm: float) -> Array:
     return _MICROMETRES / counts_per_mm * largest
 
 
-def contour_error(task: Task, gain: Array) -> Array:
+def contour_error(task: PlaybackTask, gain: Array) -> Array:
     """Contour error of the tip from the lag of the struts, (K,) micrometres at the ends of intervals.
 
     Args:
@@ -130,7 +132,9 @@ def contour_error(task: Task, gain: Array) -> Array:
     struts, delay = task.struts, float((1 / gain).mean())
     actual, rounds = np.empty((len(struts) - 1, 6)), _rounds(struts, gain)
     for strut in range(6):  # one by one: a lag needs many temporary columns
+        checkpoint()
         actual[:, strut] = struts.length[1:, strut] - _lag(struts, strut, gain[strut], rounds)
+    checkpoint()
     time = np.maximum(struts.time_ms[1:] / 1000 - delay, 0.0)
     return _MICROMETRES * _across(task, time, actual)
 
@@ -139,9 +143,12 @@ def _lag(struts: StrutMotion, strut: int, gain: float, rounds: int) -> Array:
     """Lag of a position loop that follows the K cubics of a strut from rest, (K,) mm at the end of each."""
     length, speed, duration = struts.length[:, strut, None], struts.speed[:, strut, None], _durations(struts)
     begin, end = hermite_accelerations(length[:-1], speed[:-1], length[1:], speed[1:], duration)
+    checkpoint()
     duration = duration[:, None]
     bend = (end - begin) / duration / gain**3
+    checkpoint()
     first, last = (rate / gain - bent / gain**2 + bend for rate, bent in ((speed[:-1], begin), (speed[1:], end)))
+    checkpoint()
     kept = np.exp(-gain * duration)
     return _summed(last - first * kept, kept, rounds)[:, 0]
 
@@ -154,6 +161,7 @@ def _rounds(struts: StrutMotion, gain: Array) -> int:
     """Doublings of the summed rows until the residual of the slowest loop is negligible."""
     part, rounds = np.exp(-gain.min() * _durations(struts)), 0
     while (1 << rounds) < len(part) and part[1 << rounds :].max() > _FORGOTTEN:
+        checkpoint()
         part[1 << rounds :] *= part[: -(1 << rounds)].copy()
         rounds += 1
     return rounds
@@ -162,16 +170,18 @@ def _rounds(struts: StrutMotion, gain: Array) -> int:
 def _summed(added: Array, part: Array, rounds: int) -> Array:
     """x_i = part_i x_(i - 1) + added_i, (K, C), for all i at once: over 1, 2, 4 ... rows. Both are overwritten."""
     for step in (1 << number for number in range(rounds)):
+        checkpoint()
         added[step:] += part[step:] * added[:-step]
         part[step:] *= part[:-step].copy()
     return added
 
 
-def _across(task: Task, time: Array, actual: Array) -> Array:
+def _across(task: PlaybackTask, time: Array, actual: Array) -> Array:
     """Deviation of the tip, mm, perpendicular to its motion, for lengths (K, 6) at times (K,) s."""
     struts, error = task.struts, np.empty(len(time))
     knot = np.clip(np.searchsorted(struts.time_ms, 1000 * time, side="right") - 1, 0, len(struts) - 2)
     for first in range(0, len(error), _KNOTS_AT_ONCE):
+        checkpoint()
         rows = slice(first, first + _KNOTS_AT_ONCE)
         cubic = struts.cubics(knot[rows])
         share = ((time[rows] - struts.time_ms[knot[rows]] / 1000) / cubic[-1])[:, None]

@@ -24,7 +24,7 @@ _LOOKS = 4
 """Sampled instants of each interval."""
 _REACHES = (12, 4, 48, 8, 192, 16, 768, 24)
 """Numbers of instants to search on either side of the estimate, tried in turn for joints not found yet."""
-_NEAR = 24
+_WIDEST_FULL_SEARCH = 24
 """Beyond this reach, only joints without any match are searched for."""
 _FITS = 1.5
 """Deviation by tolerance within which a joint counts as found; the certificate allows 1."""
@@ -73,7 +73,7 @@ def joint_times(
     time, fit = np.full((2, len(trajectory)), np.nan)
     time[joints], fit[joints] = path.time[knots], 0.0
     for reach in _REACHES:
-        rows = np.flatnonzero(~(fit <= (_WELL if reach <= _NEAR else _FITS)))
+        rows = np.flatnonzero(~(fit <= (_WELL if reach <= _WIDEST_FULL_SEARCH else _FITS)))
         if not len(rows):
             continue
         found, by = search.look(rows, search.guess(rows, time), reach)
@@ -105,7 +105,7 @@ class _Search:
     def __init__(self, path: PlayedPath, trajectory: Trajectory, machine: Machine, tolerances: Tolerances) -> None:
         self._path, self._count, self._machine = path, len(path.time) - 1, machine
         turn = machine.characteristic_length
-        self._way = _way(path, turn)
+        self._sampled_path = _sampled_path(path, turn)
         spun = np.abs(np.diff(trajectory.spin, prepend=trajectory.start_spin))
         self._programmed = np.cumsum(trajectory.length + turn * (trajectory.angle + spun))
         self._joint = np.vstack([trajectory.tip.T, trajectory.axis.T, trajectory.spin])
@@ -118,27 +118,29 @@ class _Search:
         """Estimated distances of joints from the start, (M,), interpolated between joints with known times."""
         known = np.flatnonzero(~np.isnan(time))
         instant = time[known] * 1.0
-        at_known = np.interp(self._instant_of(instant), np.arange(len(self._way.length)), self._way.length)
+        at_known = np.interp(
+            self._instant_of(instant), np.arange(len(self._sampled_path.length)), self._sampled_path.length
+        )
         programmed = np.append(0.0, self._programmed[known])
         return np.asarray(np.interp(self._programmed[rows], programmed, np.append(0.0, at_known)))
 
     def time_of(self, length: Array) -> Array:
         """Time at which a distance from the start is reached, s."""
-        instant = np.interp(length, self._way.length, np.arange(len(self._way.length)))
+        instant = np.interp(length, self._sampled_path.length, np.arange(len(self._sampled_path.length)))
         interval = np.minimum(instant.astype(np.int64) // _LOOKS, self._count - 1)
         return self._time_at(interval, instant / _LOOKS - interval)
 
     def look(self, rows: Array, guess: Array, reach: int) -> Array:
         """Times at which joints are passed, s, searched near a guess; and the deviation then by tolerance, (2, M)."""
-        middle = np.searchsorted(self._way.length, guess)
+        middle = np.searchsorted(self._sampled_path.length, guess)
         at_once = max(1, _AT_ONCE // (2 * reach + 1))
         parts = [slice(first, first + at_once) for first in range(0, len(rows), at_once)]
         return np.hstack([self._look(rows[part], middle[part], reach) for part in parts])
 
     def _look(self, rows: Array, middle: Array, reach: int) -> Array:
         shift = np.arange(-reach, reach + 1)[:, None]
-        instants = np.clip(middle + shift, 0, len(self._way.length) - 1)
-        off = (self._way.place[:, instants] - self._joint[:, None, rows]) * self._weight[:, None, rows]
+        instants = np.clip(middle + shift, 0, len(self._sampled_path.length) - 1)
+        off = (self._sampled_path.place[:, instants] - self._joint[:, None, rows]) * self._weight[:, None, rows]
         nearest = np.argmin(np.square(off).sum(axis=0), axis=0)
         return self._closely(rows, instants[nearest, np.arange(len(rows))])
 
@@ -219,7 +221,7 @@ class _Search:
         return np.asarray(_LOOKS * (interval + (time - begin) / (end - begin)))
 
 
-def _way(path: PlayedPath, turn: float) -> _SampledPath:
+def _sampled_path(path: PlayedPath, turn: float) -> _SampledPath:
     """Sample the path at even instants; a turn of one radian counts as ``turn`` mm."""
     count = len(path.time) - 1
     inside = path.at(np.arange(count), np.linspace(0.0, 1.0, _LOOKS + 1)[:, None])

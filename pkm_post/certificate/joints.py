@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.certificate.tool_states import Task
+from pkm_post.certificate.tool_states import PlaybackTask
 from pkm_post.geometry import Array, angle_between, hermite_lengths, norm
 from pkm_post.machine import forward
 from pkm_post.model import Trajectory
@@ -43,17 +43,17 @@ class JointDeviations:
     intervals: Array
 
 
-def measure_joints(task: Task, trajectory: Trajectory) -> JointDeviations:
+def measure_joints(task: PlaybackTask, trajectory: Trajectory) -> JointDeviations:
     """Measure the tool at the joints of a trajectory."""
 
     def part(first: int) -> tuple[Array, ...]:
-        return _passed(task, trajectory, np.arange(first, min(first + _AT_ONCE, len(trajectory))))
+        return _measured(task, trajectory, np.arange(first, min(first + _AT_ONCE, len(trajectory))))
 
     parts = list(in_workers(part, range(0, len(trajectory), _AT_ONCE)))
     return JointDeviations(*(np.concatenate(columns, axis=-1) for columns in zip(*parts, strict=True)))
 
 
-def _passed(task: Task, trajectory: Trajectory, rows: Array) -> tuple[Array, ...]:
+def _measured(task: PlaybackTask, trajectory: Trajectory, rows: Array) -> tuple[Array, ...]:
     struts, motion = task.struts, task.motion
     time = motion.joint_time[rows]
     knot = np.clip(np.searchsorted(struts.time_ms, 1000 * time) - 1, 0, len(struts) - 2)
@@ -78,7 +78,7 @@ def _passed(task: Task, trajectory: Trajectory, rows: Array) -> tuple[Array, ...
     )
 
 
-def _tool_at(task: Task, trajectory: Trajectory, rows: Array, knot: Array, share: Array) -> tuple[Array, ...]:
+def _tool_at(task: PlaybackTask, trajectory: Trajectory, rows: Array, knot: Array, share: Array) -> tuple[Array, ...]:
     """Tip and axis at some joints, (N, 3) each; their error bounds, (2, N); and whether there is a pose, (N,).
 
     They come from the tool's cubics if these are accurate enough; else from Newton's method.
@@ -102,7 +102,7 @@ def _tool_at(task: Task, trajectory: Trajectory, rows: Array, knot: Array, share
     return tip, axis, missed, found
 
 
-def _off_both(task: Task, tip: Array, axis: Array, rows: Array, last: int) -> tuple[Array, Array]:
+def _off_both(task: PlaybackTask, tip: Array, axis: Array, rows: Array, last: int) -> tuple[Array, Array]:
     """Deviations of poses from both segments at a joint, (2, 2, N) by tolerance, and the tolerances, (2, N).
 
     The first index is the segment.

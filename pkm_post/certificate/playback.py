@@ -16,8 +16,9 @@ import numpy as np
 
 from pkm_post.certificate.joints import JointDeviations
 from pkm_post.certificate.struts import extremes
-from pkm_post.certificate.tool_states import Task, ToolStates, states_by_kinematics, states_on_spline
+from pkm_post.certificate.tool_states import PlaybackTask, ToolStates, states_by_kinematics, states_on_spline
 from pkm_post.geometry import Array, length_of
+from pkm_post.model import checkpoint, pieces
 from pkm_post.system import in_workers
 
 _ROOM = 1.1
@@ -91,7 +92,7 @@ class _Measured:
     values: tuple[Array, Array, Array]
 
 
-def sample(task: Task, rows: Array, instants: int, closely: bool) -> Samples:
+def sample(task: PlaybackTask, rows: Array, instants: int, closely: bool) -> Samples:
     """Play the intervals that begin at some knots, (N,), and measure each at a number of even instants."""
     measured = _measured(task, rows, instants, closely)
     tool, tip_tolerance, (by_tolerance, off_axis, speed) = measured.tool, measured.tip_tolerance, measured.values
@@ -113,7 +114,7 @@ def sample(task: Task, rows: Array, instants: int, closely: bool) -> Samples:
     )  # fmt: skip
 
 
-def when_worst(task: Task, passed: JointDeviations, quantity: Quantity, row: int) -> tuple[float, int]:
+def when_worst(task: PlaybackTask, passed: JointDeviations, quantity: Quantity, row: int) -> tuple[float, int]:
     """Time of the worst value in the interval that begins at a knot, s since the start, and its segment."""
     measured = _measured(task, np.array([row]), _TO_FIND_THE_WORST, closely=True)
     allowed = 1.0, task.ruler.axis_tolerance, task.ceiling[row]
@@ -125,7 +126,7 @@ def when_worst(task: Task, passed: JointDeviations, quantity: Quantity, row: int
     return float(time[worst]), int(np.append(measured.segment, joints)[worst])
 
 
-def _measured(task: Task, rows: Array, instants: int, closely: bool) -> _Measured:
+def _measured(task: PlaybackTask, rows: Array, instants: int, closely: bool) -> _Measured:
     """Tool poses at even instants of the intervals that begin at some knots, (N,), and their deviations."""
     motion, shares = task.motion, np.linspace(0, 1, instants)
     tool = (states_by_kinematics if closely else states_on_spline)(task, rows, shares)
@@ -140,9 +141,11 @@ def _measured(task: Task, rows: Array, instants: int, closely: bool) -> _Measure
     return _Measured(tool, time, segment, off[2], (off[0] / off[2], off[1], length_of(*tool.velocity)))
 
 
-_INSTANTS = (9, 17, 33, 65, 129, 257, 513, 1025)
-"""Sampled instants of each interval, including its two knots; then of intervals that may have the worst undetected:
-each step halves the spacing and quarters the undetected part."""
+_ON_SPLINE = (9, 33)
+"""Sampled instants of each interval on the cubic of the tool, including its two knots; then of intervals that may have
+the worst undetected."""
+_INSTANTS = (17, 33, 65, 129, 257, 513, 1025)
+"""The same by kinematics for intervals that still may: a step halves the spacing and quarters the undetected part."""
 _REMAINDER = np.array([0.005, 0.005, 0.001])[:, None]
 """Final undetected shares of the worst deviations of tip and axis and of the worst speed, which are added."""
 _AT_ONCE = 8192
@@ -181,7 +184,7 @@ class PlaybackBounds:
     most_found: Array
 
 
-def play(task: Task, passed: JointDeviations) -> PlaybackBounds:
+def play(task: PlaybackTask, passed: JointDeviations) -> PlaybackBounds:
     """Play a strut motion and measure it.
 
     Args:
@@ -190,12 +193,16 @@ def play(task: Task, passed: JointDeviations) -> PlaybackBounds:
     """
     rows = np.arange(len(task.struts) - 1)
     seen, peaks = Samples.nothing(len(rows)), _JointPeaks.of(passed, len(rows))
-    unsettled, closely, instants = np.flatnonzero(np.isfinite(task.spline.missed[0])), False, 0
-    for closer in _INSTANTS:
-        _resample(task, seen, peaks, unsettled, closer, closely)
-        instants += closer * len(unsettled)
-        enough = seen.worst.max(axis=1, keepdims=True) * (1 + _REMAINDER)
-        unsettled, closely = np.flatnonzero((seen.worst + seen.hidden > enough).any(axis=0)), True
+    on_spline, unsettled, instants = np.isfinite(task.spline.missed[0]), rows, 0
+    for closely, counts in ((False, _ON_SPLINE), (True, _INSTANTS)):
+        for count in counts:
+            some = unsettled if closely else unsettled[on_spline[unsettled]]
+            _resample(task, seen, peaks, some, count, closely)
+            instants += count * len(some)
+            checkpoint()
+            enough = seen.worst.max(axis=1, keepdims=True) * (1 + _REMAINDER)
+            unsettled = np.flatnonzero((seen.worst + seen.hidden > enough).any(axis=0))
+    checkpoint()
     tip, axis, speed = seen.worst + seen.hidden
     strut_speed, strut_acceleration, shortest, longest = _extremes(task, rows)
     return PlaybackBounds(
@@ -213,7 +220,7 @@ def play(task: Task, passed: JointDeviations) -> PlaybackBounds:
     )
 
 
-def _resample(task: Task, seen: Samples, peaks: _JointPeaks, rows: Array, instants: int, closely: bool) -> None:
+def _resample(task: PlaybackTask, seen: Samples, peaks: _JointPeaks, rows: Array, instants: int, closely: bool) -> None:
     """Replace the results of some intervals by those of more instants."""
     if not len(rows):
         return
@@ -232,10 +239,12 @@ def _keep(seen: Samples, peaks: _JointPeaks, rows: Array, again: Samples) -> Non
     seen.found[rows] = again.found
 
 
-def _extremes(task: Task, rows: Array) -> Array:
+def _extremes(task: PlaybackTask, rows: Array) -> Array:
     """For each interval as in ``PlaybackBounds``: strut speed, acceleration, shortest and longest length, (4, K)."""
-    blocks = _blocks(rows, _AT_ONCE // _INSTANTS[0])
-    return np.concatenate([np.stack(extremes(*task.struts.cubics(some))) for some in blocks], axis=1)
+    found = np.empty((4, len(rows)))
+    for some in pieces(len(rows), _AT_ONCE // _ON_SPLINE[0]):
+        found[:, some] = extremes(*task.struts.cubics(rows[some]))
+    return found
 
 
 def _blocks(rows: Array, at_once: int) -> list[Array]:
@@ -254,7 +263,9 @@ class _JointPeaks:
         off, tolerance = np.zeros((2, count)), np.ones(count)
         for touched in passed.intervals:
             for row in (0, 1):
+                checkpoint()
                 np.maximum.at(off[row], touched, passed.off[row])
+            checkpoint()
             worst = np.flatnonzero(passed.off[0] == off[0, touched])
             tolerance[touched[worst]] = passed.tip_tolerance[worst]
         return cls(off, tolerance)

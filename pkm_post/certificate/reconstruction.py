@@ -18,11 +18,11 @@ from pkm_post.certificate.joint_times import joint_times
 from pkm_post.certificate.played_path import PlayedPath, largest_backward_motion, spin_deviation
 from pkm_post.geometry import Array, norm
 from pkm_post.machine import PosePath
-from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory
+from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory, as_executed
 
 Findings = tuple[Diagnostic, ...]
 
-_LOOKS = np.array([[0.25], [0.5], [0.75], [1.0]])
+_SAMPLE_SHARES = np.array([[0.25], [0.5], [0.75], [1.0]])
 """Shares of each interval at which its pose path is sampled."""
 
 
@@ -40,16 +40,16 @@ class ReconstructedMotion:
     spin_deviation: Array
     path: PlayedPath
 
-    def way(self) -> tuple[PosePath, Array]:
+    def pose_path(self) -> tuple[PosePath, Array]:
         """The pose path through even instants of all intervals, and the segments of these."""
         count = len(self.motion) - 1
         first = self.path.at(np.array([0]), np.zeros((1, 1)))[:, 0]
-        inside = self.path.at(np.arange(count), _LOOKS).transpose(0, 2, 1).reshape(7, -1)
+        inside = self.path.at(np.arange(count), _SAMPLE_SHARES).transpose(0, 2, 1).reshape(7, -1)
         place = np.hstack([first, inside])
         axis = (place[3:6] / norm(place[3:6].T)).T
-        looks = len(_LOOKS)
-        tool_length = np.append(self.motion.tool_length[:1], np.repeat(self.motion.tool_length[1:], looks))
-        segment = np.append(self.motion.segment[:1], np.repeat(self.motion.segment[1:], looks))
+        samples = len(_SAMPLE_SHARES)
+        tool_length = np.append(self.motion.tool_length[:1], np.repeat(self.motion.tool_length[1:], samples))
+        segment = np.append(self.motion.segment[:1], np.repeat(self.motion.segment[1:], samples))
         return PosePath.straight(place[:3].T, axis, place[6], tool_length), segment
 
 
@@ -72,12 +72,12 @@ def reconstruct(
     if path is None:
         return None, _diagnostics(fault, program_name)
     ruler = TrajectoryRuler(trajectory, tolerances)
-    passed = joint_times(path, trajectory, machine, tolerances, rests.rows[1:] - 1, rests.knots[1:])
-    fault = _way_back(path, ruler, passed)
+    joint_time = joint_times(path, trajectory, machine, tolerances, rests.rows[1:] - 1, rests.knots[1:])
+    fault = _backward_motion_fault(path, ruler, joint_time)
     if fault is not None:
         return None, _diagnostics(fault, program_name)
-    off = spin_deviation(path, trajectory, machine, ruler, passed)
-    return ReconstructedMotion(_motion(path, passed), off, path), ()
+    off = spin_deviation(path, trajectory, machine, ruler, joint_time)
+    return ReconstructedMotion(_motion(path, joint_time), off, path), ()
 
 
 _Fault = tuple[str, str]
@@ -98,8 +98,8 @@ def _played_path(
     return None, ("V107", found)
 
 
-def _way_back(path: PlayedPath, ruler: TrajectoryRuler, passed: Array) -> _Fault | None:
-    back, when = largest_backward_motion(path, ruler, passed)
+def _backward_motion_fault(path: PlayedPath, ruler: TrajectoryRuler, joint_time: Array) -> _Fault | None:
+    back, when = largest_backward_motion(path, ruler, joint_time)
     if back <= 1:
         return None
     return (
@@ -108,7 +108,7 @@ def _way_back(path: PlayedPath, ruler: TrajectoryRuler, passed: Array) -> _Fault
     )
 
 
-def _motion(path: PlayedPath, passed: Array) -> Motion:
+def _motion(path: PlayedPath, joint_time: Array) -> Motion:
     return Motion(
         time_ms=path.struts.time_ms,
         tip=path.place[:3].T,
@@ -118,8 +118,8 @@ def _motion(path: PlayedPath, passed: Array) -> Motion:
         axis_rate=path.rate[3:6].T,
         spin_rate=path.rate[6],
         tool_length=path.tool_length,
-        segment=np.minimum(np.searchsorted(passed, path.time), len(passed) - 1),
-        joint_time=passed,
+        segment=np.minimum(np.searchsorted(joint_time, path.time), len(joint_time) - 1),
+        joint_time=joint_time,
         events=path.struts.events,
     )
 
@@ -152,7 +152,9 @@ class _Rests:
         if len(self.knots) != len(self.rows):
             return "V110", f"the program rests {len(self.knots)} times, the trajectory {len(self.rows)} times"
         at = self.knots[np.searchsorted(self.rows, [event.row for event in trajectory.events])]
-        expected = tuple(replace(event, row=int(knot)) for knot, event in zip(at, trajectory.events, strict=True))
+        expected = tuple(
+            replace(event, row=int(knot)) for knot, event in zip(at, as_executed(trajectory.events), strict=True)
+        )
         return None if struts.events == expected else ("V109", event_fault(struts.events, expected))
 
     def tool_lengths(self, trajectory: Trajectory) -> Array:

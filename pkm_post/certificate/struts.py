@@ -7,11 +7,13 @@ interval, from the closed forms of a cubic; jerk; and bounds on the deviation of
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+
 import numpy as np
 
 from pkm_post.certificate.tool_spline import KnotKinematics
 from pkm_post.geometry import Array, hermite_accelerations
-from pkm_post.model import StrutMotion, in_pieces, pieces
+from pkm_post.model import StrutMotion, checkpoint, in_pieces, pieces
 
 _AT_ONCE = 4096
 """Knots in one pass: the working arrays of one pass stay in the processor's cache."""
@@ -69,30 +71,53 @@ def off_plan(struts: StrutMotion, knots: KnotKinematics) -> Array:
     return in_pieces(len(struts), _AT_ONCE, wrong)[0]
 
 
-def strut_jerk(struts: StrutMotion) -> Array:
-    """Largest strut jerk about each knot, (K + 1,) mm/s^3, with rests before and after the program.
+@dataclass(frozen=True)
+class AdjacentMotion:
+    """The motion before and after a piece: the jerk at the ends of the piece depends on it.
+
+    Attributes:
+        duration: of the interval before it, s; 0 where it begins at rest.
+        struts: (6,) mean acceleration in that interval, mm/s^2.
+        tip: (3,) that of the tip.
+        goes_on: whether the piece ends at speed: the jerk at its last knot is measured with what comes next.
+    """
+
+    duration: float = 0.0
+    struts: Array = field(default_factory=lambda: np.zeros(6))
+    tip: Array = field(default_factory=lambda: np.zeros(3))
+    goes_on: bool = False
+
+
+def strut_jerk(struts: StrutMotion, adjacent: AdjacentMotion) -> Array:
+    """Largest strut jerk about each knot, (K + 1,) mm/s^3.
 
     The mean acceleration of an interval is its change of speed by its duration. From one interval to the next it
     changes by no more than the jerk times the time between their middles.
     """
-    changes, apart = mean_changes(struts.time_ms, struts.speed)
+    changes, apart = mean_changes(struts.time_ms, struts.speed, adjacent, adjacent.struts)
     return np.asarray(np.abs(changes).max(axis=1) / apart)
 
 
-def mean_changes(time_ms: Array, speed: Array) -> tuple[Array, Array]:
+def mean_changes(time_ms: Array, speed: Array, adjacent: AdjacentMotion, before: Array) -> tuple[Array, Array]:
     """Changes of mean acceleration at knots, and the times between the middles of their intervals.
 
     Args:
         time_ms: (K + 1,) whole ms.
         speed: (K + 1, C) by s.
+        adjacent: what is before the first and after the last knot.
+        before: (C,) mean acceleration in the interval before.
 
     Returns:
-        (K + 1, C) and (K + 1,) s, with rests before the first and after the last knot.
+        (K + 1, C) and (K + 1,) s; no change at the last knot where the motion goes on.
     """
     duration = np.diff(time_ms / 1000)
-    still = np.zeros((1, speed.shape[1]))
-    mean = np.concatenate([still, np.diff(speed, axis=0) / duration[:, None], still])
-    apart = (np.append(duration, 0.0) + np.append(0.0, duration)) / 2
+    checkpoint()
+    within = np.diff(speed, axis=0) / duration[:, None]
+    checkpoint()
+    after = within[-1:] if adjacent.goes_on else np.zeros((1, speed.shape[1]))
+    mean = np.concatenate([before[None], within, after])
+    apart = (np.append(duration, 0.0) + np.append(adjacent.duration, duration)) / 2
+    checkpoint()
     return np.diff(mean, axis=0), apart
 
 

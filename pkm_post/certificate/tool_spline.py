@@ -24,7 +24,7 @@ from pkm_post.geometry import (
     length_of,
 )
 from pkm_post.machine import ToolPoses, attitude_rates, displaced, map_to_tool, strut_lengths, strut_state
-from pkm_post.model import Machine, Motion, StrutMotion, pieces
+from pkm_post.model import Machine, Motion, StrutMotion, distinct, pieces
 
 _MOST_CHANGE = 0.05
 """Relative change of the Jacobian allowed in an interval; the mean of the inverses then has an error of some 6e-4."""
@@ -67,8 +67,8 @@ class KnotKinematics:
 
 def inverses_at(machine: Machine, motion: Motion, rows: Array) -> tuple[Array, Array]:
     """Inverse Jacobians of the tip at both ends of the intervals that begin at some knots, (N, 6, 6) each."""
-    knots, row = np.unique(np.concatenate([rows, rows + 1]), return_inverse=True)
-    begin, end = np.split(row, 2)
+    knots = distinct(np.concatenate([rows, rows + 1]))
+    begin, end = np.searchsorted(knots, rows), np.searchsorted(knots, rows + 1)
     inverse = _inverted(strut_state(machine, motion.poses(knots))[2])
     return inverse[begin], inverse[end]
 
@@ -96,13 +96,13 @@ _FASTEST = 12.3
 """The same for its rate: at most 11.153 times that value by the duration."""
 _BENDS = 356.0
 """The same for its second derivative: at most 323.56 by the square of the duration. All three have 10 % margin."""
-_NEAR_PLAN = 1e-4
+_MAX_PLAN_DEVIATION = 1e-4
 """mm of deviation of a strut from its plan at a knot; beyond it, one linear step from the plan is too coarse."""
 _STEP_MISSES = np.array([1e-9, 1e-9, 1e-4])[:, None]
 """mm, rad and mm/s: bounds on the error of such a step, and of speeds from the Jacobian before it."""
 _TURN_MISSES = 2e-6
 """rad/s: the same for turning rates."""
-_NEAR_CUBIC = 0.01
+_MAX_CUBIC_DEVIATION = 0.01
 """mm of a strut between cubic and program; beyond it, linear steps do not resolve the difference."""
 _SMALL_TURN = 0.3
 """rad of the axis in an interval; beyond it, no bound is given."""
@@ -211,7 +211,7 @@ class ToolSpline:
         swing, _ = attitude_rates(axis.T, turn.T)
         off_tip, off_axis = (length_of(*part).reshape(_LOOKS.size, -1).max(axis=0) for part in (way, swing.T))
         missed = np.stack([_MOST * off_tip, _MOST * off_axis, _FASTEST * off_tip / self.duration[rows]]) + _STEP_MISSES
-        return np.where(np.abs(residual).max(axis=(1, 2)) < _NEAR_CUBIC, missed, np.inf)
+        return np.where(np.abs(residual).max(axis=(1, 2)) < _MAX_CUBIC_DEVIATION, missed, np.inf)
 
 
 def _at_knots(
@@ -219,7 +219,7 @@ def _at_knots(
 ) -> tuple[Array, Array, Array]:
     """Places and rates at some knots, and where one linear step from the plan is accurate enough."""
     residual = struts.length[rows] - knots.length[rows]
-    near = np.abs(residual).max(axis=1) < _NEAR_PLAN
+    near = np.abs(residual).max(axis=1) < _MAX_PLAN_DEVIATION
     step, twist = (inverse @ np.stack([residual, struts.speed[rows]], axis=2)).transpose(2, 1, 0)
     planned = ToolPoses(motion.tip[rows], motion.axis[rows], motion.spin[rows], motion.tool_length[rows])
     pose = displaced(planned, np.where(near, step, 0.0))

@@ -1,22 +1,23 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool at: tool pose and velocity on the cubics of some intervals, at shares of each.
+"""Tool states: tool pose and velocity on the cubics of some intervals, at shares of each.
 
 Enters: a strut motion as read back, and a planned motion as the start value for each pose; the poses found do not
 depend on it. Leaves: tip, axis and velocity of the tip, with error bounds. Poses come from the tool's cubics
-(``tool_course``) or from forward kinematics: mostly by linear steps from the plan (``kinematics.near``); by Newton's
-method where the Jacobian changes much or these do not converge.
+(``tool_spline``) or from forward kinematics: mostly by linear steps from the plan (``refine_poses``); by Newton's
+method where these do not converge. Where the Jacobian changes much, velocities come from that of each pose.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.certificate.struts import AdjacentMotion
 from pkm_post.certificate.tool_spline import KnotKinematics, ToolSpline, inverses_at
 from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds, length_of
-from pkm_post.machine import ToolPoses, forward, linearise, map_to_tool, refine_poses
+from pkm_post.machine import ToolPoses, forward, jacobian_of_tip, linearise, map_to_tool, refine_poses
 from pkm_post.model import Machine, Motion, StrutMotion
 
 _SPEED_MISSED = 1.3e-3
@@ -24,7 +25,7 @@ _SPEED_MISSED = 1.3e-3
 
 
 @dataclass(frozen=True)
-class Task:
+class PlaybackTask:
     """A playback task: the motion to play, and the reference to measure it by.
 
     Attributes:
@@ -36,6 +37,7 @@ class Task:
         spline: approximate cubics of the tool.
         ceiling: (K,) highest tip speed of each interval, mm/s.
         spin_deviation: (K + 1,) mm of a strut due to spin error, in addition to the deviation from the plan.
+        adjacent: the motion before and after, where this one is a piece of a longer one.
     """
 
     struts: StrutMotion
@@ -46,6 +48,7 @@ class Task:
     spline: ToolSpline
     ceiling: Array
     spin_deviation: Array | float = 0.0
+    adjacent: AdjacentMotion = field(default_factory=AdjacentMotion)
 
 
 @dataclass(frozen=True)
@@ -67,14 +70,14 @@ class ToolStates:
     found: Array
 
 
-def states_on_spline(task: Task, rows: Array, shares: Array) -> ToolStates:
+def states_on_spline(task: PlaybackTask, rows: Array, shares: Array) -> ToolStates:
     """The tool at shares of intervals, from its cubics."""
     spline, share = task.spline, shares[:, None]
     tip, axis, spin = spline.at(rows, share)
     return ToolStates(tip, axis, spline.velocity(rows, share), spline.missed[:, rows], np.ones(spin.shape, dtype=bool))
 
 
-def states_by_kinematics(task: Task, rows: Array, shares: Array) -> ToolStates:
+def states_by_kinematics(task: PlaybackTask, rows: Array, shares: Array) -> ToolStates:
     """The tool at shares of any intervals, from forward kinematics."""
     cubic = task.struts.cubics(rows)
     length, speed = hermite_lengths(*cubic, shares), hermite_speeds(*cubic, shares)
@@ -86,11 +89,16 @@ def states_by_kinematics(task: Task, rows: Array, shares: Array) -> ToolStates:
     )
     tip, axis = np.array(pose.tip.T, order="C"), np.array(pose.axis.T, order="C")
     velocity = np.array(map_to_tool(inverses[0][:, :3], inverses[1][:, :3], speed, shares), order="C").reshape(3, -1)
-    odd = np.flatnonzero(~(found & np.repeat(task.knots.alike[rows], len(shares))))
+    speed = speed.reshape(-1, 6)
+    bent = np.flatnonzero(found & ~np.repeat(task.knots.alike[rows], len(shares)))
+    if len(bent):
+        there = ToolPoses(tip[:, bent].T, axis[:, bent].T, pose.spin[bent], tool_length[bent])
+        velocity[:, bent] = _velocity(jacobian_of_tip(machine, *there), speed[bent])
+    odd = np.flatnonzero(~found)
     if len(odd):
-        knot, lengths, speeds = rows[odd // len(shares)], length.reshape(-1, 6)[odd], speed.reshape(-1, 6)[odd]
+        knot, lengths = rows[odd // len(shares)], length.reshape(-1, 6)[odd]
         tip[:, odd], axis[:, odd], velocity[:, odd], found[odd] = _by_newton(
-            machine, motion, knot, tool_length[odd], lengths, speeds
+            machine, motion, knot, tool_length[odd], lengths, speed[odd]
         )
     columns = np.stack([tip, axis, velocity]).reshape(3, 3, len(rows), -1).swapaxes(2, 3)
     missed = np.zeros((3, len(rows)))
@@ -115,5 +123,9 @@ def _by_newton(
     pose = forward(machine, length, tool_length, motion.tip[knot], motion.axis[knot], motion.spin[knot])
     jacobian, _ = linearise(machine, pose.tip, pose.rotation, tool_length)
     jacobian[~pose.converged] = np.eye(6)  # missing poses are refused elsewhere
-    twist = np.linalg.solve(jacobian, speed[..., None])[..., 0]
-    return pose.tip.T, pose.axis.T, twist[:, :3].T, pose.converged
+    return pose.tip.T, pose.axis.T, _velocity(jacobian, speed), pose.converged
+
+
+def _velocity(jacobian: Array, speed: Array) -> Array:
+    """Velocities of the tip, (3, N) mm/s, from speeds of the struts, (N, 6)."""
+    return np.asarray(np.linalg.solve(jacobian, speed[..., None])[:, :3, 0].T)

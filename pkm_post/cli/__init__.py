@@ -20,7 +20,7 @@ import pkm_post
 from pkm_post import at_first_use
 from pkm_post.cli.console import interrupt_on_break
 from pkm_post.cli.processes import INTERRUPTED, diagnostic_text
-from pkm_post.system import MEMORY_FAULTS, THREADS, ThreadCountError, memory_diagnostic, packages
+from pkm_post.system import MEMORY_FAULTS, THREADS, ThreadCountError, memory_diagnostic
 
 __all__ = ["main", "run_batch"]
 
@@ -32,9 +32,10 @@ else:
 _COMMANDS = {
     "post": ("post",),
     "reach": ("reach", "reach-map"),
+    "stiffness": ("stiffness",),
     "programs": ("check", "convert", "verify"),
     "machine": ("machine",),
-    "pmac": ("pmac",),
+    "pmac": ("pmac", "play"),
     "batch": ("batch",),
     "install": ("install",),
 }
@@ -69,6 +70,8 @@ def main(arguments: Sequence[str]) -> int:
 
 def _not_installed(fault: BaseException) -> str | None:
     """Installation hint for a missing optional package."""
+    from pkm_post.system import packages
+
     return str(fault) if isinstance(fault, ImportError) and fault.name in packages.OPTIONAL else None
 
 

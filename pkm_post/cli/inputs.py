@@ -9,16 +9,23 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pkm_post.cli.terminal import print_diagnostics
-from pkm_post.options import explicit_values, inapplicable_options, input_kind, part_program_from
+from pkm_post.options import (
+    applicable_values,
+    explicit_values,
+    inapplicable_options,
+    input_kind,
+    part_program_from,
+)
 
 if TYPE_CHECKING:
     from pkm_post.model import Machine
+    from pkm_post.posting import Prepared
     from pkm_post.reading import ReadingOptions
 
 NO_AXIS_WORDS = "none"
@@ -68,6 +75,20 @@ def print_misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> boo
     faults = misplaced(namespace, files)
     print_diagnostics(faults)
     return bool(faults)
+
+
+def programs_of(file: Path, namespace: argparse.Namespace) -> Iterator[Prepared]:
+    """Yield the programs of a file: that of a part program, or those of the jobs of a document."""
+    from pkm_post.posting import prepared_file
+    from pkm_post.reading import is_part_program
+
+    given = applicable_values(explicit_values(namespace), input_kind(file))
+    if is_part_program(file):
+        yield prepared_file(file, reading=reading_from(namespace), arguments=given)
+    else:
+        from pkm_post.freecad_app.post_job import read_document
+
+        yield from read_document(file, given, namespace.job)
 
 
 def read_machine(name: str) -> Machine | None:

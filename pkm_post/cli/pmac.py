@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from pkm_post.cli import pmac_manual, pmac_measure, pmac_play, pmac_simulate
 from pkm_post.cli.inputs import NO_AXIS_WORDS, axis_words
-from pkm_post.cli.pmac_actions import ACTIONS, NO_MOVE_BY_HAND, NOT_OF_POWER_PMAC, OF_POWER_PMAC, ROTARY_WORDS
-from pkm_post.cli.pmac_stop import JobTarget, Target
+from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, ROTARY_WORDS
+from pkm_post.cli.pmac_stop import JobTarget, ProgramTarget, Target
 from pkm_post.options import LONGEST_TOOL, above_zero, between, count, positive, tool_length, whole
 
 if TYPE_CHECKING:
@@ -73,6 +73,9 @@ def _add_approach(parser: argparse.ArgumentParser) -> None:
 
     help_text = "of the tip; of a turn in place in degrees per minute (%(default)s)"
     parser.add_argument("--feed", type=positive, default=60 * APPROACH_MM_S, metavar="MM/MIN", help=help_text)
+    pmac_play.add_solids(parser)
+    help_text = "the trajectory of the program, for that check (that beside it, with the same name)"
+    parser.add_argument("--trajectory", type=Path, metavar="FILE.pkmt", help=help_text)
     _add_by_hand(parser)
 
 
@@ -150,23 +153,30 @@ _STOPS = ("hold", "abort")
 
 
 def add_commands(commands: Any) -> None:
-    """Add the command ``pmac`` with its actions to a parser."""
+    """Add the command ``pmac`` with its actions to a parser, and ``play``, which is one of them."""
     pmac = commands.add_parser("pmac", help="talk to a Turbo PMAC or a Power PMAC, or simulate one")
     actions = pmac.add_subparsers(required=True, metavar="ACTION")
-    for name, (action, text, needs) in (
-        ACTIONS | pmac_manual.ACTIONS | pmac_measure.ACTIONS | pmac_play.ACTIONS
-    ).items():
-        parser = actions.add_parser(name, help=text)
-        _add_port(parser)
-        parser.add_argument("--machine", required="machine" in needs, metavar="NAME_OR_FILE", help="the machine")
-        if "program" in needs:
-            parser.add_argument("program", type=Path, metavar="PROGRAM.pmc")
-            help_text = "take the program though nothing shows that it is certified for this machine; that is logged"
-            parser.add_argument("--uncertified", action="store_true", help=help_text)
-        _add_own(parser, name)
-        add_own(parser, name)
-        parser.set_defaults(run=_run, action=action, name=name, needs=needs)
+    for name in _ACTIONS:
+        _add_action(actions, name)
     pmac_simulate.add_action(actions)
+    _add_action(commands, "play")
+
+
+_ACTIONS = ACTIONS | pmac_manual.ACTIONS | pmac_measure.ACTIONS | pmac_play.ACTIONS
+
+
+def _add_action(actions: Any, name: str) -> None:
+    action, text, needs = _ACTIONS[name]
+    parser = actions.add_parser(name, help=text)
+    _add_port(parser)
+    parser.add_argument("--machine", required="machine" in needs, metavar="NAME_OR_FILE", help="the machine")
+    if "program" in needs:
+        parser.add_argument("program", type=Path, metavar="PROGRAM.pmc")
+        help_text = "take the program though nothing shows that it is certified for this machine; that is logged"
+        parser.add_argument("--uncertified", action="store_true", help=help_text)
+    _add_own(parser, name)
+    add_own(parser, name)
+    parser.set_defaults(run=_run, action=action, name=name, needs=needs)
 
 
 def _add_port(parser: argparse.ArgumentParser) -> None:
@@ -218,8 +228,8 @@ def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.control.link import LinkLostError, PmacError
 
     logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stderr)
-    if namespace.port.is_power and namespace.name not in OF_POWER_PMAC:
-        why = NOT_OF_POWER_PMAC.get(namespace.name, NO_MOVE_BY_HAND)
+    if namespace.port.is_power and namespace.name in NOT_OF_POWER_PMAC:
+        why = NOT_OF_POWER_PMAC[namespace.name]
         print(f"{namespace.name} is not for a Power PMAC: {why}; use run or play", file=sys.stderr)
         return 1
     target = None if namespace.machine is None else _target(namespace)
@@ -261,7 +271,7 @@ def _session(namespace: argparse.Namespace) -> Session:
 
 def _target(namespace: argparse.Namespace) -> Target | None:
     """Resolve machine and program; None when they have faults, which are printed."""
-    from pkm_post.control.loading import job_to_load
+    from pkm_post.control.loading import job_to_load, program_to_load
     from pkm_post.machine import machine_named
     from pkm_post.writing import pmac, power_pmac
 
@@ -273,7 +283,11 @@ def _target(namespace: argparse.Namespace) -> Target | None:
         return None
     if "program" not in namespace:
         return Target(machine, settings)
-    job = _printed(*job_to_load(namespace.program, machine, settings, namespace.uncertified))
+    given = namespace.program, machine, settings, namespace.uncertified
+    if namespace.name == "download":
+        program, faults = program_to_load(*given)
+        return _printed(None if program is None else ProgramTarget(machine, settings, *program), faults)
+    job = _printed(*job_to_load(*given))
     return None if job is None else JobTarget(machine, settings, job)
 
 

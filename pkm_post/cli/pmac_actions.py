@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.pmac_stop import JobTarget, Target, abort, held_at_the_end, hold, signals_interrupt
+from pkm_post.cli.pmac_stop import JobTarget, ProgramTarget, Target, abort, held_at_the_end, hold, signals_interrupt
 
 if TYPE_CHECKING:
     from pkm_post.control.link import Session, Status
@@ -61,12 +61,15 @@ def _print_motion(session: Session, target: Target | None) -> None:
         print("a program runs, or a motor moves" if is_busy(session) else "no program runs, and no motor moves")
 
 
-def download(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
-    """Load the program, list it back and compare."""
+def download(session: Session, target: ProgramTarget, namespace: argparse.Namespace) -> int:
+    """Load the program, list it back and compare; one of tip and axis checks the set-up itself, by its guard."""
     from pkm_post.control.link import check_setup, download
 
-    check_setup(session, target.settings, target.machine.strut_stroke)
-    loaded = download(session, target.job.program, _show_progress if sys.stderr.isatty() else _no_progress)
+    if target.is_of_struts:
+        check_setup(session, target.settings, target.machine.strut_stroke)
+    loaded = download(session, target.program, _show_progress if sys.stderr.isatty() else _no_progress)
+    if not target.is_of_struts:
+        print("of tip and axis: start it at the controller, with the kinematics; its guard ends it without them")
     print(f"program {loaded.program}: {loaded.lines} lines, listed back as sent, SHA-256 {loaded.digest}")
     return 0
 
@@ -219,14 +222,5 @@ ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
 }
 """For each action its description, and the inputs it needs: a named machine or program."""
 
-OF_POWER_PMAC = (
-    "probe", "download", "run", "play", "continue", "home", "hold", "resume", "abort", "override", "status", "monitor",
-    "terminal",
-)  # fmt: skip
-"""Actions that work with the known features of a Power PMAC."""
 NOT_OF_POWER_PMAC = {"stream": "it is for the rotary buffer of a Turbo PMAC"}
-"""Why an action is not for a Power PMAC; any other is a move by hand."""
-NO_MOVE_BY_HAND = (
-    "a move by hand has to hold itself when nobody looks on, and how long a Power PMAC takes to hold is not known to"
-    " this program"
-)
+"""Why an action is not for a Power PMAC."""

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     Action = Callable[[Session, Any, argparse.Namespace], int]
     from pkm_post.control.link import Array, Session, Status
     from pkm_post.control.numerical_control import NumericalControl, Plan
-    from pkm_post.model import Diagnostic
+    from pkm_post.control.player import PlayContext
+    from pkm_post.model import Diagnostic, Trajectory
 
 _SLOWEST_OVERRIDE = 0.05
 """A move may take as long as at this override, which an operator may set meanwhile."""
@@ -149,16 +150,53 @@ def mdi(session: Session, target: Target, namespace: argparse.Namespace) -> int:
 
 
 def approach(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
-    """Move the tool to the start of a program."""
+    """Move the tool to the start of a program; where part, stock or fixtures are named, clear of them."""
     from pkm_post.control.link import read_status
     from pkm_post.control.numerical_control import target_deviation
+    from pkm_post.control.player import approach_faults
+    from pkm_post.model import errors
 
     if target_deviation(read_status(session, target.settings), target.job.first) <= _THERE_MM:
         print("the tool is at the start of the program")
         return 0
+    known, diagnostics = _surroundings(session, target, namespace)
+    if errors(diagnostics):
+        print(*diagnostics, sep="\n", file=sys.stderr)
+        return 1
+    free = -math.inf
+    if known is not None:
+        namespace.tool_length = float(known.trajectory.tool_length()[0])
+        free = float(known.trajectory.tip[:, 2].max())
+
+    def check(way: Trajectory) -> tuple[Diagnostic, ...]:
+        return () if known is None else approach_faults(known, 0, way)
+
     control = control_of(session, target, namespace)
-    plan, diagnostics = control.plan_approach(target.job, namespace.feed / 60)
-    return execute_plan(session, target, namespace, control, plan, diagnostics)
+    plan, found = control.plan_approach(target.job, namespace.feed / 60, free, check)
+    return execute_plan(session, target, namespace, control, plan, diagnostics + found)
+
+
+def _surroundings(
+    session: Session, target: JobTarget, namespace: argparse.Namespace
+) -> tuple[PlayContext | None, tuple[Diagnostic, ...]]:
+    """The program as a trajectory with part, stock and fixtures, where any of them is named, and faults of their files.
+
+    Raises:
+        NotReadyError: the trajectory begins elsewhere than the program, or with a tool of another length.
+    """
+    from pkm_post.cli.pmac_play import setup_of
+    from pkm_post.control.player import PlayContext, check_start, read_playable
+
+    named, file = namespace.trajectory, namespace.program.with_suffix(".pkmt")
+    if not (named or namespace.part or namespace.stock or namespace.fixture):
+        return None, ()
+    made, _, found = read_playable(named or file, target.machine)
+    setup, faults = setup_of(namespace)
+    if made is None:
+        return None, found + faults
+    known = PlayContext(session, target.machine, target.settings, made, setup)
+    check_start(known, target.job.first, namespace.tool_length)
+    return known, found + faults
 
 
 def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:

@@ -66,7 +66,7 @@ def _coordinates(text: str) -> tuple[float, ...]:
 
 def measure(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Measure a feature and print it, with the work offset that follows."""
-    from pkm_post.control.numerical_control import Probe, ProbeSettings, silence_s
+    from pkm_post.control.numerical_control import Probe, ProbeSettings
     from pkm_post.model import Refused
     from pkm_post.options import Options
     from pkm_post.posting import work_offset
@@ -80,7 +80,7 @@ def measure(session: Session, target: Target, namespace: argparse.Namespace) -> 
     logging.getLogger().setLevel(logging.WARNING)  # each of the many moves is loaded and listed
     control = control_of(session, target, namespace)
     settings = ProbeSettings(namespace.input, namespace.ball, namespace.overtravel, namespace.resolution)
-    probe = Probe(session, control, settings, silence_s(session, target.settings))
+    probe = Probe(session, control, settings, control.longest_silence_s())
     print(
         f"at {60 * probe.feed:.1f} mm/min; a contact pushes the probe by less than {settings.overtravel:g} mm",
         flush=True,

@@ -7,18 +7,18 @@ import argparse
 import sys
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.pmac_stop import held_at_the_end
-from pkm_post.options import between, count, positive, whole
+from pkm_post.options import LONGEST_TOOL, between, count, numbered, positive, shift, tool_length, whole
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_stop import Target
     from pkm_post.control.link import Session
     from pkm_post.control.player import Player, PlayOptions, PlayResult, PlayState
-    from pkm_post.model import Trajectory
+    from pkm_post.model import Diagnostic, Setup, Trajectory
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
 
@@ -26,7 +26,11 @@ _HIGHEST_PERCENT = 150.0
 _HIGHEST_PROGRAM = 999
 _FIRST_VARIABLES = whole(1, 7000)
 _SHOW_S = 1.0
-_ORDERS = "override PERCENT, hold, resume, single on, single off, start, end"
+_SWITCHES = ("single", "optional", "skip")
+_ORDERS = f"override PERCENT, hold, resume, {', '.join(_SWITCHES)} with on or off, retract MM, start, end"
+_NUMBERS = {"override": (0.01, _HIGHEST_PERCENT), "retract": (1.0, LONGEST_TOOL)}
+"""Orders with a number: their unit, and the highest number."""
+_SOLIDS = {"part": "the finished part", "stock": "the stock before the first operation", "fixture": "a clamp or vice"}
 _WAITS = "waits"
 
 
@@ -35,17 +39,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     from pkm_post.options import PLAYER_PROGRAM
 
     parser.add_argument("trajectory", type=Path, metavar="FILE.pkmt", help="the trajectory that was posted")
+    help_text = "the same program posted with --block-delete: skip on and skip off switch between both at their blocks"
+    parser.add_argument("--skipped", type=Path, metavar="FILE.pkmt", help=help_text)
+    parser.add_argument("--block-skip", action="store_true", help="skip the blocks behind /, from the beginning on")
     percent = between(0, _HIGHEST_PERCENT)
     parser.add_argument(
         "--override", type=percent, default=100.0, metavar="PERCENT", help="of the feed, 0 to 150 (%(default)s)"
     )
     parser.add_argument("--single-block", action="store_true", help="rest at the end of each line, and wait for start")
-    parser.add_argument("--optional-stop", action="store_true", help="stop at M1")
+    parser.add_argument("--optional-stop", action="store_true", help="stop at M1, from the beginning on")
     help_text = "feed of all moves but rapid ones, without spindle, coolant and dwells"
     parser.add_argument("--dry-run", type=positive, metavar="MM/MIN", help=help_text)
     parser.add_argument("--from-line", type=count, metavar="N", help="begin at this line of the source")
     parser.add_argument("--operation", default="", metavar="NAME", help="operation that --from-line belongs to")
+    help_text = "repeat the M codes of the machine before that line, each once, above it"
+    parser.add_argument("--repeat-codes", action="store_true", help=help_text)
     parser.add_argument("--approach", action="store_true", help="go to the beginning first, from where the tool is")
+    add_solids(parser)
+    help_text = "how far the work offset has moved in the machine frame since the posting, mm, as measure prints it"
+    parser.add_argument("--shift", type=shift, default=(0.0, 0.0, 0.0), metavar="DX,DY,DZ", help=help_text)
+    help_text = "gauge length of a tool as it is now, instead of that of the posting; may be repeated"
+    length = numbered(tool_length, "NUMBER=MM")
+    parser.add_argument("--tool-length", type=length, action="append", default=[], metavar="NUMBER=MM", help=help_text)
     help_text = "number of the program in the controller that runs the list of points (%(default)s)"
     parser.add_argument(
         "--number", type=whole(1, _HIGHEST_PROGRAM), default=PLAYER_PROGRAM, metavar="PROG", help=help_text
@@ -54,18 +69,45 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--variables", type=_FIRST_VARIABLES, default=1000, metavar="N", help=help_text)
 
 
+def add_solids(parser: argparse.ArgumentParser) -> None:
+    """Add the options for what the way to a beginning is checked against."""
+    for name, what in _SOLIDS.items():
+        help_text = (
+            f"STL or STEP file of {what}, mm in the work frame, which the way to the beginning is checked against"
+        )
+        parser.add_argument(
+            f"--{name}", metavar="FILE", action="append" if name == "fixture" else "store", help=help_text
+        )
+
+
+def setup_of(namespace: argparse.Namespace) -> tuple[Setup, tuple[Diagnostic, ...]]:
+    """Part, stock and fixtures that were named, and what is wrong with their files."""
+    from pkm_post.options import MeshFiles, Options
+    from pkm_post.posting import effective_setup
+
+    files = MeshFiles(namespace.part, namespace.stock, tuple(namespace.fixture or ()))
+    return effective_setup(Options(mesh_files=files), None)
+
+
 def play(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Play a trajectory, with orders from the standard input."""
     from pkm_post.control.player import Player, read_playable
     from pkm_post.model import Refused
+    from pkm_post.toolpath import MachineOffsets
 
-    trajectory, tolerances, diagnostics = read_playable(namespace.trajectory, target.machine)
+    offsets = MachineOffsets(namespace.shift, dict(namespace.tool_length))
+    trajectory, tolerances, diagnostics = read_playable(namespace.trajectory, target.machine, offsets)
     _print_faults(diagnostics)
     if trajectory is None or tolerances is None:
         return 1
+    skipped = None
+    if namespace.skipped is not None:
+        skipped, _, diagnostics = read_playable(namespace.skipped, target.machine, offsets)
+        _print_faults(diagnostics)
     choices = _choices(trajectory, namespace)
-    if choices is None:
+    if choices is None or (skipped is None and namespace.skipped is not None):
         return 1
+    choices = replace(choices, skipped=skipped)
     shown = _Shown(session.now)
     player = Player(session, target.machine, target.settings, trajectory, tolerances, choices, shown.show)
     shown.listen(player)
@@ -80,25 +122,32 @@ def play(session: Session, target: Target, namespace: argparse.Namespace) -> int
 def _choices(trajectory: Trajectory, namespace: argparse.Namespace) -> PlayOptions | None:
     from pkm_post.control.link import NotReadyError
     from pkm_post.control.player import PlayOptions, first_row
+    from pkm_post.model import errors
     from pkm_post.options import MANUAL_MOVE_PROGRAM
 
     if namespace.number == MANUAL_MOVE_PROGRAM:
         raise NotReadyError([f"program {namespace.number} is that of moves by hand: choose another --number"])
     row: int | None = 0
     if namespace.from_line is not None:
-        row, diagnostics = first_row(trajectory, namespace.from_line, namespace.operation, namespace.trajectory)
+        at = namespace.from_line, namespace.operation, namespace.trajectory, namespace.repeat_codes
+        row, diagnostics = first_row(trajectory, *at)
         _print_faults(diagnostics)
-    if row is None:
+    setup, diagnostics = setup_of(namespace)
+    _print_faults(diagnostics)
+    if row is None or errors(diagnostics):
         return None
     return PlayOptions(
         override=namespace.override / 100,
         single_block=namespace.single_block,
         optional_stop=namespace.optional_stop,
+        block_skip=namespace.block_skip,
         dry_feed=None if namespace.dry_run is None else namespace.dry_run / 60,
         first_row=row,
         approach=namespace.approach,
+        repeat_codes=namespace.repeat_codes,
         first_variable=namespace.variables,
         program=namespace.number,
+        setup=setup,
     )
 
 
@@ -167,14 +216,15 @@ def order_of(line: str) -> tuple[Any, float] | None:
     word, _, rest = line.strip().lower().partition(" ")
     if word in ("hold", "resume", "start", "end") and not rest:
         return word, 0.0
-    if word == "single" and rest in ("on", "off"):
+    if word in _SWITCHES and rest in ("on", "off"):
         return word, float(rest == "on")
-    if word == "override":
+    if word in _NUMBERS:
+        unit, most = _NUMBERS[word]
         try:
-            percent = float(rest)
+            number = float(rest)
         except ValueError:
             return None
-        return (word, percent / 100) if 0 <= percent <= _HIGHEST_PERCENT else None
+        return (word, number * unit) if 0 <= number <= most else None
     return None
 
 

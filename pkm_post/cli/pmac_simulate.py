@@ -15,6 +15,7 @@ from pkm_post.options import between, whole, whole_from
 if TYPE_CHECKING:
     from pkm_post.control.numerical_control import Body
     from pkm_post.control.simulator import Controller, PowerPmac, Server
+    from pkm_post.model import Diagnostic, Machine
 
 LOWEST_SPEED, HIGHEST_SPEED = 0.01, 100.0
 HIGHEST_PORT = 65_535
@@ -53,7 +54,8 @@ def _add_probe(simulate: argparse.ArgumentParser) -> None:
 
     help_text = "have a touch probe at M1000, and what it touches: plane:Z, bore:X,Y,Z,D or boss:X,Y,Z,D in {M}"
     simulate.add_argument("--probed", type=_body, metavar="BODY", help=help_text)
-    simulate.add_argument("--machine", metavar="NAME_OR_FILE", help="the machine that carries the probe")
+    help_text = "the machine that has M codes of its own, and carries the probe"
+    simulate.add_argument("--machine", metavar="NAME_OR_FILE", help=help_text)
     help_text = "to the centre of the ball of the probe (that of the rest pose)"
     simulate.add_argument("--tool-length", type=tool_length, metavar="MM", help=help_text)
     simulate.add_argument("--ball", type=positive, default=6.0, metavar="MM", help="its diameter (%(default)s)")
@@ -81,7 +83,7 @@ def _simulate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     controller = machine.controller if machine is not None else _turbo_pmac(namespace)
     if namespace.setup and not _set_up(machine or controller, namespace.setup):
         return 1
-    if namespace.probed is not None and not _connect_probe(controller, namespace):
+    if not _be_of_machine(controller, namespace):
         return 1
     server = None
     try:
@@ -110,21 +112,39 @@ def _power_pmac(namespace: argparse.Namespace) -> PowerPmac:
     return PowerPmac(namespace.memory)
 
 
-def _connect_probe(controller: Controller, namespace: argparse.Namespace) -> bool:
+def _be_of_machine(controller: Controller, namespace: argparse.Namespace) -> bool:
+    """Give the M codes of its machine and a touch probe to the controller; False with faults, which are printed."""
+    from pkm_post.control.simulator import function_programs
+    from pkm_post.machine import machine_named
+
+    if namespace.probed is not None and namespace.machine is None:
+        print("--probed: expected --machine", file=sys.stderr)
+        return False
+    if namespace.machine is None:
+        return True
+    machine, faults = machine_named(namespace.machine)
+    _print_all(faults)
+    if machine is None:
+        return False
+    controller.load(function_programs((*machine.functions, *machine.thread_codes)))
+    return namespace.probed is None or _connect_probe(controller, machine, namespace)
+
+
+def _print_all(faults: Sequence[Diagnostic]) -> None:
+    for fault in faults:
+        print(fault, file=sys.stderr)
+
+
+def _connect_probe(controller: Controller, machine: Machine, namespace: argparse.Namespace) -> bool:
     """Give a simulated touch probe to the controller; False when its machine has faults, which are printed."""
     from pkm_post.control.link import ToolPoseReadout
     from pkm_post.control.numerical_control import SimulatedProbe
-    from pkm_post.machine import machine_named
-    from pkm_post.writing import pmac
+    from pkm_post.writing import pmac, power_pmac
 
-    if namespace.machine is None or namespace.ssh is not None:
-        print("--probed: expected --machine, and a Turbo PMAC", file=sys.stderr)
-        return False
-    machine, faults = machine_named(namespace.machine)
-    settings, more = (None, ()) if machine is None else pmac.settings_of(machine)
-    for fault in (*faults, *more):
-        print(fault, file=sys.stderr)
-    if machine is None or settings is None:
+    kind: Any = pmac if namespace.ssh is None else power_pmac
+    settings, faults = kind.settings_of(machine)
+    _print_all(faults)
+    if settings is None:
         return False
     length = machine.rest_tool_length if namespace.tool_length is None else namespace.tool_length
     readout = ToolPoseReadout(machine, length)

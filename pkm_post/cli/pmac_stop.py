@@ -18,7 +18,7 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pkm_post.control.link import Job, Session, Status
+    from pkm_post.control.link import Job, PmacProgram, Session, Status
     from pkm_post.model import Machine
     from pkm_post.writing import PmacSettings
 
@@ -37,6 +37,19 @@ class Target:
 
     machine: Machine
     settings: PmacSettings
+
+
+@dataclass(frozen=True)
+class ProgramTarget(Target):
+    """The named machine and the lines of a program for it, of strut lengths or of tip and axis.
+
+    Attributes:
+        program: its lines.
+        is_of_struts: whether it needs the set-up of strut lengths.
+    """
+
+    program: PmacProgram
+    is_of_struts: bool
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.inputs import add_reading, misplaced, reading_from
+from pkm_post.cli.inputs import add_reading, misplaced, programs_of, reading_from
 from pkm_post.cli.processes import (
     command_inside,
     command_outside,
@@ -20,7 +20,6 @@ from pkm_post.cli.processes import (
     is_inside,
     needs_freecad,
     run_inside,
-    run_parallel,
 )
 from pkm_post.cli.terminal import ProgressLine, print_diagnostics
 from pkm_post.options import (
@@ -40,6 +39,7 @@ from pkm_post.options import (
 from pkm_post.system import memory_guard, threads
 
 if TYPE_CHECKING:
+    from pkm_post.model import Refused
     from pkm_post.posting import Posted
     from pkm_post.system import Job
 
@@ -60,6 +60,12 @@ def add_commands(commands: Any) -> None:
         type=count,
         metavar="N",
         help="how many of several files to post at the same time; they share the threads (default: as many)",
+    )
+    post.add_argument(
+        "--find-place",
+        action="store_true",
+        help="where another place of the part may mend a refusal, look for one and say by how much to shift and turn"
+        " the part, what is left there, and the options for it; it takes seconds",
     )
     post.add_argument(_ONLY, type=whole_from(0, "0 or more"), help=argparse.SUPPRESS)
     add_options(post)
@@ -130,6 +136,8 @@ def _jobs_in(document: Path) -> tuple[Job, ...]:
 
 def _post_in_processes(files: Sequence[Path], solids: Sequence[str], arguments: Sequence[str], at_a_time: int) -> int:
     """Run the same command for each file in its own process; the file index precedes any ``--``."""
+    from pkm_post.cli.parallel import run_parallel
+
     name, *others = arguments
     commands = []
     for number, file in enumerate(files):
@@ -148,11 +156,34 @@ def _post_one(file: Path, namespace: argparse.Namespace) -> int:
             results = _post_with(file, namespace, line)
     except Refused as refused:
         print_diagnostics([refused])
+        _offer_place(file, namespace, refused, line)
         return 1
     for posted in results:
         print_diagnostics(posted.diagnostics)
         print(*posted.files, sep="\n")
     return 0
+
+
+def _offer_place(file: Path, namespace: argparse.Namespace, refused: Refused, line: ProgressLine) -> None:
+    """Print where a refused program could be posted, if another place may mend that, or how to look for one."""
+    from pkm_post.model import Refused, errors
+    from pkm_post.posting import may_be_mended, place_found, place_offer, study
+
+    if not may_be_mended(refused.diagnostics):
+        return
+    if not namespace.find_place:
+        print_diagnostics([place_offer(refused.diagnostics, str(file))])
+        return
+    for program in programs_of(file, namespace):
+        subject = program.sound[0].source
+        try:
+            with line:
+                _, faults = study(*program.sound, program.options)
+                if errors(faults):  # of several jobs in a document not every one is refused
+                    text = place_found(*program.sound, program.options, program.places, line.show)
+                    print_diagnostics([f"{subject}: place: {text}"])
+        except Refused as fault:
+            print_diagnostics([fault])
 
 
 def _post_with(file: Path, namespace: argparse.Namespace, line: ProgressLine) -> tuple[Posted, ...]:

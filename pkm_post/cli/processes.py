@@ -1,29 +1,23 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Processes: commands that run in processes of their own, inside FreeCADCmd or several at a time.
+"""Processes: commands that run again inside FreeCADCmd.
 
 Only FreeCAD can read its documents, so outside of it a command runs again inside FreeCADCmd. FreeCAD's exit code 0 is
 unreliable: it also exits so without finding the script, as does a program that is not FreeCAD. The command therefore
 exits with codes of its own inside, and any other code means that it was not reached.
-
-The output of parallel commands is printed in their order, that of each kept together. Ctrl-C ends them all.
 """
 
 from __future__ import annotations
 
-import contextlib
 import os
 import shutil
-import signal
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 
 from pkm_post.cli import console
-from pkm_post.cli.terminal import ProgressLine, print_diagnostics
-from pkm_post.system import FREECADCMD, FreeCADCommand, freecad_command, thread_share
+from pkm_post.cli.terminal import print_diagnostics
+from pkm_post.system import FREECADCMD, FreeCADCommand, freecad_command
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 _ADDON = _PACKAGE.parent
@@ -40,10 +34,8 @@ _INSIDE = 64
 """Offset of the command line's exit codes inside: neither FreeCAD nor the shell uses such codes."""
 _CODES = (0, 1, 2)
 _NOT_STARTED, _NOT_DONE = "F140", "F141"
-_TIME_TO_END = 10.0
+TIME_TO_END = 10.0
 """Seconds for a process to clean up before it is killed."""
-_HAS_GROUPS = os.name == "posix"
-"""Whether a process can lead a process group, so that all its children end with it."""
 
 
 def is_inside() -> bool:
@@ -90,7 +82,7 @@ def _run_with_us(command: Sequence[str]) -> int:
         return process.wait()
     except KeyboardInterrupt:
         try:
-            process.wait(_TIME_TO_END)
+            process.wait(TIME_TO_END)
         except (KeyboardInterrupt, subprocess.TimeoutExpired):
             process.kill()
         raise
@@ -156,99 +148,3 @@ def diagnostic_text(code: str, place: str, found: str) -> str:
     except ImportError:
         return f"{place}: error {code}: {found}"
     return str(Diagnostic(code, Place(place), found))
-
-
-@dataclass
-class _Child:
-    """A command in a separate process."""
-
-    command: Sequence[str]
-    variables: Mapping[str, str]
-    process: subprocess.Popen[str] | None = None
-    is_wanted: bool = True
-
-    def run(self) -> tuple[int, str, str]:
-        """Run it and return exit code, output and errors."""
-        if not self.is_wanted:
-            return 1, "", ""
-        try:
-            self.process = self._start()
-        except OSError as fault:
-            return 1, "", f"{start_fault(self.command, fault)}\n"
-        if not self.is_wanted:
-            self.interrupt()
-        printed, errors = self.process.communicate()
-        code, fault_text = outcome(self.command, self.process.returncode)
-        return code, printed, f"{errors}{fault_text}\n" if fault_text else errors
-
-    def _start(self) -> subprocess.Popen[str]:
-        return subprocess.Popen(
-            self.command,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            encoding="utf-8",
-            errors="replace",
-            env=os.environ | self.variables | {"PYTHONIOENCODING": "utf-8"},  # independent of the locale
-            start_new_session=_HAS_GROUPS,
-            creationflags=console.flags_by_us(),
-        )
-
-    def interrupt(self) -> None:
-        """Interrupt it as by Ctrl-C, so that it cleans up."""
-        self.is_wanted = False
-        if self.process is None or self.process.poll() is not None:
-            return
-        if _HAS_GROUPS:
-            self._signal(signal.SIGINT)
-        elif console.BREAK is not None and console.has_console():
-            self.process.send_signal(console.BREAK)
-        else:
-            self.process.terminate()
-
-    def end(self) -> None:
-        """Wait for its end, with a timeout."""
-        if self.process is not None:
-            try:
-                self.process.wait(_TIME_TO_END)
-            except subprocess.TimeoutExpired:
-                self._signal(signal.SIGKILL) if _HAS_GROUPS else self.process.kill()
-
-    def _signal(self, number: int) -> None:
-        if self.process is not None:
-            with contextlib.suppress(ProcessLookupError):  # it has already ended
-                os.killpg(self.process.pid, number)
-
-
-def run_parallel(commands: Sequence[Sequence[str]], at_a_time: int, doing: str) -> int:
-    """Run commands; return 0 if all succeeded, 130 after Ctrl-C, and 1 otherwise.
-
-    Args:
-        commands: command lines.
-        at_a_time: most parallel processes.
-        doing: task shown in the terminal.
-    """
-    children, line, code = [_Child(command, thread_share(at_a_time)) for command in commands], ProgressLine(doing), 0
-    with ThreadPoolExecutor(at_a_time) as pool:
-        try:
-            for number, (ended, printed, errors) in enumerate(pool.map(_Child.run, children)):
-                line.clear()
-                print(printed, end="", flush=True)
-                print(errors, end="", file=sys.stderr, flush=True)
-                code = code or int(ended != 0)
-                line.show(f"{number + 1} of {len(children)}", (number + 1) / len(children))
-        except BaseException as fault:
-            _end_all(children)
-            if not isinstance(fault, KeyboardInterrupt):
-                raise
-            code = INTERRUPTED
-        finally:
-            line.clear()
-    return code
-
-
-def _end_all(children: Sequence[_Child]) -> None:
-    for child in children:
-        child.interrupt()
-    for child in children:
-        child.end()

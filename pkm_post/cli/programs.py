@@ -15,7 +15,7 @@ from typing import Any
 
 from pkm_post.cli.inputs import add_reading, one_of, part_program, print_misplaced, read_machine, reading_from
 from pkm_post.cli.terminal import print_diagnostics
-from pkm_post.options import add_machine, add_part_program, between
+from pkm_post.options import add_machine, add_part_program, between, whole
 
 
 def add_commands(commands: Any) -> None:
@@ -46,15 +46,15 @@ def add_commands(commands: Any) -> None:
     add_machine(verifying)
     verifying.set_defaults(run=_verify)
 
-    turning = commands.add_parser(
-        "cartesian", help="write a posted program in X Y Z A B C, for kinematics in a Turbo PMAC"
-    )
+    turning = commands.add_parser("cartesian", help="write a posted program in X Y Z A B C, for kinematics in a PMAC")
     turning.add_argument("program", type=Path, metavar="PROGRAM.pmc")
     turning.add_argument("--against", type=Path, required=True, metavar="FILE.pkmt", help="its trajectory file")
     turning.add_argument("--out", type=Path, required=True, metavar="FILE", help="the file to write")
     for name, what in (("tool", "the gauge length in Q50"), ("origin", "each of Q51 to Q53")):
         help_text = f"how far {what} may be changed at the machine; certified at all corners (%(default)s)"
         turning.add_argument(f"--{name}-range", type=between(0, 100), default=0.0, metavar="MM", help=help_text)
+    help_text = "of a Power PMAC, Coord[].SegMoveTime: whole ms, 0 without segmentation (%(default)s)"
+    turning.add_argument("--segment-time", type=whole(0, 100), default=0, metavar="MS", help=help_text)
     add_machine(turning)
     turning.set_defaults(run=_cartesian)
 
@@ -120,6 +120,12 @@ def _finding_line(what: str, value: float, limit: float, unit: str) -> str:
     return f"{what}: {value:g} of {limit:g} {unit}".rstrip()
 
 
+_PLAYED = {
+    "turbo_pmac": "played with kinematics in doubles, where the controller has 36 bits; no segmentation in PVT mode",
+    "power_pmac": "played with kinematics in doubles, as in the controller; segments of {} ms, 0 for none",
+}
+
+
 def _cartesian(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.model import Refused
     from pkm_post.posting import Allowance, cartesian_program
@@ -128,14 +134,15 @@ def _cartesian(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     if machine is None:
         return 1
     try:
-        allowance = Allowance(namespace.tool_range, namespace.origin_range)
-        made = cartesian_program(namespace.program, namespace.against, machine, namespace.out, allowance)
+        allowance = Allowance(round(namespace.tool_range, 3), round(namespace.origin_range, 3))
+        files = namespace.program, namespace.against, machine, namespace.out
+        made = cartesian_program(*files, allowance, namespace.segment_time)
     except Refused as refused:
         print_diagnostics([refused])
         return 1
     for finding in made.certificate.findings:
         print(_finding_line(finding.name, finding.value, finding.limit, finding.unit))
     print(f"struts at most {made.off:.2e} mm from those of {namespace.program} at its points")
-    print("played with kinematics in doubles, where the controller has 36 bits; no segmentation in PVT mode")
+    print(_PLAYED[machine.controller["kind"]].format(namespace.segment_time))
     print(*made.files, sep="\n")
     return 0

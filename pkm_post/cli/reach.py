@@ -10,19 +10,16 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from pkm_post.cli.inputs import add_reading, print_misplaced, read_machine, reading_from
+from pkm_post.cli.inputs import add_reading, print_misplaced, programs_of, read_machine
 from pkm_post.cli.processes import needs_freecad, run_inside
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import (
     add_options,
-    applicable_values,
-    explicit_values,
-    input_kind,
     number,
     offset,
     positive,
@@ -30,10 +27,6 @@ from pkm_post.options import (
     tool_length,
     validated,
 )
-
-if TYPE_CHECKING:
-    from pkm_post.posting import Prepared
-
 
 _angle = validated(number, lambda degrees: 0 < degrees < 180, "an angle above 0 and below 180")
 
@@ -84,12 +77,12 @@ def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     if needs_freecad(namespace.files, solid_files(namespace)):
         return run_inside(arguments)
     from pkm_post.model import Refused, errors
-    from pkm_post.posting import study
+    from pkm_post.posting import place_offer, study
 
     failed, studies = False, []
     for file in namespace.files:
         try:
-            programs = list(_programs(file, namespace))
+            programs = list(programs_of(file, namespace))
         except Refused as refused:
             programs, failed = [], True
             print_diagnostics(refused.diagnostics)
@@ -99,27 +92,14 @@ def _reach(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
                 result, faults = study(*program.sound, program.options, namespace.place)
                 diagnostics += faults
                 studies += [result] if result else []
-            print_diagnostics(diagnostics)
+            offer = "" if namespace.place else place_offer(diagnostics, str(file))
+            print_diagnostics(each for each in (*diagnostics, offer) if each)
             failed |= bool(errors(diagnostics))
     if namespace.json:
         print(json.dumps([result.as_dict() for result in studies], indent=2))
     else:
         print("\n".join(result.text() for result in studies))
     return int(failed)
-
-
-def _programs(file: Path, namespace: argparse.Namespace) -> Iterator[Prepared]:
-    """Yield the programs of a file: that of a part program, or those of the jobs of a document."""
-    from pkm_post.posting import prepared_file
-    from pkm_post.reading import is_part_program
-
-    given = applicable_values(explicit_values(namespace), input_kind(file))
-    if is_part_program(file):
-        yield prepared_file(file, reading=reading_from(namespace), arguments=given)
-    else:
-        from pkm_post.freecad_app.post_job import read_document
-
-        yield from read_document(file, given, namespace.job)
 
 
 def _range(text: str) -> list[float]:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pkm_post.control.link.program import Job, read_job
+from pkm_post.control.link.program import Job, PmacProgram, parse_power_program, parse_program, read_job
 from pkm_post.model import Diagnostic, Machine, Place, Refused
 from pkm_post.posting import verify_texts
 from pkm_post.system import result_files
@@ -30,7 +30,7 @@ from pkm_post.writing import (
     read_texts,
 )
 
-__all__ = ["certified", "job_to_load"]
+__all__ = ["certified", "job_to_load", "program_to_load"]
 
 Findings = tuple[Diagnostic, ...]
 
@@ -93,6 +93,39 @@ def job_to_load(
     return read_job(text, settings, program.name)
 
 
+def program_to_load(
+    program: Path, machine: Machine, settings: PmacSettings | PowerPmacSettings, uncertified: bool = False
+) -> tuple[tuple[PmacProgram, bool] | None, Findings]:
+    """The lines of a program file for the controller, and whether it is one of strut lengths; else as ``job_to_load``.
+
+    A program of tip and axis is certified by ``verify`` alone, against a trajectory file in its folder, or refused.
+    """
+    text, faults = read_text(program)
+    if text is None or not program_files.is_of_tip_and_axis(text):
+        job, faults = job_to_load(program, machine, settings, uncertified)
+        return None if job is None else (job.program, True), faults
+    found, faults = _certified(program, text, machine)
+    if found is None:
+        return None, faults
+    _log.info("%s, SHA-256 %s, was verified now", program.name, found.digest)
+    parse = parse_power_program if isinstance(settings, PowerPmacSettings) else parse_program
+    return (parse(text), False), ()
+
+
+def _trajectory_of(first: Path, text: str) -> Path:
+    """The trajectory file of a program: of its name, or the one in its folder that its heading names by SHA-256."""
+    named = first.with_suffix(result_files.TRAJECTORY)
+    if named.is_file():
+        return named
+    others = sorted(first.parent.glob(f"*{result_files.TRAJECTORY}"))
+    stated = (file for file in others if _states_trajectory(text, file))
+    return next(stated, named)
+
+
+def _states_trajectory(text: str, file: Path) -> bool:
+    return program_files.states_hash(text, "trajectory", manifest.fingerprint_of_file(file))
+
+
 def _lines(faults: Findings) -> str:
     return "\n".join(map(str, faults))
 
@@ -108,7 +141,7 @@ def _certified(program: Path, text: str, machine: Machine) -> tuple[Certified | 
     if not reasons:
         return Certified(text, digest, False), ()
     doubts = (Diagnostic("C110", Place(str(program)), "; ".join(reasons)),)
-    trajectory = first.with_suffix(result_files.TRAJECTORY)
+    trajectory = _trajectory_of(first, text)
     if not trajectory.is_file():
         return None, doubts
     texts, faults = read_texts(first, controller)

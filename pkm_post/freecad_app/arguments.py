@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import argparse
 import shlex
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import Path.Preferences
@@ -124,18 +124,19 @@ def own_text(job: Any) -> str:
         return str(job.PostProcessorArgs)
 
 
-def replace_arguments(text: str, chosen: Mapping[str, str | None]) -> str:
+def replace_arguments(text: str, chosen: Mapping[str, str | Sequence[str] | None]) -> str:
     """Replace some arguments; all others stay unchanged.
 
     Args:
         text: the arguments, quoted as in a shell.
-        chosen: values by flag; None removes the flag, so that its default applies.
+        chosen: values by flag, several for a flag that may be repeated; None removes it, so that its default applies.
 
     Raises:
         ValueError: the quotes of the text do not close.
     """
     kept = [word for flag, words in _by_flag(shlex.split(text)) if flag not in chosen for word in words]
-    return shlex.join([*kept, *(f"{flag}={value}" for flag, value in chosen.items() if value is not None)])
+    values = {flag: [value] if isinstance(value, str) else value or () for flag, value in chosen.items()}
+    return shlex.join([*kept, *(f"{flag}={value}" for flag, each in values.items() for value in each)])
 
 
 def _by_flag(words: list[str]) -> Iterator[tuple[str, list[str]]]:

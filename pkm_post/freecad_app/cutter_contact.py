@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, angle_between, cross, dot, norm
-from pkm_post.model import Diagnostic, Kind, Program
+from pkm_post.model import Diagnostic, Kind, Phrase, Program
 from pkm_post.toolpath import AxisRule, Cutter, tip_from_contact, tool_axes
 
 _SHORTEST = 1e-6
@@ -116,7 +116,7 @@ def compensate_contacts(
     without_axis = rows[np.isnan(axes).any(axis=1)]
     if len(without_axis):
         place = program.place(int(without_axis[0]))
-        return None, (Diagnostic("N114", place, f"{len(without_axis)} points, this the first"),)
+        return None, (Diagnostic("N114", place, Phrase("{} points, this the first", len(without_axis))),)
     offsets, diagnostics = _offsets(program, rows, n, axes, rule)
     if offsets is None:
         return None, diagnostics

@@ -19,7 +19,7 @@ from typing import Any
 
 from pkm_post.freecad_app.commands.words import Words, undecodable_command
 from pkm_post.freecad_app.document import document_name
-from pkm_post.model import Diagnostic, Place, Refused
+from pkm_post.model import Diagnostic, Phrase, Place, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
 
 _PACKAGE = "pkm_post."
@@ -88,7 +88,7 @@ def require_computed(document: Any) -> None:
         Refused: the document is being recomputed, J137.
     """
     if document.Recomputing:
-        raise Refused([Diagnostic("J137", Place(document_name(document)), "a recompute is under way")])
+        raise Refused([Diagnostic("J137", Place(document_name(document)), Phrase("a recompute is under way"))])
     document.recompute()
 
 

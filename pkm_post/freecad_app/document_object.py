@@ -23,8 +23,9 @@ import FreeCAD as App
 import Path
 
 from pkm_post.freecad_app.commands import commands_of, read_commands
+from pkm_post.freecad_app.core_texts import ShownRefused, fault_text
 from pkm_post.freecad_app.frames import matrix_of
-from pkm_post.model import Diagnostic, Program, Refused, Severity
+from pkm_post.model import Diagnostic, Phrase, Program, Refused, Severity
 from pkm_post.system import memory_guard
 from pkm_post.toolpath import transform
 
@@ -108,7 +109,7 @@ def without_traceback(execute: Execute) -> Execute:
             with memory_guard(obj.Label):
                 return execute(proxy, obj)
         except Refused as refused:
-            raise refused.with_traceback(None) from None
+            raise ShownRefused(refused.diagnostics).with_traceback(None) from None
 
     return brief
 
@@ -125,7 +126,7 @@ def value_of(result: tuple[Any, Iterable[Diagnostic]], about: str = "") -> Any:
     """
     value, diagnostics = result
     if value is None:
-        raise Refused([replace(fault, found=f"{about}{fault.found}") for fault in diagnostics])
+        raise Refused([replace(fault, found=Phrase("{}{}", about, fault.found)) for fault in diagnostics])
     print_diagnostics(diagnostics, about)
     return value
 
@@ -134,7 +135,7 @@ def print_diagnostics(diagnostics: Iterable[Diagnostic], about: str = "") -> Non
     """Print diagnostics in the Report view."""
     for each in diagnostics:
         show = App.Console.PrintError if each.severity is Severity.ERROR else App.Console.PrintWarning
-        show(f"{about}{each}\n")
+        show(f"{about}{fault_text(each)}\n")
 
 
 BASE_AND_ACTIVE: tuple[Row, ...] = (

@@ -48,7 +48,7 @@ def face_surface(face: Any, flipped: bool = False) -> Surface:
     closed_v = _coincide(face, u, np.full(9, first_v), u, np.full(9, last_v))
     return Surface(
         _oriented(_from_poles(face) or _from_occ(face), -1.0 if flipped else 1.0),
-        _everywhere if _untrimmed(face) else inside,
+        _everywhere if is_untrimmed(face) else inside,
         ParameterRange(first_u, last_u, closed_u),
         ParameterRange(first_v, last_v, closed_v),
     )
@@ -132,7 +132,7 @@ def _coincide(face: Any, u: Array, v: Array, other_u: Array, other_v: Array) -> 
     return all(face.valueAt(a, b).distanceToPoint(face.valueAt(c, d)) < _SAME for a, b, c, d in ends)
 
 
-def _untrimmed(face: Any) -> bool:
+def is_untrimmed(face: Any) -> bool:
     """Whether a face fills its full parameter range."""
     whole = face.Surface.toShape(*face.ParameterRange).Area
     return bool(abs(whole - face.Area) <= _WHOLE * whole)

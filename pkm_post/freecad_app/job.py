@@ -2,7 +2,8 @@
 """Job: combines the active operations of a CAM job, in tree order, into one program.
 
 Takes a job of FreeCAD's CAM workbench, or a selection of its operations and fixtures; returns a program in mm, rad and
-mm/s, or all faults of the job. The list of operations is built here: the one FreeCAD 1.0 builds may lose operations.
+mm/s, or all faults of the job. An operation is read once for each fixture, in CAM's order. The list of operations is
+built here: the one FreeCAD 1.0 builds may lose operations.
 What CAM stores outside the paths becomes events: tool, spindle and coolant, each where it changes, and off at the end
 and at tool changes. FreeCAD newer than 1.1 offers selections in CAM's Post Process dialog.
 """
@@ -23,9 +24,24 @@ from Path.Base.Util import opProperty, toolControllerForOp
 from pkm_post.freecad_app.commands import read_commands
 from pkm_post.freecad_app.document import document_name
 from pkm_post.freecad_app.document_checks import file_faults, state_faults
+from pkm_post.freecad_app.fixtures import DEFAULT, ONE_PLACE, cutting_order, files_of_split_output, operation_name
 from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.tools import SPINDLE_SENSES, read_tools
-from pkm_post.model import MOTION_COLUMNS, OPTIONAL_COLUMNS, Diagnostic, Event, EventKind, Place, Program, Tool, errors
+from pkm_post.geometry import Array
+from pkm_post.model import (
+    MOTION_COLUMNS,
+    OPTIONAL_COLUMNS,
+    Diagnostic,
+    Event,
+    EventKind,
+    Kind,
+    Phrase,
+    Place,
+    Program,
+    Tool,
+    errors,
+)
+from pkm_post.reading import without_idle_starts
 from pkm_post.toolpath import transform
 
 
@@ -51,9 +67,9 @@ class Selection:
         return [each for each in self.operations or () if each not in job.Operations.Group]
 
     def fixtures_of(self, job: Any) -> list[str]:
-        """The selected fixtures, in the order of the job."""
+        """The selected fixtures, in the order of the job; at least one."""
         own = list(job.Fixtures)
-        return own if self.fixtures is None else [each for each in own if each in self.fixtures]
+        return [each for each in own if self.fixtures is None or each in self.fixtures] or [DEFAULT]
 
 
 EVERYTHING = Selection()
@@ -62,11 +78,16 @@ NO_LENGTHS: Mapping[int, float] = MappingProxyType({})
 """No gauge lengths: those of the tool controllers apply."""
 
 _COOLANT = {"None": 0.0, "Flood": 1.0, "Mist": 2.0}
+_IN_PLACE = np.eye(4)
 _OFF = {EventKind.SPINDLE: 0.0, EventKind.COOLANT: 0.0}
 
 
 def read_job(
-    job: Any, tool_lengths: Mapping[int, float] = NO_LENGTHS, selection: Selection = EVERYTHING
+    job: Any,
+    tool_lengths: Mapping[int, float] = NO_LENGTHS,
+    selection: Selection = EVERYTHING,
+    places: Mapping[str, Array] = ONE_PLACE,
+    spindle_axis: bool = False,
 ) -> tuple[Program | None, tuple[Diagnostic, ...]]:
     """Read the program of a CAM job.
 
@@ -74,20 +95,27 @@ def read_job(
         job: the job, a document object, recomputed.
         tool_lengths: gauge lengths by tool number that override those of the tool controllers, mm.
         selection: the part of the job to read.
+        places: (4, 4) pose in {C} of each of several fixtures, in which the operations are read one after the other.
+        spindle_axis: whether the spindle of the machine is an axis: without one tapping is refused.
 
     Returns:
         The program, or None if there are errors; and all diagnostics.
     """
-    builder = _ProgramBuilder(job)
-    faults = [*file_faults(job.Document), *_selection_faults(job, selection, Place(builder.source, job.Label))]
-    active = [each for each in selection.operations_of(job) if is_active(each)]
-    for operation in active:
-        faults += state_faults(operation, builder.source) or builder.add(operation)
+    builder = _ProgramBuilder(job, spindle_axis)
+    faults = [*file_faults(job.Document), *_foreign(job, selection, Place(builder.source, job.Label))]
+    active, fixtures = [each for each in selection.operations_of(job) if is_active(each)], selection.fixtures_of(job)
+    for fixture, operation in cutting_order(active, fixtures, job.OrderOutputBy):
+        name = operation_name(operation.Label, fixture, fixtures)
+        found = state_faults(operation, builder.source) or builder.add(operation, places.get(fixture, _IN_PLACE), name)
+        faults += [each for each in found if each not in faults]  # once, and not at every fixture
+    files = files_of_split_output(active, fixtures, job.OrderOutputBy) if job.SplitOutput else 1
+    if files > 1:
+        faults.append(Diagnostic("J140", Place(builder.source, job.Label), f"{files} files by {job.OrderOutputBy}"))
     builder.switch(_OFF)
     tools, tool_faults = read_tools(builder.controllers.values(), tool_lengths, builder.source)
     faults += tool_faults
     if not builder.rows and not errors(faults):
-        faults.append(Diagnostic("J103", Place(builder.source, job.Label), "nothing to post"))
+        faults.append(Diagnostic("J103", Place(builder.source, job.Label), Phrase("nothing to post")))
     if errors(faults):
         return None, tuple(faults)
     summary = builder.summary(job, active)
@@ -111,11 +139,9 @@ def is_active(operation: Any) -> bool:
     return opProperty(operation, "Active") is not False
 
 
-def _selection_faults(job: Any, selection: Selection, place: Place) -> list[Diagnostic]:
-    """Selected items that are missing or cannot be posted together."""
-    fixtures, foreign = selection.fixtures_of(job), selection.foreign_operations(job)
-    faults = [Diagnostic("J111", place, ", ".join(fixtures))] if len(fixtures) > 1 else []
-    return faults + [Diagnostic("J127", place, each.Label) for each in foreign]
+def _foreign(job: Any, selection: Selection, place: Place) -> list[Diagnostic]:
+    """Selected operations that are missing."""
+    return [Diagnostic("J127", place, each.Label) for each in selection.foreign_operations(job)]
 
 
 class _ProgramBuilder:
@@ -127,22 +153,24 @@ class _ProgramBuilder:
         controllers: the tool controllers in use, by the name of the object.
     """
 
-    def __init__(self, job: Any) -> None:
+    def __init__(self, job: Any, spindle_axis: bool) -> None:
         self.source = document_name(job.Document)
         self.rows = 0
         self.controllers: dict[str, Any] = {}
-        self._in_job = job.Tools.Group
+        self._in_job, self._spindle_axis = job.Tools.Group, spindle_axis
         self._programs: list[Program] = []
         self._events: list[Event] = []
         self._state: dict[EventKind, float] = dict(_OFF)
         self._tip = np.full(3, np.nan)
 
-    def add(self, operation: Any) -> list[Diagnostic]:
-        """Append an operation, with its placement applied to points and tool axes."""
-        work_from_operation = matrix_of(operation.Placement)
+    def add(self, operation: Any, work_from_fixture: Array, name: str) -> list[Diagnostic]:
+        """Append an operation at a fixture, with its placement applied to points and tool axes."""
+        work_from_operation = work_from_fixture @ matrix_of(operation.Placement)
         start = np.linalg.solve(work_from_operation, [*self._tip, 1.0])[:3]
         with _no_collections():
-            program, read_faults = read_commands(operation.Path.Commands, self.source, operation.Label, start)
+            program, read_faults = read_commands(
+                operation.Path.Commands, self.source, operation.Label, start, self._spindle_axis
+            )
         faults = list(read_faults)
         if program is None:
             return faults
@@ -152,10 +180,10 @@ class _ProgramBuilder:
         if len(program):
             controller = toolControllerForOp(operation)
             if controller is None:
-                return [*faults, Diagnostic("J112", Place(self.source, operation.Label), "none is set")]
+                return [*faults, Diagnostic("J112", Place(self.source, operation.Label), Phrase("none is set"))]
             self._switch_tool(controller, _COOLANT[opProperty(operation, "CoolantMode") or "None"])
             self._tip = program.position[-1]
-        return faults + self._append(program)
+        return faults + self._append(dataclasses.replace(program, operations=(name,)))
 
     def _switch_tool(self, controller: Any, coolant: float) -> None:
         self.controllers[controller.Name] = controller
@@ -180,12 +208,16 @@ class _ProgramBuilder:
         faults = []
         for event in program.events:
             self._append_event(dataclasses.replace(event, row=self.rows + event.row))
+            if event.kind is EventKind.SPINDLE_AXIS and event.value == 0 and self._state[EventKind.SPINDLE]:
+                self._append_event(Event(self.rows + event.row, EventKind.SPINDLE, self._state[EventKind.SPINDLE]))
             if event.kind is EventKind.TOOL_CHANGE:
                 called = [controller for controller in self._in_job if controller.ToolNumber == event.value]
                 self.controllers |= {controller.Name: controller for controller in called}
                 if not called:
                     place = Place(self.source, program.operations[0])
-                    faults.append(Diagnostic("J113", place, f"T{event.value:g}, no tool controller has this number"))
+                    faults.append(
+                        Diagnostic("J113", place, Phrase("T{}, no tool controller has this number", f"{event.value:g}"))
+                    )
         self._programs.append(program)
         self.rows += len(program)
         return faults
@@ -202,7 +234,7 @@ class _ProgramBuilder:
         return Program(
             **columns,
             operation=np.repeat(np.arange(len(self._programs)), [len(program) for program in self._programs]),
-            events=tuple(self._events),
+            events=without_idle_starts(tuple(self._events), np.flatnonzero(columns["kind"] != Kind.RAPID)),
             operations=tuple(program.operations[0] for program in self._programs),
             tools=dict(tools),
             source=self.source,

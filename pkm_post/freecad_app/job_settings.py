@@ -16,6 +16,7 @@ from typing import Any
 
 from pkm_post.freecad_app.arguments import own_arguments
 from pkm_post.freecad_app.document import document_name
+from pkm_post.freecad_app.fixtures import unused_origins
 from pkm_post.freecad_app.job import EVERYTHING, Selection
 from pkm_post.freecad_app.tools import gauge_length
 from pkm_post.model import Diagnostic, Place
@@ -37,6 +38,8 @@ from pkm_post.options import (
     tool_lengths_from,
 )
 
+_INCH_SYSTEMS = (2, 3, 5, 7)
+"""Rows of FreeCAD's unit systems with lengths in inch or feet: US, Imperial decimal, Building US, Civil Eng."""
 _FILES = ("machine", "part", "stock", "fixture")
 """Options with file names; a machine may also be one included in PKM Post."""
 
@@ -92,15 +95,28 @@ def settings_of(
         *_overridden_lengths(job, lengths),
         *_unknown_tools(job, explicit_values(own), ()),
         *_unknown_tools(job, given, other_jobs),
+        *unused_origins(dict(chosen.origin), selection.fixtures_of(job), Place(document_name(job.Document), job.Label)),
     )
     return JobSettings(
         chosen.machine,
-        _at_fixture(options or options_from(chosen), job, selection),
+        _at_fixture(options or _in_units_of(job.Document, chosen), job, selection),
         lengths,
         chosen,
         selection,
         diagnostics,
     )
+
+
+def _in_units_of(document: Any, chosen: argparse.Namespace) -> Options:
+    """The chosen options; where none says otherwise, the page of the report has the units of the document.
+
+    These are saved in the document, which takes those of its user when it is made, so all doors give the same page.
+    """
+    options = options_from(chosen)
+    if "report_unit" in explicit_values(chosen):
+        return options
+    system = document.getEnumerationsOfProperty("UnitSystem").index(document.UnitSystem)
+    return replace(options, report_unit="inch" if system in _INCH_SYSTEMS else "mm")
 
 
 def _at_fixture(options: Options, job: Any, selection: Selection) -> Options:
@@ -111,7 +127,7 @@ def _at_fixture(options: Options, job: Any, selection: Selection) -> Options:
 
 
 def _fixture(job: Any, selection: Selection) -> str:
-    return next(iter(selection.fixtures_of(job)), "G54")
+    return selection.fixtures_of(job)[0]
 
 
 def _with_document_paths(job: Any, own: argparse.Namespace) -> argparse.Namespace:

@@ -13,7 +13,7 @@ not choose it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -24,6 +24,7 @@ from pkm_post.freecad_app.arguments import POST_PROCESSORS, replace_arguments
 from pkm_post.freecad_app.document import document_name
 from pkm_post.freecad_app.document_checks import require_computed
 from pkm_post.freecad_app.document_object import print_diagnostics
+from pkm_post.freecad_app.fixtures import ONE_PLACE, at_fixtures, fixture_places
 from pkm_post.freecad_app.frames import matrix_of, placement_of
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_settings import JobSettings, settings_of
@@ -31,15 +32,19 @@ from pkm_post.freecad_app.job_study import JobStudy, study_of
 from pkm_post.freecad_app.machine_object import machine_of
 from pkm_post.freecad_app.mesh import mesh_of
 from pkm_post.freecad_app.tools import millimetres
+from pkm_post.geometry import Array
 from pkm_post.machine import CollisionMesh, find_machine, machine_named, placed_workpiece
 from pkm_post.model import Diagnostic, Machine, Mesh, Place, Refused, Setup, Shank, Tolerances, Trajectory, errors
 from pkm_post.options import Options, Override, argument_values, flag_of, format_value
 from pkm_post.posting import (
     FoundPlace,
     Prepared,
+    Progress,
+    StiffnessStudy,
     Study,
     effective_setup,
     find_place,
+    stiffness_study,
     study,
     work_offset,
     work_offset_text,
@@ -86,15 +91,28 @@ def prepared_job(job: Any, settings: JobSettings, machine_object: Any = None) ->
     Raises:
         Refused: the file of the machine object has faults.
     """
-    options = replace(settings.options, setup=setup_of(job))
+    options = settings.options
     if machine_object is None:
         machine, diagnostics = machine_named(settings.machine)
     else:
         machine = machine_of(machine_object)
         options = replace(options, work_offset=matrix_of(machine_object.Frame.inverse()))
         diagnostics = tuple(_machine_differences(job, settings, machine_object, machine, options))
-    program, job_diagnostics = read_job(job, settings.tool_lengths, settings.selection)
-    return Prepared(program, machine, options, (*diagnostics, *settings.found, *job_diagnostics))
+    places, unplaced = places_of(job, settings, machine, options)
+    is_axis = machine is not None and machine.spindle_axis is not None
+    program, job_diagnostics = read_job(job, settings.tool_lengths, settings.selection, places, is_axis)
+    options = replace(options, setup=setup_of(job, places))
+    return Prepared(program, machine, options, (*diagnostics, *settings.found, *unplaced, *job_diagnostics), places)
+
+
+def places_of(
+    job: Any, settings: JobSettings, machine: Machine | None, options: Options
+) -> tuple[dict[str, Array], tuple[Diagnostic, ...]]:
+    """The pose in {C} of each fixture of a job, (4, 4) by name, as ``fixture_places``; none without a machine."""
+    if machine is None:
+        return {}, ()
+    place = Place(document_name(job.Document), job.Label)
+    return fixture_places(settings.selection.fixtures_of(job), machine, options, dict(settings.arguments.origin), place)
 
 
 def _machine_differences(
@@ -113,11 +131,11 @@ def _machine_differences(
         yield Diagnostic("J125", place, str(Override(flag_of("work_offset"), *values)))
 
 
-def setup_of(job: Any) -> Setup:
-    """The set-up of a recomputed job."""
+def setup_of(job: Any, places: Mapping[str, Array] = ONE_PLACE) -> Setup:
+    """The set-up of a recomputed job, with a part and a stock at each of several fixtures."""
     shanks = dict(_shanks(job.Tools.Group))
     stock = _mesh([job.Stock] if job.Stock else [], StockType.FromStock(job.Stock) == StockType.FromBase)
-    return Setup(part=_mesh(job.Model.Group), stock=stock, shanks=shanks)
+    return Setup(at_fixtures(_mesh(job.Model.Group), places), at_fixtures(stock, places), shanks=shanks)
 
 
 def _mesh(items: Iterable[Any], assumed: bool = False) -> Mesh | None:
@@ -173,6 +191,23 @@ def study_job(job: Any, free: str = "") -> Study:
     return result
 
 
+def stiffness_of(job: Any, machine_object: Any = None) -> StiffnessStudy:
+    """How stiff the tool tip is held along a job, and over the table.
+
+    Args:
+        job: the CAM job, recomputed.
+        machine_object: from ``create_machine``; without one the arguments of the job define the machine.
+
+    Raises:
+        Refused: the job cannot be read or placed, or the machine file states no stiffness.
+    """
+    placed = placed_job(job, machine_object)
+    found, faults = stiffness_study(placed.trajectory, placed.machine)
+    if found is None:
+        raise Refused(faults)
+    return found
+
+
 def set_best_work_offset(job: Any, free: str = "xyzc") -> Study:
     """Set the argument ``--work-offset`` of a job to the offset with the largest margin on its machine.
 
@@ -194,8 +229,10 @@ def set_best_work_offset(job: Any, free: str = "xyzc") -> Study:
     return result
 
 
-def place_search(job: Any, machine_object: Any = None) -> Callable[[], FoundPlace]:
+def place_search(job: Any, machine_object: Any = None) -> Callable[[Progress], FoundPlace]:
     """Read a job, and return the search for a place at which the machine can follow it, which may run in any thread.
+
+    The search takes what is called with its progress; an exception from that ends it.
 
     Args:
         job: the CAM job, recomputed.
@@ -207,8 +244,8 @@ def place_search(job: Any, machine_object: Any = None) -> Callable[[], FoundPlac
     prepared = prepared_job(job, settings_of(job), machine_object)
     program, machine = prepared.sound
 
-    def search() -> FoundPlace:
-        found, faults = find_place(program, machine, prepared.options)
+    def search(progress: Progress) -> FoundPlace:
+        found, faults = find_place(program, machine, prepared.options, progress=progress)
         if found is None:
             raise Refused((*prepared.found, *faults))
         return found
@@ -232,11 +269,27 @@ def set_place(job: Any, found: FoundPlace, machine_object: Any = None) -> None:
     flag, equals, text = work_offset_text(offset).partition("=")
     if not equals:
         raise ValueError(f"expected a work offset that is rotated only about z, got {flag}")
-    chosen = {flag: text} | ({flag_of("spin"): found.options.spin.rule.value} if found.spins else {})
+    chosen: dict[str, str | list[str] | None] = {flag: text}
+    chosen |= {flag_of("spin"): found.options.spin.rule.value} if found.spins else {}
+    chosen |= {flag_of("origin"): _origins(job, machine_object)}  # the search moved all fixtures together
     if machine_object is not None and machine_object.Job is None:
         document_from_work = matrix_of(machine_object.Frame) @ matrix_of(machine_object.WorkOffset)
         machine_object.WorkOffset = placement_of(offset @ document_from_work)
     job.PostProcessorArgs = replace_arguments(job.PostProcessorArgs, chosen)
+
+
+def _origins(job: Any, machine_object: Any) -> list[str]:
+    """Where the fixtures after the first one are in {C}, as ``--origin`` states it."""
+    settings = settings_of(job)
+    machine = machine_named(settings.machine)[0] if machine_object is None else machine_of(machine_object)
+    options = settings.options
+    if machine_object is not None:
+        options = replace(options, work_offset=matrix_of(machine_object.Frame.inverse()))
+    places, _ = places_of(job, settings, machine, options)
+    found = {name: work_offset_text(pose).partition("=") for name, pose in list(places.items())[1:]}
+    if not all(equals for _, equals, _ in found.values()):
+        raise ValueError("expected fixtures that are rotated against each other only about z")
+    return [f"{name}={text}" for name, (_, _, text) in found.items()]
 
 
 def _require_post_processor(job: Any) -> None:

@@ -2,31 +2,37 @@
 """Job study: the one set of checks of a CAM job that Reach, Simulation and the post-processors share.
 
 Takes a job on its machine; returns the margins of reach along its path and all findings: reach, part, stock, holder,
-fixtures, gouges. Posting runs the same checks on what it writes.
+fixtures, gouges.
 
 A study is a function of trajectory, machine, set-up and tolerances, and it is kept by their content: whatever changes
 one of them makes another study, and what changes none, such as a colour, makes none. It lives as long as something
-shows it.
+shows it. Collisions are the part of it that posting needs as well: whichever comes first finds them, and the last ones
+are kept. What posting checks besides is of another path, the one with rounded corners, and of the written program.
 """
 
 from __future__ import annotations
 
 import hashlib
+from collections import OrderedDict
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 from weakref import WeakValueDictionary
 
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.machine import ReachFinding, ReachReport, ToolPoses, poses_along
+from pkm_post.machine import Collisions, ReachFinding, ReachReport, ToolPoses, find_collisions, poses_along
 from pkm_post.model import RULES, Diagnostic, Machine, Place, Setup, Severity, Tolerances, Trajectory, errors
 from pkm_post.posting import check_path_of
 
 _ROWS = 65536
 """Rows of a column per step of the digest: some columns hold one row many times over in the memory of one."""
 _KEPT: WeakValueDictionary[bytes, JobStudy] = WeakValueDictionary()
+_COLLISIONS: OrderedDict[bytes, Collisions] = OrderedDict()
+"""By content, the last used at the end."""
+_MOST_COLLISIONS = 8
+"""Jobs whose collisions are kept: a few lines of text each."""
 
 
 @dataclass(frozen=True)
@@ -58,12 +64,24 @@ class JobStudy:
         return least
 
     def row_of(self, finding: Diagnostic) -> int:
-        """The pose of a finding: that of its worst margin in its block, else where the block ends."""
-        report, place = self.reach, finding.place
+        """The pose of a finding, as ``row_at``; the first one if the path has no block at its place."""
+        return self.row_at(finding.place, finding.code) or 0
+
+    def row_at(self, place: Place, code: str = "") -> int | None:
+        """The pose of a finding at a place: that of its worst margin in its block, else where the block ends.
+
+        Args:
+            place: operation and line.
+            code: of the finding, if it has one.
+
+        Returns:
+            The row; None if the path has no block at the place.
+        """
+        report = self.reach
         rows = np.flatnonzero(np.isin(report.segment, _segments_at(report.trajectory, place)))
         if not len(rows):
-            return 0
-        checks = [each for each in report.findings if finding.code in (each.subject.code, each.subject.rapid_code)]
+            return None
+        checks = [each for each in report.findings if code and code in (each.subject.code, each.subject.rapid_code)]
         if not checks:
             return int(rows[-1])
         least = np.min([each.margin[rows] for each in checks], axis=0)
@@ -86,9 +104,27 @@ def study_of(trajectory: Trajectory, machine: Machine, setup: Setup, tolerances:
     key = digest((trajectory, machine, setup, tolerances))
     kept = _KEPT.get(key)
     if kept is None:
-        kept = JobStudy(*check_path_of(trajectory, machine, setup, tolerances))
+        kept = JobStudy(*check_path_of(trajectory, machine, setup, tolerances, collisions_of))
         _KEPT[key] = kept
     return kept
+
+
+def collisions_of(trajectory: Trajectory, machine: Machine, setup: Setup, tolerances: Tolerances) -> Collisions:
+    """The collisions of a trajectory, as ``find_collisions``, or the same ones from before if nothing has changed.
+
+    A trajectory that was read back from its file is the same as before, but for the tolerances that the file states.
+    """
+    if setup.is_empty:
+        return find_collisions(trajectory, machine, setup, tolerances)
+    key = digest((replace(trajectory, tolerances=tolerances), machine, setup, tolerances))
+    found = _COLLISIONS.get(key)
+    if found is None:
+        found = find_collisions(trajectory, machine, setup, tolerances)
+    _COLLISIONS[key] = found
+    _COLLISIONS.move_to_end(key)
+    while len(_COLLISIONS) > _MOST_COLLISIONS:
+        _COLLISIONS.popitem(last=False)
+    return found
 
 
 def digest(value: object) -> bytes:

@@ -23,7 +23,7 @@ from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.freecad_app.window import add_view
 from pkm_post.geometry import Array
 from pkm_post.machine import PosePath, ToolPoses, machine_named, reach_findings, reach_margins, strut_lengths
-from pkm_post.model import Machine, Refused
+from pkm_post.model import Machine, Phrase, Refused
 from pkm_post.posting import work_offset
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
@@ -182,9 +182,14 @@ def _set_results(obj: Any, machine: Machine, pose: ToolPoses) -> None:
     obj.StrokeMargin = float(min(left.shortest.min(), left.longest.min()))
     obj.JointMargin = math.degrees(min(left.base.min(), left.platform.min()))
     obj.SingularMargin = float(left.singular[0])
+    obj.OutOfLimits = [str(each) for each in violated_limits(machine, pose)]
+
+
+def violated_limits(machine: Machine, pose: ToolPoses) -> list[Phrase]:
+    """What is out of limits at a pose, one row for ``kinematics``, bodies that meet included; for any language."""
     findings = reach_findings(machine, PosePath.straight(*pose))
-    violations = [finding for finding in findings if finding.margin[0] < 0.0]
-    obj.OutOfLimits = [
-        f"{finding.subject.name}: {finding.subject.describe(int(finding.part[0]), float(finding.margin[0]))}"
-        for finding in violations
+    return [
+        Phrase("{}: {}", each.subject.name, each.subject.describe(int(each.part[0]), float(each.margin[0])))
+        for each in findings
+        if each.margin[0] < 0.0
     ]

@@ -15,7 +15,7 @@ import Part
 
 from pkm_post.freecad_app.frames import rows_of
 from pkm_post.geometry import Array
-from pkm_post.model import Diagnostic, Place
+from pkm_post.model import Diagnostic, Phrase, Place
 from pkm_post.reading import mesh_of_triangles
 
 _DEVIATION = 0.1
@@ -46,7 +46,7 @@ def read_step(path: Path, name: str) -> Any:
     try:
         shape.read(str(path))
     except UnicodeEncodeError:
-        return None, (Diagnostic("F103", Place(name), "FreeCAD reads only files with Unicode names"),)
+        return None, (Diagnostic("F103", Place(name), Phrase("FreeCAD reads only files with Unicode names")),)
     except (OSError, RuntimeError, Part.OCCError):
-        return None, (Diagnostic("K138", Place(name), "OpenCASCADE cannot read it as STEP"),)
+        return None, (Diagnostic("K138", Place(name), Phrase("OpenCASCADE cannot read it as STEP")),)
     return mesh_of_triangles(mesh_of(shape), name)

@@ -17,10 +17,12 @@ import FreeCAD as App
 from pkm_post.freecad_app.arguments import values_of
 from pkm_post.freecad_app.document import document_name, is_job
 from pkm_post.freecad_app.document_checks import check_operations, read_content, require_computed
-from pkm_post.freecad_app.job import NO_LENGTHS
+from pkm_post.freecad_app.job import EVERYTHING, NO_LENGTHS
 from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.job_setup import prepared_job
-from pkm_post.model import Diagnostic, Place, Refused
+from pkm_post.freecad_app.job_study import collisions_of
+from pkm_post.freecad_app.window import show_verdict
+from pkm_post.model import Diagnostic, Phrase, Place, Refused
 from pkm_post.options import READING_STEP, ArgumentValues, Options, PostItem, job_stem, result_conflicts
 from pkm_post.posting import SUFFIX, Log, Posted, Prepared, Progress, no_log, no_progress
 
@@ -140,7 +142,7 @@ def find_jobs(document: Any) -> list[Any]:
     """
     jobs = [item for item in document.Objects if is_job(item)]
     if not jobs:
-        raise Refused([Diagnostic("J102", Place(document_name(document)), "no job in the document")])
+        raise Refused([Diagnostic("J102", Place(document_name(document)), Phrase("no job in the document"))])
     return jobs
 
 
@@ -173,7 +175,21 @@ def post_to(
     """
     progress(READING_STEP, 0.0)
     require_computed(job.Document)
-    return prepared_job(job, settings).post(program_path, log, progress)
+    read = prepared_job(job, settings)
+    _judge(job, settings, None)
+    try:
+        posted = read.post(program_path, log, progress, collisions_of)
+    except Refused as refused:
+        _judge(job, settings, refused.diagnostics)
+        raise
+    _judge(job, settings, posted.diagnostics)
+    return posted
+
+
+def _judge(job: Any, settings: JobSettings, findings: Sequence[Diagnostic] | None) -> None:
+    """Show in the tree what was found, None at the beginning, if the whole job is posted with its own settings."""
+    if settings.selection == EVERYTHING and not any(each.code == "J125" for each in settings.found):
+        show_verdict(job, findings)
 
 
 def file_name(job: Any) -> str:

@@ -21,10 +21,10 @@ from pkm_post.freecad_app.document_checks import require_computed
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_settings import JobSettings
 from pkm_post.freecad_app.job_setup import prepared_job
-from pkm_post.freecad_app.job_study import study_of
+from pkm_post.freecad_app.job_study import JobStudy, study_of
 from pkm_post.freecad_app.post_job import post_to
 from pkm_post.freecad_app.progress import Progress
-from pkm_post.model import Diagnostic, Place, Refused, Trajectory, errors
+from pkm_post.model import Diagnostic, Phrase, Place, Refused, Trajectory, errors
 from pkm_post.posting import Posted, effective_setup, step_names
 from pkm_post.system import require_usable, result_files, staged, write_fault
 from pkm_post.writing import GcodeDialect, manifest, outputs, trajectory_file, write
@@ -58,8 +58,10 @@ def _program_alone(job: Any, settings: JobSettings, path: FilePath) -> Written:
         posted = _posted(job, settings, FilePath(folder) / path.name)
         names = ", ".join(file.name for file in posted.files if file != posted.program)
         if len(posted.parts) > 1:
-            raise Refused([*posted.diagnostics, Diagnostic("F111", Place(path.name), f"it needs {names} beside it")])
-        found = Diagnostic("F112", Place(path.name), f"without {names}")
+            raise Refused(
+                [*posted.diagnostics, Diagnostic("F111", Place(path.name), Phrase("it needs {} beside it", names))]
+            )
+        found = Diagnostic("F112", Place(path.name), Phrase("without {}", names))
         return posted.program.read_text(encoding="ascii"), (*posted.diagnostics, found)
 
 
@@ -104,8 +106,13 @@ def _linuxcnc(job: Any, settings: JobSettings, path: FilePath) -> Written:
 def _gcode(job: Any, settings: JobSettings, path: FilePath) -> Written:
     """The program of the job as G-code."""
     require_computed(job.Document)
-    program, diagnostics = read_job(job, settings.tool_lengths, settings.selection)
-    program, found = _require((program, (*settings.found, *diagnostics)))
+    if len(settings.selection.fixtures_of(job)) > 1:  # the machine knows where they are
+        prepared = prepared_job(job, settings)
+        program, diagnostics = prepared.program, prepared.found
+    else:
+        program, diagnostics = read_job(job, settings.tool_lengths, settings.selection)
+        diagnostics = (*settings.found, *diagnostics)
+    program, found = _require((program, diagnostics))
     return _require(write(program, GcodeDialect(settings.arguments.form), inch=settings.arguments.inch), found)
 
 
@@ -140,13 +147,28 @@ def output_of(post_processor: str, for_dialog: bool = False) -> Output:
 
 def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:
     """The trajectory of a job, verified to be reachable for its machine, and the warnings."""
+    trajectory, study, found = _studied(job, settings)
+    return _require((trajectory, study.findings), found)
+
+
+def study_of_job(job: Any, settings: JobSettings) -> Findings:
+    """All that the checks of a job find, errors of its path included.
+
+    Raises:
+        Refused: the job has no path that could be checked.
+    """
+    _, study, found = _studied(job, settings)
+    return (*found, *study.findings)
+
+
+def _studied(job: Any, settings: JobSettings) -> tuple[Trajectory, JobStudy, Findings]:
+    """The trajectory of a job, the study of it, and the warnings before."""
     require_computed(job.Document)
     prepared = prepared_job(job, settings)
     trajectory, found = _require(prepared.placed())
     program, machine = prepared.sound
     setup, found = _require(effective_setup(prepared.options, program), found)
-    study = study_of(trajectory, machine, setup, prepared.options.tolerances)
-    return _require((trajectory, study.findings), found)
+    return trajectory, study_of(trajectory, machine, setup, prepared.options.tolerances), found
 
 
 def _require(result: tuple[T | None, Findings], found: Findings = ()) -> tuple[T, Findings]:

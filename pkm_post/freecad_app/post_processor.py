@@ -15,6 +15,7 @@ from typing import Any, ClassVar
 import FreeCAD as App
 from Path.Post.Processor import PostProcessor
 
+from pkm_post.freecad_app.core_texts import exception_text, fault_text
 from pkm_post.freecad_app.job import EVERYTHING, Selection
 
 TOOLTIPS: dict[str, str] = {
@@ -64,6 +65,7 @@ class HexapodPost(PostProcessor):
         from pkm_post.freecad_app.post_outputs import output_of
         from pkm_post.freecad_app.post_properties import values_of_properties
         from pkm_post.freecad_app.progress import Stopped
+        from pkm_post.freecad_app.sanity import remember_output
         from pkm_post.freecad_app.window import shows_refusal
         from pkm_post.model import Refused
         from pkm_post.system import memory_guard
@@ -74,18 +76,21 @@ class HexapodPost(PostProcessor):
                 given = values_of_properties(self._job, self.name, machine, self._entered)
                 settings = settings_of(self._job, given, post_processor=self.name, selection=self._chosen)
                 output = output_of(self.name, for_dialog=getattr(self, "_dialog_handled", False))
-                text, diagnostics = output(self._job, settings, program_path(self._job))
+                program = program_path(self._job)
+                text, diagnostics = output(self._job, settings, program)
         except Refused as refused:
             if getattr(self, "_dialog_handled", False) or not shows_refusal(self._job, refused.diagnostics):
                 _report(refused)
                 raise
-            App.Console.PrintMessage(f"The job was not posted.\n{refused}\n")
+            App.Console.PrintMessage(f"{exception_text(refused)}\n")
             return []
         except Stopped as stopped:
             App.Console.PrintWarning(f"{stopped}\n")
             return []
         for diagnostic in diagnostics:
-            App.Console.PrintWarning(f"{diagnostic}\n")
+            App.Console.PrintWarning(f"{fault_text(diagnostic)}\n")
+        if not getattr(self, "_dialog_handled", False):  # the dialog saves it elsewhere, or not at all
+            remember_output(self._job, program)
         return [("allitems", text)]
 
     def export2(self) -> list[tuple[str, str]]:
@@ -142,5 +147,5 @@ def program_path(job: Any) -> FilePath:
 
 def _report(refused: Exception) -> None:
     """Print the reasons."""
-    for line in str(refused).splitlines():
+    for line in exception_text(refused).splitlines():
         App.Console.PrintError(f"{line}\n")

@@ -23,7 +23,7 @@ from pkm_post.freecad_app.commands import commands_of
 from pkm_post.freecad_app.document_object import PropertyProxy, Row, print_diagnostics
 from pkm_post.freecad_app.tools import preselected
 from pkm_post.freecad_app.window import add_view
-from pkm_post.model import Diagnostic, EventKind, Place, Program, Refused
+from pkm_post.model import Diagnostic, EventKind, Phrase, Place, Program, Refused
 from pkm_post.options import MOST_FEED, above_zero, cycle_kinds, format_value, goto_values, origin
 from pkm_post.reading import (
     AXIS_WORDS,
@@ -313,5 +313,7 @@ def _left_out(program: Program) -> Findings:
     }
     counts = {name: int(np.count_nonzero(column)) for name, column in rows.items()}
     return tuple(
-        Diagnostic("J120", Place(program.source), f"{name} of {count} moves") for name, count in counts.items() if count
+        Diagnostic("J120", Place(program.source), Phrase("{} of {} moves", name, count))
+        for name, count in counts.items()
+        if count
     )

@@ -14,6 +14,7 @@ from typing import Any
 import FreeCAD as App
 import numpy as np
 
+from pkm_post.freecad_app.core_texts import shown
 from pkm_post.freecad_app.document_object import (
     HIDDEN,
     NO_RECOMPUTE,
@@ -30,7 +31,7 @@ from pkm_post.freecad_app.progress import Progress
 from pkm_post.freecad_app.window import add_view
 from pkm_post.geometry import Array
 from pkm_post.machine import DISPLAY_UNITS, ReachReport
-from pkm_post.model import RULES, Severity
+from pkm_post.model import Diagnostic, Severity
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
 
@@ -39,6 +40,8 @@ _MOST_POINTS = 100_000
 _C, _R, _W = "Reach", "Result", "Way"
 WORST = "worst check"
 """The choice of colours by the least margin of all checks, each as a share of its largest."""
+POINTS_ONLY = "points only"
+"""A proven margin that there is none of between the points."""
 
 PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyLink", "Job", _C, QT_TRANSLATE_NOOP("App::Property", "The CAM job that is checked"), None),
@@ -78,7 +81,7 @@ RESULTS: tuple[Row, ...] = (
      QT_TRANSLATE_NOOP("App::Property", "Violated limits and collisions, the worst of each operation"), []),
     ("App::PropertyStringList", "Report", _R, QT_TRANSLATE_NOOP("App::Property", "The report for people"), []),
 )  # fmt: skip
-WAY: tuple[Row, ...] = (
+PATH_PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyVectorList", "Points", _W, QT_TRANSLATE_NOOP("App::Property", "The path of the tool tip"), []),
     ("App::PropertyFloatList", "Margins", _W,
      QT_TRANSLATE_NOOP("App::Property", "Margin at each point, of the check that it is coloured by"), []),
@@ -89,7 +92,7 @@ class ReachObject(PropertyProxy):
     """The proxy. A job that cannot be read or placed is an exception that FreeCAD shows at the object."""
 
     properties = PROPERTIES
-    results = (*RESULTS, *WAY)
+    results = (*RESULTS, *PATH_PROPERTIES)
     study: JobStudy | None = None
     """The last result; lost when the document is closed."""
 
@@ -97,7 +100,7 @@ class ReachObject(PropertyProxy):
         """Add the properties; the path is for drawing only and hidden, and recolouring needs no new check."""
         add_missing(obj, PROPERTIES, attributes={"ColourBy": NO_RECOMPUTE})
         add_missing(obj, RESULTS, READ_ONLY)
-        add_missing(obj, WAY, HIDDEN)
+        add_missing(obj, PATH_PROPERTIES, HIDDEN)
 
     @without_traceback
     def execute(self, obj: Any) -> None:
@@ -147,6 +150,13 @@ def machine_for(job: Any) -> Any:
     return next((item for item in job.InList if hasattr(item, "MachineFile") and item.Job == job), None)
 
 
+def check_names(obj: Any) -> list[str]:
+    """The displayed names of the checks of a reach object."""
+    study = obj.Proxy.study
+    names = obj.Checks if study is None else [each.subject.name for each in study.reach.findings]
+    return [shown(name) for name in names]
+
+
 def thinned(margin: Array, most: int) -> Array:
     """Rows of a path to keep, (K,) in order: the smallest margin of each section, and both ends.
 
@@ -180,7 +190,7 @@ def _set_results(obj: Any, study: JobStudy) -> None:
     obj.Units = [DISPLAY_UNITS[finding.subject.unit][0] for finding in found.findings]
     obj.LeastMargins = [check["margin"] for check in checks]
     proven = [check["proven_margin"] for check in checks]
-    obj.ProvenMargins = ["points only" if margin is None else f"{margin:.4g}" for margin in proven]
+    obj.ProvenMargins = [POINTS_ONLY if margin is None else f"{margin:.4g}" for margin in proven]
     obj.WorstParts = [check["part"] for check in checks]
     obj.WorstOperations = [check["worst"]["operation"] for check in checks]
     obj.WorstLines = [check["worst"]["line"] for check in checks]
@@ -195,9 +205,14 @@ def _set_results(obj: Any, study: JobStudy) -> None:
         obj.ColourBy = chosen if chosen in choices else WORST
 
 
+def violations_of(study: JobStudy) -> list[Diagnostic]:
+    """The findings in the order of the lists: errors first."""
+    return sorted(study.findings, key=lambda each: each.severity is not Severity.ERROR)
+
+
 def _set_violations(obj: Any, study: JobStudy, document_from_machine: Array) -> None:
     """Fill in the findings with their places, errors first."""
-    found = sorted(study.findings, key=lambda each: RULES[each.code].severity is not Severity.ERROR)
+    found = violations_of(study)
     tips = np.array([study.reach.tip[study.row_of(each)] for each in found]).reshape(-1, 3)
     obj.ViolationOperations = [each.place.operation for each in found]
     obj.ViolationLines = [each.place.line for each in found]

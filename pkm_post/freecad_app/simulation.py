@@ -31,6 +31,7 @@ from pkm_post.model import (
     EventKind,
     Machine,
     Motion,
+    Phrase,
     Place,
     Refused,
     Setup,
@@ -120,10 +121,12 @@ class Simulation:
         greatest = np.abs(self.struts.speed).max(axis=0)
         last = len(self.struts) - 1
         for begin in range(0, last, _BATCH):
-            greatest = np.maximum(greatest, self._greatest_between(np.arange(begin, min(begin + _BATCH, last))))
+            greatest = np.maximum(
+                greatest, self._greatest_within_intervals(np.arange(begin, min(begin + _BATCH, last)))
+            )
         return greatest
 
-    def _greatest_between(self, rows: Array) -> Array:
+    def _greatest_within_intervals(self, rows: Array) -> Array:
         """The same, inside the cubics that begin at some knots."""
         cubics = self.struts.cubics(rows)
         _, speed, _, _, duration = cubics
@@ -269,7 +272,7 @@ def simulation_of(placed: PlacedJob) -> Simulation:
 
 def _problems(study: JobStudy, planned: Simulation) -> tuple[Problem, ...]:
     """One problem for each check and stretch of violating blocks, and one for each collision that no margin shows."""
-    problems = [problem for finding in study.margins for problem in _stretches(finding, study.reach, planned)]
+    problems = [problem for finding in study.margins for problem in _problem_ranges(finding, study.reach, planned)]
     shown = {finding.subject.code for finding in study.margins}
     problems += [_collision(each, study, planned) for each in errors(study.findings) if each.code not in shown]
     return tuple(sorted(problems, key=lambda problem: (problem.time, problem.text)))
@@ -284,13 +287,13 @@ def _collision(found: Diagnostic, study: JobStudy, planned: Simulation) -> Probl
         worst_time=_time_of(row, segment, study.reach, planned),
         worst_place=found.place,
         worst_tip=study.reach.tip[row],
-        text=f"{RULES[found.code].cause}: {found.found}",
+        text=Phrase("{}: {}", Phrase(RULES[found.code].cause), found.found),
         end=float(planned.motion.joint_time[segment]),
         bodies=tuple(found.found.split(", ")[:2]),
     )
 
 
-def _stretches(finding: ReachFinding, checked: ReachReport, planned: Simulation) -> list[Problem]:
+def _problem_ranges(finding: ReachFinding, checked: ReachReport, planned: Simulation) -> list[Problem]:
     rows = np.flatnonzero(finding.margin < 0.0)
     groups = np.split(rows, np.flatnonzero(np.diff(checked.segment[rows]) > 1) + 1) if len(rows) else []
     problems = []
@@ -304,7 +307,7 @@ def _stretches(finding: ReachFinding, checked: ReachReport, planned: Simulation)
             worst_time=_time_of(worst, is_worst, checked, planned),
             worst_place=checked.trajectory.place(is_worst),
             worst_tip=checked.tip[worst],
-            text=f"{finding.subject.name}: {text}",
+            text=Phrase("{}: {}", finding.subject.name, text),
             end=float(planned.motion.joint_time[int(checked.segment[group[-1]])]),
             bodies=pair_of(finding, int(finding.part[worst])),
         )

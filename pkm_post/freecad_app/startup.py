@@ -21,6 +21,7 @@ FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.ab
 MACHINE_FOLDER = os.path.join(FOLDER, "machine")
 """Post-processors for the machines of FreeCAD newer than 1.1; older versions would list them beside the others."""
 _PREFERENCES = "Path.Preferences"
+_SANITY = "Path.Main.Sanity.Sanity"
 _MESH_FILE = "pkm_post.reading"
 _SYSTEM = "pkm_post.system"
 
@@ -29,17 +30,28 @@ Then = Callable[[ModuleType], None]
 
 def install_post_processors() -> None:
     """Register the post-processors, now if CAM is loaded and otherwise when it is."""
-    _when_imported(_PREFERENCES, _add_folder)
+    when_imported(_PREFERENCES, _add_folder)
 
 
 def install_step_reader() -> None:
     """Let ``mesh_file`` read STEP, now if it is loaded and otherwise when it is."""
-    _when_imported(_MESH_FILE, _add_step)
+    when_imported(_MESH_FILE, _add_step)
 
 
 def install_package_folder() -> None:
     """Let ``system.packages`` install where FreeCAD looks, now if it is loaded and otherwise when it is."""
-    _when_imported(_SYSTEM, _use_package_folder)
+    when_imported(_SYSTEM, _use_package_folder)
+
+
+def install_sanity_checks() -> None:
+    """Let CAM's sanity report have our checks, now if it is loaded and otherwise when it is."""
+    when_imported(_SANITY, _add_checks)
+
+
+def _add_checks(sanity: ModuleType) -> None:
+    from pkm_post.freecad_app.sanity import add_checks
+
+    add_checks(sanity)
 
 
 def _use_package_folder(system: ModuleType) -> None:
@@ -79,7 +91,7 @@ def _read_step(path: Path, name: str) -> Any:
     return read_step(path, name)
 
 
-def _when_imported(name: str, then: Then) -> None:
+def when_imported(name: str, then: Then) -> None:
     """Call a function with a module: now if it is loaded, otherwise right after its import.
 
     Args:

@@ -23,12 +23,12 @@ from pkm_post.freecad_app.document_object import value_of, without_traceback
 from pkm_post.freecad_app.face_surface import face_surface
 from pkm_post.freecad_app.model_faces import NamedFace, model_faces
 from pkm_post.freecad_app.progress import Progress
-from pkm_post.freecad_app.surface_check import check_faces
+from pkm_post.freecad_app.surface_check import Checked, check_faces
 from pkm_post.freecad_app.surface_finish_choice import choose_lead_and_cone
 from pkm_post.freecad_app.surface_finish_settings import CHECK_SPACING, add_missing_properties, read_inputs
 from pkm_post.freecad_app.tools import has_upright_side, preselected
 from pkm_post.freecad_app.window import add_view
-from pkm_post.model import Diagnostic, Place, Program, Refused
+from pkm_post.model import Amount, Diagnostic, Phrase, Place, Program, Refused
 from pkm_post.toolpath import Cutter, Poses, SurfaceOptions, program_from_poses, surface_poses
 
 _STEPS = 50
@@ -44,7 +44,13 @@ _FEATURES = (
 
 
 class SurfaceFinish(Path.Op.Base.ObjectOp):
-    """The operation. Faults are exceptions that FreeCAD shows at the object, and its path is then empty."""
+    """The operation. Faults are exceptions that FreeCAD shows at the object, and its path is then empty.
+
+    Attributes:
+        measured: the last measurement, point by point; None without one, and when the document was opened again.
+    """
+
+    measured: Checked | None = None
 
     def opFeatures(self, obj: Any) -> int:
         """Features handled by CAM's base class."""
@@ -67,8 +73,9 @@ class SurfaceFinish(Path.Op.Base.ObjectOp):
     def execute(self, obj: Any) -> Any:
         """Recompute the path; after an error no outdated path remains to be posted."""
         obj.Path = Path.Path()
+        self.measured = None
         if obj.Active and (obj.ToolController is None or obj.ToolController.Tool is None):
-            raise Refused([Diagnostic("J112", _place(obj), "none is set")])
+            raise Refused([Diagnostic("J112", _place(obj), Phrase("none is set"))])
         return super().execute(obj)
 
     def opExecute(self, obj: Any) -> None:
@@ -78,7 +85,8 @@ class SurfaceFinish(Path.Op.Base.ObjectOp):
         poses = _poses_over(faces, cutter, settings, bool(obj.FlipNormals), place)
         program = value_of(program_from_poses(poses, settings, place))
         _set_results(obj, poses, settings)
-        _check(obj, program, cutter, faces, self.job)
+        self.measured = _measured(obj, program, cutter, faces, self.job)
+        _judge(obj, self.measured)
         self.commandlist += commands_of(program)
 
 
@@ -122,28 +130,35 @@ def _set_results(obj: Any, covered: Sequence[Poses], settings: SurfaceOptions) -
     obj.PassCount = sum(int(poses.path.number.max()) + 1 for poses in covered)
     obj.ClampedAxes = sum(int(poses.clamped.sum()) for poses in covered)
     obj.UsedConeLimit = math.degrees(settings.rule.cone)
-    obj.MaximumGouge = obj.MaximumExcess = -1.0
+    obj.MaximumGouge = obj.UnseenGouge = obj.MaximumExcess = -1.0
     obj.GougePoint = obj.ExcessPoint = App.Vector()
 
 
-def _check(obj: Any, program: Program, cutter: Cutter, faces: Sequence[NamedFace], job: Any) -> None:
-    """Measure gouges and excess, if enabled, and fill them in."""
+def _measured(obj: Any, program: Program, cutter: Cutter, faces: Sequence[NamedFace], job: Any) -> Checked | None:
+    """Measure gouges and excess, if enabled."""
     spacing = obj.CheckSpacing.Value
     if not spacing > 0.0:
-        return
+        return None
     every, _ = model_faces(job.Model, (), _place(obj))
     names = {named.name for named in faces}
     others = [named.face for named in every or () if named.name not in names]
     with Progress(App.Qt.translate("Progress", "{}: gouges").format(obj.Label), _STEPS) as bar:
-        checked = check_faces(
+        return check_faces(
             program, cutter, [named.face for named in faces], others, bool(obj.FlipNormals), spacing,
-            obj.ChordTolerance.Value / 10.0, _MAX_EXCESS, _steps(bar),
+            obj.ChordTolerance.Value, _MAX_EXCESS, _steps(bar),
         )  # fmt: skip
+
+
+def _judge(obj: Any, checked: Checked | None) -> None:
+    """Fill in what was measured; a gouge is a fault."""
+    if checked is None:
+        return
     obj.MaximumGouge, obj.GougePoint = checked.gouge, App.Vector(*checked.gouge_point)
+    obj.UnseenGouge = checked.unseen
     obj.MaximumExcess, obj.ExcessPoint = checked.excess, App.Vector(*checked.excess_point)
     if checked.gouge > _GOUGE_FACTOR * obj.ChordTolerance.Value:
-        x, y, z = checked.gouge_point.tolist()
-        raise Refused([Diagnostic("N311", _place(obj), f"{checked.gouge:.3f} mm at ({x:.3f}, {y:.3f}, {z:.3f})")])
+        depth, *point = (Amount(value, "mm", ".3f") for value in (checked.gouge, *checked.gouge_point.tolist()))
+        raise Refused([Diagnostic("N311", _place(obj), Phrase("{} at X {}, Y {}, Z {}", depth, *point))])
 
 
 def _poses_over(

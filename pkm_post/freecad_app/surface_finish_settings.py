@@ -26,7 +26,7 @@ from pkm_post.freecad_app.model_faces import NamedFace, model_faces
 from pkm_post.freecad_app.tools import read_cutter, read_tools
 from pkm_post.geometry import Array
 from pkm_post.machine import machine_named, reach_margins
-from pkm_post.model import Diagnostic, Machine, Place, errors
+from pkm_post.model import Diagnostic, Machine, Phrase, Place, errors
 from pkm_post.posting import work_offset
 from pkm_post.toolpath import (
     AxisRule,
@@ -100,17 +100,18 @@ PROPERTIES: tuple[Row, ...] = (
                        "are measured; 0 to measure nothing"), 0.0),
 )  # fmt: skip
 CHECK_SPACING = 1.0
-"""mm, of new operations. Between points s apart, a ball of radius R goes unseen in a flat face to at most s^2 / (4 R):
-at depth d its footprint has the radius sqrt(2 R d), and no point is farther than s / sqrt(2) from a measured one.
-Operations of documents that have no spacing are not measured."""
+"""mm, of new operations; gouges are searched at closer points where the cutter comes near. Operations of documents that
+have no spacing are not measured."""
 
 RESULTS: tuple[Row, ...] = (
     ("App::PropertyInteger", "PassCount", _R, QT_TRANSLATE_NOOP("App::Property", "Number of passes"), 0),
     ("App::PropertyInteger", "ClampedAxes", _R,
      QT_TRANSLATE_NOOP("App::Property", "Points at which the tool axis was moved into its cone"), 0),
     ("App::PropertyFloat", "MaximumGouge", _R,
-     QT_TRANSLATE_NOOP("App::Property", "Deepest cut into the model found at points CheckSpacing apart, mm; deeper "
-                       "between them may be missed; -1 if not measured"), -1.0),
+     QT_TRANSLATE_NOOP("App::Property", "Deepest cut into the model that was found, mm; -1 if not measured"), -1.0),
+    ("App::PropertyFloat", "UnseenGouge", _R,
+     QT_TRANSLATE_NOOP("App::Property", "How much deeper a cut between the points may be at most, mm; -1 if not "
+                       "measured"), -1.0),
     ("App::PropertyVector", "GougePoint", _R, QT_TRANSLATE_NOOP("App::Property", "Where that is"), App.Vector()),
     ("App::PropertyFloat", "MaximumExcess", _R,
      QT_TRANSLATE_NOOP("App::Property", "Most material left found at points CheckSpacing apart, mm; more between them "
@@ -141,7 +142,7 @@ def read_inputs(obj: Any, job: Any, place: Place) -> tuple[Inputs | None, tuple[
     chosen = [(thing, names) for thing, names in obj.Base or ()]
     faces, face_faults = model_faces(job.Model, chosen, place) if chosen else (None, ())
     cutter, tool_faults = read_cutter(obj.ToolController, place)
-    diagnostics: list[Diagnostic] = [] if chosen else [Diagnostic("N308", place, "Base is empty")]
+    diagnostics: list[Diagnostic] = [] if chosen else [Diagnostic("N308", place, Phrase("Base is empty"))]
     diagnostics += [*face_faults, *tool_faults]
     cone, cone_faults = _cone(obj, job, faces or (), place)
     settings, faults = _read_settings(obj, cone, place)
@@ -157,7 +158,9 @@ def _cone(obj: Any, job: Any, faces: Sequence[NamedFace], place: Place) -> tuple
     if not obj.Machine or not faces:
         return limit, ()
     if not _is_upright(obj.ConeAxis):
-        return limit, (Diagnostic("N309", place, "a machine limits the tilt from upright: ConeAxis is not (0, 0, 1)"),)
+        return limit, (
+            Diagnostic("N309", place, Phrase("a machine limits the tilt from upright: ConeAxis is not (0, 0, 1)")),
+        )
     box = box_of(faces, obj.ClearanceHeight.Value)
     tilt, faults = reachable_tilt(obj.Machine, job, obj.ToolController, box, place)
     return (limit if tilt is None else min(limit, tilt)), faults
@@ -200,7 +203,7 @@ def reachable_tilt(
         return None, faults
     tilt = _largest_tilt(machine, offset, tools[int(controller.ToolNumber)].length, *box)
     if tilt is None:
-        return None, (Diagnostic("N310", place, f"{machine.name} at {settings.arguments.work_offset}"),)
+        return None, (Diagnostic("N310", place, Phrase("{} at {}", machine.name, settings.arguments.work_offset)),)
     return tilt, ()
 
 

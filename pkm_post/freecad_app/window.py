@@ -27,6 +27,16 @@ def shows_refusal(job: Any, diagnostics: Any) -> bool:
     return bool(REFUSALS)
 
 
+VERDICTS: list[Callable[[Any, Any], object]] = []
+"""At most one: keeps the findings of a post for the icons of a job and its operations."""
+
+
+def show_verdict(job: Any, findings: Any) -> None:
+    """Let the tree show what posting found of a job as it is, None when it begins, if there is a window."""
+    for show in VERDICTS:
+        show(job, findings)
+
+
 def add_view(kind: str, obj: Any) -> None:
     """Attach the view provider of a kind to an object, if there is a window."""
     if kind in VIEWS:

@@ -30,15 +30,15 @@ _STRIPS, _LEAST_STRIP, _STRIP = 20, 16, "#2e3436"
 
 @dataclass(frozen=True)
 class Animation:
-    """Subject and settings of a film.
+    """Subject and settings of an animation.
 
     Attributes:
         view: the 3D view.
         show: shows an instant, s.
-        now: the instant shown before, s; it is shown again after the film.
+        now: the instant shown before, s; it is shown again afterwards.
         duration: of the motion, s.
-        pace: seconds of motion per second of film.
-        per_second: pictures per second of film.
+        time_scale: seconds of motion per second of the animation.
+        per_second: pictures per second of the animation.
         width: of a picture, pixels.
         height: of a picture, pixels.
         caption: the text for the instant that is shown, drawn along the lower edge.
@@ -48,7 +48,7 @@ class Animation:
     show: Callable[[float], None]
     now: float
     duration: float
-    pace: float
+    time_scale: float
     per_second: float
     width: int
     height: int
@@ -56,7 +56,7 @@ class Animation:
 
     def write_pictures(self, folder: Path) -> int:
         """Write frame_00001.png and so on; return their number, which is smaller if the user cancelled."""
-        instants, written = np.arange(0.0, self.duration + 1e-9, self.pace / self.per_second), 0
+        instants, written = np.arange(0.0, self.duration + 1e-9, self.time_scale / self.per_second), 0
         try:
             with Progress(translate("PKM_Simulate", "Pictures"), len(instants)) as bar:
                 for number, seconds in enumerate(instants.tolist(), start=1):
@@ -99,20 +99,20 @@ def write_caption(picture: str, text: str) -> None:
     image.save(picture, "PNG")
 
 
-Shooting = Callable[[float, int, int], Animation]
-"""Creates a film from pictures per second, width and height."""
+Recorder = Callable[[float, int, int], Animation]
+"""Creates an animation from pictures per second, width and height."""
 
 
-def ask_for_pictures(parent: Any, film: Shooting) -> None:
+def ask_for_pictures(parent: Any, record: Recorder) -> None:
     """Ask for the folder of the pictures, and write them."""
     folder = QtWidgets.QFileDialog.getExistingDirectory(parent, translate("PKM_Simulate", "Folder for the pictures"))
     if folder:
-        film(*_PICTURES).write_pictures(Path(folder))
+        record(*_PICTURES).write_pictures(Path(folder))
 
 
-def ask_for_animation(parent: Any, film: Shooting, name: str) -> None:
+def ask_for_animation(parent: Any, record: Recorder, name: str) -> None:
     """Ask for the file of the animated picture, and write it."""
     title, kind = translate("PKM_Simulate", "Animated PNG"), translate("PKM_Simulate", "Animated PNG (*.png)")
     target, _ = QtWidgets.QFileDialog.getSaveFileName(parent, title, f"{name}.png", kind)
     if target:
-        film(*_ANIMATION).write_animation(Path(target))
+        record(*_ANIMATION).write_animation(Path(target))

@@ -15,13 +15,14 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtWidgets
 
+from pkm_post.freecad_app.core_texts import fault_text
 from pkm_post.freecad_app.document import job_for, transaction
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.system import MEMORY_FAULTS, memory_diagnostic
 
 translate = FreeCAD.Qt.translate
 
-_PAGES = Path(__file__).parents[2] / "docs"
+PAGES = Path(__file__).parents[2] / "docs"
 """FreeCAD's Help opens files, so the pages are those of the installed version and need no network."""
 
 
@@ -38,7 +39,7 @@ def show_lack_of_memory(title: str) -> Iterator[None]:
         diagnostic = memory_diagnostic(fault, title)
         if diagnostic is None:
             raise
-        QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), title, str(diagnostic))
+        QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), title, fault_text(diagnostic))
 
 
 Subject = Callable[[Sequence[FreeCAD.DocumentObject]], FreeCAD.DocumentObject | None]
@@ -91,7 +92,7 @@ class Command:
             "ToolTip": self.tip,
             "StatusTip": self.tip,
             "Accel": self.keys,
-            "WhatsThis": str(_PAGES / self.page),
+            "WhatsThis": str(PAGES / self.page),
         }
 
     def IsActive(self) -> bool:

@@ -68,6 +68,14 @@ def machine(job: FreeCAD.DocumentObject | None) -> None:
     subject = f"FreeCAD.getDocument({document.Name!r})"
     chosen = "" if job is None else f", job={subject}.getObject({job.Name!r})"
     FreeCADGui.doCommand(f"{module}.create_machine({subject}{chosen})")
+    _when_computed(document, lambda: _show_whole(document.Name))
+
+
+def _show_whole(name: str) -> None:
+    """Place the camera so that everything in a document is seen, the new machine as well."""
+    view = FreeCADGui.getDocument(name).activeView() if name in FreeCAD.listDocuments() else None
+    if hasattr(view, "fitAll"):
+        view.fitAll()
 
 
 def _create_on_machine(job: FreeCAD.DocumentObject, module: str, call: str) -> None:
@@ -83,6 +91,13 @@ def _create_on_machine(job: FreeCAD.DocumentObject, module: str, call: str) -> N
 def reach(job: FreeCAD.DocumentObject) -> None:
     """Add the reach checks of a job, on its machine in the document if there is one."""
     _create_on_machine(job, "pkm_post.freecad_app.reach_object", "create_reach")
+
+
+def stiffness(job: FreeCAD.DocumentObject) -> None:
+    """Open the stiffness panel of a job."""
+    from pkm_post.freecad_gui.stiffness_panel import open_panel
+
+    open_panel(job)
 
 
 def simulate(item: FreeCAD.DocumentObject) -> None:
@@ -118,6 +133,15 @@ def control(_item: FreeCAD.DocumentObject | None) -> None:
     from pkm_post.freecad_gui.control_panel import open_control
 
     open_control()
+
+
+def example(_item: FreeCAD.DocumentObject | None) -> None:
+    """Make the example, and show it in CAM."""
+    FreeCADGui.activateWorkbench("CAMWorkbench")
+    FreeCADGui.addModule("pkm_post.freecad_app.example")
+    FreeCADGui.doCommand("pkm_post.freecad_app.example.create_example()")
+    FreeCADGui.activeView().viewIsometric()
+    FreeCADGui.SendMsgToActiveView("ViewFit")
 
 
 def install_packages(_item: FreeCAD.DocumentObject | None) -> None:

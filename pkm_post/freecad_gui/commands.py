@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import FreeCAD
 import FreeCADGui
 
@@ -78,6 +80,17 @@ COMMANDS = (
         "reach.md",
     ),
     Command(
+        "PKM_Stiffness",
+        "stiffness.svg",
+        QT_TRANSLATE_NOOP("PKM_Stiffness", "Stiffness"),
+        QT_TRANSLATE_NOOP("PKM_Stiffness", "Show how stiff the tool is held along the job, and over the table"),
+        job_or(),
+        command_actions.stiffness,
+        "P, K, T",
+        "reach.md",
+        computes=False,
+    ),
+    Command(
         "PKM_Simulate",
         "simulate.svg",
         QT_TRANSLATE_NOOP("PKM_Simulate", "Simulate"),
@@ -115,6 +128,16 @@ COMMANDS = (
         "numerical-control.md",
     ),
     WindowCommand(
+        "PKM_Example",
+        "example.svg",
+        QT_TRANSLATE_NOOP("PKM_Example", "New from example"),
+        QT_TRANSLATE_NOOP("PKM_Example", "Make a document with a blade and the job that finishes it on a hexapod"),
+        one(lambda item: True),
+        command_actions.example,
+        "P, K, X",
+        "tutorial-blade.md",
+    ),
+    WindowCommand(
         "PKM_InstallPackages",
         "packages.svg",
         QT_TRANSLATE_NOOP("PKM_InstallPackages", "Install packages"),
@@ -124,6 +147,20 @@ COMMANDS = (
         "P, K, I",
     ),
 )
+
+
+GROUPS = (
+    ("PKM_SurfaceFinish", "PKM_NormalCompensation", "PKM_Mirror", "PKM_Rotate"),
+    ("PKM_Machine", "PKM_Reach", "PKM_Stiffness", "PKM_Simulate", "PKM_Post"),
+    ("PKM_Editor", "PKM_Control"),
+    ("PKM_Example", "PKM_InstallPackages"),
+)
+"""Names by what they are for: operations, one job, programs and the machine, the rest."""
+
+
+def grouped(groups: Sequence[Sequence[str]] = GROUPS) -> list[str]:
+    """The names, with separators between the groups, as FreeCAD takes them for menus and tool bars."""
+    return [name for number, group in enumerate(groups) for name in ([] if number == 0 else ["Separator"]) + [*group]]
 
 
 def register() -> None:

@@ -14,9 +14,9 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.freecad_app.gauge_lengths import ToolRow, format_length, tool_rows
-from pkm_post.freecad_gui.length_field import LengthField, decimal_point
+from pkm_post.freecad_app.gauge_lengths import ToolRow, format_length, parse_length, tool_rows
 from pkm_post.freecad_gui.observers import ChangeWatch
+from pkm_post.freecad_gui.post_fields import tab_through
 from pkm_post.model import Refused
 
 translate = FreeCAD.Qt.translate
@@ -64,6 +64,7 @@ class GaugeTable(QtWidgets.QGroupBox):
             self.table.horizontalHeaderItem(column).setToolTip(translate("GaugeTable", tip))
         self.table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionMode(QtWidgets.QAbstractItemView.SelectionMode.NoSelection)
+        self.table.setTabKeyNavigation(False)  # Tab goes from field to field, not from cell to cell
         self.table.verticalHeader().hide()
         sizes = QtWidgets.QHeaderView.ResizeMode
         for column, size in enumerate((sizes.ResizeToContents, sizes.Stretch, sizes.ResizeToContents, sizes.Stretch)):
@@ -90,6 +91,7 @@ class GaugeTable(QtWidgets.QGroupBox):
         self.table.setRowCount(len(rows))
         for number, row in enumerate(rows):
             self._fill(number, row)
+        tab_through(list(self.fields.values()))
         for name, text in kept.items():
             self.fields[name].setText(text)
         self._fit()
@@ -163,3 +165,50 @@ class GaugeTable(QtWidgets.QGroupBox):
         if faults:
             raise Refused(faults)
         return {row.name: mm for row, mm in lengths.items() if mm is not None and mm != row.length}
+
+
+translate = FreeCAD.Qt.translate
+
+
+def decimal_point() -> str:
+    """The decimal separator in the language of the window."""
+    return str(QtCore.QLocale().decimalPoint())
+
+
+class LengthField(QtWidgets.QLineEdit):
+    """The line, with a warning icon on invalid input.
+
+    Args:
+        mm: initial value; 0 for no length.
+    """
+
+    def __init__(self, mm: float) -> None:
+        super().__init__()
+        sign = self.style().standardIcon(QtWidgets.QStyle.StandardPixmap.SP_MessageBoxCritical)
+        self._sign = self.addAction(sign, QtWidgets.QLineEdit.ActionPosition.TrailingPosition)
+        self._point = decimal_point()
+        self.setPlaceholderText(translate("LengthField", "unknown"))
+        self._show(mm)
+        self.show_fault("")
+        self.editingFinished.connect(self._tidy)
+
+    def length(self) -> float | None:
+        """The value, mm; 0 for no length, None if it is invalid. An unedited value is exact."""
+        if self.text() == self._shown:
+            return self._mm
+        return parse_length(self.text(), self._point) if self.text().strip() else 0.0
+
+    def show_fault(self, text: str) -> None:
+        """Show a fault and its text; an empty text clears it."""
+        self._sign.setVisible(bool(text))
+        self._sign.setToolTip(text)
+
+    def _tidy(self, *_: Any) -> None:
+        """Show the parsed value, above all its unit."""
+        mm = self.length()
+        if mm is not None:
+            self._show(mm)
+
+    def _show(self, mm: float) -> None:
+        self._mm, self._shown = mm, format_length(mm, self._point) if mm else ""
+        self.setText(self._shown)

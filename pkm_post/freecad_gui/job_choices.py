@@ -17,6 +17,7 @@ from PySide import QtWidgets
 
 from pkm_post.freecad_app.arguments import job_arguments, own_text, parse_arguments, store_in_job
 from pkm_post.freecad_app.document import transaction
+from pkm_post.freecad_app.fixtures import operation_named
 from pkm_post.freecad_app.gauge_lengths import store_gauge_lengths
 from pkm_post.freecad_app.post_job import file_name
 from pkm_post.freecad_app.post_processor import program_path
@@ -48,6 +49,10 @@ class JobChoices(QtWidgets.QWidget):
         layout.addWidget(self.arguments)
         layout.addWidget(self.gauges)
         self._show_given()
+
+    def show_job(self) -> None:
+        """Show the arguments of the job as they are."""
+        self.arguments.show_text(own_text(self._job))
 
     def end(self) -> None:
         """Stop following the document."""
@@ -94,13 +99,13 @@ def show_place(job: Any, label: str, line: int) -> None:
 
     Args:
         job: the CAM job; None shows nothing.
-        label: of the operation.
+        label: name of the operation in the program.
         line: number of the command in it, from 1.
     """
     FreeCADGui.Selection.clearSelection()
-    for operation in job.Operations.Group if job else ():
-        if operation.Label == label:
-            FreeCADGui.Selection.addSelection(operation)
-            commands = operation.Path.Commands
-            text = commands[line - 1].toGCode() if 0 < line <= len(commands) else ""
-            FreeCADGui.getMainWindow().statusBar().showMessage(f"{label}, {line}: {text}")
+    operation = operation_named(job, label) if job else None
+    if operation is not None:
+        FreeCADGui.Selection.addSelection(operation)
+        commands = operation.Path.Commands
+        text = commands[line - 1].toGCode() if 0 < line <= len(commands) else ""
+        FreeCADGui.getMainWindow().statusBar().showMessage(f"{label}, {line}: {text}")

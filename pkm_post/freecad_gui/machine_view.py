@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 import FreeCAD
+import FreeCADGui
 
 from pkm_post.freecad_app.document import transaction
 from pkm_post.freecad_app.frames import matrix_of
@@ -50,10 +51,29 @@ class MachineView(DrawnView):
             self._follow(obj, tool_too=name in _TOOL)
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
-        """Add the home pose, and the commands for the job."""
+        """Add the jog panel, the home pose, and the commands for the job."""
+        add_entry(menu, translate("PKM_Machine", "Jog"), lambda: self.doubleClicked(vobj), self.icon)
         add_entry(menu, translate("PKM_Machine", "Move it home"), lambda: _bring_home(vobj.Object), self.icon)
         super().setupContextMenu(vobj, menu)
         add_commands(menu, vobj.Object.Job, "PKM_Reach", "PKM_Simulate", "PKM_Post")
+
+    def doubleClicked(self, vobj: Any) -> bool:
+        """Open the jog panel."""
+        return bool(vobj.Document.setEdit(vobj, 0))
+
+    def setEdit(self, vobj: Any, _mode: int = 0) -> bool:
+        """Open the jog panel."""
+        from pkm_post.freecad_gui.jog_panel import JogPanel
+
+        if FreeCADGui.Control.activeDialog():
+            return False
+        FreeCADGui.Control.showDialog(JogPanel(vobj.Object))
+        return True
+
+    def unsetEdit(self, _vobj: Any, _mode: int = 0) -> bool:
+        """Close the jog panel."""
+        FreeCADGui.Control.closeDialog()
+        return True
 
     def refresh(self) -> None:
         """Rebuild the scene."""

@@ -1,29 +1,40 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Margin colours: red out of limits, amber to green by margin; and their legend in the 3D view.
+"""Margin colours: red out of limits, amber to green by margin; lines and surfaces of colours, and their legend.
 
 Takes margins; returns colours or Coin nodes. The legend has a camera of its own, so that it stays in its corner.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
+import FreeCAD
+import FreeCADGui
 import numpy as np
 from pivy import coin
+from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_gui.shapes import OUT
+from pkm_post.freecad_gui.shapes import OUT, group
+from pkm_post.freecad_gui.theme import theme
 from pkm_post.geometry import Array
 
+translate = FreeCAD.Qt.translate
+
 _NEAR, _FAR = np.array([1.0, 0.65, 0.0]), np.array([0.1, 0.65, 0.2])
-_BAR = (-0.96, -0.92, -0.55, 0.15)
-"""Left, right, bottom and top of the bar in the square from -1 to 1."""
-_STEPS = 16
-_SHEET_WIDTH = 0.27
-_SHEET = (0.93, 0.93, 0.93)
-"""Colour behind the legend, for contrast with any background."""
+_CORNER = (-0.97, -0.6, 0.0)
+"""Lower left corner of a bar in the view, whose sides are at -1 and 1."""
+_LINES, _BAR_WIDTH, _ROOM = 12, 1.4, 0.6
+"""Height of the bar in lines of text; width of the bar, and free room about it, in heights of a line."""
+_STEPS = 20
+_BELOW = 0.1
+"""Share of the bar that is out of limits."""
+_LINE_WIDTH = 3.0
 
 
-def colours_of(margin: Array) -> Array:
-    """Colours (N, 3) of margins (N,): red below 0, then from amber at 0 to green at the largest."""
-    top = largest(margin)
+def colours_of(margin: Array, top: float = 0.0) -> Array:
+    """Colours (N, 3) of margins (N,): red below 0, then from amber at 0 to green at ``top``, or else at the largest."""
+    top = top or largest(margin)
     share = np.clip(margin / top, 0.0, 1.0)[:, None]
     return np.where(margin[:, None] < 0.0, OUT, (1.0 - share) * _NEAR + share * _FAR)
 
@@ -33,52 +44,114 @@ def largest(margin: Array) -> float:
     return max(float(margin.max(initial=0.0)), 1e-9)
 
 
-def legend(title: str, top: float, unit: str) -> coin.SoSeparator:
-    """A bar from 0 to the largest margin with red below it, in the lower left corner."""
-    left, right, bottom, up = _BAR
-    camera, light = coin.SoOrthographicCamera(), coin.SoLightModel()
+def legend(title: str, top: str) -> coin.SoSeparator:
+    """A bar from 0 to the largest margin with red below it, in the lower left corner.
+
+    Args:
+        title: what the margins are of.
+        top: the largest margin as text.
+    """
+    shares = np.linspace(-_BELOW, 1.0, _STEPS + 1)
+    texts = ((1.0, top), (_BELOW, "0"), (0.0, translate("PKM_Reach", "out of limits")))
+    return colour_bar(title, colours_of(shares), texts)
+
+
+def colour_bar(title: str, colours: Array, texts: Sequence[tuple[float, str]]) -> coin.SoSeparator:
+    """A bar of colours with texts beside it, in the lower left corner, as large as the font of FreeCAD.
+
+    Args:
+        title: above the bar.
+        colours: (N, 3) from below, evenly spaced.
+        texts: each with its height as a share of the bar.
+    """
+    camera, place, sheet = coin.SoOrthographicCamera(), coin.SoTranslation(), coin.SoImage()
     camera.viewportMapping = coin.SoCamera.LEAVE_ALONE
     camera.position, camera.height = (0.0, 0.0, 1.0), 2.0
-    light.model = coin.SoLightModel.BASE_COLOR
-    heights = np.linspace(bottom, up, _STEPS + 1)
-    shares = np.linspace(0.0, 1.0, _STEPS + 1)
-    below, sheet = np.array([bottom - 0.08, bottom]), np.array([bottom - 0.12, up + 0.12])
+    place.translation = _CORNER
+    pixels = _pixels(_drawn(title, colours, texts))
+    sheet.image.setValue(coin.SbVec2s(pixels.shape[1], pixels.shape[0]), 3, pixels.tobytes())
+    sheet.horAlignment, sheet.vertAlignment = coin.SoImage.LEFT, coin.SoImage.BOTTOM
     node = coin.SoAnnotation()
-    for child in (
-        camera,
-        light,
-        *_quads(left - 0.02, left + _SHEET_WIDTH, sheet, np.tile(_SHEET, (2, 1))),
-        *_quads(left, right, heights, colours_of(shares)),
-        *_quads(left, right, below, np.tile(OUT, (2, 1))),
-    ):
+    for child in (camera, place, sheet):
         node.addChild(child)
-    texts = (
-        (left, up + 0.06, title),
-        (right + 0.02, up - 0.02, f"{top:.4g} {unit}".rstrip()),
-        (right + 0.02, bottom - 0.01, "0"),
-        (right + 0.02, bottom - 0.09, "out of limits"),
-    )
-    for x, y, text in texts:
-        node.addChild(_text(x, y, text))
     return node
 
 
-def _quads(left: float, right: float, heights: Array, colours: Array) -> tuple[coin.SoNode, ...]:
-    points = [(x, float(y), 0.0) for y in heights for x in (left, right)]
-    material, binding = coin.SoBaseColor(), coin.SoMaterialBinding()
-    material.rgb.setValues(0, 2 * len(colours), np.repeat(colours, 2, axis=0).tolist())
-    binding.value = coin.SoMaterialBinding.PER_VERTEX
-    coordinates, mesh = coin.SoCoordinate3(), coin.SoQuadMesh()
+def coloured_way(points: Sequence[Sequence[float]], colours: Array) -> coin.SoSeparator:
+    """A line through points, with a colour at each.
+
+    Args:
+        points: N places.
+        colours: (N, 3).
+    """
+    light, style = coin.SoLightModel(), coin.SoDrawStyle()
+    light.model, style.lineWidth = coin.SoLightModel.BASE_COLOR, _LINE_WIDTH
+    colour, binding = coin.SoBaseColor(), coin.SoMaterialBinding()
+    colour.rgb.setValues(0, len(colours), colours.tolist())
+    binding.value = coin.SoMaterialBinding.PER_VERTEX_INDEXED
+    coordinates, lines = coin.SoCoordinate3(), coin.SoIndexedLineSet()
     coordinates.point.setValues(0, len(points), points)
-    mesh.verticesPerRow, mesh.verticesPerColumn = 2, len(heights)
-    return coordinates, material, binding, mesh
+    lines.coordIndex.setValues(0, len(points) + 1, [*range(len(points)), -1])
+    return group(light, style, colour, binding, coordinates, lines)
 
 
-def _text(x: float, y: float, text: str) -> coin.SoSeparator:
-    separator, place, ink, words = coin.SoSeparator(), coin.SoTranslation(), coin.SoBaseColor(), coin.SoText2()
-    place.translation = (x, y, 0.0)
-    ink.rgb = (0.1, 0.1, 0.1)
-    words.string = text
-    for child in (place, ink, words):
-        separator.addChild(child)
-    return separator
+def coloured_surface(points: Array, triangles: Array, colours: Array) -> coin.SoSeparator:
+    """Triangles with a colour at each point, drawn just before what lies in the same place.
+
+    Args:
+        points: (N, 3).
+        triangles: (T, 3) rows of points.
+        colours: (N, 3).
+    """
+    light, hints, offset = coin.SoLightModel(), coin.SoShapeHints(), coin.SoPolygonOffset()
+    light.model = coin.SoLightModel.BASE_COLOR
+    hints.vertexOrdering = coin.SoShapeHints.UNKNOWN_ORDERING  # both sides are seen
+    offset.factor, offset.units = -2.0, -2.0
+    ink, binding = coin.SoBaseColor(), coin.SoMaterialBinding()
+    ink.rgb.setValues(0, len(colours), colours.tolist())
+    binding.value = coin.SoMaterialBinding.PER_VERTEX_INDEXED
+    coordinates, faces = coin.SoCoordinate3(), coin.SoIndexedFaceSet()
+    coordinates.point.setValues(0, len(points), points.tolist())
+    rows = np.column_stack([triangles, np.full(len(triangles), -1)]).ravel()
+    if len(rows):
+        faces.coordIndex.setValues(0, len(rows), rows.tolist())
+    return group(light, hints, offset, ink, binding, coordinates, faces)
+
+
+def _drawn(title: str, colours: Array, texts: Sequence[tuple[float, str]]) -> QtGui.QImage:
+    """A bar with its texts, drawn by Qt: Coin's own fonts may have no Chinese."""
+    font, ratio = QtWidgets.QApplication.font(), FreeCADGui.getMainWindow().devicePixelRatioF()
+    metrics, look = QtGui.QFontMetricsF(font), theme()
+    line = metrics.height()
+    room, left = _ROOM * line, (2 * _ROOM + _BAR_WIDTH) * line
+    beside = max(metrics.horizontalAdvance(text) for _, text in texts)
+    width = room + max(room + metrics.horizontalAdvance(title), left + beside)
+    area = QtCore.QRectF(room, 2.5 * room + line, _BAR_WIDTH * line, _LINES * line)
+    size = (math.ceil(ratio * length) for length in (width, area.bottom() + 1.5 * room))
+    image = QtGui.QImage(*size, QtGui.QImage.Format.Format_RGB888)
+    image.setDevicePixelRatio(ratio)
+    image.fill(QtGui.QColor(look.ground))
+    painter = QtGui.QPainter(image)
+    painter.setFont(font)
+    painter.setPen(QtGui.QColor(look.ink))
+    painter.fillRect(area, _gradient(area, colours))
+    painter.drawText(QtCore.QPointF(room, room + metrics.ascent()), title)
+    for share, text in texts:
+        middle = area.bottom() - share * area.height()
+        painter.drawText(QtCore.QPointF(left, middle + (metrics.ascent() - metrics.descent()) / 2), text)
+    painter.end()
+    return image
+
+
+def _gradient(area: QtCore.QRectF, colours: Array) -> QtGui.QLinearGradient:
+    """Colours from the lower end of an area to the upper one."""
+    gradient = QtGui.QLinearGradient(area.bottomLeft(), area.topLeft())
+    for share, colour in zip(np.linspace(0.0, 1.0, len(colours)).tolist(), colours.tolist(), strict=True):
+        gradient.setColorAt(share, QtGui.QColor.fromRgbF(*colour))
+    return gradient
+
+
+def _pixels(image: QtGui.QImage) -> Array:
+    """Pixels of an image, (height, width, 3), from below as Coin has them."""
+    rows = np.frombuffer(image.constBits(), dtype=np.uint8).reshape(image.height(), image.bytesPerLine())
+    return np.ascontiguousarray(rows[::-1, : 3 * image.width()].reshape(image.height(), image.width(), 3))

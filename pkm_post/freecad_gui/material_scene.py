@@ -11,24 +11,13 @@ import numpy as np
 from pivy import coin
 
 from pkm_post.freecad_app.material import Material
+from pkm_post.freecad_gui.deviation_map import deviation_colours, deviation_legend
 from pkm_post.freecad_gui.shapes import group
 from pkm_post.geometry import Array
 from pkm_post.removal import Patch, patches
 
 _BLANK = (0.72, 0.60, 0.42)
-_GOUGE, _RIGHT, _LEFT = np.array([0.85, 0.0, 0.0]), np.array([0.25, 0.7, 0.3]), np.array([0.2, 0.4, 0.95])
 _CREASE = 0.5
-
-
-def deviation_colours(values: Array, scale: float) -> Array:
-    """Colours (V, 3) of distances from the part (V,): green at 0, blue from ``scale`` outside, red from it inside.
-
-    Args:
-        values: positive where material is left, mm.
-        scale: distance of full colour, mm.
-    """
-    share = np.clip(np.abs(values) / scale, 0.0, 1.0)[:, None]
-    return (1.0 - share) * _RIGHT + share * np.where(values[:, None] < 0.0, _GOUGE, _LEFT)
 
 
 class MaterialScene:
@@ -49,11 +38,15 @@ class MaterialScene:
         look.specularColor = (0.1, 0.1, 0.1)
         self._all = coin.SoSeparator()
         self._all.renderCaching = coin.SoSeparator.OFF
-        self.root = group(hints, look, self._all)
+        self._legend = coin.SoSeparator()
+        self.root = group(hints, look, self._all, self._legend)
         self.show_all()
 
     def show_all(self) -> None:
-        """Draw all bricks that the surface passes."""
+        """Draw all bricks that the surface passes, and the legend of their colours."""
+        self._legend.removeAllChildren()
+        if self.scale > 0.0:
+            self._legend.addChild(deviation_legend(self.scale, self.scale))
         stock = self.material.replay.stock
         passed = (stock.field.min(axis=1) < stock.band) & (stock.field.max(axis=1) > -stock.band)
         gone = np.array([brick for brick in self._bricks if not passed[brick]], dtype=np.int64)
@@ -102,7 +95,7 @@ class _Brick:
             vertices.materialBinding = coin.SoVertexProperty.OVERALL
             vertices.orderedRGBA.setNum(0)
             return
-        parts = (255 * deviation_colours(values, scale)).astype(np.uint32)
+        parts = (255 * deviation_colours(values, scale, scale)).astype(np.uint32)
         packed = (parts[:, 0] << 24) | (parts[:, 1] << 16) | (parts[:, 2] << 8) | np.uint32(255)
         vertices.materialBinding = coin.SoVertexProperty.PER_VERTEX_INDEXED
         vertices.orderedRGBA.setNum(len(packed))

@@ -25,6 +25,8 @@ _CALMING: list[EscapeWatch] = []
 class EscapeWatch(QtCore.QObject):
     """Filters every key from ``begin`` to ``end``."""
 
+    hit = QtCore.Signal()
+    """Escape was pressed."""
     _was_pressed = False
     _calm: QtCore.QTimer | None = None
 
@@ -69,6 +71,7 @@ class EscapeWatch(QtCore.QObject):
             return False
         if event.type() == QtCore.QEvent.Type.KeyPress and event.key() == QtCore.Qt.Key.Key_Escape:
             self._was_pressed = True
+            self.hit.emit()
             if self._calm is not None:
                 self._calm.start(_CALM_MS)
             return True

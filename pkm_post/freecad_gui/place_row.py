@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Place row: a button that looks for a place at which the machine can follow a job, and what it found.
 
-Takes a reach object; emits the place when it is found, and when the user takes it. The search runs in the background;
-closing the panel waits for its end.
+Takes a job, and the machine object on which it is to be; emits the place when it is found, and when the user takes it.
+The search runs in the background and says how far it is; Escape and its button stop it, and so does closing the panel.
 """
 
 from __future__ import annotations
@@ -13,14 +13,19 @@ import FreeCAD
 from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_app.arguments import POST_PROCESSORS
-from pkm_post.freecad_app.job_setup import place_search
+from pkm_post.freecad_app.core_texts import exception_text, fault_text
+from pkm_post.freecad_app.document import transaction
+from pkm_post.freecad_app.job_setup import place_search, set_place
+from pkm_post.freecad_app.progress import Stopped
 from pkm_post.freecad_gui.background import BackgroundCall
+from pkm_post.freecad_gui.observers import EscapeWatch
 from pkm_post.freecad_gui.verdict import Verdict
 from pkm_post.model import Refused, errors
 from pkm_post.posting import FoundPlace
 
 translate = FreeCAD.Qt.translate
 
+_PER_MILLE = 1000
 _STILL = 0.05
 """mm and degrees: less is not shown."""
 
@@ -37,10 +42,16 @@ class PlaceRow(QtWidgets.QWidget):
     taken = QtCore.Signal()
     """The user takes the place."""
 
-    def __init__(self, obj: Any) -> None:
+    def __init__(self, job: Any, machine_object: Any = None) -> None:
         super().__init__()
-        self._obj, self._task = obj, None
+        self._job, self._machine, self._task = job, machine_object, None
+        self._escape = EscapeWatch()
+        self._escape.hit.connect(self._stop)
         self.found: FoundPlace | None = None
+        self.bar = QtWidgets.QProgressBar()
+        self.bar.setRange(0, _PER_MILLE)
+        self.stop = QtWidgets.QPushButton(translate("PlaceRow", "Stop"))
+        self.stop.setToolTip(translate("PlaceRow", "Stop the search, as Escape does"))
         self.search = QtWidgets.QPushButton(translate("PlaceRow", "Find a place"))
         self.search.setToolTip(
             translate(
@@ -52,9 +63,10 @@ class PlaceRow(QtWidgets.QWidget):
         self.result = Verdict()
         layout = QtWidgets.QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for part in (self.search, self.result, self.take):
+        for part in (self.search, self.bar, self.stop, self.result, self.take):
             layout.addWidget(part)
         self.search.clicked.connect(self._begin)
+        self.stop.clicked.connect(self._stop)
         self.take.clicked.connect(self.taken.emit)
         self.clear()
 
@@ -62,39 +74,65 @@ class PlaceRow(QtWidgets.QWidget):
         """Show no place."""
         self.found = None
         self.result.say("")
-        self.take.hide()
+        for part in (self.take, self.bar, self.stop):
+            part.hide()
 
     def end(self) -> None:
-        """Wait for a search that is running; its result is not shown."""
+        """Stop a search that is running; its result is not shown."""
         if self._task is not None:
             self._task.finished.disconnect(self._done)
             self._task.finish()
+            self._task = None
+            self._escape.end()
+            self.search.setEnabled(True)
+        self.clear()
+
+    def _stop(self) -> None:
+        if self._task is not None:
+            self._task.stop()
 
     def _begin(self) -> None:
         self.clear()
         try:
-            search = place_search(self._obj.Job, self._obj.Machine)
+            search = place_search(self._job, self._machine)
         except Refused as refused:
-            self.result.say(str(refused), holds=False)
+            self.result.say(exception_text(refused), holds=False)
             return
-        self._task = BackgroundCall(search, self)
-        self._task.finished.connect(self._done)
+        task = BackgroundCall(lambda: search(task.report), self)
+        self._task = task
+        task.progressed.connect(lambda _step, share: self.bar.setValue(round(share * _PER_MILLE)))
+        task.finished.connect(self._done)
         self.search.setEnabled(False)
+        self.bar.setValue(0)
+        for part in (self.bar, self.stop):
+            part.show()
         self.result.say(translate("PlaceRow", "Looking for a place ..."))
-        self._task.start()
+        self._escape.begin()
+        task.start()
 
     def _done(self) -> None:
         task, self._task = self._task, None
+        self._escape.end()
         self.search.setEnabled(True)
         self.clear()
         try:
             self.found = task.value()
+        except Stopped:
+            self.result.say(translate("PlaceRow", "Stopped."))
+            return
         except Refused as refused:
-            self.result.say(str(refused), holds=False)
+            self.result.say(exception_text(refused), holds=False)
             return
         self.result.say(place_text(self.found), self.found.holds)
-        self.take.setVisible(self.found.holds and self._obj.Job.PostProcessor in POST_PROCESSORS)
+        self.take.setVisible(self.found.holds and self._job.PostProcessor in POST_PROCESSORS)
         self.placed.emit()
+
+
+def take_place(job: Any, found: FoundPlace) -> None:
+    """Set a place in the arguments of a job, in one undo step, and recompute the document."""
+    with transaction(job.Document, translate("PlaceRow", "Take this place")):
+        set_place(job, found)
+    job.Document.recompute()
 
 
 def place_text(found: FoundPlace) -> str:
@@ -111,7 +149,7 @@ def place_text(found: FoundPlace) -> str:
         moves.append(translate("PlaceRow", "spin optimised"))
     if not found.holds:
         missing = translate("PlaceRow", "No place was found. The last one tried: {}; there: {}")
-        return missing.format(", ".join(moves), errors(found.findings)[0])
+        return missing.format(", ".join(moves), fault_text(errors(found.findings)[0]))
     spare = translate("PlaceRow", "{} to spare")
     left = [spare.format(_shown(value, unit[:3])) for unit, value in found.spare().items()]
     return translate("PlaceRow", "{}: the machine can follow, {}").format(", ".join(moves), ", ".join(left))

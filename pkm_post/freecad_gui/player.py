@@ -8,6 +8,7 @@ After a recompute of the document it plays the new plan.
 
 from __future__ import annotations
 
+import importlib
 import time
 from typing import Any
 
@@ -15,10 +16,11 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtWidgets
 
+from pkm_post.freecad_app.core_texts import exception_text, shown
 from pkm_post.freecad_app.simulation import Problem, Simulation
 from pkm_post.freecad_app.simulation_object import plan_of
+from pkm_post.freecad_app.user_units import in_user_units
 from pkm_post.freecad_gui.animation import Animation, ask_for_animation, ask_for_pictures
-from pkm_post.freecad_gui.cam_simulator import open_cam_simulator
 from pkm_post.freecad_gui.job_choices import show_place
 from pkm_post.freecad_gui.machine_scene import MovingMachine
 from pkm_post.freecad_gui.observers import DeletionWatch, RecomputeWatch
@@ -39,7 +41,7 @@ def status_text(simulation: Simulation, seconds: float, problem: Problem | None,
     """
     place = simulation.trajectory.place(simulation.block_at(seconds))
     block = translate("PKM_Simulate", "{}, line {}").format(place.operation, place.line)
-    more = [each.text for each in ([problem] if problem else simulation.problems_at(seconds)[:1])]
+    more = [shown(each.text) for each in ([problem] if problem else simulation.problems_at(seconds)[:1])]
     return "   ".join([
         f"{seconds:.3f} s / {simulation.duration:.3f} s", block, *more, *_too_fast(simulation, override)
     ])  # fmt: skip
@@ -57,13 +59,14 @@ def _too_fast(simulation: Simulation, override: float) -> list[str]:
     limit, speeds = simulation.machine.strut_speed, simulation.greatest_speeds * override
     if override <= 1.0 or speeds.max() <= limit:
         return []
-    text = translate("PKM_Simulate", "At this override strut {} would have to do {:.4g} of {:.4g} mm/s")
-    return [text.format(int(speeds.argmax()) + 1, float(speeds.max()), limit)]
+    text = translate("PKM_Simulate", "At this override strut {} would have to do {} of {} {}")
+    (fastest, allowed), unit = in_user_units((float(speeds.max()), limit), "mm/s")
+    return [text.format(int(speeds.argmax()) + 1, fastest, allowed, unit)]
 
 
 translate = FreeCAD.Qt.translate
 
-_NAME = "PkmPlayer"
+_NAME, _CAM_SIMULATOR = "PkmPlayer", "CAM_SimulatorGL"
 _FRAME_MS = 16
 
 
@@ -104,8 +107,8 @@ class Player(QtWidgets.QDockWidget):
             (controls.play, self.toggle),
             (controls.back, self.step_back),
             (controls.forward, self.step),
-            (controls.pictures, lambda: ask_for_pictures(self, self.film)),
-            (controls.animation, lambda: ask_for_animation(self, self.film, self.subject.Label)),
+            (controls.pictures, lambda: ask_for_pictures(self, self.recording)),
+            (controls.animation, lambda: ask_for_animation(self, self.recording, self.subject.Label)),
             (controls.removal, self._show_removal),
             (controls.overridden, lambda _share: self.go_to(self.seconds)),
             (lists.problem, self.show_problem),
@@ -175,7 +178,7 @@ class Player(QtWidgets.QDockWidget):
     def _tick(self) -> None:
         now = time.perf_counter()
         passed, self._last = now - self._last, now
-        self.advance(passed * self.controls.pace())
+        self.advance(passed * self.controls.time_scale())
 
     def advance(self, seconds: float) -> None:
         """Advance by a planned time, at most to the next problem if the player stops at problems."""
@@ -204,7 +207,7 @@ class Player(QtWidgets.QDockWidget):
     def _show(self, place: Place) -> None:
         show_place(self.subject.Job, place.operation, place.line)
 
-    def film(self, per_second: float, width: int, height: int) -> Animation:
+    def recording(self, per_second: float, width: int, height: int) -> Animation:
         """The motion as pictures, at the current speed."""
         self.pause()
         return Animation(
@@ -213,7 +216,7 @@ class Player(QtWidgets.QDockWidget):
             caption=lambda: caption_text(self.simulation, self.seconds),
             now=self.seconds,
             duration=self.simulation.duration,
-            pace=self.controls.pace(),
+            time_scale=self.controls.time_scale(),
             per_second=per_second,
             width=width,
             height=height,
@@ -251,9 +254,29 @@ def open_player(subject: Any) -> Player | None:
         with memory_guard(subject.Label):
             simulation = plan_of(subject)
     except (Refused, ValueError) as fault:
-        QtWidgets.QMessageBox.warning(window, translate("PKM_Simulate", "Simulate"), str(fault))
+        QtWidgets.QMessageBox.warning(window, translate("PKM_Simulate", "Simulate"), exception_text(fault))
         return None
     player = Player(subject, simulation)
     window.addDockWidget(QtCore.Qt.DockWidgetArea.BottomDockWidgetArea, player)
     FreeCADGui.SendMsgToActiveView("ViewFit")
     return player
+
+
+def open_cam_simulator(job: Any) -> bool:
+    """Open CAM's simulator with a job; return whether it opened. If not, the Report view states why.
+
+    It handles X, Y and Z only, and shows the tool upright.
+    """
+    importlib.import_module("Path.GuiInit").Startup()  # registers the commands where CAM has not been opened yet
+    FreeCAD.setActiveDocument(job.Document.Name)
+    if FreeCADGui.Control.activeDialog():
+        text = translate("PKM_Simulate", "CAM's simulator needs the task panel: close what is open there first")
+    elif not FreeCADGui.Command.get(_CAM_SIMULATOR).isActive():
+        text = translate("PKM_Simulate", "CAM's simulator does not take this job")
+    else:
+        FreeCADGui.Selection.clearSelection()
+        FreeCADGui.Selection.addSelection(job)
+        FreeCADGui.runCommand(_CAM_SIMULATOR, 0)
+        return True
+    FreeCAD.Console.PrintUserWarning(text + "\n")
+    return False

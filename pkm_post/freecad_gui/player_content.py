@@ -20,12 +20,13 @@ from pkm_post.freecad_gui.player_readout import Readout, reading_at
 from pkm_post.freecad_gui.player_view import ViewPage
 from pkm_post.freecad_gui.strut_plot import StrutPlot
 from pkm_post.freecad_gui.timeline import Timeline
+from pkm_post.freecad_gui.verdict import Verdict, followed
 
 translate = FreeCAD.Qt.translate
 
 _PER_SECOND = 1000
 """Slider steps per second: one per millisecond of motion."""
-_NARROW, _LEAST = 760, (300, 240)
+_NARROW, _LEAST, _LEAST_NARROW = 760, (300, 170), (300, 360)
 """Pixels: width below which rows stand below each other, and the least size."""
 
 
@@ -33,6 +34,7 @@ class PlayerContent(QtWidgets.QWidget):
     """The content.
 
     Attributes:
+        verdict: whether the machine can follow.
         controls: the buttons.
         slider: over the whole motion.
         timeline: bands of operations, tool changes and findings.
@@ -48,6 +50,7 @@ class PlayerContent(QtWidgets.QWidget):
         self.controls, self.lists, self.timeline = PlayerControls(), PlayerLists(), Timeline()
         self.readout, self.listing, self.material = Readout(), Listing(), MaterialPage(job)
         self.view = ViewPage(job.Document)
+        self.verdict = Verdict()
         self.slider = QtWidgets.QSlider(QtCore.Qt.Orientation.Horizontal)
         self.plot = StrutPlot(simulation, self.wanted.emit)
         self._below = QtWidgets.QSplitter(QtCore.Qt.Orientation.Horizontal)
@@ -65,31 +68,42 @@ class PlayerContent(QtWidgets.QWidget):
             (self.view, translate("PKM_Simulate", "View")),
         )
         for page, title in pages:
-            self.lists.addTab(page, title)
+            self.lists.addTab(_scrolled(page), title)
         for widget in (self.plot, self.lists):
             self._below.addWidget(widget)
         self._below.setStretchFactor(0, 1)
         layout = QtWidgets.QVBoxLayout(self)
         layout.setContentsMargins(4, 4, 4, 4)
-        for widget in (self.controls, self.slider, self.timeline):
+        for widget in (self.verdict, self.controls, self.slider, self.timeline):
             layout.addWidget(widget)
         layout.addWidget(self._below, 1)
 
+    def show_page(self, page: QtWidgets.QWidget) -> None:
+        """Bring a page to the front."""
+        (number,) = [n for n in range(self.lists.count()) if self.lists.widget(n).isAncestorOf(page)]
+        self.lists.setCurrentIndex(number)
+
     def minimumSizeHint(self) -> QtCore.QSize:
         """Small enough for a dock at the side of the window."""
-        return QtCore.QSize(*_LEAST)
+        return QtCore.QSize(*(_LEAST_NARROW if self._is_narrow() else _LEAST))
 
     def resizeEvent(self, event: Any) -> None:
         """Arrange the rows for the width."""
-        narrow = self.width() < _NARROW
+        narrow = self._is_narrow()
         self.controls.arrange(narrow)
         ways = QtCore.Qt.Orientation
         self._below.setOrientation(ways.Vertical if narrow else ways.Horizontal)
+        self.updateGeometry()
         super().resizeEvent(event)
+
+    def _is_narrow(self) -> bool:
+        """Whether the parts stand below each other."""
+        return bool(self.width() < _NARROW)
 
     def take(self, simulation: Simulation, scene: MachineScene) -> None:
         """Show another simulation on its machine."""
         self._simulation = simulation
+        self.verdict.say(*followed(not simulation.problems))
         self.view.take(simulation, scene)
         for part in (self.plot, self.lists, self.timeline, self.material):
             part.take(simulation)
@@ -113,3 +127,14 @@ class PlayerContent(QtWidgets.QWidget):
         """Take out of the view what the pages put there."""
         self.material.strike()
         self.view.strike()
+
+
+def _scrolled(page: QtWidgets.QWidget) -> QtWidgets.QWidget:
+    """The page with bars to scroll by, so that a small dock hides nothing; lists have their own."""
+    if isinstance(page, QtWidgets.QAbstractScrollArea):
+        return page
+    area = QtWidgets.QScrollArea()
+    area.setWidget(page)
+    area.setWidgetResizable(True)
+    area.setFrameShape(QtWidgets.QFrame.Shape.NoFrame)
+    return area

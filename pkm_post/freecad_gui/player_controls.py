@@ -11,7 +11,9 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtGui, QtWidgets
 
+from pkm_post.freecad_app.core_texts import shown
 from pkm_post.freecad_app.simulation import Problem, Simulation
+from pkm_post.freecad_gui.theme import standard_icon, theme
 
 translate = FreeCAD.Qt.translate
 
@@ -69,12 +71,12 @@ class PlayerControls(QtWidgets.QWidget):
         """Where it stops, and what is written."""
         row = QtWidgets.QHBoxLayout()
         row.addWidget(self.stops)
-        save, film = (
+        save, record = (
             translate("PKM_Simulate", "Write the frames as pictures"),
             translate("PKM_Simulate", "Write an animated PNG"),
         )
         _button(row, "SP_DialogSaveButton", save, self.pictures)
-        _button(row, "SP_FileIcon", film, self.animation)
+        _button(row, "SP_FileIcon", record, self.animation)
         removal = translate("PKM_Simulate", "Removal of material, in CAM's own simulator; it shows every tool upright")
         _button(row, "SP_ComputerIcon", removal, self.removal)
         row.addStretch(1)
@@ -102,7 +104,7 @@ class PlayerControls(QtWidgets.QWidget):
         # a text that changes with every frame must not change the layout of the dock
         self._message.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Preferred)
 
-    def pace(self) -> float:
+    def time_scale(self) -> float:
         """Seconds of planned motion per second of real time."""
         return float(self.factor.currentText().rstrip("x")) * self.override.value() / 100.0
 
@@ -117,24 +119,18 @@ class PlayerControls(QtWidgets.QWidget):
 
     def show_playing(self, plays: bool) -> None:
         """Turn the button into a pause button during play."""
-        self._play.setIcon(_icon("SP_MediaPause" if plays else "SP_MediaPlay"))
+        self._play.setIcon(standard_icon("SP_MediaPause" if plays else "SP_MediaPlay"))
 
 
 def _button(layout: Any, icon: str, tip: str, wanted: Any) -> QtWidgets.QToolButton:
     button = QtWidgets.QToolButton()
-    button.setIcon(_icon(icon))
+    button.setIcon(standard_icon(icon))
     button.setToolTip(tip)
     button.clicked.connect(lambda: wanted.emit())
     layout.addWidget(button)
     return button
 
 
-def _icon(name: str) -> Any:
-    """A standard Qt icon, so that the buttons look like those of other players on this system."""
-    return QtWidgets.QApplication.style().standardIcon(getattr(QtWidgets.QStyle.StandardPixmap, name))
-
-
-_RED = QtGui.QColor(200, 0, 0)
 _MOST_SHOWN = 1000
 _WIDTH = 380
 """Initial width, pixels."""
@@ -163,7 +159,7 @@ class PlayerLists(QtWidgets.QTabWidget):
         times = (moving + dwelling).tolist()
         _fill(self.problems, [_problem_text(problem) for problem in simulation.problems[:_MOST_SHOWN]])
         for row in range(self.problems.count()):
-            self.problems.item(row).setForeground(QtGui.QBrush(_RED))
+            self.problems.item(row).setForeground(QtGui.QBrush(QtGui.QColor(theme().bad)))
         names = simulation.trajectory.operations
         _fill(self.operations, [f"{name}: {seconds:.1f} s" for name, seconds in zip(names, times, strict=True)])
         self.setTabText(0, translate("PKM_Simulate", "Problems: {}").format(len(simulation.problems)))
@@ -173,7 +169,7 @@ class PlayerLists(QtWidgets.QTabWidget):
 
 def _problem_text(problem: Problem) -> str:
     place = problem.worst_place
-    return f"{problem.worst_time:.3f} s  {place.operation}, {place.line}: {problem.text}"
+    return f"{problem.worst_time:.3f} s  {place.operation}, {place.line}: {shown(problem.text)}"
 
 
 def _fill(rows: Any, texts: list[str]) -> None:

@@ -12,6 +12,7 @@ import FreeCAD
 import numpy as np
 from PySide import QtCore, QtWidgets
 
+from pkm_post.freecad_app.fixtures import operation_named
 from pkm_post.freecad_app.simulation import Simulation
 
 translate = FreeCAD.Qt.translate
@@ -22,9 +23,9 @@ class ProgramLines(QtCore.QAbstractListModel):
 
     def __init__(self, simulation: Simulation, job: Any, parent: QtCore.QObject) -> None:
         super().__init__(parent)
-        by_label = {item.Label: item for item in job.Operations.Group}
         self._names = simulation.trajectory.operations
-        self._commands = [by_label[name].Path.Commands if name in by_label else [] for name in self._names]
+        operations = [operation_named(job, name) for name in self._names]
+        self._commands = [[] if each is None else each.Path.Commands for each in operations]
         self._begin = np.cumsum([0, *(len(each) + 1 for each in self._commands)])
 
     def rowCount(self, _parent: Any = None) -> int:

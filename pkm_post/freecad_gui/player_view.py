@@ -15,20 +15,15 @@ import numpy as np
 from pivy import coin
 from PySide import QtWidgets
 
-from pkm_post.freecad_app.frames import apply
 from pkm_post.freecad_app.simulation import Simulation
+from pkm_post.freecad_gui.axis_vectors import axis_vectors
 from pkm_post.freecad_gui.machine_scene import COMPONENTS, MachineScene
-from pkm_post.freecad_gui.preferences import GROUP
-from pkm_post.freecad_gui.shapes import segments
+from pkm_post.freecad_gui.preferences import EveryField
 from pkm_post.geometry import Array
 
 translate = FreeCAD.Qt.translate
 
 _TRANSPARENT = 0.7
-_EVERY = "ToolAxisEvery"
-_AXIS_LENGTH = 15.0
-"""mm: length of a drawn tool axis."""
-_AXIS_COLOUR = (0.36, 0.21, 0.4)
 
 
 class ViewPage(QtWidgets.QWidget):
@@ -50,7 +45,7 @@ class ViewPage(QtWidgets.QWidget):
         self._axes = coin.SoSeparator()
         self._graph: Any = None
         self.components = {name: QtWidgets.QComboBox() for name in COMPONENTS}
-        self.follows, self.section, self.every = QtWidgets.QCheckBox(), QtWidgets.QCheckBox(), QtWidgets.QSpinBox()
+        self.follows, self.section, self.every = QtWidgets.QCheckBox(), QtWidgets.QCheckBox(), EveryField()
         self._lay_out()
         self.section.toggled.connect(self._cut_open)
         self.every.valueChanged.connect(self._draw_axes)
@@ -66,9 +61,6 @@ class ViewPage(QtWidgets.QWidget):
             form.addRow(title, choice)
         self.follows.setText(translate("PKM_Simulate", "Follow the tool"))
         self.section.setText(translate("PKM_Simulate", "Section plane"))
-        self.every.setRange(0, 100_000)
-        self.every.setSpecialValueText(translate("PKM_Simulate", "none"))
-        self.every.setValue(FreeCAD.ParamGet(GROUP).GetInt(_EVERY, 0))
         for box in (self.follows, self.section):
             form.addRow(box)
         form.addRow(translate("PKM_Simulate", "Tool axis every ... blocks"), self.every)
@@ -112,27 +104,12 @@ class ViewPage(QtWidgets.QWidget):
         self._view().toggleClippingPlane(int(on), False, False, FreeCAD.Placement(tip, across))
 
     def _draw_axes(self) -> None:
-        FreeCAD.ParamGet(GROUP).SetInt(_EVERY, self.every.value())
         self._axes.removeAllChildren()
         if self._simulation is not None and self.every.value():
-            self._axes.addChild(segments(*tool_axes(self._simulation, self.every.value(), _AXIS_LENGTH), _AXIS_COLOUR))
+            self._axes.addChild(axis_vectors(self._simulation.trajectory, self.every.value()))
 
     def _view(self) -> Any:
         return FreeCADGui.getDocument(self._document).activeView()
-
-
-def tool_axes(simulation: Simulation, every: int, length: float) -> tuple[Array, Array]:
-    """Ends of tool axes at the ends of every nth block, (K, 3) each in {C}.
-
-    Args:
-        simulation: the motion.
-        every: n, from 1.
-        length: of a drawn axis, mm.
-    """
-    trajectory = simulation.trajectory
-    work_from_machine = np.linalg.inv(trajectory.machine_from_work)
-    tip, axis = trajectory.tip[every - 1 :: every], trajectory.axis[every - 1 :: every]
-    return apply(work_from_machine, tip), apply(work_from_machine, tip + length * axis)
 
 
 def _titles() -> dict[str, str]:

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +67,12 @@ def _decimals(quantity: Any) -> int:
 def number_text(field: Any) -> str:
     """The number of a field in mm or degrees, whatever unit it displays."""
     return f"{field.property('rawValue'):.9g}"
+
+
+def tab_through(fields: Sequence[QtWidgets.QWidget]) -> None:
+    """Let Tab go from each field to the next one; what is between them comes behind the last one."""
+    for field, following in pairwise(fields):
+        QtWidgets.QWidget.setTabOrder(field, following)
 
 
 def with_button(field: QtWidgets.QWidget, action: Callable[[], None]) -> QtWidgets.QWidget:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Post outcome: displays the result of posting: the certificate and its report, or the reasons for a refusal.
 
-Takes posting results or diagnostics; a click on a row emits its operation and line.
+Takes posting results or diagnostics; a click on a row emits its operation, line and code.
 """
 
 from __future__ import annotations
@@ -12,8 +12,10 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtGui, QtWidgets
 
+from pkm_post.freecad_app.core_texts import cure_text, fault_text, meaning_lines, shown
+from pkm_post.freecad_app.user_units import in_user_units
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
-from pkm_post.model import RULES, Diagnostic, Severity
+from pkm_post.model import Diagnostic, Severity
 from pkm_post.posting import Posted
 
 translate = FreeCAD.Qt.translate
@@ -27,14 +29,14 @@ _HEAD = (
     QT_TRANSLATE_NOOP("PostOutcome", "Where"),
 )
 _PLACE = QtCore.Qt.ItemDataRole.UserRole
-"""Role of a row's operation label and command number."""
+"""Role of a row's operation label, command number and code."""
 
 
 class PostOutcome(QtWidgets.QWidget):
     """Verdict, findings, diagnostics and report; what does not apply is hidden."""
 
-    chosen = QtCore.Signal(str, int)
-    """The place of a row that was clicked: label of the operation, number of the command."""
+    chosen = QtCore.Signal(str, int, str)
+    """A row that was clicked: label of its operation, number of the command, code of the diagnostic or nothing."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -43,7 +45,7 @@ class PostOutcome(QtWidgets.QWidget):
         self.report.setToolTip(translate("PostOutcome", "Shows the report in the web browser; no network is needed"))
         self._page = ""
         self.findings, self.diagnostics = _table(), FindingRows()
-        self._places: list[tuple[str, int]] = []
+        self._places: list[tuple[str, int, str]] = []
         self.meaning = QtWidgets.QLabel()
         self.meaning.setWordWrap(True)
         layout = QtWidgets.QVBoxLayout(self)
@@ -78,7 +80,7 @@ class PostOutcome(QtWidgets.QWidget):
         )
         self.verdict.say(text.format(certificate["instants"], seconds, len(posted.files)), holds=True)
         self._show_diagnostics(posted.diagnostics)
-        self.meaning.setText("\n".join(certificate["meaning"]))
+        self.meaning.setText("\n".join(meaning_lines(certificate["coverage"])))
         self.meaning.show()
         _fill(self.findings, certificate["findings"])
         self.findings.show()
@@ -93,9 +95,9 @@ class PostOutcome(QtWidgets.QWidget):
         self.chosen.emit(*item.data(_PLACE))
 
     def _show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
-        self._places = [(each.place.operation, each.place.line) for each in diagnostics]
+        self._places = [(each.place.operation, each.place.line, each.code) for each in diagnostics]
         self.diagnostics.take([
-            (str(each), each.severity is Severity.ERROR, RULES[each.code].cure) for each in diagnostics
+            (fault_text(each), each.severity is Severity.ERROR, cure_text(each.code)) for each in diagnostics
         ])  # fmt: skip
 
 
@@ -104,6 +106,7 @@ def _table() -> QtWidgets.QTableWidget:
     table.setHorizontalHeaderLabels([translate("PostOutcome", text) for text in _HEAD])
     table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
     table.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
+    table.setTabKeyNavigation(False)  # Tab leaves it: nothing is typed here
     table.verticalHeader().hide()
     return table
 
@@ -112,13 +115,18 @@ def _fill(table: QtWidgets.QTableWidget, findings: Sequence[dict[str, Any]]) -> 
     """Add one row per finding of the report."""
     table.setRowCount(len(findings))
     for row, each in enumerate(findings):
-        where = f"{each['operation']}: {each['line']}"
-        limit = f"{'≥ ' if each['is_least'] else ''}{each['limit']:.4g}"
-        for column, text in enumerate((each["what"], f"{each['value']:.4g}", limit, each["unit"], where)):
+        for column, text in enumerate(_cells(each)):
             item = QtWidgets.QTableWidgetItem(text)
-            item.setData(_PLACE, (each["operation"], each["line"]))
+            item.setData(_PLACE, (each["operation"], each["line"], ""))
             table.setItem(row, column, item)
     table.resizeColumnsToContents()
+
+
+def _cells(finding: dict[str, Any]) -> tuple[str, ...]:
+    """The texts of a row."""
+    (value, limit), unit = in_user_units((finding["value"], finding["limit"]), finding["unit"])
+    limit = f"{'≥ ' if finding['is_least'] else ''}{limit}"
+    return shown(finding["what"]), value, limit, unit, f"{finding['operation']}: {finding['line']}"
 
 
 STEPS = {

@@ -17,15 +17,20 @@ from PySide import QtCore, QtGui, QtWidgets
 from pkm_post.freecad_app.document_checks import require_computed
 from pkm_post.freecad_app.job_settings import settings_of
 from pkm_post.freecad_app.job_setup import prepared_job
+from pkm_post.freecad_app.job_study import collisions_of
 from pkm_post.freecad_app.progress import Stopped
+from pkm_post.freecad_app.sanity import remember_output
+from pkm_post.freecad_app.window import show_verdict
 from pkm_post.freecad_gui.background import BackgroundCall
+from pkm_post.freecad_gui.finding_view import FindingView
 from pkm_post.freecad_gui.icons import ICONS
-from pkm_post.freecad_gui.job_choices import JobChoices, show_place
+from pkm_post.freecad_gui.job_choices import JobChoices
 from pkm_post.freecad_gui.observers import DeletionWatch
+from pkm_post.freecad_gui.place_row import PlaceRow, take_place
 from pkm_post.freecad_gui.post_outcome import PostOutcome, step_text
 from pkm_post.model import Refused
 from pkm_post.options import READING_STEP
-from pkm_post.posting import Prepared
+from pkm_post.posting import Prepared, may_be_mended
 from pkm_post.system import memory_guard
 
 translate = FreeCAD.Qt.translate
@@ -54,8 +59,11 @@ class PostPanel:
         self.form.setWindowIcon(QtGui.QIcon(str(ICONS / "pkm_post.svg")))
         self.choices = JobChoices(job)
         self.outcome, self.bar, self.step = PostOutcome(), QtWidgets.QProgressBar(), QtWidgets.QLabel()
+        self.place = PlaceRow(job)
+        self.place.taken.connect(self._take_place)
         self.bar.setRange(0, _PER_MILLE)
-        self.outcome.chosen.connect(self._show_place)
+        self._view = FindingView(job)
+        self.outcome.chosen.connect(self._view.show)
         self.post = _button(translate("PostPanel", "Post"), self.begin)
         self.post.setToolTip(translate("PostPanel", "Write the certified motion program and what goes with it"))
         self.stop = _button(translate("PostPanel", "Cancel"), self.cancel)
@@ -75,7 +83,7 @@ class PostPanel:
         for number, button in enumerate((self.post, self.stop, self.folder, self.simulate)):
             buttons.addWidget(button, *divmod(number, _BUTTONS_IN_A_ROW))
         layout.addLayout(buttons)
-        for part in (self.step, self.bar, self.outcome, self.choices):
+        for part in (self.step, self.bar, self.outcome, self.place, self.choices):
             layout.addWidget(part)
         layout.addStretch()
 
@@ -92,7 +100,8 @@ class PostPanel:
             if not isinstance(fault, Refused):
                 raise
             return
-        task = BackgroundCall(lambda: read.post(self._target, progress=task.report), self.form)
+        show_verdict(self.job, None)
+        task = BackgroundCall(lambda: read.post(self._target, progress=task.report, search=collisions_of), self.form)
         self._task = task
         task.progressed.connect(self._show_progress)
         task.finished.connect(self._end)
@@ -134,6 +143,8 @@ class PostPanel:
         else:
             self._show_running(False)
             self.folder.setEnabled(True)
+            remember_output(self.job, posted.program)
+            show_verdict(self.job, posted.diagnostics)
             self.outcome.show_posted(posted)
 
     def _show_end(self, fault: BaseException) -> None:
@@ -141,6 +152,8 @@ class PostPanel:
         self._show_running(False)
         if isinstance(fault, Refused):
             self.outcome.show_refused(fault.diagnostics)
+            show_verdict(self.job, fault.diagnostics)
+            self.place.setVisible(may_be_mended(fault.diagnostics))
         elif isinstance(fault, Stopped):
             self.outcome.show_nothing(translate("PostPanel", "Stopped. Nothing was written."))
         else:
@@ -152,6 +165,8 @@ class PostPanel:
         self.stop.setEnabled(runs)
         self.bar.setVisible(runs)
         self.step.setVisible(runs)
+        self.place.end()
+        self.place.hide()
         if runs:
             self.outcome.show_nothing("")
 
@@ -160,9 +175,13 @@ class PostPanel:
         if self.stop.isEnabled():
             self.step.setText(step_text(step))
 
-    def _show_place(self, operation: str, line: int) -> None:
-        """Show the place in the job to which a row refers."""
-        show_place(self.job, operation, line)
+    def _take_place(self) -> None:
+        """Store the place that was found, and show it in the fields."""
+        assert self.place.found is not None
+        take_place(self.job, self.place.found)
+        self.choices.show_job()
+        self.place.hide()
+        self.outcome.show_nothing(translate("PostPanel", "Kept in the document. Nothing was posted."))
 
     def _open_folder(self) -> None:
         QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(str(self._target.parent)))
@@ -194,6 +213,8 @@ class PostPanel:
     def reject(self) -> bool:
         """Close the panel, after stopping any posting."""
         self._watch.end()
+        self.place.end()
+        self._view.end()
         self.choices.end()
         if self._task is not None:
             self._task.finished.disconnect(self._end)  # the display no longer exists

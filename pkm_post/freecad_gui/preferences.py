@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Preferences: initial values of the post panel for a job that was never posted, and the page to set them.
+"""Preferences: initial values of the post panel for a job that was never posted, how paths are drawn, and their page.
 
-Adds the page to FreeCAD's preferences. Only the panel reads them: the output depends on the job alone.
+Adds the page to FreeCAD's preferences. Only panels and views read them: the output depends on the job alone.
 """
 
 from __future__ import annotations
@@ -10,14 +10,16 @@ from typing import Any
 
 import FreeCAD
 import FreeCADGui
-from PySide import QtWidgets
+from PySide import QtCore, QtWidgets
 
 translate = FreeCAD.Qt.translate
 
 GROUP = "User parameter:BaseApp/Preferences/Mod/PkmPost"
 PAGES = "PKM Post"
 """The group of pages in FreeCAD's preferences."""
-_ARGUMENTS, _FOLDER = "Arguments", "Folder"
+_ARGUMENTS, _FOLDER, _EVERY = "Arguments", "Folder", "ToolAxisEvery"
+_MOST = 100_000
+"""Blocks from one drawn tool axis to the next."""
 
 
 def default_arguments() -> str:
@@ -30,6 +32,51 @@ def default_folder() -> str:
     """Initial output folder of a job; empty for that of its document."""
     text: str = FreeCAD.ParamGet(GROUP).GetString(_FOLDER, "")
     return text
+
+
+class _Preference(QtCore.QObject):
+    """Emits the preference when it has changed, so that open fields follow, and with them what they draw."""
+
+    changed = QtCore.Signal(int)
+
+
+_PREFERENCE = _Preference()
+
+
+class EveryField(QtWidgets.QSpinBox):
+    """The preference as a field: blocks from one drawn tool axis to the next; 0 draws none."""
+
+    def __init__(self, keeps: bool = True) -> None:
+        """Create the field.
+
+        Args:
+            keeps: whether a change is kept, and changes elsewhere are shown; otherwise its owner does so.
+        """
+        super().__init__()
+        self.setRange(0, _MOST)
+        self.setSpecialValueText(translate("PKM_Simulate", "none"))
+        self.setValue(every_nth())
+        if keeps:
+            _PREFERENCE.changed.connect(self.setValue)
+            self.valueChanged.connect(set_every_nth)
+
+
+def every_nth() -> int:
+    """The preference."""
+    return int(FreeCAD.ParamGet(GROUP).GetInt(_EVERY, 0))
+
+
+def set_every_nth(value: int) -> None:
+    """Keep the preference, and draw by it what is drawn already."""
+    if value == every_nth():
+        return
+    FreeCAD.ParamGet(GROUP).SetInt(_EVERY, value)
+    _PREFERENCE.changed.emit(value)
+    for document in FreeCAD.listDocuments().values():
+        for item in document.Objects:
+            draw = getattr(getattr(item.ViewObject, "Proxy", None), "show_axes", None)
+            if draw is not None:
+                draw()
 
 
 class PostPreferences:
@@ -48,15 +95,24 @@ class PostPreferences:
         layout = QtWidgets.QVBoxLayout(self.form)
         layout.addWidget(QtWidgets.QLabel(text))
         layout.addWidget(self.choices)
+        self.every = EveryField(keeps=False)
+        tip = translate("PostPreferences", "Along paths of five axes, in Reach and in the player")
+        self.every.setToolTip(tip)
+        axes = QtWidgets.QFormLayout()
+        axes.setContentsMargins(self.choices.layout().contentsMargins())  # below its fields
+        axes.addRow(translate("PKM_Simulate", "Tool axis every ... blocks"), self.every)
+        layout.addLayout(axes)
         layout.addStretch(1)
 
     def loadSettings(self) -> None:
         """Show the stored values."""
+        self.every.setValue(every_nth())
         self.choices.show_text(default_arguments())
         self.choices.folder.setText(default_folder())
 
     def saveSettings(self) -> None:
         """Store the displayed values."""
+        set_every_nth(self.every.value())
         group = FreeCAD.ParamGet(GROUP)
         group.SetString(_ARGUMENTS, self.choices.text())
         group.SetString(_FOLDER, self.choices.folder.text())

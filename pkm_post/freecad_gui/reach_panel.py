@@ -15,15 +15,19 @@ import FreeCADGui
 import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
+from pkm_post.freecad_app.core_texts import cure_text, fault_text, shown, stored_fault
 from pkm_post.freecad_app.job_setup import set_place
 from pkm_post.freecad_app.job_study import JobStudy
-from pkm_post.freecad_app.reach_object import WORST
+from pkm_post.freecad_app.reach_object import POINTS_ONLY, WORST, check_names, violations_of
+from pkm_post.freecad_app.user_units import amount_text
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.job_choices import show_place
 from pkm_post.freecad_gui.place_row import PlaceRow
+from pkm_post.freecad_gui.preferences import EveryField
 from pkm_post.freecad_gui.shown_pose import ShownPose, look_at
-from pkm_post.freecad_gui.verdict import FindingRows, Verdict
-from pkm_post.model import RULES, Severity
+from pkm_post.freecad_gui.theme import theme
+from pkm_post.freecad_gui.verdict import FindingRows, Verdict, followed
+from pkm_post.model import Diagnostic, Severity
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -35,7 +39,6 @@ HEAD = (
     QT_TRANSLATE_NOOP("PKM_Reach", "Of"),
     QT_TRANSLATE_NOOP("PKM_Reach", "Worst at"),
 )
-_RED = QtGui.QColor(200, 0, 0)
 
 
 class ReachPanel:
@@ -46,6 +49,7 @@ class ReachPanel:
         violations: what forbids it, and what is slower.
         place: looks for another place.
         table: margin of each check.
+        every: blocks from one drawn tool axis to the next.
     """
 
     def __init__(self, obj: Any) -> None:
@@ -56,12 +60,16 @@ class ReachPanel:
         self.form.setWindowTitle(obj.Label)
         self.form.setWindowIcon(QtGui.QIcon(str(ICONS / "reach.svg")))
         self.verdict, self.violations, self.table = Verdict(), FindingRows(), _table()
-        self.place = PlaceRow(obj)
+        self.place = PlaceRow(obj.Job, obj.Machine)
         layout = QtWidgets.QVBoxLayout(self.form)
         worst = QtWidgets.QPushButton(translate("PKM_Reach", "Colour by the worst check"))
         worst.clicked.connect(self.show_all)
         for part in (self.verdict, self.violations, self.place, self.table, worst):
             layout.addWidget(part)
+        axes, self.every = QtWidgets.QHBoxLayout(), EveryField()
+        for field in (QtWidgets.QLabel(translate("PKM_Simulate", "Tool axis every ... blocks")), self.every):
+            axes.addWidget(field)
+        layout.addLayout(axes)
         self.table.cellClicked.connect(lambda row, _column: self.show_worst(row))
         self.violations.picked.connect(self.show_violation)
         self.place.placed.connect(self.show_place_found)
@@ -71,7 +79,7 @@ class ReachPanel:
     def _fill(self) -> None:
         """Show what the object has."""
         self.verdict.say(*_verdict(self.obj))
-        self.violations.take([_row(text) for text in self.obj.Violations])
+        self.violations.take(_violation_rows(self.obj))
         _fill_table(self.table, self.obj)
 
     def show_place_found(self) -> None:
@@ -109,8 +117,7 @@ class ReachPanel:
         if row >= len(obj.ViolationPoints):
             return  # found by a version that stored no places
         show_place(obj.Job, obj.ViolationOperations[row], obj.ViolationLines[row])
-        poses = [] if study is None else [each for each in study.findings if str(each) == obj.Violations[row]]
-        self._look(obj.ViolationPoints[row], study.row_of(poses[0]) if study is not None and poses else None)
+        self._look(obj.ViolationPoints[row], None if study is None else study.row_of(violations_of(study)[row]))
 
     def _look(self, point: Any, pose_row: int | None) -> None:
         """Mark a point and turn the camera to it; the machine takes its pose if the job is still as it was checked."""
@@ -138,16 +145,32 @@ class ReachPanel:
 def _verdict(obj: Any) -> tuple[str, bool | None]:
     if not obj.Checks:
         return (obj.getStatusString(), False) if not obj.isValid() else (translate("PKM_Reach", "Not checked"), None)
-    if obj.Reachable:
-        return translate("PKM_Reach", "The machine can follow the job"), True
-    return translate("PKM_Reach", "The machine cannot follow the job"), False
+    return followed(bool(obj.Reachable))
 
 
-def _row(violation: str) -> tuple[str, bool, str]:
-    """Text, severity and cure of a stored violation, whose code stands after its severity."""
-    code = next((word.rstrip(":") for word in violation.split() if word.rstrip(":") in RULES), "")
-    is_error = bool(code) and RULES[code].severity is Severity.ERROR
-    return violation, is_error, RULES[code].cure if code else ""
+def _violation_rows(obj: Any) -> list[tuple[str, bool, str]]:
+    """Text, severity and cure of each violation; of those that only the document has, what their lines say."""
+    study = obj.Proxy.study
+    if study is not None:
+        return [_row(each) for each in violations_of(study)]
+    stored = [(text, stored_fault(text)) for text in obj.Violations]
+    return [(text, "error " in text, "") if fault is None else _row(fault) for text, fault in stored]
+
+
+def _row(fault: Diagnostic) -> tuple[str, bool, str]:
+    return fault_text(fault), fault.severity is Severity.ERROR, cure_text(fault.code)
+
+
+def _parts(obj: Any) -> list[str]:
+    study = obj.Proxy.study
+    if study is None:
+        return list(obj.WorstParts)
+    worst = ((each.subject.parts, int(each.part[each.worst_row])) for each in study.reach.findings)
+    return [shown(parts[part]) if parts[part] else "" for parts, part in worst]
+
+
+def _proven(margin: str, unit: str) -> str:
+    return translate("PKM_Reach", "points only") if margin == POINTS_ONLY else amount_text(float(margin), unit)
 
 
 def _table() -> QtWidgets.QTableWidget:
@@ -156,6 +179,7 @@ def _table() -> QtWidgets.QTableWidget:
     table.setHorizontalHeaderLabels([translate("PKM_Reach", text) for text in HEAD])
     table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
     table.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
+    table.setTabKeyNavigation(False)  # Tab leaves it: nothing is typed here
     table.verticalHeader().hide()
     table.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarPolicy.ScrollBarAsNeeded)
     return table
@@ -166,16 +190,16 @@ def _fill_table(table: QtWidgets.QTableWidget, obj: Any) -> None:
     table.setRowCount(len(obj.Checks))
     where = translate("PKM_Reach", "{}, line {}")
     columns = (
-        obj.Checks,
-        [f"{margin:.4g} {unit}".rstrip() for margin, unit in zip(obj.LeastMargins, obj.Units, strict=True)],
-        obj.ProvenMargins,
-        obj.WorstParts,
+        check_names(obj),
+        [amount_text(margin, unit) for margin, unit in zip(obj.LeastMargins, obj.Units, strict=True)],
+        [_proven(margin, unit) for margin, unit in zip(obj.ProvenMargins, obj.Units, strict=True)],
+        _parts(obj),
         [where.format(name, line) for name, line in zip(obj.WorstOperations, obj.WorstLines, strict=True)],
     )
     for column, texts in enumerate(columns):
         for row, text in enumerate(texts):
             item = QtWidgets.QTableWidgetItem(text)
             if obj.LeastMargins[row] < 0.0:
-                item.setForeground(QtGui.QBrush(_RED))
+                item.setForeground(QtGui.QBrush(QtGui.QColor(theme().bad)))
             table.setItem(row, column, item)
     table.resizeColumnsToContents()

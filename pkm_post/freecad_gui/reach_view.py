@@ -14,15 +14,18 @@ import FreeCADGui
 import numpy as np
 from pivy import coin
 
-from pkm_post.freecad_app.reach_object import WORST
+from pkm_post.freecad_app.reach_object import WORST, check_names
+from pkm_post.freecad_app.user_units import amount_text
+from pkm_post.freecad_gui.axis_vectors import axis_vectors, is_tilted
 from pkm_post.freecad_gui.context_menu import add_commands, add_entry
-from pkm_post.freecad_gui.margin_colours import colours_of, largest, legend
+from pkm_post.freecad_gui.margin_colours import coloured_way, colours_of, largest, legend
+from pkm_post.freecad_gui.preferences import every_nth
 from pkm_post.freecad_gui.shapes import OUT, points_through
 from pkm_post.freecad_gui.views import DrawnView
 
 translate = FreeCAD.Qt.translate
 
-_LINE_WIDTH, _MARK_SIZE = 3.0, 11.0
+_MARK_SIZE = 11.0
 _WORST_IN_LIMITS = (0.1, 0.2, 0.8)
 
 
@@ -31,6 +34,7 @@ class ReachView(DrawnView):
 
     icon, mode = "reach.svg", "Reach"
     _panel: Any = None
+    _axes: Any = None
 
     def updateData(self, _obj: Any, name: str) -> None:
         """Redraw when the path has its margins: these are set last."""
@@ -45,13 +49,25 @@ class ReachView(DrawnView):
         points = [tuple(point) for point in getattr(obj, "Points", ())]
         if not len(margin) or len(points) != len(margin) or obj.ColourBy not in (WORST, *obj.Checks):
             return
-        self._root.addChild(_way(points, margin))
+        self._root.addChild(coloured_way(points, colours_of(margin)))
+        self._axes = coin.SoSeparator()
+        self._root.addChild(self._axes)
+        self.show_axes()
         worst, is_out, unit = _worst(obj, points, margin)
         self._root.addChild(points_through([worst], OUT if is_out else _WORST_IN_LIMITS, _MARK_SIZE))
         shown = coin.SoType.fromName("SkipBoundingGroup")
         corner = shown.createInstance() if shown.canCreateInstance() else coin.SoGroup()
-        corner.addChild(legend(str(obj.ColourBy), largest(margin), unit))
+        corner.addChild(legend(*_legend_texts(obj, largest(margin), unit)))
         self._root.addChild(corner)
+
+    def show_axes(self) -> None:
+        """Draw the tool axes of a path of five axes, as often as the preference says."""
+        if self._axes is None:
+            return  # nothing is drawn
+        self._axes.removeAllChildren()
+        study, every = self.Object.Proxy.study, every_nth()
+        if study is not None and every and is_tilted(study.reach.trajectory):
+            self._axes.addChild(axis_vectors(study.reach.trajectory, every))
 
     def mark(self, point: Any) -> None:
         """Mark another point than the worst one, until the path is drawn again."""
@@ -85,24 +101,17 @@ class ReachView(DrawnView):
         return True
 
 
+def _legend_texts(obj: Any, top: float, unit: str) -> tuple[str, str]:
+    """Title and largest margin in the language and the units of the user."""
+    if obj.ColourBy == WORST:
+        return translate("PKM_Reach", "worst check"), translate("PKM_Reach", "{:.4g} of the largest").format(top)
+    return check_names(obj)[list(obj.Checks).index(obj.ColourBy)], amount_text(top, unit)
+
+
 def _worst(obj: Any, points: list[tuple[float, ...]], margin: Any) -> tuple[Any, bool, str]:
     """Point of the least margin that is shown, whether it is out of limits, and the unit of the margins."""
     if obj.ColourBy == WORST:
         row = int(np.argmin(margin))
-        return points[row], bool(margin[row] < 0.0), "of the largest"
+        return points[row], bool(margin[row] < 0.0), ""
     chosen = list(obj.Checks).index(obj.ColourBy)
     return obj.WorstPoints[chosen], obj.LeastMargins[chosen] < 0.0, obj.Units[chosen]
-
-
-def _way(points: list[tuple[float, ...]], margin: Any) -> coin.SoSeparator:
-    separator, light, style = coin.SoSeparator(), coin.SoLightModel(), coin.SoDrawStyle()
-    light.model, style.lineWidth = coin.SoLightModel.BASE_COLOR, _LINE_WIDTH
-    colour, binding = coin.SoBaseColor(), coin.SoMaterialBinding()
-    colour.rgb.setValues(0, len(margin), colours_of(margin).tolist())
-    binding.value = coin.SoMaterialBinding.PER_VERTEX_INDEXED
-    coordinates, lines = coin.SoCoordinate3(), coin.SoIndexedLineSet()
-    coordinates.point.setValues(0, len(points), points)
-    lines.coordIndex.setValues(0, len(points) + 1, [*range(len(points)), -1])
-    for child in (light, style, colour, binding, coordinates, lines):
-        separator.addChild(child)
-    return separator

@@ -18,7 +18,7 @@ from pkm_post.toolpath import Cutter
 Colour = tuple[float, float, float]
 """Red, green and blue from 0 to 1."""
 
-_AROUND = 32
+_CIRCLE_SIDES = 32
 _ARC_STEPS = 8
 _CREASE = 0.6
 """rad: crease angle below which the faces of a surface are shaded as one, so that it looks round."""
@@ -39,7 +39,7 @@ def revolved(profile: Array) -> coin.SoSeparator:
     Args:
         profile: (N, 2) radii and heights in mm.
     """
-    angle = np.linspace(0.0, 2.0 * np.pi, _AROUND + 1)
+    angle = np.linspace(0.0, 2.0 * np.pi, _CIRCLE_SIDES + 1)
     radius, height = profile.T
     points = np.empty((len(profile), len(angle), 3))
     points[..., 0] = radius[:, None] * np.cos(angle)
@@ -132,21 +132,23 @@ OUT: Colour = (0.85, 0.0, 0.0)
 """Colour for violated limits."""
 
 
-def segments(start: Array, end: Array, colour: Colour) -> coin.SoSeparator:
+def segments(start: Array, end: Array, colour: Colour, width: float = 1.0) -> coin.SoSeparator:
     """Straight lines between points.
 
     Args:
         start: (N, 3) their beginnings.
         end: (N, 3) their ends.
         colour: of all of them.
+        width: of all of them, pixels.
     """
     light, ink, coordinates, lines = coin.SoLightModel(), coin.SoBaseColor(), coin.SoCoordinate3(), coin.SoLineSet()
-    light.model = coin.SoLightModel.BASE_COLOR
+    style = coin.SoDrawStyle()
+    light.model, style.lineWidth = coin.SoLightModel.BASE_COLOR, width
     ink.rgb = colour
     points = np.stack([start, end], axis=1).reshape(-1, 3)
     coordinates.point.setValues(0, len(points), points.tolist())
     lines.numVertices.setValues(0, len(start), [2] * len(start))
-    return group(light, ink, coordinates, lines)
+    return group(light, style, ink, coordinates, lines)
 
 
 def fade(node: coin.SoNode, transparency: float) -> None:

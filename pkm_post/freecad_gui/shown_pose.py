@@ -7,12 +7,17 @@ again at the end.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
+import FreeCADGui
 import numpy as np
 from pivy import coin
 
 from pkm_post.freecad_app.job_study import JobStudy
+
+_CLOSE = 300.0
+"""mm: height of the view at a finding, if it was higher before."""
 
 
 class ShownPose:
@@ -44,12 +49,25 @@ class ShownPose:
         self._view = None
 
 
+def is_shown(document: str) -> bool:
+    """Whether a document has its views: while it is closed they go first."""
+    try:
+        return FreeCADGui.getDocument(document) is not None
+    except NameError:
+        return False
+
+
 def look_at(document: Any, point: Any) -> None:
-    """Move the camera of the 3D view, without a turn, until a point of the document is in its middle."""
+    """Move the camera of the 3D view, without a turn, until a point of the document is in its middle and well seen."""
     view = document.activeView()
     if not hasattr(view, "getCameraNode"):
         return
     camera = view.getCameraNode()
     direction = camera.orientation.getValue().multVec(coin.SbVec3f(0.0, 0.0, -1.0))
     distance = camera.focalDistance.getValue()
+    if isinstance(camera, coin.SoOrthographicCamera):
+        camera.height = min(camera.height.getValue(), _CLOSE)
+    else:
+        distance = min(distance, _CLOSE / (2.0 * math.tan(camera.heightAngle.getValue() / 2.0)))
+        camera.focalDistance = distance
     camera.position = coin.SbVec3f(*point) - direction * distance

@@ -16,13 +16,13 @@ import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app.simulation import Simulation
+from pkm_post.freecad_app.user_units import scale_of
+from pkm_post.freecad_gui.theme import theme
 from pkm_post.geometry import Array
 
 translate = FreeCAD.Qt.translate
 
-_COLOURS = ("#3465a4", "#cc0000", "#4e9a06", "#f57900", "#75507b", "#8f5902")
 _MARGIN_LEFT, _MARGIN, _GAP = 64, 6, 18
-_CURSOR, _LIMIT = "#204a87", "#a40000"
 _STRIP = 5
 """Width of the strip repainted for the cursor, pixels."""
 
@@ -40,17 +40,17 @@ class StrutPlot(QtWidgets.QWidget):
         self._simulation, self._go_to = simulation, go_to
         self._seconds, self._override = 0.0, 1.0
         self._curves: Any = None
-        self.setMinimumSize(260, 150)
+        self.setMinimumSize(200, 100)
 
     def take(self, simulation: Simulation) -> None:
         """Draw another simulation."""
         self._simulation = simulation
-        self._draw_anew()
+        self._redraw()
 
     def show_override(self, share: float) -> None:
         """Draw the speeds at a feed override; 1 is as planned."""
         self._override = share
-        self._draw_anew()
+        self._redraw()
 
     def show_time(self, seconds: float) -> None:
         """Move the cursor."""
@@ -58,7 +58,7 @@ class StrutPlot(QtWidgets.QWidget):
         for x in {before, self._cursor()}:
             self.update(x - _STRIP // 2, 0, _STRIP, self.height())
 
-    def _draw_anew(self) -> None:
+    def _redraw(self) -> None:
         self._curves = None
         self.update()
 
@@ -70,6 +70,12 @@ class StrutPlot(QtWidgets.QWidget):
     def resizeEvent(self, _event: Any) -> None:
         """Discard the curves of the previous size."""
         self._curves = None
+
+    def changeEvent(self, event: Any) -> None:
+        """Draw in the colours of another theme."""
+        if event.type() == QtCore.QEvent.Type.StyleChange:
+            self._redraw()
+        super().changeEvent(event)
 
     def mousePressEvent(self, event: Any) -> None:
         """Go to the clicked time."""
@@ -83,7 +89,7 @@ class StrutPlot(QtWidgets.QWidget):
             self._curves = self._drawn()
         painter = QtGui.QPainter(self)
         painter.drawPixmap(0, 0, self._curves)
-        painter.setPen(QtGui.QPen(QtGui.QColor(_CURSOR), 2))
+        painter.setPen(QtGui.QPen(QtGui.QColor(theme().cursor), 2))
         x = self._cursor()
         painter.drawLine(x, _GAP, x, self.height() - _MARGIN)
         painter.end()
@@ -92,19 +98,24 @@ class StrutPlot(QtWidgets.QWidget):
         return max(self.width() - _MARGIN_LEFT - _MARGIN, 2)
 
     def _drawn(self) -> Any:
-        pixmap = QtGui.QPixmap(self.size())
-        pixmap.fill(QtGui.QColor("white"))
+        ratio = self.devicePixelRatioF()
+        pixmap = QtGui.QPixmap(self.size() * ratio)
+        pixmap.setDevicePixelRatio(ratio)
+        pixmap.fill(QtGui.QColor(theme().ground))
         painter = QtGui.QPainter(pixmap)
         height = (self.height() - 2 * _GAP - _MARGIN) // 2
         lengths, speeds = self._simulation.envelope(self._width())
         machine = self._simulation.machine
         limits = machine.strut_stroke, (-machine.strut_speed, machine.strut_speed)
-        titles = translate("PKM_Simulate", "Lengths in mm"), translate("PKM_Simulate", "Speeds in mm/s")
+        titles = translate("PKM_Simulate", "Lengths in {}"), translate("PKM_Simulate", "Speeds in {}")
+        scales = scale_of(machine.strut_stroke[1], "mm"), scale_of(machine.strut_speed, "mm/s")
         curves = lengths, speeds * self._override
-        for number, (values, ends, title) in enumerate(zip(curves, limits, titles, strict=True)):
+        for number, (values, ends, title, scale) in enumerate(zip(curves, limits, titles, scales, strict=True)):
             top = _GAP + number * (height + _GAP)
             area = QtCore.QRect(_MARGIN_LEFT, top, self._width(), height)
-            _draw_curves(painter, area, values, ends, title)
+            factor, unit = scale
+            ends = ends[0] / factor, ends[1] / factor
+            _draw_curves(painter, area, values / factor, ends, title.format(unit))
         painter.end()
         return pixmap
 
@@ -114,9 +125,10 @@ def _draw_curves(painter: Any, area: Any, values: Array, limits: tuple[float, fl
     low, high = float(values.min()), float(values.max())
     room = 0.05 * (high - low) or 1.0
     low, high = low - room, high + room
-    painter.setPen(QtGui.QPen(QtGui.QColor("#888a85")))
+    colours = theme()
+    painter.setPen(QtGui.QPen(QtGui.QColor(colours.faint)))
     painter.drawRect(area)
-    painter.setPen(QtGui.QPen(QtGui.QColor("black")))
+    painter.setPen(QtGui.QPen(QtGui.QColor(colours.ink)))
     painter.drawText(area.left(), area.top() - 4, title)
     right = QtCore.Qt.AlignmentFlag.AlignRight
     for text, y in ((f"{high:.5g}", area.top()), (f"{low:.5g}", area.bottom() - 14)):
@@ -124,11 +136,11 @@ def _draw_curves(painter: Any, area: Any, values: Array, limits: tuple[float, fl
     scale = area.height() / (high - low)
     for limit in limits:
         if low < limit < high:
-            painter.setPen(QtGui.QPen(QtGui.QColor(_LIMIT), 1, QtCore.Qt.PenStyle.DashLine))
+            painter.setPen(QtGui.QPen(QtGui.QColor(colours.limit), 1, QtCore.Qt.PenStyle.DashLine))
             y = round(area.bottom() - (limit - low) * scale)
             painter.drawLine(area.left(), y, area.right(), y)
     rows = np.rint(area.bottom() - (values - low) * scale).astype(int)
-    for strut, colour in enumerate(_COLOURS):
+    for strut, colour in enumerate(colours.struts):
         painter.setPen(QtGui.QPen(QtGui.QColor(colour)))
         least, largest = rows[0, :, strut].tolist(), rows[1, :, strut].tolist()
         painter.drawLines([

@@ -16,6 +16,9 @@ import Path.Op.Gui.Base as CamGui
 from PathScripts import PathUtils
 from PySide import QtWidgets
 
+from pkm_post.freecad_gui.surface_finish_outcome import SurfaceFinishOutcome
+from pkm_post.freecad_gui.verdict import FindingRows, Verdict
+
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -62,12 +65,33 @@ CHOICES: tuple[str, ...] = (
 
 
 class SurfaceFinishPage(CamGui.TaskPanelPage):
-    """The page: tool controller, then a field per table row. The property view shows all other properties."""
+    """The page: what came of the operation, tool controller, then a field per table row; and the map in the 3D view.
+
+    The property view shows all other properties.
+    """
+
+    def initPage(self, obj: Any) -> None:
+        """Show what is known of the operation; after each computation it is shown again."""
+        self._outcome = SurfaceFinishOutcome(obj, self.form.verdict, self.form.findings, self.form.again)
+        self._outcome.show()
+
+    def cleanupPage(self, _obj: Any) -> None:
+        """Take the map out of the view."""
+        self._outcome.end()
 
     def getForm(self) -> Any:
         """Create the fields."""
         form = QtWidgets.QWidget()
         layout = QtWidgets.QFormLayout(form)
+        form.verdict, form.findings = Verdict(), FindingRows()
+        layout.addRow(form.verdict)
+        layout.addRow(form.findings)
+        form.again = QtWidgets.QPushButton(translate("PKM_SurfaceFinish", "Measure and colour again"))
+        form.again.setToolTip(
+            translate("PKM_SurfaceFinish", "The document keeps the worst values, not the colours: computes them again")
+        )
+        form.again.hide()
+        layout.addRow(form.again)
         form.controllers = QtWidgets.QComboBox()
         layout.addRow(translate("PKM_SurfaceFinish", "Tool controller"), form.controllers)
         form.fields = {}

@@ -42,6 +42,10 @@ def quantity(unit: str, changed: Callable[..., None]) -> Any:
     return field
 
 
+_LEAST = 70
+"""px: what a field of a vector needs for most numbers; FreeCAD's own hint has room for many more digits."""
+
+
 class Three(QtWidgets.QWidget):
     """Three fields for a vector."""
 
@@ -51,7 +55,8 @@ class Three(QtWidgets.QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         self.fields = [quantity(unit, changed) for _ in range(3)]
         for field in self.fields:
-            layout.addWidget(field)
+            field.setMinimumWidth(_LEAST)
+            layout.addWidget(field, 1)
 
     def show_values(self, values: Iterable[float], enabled: bool) -> None:
         """Show a vector, and whether it can be edited."""

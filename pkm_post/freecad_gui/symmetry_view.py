@@ -15,6 +15,7 @@ import FreeCADGui
 
 from pkm_post.freecad_gui.context_menu import add_commands, add_entry
 from pkm_post.freecad_gui.icons import ICONS
+from pkm_post.freecad_gui.verdict_icons import with_verdict
 from pkm_post.freecad_gui.views import View
 
 translate = FreeCAD.Qt.translate
@@ -23,9 +24,12 @@ translate = FreeCAD.Qt.translate
 class SymmetryView(View):
     """The icon of a symmetric operation. The base keeps its place in the tree: the copy is beside it."""
 
-    def getIcon(self) -> str:
-        """A mirror icon for operations with a plane, a rotation icon for those with an angle."""
-        return str(ICONS / ("rotate.svg" if hasattr(self.Object, "Angle") else "mirror.svg"))
+    def getIcon(self) -> Any:
+        """A mirror icon for operations with a plane, a rotation icon for those with an angle; with the verdict."""
+        return with_verdict(str(self._icon_file()), getattr(self, "Object", None))
+
+    def _icon_file(self) -> Path:
+        return ICONS / ("rotate.svg" if hasattr(getattr(self, "Object", None), "Angle") else "mirror.svg")
 
     def doubleClicked(self, vobj: Any) -> bool:
         """Open the panel."""
@@ -33,7 +37,7 @@ class SymmetryView(View):
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
         """Add the panel, and further copies."""
-        add_entry(menu, translate("SymmetryPanel", "Edit"), lambda: self.doubleClicked(vobj), Path(self.getIcon()).name)
+        add_entry(menu, translate("SymmetryPanel", "Edit"), lambda: self.doubleClicked(vobj), self._icon_file().name)
         super().setupContextMenu(vobj, menu)
         add_commands(menu, vobj.Object, "PKM_Mirror", "PKM_Rotate")
 

@@ -10,12 +10,13 @@ import FreeCAD
 import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
+from pkm_post.freecad_app.core_texts import shown
 from pkm_post.freecad_app.simulation import Simulation
+from pkm_post.freecad_gui.theme import theme
 
 translate = FreeCAD.Qt.translate
 
-_OPERATIONS = "#b8cfe6", "#dbe4ec"
-_TOOL, _FINDING, _CURSOR = "#5c3566", "#cc0000", "#204a87"
+_TOOL, _FINDING = "#ad7fa8", "#cc0000"
 _HEIGHT, _FINDINGS = 26, 8
 """Pixels: of the widget, and of the band of findings at its lower end."""
 
@@ -57,7 +58,7 @@ def tool_changes(simulation: Simulation) -> list[Band]:
 
 def finding_bands(simulation: Simulation) -> list[Band]:
     """What the machine cannot follow, each from its beginning to its worst moment."""
-    return [Band(problem.time, problem.worst_time, problem.text) for problem in simulation.problems]
+    return [Band(problem.time, problem.worst_time, shown(problem.text)) for problem in simulation.problems]
 
 
 class Timeline(QtWidgets.QWidget):
@@ -115,17 +116,17 @@ class Timeline(QtWidgets.QWidget):
 
     def paintEvent(self, _event: Any) -> None:
         """Paint the bands and the cursor."""
-        painter = QtGui.QPainter(self)
+        painter, colours = QtGui.QPainter(self), theme()
         for number, band in enumerate(self.operations):
             area = self._area(band, 0, _HEIGHT - _FINDINGS)
-            painter.fillRect(area, QtGui.QColor(_OPERATIONS[number % 2]))
-            painter.setPen(QtGui.QColor("black"))
+            painter.fillRect(area, QtGui.QColor(colours.bands[number % 2]))
+            painter.setPen(QtGui.QColor(colours.band_ink))
             painter.drawText(area.adjusted(3, 0, -3, 0), QtCore.Qt.AlignmentFlag.AlignVCenter, band.text)
         for band in self.findings:
             painter.fillRect(self._area(band, _HEIGHT - _FINDINGS, _FINDINGS), QtGui.QColor(_FINDING))
         for band in self.tools:
             painter.fillRect(self._area(band, 0, _HEIGHT), QtGui.QColor(_TOOL))
-        painter.setPen(QtGui.QPen(QtGui.QColor(_CURSOR), 2))
+        painter.setPen(QtGui.QPen(QtGui.QColor(colours.cursor), 2))
         x = self._x(self._seconds)
         painter.drawLine(x, 0, x, _HEIGHT)
         painter.end()

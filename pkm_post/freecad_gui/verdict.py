@@ -8,8 +8,14 @@ themes.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
+import FreeCAD
 from PySide import QtCore, QtWidgets
+
+from pkm_post.freecad_gui.fault_links import link_codes
+
+translate = FreeCAD.Qt.translate
 
 _COLOURS = {True: ("#1b7f3b", "#ffffff"), False: ("#b3261e", "#ffffff")}
 """Background and text by verdict."""
@@ -41,6 +47,17 @@ class Verdict(QtWidgets.QLabel):
         )
 
 
+_MOST_LINES = 10
+"""Lines of text that the rows take at most of a panel."""
+
+
+def followed(holds: bool) -> tuple[str, bool]:
+    """The verdict on a job: text and colour, wherever the job is shown."""
+    if holds:
+        return translate("PKM_Reach", "The machine can follow the job"), True
+    return translate("PKM_Reach", "The machine cannot follow the job"), False
+
+
 class FindingRows(QtWidgets.QListWidget):
     """Errors and warnings, a row each."""
 
@@ -51,16 +68,39 @@ class FindingRows(QtWidgets.QListWidget):
         super().__init__()
         self.setWordWrap(True)
         self.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        link_codes(self)
+        self.setSizePolicy(QtWidgets.QSizePolicy.Policy.Expanding, QtWidgets.QSizePolicy.Policy.Preferred)
         self.itemClicked.connect(lambda item: self.picked.emit(self.row(item)))
         self.itemActivated.connect(lambda item: self.picked.emit(self.row(item)))
 
-    def take(self, rows: Sequence[tuple[str, bool, str]]) -> None:
-        """Show rows: the text of each, whether it is an error, and its cure; none hides the list."""
+    def take(self, rows: Sequence[tuple[str, bool | None, str]]) -> None:
+        """Show rows: the text of each, whether it is an error or a warning, None for neither, and its cure.
+
+        No rows hide the list.
+        """
         self.clear()
         sign = QtWidgets.QStyle.StandardPixmap
         for text, is_error, cure in rows:
-            icon = self.style().standardIcon(sign.SP_MessageBoxCritical if is_error else sign.SP_MessageBoxWarning)
-            item = QtWidgets.QListWidgetItem(icon, text)
+            item = QtWidgets.QListWidgetItem(text)
+            if is_error is not None:
+                kind = sign.SP_MessageBoxCritical if is_error else sign.SP_MessageBoxWarning
+                item.setIcon(self.style().standardIcon(kind))
             item.setToolTip(cure)
             self.addItem(item)
         self.setVisible(bool(rows))
+        self.updateGeometry()
+
+    def sizeHint(self) -> QtCore.QSize:
+        """As high as its rows, up to a few: what is below them comes into sight."""
+        width, line = self.viewport().width(), self.fontMetrics().lineSpacing()
+        rows = sum(max(self.sizeHintForRow(row), line) for row in range(self.count()))
+        return QtCore.QSize(width, min(rows, _MOST_LINES * line) + 2 * self.frameWidth() + 4)
+
+    def resizeEvent(self, event: Any) -> None:
+        """Another width has other heights of the rows."""
+        super().resizeEvent(event)
+        self.updateGeometry()
+
+    def minimumSizeHint(self) -> QtCore.QSize:
+        """Three lines."""
+        return QtCore.QSize(80, 3 * self.fontMetrics().lineSpacing())

@@ -14,6 +14,7 @@ from pivy import coin
 
 from pkm_post.freecad_gui.context_menu import add_switch
 from pkm_post.freecad_gui.icons import ICONS
+from pkm_post.freecad_gui.verdict_icons import with_verdict
 
 
 class View:
@@ -33,9 +34,9 @@ class View:
         """Remember the displayed object; called for new and for restored ones."""
         self.Object = vobj.Object
 
-    def getIcon(self) -> str:
-        """The icon in the tree."""
-        return str(ICONS / self.icon)
+    def getIcon(self) -> Any:
+        """The icon in the tree, of operations and of Reach with the verdict."""
+        return with_verdict(str(ICONS / self.icon), getattr(self, "Object", None))
 
     def claimChildren(self) -> list[Any]:
         """No children: the sources of an object have their own place in the tree."""

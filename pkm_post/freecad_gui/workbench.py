@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The PKM Post workbench, and its commands in CAM's own menu."""
+"""The PKM Post workbench, and its tool bar and menu in CAM as well."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import FreeCAD
 import FreeCADGui
 
-from pkm_post.freecad_app.window import ESCAPE_WATCHES, REFUSALS, VIEWS
+from pkm_post.freecad_app.window import ESCAPE_WATCHES, REFUSALS, VERDICTS, VIEWS
 from pkm_post.freecad_gui.icons import ICONS
 
 _RESOURCES = Path(__file__).parents[2] / "resources"
@@ -29,12 +29,8 @@ _VIEWS = {
 """Module and class of the view provider for each kind of object; imported when the first of its kind is made."""
 
 
-_CAM_BARS = {
-    "Project Setup": "PKM_Machine PKM_Reach PKM_Simulate PKM_Post",
-    "New Operations": "PKM_SurfaceFinish",
-    "Path Modification": "PKM_NormalCompensation PKM_Mirror PKM_Rotate",
-}
-"""Commands by CAM's tool bar that they belong to."""
+NAME = "PKM Post"
+"""Of the tool bar and the menu."""
 
 
 class PkmPostWorkbench(FreeCADGui.Workbench):
@@ -49,37 +45,39 @@ class PkmPostWorkbench(FreeCADGui.Workbench):
 
     def Initialize(self):
         """Called by FreeCAD when the workbench is first shown."""
-        from pkm_post.freecad_gui.commands import COMMANDS
-
-        names = [command.name for command in COMMANDS]
-        self.appendToolbar("PKM Post", names)
-        self.appendMenu("&PKM Post", names)
+        _add_commands(self)
 
     def GetClassName(self):
         """The kind of workbench that FreeCAD creates."""
         return "Gui::PythonWorkbench"
 
 
-class CamMenu:
-    """Adds the commands to CAM's menu; FreeCAD calls it at every change of workbench."""
+def _add_commands(workbench: Any) -> None:
+    """Add tool bar and menu, in groups, to a workbench."""
+    from pkm_post.freecad_gui.commands import grouped
 
-    registered: ClassVar[list[CamMenu]] = []
-    """Keeps the objects alive: FreeCAD holds no reference."""
+    workbench.appendToolbar(NAME, grouped())
+    workbench.appendMenu(f"&{NAME}", grouped())
 
-    def modifyMenuBar(self):
-        """Add the commands after CAM's own copy of an operation."""
-        from pkm_post.freecad_gui.commands import COMMANDS
 
-        return [{"append": command.name, "menuItem": "CAM_SimpleCopy"} for command in COMMANDS]
+class CamBar:
+    """Adds tool bar and menu to CAM as soon as CAM is shown; earlier it has none to which they could be added."""
 
-    def modifyToolBars(self):
-        """Add the commands to CAM's tool bars, at the end of the one where CAM has commands of their kind."""
-        return [{"append": name, "toolBar": bar} for bar, names in _CAM_BARS.items() for name in names.split()]
+    waits: ClassVar[bool] = True
+
+    @staticmethod
+    def add(name: str) -> None:
+        """Called with the name of the workbench that became active."""
+        if name == "CAMWorkbench" and CamBar.waits:
+            CamBar.waits = False
+            cam = FreeCADGui.getWorkbench(name)
+            _add_commands(cam)
+            cam.reloadActive()
 
 
 def install() -> None:
     """Register translations, workbench, commands and preferences; called once from InitGui.py."""
-    from pkm_post.freecad_gui import preferences
+    from pkm_post.freecad_gui import preferences, start_page, verdict_icons
     from pkm_post.freecad_gui.commands import register
 
     FreeCADGui.addLanguagePath(str(TRANSLATIONS))
@@ -87,11 +85,13 @@ def install() -> None:
     register()
     preferences.install()
     VIEWS.update({kind: partial(_attach, *where) for kind, where in _VIEWS.items()})
+    VERDICTS[:] = [partial(_attach, "pkm_post.freecad_gui.verdict_icons", "keep_verdict")]
     REFUSALS[:] = [partial(_attach, "pkm_post.freecad_gui.refusal", "show_refusal")]
     ESCAPE_WATCHES[:] = [partial(_attach, "pkm_post.freecad_gui.observers", "EscapeWatch")]
+    verdict_icons.install()
     FreeCADGui.addWorkbench(PkmPostWorkbench())
-    CamMenu.registered.append(CamMenu())
-    FreeCADGui.addWorkbenchManipulator(CamMenu.registered[-1])
+    FreeCADGui.getMainWindow().workbenchActivated.connect(CamBar.add)
+    start_page.install()
 
 
 def _attach(module: str, name: str, *arguments: Any) -> Any:

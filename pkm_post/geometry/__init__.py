@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Geometry: arrays in, arrays out; independent of machines, tools and files."""
 
+from typing import TYPE_CHECKING
+
+from pkm_post import at_first_use
 from pkm_post.geometry.curves import (
     arc_length,
     arc_points,
@@ -21,7 +24,6 @@ from pkm_post.geometry.cylinders import (
     separation,
 )
 from pkm_post.geometry.distances import segment_to_box, segment_to_cylinder, segment_to_segment
-from pkm_post.geometry.nurbs import NurbsSurface, bspline_points
 from pkm_post.geometry.orientation import (
     along,
     along_rates,
@@ -32,16 +34,6 @@ from pkm_post.geometry.orientation import (
     towards,
     turn_by_tilt,
     write_frames,
-)
-from pkm_post.geometry.polygons import grid_points_inside, is_closed, points_within, subdivide
-from pkm_post.geometry.projection import (
-    Closed,
-    cone_feet,
-    cylinder_feet,
-    nearest_on_nurbs,
-    plane_feet,
-    sphere_feet,
-    torus_feet,
 )
 from pkm_post.geometry.vectors import (
     Array,
@@ -56,6 +48,28 @@ from pkm_post.geometry.vectors import (
     take_rows,
     unit,
 )
+
+if TYPE_CHECKING:
+    from pkm_post.geometry.nurbs import NurbsSurface, bspline_points
+    from pkm_post.geometry.polygons import grid_points_inside, is_closed, points_within, subdivide
+    from pkm_post.geometry.projection import (
+        Closed,
+        cone_feet,
+        cylinder_feet,
+        nearest_on_nurbs,
+        plane_feet,
+        sphere_feet,
+        torus_feet,
+    )
+else:
+    __getattr__ = at_first_use(
+        __name__,
+        {
+            "nurbs": "NurbsSurface bspline_points",
+            "polygons": "grid_points_inside is_closed points_within subdivide",
+            "projection": "Closed cone_feet cylinder_feet nearest_on_nurbs plane_feet sphere_feet torus_feet",
+        },
+    )
 
 __all__ = [
     "TRIANGLE_EDGES",

@@ -25,10 +25,10 @@ from pkm_post.machine.kinematics.jacobian import (
     linearise,
     scaled_jacobian,
     solve_regular,
-    stiffness_along,
 )
 from pkm_post.machine.kinematics.placed_machine import has_strut_bodies
 from pkm_post.machine.kinematics.rates import strut_rate_bounds, strut_rates, tool_rates
+from pkm_post.machine.kinematics.stiffness import stiffness_along
 from pkm_post.machine.kinematics.strut_cubics import KnotState, map_to_tool, strut_state
 from pkm_post.machine.kinematics.tool_cubics import DRIFT_SHARES, Demand, ToolCubics, bounded_demand, measured_demand
 from pkm_post.machine.reach.findings import DISPLAY_UNITS, ReachFinding, finding_diagnostics
@@ -43,10 +43,11 @@ if TYPE_CHECKING:
     from pkm_post.machine.calibration.uncertainty import MeasurementNoise, calibration_uncertainty
     from pkm_post.machine.collisions.check import Collisions, find_collisions, placed_workpiece, setup_names
     from pkm_post.machine.collisions.coverage import NO_SETUP
-    from pkm_post.machine.reach.best_position import best_position
+    from pkm_post.machine.reach.best_position import WorkpiecePosition, best_position, good_positions
     from pkm_post.machine.reach.collision_mesh import CollisionMesh
     from pkm_post.machine.reach.reach_map import reach_map
-    from pkm_post.machine.reach.report import ReachReport, check_reach, poses_along
+    from pkm_post.machine.reach.report import ReachReport, check_reach, pose_path_of, poses_along
+    from pkm_post.machine.reach.stiffness_map import StiffnessMap, stiffness_map, table_poses
     from pkm_post.machine.spin.apply import with_spin
     from pkm_post.machine.spin.optimise import least_normalised_margins
 else:
@@ -58,10 +59,11 @@ else:
             "calibration.uncertainty": "MeasurementNoise calibration_uncertainty",
             "collisions.check": "Collisions find_collisions placed_workpiece setup_names",
             "collisions.coverage": "NO_SETUP",
-            "reach.best_position": "best_position",
+            "reach.best_position": "WorkpiecePosition best_position good_positions",
             "reach.collision_mesh": "CollisionMesh",
             "reach.reach_map": "reach_map",
-            "reach.report": "ReachReport check_reach poses_along",
+            "reach.report": "ReachReport check_reach pose_path_of poses_along",
+            "reach.stiffness_map": "StiffnessMap stiffness_map table_poses",
             "spin.apply": "with_spin",
             "spin.optimise": "least_normalised_margins",
         },
@@ -86,9 +88,11 @@ __all__ = [
     "Repetition",
     "ReachFinding",
     "SpinRule",
+    "StiffnessMap",
     "ForwardSolution",
     "ToolCubics",
     "PosePath",
+    "WorkpiecePosition",
     "attitude_rates",
     "best_position",
     "bounded_demand",
@@ -101,6 +105,7 @@ __all__ = [
     "find_machine",
     "forward_along_path",
     "forward",
+    "good_positions",
     "has_strut_bodies",
     "jacobian_of_tip",
     "least_normalised_margins",
@@ -118,6 +123,7 @@ __all__ = [
     "presets",
     "check_reach",
     "reach_faults",
+    "pose_path_of",
     "poses_along",
     "reach_findings",
     "reach_map",
@@ -126,9 +132,11 @@ __all__ = [
     "scaled_jacobian",
     "solve_regular",
     "stiffness_along",
+    "stiffness_map",
     "strut_lengths",
     "strut_rate_bounds",
     "strut_rates",
+    "table_poses",
     "templates",
     "tool_rates",
     "with_spin",

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Model: frozen data that every room uses, and the table of diagnostics."""
 
+from typing import TYPE_CHECKING
+
+from pkm_post import at_first_use
 from pkm_post.model.certificate import (
     Certificate,
     Coverage,
@@ -28,10 +31,10 @@ from pkm_post.model.columns import (
     shifted,
     uniform,
 )
-from pkm_post.model.diagnostic_log import DiagnosticLog
-from pkm_post.model.diagnostics import Diagnostic, Place, Refused, errors
-from pkm_post.model.machine import Body, Box, Machine, ToolChange
-from pkm_post.model.motion import AT_FEED, FeedStudy, Motion, Poses, StrutMotion
+from pkm_post.model.diagnostics import Diagnostic, DiagnosticLog, Place, Refused, errors, severity_of
+from pkm_post.model.machine import Body, Box, Machine, SpindleAxis, ToolChange
+from pkm_post.model.motion import AT_FEED, NO_TURNS, FeedStudy, Motion, Poses, SpindleTurns, StrutMotion
+from pkm_post.model.phrase import Amount, Pattern, Phrase
 from pkm_post.model.program import (
     IN_SUBPROGRAM_FILE,
     MOTION_COLUMNS,
@@ -41,7 +44,7 @@ from pkm_post.model.program import (
     Kind,
     Program,
 )
-from pkm_post.model.rules import RULES, Severity
+from pkm_post.model.rules import Severity
 from pkm_post.model.setup import (
     EMPTY_SETUP,
     Mesh,
@@ -53,7 +56,13 @@ from pkm_post.model.setup import (
     largest_corner_radius,
     valid_cutter_angles,
 )
+from pkm_post.model.thread import Thread, as_executed, cuts_by_speed, threads
 from pkm_post.model.trajectory import MAX_SPIN, MIN_TOLERANCE, TRAJECTORY_COLUMNS, Trajectory
+
+if TYPE_CHECKING:
+    from pkm_post.model.rules import RULES
+else:
+    __getattr__ = at_first_use(__name__, {"rules": "RULES"})
 
 __all__ = [
     "AT_FEED",
@@ -62,9 +71,11 @@ __all__ = [
     "MIN_TOLERANCE",
     "IN_SUBPROGRAM_FILE",
     "MOTION_COLUMNS",
+    "NO_TURNS",
     "OPTIONAL_COLUMNS",
     "RULES",
     "TRAJECTORY_COLUMNS",
+    "Amount",
     "Array",
     "Body",
     "Box",
@@ -83,6 +94,8 @@ __all__ = [
     "Machine",
     "Mesh",
     "Motion",
+    "Pattern",
+    "Phrase",
     "Place",
     "Poses",
     "Program",
@@ -90,14 +103,19 @@ __all__ = [
     "Setup",
     "Severity",
     "Shank",
+    "SpindleAxis",
+    "SpindleTurns",
     "StrutMotion",
+    "Thread",
     "Tolerances",
     "Tool",
     "ToolChange",
     "Topic",
     "Trajectory",
+    "as_executed",
     "corner_reach",
     "coverage_summary",
+    "cuts_by_speed",
     "errors",
     "distinct",
     "find_rows",
@@ -114,6 +132,8 @@ __all__ = [
     "read_only",
     "shifted",
     "select_rows",
+    "severity_of",
+    "threads",
     "uniform",
     "valid_cutter_angles",
 ]

@@ -10,6 +10,7 @@ import enum
 from dataclasses import dataclass
 
 from pkm_post.model.diagnostics import Diagnostic, Place
+from pkm_post.model.phrase import Amount, Pattern
 from pkm_post.model.program import Array
 
 
@@ -24,6 +25,10 @@ class Tolerances:
 
     tip: float
     axis: float
+
+
+_TOO_LARGE = Pattern("{name} {value}, allowed {limit}, {time:.3f} s after the start")
+_TOO_SMALL = Pattern("{name} {value}, at least {limit}, {time:.3f} s after the start")
 
 
 @dataclass(frozen=True)
@@ -55,12 +60,10 @@ class Finding:
 
     def diagnostic(self) -> Diagnostic:
         """Diagnostic of a finding that does not hold."""
-        allowed = "at least" if self.is_least else "allowed"
-        found = f"{self.name} {self._with_unit(self.value)}, {allowed} {self._with_unit(self.limit)}"
-        return Diagnostic(self.code, self.place, f"{found}, {self.time:.3f} s after the start")
-
-    def _with_unit(self, value: float) -> str:
-        return f"{value:.6g} {self.unit}".rstrip()
+        pattern = _TOO_SMALL if self.is_least else _TOO_LARGE
+        value, limit = (Amount(each, self.unit, ".6g") for each in (self.value, self.limit))
+        found = pattern.phrase(name=self.name, value=value, limit=limit, time=self.time)
+        return Diagnostic(self.code, self.place, found)
 
 
 @dataclass(frozen=True)

@@ -10,14 +10,16 @@ change.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, DTypeLike
 
 from pkm_post.model.checkpoint import checkpoint
 
-RowType = tuple[DTypeLike, tuple[int, ...]]
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, DTypeLike
+
+RowType = tuple["DTypeLike", tuple[int, ...]]
 Array = np.ndarray[Any, np.dtype[Any]]
 
 
@@ -62,7 +64,9 @@ class ColumnBuilder:
         if self._column is None:
             self._column = np.broadcast_to(np.array(piece[:1], order="C"), (self._rows, *piece.shape[1:]))
         if len(piece) and is_uniform(self._column) and not _all_equal(self._column[:1], piece):
+            checkpoint()
             self._column = np.array(self._column, order="C")
+            checkpoint()
         if not is_uniform(self._column):
             self._column[first : first + len(piece)] = piece
 

@@ -2,17 +2,18 @@
 """Diagnostics: faults of the input, collected while reading and checking, reported as text.
 
 Every fault has a code; the table ``RULES`` has the severity, cause and cure of each. A diagnostic adds the place and
-what was found there. Faults of the caller are ``ValueError`` and not part of this module.
+what was found there. A ``DiagnosticLog`` keeps the first ones of each group and counts the others, since a program of a
+million blocks may have the same fault in each. Faults of the caller are ``ValueError`` and not part of this module.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Hashable, Iterable
+from dataclasses import dataclass, field, replace
+from typing import Any
 
-from pkm_post.model.rules import RULES, Rule, Severity
-
-__all__ = ["RULES", "Diagnostic", "Place", "Refused", "Rule", "Severity", "errors"]
+from pkm_post.model.rules import Severity
 
 
 @dataclass(frozen=True)
@@ -53,16 +54,25 @@ class Diagnostic:
     @property
     def severity(self) -> Severity:
         """Severity of the rule."""
-        return RULES[self.code].severity
+        return severity_of(self.code)
 
     @property
     def text(self) -> str:
         """Severity, code, cause, what was found, and the cure."""
+        from pkm_post.model.rules import RULES
+
         rule = RULES[self.code]
         return f"{rule.severity.value} {self.code}: {rule.cause}: {self.found}; {rule.cure}"
 
     def __str__(self) -> str:
         return f"{self.place}: {self.text}"
+
+
+def severity_of(code: str) -> Severity:
+    """Severity of the rule with this code."""
+    from pkm_post.model.rules import RULES
+
+    return RULES[code].severity
 
 
 def errors(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
@@ -76,3 +86,54 @@ class Refused(Exception):  # noqa: N818 - it is no error of the program
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         self.diagnostics = tuple(diagnostics)
         super().__init__("\n".join(str(item) for item in self.diagnostics))
+
+
+@dataclass
+class DiagnosticLog:
+    """Diagnostics of one input.
+
+    Attributes:
+        most: number kept of each group.
+    """
+
+    most: int
+    _kept: list[tuple[Hashable, Diagnostic]] = field(default_factory=list)
+    _count: Counter[Hashable] = field(default_factory=Counter)
+
+    def keeps(self, group: Hashable = "") -> bool:
+        """Whether one more of a group would be kept."""
+        return self._count[group] < self.most
+
+    def add(self, diagnostic: Diagnostic, group: Hashable = "") -> None:
+        """Keep a diagnostic, or count it if its group is complete."""
+        if self.keeps(group):
+            self._kept.append((group, diagnostic))
+        self.count(1, group)
+
+    def count(self, number: int, group: Hashable = "") -> None:
+        """Count further diagnostics of a group without keeping them."""
+        self._count[group] += number
+
+    def more(self, group: Hashable = "") -> int:
+        """Number that are counted but not kept."""
+        return max(self._count[group] - self.most, 0)
+
+    @property
+    def kept(self) -> tuple[Diagnostic, ...]:
+        """The kept diagnostics, in the order of their addition."""
+        return tuple(diagnostic for _, diagnostic in self._kept)
+
+    def has_errors(self) -> bool:
+        """Whether errors are among them."""
+        return bool(errors(self.kept))
+
+    def in_order(self, key: Callable[[Diagnostic], Any]) -> tuple[Diagnostic, ...]:
+        """The kept diagnostics by a sort key; the last one of a group states how many more there are."""
+        ordered = sorted(self._kept, key=lambda entry: key(entry[1]))
+        last = {group: index for index, (group, _) in enumerate(ordered)}
+        diagnostics = [diagnostic for _, diagnostic in ordered]
+        for group, index in last.items():
+            if more := self.more(group):
+                found = f"{diagnostics[index].found}, and {more} more like it"
+                diagnostics[index] = replace(diagnostics[index], found=found)
+        return tuple(diagnostics)

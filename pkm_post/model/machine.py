@@ -79,6 +79,27 @@ class ToolChange:
         return np.asarray(self.nose - tool_length * self.axis)
 
 
+@dataclass(frozen=True)
+class SpindleAxis:
+    """A spindle that the controller can move as an axis, for threads.
+
+    Attributes:
+        motor: its number.
+        letter: of the axis in the coordinate system of the struts; its unit is a turn.
+        counts_per_turn: encoder counts of one turn of the spindle clockwise, seen from the spindle.
+        speed: highest speed as an axis, turns/s.
+        acceleration: highest acceleration as an axis, turns/s^2.
+        lead_tolerance: largest deviation of the depth from what the turns make of it, mm.
+    """
+
+    motor: int
+    letter: str
+    counts_per_turn: float
+    speed: float
+    acceleration: float
+    lead_tolerance: float
+
+
 def _no_axes() -> Array:
     return np.zeros((6, 3))
 
@@ -149,6 +170,7 @@ class Machine:
         machine_zero: (3,) tool tip in {M} where G-code has X, Y and Z of G53, G28 and G30 at 0; None if not stated.
         left_out: codes of G-code, such as "M21", to leave out where they are not understood.
         optional_stops: what becomes of M1: "written", "stop" or "leave-out".
+        spindle_axis: the spindle as an axis, for threads; None where it is none.
         tool_table: path of the tool table for part programs, with its unit behind a comma; None if not stated.
     """
 
@@ -209,12 +231,19 @@ class Machine:
     left_out: tuple[str, ...] = ()
     tool_table: str | None = None
     optional_stops: str = "written"
+    spindle_axis: SpindleAxis | None = None
 
     @property
     def functions(self) -> tuple[int, ...]:
         """Numbers of the M codes of part programs that the controller has a code for."""
         named = self.controller.get("codes", {})
         return tuple(int(name[1:]) for name in named if name[0] == "M" and name[1:].isdigit())
+
+    @property
+    def thread_codes(self) -> tuple[int, ...]:
+        """Numbers of the M codes that make the spindle an axis, and give it back to its speed."""
+        texts = [self.controller.get("codes", {}).get(name, "") for name in ("spindle_axis", "spindle_speed")]
+        return tuple(int(text[1:]) for text in texts if text[:1] == "M" and text[1:].isdigit())
 
     def __post_init__(self) -> None:
         for name in ("base_cone", "platform_cone"):

@@ -156,6 +156,39 @@ class FeedStudy:
 
 
 @dataclass(frozen=True)
+class SpindleTurns:
+    """The spindle where it is an axis: S knots of a motion, those of each thread but the first.
+
+    At the first knot of a thread, where the spindle becomes an axis, it is at 0 turns and at rest. Between two knots it
+    follows the cubic of both, as the struts do.
+
+    Attributes:
+        knot: (S,) knots, strictly increasing.
+        angle: (S,) turns, positive clockwise seen from the spindle.
+        speed: (S,) turns/s.
+    """
+
+    knot: Array
+    angle: Array
+    speed: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, len(self.knot), {"knot": (np.int64, ()), "angle": _NUMBER, "speed": _NUMBER})
+
+    def __len__(self) -> int:
+        return len(self.knot)
+
+    def slice(self, first: int, last: int) -> SpindleTurns:
+        """Those of a part of the motion, counted from its first knot."""
+        rows = (self.knot > first) & (self.knot <= last)
+        return SpindleTurns(self.knot[rows] - first, self.angle[rows], self.speed[rows])
+
+
+NO_TURNS = SpindleTurns(np.zeros(0), np.zeros(0), np.zeros(0))
+"""Of a motion whose spindle is never an axis."""
+
+
+@dataclass(frozen=True)
 class StrutMotion:
     """Columns of M knots in time.
 
@@ -164,12 +197,14 @@ class StrutMotion:
         length: (M, 6) joint-to-joint strut lengths in mm.
         speed: (M, 6) their rates in mm/s.
         events: by knot: the motion rests at knot r, the event takes place, the motion continues.
+        turns: the spindle at the knots of threads; none by default.
     """
 
     time_ms: Array
     length: Array
     speed: Array
     events: tuple[Event, ...]
+    turns: SpindleTurns = NO_TURNS
 
     def __post_init__(self) -> None:
         freeze(self, len(self.time_ms), STRUT_COLUMNS)

@@ -10,14 +10,17 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import DTypeLike
 
 from pkm_post.model.columns import Array as Array  # the alias for all packages
 from pkm_post.model.columns import RowType, freeze, uniform
 from pkm_post.model.diagnostics import Place
 from pkm_post.model.setup import Tool
+
+if TYPE_CHECKING:
+    from numpy.typing import DTypeLike
 
 
 class EventKind(enum.IntEnum):
@@ -35,6 +38,9 @@ class EventKind(enum.IntEnum):
     """value: 0 program stop, 1 optional stop."""
     FUNCTION = 6
     """value: number of an M code that the machine has for purposes of its own."""
+    SPINDLE_AXIS = 7
+    """value: lead in mm of the thread that begins, positive for a right-hand one; 0 where the spindle ends to be an
+    axis. In between the angle of the spindle follows the depth (``thread.Thread``)."""
 
 
 @dataclass(frozen=True)

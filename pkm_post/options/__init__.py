@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 from pkm_post.options.argument_fields import ArgumentField, argument_fields, text_of_fields
 from pkm_post.options.argument_table import FIXTURE_OF_THE_JOB
 from pkm_post.options.argument_types import (
+    FARTHEST_OFFSET,
     LONGEST_TOOL,
     above_zero,
     between,
     count,
     number,
+    numbered,
     offset,
     positive,
     tool_length,
@@ -44,6 +46,7 @@ from pkm_post.options.converters import (
     cycle_kinds,
     goto_values,
     origin,
+    shift,
 )
 from pkm_post.options.layers import (
     NO_VALUES,
@@ -70,6 +73,7 @@ __all__ = [
     "FIXTURE_OF_THE_JOB",
     "CARTESIAN",
     "LINUXCNC",
+    "FARTHEST_OFFSET",
     "LONGEST_TOOL",
     "MANUAL_MOVE_PROGRAM",
     "MOST_FEED",
@@ -111,6 +115,7 @@ __all__ = [
     "job_stem",
     "missing_results",
     "number",
+    "numbered",
     "offset",
     "options_from",
     "origin",
@@ -120,6 +125,7 @@ __all__ = [
     "parse_text",
     "part_program_from",
     "positive",
+    "shift",
     "result_conflicts",
     "solid_files",
     "text_of_fields",

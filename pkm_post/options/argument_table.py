@@ -137,8 +137,9 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
         "type": origin,
         "action": "append",
         "default": [],
-        "help": "origin of a work offset of G-code, G54 to G59.3, G54.1P1 to G54.1P300 or G500 to G599, as X,Y,Z[,DEG]"
-        " in mm in the work frame with a turn about z, as in G55=100,0,0; may be repeated",
+        "help": "origin of a work offset of G-code, G54 to G59.3, G54.1P1 to G54.1P300 or G500 to G599, or of a further"
+        " fixture of a CAM job, as X,Y,Z[,DEG] in mm in the work frame with a turn about z, as in G55=100,0,0; may be"
+        " repeated",
     },
     "--subprograms": {
         "metavar": "FOLDER",
@@ -240,6 +241,11 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
         "help": "begin at this line of the source, or number of the command in an operation: the way there comes down"
         " along the tool axis, with spindle, coolant and tool of that line; none begins at the beginning, the default",
     },
+    "--repeat-codes": {
+        "action": "store_true",
+        "help": "repeat the M codes of the machine before the line of --from-line, each once, before the last move to"
+        " it; --no-repeat-codes takes it back",
+    },
     "--side": {
         "metavar": "N",
         "type": side,
@@ -277,5 +283,17 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
         "default": (),
         "help": f"what to write beside the program, joined by commas: {', '.join(SIDE_OUTPUTS)}; or {NOTHING},"
         " the default",
+    },
+    "--report-unit": {
+        "choices": ("mm", "inch"),
+        "default": "mm",
+        "help": "unit of lengths and speeds on the page of the report; all other files stay in mm (default: mm, for a"
+        " CAM job that of the unit system of its document)",
+    },
+    "--report-date": {
+        "metavar": "TEXT",
+        "default": "",
+        "help": "a date, or another text, that stands on the page of the report (default: none, so that the same job"
+        " gives the same bytes at any time)",
     },
 }

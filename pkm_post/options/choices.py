@@ -6,12 +6,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from pkm_post.geometry import Array
 from pkm_post.machine import ZERO_TORSION, SpinPolicy
 from pkm_post.model import EMPTY_SETUP, Setup, Tolerances, Tool
 from pkm_post.system import result_files
-from pkm_post.toolpath import Copies, OffsetOptions, StartLine, SurfaceSpeed
+from pkm_post.toolpath import Copies, OffsetOptions
+
+if TYPE_CHECKING:
+    from pkm_post.toolpath import StartLine, SurfaceSpeed
 
 CARTESIAN = "cartesian"
 """The side output of a program in X Y Z A B C."""
@@ -59,6 +63,8 @@ class Options:
         side: number of the side to post, from 1, where a part is turned over; None for the whole program.
         from_line: the line that the program begins at; None for its beginning.
         also: side outputs, keys of ``system.result_files.SIDE_OUTPUTS``.
+        report_unit: unit of lengths on the page of the report, mm or inch; all other files are in mm.
+        report_date: text on the page of the report, such as a date; empty for none.
         mesh_files: mesh files of the bodies in the collision check.
         setup: the set-up known without files, as from a CAM job.
     """
@@ -75,6 +81,8 @@ class Options:
     side: int | None = None
     from_line: StartLine | None = None
     also: tuple[str, ...] = ()
+    report_unit: str = "mm"
+    report_date: str = ""
     mesh_files: MeshFiles = MeshFiles()
     setup: Setup = EMPTY_SETUP
 

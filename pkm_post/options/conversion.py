@@ -37,8 +37,10 @@ def options_from(namespace: argparse.Namespace) -> Options:
         surface_speed=_surface_speed(namespace.surface_speed, namespace.keep_chip_load),
         optional_stops=namespace.optional_stops,
         side=namespace.side,
-        from_line=_start_line(namespace.from_line),
+        from_line=_start_line(namespace.from_line, namespace.repeat_codes),
         also=namespace.also,
+        report_unit=namespace.report_unit,
+        report_date=namespace.report_date,
         actual_tools=_cutters(namespace.actual_tool),
         mesh_files=MeshFiles(namespace.part, namespace.stock, tuple(dict(namespace.fixture).values())),
     )
@@ -72,15 +74,19 @@ def _move(move: str | float) -> str | float:
 
 
 def _surface_speed(metres_per_minute: float | None, keep_chip_load: bool) -> SurfaceSpeed | None:
+    if metres_per_minute is None:
+        return None
     from pkm_post.toolpath import SurfaceSpeed
 
-    return None if metres_per_minute is None else SurfaceSpeed(metres_per_minute * 1000 / 60, keep_chip_load)
+    return SurfaceSpeed(metres_per_minute * 1000 / 60, keep_chip_load)
 
 
-def _start_line(start: tuple[int, str] | None) -> StartLine | None:
+def _start_line(start: tuple[int, str] | None, repeat_codes: bool) -> StartLine | None:
+    if start is None:
+        return None
     from pkm_post.toolpath import StartLine
 
-    return None if start is None else StartLine(*start)
+    return StartLine(*start, repeat_codes)
 
 
 def _cutters(sizes: Iterable[tuple[int, tuple[float, float | None]]]) -> dict[int, Tool]:
@@ -154,7 +160,10 @@ def argument_values(options: Options) -> ArgumentValues:
         "optional_stops": options.optional_stops,
         "side": options.side,
         "from_line": None if options.from_line is None else (options.from_line.line, options.from_line.operation),
+        "repeat_codes": options.from_line is not None and options.from_line.repeat_codes,
         "also": options.also,
+        "report_unit": options.report_unit,
+        "report_date": options.report_date,
         "part": options.mesh_files.part,
         "stock": options.mesh_files.stock,
         "fixture": [(file, file) for file in options.mesh_files.fixtures],

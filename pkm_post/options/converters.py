@@ -154,6 +154,15 @@ _ORIGIN = re.compile(
 )
 
 
+def shift(text: str) -> tuple[float, float, float]:
+    """A way along X, Y and Z, mm."""
+    words = text.split(",")
+    if len(words) != 3:
+        raise argparse.ArgumentTypeError(f"expected DX,DY,DZ, got {text!r}")
+    x, y, z = map(offset, words)
+    return x, y, z
+
+
 def origin(text: str) -> tuple[str, Pose]:
     """Name of a work offset of G-code in upper case; x, y, z in mm and the rotation about z in degrees."""
     found = _ORIGIN.fullmatch(text)

@@ -176,7 +176,7 @@ _KINDS: dict[str, tuple[InputKind, ...]] = {
     "flavour": (InputKind.GCODE,),
     "machine_zero": _PART_PROGRAMS,
     "leave_out": (InputKind.GCODE,),
-    "origin": (InputKind.GCODE,),
+    "origin": (InputKind.GCODE, InputKind.JOB),
     "subprograms": (InputKind.GCODE,),
     "block_delete": (InputKind.GCODE,),
     "contour_data": (InputKind.CLDATA,),

@@ -7,21 +7,26 @@ from pkm_post import at_first_use
 from pkm_post.planning.knots import LONGEST_MS
 from pkm_post.planning.motion import FeedPlan, Plan, interpolate, plan, plan_feed, strut_motion
 from pkm_post.planning.schedule import Schedule
+from pkm_post.planning.slower import limits_jerk
 
 if TYPE_CHECKING:
-    from pkm_post.planning.window import Course, PathState, course
+    from pkm_post.planning.smooth_window_planner import window_planner
+    from pkm_post.planning.window import PathState, WindowPlanner
 else:
-    __getattr__ = at_first_use(__name__, {"window": "Course PathState course"})
+    __getattr__ = at_first_use(
+        __name__, {"smooth_window_planner": "window_planner", "window": "PathState WindowPlanner"}
+    )
 
 __all__ = [
     "LONGEST_MS",
-    "Course",
+    "WindowPlanner",
     "FeedPlan",
     "PathState",
     "Plan",
     "Schedule",
-    "course",
+    "window_planner",
     "interpolate",
+    "limits_jerk",
     "plan",
     "plan_feed",
     "strut_motion",

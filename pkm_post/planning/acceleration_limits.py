@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.geometry import Array, dot
-from pkm_post.model import Machine, Poses, pieces
+from pkm_post.model import Machine, Poses, checkpoint, pieces
 from pkm_post.planning.cell_limits import StationLimits
-from pkm_post.planning.speed_limits import Pair, feed_at, following, limited_quantities, lowered
+from pkm_post.planning.speed_limits import Pair, feed_at, limited_quantities, lowered, next_segment
 from pkm_post.planning.tool_path import ToolPath
 
 _AT_ONCE = 4096
@@ -41,6 +41,7 @@ def station_limits(machine: Machine, poses: Poses, feed: Array) -> StationLimits
 def rough_station_limits(square: Array, along: Array, share: float) -> StationLimits:
     """The limits of which a share allows a speed squared and an acceleration along the path, (M,) each."""
     still, products = np.zeros((len(square), 6)), np.zeros((len(square), 3))
+    checkpoint()
     products[:, 0] = (share / along) ** 2  # as of a tip that reaches its limit there
     return StationLimits.of(square, still, still, products)
 
@@ -69,15 +70,19 @@ def limits_at(
         share: the share of the limits of acceleration that the rough ones are.
         machine: the limits.
     """
-    after = following(path, segment, u)
+    after = next_segment(path, segment, u)
+    checkpoint()
     exact = close[segment] & close[after]
     near, far = np.flatnonzero(exact), np.flatnonzero(~exact)
+    checkpoint()
     square, along = (np.minimum(one[segment[far]], one[after[far]]) for one in rough)
     parts = (
         (near, limits_within(path, machine, segment[near], u[near])),
         (far, rough_station_limits(square, along, share)),
     )
+    checkpoint()
     found = StationLimits(np.empty(len(u)), np.empty((len(u), 15), dtype=np.float32))
     for rows, part in parts:
+        checkpoint()
         found.speed[rows], found.table[rows] = part.speed, part.table
     return found

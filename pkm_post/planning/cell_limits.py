@@ -16,7 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array
+from pkm_post.model import pieces
 
+_ROWS_AT_ONCE = 1 << 14
+"""Stations in one pass."""
 _LEAST = 1e-150
 """Stands for no derivative: keeps quotients, and quotients of squares, finite."""
 _ROUNDS = 24
@@ -72,6 +75,10 @@ class StationLimits:
         With P, Q, R of the tip, b a + c x is b (a + x Q / P) + (c - b Q / P) x, and the tip keeps the first bracket
         below 1 / sqrt(P) and x below 1 / sqrt(R - Q^2 / P).
         """
+        parts = (self[rows]._that_matter(share) for rows in pieces(len(self.speed), _ROWS_AT_ONCE))
+        return functools.reduce(np.logical_or, parts)
+
+    def _that_matter(self, share: float) -> Array:
         first, second, tip = (self.table.T[rows].astype(np.float64) for rows in self.columns)
         size, ratio = np.sqrt(np.maximum(tip[0], _LEAST)), tip[1] / np.maximum(tip[0], _LEAST)
         highest = 1 / np.sqrt(np.maximum(tip[2] - tip[1] * ratio, _LEAST))

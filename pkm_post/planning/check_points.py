@@ -54,10 +54,12 @@ class Intervals:
         """At most so many places between the joints, and not much more than there are, (N,)."""
         return np.asarray(self.last - self.first + np.maximum(gaps, np.ceil(self.duration / widest)))
 
-    def at_joints(self, joint_time: Array) -> CheckPoints:
-        """The joints inside the intervals."""
-        row, number = expand_counts(self.last - self.first)
-        joint = self.first[row] + number
+    def at_joints(self, joint_time: Array, most: int | None = None) -> CheckPoints:
+        """The joints inside the intervals; of each at most so many, spread evenly."""
+        inside = self.last - self.first
+        count = inside if most is None else np.minimum(inside, most)
+        row, number = expand_counts(count)
+        joint = self.first[row] + (number if most is None else (2 * number + 1) * inside[row] // (2 * count[row]))
         return self._points(row, joint_time[joint], joint)
 
     def between_joints(self, joint_time: Array, gaps: int, widest: float = np.inf) -> CheckPoints:

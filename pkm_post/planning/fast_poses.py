@@ -67,6 +67,10 @@ def fast_poses_within(path: ToolPath, segment: Array, u: Array) -> FastPoses:
         return _on_curves(path, segment, u)
     if smooth.any():
         return _merged(path, segment, u, smooth)
+    curved = np.flatnonzero(_neighbours(seg, segment, other))
+    if len(curved) == len(segment):
+        exact = path.within(segment, u)
+        return FastPoses(exact.tip, exact.axis, exact.spin, exact.tip_1, exact.tool_length, exact.segment)
     wide = np.maximum(2 * half, _NO_WIDTH)
     share = np.maximum(half - distance, 0.0) / wide
     square = share * share
@@ -83,7 +87,6 @@ def fast_poses_within(path: ToolPath, segment: Array, u: Array) -> FastPoses:
     else:
         axis, spin, tool_length = (np.broadcast_to(one, (len(u), *one.shape[1:])) for one in path.attitude)
     poses = FastPoses(tip.T, axis, spin, tip_1.T, tool_length, segment)
-    curved = np.flatnonzero(_beside(seg, segment, other))
     if len(curved):
         _overwrite(poses, curved, path.within(segment[curved], u[curved]))
     return poses
@@ -103,7 +106,7 @@ def _merged(path: ToolPath, segment: Array, u: Array, smooth: Array) -> FastPose
     return poses
 
 
-def _beside(seg: Segments, segment: Array, other: Array) -> Array:
+def _neighbours(seg: Segments, segment: Array, other: Array) -> Array:
     """Whether places are on or beside an arc or a curve, (M,)."""
     curved = np.zeros(len(segment), dtype=np.bool_)
     for kind in (seg.arcs, seg.splines):

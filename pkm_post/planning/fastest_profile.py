@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import pieces
+from pkm_post.model import checkpoint, pieces
 from pkm_post.planning.cell_limits import CellLimits, StationLimits
 
 _CELLS_AT_ONCE = 8192
@@ -56,6 +56,7 @@ class Steps:
         for backward in (True, False):
             before, square = square, square.copy()
             _advance(self, square, before, np.flatnonzero(open_cells), backward)
+            checkpoint()
             changed = square != before
             open_cells = open_cells | changed[1:] | changed[:-1]
         return square
@@ -90,6 +91,7 @@ def _advance(steps: Steps, square: Array, highest: Array, cell: Array, backward:
     steep = cell[steps.reached_in_pieces(cell, square, backward) < known[cell] * (1 - _CHANGED)]
     while len(steep):
         # A front starts in the first cell of each run of steep ones, and goes through the others itself.
+        checkpoint()
         _march(steps, square, highest, steep[_begins(steep, backward)], backward)
         _, _, on = _step(steps, square, highest, steep, backward)
         steep = steep[on]
@@ -104,6 +106,7 @@ def _begins(cell: Array, backward: bool) -> Array:
 def _march(steps: Steps, square: Array, highest: Array, cell: Array, backward: bool) -> None:
     """Move fronts that start in some cells."""
     while len(cell):
+        checkpoint()
         far, found, on = _step(steps, square, highest, cell, backward)
         square[far[on]] = found[on]
         cell = cell[on] + (-1 if backward else 1)

@@ -11,6 +11,7 @@ place (``banded``).
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -39,7 +40,7 @@ _PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 
 @dataclass(frozen=True)
 class State:
-    """Slacks and multipliers of one set of limits, (G, E) each."""
+    """Slacks and multipliers of one set of limits, (E,) each."""
 
     slack: Array
     multiplier: Array
@@ -65,50 +66,98 @@ class Solution:
 
 
 @dataclass(frozen=True)
+class _Rows:
+    """A set of limits by the three unknowns that count at each of E ends.
+
+    Attributes:
+        unknown: (E,) the first of the three, counted from one before the first of all.
+        weights: (3, R, E) by which the numbers grow with them.
+        settled: (R, E) the numbers without them.
+        square: (3, E) by which the speed squared grows with them, for limits of jerk, and
+        square_settled: (E,) what it is without them; else None.
+        products: (6, E) products of two of the weights, summed over the numbers, for each of ``_PAIRS``.
+    """
+
+    unknown: Array
+    weights: Array
+    settled: Array
+    square: Array | None
+    square_settled: Array | None
+    products: Array
+
+    @classmethod
+    def of(cls, limits: Limits) -> _Rows:
+        ends, of_state = limits.ends, limits.weights
+        weights = np.stack([sum(of_state[i] * ends.basis[i, m] for i in range(3)) for m in range(3)])
+        return cls(
+            unknown=ends.unknown,
+            weights=weights,
+            settled=np.asarray(sum(of_state[i] * ends.settled[i] for i in range(3))),
+            square=ends.basis[2] if limits.jerk else None,
+            square_settled=ends.settled[2] if limits.jerk else None,
+            products=np.stack([_summed(weights[m] * weights[n]) for m, n in _PAIRS]),
+        )
+
+    def near(self, padded: Array) -> tuple[Array, Array, Array]:
+        """The values at these three unknowns, (E,) each, from those of all, with one more at both ends."""
+        return padded[self.unknown], padded[self.unknown + 1], padded[self.unknown + 2]
+
+
+@dataclass(frozen=True)
 class _Linear:
     """A set of limits at the present unknowns.
 
     Attributes:
-        limits: the limits.
+        rows: the limits.
         state: slacks and multipliers.
-        room: (G, E) what each limit leaves: (1 - p^2) / 2.
-        slope: (3, G, E) of ``room`` by k, a and x.
-        factor: (E,) of the square of p: x for jerk, else 1.
+        room: (E,) what each limit leaves: (1 - p^2) / 2.
+        slope: (3, E) of ``room`` by the three unknowns.
+        factor: (E,) of the square of p: the speed squared for jerk, else 1.
     """
 
-    limits: Limits
+    rows: _Rows
     state: State
     room: Array
     slope: Array
-    factor: Array
+    factor: Array | float
 
     @classmethod
-    def of(cls, limits: Limits, state: State | None, unknowns: Array, barrier: float) -> _Linear:
-        values = limits.ends.values(unknowns)
-        numbers = limits.numbers(values)
-        factor = values[2] if limits.jerk else np.ones_like(values[2])
-        room = (1 - factor * limits.by_group(numbers**2)) / 2
-        slope = -factor * limits.by_group(numbers * limits.weights)
-        if limits.jerk:
-            slope[2] -= 0.5 / values[2]
+    def of(cls, rows: _Rows, state: State | None, padded: Array, barrier: float) -> _Linear:
+        near = rows.near(padded)
+        numbers = rows.settled + _combined(rows.weights, near)
+        factor: Array | float = 1.0
+        if rows.square is not None:
+            factor = rows.square_settled + _combined(rows.square, near)
+        room = (1 - factor * _summed(numbers**2)) / 2
+        slope = np.stack([-factor * _summed(numbers * weight) for weight in rows.weights])
+        if rows.square is not None:
+            slope -= 0.5 / factor * rows.square
         if state is None:
             slack = np.maximum(room, _LEAST_SLACK)
             state = State(slack, barrier / slack)
-        return cls(limits, state, room, slope, factor)
+        return cls(rows, state, room, slope, factor)
 
     def curvature(self) -> list[Array]:
-        """The six entries of the second derivatives by k, a and x at each end, (E,) each."""
-        weights, slope = self.limits.weights, self.slope
-        stiff = self.state.multiplier / self.state.slack * slope
-        shared = np.broadcast_to(self.factor * self.state.multiplier, weights.shape[1:]) * weights
-        return [
-            np.einsum("ge,ge->e", stiff[i], slope[j]) + np.einsum("re,re->e", shared[i], weights[j]) for i, j in _PAIRS
-        ]
+        """Second derivatives by the three unknowns at each end, (E,) for each of ``_PAIRS``."""
+        stiff, shared = self.state.multiplier / self.state.slack * self.slope, self.factor * self.state.multiplier
+        return [stiff[m] * self.slope[n] + shared * self.rows.products[k] for k, (m, n) in enumerate(_PAIRS)]
 
-    def moved(self, step: Array) -> Array:
-        """Change of the slacks with a step of the unknowns, (G, E)."""
-        along = self.limits.ends.changes(step)
-        return np.asarray(np.einsum("bge,be->ge", self.slope, along) + self.room - self.state.slack)
+    def moved(self, padded: Array) -> Array:
+        """Change of the slacks with a step of the unknowns, (E,)."""
+        return np.asarray(_combined(self.slope, self.rows.near(padded)) + self.room - self.state.slack)
+
+
+def _combined(weights: Array, near: tuple[Array, Array, Array]) -> Array:
+    return np.asarray(weights[0] * near[0] + weights[1] * near[1] + weights[2] * near[2])
+
+
+def _summed(numbers: Array) -> Array:
+    """Sums over the numbers of each limit, (E,) from (R, E)."""
+    return np.asarray(functools.reduce(np.add, numbers))
+
+
+def _padded(unknowns: Array) -> Array:
+    return np.concatenate([[0.0], unknowns, [0.0]])
 
 
 def fastest(weight: Array, limits: tuple[Limits, ...], start: Solution, enough: float) -> Solution:
@@ -120,13 +169,14 @@ def fastest(weight: Array, limits: tuple[Limits, ...], start: Solution, enough: 
         start: unknowns above 0, which may break limits; or the end of a search with nearly the same limits.
         enough: gap of optimality at which to stop, and the most by which a limit may be broken, relative.
     """
-    count = sum(one.weights[0].size if one.each else one.weights.shape[2] for one in limits)
+    count = sum(one.weights.shape[2] for one in limits)
     barrier = _FIRST_GAP * _time(weight, start.unknowns) / count
+    rows = [_Rows.of(one) for one in limits]
     now = Solution(start.unknowns, tuple(one.lifted() for one in start.states))
     for _ in range(_MOST_STEPS):
-        states = now.states or (None,) * len(limits)
-        linear = [_Linear.of(one, state, now.unknowns, barrier) for one, state in zip(limits, states, strict=True)]
-        gap = sum(float((one.state.slack * one.state.multiplier).sum()) for one in linear)
+        states, padded = now.states or (None,) * len(limits), _padded(now.unknowns)
+        linear = [_Linear.of(one, state, padded, barrier) for one, state in zip(rows, states, strict=True)]
+        gap = sum(float(one.state.slack @ one.state.multiplier) for one in linear)
         broken = -min(float(one.room.min()) for one in linear)
         balanced = gap + _imbalance(weight, linear, now.unknowns) <= enough * _time(weight, now.unknowns)
         if balanced and broken <= enough:
@@ -163,10 +213,11 @@ def _stepped(weight: Array, linear: list[_Linear], unknowns: Array, mean_gap: fl
     downhill = _downhill(weight, unknowns)
 
     def step(pushes: list[Array]) -> tuple[Array, list[Array]]:
-        """The change of the unknowns, and of the slacks, for right sides of the limits (G, E)."""
+        """The change of the unknowns, and of the slacks, for right sides of the limits (E,)."""
         right = downhill + _gathered(linear, pushes, size)
         change = scale * factor.solve(scale * right)
-        return change, [one.moved(change) for one in linear]
+        padded = _padded(change)
+        return change, [one.moved(padded) for one in linear]
 
     still = [one.state.multiplier * (one.state.slack - one.room) / one.state.slack for one in linear]
     _, slacks = step(still)
@@ -197,7 +248,7 @@ def _centring(
     """Share of the gap to aim for: little where the step without centring would close most of it."""
     primal, dual = _shares(linear, slacks, multipliers)
     after = sum(
-        float(((one.state.slack + primal * a) * (one.state.multiplier + dual * b)).sum())
+        float((one.state.slack + primal * a) @ (one.state.multiplier + dual * b))
         for one, a, b in zip(linear, slacks, multipliers, strict=True)
     )
     return max((after / count / mean_gap) ** 3, _LEAST_CENTRING)
@@ -221,23 +272,15 @@ def _band(linear: list[_Linear], size: int) -> Array:
     """The matrix of second derivatives by the unknowns, as a lower band (3, N)."""
     band = np.zeros((3, size + 2))
     for one in linear:
-        basis, unknown, entry = one.limits.ends.basis, one.limits.ends.unknown, {}
-        for pair, value in zip(_PAIRS, one.curvature(), strict=True):
-            entry[pair] = entry[pair[::-1]] = value
-        for m in range(3):
-            column = [sum(entry[i, j] * basis[j, m] for j in range(3)) for i in range(3)]
-            for n in range(m, 3):
-                value = sum(basis[i, n] * column[i] for i in range(3))
-                band[n - m] += np.bincount(unknown + m, value, minlength=size + 2)
+        for (m, n), value in zip(_PAIRS, one.curvature(), strict=True):
+            band[n - m] += np.bincount(one.rows.unknown + m, value, minlength=size + 2)
     return band[:, 1:-1]
 
 
 def _gathered(linear: list[_Linear], pushes: list[Array], size: int) -> Array:
-    """Sums over all limits of a push (G, E) times the slope by each unknown, (N,)."""
+    """Sums over all limits of a push (E,) times the slope by each unknown, (N,)."""
     found = np.zeros(size + 2)
     for one, push in zip(linear, pushes, strict=True):
-        along = np.einsum("bge,ge->be", one.slope, push)
         for m in range(3):
-            value = (one.limits.ends.basis[:, m] * along).sum(axis=0)
-            found += np.bincount(one.limits.ends.unknown + m, value, minlength=size + 2)
+            found += np.bincount(one.rows.unknown + m, one.slope[m] * push, minlength=size + 2)
     return found[1:-1]

@@ -19,7 +19,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, length_of, unit
 from pkm_post.machine import DRIFT_SHARES, Demand, KnotState, ToolCubics, ToolPoses, bounded_demand, measured_demand
-from pkm_post.model import Machine, Poses, Tolerances, checkpoint, pieces
+from pkm_post.model import Machine, Poses, Tolerances, checkpoint, distinct, pieces, uniform
 from pkm_post.planning.check_points import CheckPoints, Intervals
 from pkm_post.planning.fast_poses import fast_poses, fast_poses_within
 from pkm_post.planning.schedule import Schedule, by_time
@@ -43,6 +43,10 @@ _NEGLIGIBLE_DRIFT = 0.1
 """Share of the cubics' tolerance: a drift bounded below it is left to the remaining tolerance."""
 _POINTS_AT_ONCE = 16384
 """Places in one pass: the working arrays of one pass stay in the processor's cache."""
+_SOME_JOINTS = 6
+"""Joints of an interval that are looked at first: most intervals that are too long are so at one of these ..."""
+_CLEARLY = 2.0
+"""... by so much that no other joint is looked at."""
 _INTERVALS_AT_ONCE = 2048
 """Intervals in one pass where machine limits are checked: the matrices of their struts take a thousand bytes each."""
 _Deviation = Callable[[Intervals, ToolCubics, Array], Array]
@@ -83,6 +87,11 @@ def _allowed(path: ToolPath, rows: slice, tolerances: Tolerances) -> Array:
     return np.stack([share * tip, share * tolerances.axis])
 
 
+def _exceeded(deviation: Array, use: Array) -> Array:
+    """The deviation, or the use of another limit where it is above 1 and more, (N,)."""
+    return np.where(use > 1, np.maximum(deviation, use), deviation)
+
+
 class InterpolationCheck:
     """How well the controller's cubics follow the plan in one stretch; poses at ends of intervals are cached."""
 
@@ -113,20 +122,35 @@ class InterpolationCheck:
         self._place = self._rate = np.empty((7 if path.attitude is None else 3, 0))
         self._tool_length, self._along = np.empty(0), np.empty((2, 0))
 
-    def error(self, start: Array, end: Array) -> Array:
+    def error(self, start: Array, end: Array, group: Array | None = None) -> Array:
         """Worst value of intervals of whole ms, (N,), relative to its limit; above 1 the interval is too long.
 
-        For an interval that is too long it is the value at which the check stopped.
+        Up to 1 it is the deviation, which grows with the length of an interval; other limits count where they are
+        exceeded. For an interval that is too long it is the value at which the check stopped, and so it is for those
+        with the same number in ``group``.
         """
         intervals = Intervals.of(self._seen_time, start, end)
         first, last = self._rows(start), self._rows(end)
         cubics = self._tool_cubics(first, last, intervals.duration)
-        worst = self._in_passes(self._deviation_at_joints, intervals, cubics, np.zeros((2, len(start))))
-        worst = np.maximum(worst, self._backward(first, last, intervals.duration))
-        within = np.flatnonzero(worst <= 1)
+        worst = _exceeded(self._at_joints(intervals, cubics), self._backward(first, last, intervals.duration))
+        holds = worst <= 1
+        if group is not None:
+            holds &= ~np.isin(group, group[~holds])
+        within = np.flatnonzero(holds)
         for part in pieces(len(within), _INTERVALS_AT_ONCE) if len(within) else ():
             rows = within[part]
             worst[rows] = np.maximum(worst[rows], self._closely(intervals[rows], cubics[rows]))
+        return worst
+
+    def _at_joints(self, intervals: Intervals, cubics: ToolCubics) -> Array:
+        """Deviations at joints, (N,); of an interval that is clearly too long, at some of its joints."""
+        worst, drift = np.empty(len(intervals)), np.zeros((2, len(intervals)))
+        for part in pieces(len(intervals), _POINTS_AT_ONCE // _SOME_JOINTS) if len(intervals) else ():
+            rows = np.arange(part.start, part.stop)
+            worst[rows] = self._deviation_at_joints(intervals[rows], cubics[rows], drift[:, rows], _SOME_JOINTS)
+        rows = np.flatnonzero((worst <= _CLEARLY) & (intervals.last - intervals.first > _SOME_JOINTS))
+        if len(rows):
+            worst[rows] = self._in_passes(self._deviation_at_joints, intervals[rows], cubics[rows], drift[:, rows])
         return worst
 
     def use_of_limits(self, start: Array, end: Array) -> Array:
@@ -147,7 +171,7 @@ class InterpolationCheck:
         if len(rows):
             at_joints = self._in_passes(self._deviation_at_joints, intervals[rows], cubics[rows], drift[:, rows])
             off[rows] = np.maximum(off[rows], at_joints)
-        return np.asarray(np.maximum.reduce([demand.limits, swing, off]))
+        return _exceeded(off, np.maximum(demand.limits, swing))
 
     def _in_passes(self, deviation: _Deviation, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
         """Deviations of intervals, (N,), computed in blocks."""
@@ -170,18 +194,32 @@ class InterpolationCheck:
 
     def _measured(self, intervals: Intervals, cubics: ToolCubics) -> Demand:
         """The same, from the kinematics of both ends and of places between them."""
-        ms, row = np.unique(np.concatenate([intervals.start, intervals.end]), return_inverse=True)
-        poses = poses_at(self._path, self._schedule, ms)
-        ends, (first, last) = KnotState.of(self._machine, poses), np.split(row, 2)
+        ms = distinct(np.concatenate([intervals.start, intervals.end]))
+        poses = self._known_poses(ms)
+        ends, (first, last) = KnotState.of(self._machine, poses), np.searchsorted(ms, [intervals.start, intervals.end])
         places = np.stack([cubics.at(share) for share in DRIFT_SHARES], axis=2).reshape(cubics.powers.shape[1], -1)
         tool_length = np.repeat(poses.tool_length[last], len(DRIFT_SHARES))
         attitude = self._path.attitude or (unit(places[3:6].T), places[6], tool_length)
         inside = ToolPoses(places[:3].T, *attitude)
         return measured_demand(self._machine, ends[first], ends[last], cubics, inside, intervals.duration)
 
-    def _deviation_at_joints(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
-        """Largest deviation at joints by tolerance, (N,), with drifts of tip and axis, (2, N)."""
-        joints = intervals.at_joints(self._seen_time)
+    def _known_poses(self, ms: Array) -> Poses:
+        """Poses by time at whole ms that are ends of intervals, (N,), without second derivatives."""
+        row, count = self._rows(ms), len(ms)
+        place, rate, still = self._place[:, row].T, self._rate[:, row].T, np.zeros((count, 3))
+        tip, tip_1, zero, axis_1, spin_1 = place[:, :3], rate[:, :3], still[:, 0], still, still[:, 0]
+        if self._path.attitude is None:
+            axis, spin, axis_1, spin_1 = place[:, 3:6], place[:, 6], rate[:, 3:6], rate[:, 6]
+        else:
+            axis, spin = (uniform(column[0], count) for column in self._path.attitude[:2])
+        length, nowhere = self._tool_length[row], np.zeros(count, dtype=np.int64)
+        return Poses(tip, tip_1, still, axis, axis_1, still, spin, spin_1, zero, length, nowhere)
+
+    def _deviation_at_joints(
+        self, intervals: Intervals, cubics: ToolCubics, drift: Array, most: int | None = None
+    ) -> Array:
+        """Largest deviation at joints, or at most so many of each interval, by tolerance, (N,), with drifts, (2, N)."""
+        joints = intervals.at_joints(self._seen_time, most)
         row = self._seen[joints.segment] - self._first_row
         plan, allowed = self._at_joint[:, row], np.minimum(*(self._allowed[:, row + side] for side in (0, 1)))
         return joints.maximum(self._deviation(joints, cubics, plan, allowed, drift), len(intervals))
@@ -243,7 +281,7 @@ class InterpolationCheck:
         begin, end = self._place[:, first], self._place[:, last]
         if self._path.attitude is None:  # at a tool change the platform stands still: take the tip of the new tool
             begin[:3] += (self._tool_length[first] - self._tool_length[last]) * begin[3:6]
-        return ToolCubics.between(begin, self._rate[:, first], end, self._rate[:, last], duration)
+        return ToolCubics.from_ends(begin, self._rate[:, first], end, self._rate[:, last], duration)
 
     def joint_times(self, time_ms: Array) -> tuple[Array, Array]:
         """Joints inside the intervals between knots, (J,), and the times at which the cubics pass them, (J,) s.

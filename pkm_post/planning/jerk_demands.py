@@ -15,10 +15,18 @@ import numpy as np
 
 from pkm_post.geometry import Array, norm
 from pkm_post.model import Machine
+from pkm_post.planning.binding_limits import Highest, Weights
 from pkm_post.planning.motion_limits import Limits
-from pkm_post.planning.speed_limits import SAFE_SHARE, LimitedQuantity, feed_at, limited_quantities
+from pkm_post.planning.speed_limits import (
+    NO_LIMIT,
+    SAFE_SHARE,
+    LimitedQuantity,
+    feed_at,
+    limited_quantities,
+    reduce_columns,
+)
 from pkm_post.planning.speed_profile import Stations
-from pkm_post.planning.speed_spline import SpeedSpline, highest_within, within_cells
+from pkm_post.planning.speed_spline import CellEnds, SpeedSpline, highest_within, within_cells
 from pkm_post.planning.tool_path import ToolPath
 
 _HIGHEST_SHARE = 0.98
@@ -31,6 +39,23 @@ maximum of the integral of (4 - 6 x) g(x), 0 < x < 1, for g <= 0 with slopes of 
 _MS = 1e-3
 _NEGLIGIBLE = 1e-12
 """Derivatives below this impose no limit; keeps the quotients finite."""
+
+
+@dataclass(frozen=True)
+class Steady:
+    """What limits allow by single terms: M places and the M - 1 cells between them.
+
+    Attributes:
+        square: (M,) speed squared without acceleration.
+        along: (M,) acceleration along the path at a low speed.
+        growth: (M,) jerk along the path at a low speed.
+        of_cell: (M - 1,) steady speed squared in a cell, its middle included.
+    """
+
+    square: Array
+    along: Array
+    growth: Array
+    of_cell: Array
 
 
 @dataclass(frozen=True)
@@ -57,8 +82,8 @@ class Demands:
         ceiling = feed_at(path, poses, u) ** 2
         for item in bounded:
             if np.isfinite(item.speed):
-                size = np.abs(item.first).max(axis=1) if item.each else norm(item.first)
-                ceiling = np.minimum(ceiling, (item.speed / np.maximum(size, _NEGLIGIBLE)) ** 2)
+                size = np.maximum(_largest(item.first, item.each), _NEGLIGIBLE)
+                ceiling = np.minimum(ceiling, (item.speed / size) ** 2)
         limited = (item for item in bounded if np.isfinite([item.acceleration, item.jerk]).any())
         interval = (2 * machine.shortest_interval - 1) * _MS  # the longest that cannot be cut
         return cls(s, ceiling, tuple(replace(item, acceleration=_planned(item, interval)) for item in limited))
@@ -88,20 +113,58 @@ class Demands:
             held: (N,) value of each unknown that is held, NaN for the others.
         """
         knots, ends = (one.where_free(held) for one in (spline.ends.taken(spline.knots()), spline.ends))
-        at, factor = 2 * knots.place, np.maximum(slower[knots.place], slower[knots.place - 1]) ** 2
-        ceiling = np.zeros((3, 1, len(at)))
-        ceiling[2, 0] = factor / self.ceiling[at]
-        found = [Limits(knots, ceiling, each=True, jerk=False)]
+        factor = np.maximum(slower[knots.place], slower[knots.place - 1]) ** 2
+        jerks, ceiling = self._jerks(ends), np.zeros((3, 1, len(knots.place)))
+        ceiling[2, 0] = 1 / self.ceiling[2 * knots.place]
+        accelerations = (Weights(ceiling, each=True), *self._accelerations(knots))
+        at_knots = Highest.of(self.ceiling[2 * knots.place], accelerations[1:], ())
+        at_ends = Highest.of(self.ceiling[2 * ends.place], self._accelerations(ends), jerks)
+        return (
+            *at_knots.limits(knots, accelerations, factor, jerk=False),
+            *at_ends.limits(ends, jerks, slower[ends.cell] ** 3, jerk=True),
+        )
+
+    def _accelerations(self, ends: CellEnds) -> tuple[Weights, ...]:
+        limited = (item for item in self.quantities if np.isfinite(item.acceleration))
+        return tuple(Weights(_of_acceleration(item, 2 * ends.place), item.each) for item in limited)
+
+    def _jerks(self, ends: CellEnds) -> tuple[Weights, ...]:
+        at_left, found = (ends.place == ends.cell)[:, None], []
         for item in self.quantities:
-            if np.isfinite(item.acceleration):
-                weights = _of_acceleration(item, at) * factor
-                found.append(Limits(knots, weights, item.each, jerk=False))
             if np.isfinite(item.jerk):
-                at_left = ends.place == ends.cell
-                third = np.where(at_left[:, None], *self._thirds(item, ends.cell))
-                weights = _of_jerk(item, 2 * ends.place, third) * slower[ends.cell] ** 3
-                found.append(Limits(ends, weights, item.each, jerk=True))
+                third = np.where(at_left, *self._thirds(item, ends.cell))
+                found.append(Weights(_of_jerk(item, 2 * ends.place, third), item.each))
         return tuple(found)
+
+    def steady(self) -> Steady:
+        """What each place, and each cell, allows by itself."""
+        square, count = self.ceiling.copy(), len(self.s)
+        along, growth = np.full((2, count), NO_LIMIT)
+        with np.errstate(divide="ignore"):
+            for item in self.quantities:
+                if np.isfinite(item.acceleration):
+                    along = np.minimum(along, item.acceleration / _largest(item.first, item.each))
+                    square = np.minimum(square, item.acceleration / _largest(item.second, item.each))
+                if np.isfinite(item.jerk):
+                    limit = _JERK_SHARE * item.jerk
+                    growth = np.minimum(growth, limit / _largest(item.first, item.each))
+                    square = np.minimum(square, (limit / self._largest_third(item)) ** (2 / 3))
+        of_cell = np.minimum(np.minimum(square[:-1:2], square[2::2]), square[1::2])
+        return Steady(square[::2], along[::2], growth[::2], of_cell)
+
+    def _largest_third(self, item: LimitedQuantity) -> Array:
+        """The largest third derivative on either side of each place, and in the middles of cells, (2 M - 1,)."""
+        cell, at = np.arange(len(self.s) // 2), np.arange(1, len(self.s), 2)
+        found = np.zeros(len(self.s))
+        left, right = (_largest(one, item.each) for one in self._thirds(item, cell))
+        found[at - 1] = left
+        found[at + 1] = np.maximum(found[at + 1], right)
+        found[at] = _largest(self._middle_third(item, at), item.each)
+        return found
+
+    def _middle_third(self, item: LimitedQuantity, at: Array) -> Array:
+        """Third derivatives in the middles of cells, (K, C)."""
+        return np.asarray((item.second[at + 1] - item.second[at - 1]) / (self.s[at + 1] - self.s[at - 1])[:, None])
 
     def _thirds(self, item: LimitedQuantity, cell: Array) -> tuple[Array, Array]:
         """Third derivatives at the left and right ends of cells, (E, C) each, by the parabola through y''."""
@@ -122,8 +185,7 @@ class Demands:
                 use = _use(_of_acceleration(item, at), values, item.each)
                 faster = np.maximum(faster, np.sqrt(use))
             if np.isfinite(item.jerk):
-                third = (item.second[at + 1] - item.second[at - 1]) / width[:, None]
-                use = np.sqrt(x) * _use(_of_jerk(item, at, third), values, item.each)
+                use = np.sqrt(x) * _use(_of_jerk(item, at, self._middle_third(item, at)), values, item.each)
                 faster = np.maximum(faster, np.cbrt(use))
         return faster
 
@@ -138,13 +200,24 @@ def _planned(item: LimitedQuantity, interval: float) -> float:
 
 def _of_acceleration(item: LimitedQuantity, rows: Array) -> Array:
     """Weights of change of acceleration, acceleration and speed squared in the acceleration, (3, C, E)."""
-    first, second = item.first[rows].T, item.second[rows].T
+    first, second = (_columns(one[rows]) for one in (item.first, item.second))
     return np.stack([np.zeros_like(first), first, second]) / item.acceleration
 
 
 def _of_jerk(item: LimitedQuantity, rows: Array, third: Array) -> Array:
     """The same in the jerk divided by the speed."""
-    return np.stack([item.first[rows].T, 3 * item.second[rows].T, third.T]) / (_JERK_SHARE * item.jerk)
+    first, second = (_columns(one[rows]) for one in (item.first, item.second))
+    return np.stack([first, 3 * second, _columns(third)]) / (_JERK_SHARE * item.jerk)
+
+
+def _columns(vectors: Array) -> Array:
+    """Vectors (E, C) as (C, E), column by column in memory."""
+    return np.ascontiguousarray(vectors.T)
+
+
+def _largest(derivative: Array, each: bool) -> Array:
+    """The largest component of each row, (M, C), or its length, (M,)."""
+    return reduce_columns(np.maximum, np.abs(derivative)) if each else norm(derivative)
 
 
 def _use(weights: Array, values: Array, each: bool) -> Array:

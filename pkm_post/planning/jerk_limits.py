@@ -2,42 +2,34 @@
 """Jerk: the fastest motion along a path with limits of speed, acceleration and jerk.
 
 Enters: a path, its stations and a machine. Leaves: places with their speeds squared and accelerations, between which
-the speed squared is a quadratic spline (``speed_spline``). At first its places are the stations of the path, and some
-more towards rests and narrow cells; its fastest motion is found (``interior_point``). A cell that uses no limit to the
-full at one of its ends is too wide: it is halved, and the motion found once more. In the middle of cells the limits
-are looked at as well: where they are broken there, the ends are to be slower, and what is left after the last round
-slows the whole run from rest to rest. docs/planning.md has the derivations. Units: mm, s.
+the speed squared is a quadratic spline (``speed_spline``). Its places are the stations of the path, some more towards
+rests and narrow cells, and what a search adds. The path is cut into windows, each of which is searched by itself
+(``jerk_windows``, ``jerk_search``). What is too fast after the last round of a search slows the whole run from rest to
+rest. docs/planning.md has the derivations. Units: mm, s.
 """
 
 from __future__ import annotations
 
-import functools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.model import Machine
-from pkm_post.planning.interior_point import Solution, State, fastest
-from pkm_post.planning.jerk_demands import Demands
-from pkm_post.planning.jerk_start import first_places, long_held, start, with_middles
-from pkm_post.planning.motion_limits import Limits
+from pkm_post.planning.jerk_demands import Demands, Steady
+from pkm_post.planning.jerk_search import TOO_FAST, Iterate, NotFoundError
+from pkm_post.planning.jerk_start import first_places, start, with_middles
+from pkm_post.planning.jerk_windows import Places, Window, windows
 from pkm_post.planning.speed_profile import Stations
-from pkm_post.planning.speed_spline import SpeedSpline, durations, within_cells
 from pkm_post.planning.tool_path import ToolPath
+from pkm_post.system import columns_in_workers, in_workers
 
 _ROUNDS = 4
 """Most rounds with narrower cells, and most with lower limits where the motion is too fast between places."""
 _COARSE, _FINE = 5e-2, 5e-3
 """Relative gap of optimality that is enough for the choice of places, and in the end."""
-_WASTE = 0.04
-"""Share of the time from rest to rest that may pass without the full use of a limit."""
-_WORTH = 3.0
-"""A cell is halved that takes so many times its part of that."""
-_LEAST = 1e-3
-"""An unknown is at least this share of the speed squared about it."""
-_BESIDE = 8
-"""Cells on either side of one that is too fast that are on no plateau any more."""
+_PLACES_AT_ONCE = 4096
+"""Places in one pass: their working arrays stay in the processor's cache."""
 
 
 @dataclass(frozen=True)
@@ -57,143 +49,106 @@ class Motion:
     acceleration: Array
 
 
-@dataclass(frozen=True)
-class _Course:
-    """A motion under search.
-
-    Attributes:
-        spline: its M places.
-        demands: what the path demands at them.
-        slower: (M - 1,) factor by which each cell is to be slower than its limits allow.
-        held: (M - 1,) speed squared of cells on plateaus, NaN of others.
-        unknowns: (N,) of the spline.
-        states: what the last search knows of the limits, if it had the same unknowns.
-    """
-
-    spline: SpeedSpline
-    demands: Demands
-    slower: Array
-    held: Array
-    unknowns: Array
-    states: tuple[State, ...] = ()
-
-    @functools.cached_property
-    def limits(self) -> tuple[Limits, ...]:
-        """The limits at ends of cells where an unknown counts that is not held."""
-        return self.demands.limits(self.spline, self.slower, self.held[self.spline.left])
-
-    def searched(self, enough: float) -> _Course:
-        """The fastest motion with these places; without plateaus if it cannot be found between them."""
-        free = np.isnan(self.held[self.spline.left])
-        found = fastest(self.spline.weight[free], self.limits, Solution(self.unknowns[free], self.states), enough)
-        if not found.reached and not free.all():
-            return replace(self, held=np.full(len(self.held), np.nan), states=()).searched(enough)
-        unknowns = self.unknowns.copy()
-        unknowns[free] = found.unknowns
-        return replace(self, unknowns=unknowns, states=found.states)
-
-    def at_places(self) -> tuple[Array, Array]:
-        """Speed squared and acceleration, (M,) each."""
-        return self.spline.at_places(self.unknowns)
-
-    def too_fast(self) -> Array:
-        """The factor by which the motion is faster on each cell than it may be, at least 1, (M - 1,)."""
-        faster = self.demands.in_middle(*self.at_places())
-        for one in self.limits:
-            use = one.use(one.ends.values(self._free())).max(axis=0)
-            factor = (np.cbrt(use) if one.jerk else np.sqrt(use)) / self.slower[one.ends.cell]
-            np.maximum.at(faster, one.ends.cell, factor)
-        return np.maximum(faster, 1.0)
-
-    def too_wide(self) -> Array:
-        """Cells on which too much time passes without the full use of a limit, (M - 1,)."""
-        ends = next(one.ends for one in self.limits if one.jerk)
-        at_place, at_end = np.zeros(len(self.spline.s)), np.zeros(len(ends.place))
-        for one in self.limits:
-            use = one.use(one.ends.values(self._free())).max(axis=0)
-            if one.jerk:
-                at_end = np.maximum(at_end, use)
-            else:
-                np.maximum.at(at_place, one.ends.place, use)
-        least = np.ones(len(self.held))
-        np.minimum.at(least, ends.cell, np.maximum(at_end, at_place[ends.place]))
-        duration = durations(np.diff(self.spline.s), *self.at_places())
-        run, waste = np.cumsum(self.spline.rest)[:-1] - 1, duration * (1 - least)
-        allowed = _WASTE * np.bincount(run, duration)
-        share = np.where(np.bincount(run, waste) > allowed, _WORTH * allowed / np.bincount(run), np.inf)
-        return np.asarray(waste > share[run])
-
-    def _free(self) -> Array:
-        return self.unknowns[np.isnan(self.held[self.spline.left])]
-
-    def slowed(self, too_fast: Array) -> _Course:
-        """The same motion, with lower limits and no plateaus where it is too fast."""
-        held = long_held(np.where(_widened(too_fast > 1 + _FINE), np.nan, self.held))
-        slower = np.where(_widened(~np.isnan(held)), 1.0, too_fast)  # no lower limit beside what cannot change
-        same = np.array_equal(held, self.held, equal_nan=True)
-        return replace(self, slower=self.slower * slower, held=held, states=self.states if same else ())
-
-    def halved(self, cut: Array, path: ToolPath, marks: Stations, machine: Machine) -> _Course:
-        """The same motion with some cells cut into halves."""
-        spline = SpeedSpline.of(*_inserted(self.spline, self.demands.s[1::2][cut], cut))
-        demands = self.demands.joined(Demands.at(path, machine, marks, _new_middles(spline.s, cut)))
-        slower, held = (np.repeat(one, 1 + cut) for one in (self.slower, self.held))
-        return _Course(spline, demands, slower, held, _carried_over(self.spline, *self.at_places(), spline))
-
-
 def jerk_limited(path: ToolPath, marks: Stations, machine: Machine) -> Motion:
     """The fastest motion along a path; all of its joints and rests are among the places."""
-    course = _begun(path, marks, machine)
+    places = _places(path, marks, machine)
+
+    def found(window: Window) -> _Found:
+        return _searched(path, marks, machine, window)
+
+    try:
+        parts = list(in_workers(found, windows(places.thinned())))
+    except NotFoundError:
+        parts = [found(Window(places.with_nothing_held(), places.s[0], places.s[-1]))]
+    return _from_rest_to_rest(_joined(parts, places))
+
+
+def _places(path: ToolPath, marks: Stations, machine: Machine) -> Places:
+    """Places to begin with, and what is known of the motion."""
+    s, rest = first_places(marks)
+
+    def allowed(cells: slice) -> tuple[Array, ...]:
+        first, last = max(cells.start - 1, 0), min(cells.stop + 1, len(s))  # a place has a cell on either side
+        steady = Demands.at(path, machine, marks, with_middles(s[first:last])).steady()
+        rows = slice(cells.start - first, cells.stop - first)
+        of_cell = np.append(steady.of_cell, np.inf)[rows]
+        return steady.square[rows], steady.along[rows], steady.growth[rows], of_cell
+
+    square, along, growth, of_cell = columns_in_workers(len(s), _PLACES_AT_ONCE, allowed)
+    steady = Steady(square, along, growth, of_cell[:-1])
+    fastest_square, held = start(s, rest, steady)
+    return Places(s, rest, fastest_square, held, steady.of_cell, np.full(len(held), np.inf))
+
+
+@dataclass(frozen=True)
+class _Found:
+    """What was found in a window: its motion, and by what factor it is too fast on each cell."""
+
+    motion: Motion
+    too_fast: Array
+
+
+def _searched(path: ToolPath, marks: Stations, machine: Machine, window: Window) -> _Found:
+    """The fastest motion in a window.
+
+    Raises:
+        NotFoundError: there is none between its borders.
+    """
+    places = window.places
+    if not np.isnan(places.held).any():
+        square = np.append(places.held, places.held[-1])
+        motion = Motion(places.s, places.rest, square, np.zeros(len(square)))
+        return _counted(motion, np.ones(len(places.held)), window)
+    iterate = Iterate.of(path, marks, machine, places)
     for _ in range(_ROUNDS):
-        course = course.searched(_COARSE)
-        cut = course.too_wide()
+        iterate = iterate.searched(_COARSE)
+        cut = iterate.too_wide()
         if not cut.any():
             break
-        course = course.slowed(course.too_fast()).halved(cut, path, marks, machine)
+        iterate = iterate.at_pace(iterate.pace()).halved(cut, path, marks, machine)
     for _ in range(_ROUNDS):
-        course = course.searched(_FINE)
-        too_fast = course.too_fast()
-        if too_fast.max() <= 1 + _FINE:
+        iterate = iterate.searched(_FINE)
+        pace = iterate.pace()
+        if pace.max() <= 1 + TOO_FAST and not iterate.needlessly_slow(pace):
             break
-        course = course.slowed(too_fast)
-    return _from_rest_to_rest(course.spline, *course.at_places(), too_fast)
+        iterate = iterate.at_pace(pace)
+    motion = Motion(iterate.spline.s, iterate.spline.rest, *iterate.at_places())
+    return _counted(motion, np.maximum(pace, 1.0), window)
 
 
-def _widened(cells: Array) -> Array:
-    """Cells that are marked, or have one near them that is."""
-    return np.asarray(np.convolve(cells, np.ones(2 * _BESIDE + 1))[_BESIDE:-_BESIDE] > 0)
+def _counted(motion: Motion, too_fast: Array, window: Window) -> _Found:
+    """What counts of a motion."""
+    first, last = np.searchsorted(motion.s, [window.begin, window.end])
+    rows = slice(first, last + 1)
+    columns = motion.s[rows], motion.rest[rows], motion.square[rows], motion.acceleration[rows]
+    return _Found(Motion(*columns), too_fast[first:last])
 
 
-def _begun(path: ToolPath, marks: Stations, machine: Machine) -> _Course:
-    s, rest = first_places(marks)
-    demands = Demands.at(path, machine, marks, with_middles(s))
-    spline, slower = SpeedSpline.of(s, rest), np.ones(len(s) - 1)
-    nothing_held = np.full(len(spline.left), np.nan)
-    unknowns, held = start(spline, demands.limits(spline, slower, nothing_held))
-    return _Course(spline, demands, slower, held, unknowns)
+def _joined(parts: list[_Found], places: Places) -> _Found:
+    """Motions of windows as one, and with the places inside plateaus."""
+    columns = [
+        np.concatenate([*(getattr(one.motion, field.name)[:-1] for one in parts), getattr(last, field.name)[-1:]])
+        for last in [parts[-1].motion]
+        for field in fields(Motion)
+    ]
+    s, rest, square, acceleration = columns
+    too_fast = np.concatenate([one.too_fast for one in parts])
+    missing = np.flatnonzero(~np.isin(places.s, s))
+    row = np.searchsorted(s, places.s[missing])
+    motion = Motion(
+        np.insert(s, row, places.s[missing]),
+        np.insert(rest, row, False),
+        np.insert(square, row, places.held[missing]),
+        np.insert(acceleration, row, 0.0),
+    )
+    return _Found(motion, np.insert(too_fast, row, 1.0))
 
 
-def _inserted(spline: SpeedSpline, middles: Array, cut: Array) -> tuple[Array, Array]:
-    row = np.flatnonzero(cut) + 1
-    return np.insert(spline.s, row, middles), np.insert(spline.rest, row, False)
-
-
-def _new_middles(s: Array, cut: Array) -> Array:
-    """Middles of the halves of the cells that were cut."""
-    return np.asarray(((s[1:] + s[:-1]) / 2)[np.repeat(cut, 1 + cut)])
-
-
-def _carried_over(spline: SpeedSpline, square: Array, acceleration: Array, new: SpeedSpline) -> Array:
-    """The unknowns at the places of another spline, of the same motion."""
-    cell = np.clip(np.searchsorted(spline.s, new.s, side="right") - 1, 0, len(spline.s) - 2)
-    x, a = within_cells(spline.s, square, acceleration, cell, new.s)
-    least = _LEAST * np.minimum(x[new.left], x[new.left + 1])
-    return np.maximum(new.unknowns(x, a), least)
-
-
-def _from_rest_to_rest(spline: SpeedSpline, square: Array, acceleration: Array, too_fast: Array) -> Motion:
+def _from_rest_to_rest(found: _Found) -> Motion:
     """The motion, slower from rest to rest by as much as it is too fast anywhere on the way."""
-    begin = np.flatnonzero(spline.rest)[:-1]
-    factor = np.maximum.reduceat(too_fast, begin) ** -2.0
-    run = np.minimum(np.cumsum(spline.rest) - 1, len(begin) - 1)
-    return Motion(spline.s, spline.rest, square * factor[run], acceleration * factor[run])
+    motion = found.motion
+    begin = np.flatnonzero(motion.rest)[:-1]
+    factor = np.maximum.reduceat(found.too_fast, begin) ** -2.0
+    run = np.minimum(np.cumsum(motion.rest) - 1, len(begin) - 1)
+    columns = motion.square * factor[run], motion.acceleration * factor[run]
+    return Motion(motion.s, motion.rest, *columns)

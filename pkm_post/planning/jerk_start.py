@@ -11,8 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.geometry import Array, expand_counts
-from pkm_post.planning.motion_limits import Limits
-from pkm_post.planning.speed_limits import NO_LIMIT
+from pkm_post.planning.jerk_demands import Steady
 from pkm_post.planning.speed_profile import Stations, speed_profile
 from pkm_post.planning.speed_spline import SpeedSpline
 
@@ -37,7 +36,7 @@ def first_places(marks: Stations) -> tuple[Array, Array]:
     after = np.searchsorted(marks.edges, marks.s - _NARROWEST)
     inside = (after % 2 == 1) & (after == np.searchsorted(marks.edges, marks.s + _NARROWEST))
     joint = np.append(np.diff(marks.segment) > 0, True)
-    marked = np.flatnonzero(joint | ~inside)
+    marked = np.flatnonzero(joint | ~inside | marks.rest)
     apart = np.append(True, np.diff(marks.s[marked]) > _NARROWEST)
     s = marks.s[marked][apart]
     rest = np.logical_or.reduceat(marks.rest[marked], np.flatnonzero(apart))
@@ -56,31 +55,30 @@ def first_places(marks: Stations) -> tuple[Array, Array]:
     return s[order], rest[order]
 
 
-def start(spline: SpeedSpline, limits: tuple[Limits, ...]) -> tuple[Array, Array]:
-    """Unknowns to begin with, (N,): a motion without jerk limits, and slower about slow places; and plateaus.
+def start(s: Array, rest: Array, steady: Steady) -> tuple[Array, Array]:
+    """A motion to begin with, without jerk limits, and slower about slow places; and plateaus.
 
     From a slow place without acceleration on v^(3/2) grows by 3/2 sqrt(2 j) ds under the jerk j, from a rest on exactly
-    so. A plateau has the highest speed squared of each of its cells, (M - 1,); other cells have NaN.
+    so. A plateau has the highest speed squared of each of its cells.
+
+    Args:
+        s: (M,) places.
+        rest: (M,) whether the motion stops there.
+        steady: what each place allows by itself.
+
+    Returns:
+        (M,) speeds squared, and (M - 1,) those of plateaus, NaN in other cells.
     """
-    square, along, growth = _bounds(spline, limits)
-    fastest = speed_profile(spline.s, square, along)
-    fastest = speed_profile(spline.s, fastest**0.75, 0.75 * np.sqrt(2 * growth)) ** (4 / 3)
-    held = _plateaus(spline, square, fastest, _rise(fastest, along, growth))
-    at_start = _START * (fastest[1:] + fastest[:-1]) / 2
-    return np.where(np.isnan(held), at_start, held)[spline.left], held
+    square = np.where(rest, 0.0, steady.square)
+    fastest = speed_profile(s, square, steady.along)
+    fastest = speed_profile(s, fastest**0.75, 0.75 * np.sqrt(2 * steady.growth)) ** (4 / 3)
+    return fastest, _plateaus(s, square, fastest, _rise(fastest, steady.along, steady.growth), steady.of_cell)
 
 
-def _bounds(spline: SpeedSpline, limits: tuple[Limits, ...]) -> tuple[Array, Array, Array]:
-    """Speed squared, acceleration and jerk along the path that each single term of the limits allows, (M,) each."""
-    square, along = np.where(spline.rest, 0.0, np.inf), np.full(len(spline.s), NO_LIMIT)
-    growth = np.full(len(spline.s), NO_LIMIT)
-    with np.errstate(divide="ignore"):
-        for one in limits:
-            of_change, of_slope, of_square = (np.sqrt(one.by_group(w**2).max(axis=0)) for w in one.weights)
-            np.minimum.at(square, one.ends.place, of_square ** (-2 / 3 if one.jerk else -1.0))
-            lowered, bound = (growth, 1 / of_change) if one.jerk else (along, 1 / of_slope)
-            np.minimum.at(lowered, one.ends.place, bound)
-    return square, along, growth
+def unknowns(spline: SpeedSpline, fastest: Array, held: Array) -> Array:
+    """Unknowns to begin with, (N,): what is held, and less than the motion without jerk limits, (M,), elsewhere."""
+    below = _START * (fastest[1:] + fastest[:-1]) / 2
+    return np.where(np.isnan(held), below, held)[spline.left]
 
 
 def _rise(square: Array, along: Array, growth: Array) -> Array:
@@ -89,12 +87,12 @@ def _rise(square: Array, along: Array, growth: Array) -> Array:
     return np.asarray(speed / 2 * (speed / along + along / growth + np.sqrt(speed / growth)))
 
 
-def _plateaus(spline: SpeedSpline, square: Array, fastest: Array, rise: Array) -> Array:
+def _plateaus(s: Array, square: Array, fastest: Array, rise: Array, of_cell: Array) -> Array:
     """Speed squared of cells far enough from every place at which it changes, (M - 1,); NaN for other cells."""
     even = np.abs(np.diff(square)) <= _EQUAL * square[1:]
     even &= fastest[1:] >= (1 - _EQUAL) * square[1:]
     even &= fastest[:-1] >= (1 - _EQUAL) * square[:-1]
-    s = spline.s
+    even &= of_cell >= (1 - _EQUAL) * square[1:]
     before = np.maximum.accumulate(np.where(even, -np.inf, s[1:]))
     after = np.minimum.accumulate(np.where(even, np.inf, s[:-1])[::-1])[::-1]
     away = np.minimum(s[:-1] - before, after - s[1:])

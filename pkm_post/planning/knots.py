@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Knots: the whole milliseconds at which the controller gets a point.
 
-As few as keep the controller's cubics within tolerance: intervals outside it are bisected, all at once, until they hold
-or reach the shortest interval of the controller. An interval is cut where a blend begins or ends, if possible: one
-cubic follows a line or a blend over a long distance, but not both.
+Few of them keep the controller's cubics within tolerance. First intervals outside it are cut, all at once, until they
+hold or reach the shortest interval of the controller. An interval is cut where a blend begins or ends, if possible: one
+cubic follows a line or a blend over a long distance, but not both. What holds is then up to half as long as it could
+be. So in some rounds neighbours are replaced by one interval fewer, wherever their deviations say that this may hold.
 
 Where knots come faster than the block rate, or would need to be closer than the shortest interval of the controller,
 the segments run slower: the same knots take longer, and span less of the path.
@@ -11,9 +12,11 @@ the segments run slower: the same knots take longer, and span less of the path.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from pkm_post.geometry import Array, expand_counts
 
@@ -24,6 +27,74 @@ _ROOM = 0.95
 """Share of the block rate to aim for, so that few rounds are needed."""
 SLOWDOWN = 0.7
 """Feed factor where even the shortest interval is out of tolerance."""
+_POWER = 4
+"""Of its length, by which the deviation of a cubic from a smooth curve grows."""
+_ROUNDS = 4
+"""Most rounds of fewer intervals."""
+_WORTH = 0.005
+"""Share of its intervals that a round must save between two marks for another one to follow there."""
+_NEIGHBOURS, _ALIKE = 5, 7
+"""Most neighbours that are replaced by one interval fewer; and most of those whose costs are alike: all must hold."""
+_APART = 0.15
+"""Difference of costs that are alike."""
+_FULL = 0.98
+"""Share of the longest interval to aim for."""
+_TO_EDGE = 0.25
+"""Share of its length by which an end of an interval is moved to an edge."""
+_AGAIN = 1.06
+"""Factor of the cost of neighbours that could not be replaced, so that others are tried."""
+_COST, _HIGHEST = 1e-3, 3.0
+"""Least and highest cost of an interval."""
+_UNKNOWN = 0.5
+"""Cost of an interval too short to be cut, whose deviation is not asked for."""
+_MOST_PIECES = 4
+"""Most pieces that an interval without edges is cut into at once."""
+
+
+class Error(Protocol):
+    """How far intervals are from what is allowed."""
+
+    def __call__(self, start: Array, end: Array, group: Array | None = None) -> Array:
+        """Deviation / tolerance of intervals, (N,); above 1 also where another limit is exceeded.
+
+        Args:
+            start: (N,) whole ms.
+            end: (N,) whole ms.
+            group: (N,) numbers: intervals with the same one count only if all of them hold.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class _Intervals:
+    """N intervals side by side.
+
+    Attributes:
+        time: (N + 1,) whole ms of their ends.
+        cost: (N,) share of the longest interval that would hold there.
+    """
+
+    time: Array
+    cost: Array
+
+
+@dataclass(frozen=True)
+class _Fewer:
+    """What may replace G groups of neighbours.
+
+    Attributes:
+        first: (G,) first interval of each group.
+        count: (G,) how many it has.
+        start: (M,) whole ms of the new intervals, one fewer in each group.
+        end: (M,) whole ms.
+        group: (M,) the group of each.
+    """
+
+    first: Array
+    count: Array
+    start: Array
+    end: Array
+    group: Array
 
 
 def even_marks(rests_ms: Array, longest_ms: int = LONGEST_MS) -> Array:
@@ -34,7 +105,7 @@ def even_marks(rests_ms: Array, longest_ms: int = LONGEST_MS) -> Array:
     return np.append(rests_ms[run] + number * span[run] // pieces[run], rests_ms[-1])
 
 
-def knots(marks_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Array], shortest: int = 1) -> Array:
+def knots(marks_ms: Array, edges_ms: Array, error: Error, shortest: int = 1) -> Array:
     """Times of the knots, (K,) whole ms, from the first mark to the last; every mark is a knot.
 
     Knots of one piece do not depend on other pieces: a long motion may be cut at its marks and each piece processed
@@ -43,31 +114,137 @@ def knots(marks_ms: Array, edges_ms: Array, error: Callable[[Array, Array], Arra
     Args:
         marks_ms: (R,) whole ms that must be knots: ``even_marks`` of the rests.
         edges_ms: (E,) whole ms of preferred cuts, increasing.
-        error: maps starts and ends of intervals, (N,) whole ms each, to error / tolerance; 1 is just within tolerance.
+        error: of intervals; 1 is just within tolerance.
         shortest: least width of a cut piece, ms.
     """
-    start, end = marks_ms[:-1], marks_ms[1:]
     edges_ms = edges_ms[slice(*np.searchsorted(edges_ms, marks_ms[[0, -1]]))]
-    times = [marks_ms]
+    found = _cut_until_they_hold(marks_ms, edges_ms, error, shortest)
+    unfinished = np.ones(len(marks_ms) - 1, dtype=np.bool_)
+    for _ in range(_ROUNDS):
+        run = np.searchsorted(marks_ms, found.time[:-1], side="right") - 1
+        fewer = _groups(found, run, unfinished, edges_ms)
+        if not len(fewer.first):
+            break
+        deviation = _deviation(fewer, error, shortest)
+        holds = np.logical_and.reduceat(deviation <= 1, np.flatnonzero(np.diff(fewer.group, prepend=-1)))
+        saved = np.bincount(run[fewer.first[holds]], minlength=len(unfinished))
+        unfinished &= saved > _WORTH * np.bincount(run)
+        found = _replaced(found, fewer, deviation, holds)
+    return found.time
+
+
+def _cut_until_they_hold(marks_ms: Array, edges_ms: Array, error: Error, shortest: int) -> _Intervals:
+    """Intervals that hold or cannot be cut."""
+    start, end = marks_ms[:-1], marks_ms[1:]
+    times, costs = [marks_ms[-1:]], []
     while len(start):
-        wide = end - start >= 2 * shortest
-        start, end = start[wide], end[wide]
-        wide = error(start, end) > 1
-        start, end = start[wide], end[wide]
-        cut = _cut(start, end, edges_ms, shortest)
-        times.append(cut)
-        start, end = np.column_stack([start, cut]).ravel(), np.column_stack([cut, end]).ravel()
-    return np.sort(np.concatenate(times))
+        cost, wide = np.full(len(start), _UNKNOWN), np.flatnonzero(end - start >= 2 * shortest)
+        cost[wide] = _costs(error(start[wide], end[wide]))
+        holds = cost <= 1
+        times.append(start[holds])
+        costs.append(cost[holds])
+        start, end = _pieces(start[~holds], end[~holds], cost[~holds], edges_ms, shortest)
+    time = np.concatenate(times[1:])
+    order = np.argsort(time)
+    return _Intervals(np.append(time[order], times[0]), np.concatenate(costs)[order])
+
+
+def _costs(deviation: Array) -> Array:
+    """Costs of intervals by their deviations, (N,)."""
+    return np.asarray(np.maximum(deviation, 0.0) ** (1 / _POWER))
+
+
+def _pieces(start: Array, end: Array, cost: Array, edges_ms: Array, shortest: int) -> tuple[Array, Array]:
+    """Starts and ends of the pieces of intervals: halves about an edge, or as many as the costs say without edges."""
+    free = np.searchsorted(edges_ms, start + shortest) == np.searchsorted(edges_ms, end - shortest, side="right")
+    pieces = np.where(free & (cost <= _MOST_PIECES), np.ceil(cost / _FULL).astype(np.int64), 2)
+    pieces = np.maximum(np.minimum(pieces, (end - start) // shortest), 2)
+    row, number = expand_counts(pieces)
+    width, count = (end - start)[row], pieces[row]
+    cut = _cut(start, end, edges_ms, shortest)[row]
+    inner = np.where(count == 2, cut, start[row] + width * number // count)
+    after = np.where(count == 2, cut, start[row] + width * (number + 1) // count)
+    return np.where(number == 0, start[row], inner), np.where(number == count - 1, end[row], after)
 
 
 def _cut(start: Array, end: Array, edges_ms: Array, shortest: int) -> Array:
     """Cuts of intervals: at the edge nearest to the middle, else in the middle; no piece is too short."""
     middle = (start + end) // 2
-    bounded = np.concatenate([[np.iinfo(np.int64).min // 2], edges_ms, [np.iinfo(np.int64).max // 2]])
-    above = np.searchsorted(bounded, middle)
-    before, after = bounded[above - 1], bounded[above]
-    nearest = np.where(middle - before < after - middle, before, after)
+    nearest = _nearest_edge(middle, edges_ms)
     return np.where((nearest >= start + shortest) & (nearest <= end - shortest), nearest, middle)
+
+
+def _nearest_edge(ms: Array, edges_ms: Array) -> Array:
+    """The edge nearest to each time; of two the later one."""
+    bounded = np.concatenate([[np.iinfo(np.int64).min // 2], edges_ms, [np.iinfo(np.int64).max // 2]])
+    above = np.searchsorted(bounded, ms)
+    before, after = bounded[above - 1], bounded[above]
+    return np.where(ms - before < after - ms, before, after)
+
+
+def _groups(found: _Intervals, run: Array, unfinished: Array, edges_ms: Array) -> _Fewer:
+    """Groups of neighbours that together cost less than one interval fewer would, in the order of time."""
+    elapsed, number = np.append(0.0, np.cumsum(found.cost)), len(found.cost)
+    count = np.zeros(number, dtype=np.int64)
+    for many in range(min(_ALIKE, number), 1, -1):
+        first = np.flatnonzero(run[many - 1 :] == run[: number - many + 1])
+        first = first[unfinished[run[first]]]
+        first = first[elapsed[first + many] - elapsed[first] <= (many - 1) * _FULL]
+        if many > _NEIGHBOURS:
+            first = first[np.ptp(sliding_window_view(found.cost, many)[first], axis=1) < _APART]
+        count[first] = many
+    first = _met(np.diff(run, prepend=-1) > 0, np.maximum(count, 1))
+    first = first[count[first] > 0]
+    count = count[first]
+    group, step = expand_counts(count - 1)
+    share = step / (count[group] - 1)
+    cost = elapsed[first][group] * (1 - share) + elapsed[first + count][group] * share
+    start = np.rint(np.interp(cost, elapsed, found.time)).astype(np.int64)
+    edge, width = _nearest_edge(start, edges_ms), (found.time[first + count] - found.time[first]) / (count - 1)
+    start = np.where(np.abs(edge - start) <= _TO_EDGE * width[group], edge, start)
+    start = np.where(step == 0, found.time[first][group], start)
+    last = np.append(group[1:] != group[:-1], True)[: len(group)]
+    end = np.where(last, found.time[first + count][group], np.append(start[1:], 0)[: len(group)])
+    return _Fewer(first, count, start, end, group)
+
+
+def _met(begin: Array, step: Array) -> Array:
+    """The numbers that are met on the way from those that begin, by the step at each number, increasing."""
+    met, jump = np.append(begin, False), np.append(np.arange(len(step)) + step, len(step))
+    while True:  # with steps, then with twice as many steps, and so on
+        more = met.copy()
+        more[jump[met]] = True
+        if (more == met).all():
+            return np.flatnonzero(met[:-1])
+        met, jump = more, jump[jump]
+
+
+def _deviation(fewer: _Fewer, error: Error, shortest: int) -> Array:
+    """Deviations of the new intervals, (M,), infinite in groups with one that is too short."""
+    short = np.zeros(len(fewer.first), dtype=np.bool_)
+    short[fewer.group[fewer.end - fewer.start < shortest]] = True
+    rows = np.flatnonzero(~short[fewer.group])
+    deviation = np.full(len(fewer.start), np.inf)
+    deviation[rows] = error(fewer.start[rows], fewer.end[rows], fewer.group[rows])
+    return deviation
+
+
+def _replaced(found: _Intervals, fewer: _Fewer, deviation: Array, holds: Array) -> _Intervals:
+    """The intervals with the new ones of groups that hold, and with the costs that were found of the others."""
+    group, number = expand_counts(fewer.count)
+    old = fewer.first[group] + number
+    new_cost, cost = np.minimum(_costs(deviation), _HIGHEST), found.cost.copy()
+    until = np.cumsum(new_cost)
+    place, elapsed = np.column_stack([fewer.start, fewer.end]), np.column_stack([until - new_cost, until])
+    failed = old[~holds[group]]
+    spent = np.interp(found.time, place.ravel(), elapsed.ravel())
+    cost[failed] = _AGAIN * (spent[failed + 1] - spent[failed])
+    kept, new = np.ones(len(cost), dtype=np.bool_), holds[fewer.group]
+    kept[old[holds[group]]] = False
+    start = np.concatenate([found.time[:-1][kept], fewer.start[new]])
+    order = np.argsort(start)
+    cost = np.concatenate([cost[kept], new_cost[new]])[order]
+    return _Intervals(np.append(start[order], found.time[-1]), cost)
 
 
 def block_rate_factors(time_ms: Array, segment: Array, block_rate: float, segments: int) -> Array:

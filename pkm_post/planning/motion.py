@@ -25,6 +25,7 @@ from pkm_post.model import (
     StrutMotion,
     Tolerances,
     Trajectory,
+    as_executed,
     checkpoint,
     errors,
     read_only,
@@ -34,11 +35,18 @@ from pkm_post.planning.feed_study import feed_study
 from pkm_post.planning.interpolation import InterpolationCheck, poses_at
 from pkm_post.planning.knots import LONGEST_MS, even_marks, knots, slower_feed
 from pkm_post.planning.refinement import refined
-from pkm_post.planning.rough_limits import DerivativeBounds, below_feed, deviates_in_blends, rough_limits
+from pkm_post.planning.rough_limits import (
+    DerivativeBounds,
+    below_feed,
+    deviates_in_blends,
+    rough_limits,
+    straight_groups,
+)
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.slower import Slower, limits_jerk, required, too_coarse
 from pkm_post.planning.speed_profile import Stations, cell_times, stations
 from pkm_post.planning.switches import planned_share, with_lower_switches
+from pkm_post.planning.threads import share_in_threads, spindle_turns, with_slow_threads
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import columns_in_workers, in_workers
 from pkm_post.toolpath import Segments, compress
@@ -144,16 +152,31 @@ def plan_feed(
         tolerances: the requested tolerances.
         planned: share of the limits of acceleration to plan with; by default the highest that the machine allows.
     """
+    machine = with_slow_threads(trajectory, machine)
     path = tool_path(trajectory, tolerances)
     bounds = DerivativeBounds.of(path)
-    faults = reach_faults(machine, trajectory, *_way(path, stations(path, deviates_in_blends(path, bounds))))
+    faults = _reach_faults(path, trajectory, machine, bounds)
     try:
         share = np.full(len(path.feed), planned_share(machine) if planned is None else planned)
+        share = share_in_threads(trajectory, machine, share)
         schedule = _schedule(path, machine, bounds, share)
         return FeedPlan(path, schedule, share, trajectory, machine, tolerances), faults
     except _TooLongError as fault:
         duration = f"{fault.seconds:.6g} s, at most {LONGEST_MOTION:g} s"
         return None, (*faults, Diagnostic("K145", trajectory.place(fault.segment), duration))
+
+
+def _reach_faults(
+    path: ToolPath, trajectory: Trajectory, machine: Machine, bounds: DerivativeBounds
+) -> tuple[Diagnostic, ...]:
+    """Diagnostics of unreachable poses: the path is followed in few steps, and from joint to joint if there are any."""
+    deviates = deviates_in_blends(path, bounds)
+    marks = stations(path, deviates)
+    few = ~straight_groups(path, bounds, deviates)[marks.segment]
+    few[0] = True
+    if few.all() or reach_faults(machine, trajectory, *_way(path, marks.some(few))):
+        return reach_faults(machine, trajectory, *_way(path, marks))
+    return ()
 
 
 class _TooLongError(Exception):
@@ -222,7 +245,8 @@ def interpolate(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> Plan:
     """
     feed_plan, motion = within_controller(feed_plan, longest_ms)
     study = feed_study(feed_plan.path, feed_plan.schedule, feed_plan.trajectory, feed_plan.machine)
-    return Plan(motion, strut_motion(motion, feed_plan.machine), study)
+    struts = replace(strut_motion(motion, feed_plan.machine), turns=spindle_turns(motion, feed_plan.trajectory))
+    return Plan(motion, struts, study)
 
 
 def within_controller(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> tuple[FeedPlan, Motion]:
@@ -301,7 +325,7 @@ def _by_knot(events: tuple[Event, ...], schedule: Schedule, time_ms: Array) -> t
     """Events by knot, each at a rest, instead of by trajectory row."""
     rest_of_row = np.searchsorted(schedule.rest_joints, [event.row for event in events])
     knot = np.searchsorted(time_ms, schedule.rests_ms[rest_of_row])
-    return tuple(Event(int(row), event.kind, event.value) for row, event in zip(knot, events, strict=True))
+    return tuple(Event(int(row), event.kind, event.value) for row, event in zip(knot, as_executed(events), strict=True))
 
 
 def strut_motion(motion: Motion, machine: Machine) -> StrutMotion:

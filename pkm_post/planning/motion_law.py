@@ -17,7 +17,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.planning.speed_spline import inverse_tangent, within_cells
 
 _SERIES = 1e-3
 """Arguments below which the series of a function is exact to the last digits."""
@@ -63,10 +62,10 @@ class MotionLaw:
         s, a = s0 + way, a0 + change * way
         v = v0 + since * (a0 * sine + change * since * v0 / 2 * cosine)
         rows = np.flatnonzero((v0 == 0) | (self.speed[cell + 1] == 0))
-        s[rows], v[rows], a[rows] = self._beside_rests(cell[rows], since[rows], acceleration)
+        s[rows], v[rows], a[rows] = self._in_rest_cells(cell[rows], since[rows], acceleration)
         return s, v, a
 
-    def _beside_rests(self, cell: Array, since: Array, acceleration: Array) -> tuple[Array, Array, Array]:
+    def _in_rest_cells(self, cell: Array, since: Array, acceleration: Array) -> tuple[Array, Array, Array]:
         """Path length, speed and acceleration in cells that touch a rest: constant jerk, (N,) each."""
         duration = self.time[cell + 1] - self.time[cell]
         leaving = self.speed[cell] == 0
@@ -84,6 +83,8 @@ class MotionLaw:
         if self.acceleration is None:
             speed = np.sqrt(v0**2 + (s - s0) / width * (v1**2 - v0**2))
             return np.asarray(self.time[cell] + 2 * (s - s0) / (v0 + speed))
+        from pkm_post.planning.speed_spline import inverse_tangent, within_cells
+
         square, _ = within_cells(self.s, self.speed**2, self.acceleration, cell, s)
         mean = (s - s0) / (v0 + np.sqrt(np.maximum(square, 0.0)))
         change = (self.acceleration[cell + 1] - self.acceleration[cell]) / width

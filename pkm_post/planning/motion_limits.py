@@ -24,30 +24,20 @@ from pkm_post.planning.speed_spline import CellEnds
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits of one kind at E ends of cells: G groups of numbers p, of which each group has one bound.
+    """Limits of one kind at E ends of cells: R numbers p at each, a vector whose length has one bound.
 
     Attributes:
-        ends: where they apply.
+        ends: where they apply; an end with several limits is there several times.
         weights: (3, R, E) of k, a and x for each of R numbers, divided by the bound.
-        each: whether each number has the bound for itself, G = R; else they are one vector, G = 1.
         jerk: whether |p| is bounded by 1 / sqrt(x), rather than by 1.
     """
 
     ends: CellEnds
     weights: Array
-    each: bool
     jerk: bool
 
-    def numbers(self, values: Array) -> Array:
-        """The numbers p, (R, E), from values at the ends, (3, E)."""
-        k, a, x = self.weights
-        return np.asarray(k * values[0] + a * values[1] + x * values[2])
-
-    def by_group(self, of_numbers: Array) -> Array:
-        """Sums over the numbers of each group, (..., G, E) from (..., R, E)."""
-        return of_numbers if self.each else of_numbers.sum(axis=-2, keepdims=True)
-
     def use(self, values: Array) -> Array:
-        """Share of each bound that is in use, (G, E); above 1 it is broken."""
-        size = np.sqrt(self.by_group(self.numbers(values) ** 2))
-        return size * np.sqrt(values[2]) if self.jerk else size
+        """Share of each bound that is in use, (E,), by k, a and x at the ends, (3, E); above 1 it is broken."""
+        k, a, x = self.weights
+        size = np.sqrt(((k * values[0] + a * values[1] + x * values[2]) ** 2).sum(axis=0))
+        return np.asarray(size * np.sqrt(values[2]) if self.jerk else size)

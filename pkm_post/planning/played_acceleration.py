@@ -8,7 +8,7 @@ planned acceleration and x for the elapsed share, the acceleration
 
 and its extremes are there. Where g changes evenly in h, both are g; where it jumps or bends they are more, by most if
 the jump is at a third or at two thirds. So windows of that length are laid about every station. A rest is a point of
-the program: no window crosses one.
+the program: no window crosses one. Struts that keep well within their limits wherever the tip does are left out.
 
 Enters: stations of a path, and how a motion passes them. Leaves: windows in time, and the accelerations that are
 planned and played in them, by their limits. Units: mm, s.
@@ -17,7 +17,7 @@ planned and played in them, by their limits. Units: mm, s.
 from __future__ import annotations
 
 import functools
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -33,7 +33,7 @@ _SHARES = np.linspace(0, 1, 7)
 _PLAYED_SHARE = 0.98
 """Share of the limits that may be played in windows: a little more is played between them, and 99 % are allowed in the
 end, for printed digits."""
-_AT_ONCE = 1024
+_AT_ONCE = 2048
 """Stations in one pass: the working arrays of one pass stay in the processor's cache."""
 
 
@@ -64,25 +64,21 @@ class Accelerations:
 
     Attributes:
         time: (K,) s, increasing.
-        first: (C, K - 1) at the starts of cells.
-        last: (C, K - 1) at their ends.
-        speed: (C, K) the integral.
-        place: (C, K) its integral.
+        powers: (4, C, K - 1) coefficients of the powers of the time since the start of each cell: of the places, which
+            are the second integral.
     """
 
     time: Array
-    first: Array
-    last: Array
-    speed: Array
-    place: Array
+    powers: Array
 
     @classmethod
     def of(cls, time: Array, first: Array, last: Array) -> Accelerations:
         """The accelerations with their integrals, from rest at the first station."""
-        dt, start = np.diff(time), np.zeros((len(first), 1))
-        speed = np.concatenate([start, np.cumsum((first + last) * (dt / 2), axis=1)], axis=1)
-        way = speed[:, :-1] * dt + (2 * first + last) * (dt**2 / 6)
-        return cls(time, first, last, speed, np.concatenate([start, np.cumsum(way, axis=1)], axis=1))
+        dt, powers = np.diff(time), np.zeros((4, *first.shape))
+        place, speed, powers[2], powers[3] = powers[0], powers[1], first / 2, (last - first) / (6 * dt)
+        np.cumsum(((first + last) * (dt / 2))[:, :-1], axis=1, out=speed[:, 1:])
+        np.cumsum((speed * dt + (2 * first + last) * (dt**2 / 6))[:, :-1], axis=1, out=place[:, 1:])
+        return cls(time, powers)
 
     def played(self, start: Array, interval: float) -> Array:
         """Accelerations at both ends of the cubics that begin at some times, (2, C, W)."""
@@ -94,10 +90,26 @@ class Accelerations:
         """Places and speeds at times, (C, W) each."""
         cell = np.clip(np.searchsorted(self.time, time) - 1, 0, len(self.time) - 2)
         since = time - self.time[cell]
-        first, speed, duration = self.first[:, cell], self.speed[:, cell], np.diff(self.time)[cell]
-        bend = (self.last[:, cell] - first) / duration
-        place = self.place[:, cell] + since * (speed + since * (first / 2 + since * bend / 6))
-        return place, speed + since * (first + since * bend / 2)
+        place, speed, second, third = np.take(self.powers, cell, axis=2)
+        third *= since
+        second += third
+        place += since * (speed + since * second)
+        second += third / 2
+        speed += 2 * since * second
+        return place, speed
+
+
+def reach(time: Array, places: Array, most: float) -> tuple[Array, Array]:
+    """Of stations at times, (M,), the first and the one after the last at cells that are near to places, (K,)."""
+    first = np.searchsorted(time, places - most, side="right") - 1
+    last = np.searchsorted(time, places + most) + 1
+    return np.maximum(first, 0), np.minimum(last, len(time))
+
+
+def covered(first: Array, last: Array, count: int) -> Array:
+    """Which numbers below a count lie in some ranges, without their ends, (count,)."""
+    change = np.bincount(first, minlength=count + 1) - np.bincount(last, minlength=count + 1)
+    return np.asarray(np.cumsum(change)[:count] > 0)
 
 
 def cells_in_windows(time: Array, start: Array, interval: float) -> tuple[Array, Array]:
@@ -115,40 +127,43 @@ class StationMotion:
         marks: M stations.
         time: (M,) s.
         square: (M,) speed squared.
+        struts: (6,) struts whose limits matter beside those of the tip.
     """
 
     path: ToolPath
     marks: Stations
     time: Array
     square: Array
+    struts: Array
 
     def some(self, rows: Array) -> StationMotion:
         """Some of the stations."""
-        return StationMotion(self.path, self.marks.some(rows), self.time[rows], self.square[rows])
+        return StationMotion(self.path, self.marks.some(rows), self.time[rows], self.square[rows], self.struts)
 
-    def windows(self, machine: Machine, rows: Array, interval: float) -> Windows:
+    def windows(self, machine: Machine, about: Array, interval: float) -> Windows:
         """The windows about some stations.
 
         Args:
             machine: the limits.
-            rows: (K,) stations, increasing. Windows end where the motion rests, and where a station is missing.
+            about: (K,) these stations, increasing. No window crosses a rest.
             interval: length of the windows, s.
         """
-        time = self.time[rows]
+        first, last = reach(self.time, self.time[about], interval)
+        rows = np.flatnonzero(covered(first, last, len(self.time)))
 
         def of(piece: slice) -> Windows:
-            first, last = np.searchsorted(time, time[piece][[0, -1]] + [-interval, interval])
-            first = max(first - 1, 0)
-            wide, inside = rows[first : last + 1], slice(piece.start - first, piece.stop - first)
-            return self.some(wide)._windows(machine, np.diff(wide) == 1, inside, interval)
+            of_piece = rows[slice(*np.searchsorted(rows, [first[piece][0], last[piece][-1]]))]
+            return self.some(of_piece)._windows(
+                machine, np.diff(of_piece) == 1, np.searchsorted(of_piece, about[piece]), interval
+            )
 
-        parts = [Windows(*np.empty((4, 0))), *in_workers(of, pieces(len(rows), _AT_ONCE))]
-        columns = zip(*(astuple(part) for part in parts), strict=True)
+        parts = [Windows(*np.empty((4, 0))), *in_workers(of, pieces(len(about), _AT_ONCE) if len(about) else ())]
+        columns = ([getattr(part, field.name) for part in parts] for field in fields(Windows))
         return Windows(*(np.concatenate(column) for column in columns))
 
-    def _windows(self, machine: Machine, joined: Array, inside: slice, interval: float) -> Windows:
-        """The same about a slice of all stations, with (M - 1,) whether the next station of the path follows each."""
-        station, start = self._starts(joined, inside, interval)
+    def _windows(self, machine: Machine, joined: Array, about: Array, interval: float) -> Windows:
+        """The same about some of all stations, with (M - 1,) whether the next station of the path follows each."""
+        station, start = self._starts(joined, about, interval)
         first, last, allowed = self._accelerations(machine, joined)
         planned = np.append(np.maximum(_largest(first, 1.0), _largest(last, 1.0)), 0.0)
         cells = np.column_stack(cells_in_windows(self.time, start, interval)) + [0, 1]
@@ -160,13 +175,13 @@ class StationMotion:
             np.maximum(*(_largest(ends, allowed) for ends in played)),
         )
 
-    def _starts(self, joined: Array, inside: slice, interval: float) -> tuple[Array, Array]:
+    def _starts(self, joined: Array, about: Array, interval: float) -> tuple[Array, Array]:
         """Stations of windows, and the starts of these, (W,) each: between rests and missing stations."""
         time, rest, end = self.time, self.marks.rest, np.array([True])
         earliest = np.maximum.accumulate(np.where(rest | np.append(end, ~joined), time, -np.inf))
         latest = np.where(rest | np.append(~joined, end), time, np.inf)
         latest = np.minimum.accumulate(latest[::-1])[::-1]
-        station = np.repeat(np.arange(len(time))[inside], len(_SHARES))
+        station = np.repeat(about, len(_SHARES))
         start = time[station] - interval * np.tile(_SHARES, len(station) // len(_SHARES))
         start = np.clip(start, earliest[station], latest[station] - interval)
         kept = ~rest[station] & (start >= earliest[station])
@@ -178,7 +193,8 @@ class StationMotion:
         And what may be played by these limits, (C, 1). Derivatives at a rest are those of one of two segments: those at
         the next station count. Of cells with missing stations nothing is known.
         """
-        struts, tip, _ = limited_quantities(machine, self.path.within(self.marks.segment, self.marks.u))
+        poses = self.path.within(self.marks.segment, self.marks.u)
+        struts, tip, _ = limited_quantities(machine, poses, self.struts)
         first, second = (
             np.concatenate([one.T / struts.acceleration, two.T / tip.acceleration])
             for one, two in ((struts.first, tip.first), (struts.second, tip.second))
@@ -188,11 +204,10 @@ class StationMotion:
         at_end = np.where(self.marks.rest[1:], first[:, :-1], first[:, 1:]) * along + curved[:, 1:]
         real = (machine.strut_acceleration, struts.acceleration), (machine.tip_acceleration, tip.acceleration)
         allowed = [_PLAYED_SHARE * whole / planned if np.isfinite(whole) else 1.0 for whole, planned in real]
-        return at_start * joined, at_end * joined, np.repeat(allowed, [6, 3])[:, None]
+        return at_start * joined, at_end * joined, np.repeat(allowed, [len(first) - 3, 3])[:, None]
 
 
 def _largest(accelerations: Array, allowed: Array | float) -> Array:
     """The largest acceleration of struts, and of the tip as a vector, (W,), by what is allowed."""
     by_limit = accelerations / allowed
-    struts = functools.reduce(np.maximum, np.abs(by_limit[:6]))
-    return np.asarray(np.maximum(struts, length_of(*by_limit[6:])))
+    return np.asarray(functools.reduce(np.maximum, np.abs(by_limit[:-3]), length_of(*by_limit[-3:])))

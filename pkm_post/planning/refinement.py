@@ -20,12 +20,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Machine
+from pkm_post.model import Machine, checkpoint
 from pkm_post.planning.acceleration_limits import limits_at, limits_within
 from pkm_post.planning.cell_limits import StationLimits, demand
 from pkm_post.planning.fastest_profile import Steps, ceilings
-from pkm_post.planning.speed_limits import Pair, following
-from pkm_post.planning.speed_profile import Stations, cell_times, stations
+from pkm_post.planning.speed_limits import Pair, next_segment
+from pkm_post.planning.speed_profile import Stations, cell_times, inserted, stations
 from pkm_post.planning.tool_path import ToolPath
 
 _MOST_ROUNDS = 10
@@ -76,7 +76,8 @@ class Profile:
     def complete(self) -> tuple[Stations, Array]:
         """All stations, and the speeds squared at them, (M + K,)."""
         row = np.searchsorted(self.marks.s, self.others.s)
-        return self.marks.inserted(row, self.others), np.insert(self.square, row, self.other_square)
+        checkpoint()
+        return self.marks.inserted(row, self.others), inserted(self.square, row, self.other_square)
 
     def cut(self, path: ToolPath, machine: Machine, cell: Array, part: Array) -> Profile:
         """The same motion with new stations.
@@ -91,15 +92,19 @@ class Profile:
         width = np.diff(marks.s)[cell]
         segment, u, s = marks.segment[row], marks.u[row] - (1 - part) * width, marks.s[cell] + part * width
         added = limits_within(path, machine, segment, u).of_struts(self.struts)
+        checkpoint()
         marks = marks.inserted(row, Stations(segment, u, s, np.zeros(len(row), dtype=np.bool_), marks.edges))
+        checkpoint()
         limits = self.steps.limits.inserted(row, added)
         share, ceiling, look, fresh = (
             np.insert(one, cell, one[cell]) for one in (self.steps.share, self.steps.ceiling, self.look, self.fresh)
         )
+        checkpoint()
         pieces = np.zeros(len(share), dtype=np.bool_)
         new = row + np.arange(len(row))
         pieces[new], pieces[new - 1] = True, True
         ceiling[pieces] = ceilings(marks.s, limits, np.flatnonzero(pieces), share[pieces])
+        checkpoint()
         square = np.insert(self.square, row, self.square[cell] + part * np.diff(self.square)[cell])
         steps = Steps(marks.s, marks.rest, limits, ceiling, share)
         return replace(self, marks=marks, steps=steps, square=square, look=look, fresh=fresh)
@@ -157,8 +162,11 @@ def refined(
     """
     marks = stations(path, close, coarse=True)
     marks = marks if span is None else span.of(marks, path)
-    needed = close[marks.segment] | close[following(path, marks.segment, marks.u)] | marks.rest
+    checkpoint()
+    needed = close[marks.segment] | close[next_segment(path, marks.segment, marks.u)] | marks.rest
+    checkpoint()
     first, others = marks.some(needed), marks.some(~needed)
+    checkpoint()
     limits = limits_at(path, first.segment, first.u, close, rough, float(share.max()), machine)
     if span is not None and span.square > 0:
         limits.speed[0] = min(limits.speed[0], span.square)
@@ -176,9 +184,13 @@ def _coarse(
 ) -> Profile:
     """The profile at the first stations, with the share of each cell, (M - 1,); and the other stations."""
     limits.table[marks.rest] = 0.0  # derivatives there are those of one of two segments
+    checkpoint()
     struts = limits.struts_that_matter(float(share.min()))
+    checkpoint()
     limits, cells = limits.of_struts(struts), np.arange(len(marks.s) - 1)
+    checkpoint()
     steps = Steps(marks.s, marks.rest, limits, ceilings(marks.s, limits, cells, share), share)
+    checkpoint()
     square = steps.fastest_profile()
     every = np.ones(len(cells), dtype=np.bool_)
     return Profile(marks, steps, square, every, every, struts, close, others, other_square)
@@ -192,16 +204,21 @@ def _places(profile: Profile) -> tuple[Array, Array, Array]:
     below = profile.square < profile.steps.highest()
     with np.errstate(divide="ignore", over="ignore"):  # a speed squared may underflow
         time = cell_times(profile.marks.s, profile.square)
+    checkpoint()
     first, second, saved = np.full((3, len(time)), [[1.0], [1.0], [0.0]])
+    checkpoint()
     near = profile.close[profile.marks.segment[1:]]  # other cells lead from one close segment to the next
     rows = np.flatnonzero(near & profile.fresh & (below[1:] | below[:-1]))
     first[rows], second[rows], saved[rows] = _bends(profile, rows, time[rows])
+    checkpoint()
     middle = near & profile.look & (time > _BRIEF)
     worth = ~middle & (saved > np.maximum(_WORTH * time, _WORTH_SECONDS))
     first, second = np.where(middle, 0.5, np.where(worth, first, 1.0)), np.where(worth, second, 1.0)
+    checkpoint()
     part = np.column_stack([first, second])
     cell, number = np.nonzero((part > _NARROW) & (part < 1 - _NARROW))
     part = part[cell, number]
+    checkpoint()
     other = np.ones(len(cell), dtype=np.bool_)
     other[1:] = (cell[1:] != cell[:-1]) | (part[1:] > part[:-1] + _NARROW)
     return cell[other], part[other], profile.look & ~middle
@@ -218,13 +235,16 @@ def _bends(profile: Profile, cell: Array, time: Array) -> tuple[Array, Array, Ar
     steps, square, rest = profile.steps, profile.square, profile.marks.rest
     before, after, ceiling = square[cell], square[cell + 1], steps.highest()
     up, down = (np.minimum(steps.reached_in_pieces(cell, square, backward), _STEEPEST) for backward in (False, True))
+    checkpoint()
     left = np.where(rest[cell], ceiling[cell + 1], ceiling[cell])
     right = np.where(rest[cell + 1], ceiling[cell], ceiling[cell + 1])
     first = _meeting(left - before, up - before - (right - left))
     second = 1 - _meeting(right - after, down - after - (left - right))
+    checkpoint()
     crossing = _meeting(down - before, up - before + down - after)
     apart = first < second
     first, second = np.where(apart, first, crossing), np.where(apart, second, crossing)
+    checkpoint()
     speeds = np.sqrt([before, before + (up - before) * first, after + (down - after) * (1 - second), after])
     parts = np.array([first, second - first, 1 - second])
     means = np.maximum(speeds[1:] + speeds[:-1], np.finfo(np.float64).tiny)
@@ -241,15 +261,20 @@ def _meeting(gap: Array, slope: Array) -> Array:
 def _refined(path: ToolPath, machine: Machine, profile: Profile, cell: Array, part: Array) -> Profile:
     """The profile with new stations at parts of cells."""
     cut = profile.cut(path, machine, cell, part)
+    checkpoint()
     new = cell + 1 + np.arange(len(cell))  # rows of the new stations
     added, straight, share = cut.steps.limits[new], cut.square[new], profile.steps.share[cell]
     along = np.diff(profile.square)[cell] / (2 * np.diff(profile.marks.s)[cell])
+    checkpoint()
     beyond = demand(added, along, straight, share) - 1
+    checkpoint()
     bent = _bent(profile, cell, part, added, along, straight) / share
 
+    checkpoint()
     start = cut.square.copy()
     start[new] = np.inf
     square, fresh = _renewed(cut.steps, start, new)
+    checkpoint()
     changed = np.abs(square[new] - straight) > _CHANGED * np.maximum(square[new], straight)
     again = new[changed | (beyond > _CHANGED) | ((bent > _CHANGED) & (beyond + _SHAPE * bent > 0))]
     look = cut.look
@@ -262,8 +287,10 @@ def _bent(profile: Profile, cell: Array, part: Array, added: StationLimits, alon
     limits, rest = profile.steps.limits, profile.marks.rest
     near, far = np.where(rest[cell], cell + 1, cell), np.where(rest[cell + 1], cell, cell + 1)
     table = limits.table[near] + (limits.table[far] - limits.table[near]) * part[:, None]
+    checkpoint()
     first, second, tip = ((added.table - table).T[rows] for rows in limits.columns)
     struts = functools.reduce(np.maximum, np.abs(first * along + second * square), np.zeros(len(cell)))
+    checkpoint()
     of_tip = np.abs(tip[0] * along**2 + 2 * tip[1] * along * square + tip[2] * square**2)
     speed = limits.speed[near] + (limits.speed[far] - limits.speed[near]) * part
     return np.asarray(np.maximum.reduce([struts, of_tip, np.abs(square / added.speed - square / speed)]))
@@ -281,13 +308,17 @@ def _renewed(steps: Steps, square: Array, new: Array) -> tuple[Array, Array]:
         new: (K,) the new stations.
     """
     highest = np.where(steps.rest, 0.0, steps.highest())
+    checkpoint()
     parting = square >= highest * (1 - _AT_FEED)
     parting[new] = False
     part = np.cumsum(parting)
+    checkpoint()
     touched = np.zeros(part[-1] + 1, dtype=np.bool_)
     touched[part[new]] = True
     inside = touched[part]
+    checkpoint()
     start = np.where(inside & ~parting, highest, np.minimum(square, highest))
     found = steps.renewed(start, inside[:-1])
+    checkpoint()
     changed = found != start
     return found, inside[:-1] | changed[1:] | changed[:-1]

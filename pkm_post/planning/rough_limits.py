@@ -16,7 +16,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, norm, tilt, turn_by_tilt
 from pkm_post.machine import strut_rate_bounds
-from pkm_post.model import Machine, checkpoint
+from pkm_post.model import Machine, checkpoint, in_pieces, pieces
 from pkm_post.planning.speed_limits import (
     FOR_CURVATURE,
     NO_LIMIT,
@@ -29,8 +29,10 @@ from pkm_post.planning.speed_limits import (
 )
 from pkm_post.planning.speed_profile import speed_profile
 from pkm_post.planning.tool_path import OFFSET, ToolPath
-from pkm_post.toolpath import Segments, SplineBounds
+from pkm_post.toolpath import Segments
 
+_AT_ONCE = 1 << 14
+"""Segments in one pass: the working arrays take more memory than the result."""
 _STEP = 0.75
 """Largest slope of the cubic step from one segment to the next, per half width."""
 _PARTING_1, _PARTING_2 = 0.1, 0.73
@@ -45,6 +47,10 @@ _AT_FEED = 1e-6
 """Share of the speed squared by which rounding may put a plan at the feed below it."""
 _STRAIGHT = 0.01, 1e-4
 """mm and rad: deviation from the segments in blends up to which a path counts as straight between its joints."""
+_GROUP_SIZES = 2, 4, 8, 16, 32
+"""Segments of a curve that may count as one straight line together ..."""
+_LONGEST_GROUP = 4.0
+"""... of at most so many mm."""
 
 
 @dataclass(frozen=True)
@@ -82,15 +88,20 @@ class DerivativeBounds:
 
     def _with_curves(self, path: ToolPath) -> DerivativeBounds:
         """The bounds with those of smooth curves; blends at their ends have none."""
+        from pkm_post.toolpath import SplineBounds
+
         splines = path.segments.splines
         row, of_row = splines.row, SplineBounds.of(splines)
         checkpoint()
         columns = {field.name: np.array(getattr(self, field.name)) for field in fields(self)}
         for field in fields(of_row):
+            checkpoint()
             columns[field.name][row] = getattr(of_row, field.name)
         if splines.turns:
-            ends = (tilt(path.segments.axis_at(row, u)[0]) for u in (0 * splines.extent, splines.extent))
-            columns["half_tilt"][row] = turn_by_tilt(np.maximum(*ends) + of_row.axis_1 * splines.extent / 2)
+            rise = of_row.axis_1 * splines.extent / 2
+            for part in pieces(len(row), _AT_ONCE):
+                ends = (tilt(path.segments.axis_at(row[part], u)[0]) for u in (0 * rise[part], splines.extent[part]))
+                columns["half_tilt"][row[part]] = turn_by_tilt(np.maximum(*ends) + rise[part])
         checkpoint()
         ended = np.zeros(len(path.feed) + 1, dtype=np.bool_)
         joints = path.blend > 0
@@ -98,6 +109,7 @@ class DerivativeBounds:
         ended[row + 1] |= joints[row + 1]
         touched = ended[1:] | ended[:-1]
         for field in fields(of_row):
+            checkpoint()
             columns[field.name][touched] = _NO_BOUND
         return DerivativeBounds(**columns)
 
@@ -115,6 +127,28 @@ def deviates_in_blends(path: ToolPath, bounds: DerivativeBounds) -> Array:
     return np.asarray((bounds.tip_2 * square > tip) | (bounds.axis_2 * square > axis))
 
 
+def straight_groups(path: ToolPath, bounds: DerivativeBounds, single: Array) -> Array:
+    """Segments whose ends are no places where the path bends: with the next ones they are one straight line, (N,).
+
+    Args:
+        path: N segments.
+        bounds: their bounds.
+        single: (N,) segments that stand alone.
+    """
+    inside, extent = np.zeros(len(single), dtype=np.bool_), path.segments.extent
+    apart = np.append(~path.segments.in_one_curve() | single[1:], True) | single
+    tip, axis = _STRAIGHT
+    for size in _GROUP_SIZES:
+        whole = len(single) // size * size
+        length = extent[:whole].reshape(-1, size).sum(axis=1)
+        bends = ((tip, bounds.tip_2), (axis, bounds.axis_2), (axis, bounds.spin_2))
+        straight = (length <= _LONGEST_GROUP) & ~apart[:whole].reshape(-1, size)[:, :-1].any(axis=1)
+        for allowed, bend in bends:
+            straight &= bend[:whole].reshape(-1, size).max(axis=1) * length**2 / 8 <= allowed
+        inside[:whole].reshape(-1, size)[straight, :-1] = True
+    return inside
+
+
 def rough_limits(path: ToolPath, machine: Machine, bounds: DerivativeBounds, share: float = PLANNED_SHARE) -> Pair:
     """Speeds squared and accelerations along the path that are allowed on the whole of each segment, (N,) each.
 
@@ -126,7 +160,9 @@ def rough_limits(path: ToolPath, machine: Machine, bounds: DerivativeBounds, sha
         checkpoint()
         planned = share * item.acceleration
         square = lowered(square, item.speed, item.first, 2)
+        checkpoint()
         square = lowered(square, FOR_CURVATURE * planned, item.second, 1)
+        checkpoint()
         along = lowered(along, (1 - FOR_CURVATURE) * planned, item.first, 1)
     return square, along
 
@@ -148,6 +184,7 @@ def below_feed(path: ToolPath, square: Array, along: Array) -> Array:
     joint_square, joint_along = (
         np.concatenate([one[:1], np.minimum(one[1:], one[:-1]), one[-1:]]) for one in (square, along)
     )
+    checkpoint()
     joint_square[path.rests] = 0.0
     planned = speed_profile(path.starts, joint_square, joint_along)
     return np.asarray(np.minimum(planned[1:], planned[:-1]) < (1 - _AT_FEED) * path.feed**2)
@@ -158,10 +195,12 @@ def _of_tip(seg: Segments, width: Array, blended: Array, steepness: Array) -> tu
     first, bend, arcs = norm(seg.tangent), np.zeros(len(seg)), seg.arcs
     radius, scale = norm(arcs.radius), 1 + np.abs(arcs.growth) * _BEYOND * seg.extent[arcs.row]
     first[arcs.row] = np.hypot(first[arcs.row], np.hypot(arcs.growth * radius, arcs.turn * radius * scale))
+    checkpoint()
     bend[arcs.row] = radius * np.hypot(2 * arcs.growth * arcs.turn, scale * arcs.turn**2)
     before, corner = np.flatnonzero(blended), np.zeros(len(seg) - 1)
-    tangents = seg.tip_at(before, seg.extent[before])[1], seg.tip_at(before + 1, np.zeros(len(before)))[1]
-    corner[before] = norm(tangents[1] - tangents[0])
+    for part in pieces(len(before), _AT_ONCE):
+        corner[before[part]] = _bend_at(seg, before[part])
+    checkpoint()
     bends = np.where(blended, bend[1:] + bend[:-1], 0.0)
     return (
         _with_joints(first, np.maximum(first[1:], first[:-1]) + _PARTING_1 * bends * width, blended),
@@ -169,15 +208,22 @@ def _of_tip(seg: Segments, width: Array, blended: Array, steepness: Array) -> tu
     )
 
 
+def _bend_at(seg: Segments, before: Array) -> Array:
+    """The change of the tangent of the tip at the ends of segments, (K,)."""
+    at_end, at_start = seg.tip_at(before, seg.extent[before])[1], seg.tip_at(before + 1, np.zeros(len(before)))[1]
+    return np.asarray(norm(at_start - at_end))
+
+
 def _of_axis(seg: Segments, width: Array, blended: Array, steepness: Array) -> tuple[Array, Array, Array]:
     """Bounds of the axis: a tangent vector a moves it by at most |a|, and bends it by |a'|^2 (1 + 2 |a|)."""
     first = norm(seg.axis_rate)
     if not first.any():
         return first, first, _half_tilt(seg, first, first[1:])
-    before = np.arange(len(seg) - 1)
-    corner = np.where(blended, norm(seg.axis_rate[1:] - seg.axis_at(before, seg.extent[:-1])[1]), 0.0)
+    corner = np.where(blended, in_pieces(len(seg) - 1, _AT_ONCE, lambda rows: (_turns_off(seg, rows),))[0], 0.0)
+    checkpoint()
     rate = np.maximum(first[1:], first[:-1])
     angle = (1 + 2 * OFFSET) * width * rate
+    checkpoint()
     second = np.where(angle < _WIDEST, corner * steepness + rate**2 * (1 + 2 * angle), _NO_BOUND)
     return (
         _with_joints(first, rate, blended),
@@ -186,11 +232,20 @@ def _of_axis(seg: Segments, width: Array, blended: Array, steepness: Array) -> t
     )
 
 
+def _turns_off(seg: Segments, rows: slice) -> Array:
+    """How much the rate of the tool axis changes from segments, (K,), to the next ones, by path length."""
+    ends = seg.axis_at(np.arange(rows.start, rows.stop), seg.extent[rows])[1]
+    return np.asarray(norm(seg.axis_rate[rows.start + 1 : rows.stop + 1] - ends))
+
+
 def _half_tilt(seg: Segments, angle: Array, off: Array) -> Array:
     """Highest tilt: a great circle rises above its ends by at most half its angle, plus the deviation of blends."""
     last = seg.axis_at(np.array([len(seg) - 1]), seg.extent[-1:])[0]
+    checkpoint()
     tilts = tilt(np.concatenate([seg.axis, last]))
+    checkpoint()
     highest = np.maximum(tilts[1:], tilts[:-1]) + angle / 2 + _with_joints(np.zeros(len(seg)), off, off > 0)
+    checkpoint()
     return turn_by_tilt(highest)
 
 
@@ -205,5 +260,6 @@ def _of_spin(seg: Segments, blended: Array, steepness: Array) -> tuple[Array, Ar
 
 def _with_joints(inside: Array, at_joint: Array, blended: Array) -> Array:
     """The maximum of the values of segments (N,) and of the blends at their joints (N - 1,)."""
+    checkpoint()
     joint = np.concatenate([[0.0], np.where(blended, at_joint, 0.0), [0.0]])
     return np.maximum(inside, np.maximum(joint[1:], joint[:-1]))

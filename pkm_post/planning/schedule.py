@@ -9,17 +9,34 @@ stretched to the next whole one, which lowers every speed slightly and exceeds n
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Poses, in_pieces, pieces
+from pkm_post.model import Poses, checkpoint, in_pieces, pieces
 from pkm_post.planning.motion_law import MotionLaw
 from pkm_post.planning.speed_profile import Stations, cell_times
-from pkm_post.planning.speed_spline import durations
 
 _AT_ONCE = 1 << 14
 """Places in one pass: the working arrays take more memory than the result."""
+
+
+class Law(Protocol):
+    """Motion along a path by time; path lengths of its places are ``s``."""
+
+    @property
+    def s(self) -> Array:
+        """(M,) path lengths, increasing."""
+        ...
+
+    def at(self, time: Array) -> tuple[Array, Array, Array]:
+        """Path length, speed and acceleration at times, (N,) each."""
+        ...
+
+    def when(self, s: Array) -> Array:
+        """Times at which path lengths are passed, (N,) s."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -34,7 +51,7 @@ class Schedule:
         joint_time: (N,) s, when the end of each segment is passed.
     """
 
-    law: MotionLaw
+    law: Law
     rests_ms: Array
     rest_joints: Array
     edges_ms: Array
@@ -61,12 +78,14 @@ class Schedule:
             shortest_ms: least time from one rest to the next.
         """
         law, rests_ms = _stretched(s, rest, square, acceleration, shortest_ms)
+        checkpoint()
         ends = np.append(np.diff(stations.segment) > 0, True)
 
         def whole_ms(rows: slice) -> tuple[Array]:
             return (np.rint(1000 * law.when(stations.edges[rows])).astype(np.int64),)
 
         (edges_ms,) = in_pieces(len(stations.edges), _AT_ONCE, whole_ms)
+        checkpoint()
         return cls(
             law=law,
             rests_ms=rests_ms,
@@ -84,26 +103,37 @@ class Schedule:
         return self.law.at(time)
 
 
+def _smooth_times(s: Array, square: Array, acceleration: Array) -> Array:
+    """Durations of cells whose accelerations do not jump, s."""
+    from pkm_post.planning.speed_spline import durations
+
+    return durations(np.diff(s), square, acceleration)
+
+
 def _stretched(
     s: Array, rest: Array, square: Array, acceleration: Array | None, shortest_ms: int
 ) -> tuple[MotionLaw, Array]:
     """The motion from rest to rest in whole milliseconds; and the rests."""
     speed = np.sqrt(square)
-    duration = cell_times(s, square) if acceleration is None else durations(np.diff(s), square, acceleration)
+    duration = cell_times(s, square) if acceleration is None else _smooth_times(s, square, acceleration)
+    checkpoint()
     run = np.cumsum(rest) - 1
     elapsed = np.bincount(run[:-1], duration)
     whole_ms = np.maximum(np.ceil(1000 * elapsed).astype(np.int64), shortest_ms)
     stretch = whole_ms / (1000 * elapsed)
     rests_ms = np.concatenate([[0], np.cumsum(whole_ms)])
 
+    checkpoint()
     time, rests = np.zeros(len(s)), np.flatnonzero(rest)
     np.cumsum(np.multiply(duration, stretch[run[:-1]], out=duration), out=time[1:])
+    checkpoint()
     run[-1] = len(elapsed) - 1
     since_start, begin = time[rests], rests_ms / 1000
     for rows in pieces(len(s), _AT_ONCE):
         time[rows] -= since_start[run[rows]]
         time[rows] += begin[run[rows]]
         speed[rows] /= stretch[run[rows]]
+    checkpoint()
     time[rests], speed[-1] = rests_ms / 1000, np.sqrt(square[-1])
     return MotionLaw(
         s, time, speed, acceleration if acceleration is None else acceleration / stretch[run] ** 2

@@ -64,9 +64,19 @@ class LimitedQuantity:
         return np.abs(self.first) if self.each else norm(self.first)[:, None]
 
 
-def limited_quantities(machine: Machine, poses: Poses) -> tuple[LimitedQuantity, ...]:
-    """The quantities that a machine limits, at poses with derivatives by path length."""
-    _, first, second = strut_rates(machine, poses)
+def limited_quantities(machine: Machine, poses: Poses, struts: Array | None = None) -> tuple[LimitedQuantity, ...]:
+    """The quantities that a machine limits, at poses with derivatives by path length.
+
+    Args:
+        machine: the limits.
+        poses: M poses.
+        struts: (6,) which of the struts are asked for; by default all.
+    """
+    first = second = np.empty((len(poses), 0))
+    if struts is None:
+        _, first, second = strut_rates(machine, poses)
+    elif struts.any():
+        first, second = (rates[:, struts] for rates in strut_rates(machine, poses)[1:])
     return machine_quantities(machine, (first, second), (poses.tip_1, poses.tip_2), (poses.axis_1, poses.axis_2))
 
 
@@ -96,7 +106,7 @@ def feed_at(path: ToolPath, poses: Poses, u: Array) -> Array:
         poses: poses at the stations.
         u: (M,) path lengths of the stations on their segments.
     """
-    lower = np.minimum(path.feed[poses.segment], path.feed[following(path, poses.segment, u)])
+    lower = np.minimum(path.feed[poses.segment], path.feed[next_segment(path, poses.segment, u)])
     return feed_of_path_length(lower, norm(poses.tip_1))
 
 
@@ -105,7 +115,7 @@ def feed_of_path_length(feed: Array, way: Array) -> Array:
     return feed / np.maximum(1.0, way / _LONGER)
 
 
-def following(path: ToolPath, segment: Array, u: Array) -> Array:
+def next_segment(path: ToolPath, segment: Array, u: Array) -> Array:
     """The segment after each station, (M,): the next one at a joint, else its own."""
     return np.minimum(segment + (u == path.segments.extent[segment]), len(path.feed) - 1)
 

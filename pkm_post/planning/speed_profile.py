@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, expand_counts
-from pkm_post.model import pieces
+from pkm_post.model import checkpoint, pieces
 from pkm_post.planning.tool_path import ToolPath
 
 _ROUNDING = 4 * np.finfo(np.float64).eps
@@ -30,6 +30,12 @@ _WIDEST_CELL = np.radians(1.0)
 """rad of axis turn, or of arc sweep"""
 _COARSER = 4
 """Factor of both where a profile is refined afterwards."""
+
+
+def inserted(own: Array, row: Array, its: Array) -> Array:
+    """A column with values before some rows, (K,), with a checkpoint."""
+    checkpoint()
+    return np.insert(own, row, its)
 
 
 @dataclass(frozen=True)
@@ -56,12 +62,8 @@ class Stations:
 
     def inserted(self, row: Array, other: Stations) -> Stations:
         """These stations with others, each before the station of a row, (K,)."""
-        segment, u, s, rest = (
-            np.insert(own, row, its)
-            for own, its in zip(
-                (self.segment, self.u, self.s, self.rest), (other.segment, other.u, other.s, other.rest), strict=True
-            )
-        )
+        own, its = ((part.segment, part.u, part.s, part.rest) for part in (self, other))
+        segment, u, s, rest = (inserted(values, row, new) for values, new in zip(own, its, strict=True))
         return Stations(segment, u, s, rest, self.edges)
 
 
@@ -76,12 +78,14 @@ def stations(path: ToolPath, close: Array | None = None, coarse: bool = False) -
     extent = path.segments.extent
     close = np.ones(len(extent), dtype=bool) if close is None else close
     entry, leave = np.where(close, path.blend[:-1], 0.0), np.where(close, path.blend[1:], 0.0)
+    checkpoint()
     middle = extent - entry - leave
     turn = path.segments.turn() * middle
     in_half_blend, coarser = (1, _COARSER) if coarse else (_CELLS_IN_HALF_BLEND, 1)
     stops = path.rests[:-1] & path.rests[1:]  # two rests need a station between them
     least, (first, last_piece) = 1 + (close & (stops | (not coarse))), path.segments.splines.pieces_of_rows()
     least[path.segments.splines.row] *= 1 + last_piece - first
+    checkpoint()
     widest = np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL) / coarser
     cells = np.column_stack(
         [
@@ -90,13 +94,17 @@ def stations(path: ToolPath, close: Array | None = None, coarse: bool = False) -
             np.where(leave > 0, in_half_blend, 0),
         ]
     ).ravel()
+    checkpoint()
     begin = np.column_stack([0 * entry, entry, extent - leave]).ravel()
     width = np.column_stack([entry, middle, leave]).ravel()
+    checkpoint()
     part, number = expand_counts(cells)
     segment = part // 3
+    checkpoint()
     u = begin[part] + width[part] * ((number + 1) / cells[part])
     last = np.append(segment[1:] != segment[:-1], True)
     u[last] = extent
+    checkpoint()
     joint = np.flatnonzero(path.blend)
     return Stations(
         segment=np.concatenate([[0], segment]),
@@ -120,13 +128,16 @@ def speed_profile(s: Array, ceiling: Array, acceleration: Array) -> Array:
     rise *= 2
     for rows in pieces(len(rise), _AT_ONCE):
         rise[rows] *= np.diff(s[rows.start : rows.stop + 1])
+    checkpoint()
     np.cumsum(rise, out=rise)
     np.subtract(ceiling, climb, out=square)
     np.minimum.accumulate(square, out=square)
     square += climb
     square += climb
+    checkpoint()
     np.minimum.accumulate(square[::-1], out=square[::-1])
     square -= climb
+    checkpoint()
     # cancellation must not produce a standstill
     least = np.minimum(ceiling, _ROUNDING * (climb[-1] + ceiling.max()), out=climb)
     return np.clip(square, least, ceiling, out=square)
@@ -140,6 +151,7 @@ def cell_times(s: Array, square: Array) -> Array:
         square: (M,) speed squared.
     """
     speed, times = np.sqrt(square), np.diff(s)
+    checkpoint()
     times *= 2
     times /= speed[1:] + speed[:-1]
     return times

@@ -118,8 +118,8 @@ class SpeedSpline:
                     [
                         at_left,
                         at_right,
-                        _beside_rest(at_left[..., started], before[started]),
-                        _beside_rest(at_right[..., ending], after[ending]),
+                        _rest_cell_bases(at_left[..., started], before[started]),
+                        _rest_cell_bases(at_right[..., ending], after[ending]),
                     ],
                     axis=2,
                 ),
@@ -164,7 +164,7 @@ def _fold(basis: Array, rows: Array, side: int, ratio: Array) -> None:
     basis[:, side, rows] = 0.0
 
 
-def _beside_rest(basis: Array, width: Array) -> Array:
+def _rest_cell_bases(basis: Array, width: Array) -> Array:
     """Bases at the ends of cells that touch a rest: with the change of acceleration of their own law."""
     own = basis.copy()
     own[0] = 2 / 9 * basis[2] / width**2

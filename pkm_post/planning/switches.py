@@ -15,11 +15,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.geometry import Array, expand_counts
-from pkm_post.model import Machine
+from pkm_post.geometry import Array
+from pkm_post.model import Machine, checkpoint, distinct
 from pkm_post.planning.cell_limits import acceleration_demand
 from pkm_post.planning.fastest_profile import Steps, ceilings
-from pkm_post.planning.played_acceleration import StationMotion, Windows, cells_in_windows
+from pkm_post.planning.played_acceleration import StationMotion, Windows, cells_in_windows, covered
 from pkm_post.planning.refinement import Profile
 from pkm_post.planning.speed_limits import PLANNED_SHARE, SAFE_SHARE
 from pkm_post.planning.speed_profile import cell_times
@@ -37,6 +37,8 @@ _JUMP = 0.2
 """Part of an acceleration by which it changes where a point of the program is of use."""
 _NARROWEST = 0.5
 """Part of an interval that is left alone."""
+_STILL = 2e-3
+"""Part of a limit, or of a speed squared, by which a motion may change without another look."""
 _FINEST = 2.0**-20
 """Steps of shares: the last bits of sums, which pieces of other sizes begin elsewhere, make no other plan."""
 _CELLS_AT_ONCE = 8192
@@ -69,27 +71,30 @@ def with_lower_switches(path: ToolPath, machine: Machine, profile: Profile, plan
     fresh = np.ones(len(profile.steps.share), dtype=np.bool_)
     for _ in range(_MOST_ROUNDS):
         time = np.concatenate([[0.0], np.cumsum(cell_times(profile.marks.s, profile.square))])
-        rows = _near(time, fresh & _demanding(profile))
-        if not len(rows):
-            break
-        found = StationMotion(path, profile.marks, time, profile.square).windows(machine, rows, _INTERVAL)
+        checkpoint()
+        about = np.flatnonzero(_affected(time, fresh) & _affected(time, _demanding(profile)))
+        passed = StationMotion(path, profile.marks, time, profile.square, profile.struts)
+        found = passed.windows(machine, about, _INTERVAL)
+        checkpoint()
         found = found.some(np.flatnonzero(found.played > 1))
         if not len(found.start):
             break
         profile, time = _cut(path, machine, profile, time, found)
-        share = _lower_shares(profile.steps.share, time, found)
-        profile, fresh = _with_shares(profile, share)
-        fresh = _widened(fresh, time)
+        checkpoint()
+        profile, fresh = _with_shares(profile, _lower_shares(profile.steps.share, time, found))
     return _with_edges(profile, planned)
 
 
 def _with_edges(profile: Profile, planned: Array) -> Profile:
     """The profile with its switches among the edges: cubics reach far on either side of a switch, not across it."""
+    checkpoint()
     marks, lower = profile.marks, profile.steps.share < planned[profile.marks.segment[1:]]
     along = np.diff(profile.square) / (2 * np.diff(marks.s))
+    checkpoint()
     jump = np.abs(np.diff(along)) > _JUMP * np.maximum(np.abs(along[1:]), np.abs(along[:-1]))
     switch = 1 + np.flatnonzero(jump & (lower[1:] | lower[:-1]))
-    edges = np.union1d(marks.edges, marks.s[switch])
+    checkpoint()
+    edges = distinct(np.concatenate([marks.edges, marks.s[switch]]))
     return replace(profile, marks=replace(marks, edges=edges))
 
 
@@ -106,18 +111,13 @@ def _demanding(profile: Profile) -> Array:
     return np.asarray(columns_in_workers(len(s) - 1, _CELLS_AT_ONCE, largest)[0] > _SAFE)
 
 
-def _near(time: Array, cells: Array) -> Array:
-    """Stations less than two intervals from some of the cells, (M - 1,), and one more on either side, increasing."""
+def _affected(time: Array, cells: Array) -> Array:
+    """Whether windows about stations may touch some of the cells, (M - 1,): (M,)."""
     near = np.flatnonzero(cells)
-    first = np.searchsorted(time, time[near] - 2 * _INTERVAL) - 1
-    last = np.searchsorted(time, time[near + 1] + 2 * _INTERVAL, side="right") + 1
-    return _covered(np.maximum(first, 0), np.minimum(last, len(time)), len(time))
-
-
-def _covered(first: Array, last: Array, count: int) -> Array:
-    """Numbers below a count that lie in some ranges, without their ends, increasing."""
-    change = np.bincount(first, minlength=count + 1) - np.bincount(last, minlength=count + 1)
-    return np.flatnonzero(np.cumsum(change)[:count])
+    checkpoint()
+    first, last = np.searchsorted(time, time[near] - _INTERVAL), np.searchsorted(time, time[near + 1] + _INTERVAL)
+    checkpoint()
+    return covered(first, last, len(time))
 
 
 def _cut(path: ToolPath, machine: Machine, profile: Profile, time: Array, found: Windows) -> tuple[Profile, Array]:
@@ -130,16 +130,19 @@ def _cut(path: ToolPath, machine: Machine, profile: Profile, time: Array, found:
         time: (M,) s.
         found: windows in which cubics exceed a limit.
     """
-    place = (np.unique(found.station)[:, None] + _INTERVAL * _STEPS).ravel()
+    place = (distinct(found.station)[:, None] + _INTERVAL * _STEPS).ravel()
     place = place[(place > 0) & (place < time[-1])]
+    checkpoint()
     cell = np.searchsorted(time, place) - 1
     since, left = place - time[cell], time[cell + 1] - place
     least = _NARROWEST * _INTERVAL
+    checkpoint()
     kept = np.flatnonzero(profile.close[profile.marks.segment[cell + 1]] & (since > least) & (left > least))
     kept = kept[_apart(cell[kept], since[kept], least)]
     cell, since, place = cell[kept], since[kept], place[kept]
     if not len(cell):
         return profile, time
+    checkpoint()
     speed, width = np.sqrt(profile.square[cell]), np.diff(profile.marks.s)[cell]
     along = np.diff(profile.square)[cell] / (2 * width)
     part = since * (speed + since * along / 2) / width
@@ -148,7 +151,12 @@ def _cut(path: ToolPath, machine: Machine, profile: Profile, time: Array, found:
 
 def _apart(cell: Array, since: Array, least: float) -> Array:
     """Rows of places in cells that are not close to one another, in order: of those in a part of a cell the first."""
-    _, first = np.unique(np.column_stack([cell, since // least]), axis=0, return_index=True)
+    part = since // least
+    checkpoint()
+    order = np.lexsort((part, cell))
+    checkpoint()
+    other = (np.diff(cell[order], prepend=-1) != 0) | (np.diff(part[order], prepend=-1) != 0)
+    first = order[other]
     cell, since = cell[first], since[first]
     apart = np.ones(len(first), dtype=np.bool_)
     apart[1:] = (cell[1:] != cell[:-1]) | (since[1:] - since[:-1] > least / 4)
@@ -158,11 +166,31 @@ def _apart(cell: Array, since: Array, least: float) -> Array:
 def _lower_shares(share: Array, time: Array, found: Windows) -> Array:
     """Shares of cells, (M - 1,), with which the cubics in windows keep the limits."""
     highest = np.floor(found.planned * _AIM / found.played / _FINEST) * _FINEST
+    checkpoint()
     first, last = cells_in_windows(time, found.start, _INTERVAL)
-    window, number = expand_counts(last - first + 1)
-    lower = share.copy()
-    np.minimum.at(lower, first[window] + number, highest[window])
-    return lower
+    return np.minimum(share, _least_of_ranges(first, last + 1, highest, len(share)))
+
+
+def _least_of_ranges(first: Array, last: Array, value: Array, count: int) -> Array:
+    """The least value of the ranges in which numbers below a count lie, (count,), infinite where there is none.
+
+    Each range is two of a length that is a power of 2. Those of each length become two of half that length.
+    """
+    power = np.frexp(last - first)[1] - 1
+    size = 1 << int(power.max(initial=0))
+    least = np.full(count + size, np.inf)
+    while size:
+        rows = np.flatnonzero(1 << power == size)
+        checkpoint()
+        np.minimum.at(least, first[rows], value[rows])
+        checkpoint()
+        np.minimum.at(least, last[rows] - size, value[rows])
+        size //= 2
+        if size:
+            halved = least[: len(least) - size].copy()
+            checkpoint()
+            np.minimum(least[size:], halved, out=least[size:])
+    return least[:count]
 
 
 def _with_shares(profile: Profile, share: Array) -> tuple[Profile, Array]:
@@ -172,16 +200,23 @@ def _with_shares(profile: Profile, share: Array) -> tuple[Profile, Array]:
     cells, ceiling = np.flatnonzero(changed), steps.ceiling.copy()
     ceiling[cells] = ceilings(steps.s, steps.limits, cells, share[cells])
     steps = Steps(steps.s, steps.rest, steps.limits, ceiling, share)
+    checkpoint()
     start = np.minimum(profile.square, np.where(steps.rest, 0.0, steps.highest()))
     lowered = start < profile.square
+    checkpoint()
     square = steps.renewed(start, changed | lowered[1:] | lowered[:-1])
-    other = square != profile.square
-    return replace(profile, steps=steps, square=square), changed | other[1:] | other[:-1]
+    return replace(profile, steps=steps, square=square), _moved(steps, profile.square, square)
 
 
-def _widened(cells: Array, time: Array) -> Array:
-    """Cells less than two intervals from some of them, (M - 1,)."""
-    wide = np.zeros(len(cells), dtype=np.bool_)
-    near = _near(time, cells)
-    wide[np.minimum(near, len(cells) - 1)] = True
-    return wide
+def _moved(steps: Steps, before: Array, square: Array) -> Array:
+    """Cells, (M - 1,), in which a motion differs from that before, by speeds squared, (M,), enough for another look."""
+    slower = before - square
+    along = np.diff(slower) / (2 * np.diff(steps.s))
+    checkpoint()
+    rows = np.flatnonzero((slower[1:] > 0) | (slower[:-1] > 0))
+    less = slower > _STILL * before
+    moved = less[1:] | less[:-1]
+    for side in (rows, rows + 1):
+        checkpoint()
+        moved[rows] |= acceleration_demand(steps.limits[side], along[rows], slower[side]) > _STILL
+    return moved

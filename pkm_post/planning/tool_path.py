@@ -26,7 +26,7 @@ from pkm_post.toolpath import Segments, direction
 
 OFFSET = 3 / 16
 """Deviation at the joint per half width and change of direction."""
-_BOW = 0.0134
+_BLEND_DEVIATION = 0.0134
 """Deviation per half width squared and change of curvature: the maximum of (2v - 1)^2 S(v) / 2 before the joint."""
 _NEGLIGIBLE = 1e-12
 """Changes below this impose no limit; keeps the quotients finite."""
@@ -113,11 +113,11 @@ class ToolPath:
         """Poses at path lengths u, (M,), of the given segments, with derivatives by path length."""
         tip, axis = self.segments.tip_at(segment, u), self.segments.axis_at(segment, u)
         spin = self.segments.spin_at(segment, u)
-        distance_to_end = self.segments.extent[segment] - u
-        for joint, x in ((segment, u), (segment + 1, -distance_to_end)):
-            rows = np.flatnonzero(np.abs(x) < _INSIDE * self.blend[joint])
-            if len(rows):
-                self._round(joint[rows], x[rows], rows, tip, axis, spin)
+        to_end = self.segments.extent[segment] - u
+        joint, x = segment + (u > to_end), np.where(u > to_end, -to_end, u)
+        rows = np.flatnonzero(np.abs(x) < _INSIDE * self.blend[joint])
+        if len(rows):
+            self._round(joint[rows], x[rows], rows, tip, axis, spin)
         return Poses(*tip, *axis, spin[0], spin[1], spin[2], self.tool_length[segment], segment)
 
     def _round(self, joint: Array, x: Array, rows: Array, tip: Triple, axis: Triple, spin: Triple) -> None:
@@ -128,30 +128,34 @@ class ToolPath:
         """
         before, seg = joint - 1, self.segments
         at_end, blend = seg.extent[before], _Blend.of(x, self.blend[joint])
-        _overwrite(tip, rows, blend.rounded(*_Ways(joint, x, at_end).of(seg.tip_at)))
-        rate, rate_after = seg.axis_at(before, at_end)[1], seg.axis_rate[joint]
+        _overwrite(tip, rows, blend.rounded(*_ExtendedSegments(joint, x, at_end).of(seg.tip_at)))
+        curved = (seg.is_curve(before) | seg.is_curve(joint)) & seg.splines.turns
+        for some, turned in ((~curved, self._round_circles), (curved, self._round_curves)):
+            if some.any():
+                turned(joint[some], x[some], rows[some], axis, spin)
+
+    def _round_circles(self, joint: Array, x: Array, rows: Array, axis: Triple, spin: Triple) -> None:
+        """Overwrite axis and spin in blends of segments on which the axis turns along great circles."""
+        before, seg = joint - 1, self.segments
+        h, w, w1 = step(x, self.blend[joint])
+        rate, rate_after = seg.axis_at(before, seg.extent[before])[1], seg.axis_rate[joint]
         if rate.any() or rate_after.any():
-            h, w, w1, change = blend.step, blend.step_1, blend.step_2, rate_after - rate
-            tangent = x[:, None] * rate + h * change, rate + w * change, w1 * change
+            change, (column, first, second) = rate_after - rate, (one[:, None] for one in (h, w, w1))
+            tangent = x[:, None] * rate + column * change, rate + first * change, second * change
             _overwrite(axis, rows, along_rates(seg.axis[joint], *tangent))
         turn = seg.spin_rate[before]
         change = seg.spin_rate[joint] - turn
-        h, w, w1 = (one[:, 0] for one in (blend.step, blend.step_1, blend.step_2))
         _overwrite(spin, rows, (seg.spin[joint] + turn * x + change * h, turn + change * w, change * w1))
-        self._round_curves(joint, x, rows, axis, spin)
 
     def _round_curves(self, joint: Array, x: Array, rows: Array, axis: Triple, spin: Triple) -> None:
-        """Overwrite axis and spin in blends beside smooth curves, where these are no great circles."""
+        """The same beside smooth curves, where axes turn along no great circles."""
         seg = self.segments
-        curved = np.flatnonzero(seg.is_curve(joint - 1) | seg.is_curve(joint)) if seg.splines.turns else joint[:0]
-        if len(curved):
-            joint, x, rows = joint[curved], x[curved], rows[curved]
-            blend, ways = _Blend.of(x, self.blend[joint]), _Ways(joint, x, seg.extent[joint - 1])
-            k, k1, k2 = (one.T for one in blend.rounded(*ways.of(seg.axis_at)))
-            k, k1, k2 = direction((k, k1, k2))
-            _overwrite(axis, rows, (k.T, k1.T, k2.T))
-            turn, turn_1, turn_2 = blend.rounded(*ways.of(_as_vectors(seg.spin_at)))
-            _overwrite(spin, rows, (turn[:, 0], turn_1[:, 0], turn_2[:, 0]))
+        blend, ways = _Blend.of(x, self.blend[joint]), _ExtendedSegments(joint, x, seg.extent[joint - 1])
+        k, k1, k2 = (one.T for one in blend.rounded(*ways.of(seg.axis_at)))
+        k, k1, k2 = direction((k, k1, k2))
+        _overwrite(axis, rows, (k.T, k1.T, k2.T))
+        turn, turn_1, turn_2 = blend.rounded(*ways.of(_as_vectors(seg.spin_at)))
+        _overwrite(spin, rows, (turn[:, 0], turn_1[:, 0], turn_2[:, 0]))
 
 
 def _overwrite(values: Triple, rows: Array, others: Triple) -> None:
@@ -217,7 +221,7 @@ def half_widths(
         axis: tolerance of the tool axis, rad.
     """
     # Solves corner * d + bow * d^2 = tolerance; this form of the root is also exact for bow = 0.
-    corner, bow = OFFSET * np.maximum(tip_change, _NEGLIGIBLE), _BOW * curvature_change
+    corner, bow = OFFSET * np.maximum(tip_change, _NEGLIGIBLE), _BLEND_DEVIATION * curvature_change
     by_tip = 2 * tip / (corner + np.sqrt(corner**2 + 4 * bow * tip))
     by_axis = axis / (OFFSET * np.maximum(axis_change, _NEGLIGIBLE))
     by_bend = _BEND / np.maximum(curvature, _NEGLIGIBLE)
@@ -275,7 +279,7 @@ class _Blend:
 
 
 @dataclass(frozen=True)
-class _Ways:
+class _ExtendedSegments:
     """The two segments at joints, each extended beyond it: the joints, distances x from them, and the ends before."""
 
     joint: Array
@@ -285,5 +289,7 @@ class _Ways:
     def of(self, at: Callable[[Array, Array], Triple]) -> tuple[Triple, Triple, Array]:
         """A quantity on both extended segments, and the change of its first derivative at the joint."""
         before, after = self.joint - 1, self.joint
-        change = at(after, 0 * self.x)[1] - at(before, self.at_end)[1]
+        first = np.flatnonzero(np.diff(after, prepend=-1))  # places at one joint follow each other
+        turn = at(after[first], np.zeros(len(first)))[1] - at(before[first], self.at_end[first])[1]
+        change = np.repeat(turn, np.diff(first, append=len(after)), axis=0)
         return at(before, self.at_end + self.x), at(after, self.x), change

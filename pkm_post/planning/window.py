@@ -13,19 +13,21 @@ Leaves: position along the path by time, and tool poses at whole ms. Units: mm, 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Diagnostic, Kind, Machine, Motion, Tolerances, Trajectory, errors
+from pkm_post.model import Kind, Motion
 from pkm_post.planning.knots import LONGEST_MS, even_marks
-from pkm_post.planning.motion import FeedPlan, interpolated_between, plan_feed, within_controller
+from pkm_post.planning.motion import FeedPlan, interpolated_between
 from pkm_post.planning.motion_law import MotionLaw
 from pkm_post.planning.refinement import Span, refined_profile
 from pkm_post.planning.rough_limits import DerivativeBounds, rough_limits
-from pkm_post.planning.schedule import Schedule
+from pkm_post.planning.schedule import Law, Schedule
 from pkm_post.planning.speed_limits import SAFE_SHARE
 from pkm_post.planning.speed_profile import Stations, cell_times
+from pkm_post.planning.time_scaled_law import TimeScaledLaw
 from pkm_post.planning.tool_path import ToolPath
 
 _SAME_SPEED = 5e-3
@@ -37,7 +39,11 @@ _SHORTEST_STOP = 1.1
 """Factor of the distance in which the first stop is tried, by that with all of the acceleration along the path."""
 _LONGER_STOP = 1.6
 """Factor of the distance of the next stop that is tried."""
-_STRETCHES = 60
+_BRAKING = 0.1
+"""Share of the lowest limit of acceleration with which the horizon of a window is estimated."""
+_MORE = 1.5
+"""Factor of the distance that is wanted."""
+_BISECTIONS = 60
 """Bisections for the stretch to whole ms."""
 _BEFORE_S, _AFTER_S = 1.0, 1e6
 """s: stand for the times of joints before and after a window."""
@@ -51,16 +57,22 @@ class PathState:
         s: path length.
         speed: along the path, mm/s.
         override: the factor of the feed with which it got there.
+        law: what is left of the motion that it follows, if its acceleration does not jump and it is not at rest.
     """
 
     s: float
     speed: float
     override: float
+    law: TimeScaledLaw | None = None
+
+    def moved(self, s: float) -> PathState:
+        """The same place on another path."""
+        return replace(self, s=s, law=None if self.law is None else self.law.shifted(s - self.s))
 
 
 @dataclass(frozen=True)
-class Course:
-    """A path along which windows are planned.
+class WindowPlanner:
+    """Plans windows along a path.
 
     Attributes:
         feed_plan: its plan from rest to rest at the highest override, as fast as the controller can follow.
@@ -71,6 +83,9 @@ class Course:
     feed_plan: FeedPlan
     programmed: Array
     bounds: DerivativeBounds
+
+    leaves_stops: ClassVar[bool] = True
+    """Whether a motion can go on from within a stop."""
 
     @property
     def path(self) -> ToolPath:
@@ -92,6 +107,34 @@ class Course:
         """Path length of the first rest of the program after a place."""
         rests = self.path.starts[self.path.rests]
         return float(rests[np.searchsorted(rests, s, side="right")])
+
+    def ahead(self, start: PathState, override: float, seconds: float) -> Schedule | None:
+        """The fastest motion for some time and to rest behind it, or at the next rest of the program.
+
+        Args:
+            start: where it begins.
+            override: factor of the feed, above 0.
+            seconds: the time.
+        """
+        machine, speed = self.feed_plan.machine, float(self.feed(override).max())
+        slowest = _BRAKING * min(machine.tip_acceleration, machine.strut_acceleration)
+        reach = _MORE * speed * seconds + speed**2 / (2 * slowest)
+        return self.window(start, min(self.next_rest(start.s), start.s + reach), override)
+
+    def factor(self, schedule: Schedule, override: float) -> float:
+        """The factor of the feed that holds in a schedule for an override."""
+        return override
+
+    def reached(self, schedule: Schedule, until_ms: int, override: float) -> PathState:
+        """Where a motion is at a whole ms.
+
+        Args:
+            schedule: of the motion.
+            until_ms: at most its end.
+            override: the factor of the feed that holds in it.
+        """
+        s, speed, _ = (float(values[0]) for values in schedule.at(np.array([until_ms / 1000])))
+        return PathState(s, 0.0 if until_ms == int(schedule.rests_ms[-1]) else speed, override)
 
     def window(self, start: PathState, end: float, override: float) -> Schedule | None:
         """The fastest motion from a place and speed to rest; None if it cannot be met from there.
@@ -153,38 +196,30 @@ class Course:
         return interpolated_between(plan, even_marks(np.array([0, until_ms]), longest_ms))[0]
 
 
-def course(
-    trajectory: Trajectory, machine: Machine, tolerances: Tolerances, highest_override: float
-) -> tuple[Course | None, tuple[Diagnostic, ...]]:
-    """The course of a trajectory, or what is out of reach.
-
-    Args:
-        trajectory: at least one segment; from rest to rest.
-        machine: geometry and limits, without a limit of jerk.
-        tolerances: the requested tolerances.
-        highest_override: largest factor of the feed.
-    """
-    rapid = trajectory.kind == Kind.RAPID
-    highest = np.where(rapid, trajectory.feed, np.minimum(trajectory.feed * highest_override, machine.feed_speed))
-    fast = replace(trajectory, feed=np.maximum(highest, trajectory.feed))
-    found, diagnostics = plan_feed(fast, machine, tolerances, SAFE_SHARE)
-    if found is None or errors(diagnostics):
-        return None, diagnostics
-    feed_plan, _ = within_controller(found)
-    return Course(feed_plan, trajectory.feed, DerivativeBounds.of(feed_plan.path)), diagnostics
-
-
 def _schedule(path: ToolPath, marks: Stations, square: Array, shortest_ms: int) -> Schedule:
     """The schedule with these speeds squared at stations, in whole ms; the speed at the start stays."""
     s = marks.s
     square, time = _whole_ms(s, square, shortest_ms)
-    law = MotionLaw(s, time, np.sqrt(square))
-    inside = (path.starts[1:] > s[0]) & (path.starts[1:] < s[-1])
-    joint_time = np.where(path.starts[1:] <= s[0], -_BEFORE_S, _AFTER_S)
-    joint_time[inside] = law.when(path.starts[1:][inside])
-    edges = marks.edges[(marks.edges > s[0]) & (marks.edges < s[-1])]
-    rests = np.array([0, round(1000 * time[-1])])
-    edges_ms = np.unique(np.rint(1000 * law.when(edges)).astype(np.int64))
+    return schedule_of(path, MotionLaw(s, time, np.sqrt(square)), (s[0], s[-1]), marks.edges, time[-1])
+
+
+def schedule_of(path: ToolPath, law: Law, ends: tuple[float, float], edges: Array, seconds: float) -> Schedule:
+    """The schedule of a law along a part of a path.
+
+    Args:
+        path: the whole path.
+        law: from time 0 on.
+        ends: path lengths where it begins, and where it rests.
+        edges: (E,) path lengths of places at which intervals are cut first.
+        seconds: when it rests; whole ms but for rounding.
+    """
+    begin, end = ends
+    starts = path.starts[1:]
+    inside = (starts > begin) & (starts < end)
+    joint_time = np.where(starts <= begin, -_BEFORE_S, _AFTER_S)
+    joint_time[inside] = law.when(starts[inside])
+    rests = np.array([0, round(1000 * seconds)])
+    edges_ms = np.unique(np.rint(1000 * law.when(edges[(edges > begin) & (edges < end)])).astype(np.int64))
     return Schedule(law, rests, np.array([0, len(path.feed)]), edges_ms, joint_time)
 
 
@@ -196,7 +231,7 @@ def _whole_ms(s: Array, square: Array, shortest_ms: int) -> tuple[Array, Array]:
     elapsed = float(cell_times(s, square).sum())
     wanted = max(np.ceil(1000 * elapsed - 1e-9), shortest_ms) / 1000
     low, high = 0.0, 1.0
-    for _ in range(_STRETCHES):
+    for _ in range(_BISECTIONS):
         middle = (low + high) / 2
         if cell_times(s, square * (1 - middle * way)).sum() < wanted:
             low = middle

@@ -19,8 +19,18 @@ if TYPE_CHECKING:
     from pkm_post.posting.machine_check import format_table, machine_faults, machine_summary
     from pkm_post.posting.machine_export import export_machine
     from pkm_post.posting.path_check import check_path_of
-    from pkm_post.posting.place_search import FoundPlace, find_place
-    from pkm_post.posting.reach_study import Study, study, work_offset_text
+    from pkm_post.posting.place_search import (
+        PLACE_STEP,
+        FoundPlace,
+        find_place,
+        may_be_mended,
+        place_found,
+        place_offer,
+        place_options,
+        work_offset_text,
+    )
+    from pkm_post.posting.reach_study import Study, study
+    from pkm_post.posting.stiffness import SoftestPlace, StiffnessStudy, stiffness_study
 else:
     __getattr__ = at_first_use(
         __name__,
@@ -30,8 +40,11 @@ else:
             "machine_check": "format_table machine_faults machine_summary",
             "machine_export": "export_machine",
             "path_check": "check_path_of",
-            "place_search": "FoundPlace find_place",
-            "reach_study": "Study study work_offset_text",
+            "place_search": (
+                "PLACE_STEP FoundPlace find_place may_be_mended place_found place_offer place_options work_offset_text"
+            ),
+            "reach_study": "Study study",
+            "stiffness": "SoftestPlace StiffnessStudy stiffness_study",
         },
     )
 
@@ -40,9 +53,12 @@ __all__ = [
     "Allowance",
     "FoundPlace",
     "Log",
+    "PLACE_STEP",
     "Posted",
     "Prepared",
     "Progress",
+    "SoftestPlace",
+    "StiffnessStudy",
     "Study",
     "cartesian_program",
     "check_path_of",
@@ -54,8 +70,13 @@ __all__ = [
     "post",
     "post_file",
     "prepared_file",
+    "may_be_mended",
     "no_log",
+    "place_found",
+    "place_offer",
+    "place_options",
     "step_names",
+    "stiffness_study",
     "study",
     "machine_summary",
     "work_offset_text",

@@ -35,6 +35,7 @@ def with_machine(reading: ReadingOptions, machine: Machine, options: Options) ->
         reading,
         left_out=tuple(dict.fromkeys((*reading.left_out, *machine.left_out))),
         functions=machine.functions,
+        spindle_axis=machine.spindle_axis is not None,
         tool_table=reading.tool_table or machine.tool_table,
     )
     if pose is None:  # posting refuses a name that the machine does not have

@@ -8,10 +8,15 @@ from __future__ import annotations
 
 from pkm_post.machine import ReachReport, check_reach, find_collisions, placed_workpiece
 from pkm_post.model import Diagnostic, Machine, Setup, Tolerances, Trajectory
+from pkm_post.posting.run import CollisionSearch
 
 
 def check_path_of(
-    trajectory: Trajectory, machine: Machine, setup: Setup, tolerances: Tolerances
+    trajectory: Trajectory,
+    machine: Machine,
+    setup: Setup,
+    tolerances: Tolerances,
+    search: CollisionSearch = find_collisions,
 ) -> tuple[ReachReport, tuple[Diagnostic, ...]]:
     """Run all checks of a trajectory on its machine.
 
@@ -20,12 +25,13 @@ def check_path_of(
         machine: its limits and bodies.
         setup: part, stock and fixtures, and the shanks of the tools.
         tolerances: allowed deviation of the tool from the trajectory.
+        search: ``find_collisions``, or what knows its result.
 
     Returns:
         The margins along the path, and all findings: of reach, and of collisions that no margin stands for.
     """
     checked = check_reach(trajectory, machine, placed_workpiece(setup, trajectory))
-    collisions = find_collisions(trajectory, machine, setup, tolerances)
+    collisions = search(trajectory, machine, setup, tolerances)
     others = (fault for fault in collisions.faults if fault.code not in _IN_REACH)
     return checked, (*checked.faults(), *others)
 

@@ -2,31 +2,52 @@
 """Place search: a work offset, and if need be another spin, with which the machine can follow a program.
 
 Takes a program, a machine and the options of the user; returns the place with its amounts, checked as posting would
-check it, collisions included. The search climbs from the place as it is, then from others too, and then lets the spin
-be optimised; it ends at the first place that holds. It is no proof that there is none if it finds none.
+check it, collisions included. The search climbs from the place as it is, then from others too. Where the best place is
+refused, by a collision for instance, other good ones are checked, and then the best one with an optimised spin; it ends
+at the first place that holds. It is no proof that there is none if it finds none.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.machine import DISPLAY_UNITS, ZERO_TORSION, ReachReport, SpinPolicy, SpinRule, best_position
-from pkm_post.model import RULES, Diagnostic, Machine, Program, Severity, errors
-from pkm_post.options import Options
+from pkm_post.machine import (
+    DISPLAY_UNITS,
+    ZERO_TORSION,
+    ReachReport,
+    SpinPolicy,
+    SpinRule,
+    WorkpiecePosition,
+    good_positions,
+)
+from pkm_post.model import RULES, Diagnostic, Machine, Program, Refused, Severity, checkpoints, errors
+from pkm_post.options import Options, flag_of
 from pkm_post.posting.path_check import check_path_of
 from pkm_post.posting.placement import effective_setup, trajectory_of
+from pkm_post.posting.run import Progress, beat, no_progress
 
 _MORE_STARTS = 12
 """Places that the search climbs from if the first ones do not suffice."""
+_MOST_JUDGED = 8
+"""Places that are checked as posting checks them, from each number of starts."""
+_PLACES = 4
+"""Checked places after which half of the search counts as done: how many are needed is not known."""
+PLACE_STEP = "place search"
+"""The name of the step in progress."""
+MENDED_BY_A_PLACE = frozenset({f"K{number}" for number in (*range(101, 106), *range(113, 118), 121, 133)})
+"""Codes of what another place or spin may mend: limits of struts and joints, singular poses, and bodies of the machine
+that come too close to something."""
 _MM, _DEGREES = 3, 4
 """Decimals of a work offset: it is checked as it can be typed."""
 _STILL = 0.05
 """mm and degrees: less is not said."""
+_ONE_PLACE: Mapping[str, Array] = {}
+"""No fixtures: the whole program is in {C}."""
 _SPARE = {True: "to spare", False: "missing"}
 
 
@@ -83,6 +104,7 @@ def find_place(
     free: str = "xyzc",
     starts: int = 1,
     executor: Executor | None = None,
+    progress: Progress = no_progress,
 ) -> tuple[FoundPlace | None, tuple[Diagnostic, ...]]:
     """Look for a place at which the machine can follow a program.
 
@@ -93,6 +115,7 @@ def find_place(
         free: letters of ``position.FREEDOMS`` in which the workpiece may be moved.
         starts: number of positions from which a better one is looked for first.
         executor: distributes the climbs; by default they run in this process.
+        progress: called a few times a second, with ``PLACE_STEP``; if it raises, the search ends.
 
     Returns:
         The first place that holds, otherwise the last one that was tried; None when the program cannot be placed at
@@ -105,27 +128,97 @@ def find_place(
     if errors(faults):
         return None, (*diagnostics, *faults)
     of_machine = placed.operation >= len(program.operations)  # the routes to tool changes and back
-    found = None
-    for count in (starts, max(starts, _MORE_STARTS)):
-        position = best_position(placed, machine, free, None, of_machine, count, executor)
-        for chosen in _with_spins(replace(options, work_offset=_as_typed(position.machine_from_work))):
-            moved, diagnostics = trajectory_of(program, machine, chosen, executor)
-            if moved is None:
-                return None, diagnostics
-            checked, findings = check_path_of(moved, machine, setup, options.tolerances)
-            turn = (np.degrees(position.move[3:]) + 180.0) % 360.0 - 180.0
-            spins = chosen.spin is not options.spin
-            found = FoundPlace(chosen, position.move[:3], turn, spins, checked, findings)
-            if found.holds:
-                return found, ()
+    found, judged = None, 0
+    with checkpoints(beat(lambda _share: progress(PLACE_STEP, judged / (judged + _PLACES)))):
+        for count in (starts, max(starts, _MORE_STARTS)):
+            positions = good_positions(placed, machine, free, of_machine, count, executor)
+            for position, spin in _candidates(positions[:_MOST_JUDGED], options.spin):
+                chosen = replace(options, work_offset=_as_typed(position.machine_from_work), spin=spin)
+                moved, diagnostics = trajectory_of(program, machine, chosen, executor)
+                if moved is None:
+                    return None, diagnostics
+                checked, findings = check_path_of(moved, machine, setup, options.tolerances)
+                turn = (np.degrees(position.move[3:]) + 180.0) % 360.0 - 180.0
+                found = FoundPlace(chosen, position.move[:3], turn, spin is not options.spin, checked, findings)
+                judged += 1
+                if found.holds:
+                    return found, ()
     return found, ()
 
 
-def _with_spins(options: Options) -> Iterator[Options]:
-    """Yield options with their own spin, and with one that is optimised."""
-    yield options
-    if options.spin.rule not in (SpinRule.OPTIMISED, SpinRule.FILE):
-        yield replace(options, spin=SpinPolicy(SpinRule.OPTIMISED))
+def may_be_mended(diagnostics: Sequence[Diagnostic]) -> bool:
+    """Whether all errors are such that another place of the workpiece may mend them; not if there is none."""
+    return bool(errors(diagnostics)) and {each.code for each in errors(diagnostics)} <= MENDED_BY_A_PLACE
+
+
+def place_offer(diagnostics: Sequence[Diagnostic], subject: str) -> str:
+    """What the command line offers where another place may mend a refusal; empty where none may.
+
+    Args:
+        diagnostics: of the refusal.
+        subject: the file that was refused, as its user named it.
+    """
+    if not may_be_mended(diagnostics):
+        return ""
+    return (
+        f"{subject}: another place or spin may mend this. With the same options, `reach {subject} --place` looks for "
+        "one, and says by how much to shift and turn the part, and what is left there; so does `post` with --find-place"
+    )
+
+
+def place_options(found: FoundPlace, places: Mapping[str, Array] = _ONE_PLACE) -> list[str]:
+    """The options of the command line, and of a job, that post a program at a place.
+
+    Args:
+        found: the place.
+        places: poses in {C} of the fixtures of a job, (4, 4) by name; the first is the work offset, the others keep
+            their place beside it.
+
+    Raises:
+        ValueError: an offset turns about other axes than z, which no option states.
+    """
+    offset = work_offset_text(found.reach.trajectory.machine_from_work)
+    origins = [work_offset_text(pose, f"{flag_of('origin')}={name}") for name, pose in list(places.items())[1:]]
+    if not all(text.startswith("--") for text in (offset, *origins)):
+        raise ValueError(f"expected work offsets that are rotated only about z, got {offset}")
+    spin = [f"{flag_of('spin')}={found.options.spin.rule.value}"] if found.spins else []
+    return [offset, *spin, *origins]
+
+
+def place_found(
+    program: Program, machine: Machine, options: Options, places: Mapping[str, Array], progress: Progress = no_progress
+) -> str:
+    """Look for a place; return in words what to do, what comes of it, and with which options to post.
+
+    Args:
+        program: cutter locations in {C}.
+        machine: geometry and limits.
+        options: work offset, spin and compensation, and the set-up.
+        places: as ``place_options``.
+        progress: as ``find_place``.
+
+    Raises:
+        Refused: the program cannot be placed at all.
+    """
+    found, faults = find_place(program, machine, options, progress=progress)
+    if found is None:
+        raise Refused(faults)
+    if not found.holds:
+        return f"no place was found; the last that was tried: {found.text()}"
+    try:
+        return f"{found.text()}; with the same options and {' '.join(place_options(found, places))}"
+    except ValueError:  # no option states such an offset: the machine file can
+        return f"{found.text()}; with this work offset in the machine file:\n{found.reach.trajectory.machine_from_work}"
+
+
+def _candidates(
+    positions: Sequence[WorkpiecePosition], spin: SpinPolicy
+) -> Iterator[tuple[WorkpiecePosition, SpinPolicy]]:
+    """Yield positions with the spin of the user, best first, and the best one with a spin that is optimised."""
+    for position in positions:
+        yield position, spin
+    if spin.rule not in (SpinRule.OPTIMISED, SpinRule.FILE):
+        yield positions[0], SpinPolicy(SpinRule.OPTIMISED)
 
 
 def _as_typed(offset: Array) -> Array:
@@ -137,3 +230,12 @@ def _as_typed(offset: Array) -> Array:
     rounded[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
     rounded[:3, 3] = np.round(offset[:3, 3], _MM)
     return rounded
+
+
+def work_offset_text(machine_from_work: Array, flag: str = "--work-offset") -> str:
+    """A work offset as an option accepts it, or as a matrix if it rotates about other axes than z."""
+    x, y, z = machine_from_work[:3, 3]
+    if np.allclose(machine_from_work[2, :3], [0.0, 0.0, 1.0]):
+        turn = np.degrees(np.arctan2(machine_from_work[1, 0], machine_from_work[0, 0]))
+        return f"{flag}={x:.3f},{y:.3f},{z:.3f},{turn:.4f}"
+    return np.array2string(machine_from_work, precision=6, suppress_small=True)

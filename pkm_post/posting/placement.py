@@ -14,10 +14,9 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.machine import with_spin
-from pkm_post.model import Diagnostic, Machine, Mesh, Place, Program, Setup, Trajectory
+from pkm_post.model import Diagnostic, Machine, Mesh, Phrase, Place, Program, Setup, Trajectory
 from pkm_post.options import NO_MESH, Options
-from pkm_post.reading import read_mesh
-from pkm_post.toolpath import begun_at, compensate, place, with_copies, with_surface_speed
+from pkm_post.toolpath import compensate, place, with_copies
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -42,6 +41,8 @@ def trajectory_of(
     if moved is None:
         return None, diagnostics
     if options.surface_speed is not None:
+        from pkm_post.toolpath import with_surface_speed
+
         limits = machine.spindle_least_speed, machine.spindle_speed
         moved, faults = with_surface_speed(moved, options.surface_speed, limits)
         diagnostics += faults
@@ -55,6 +56,8 @@ def trajectory_of(
     diagnostics += faults
     if turned is None or options.from_line is None:
         return turned, diagnostics
+    from pkm_post.toolpath import begun_at
+
     begun, faults = begun_at(turned, options.from_line, machine)
     return begun, diagnostics + faults
 
@@ -66,7 +69,7 @@ def work_offset(machine: Machine, options: Options) -> tuple[Array | None, Findi
         return np.asarray(chosen, dtype=np.float64), ()
     if chosen not in machine.work_offsets:
         known = ", ".join(sorted(machine.work_offsets))
-        return None, (Diagnostic("K108", Place(machine.name), f"{chosen}, the machine file has {known}"),)
+        return None, (Diagnostic("K108", Place(machine.name), Phrase("{}, the machine file has {}", chosen, known)),)
     return machine.work_offsets[chosen], ()
 
 
@@ -82,6 +85,8 @@ def effective_setup(options: Options, program: Program | None) -> tuple[Setup, t
     def read(file: str | None, otherwise: Mesh | None = None) -> Mesh | None:
         if file is None or file == NO_MESH:
             return otherwise if file is None else None
+        from pkm_post.reading import read_mesh
+
         mesh, faults = read_mesh(file)
         diagnostics.extend(faults)
         return mesh

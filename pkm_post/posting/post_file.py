@@ -11,10 +11,11 @@ from __future__ import annotations
 
 from argparse import Namespace
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from pkm_post.machine import machine_named
+from pkm_post.geometry import Array
+from pkm_post.machine import find_collisions, machine_named
 from pkm_post.model import Diagnostic, Machine, Place, Program, Refused, Trajectory, checkpoints, errors
 from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
@@ -35,7 +36,7 @@ from pkm_post.options import (
 )
 from pkm_post.posting.machine_reading import with_machine
 from pkm_post.posting.placement import trajectory_of
-from pkm_post.posting.run import Findings, Log, Posted, Progress, beat, no_log, no_progress
+from pkm_post.posting.run import CollisionSearch, Findings, Log, Posted, Progress, beat, no_log, no_progress
 from pkm_post.posting.steps import SUFFIX, post
 from pkm_post.reading import (
     AS_WRITTEN,
@@ -57,12 +58,14 @@ class Prepared:
         machine: the machine it runs on; None if its file has errors.
         options: the user's choices.
         found: diagnostics from reading them.
+        places: poses in {C} of the fixtures of a job, (4, 4) by name, if it has several.
     """
 
     program: Program | None
     machine: Machine | None
     options: Options
     found: Findings
+    places: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def sound(self) -> tuple[Program, Machine]:
@@ -86,13 +89,19 @@ class Prepared:
             raise Refused((*self.found, *diagnostics))
         return trajectory, (*self.found, *diagnostics)
 
-    def post(self, program_path: Path, log: Log = no_log, progress: Progress = no_progress) -> Posted:
-        """Post it to a motion program of this name; the other files take its stem.
+    def post(
+        self,
+        program_path: Path,
+        log: Log = no_log,
+        progress: Progress = no_progress,
+        search: CollisionSearch = find_collisions,
+    ) -> Posted:
+        """Post it to a motion program of this name; the other files take its stem. Arguments as ``posting.post``.
 
         Raises:
             Refused: an input has an error; nothing was written.
         """
-        return post(self.program, self.machine, program_path, self.options, log, self.found, progress)
+        return post(self.program, self.machine, program_path, self.options, log, self.found, progress, search)
 
 
 _ASKED_FOR = "L411"

@@ -11,14 +11,12 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from pkm_post.geometry import Array
 from pkm_post.machine import ZERO_TORSION, ReachReport, SpinRule, least_normalised_margins
 from pkm_post.model import Diagnostic, Machine, Program, errors
 from pkm_post.options import Options
 from pkm_post.posting.path_check import check_path_of
-from pkm_post.posting.place_search import FoundPlace, find_place
+from pkm_post.posting.place_search import FoundPlace, find_place, work_offset_text
 from pkm_post.posting.placement import effective_setup, trajectory_of
 
 _LABELS = ("stroke", "joints", "from singular")
@@ -101,15 +99,6 @@ def study(
         return None, (*diagnostics, *faults)
     checked, both = check_path_of(placed, machine, setup, options.tolerances)
     return Study(checked, tuple(stages), placed.machine_from_work, place), (*diagnostics, *both)
-
-
-def work_offset_text(machine_from_work: Array) -> str:
-    """A work offset as accepted by ``--work-offset``, or as a matrix if it rotates about other axes than z."""
-    x, y, z = machine_from_work[:3, 3]
-    if np.allclose(machine_from_work[2, :3], [0.0, 0.0, 1.0]):
-        turn = np.degrees(np.arctan2(machine_from_work[1, 0], machine_from_work[0, 0]))
-        return f"--work-offset={x:.3f},{y:.3f},{z:.3f},{turn:.4f}"
-    return np.array2string(machine_from_work, precision=6, suppress_small=True)
 
 
 def _rounded(left: Array) -> list[float]:

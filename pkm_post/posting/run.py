@@ -16,7 +16,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pkm_post.model import Diagnostic, Machine, Refused, Tolerances, checkpoints, errors
+from pkm_post.machine import Collisions, find_collisions
+from pkm_post.model import Diagnostic, Machine, Refused, Setup, Tolerances, Trajectory, checkpoints, errors
 from pkm_post.options import Options
 from pkm_post.system import result_files
 from pkm_post.writing import Controller, manifest
@@ -28,7 +29,9 @@ Log = Callable[[str], None]
 Progress = Callable[[str, float], None]
 """Receives the name of the step and the completed share of the work, 0 to 1: when a step begins, and a few times a
 second while it goes on; at the end an empty name and 1. An exception from it stops the run, and no files remain."""
-_BETWEEN_CALLS = 0.1
+CollisionSearch = Callable[[Trajectory, Machine, Setup, Tolerances], Collisions]
+"""``machine.find_collisions``, or a function that keeps its results."""
+_PROGRESS_PERIOD = 0.1
 """s: least time between two calls of progress within a step."""
 _HALF_OF_A_STEP = 1.0
 """s: within a step the share approaches that of its end, as its duration is not known: half of the way in this time,
@@ -92,6 +95,13 @@ class Run:
             raise
         self._call(self.log, f"{name:<22}{time.perf_counter() - begin:7.2f} s   {', '.join(notes)}")
 
+    @contextlib.contextmanager
+    def goes_on(self) -> Iterator[None]:
+        """Let the last step go on, for what belongs to all of them."""
+        name = [*self.shares][-1]
+        with checkpoints(beat(lambda _: self._call(self.progress, name, 1.0))):
+            yield
+
     def print(self, lines: Iterable[str]) -> None:
         """Log additional lines."""
         for line in lines:
@@ -121,7 +131,7 @@ def beat(progress: Callable[[float], None]) -> Callable[[], None]:
     def visit() -> None:
         nonlocal last
         now = time.monotonic()
-        if now - last >= _BETWEEN_CALLS:
+        if now - last >= _PROGRESS_PERIOD:
             last = now
             progress((now - begin) / (now - begin + _HALF_OF_A_STEP))
 
@@ -165,6 +175,7 @@ class PostContext:
         controller: the controller of the machine.
         settings: settings of the controller, of its own class.
         options: the user's choices.
+        search: finds the collisions.
     """
 
     path: Path
@@ -172,6 +183,7 @@ class PostContext:
     controller: Controller
     settings: Any
     options: Options
+    search: CollisionSearch = find_collisions
 
     @property
     def tolerances(self) -> Tolerances:
@@ -181,13 +193,13 @@ class PostContext:
     @property
     def trajectory(self) -> Path:
         """The path of the trajectory file."""
-        return self.beside(result_files.TRAJECTORY)
+        return self.sibling(result_files.TRAJECTORY)
 
     @functools.cached_property
     def trajectory_hash(self) -> str:
         """Fingerprint of the trajectory file, which nothing changes once it has been read back."""
         return manifest.fingerprint_of_file(self.trajectory)
 
-    def beside(self, ending: str) -> Path:
+    def sibling(self, ending: str) -> Path:
         """The path of an accompanying file."""
         return self.path.with_name(self.path.stem + ending)

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from pkm_post.certificate import certify
+from pkm_post.geometry import Array
 from pkm_post.machine import Collisions, find_collisions, setup_names
 from pkm_post.model import (
     Certificate,
@@ -22,6 +23,7 @@ from pkm_post.model import (
     FeedStudy,
     Machine,
     Motion,
+    Phrase,
     Place,
     Program,
     Refused,
@@ -29,15 +31,14 @@ from pkm_post.model import (
     StrutMotion,
     Trajectory,
     errors,
+    threads,
 )
 from pkm_post.options import CARTESIAN, LINUXCNC, PICTURE, Options
 from pkm_post.planning import FeedPlan, Plan, interpolate, plan_feed
-from pkm_post.posting.cartesian_form import write_cartesian
-from pkm_post.posting.machine_check import home_faults
 from pkm_post.posting.placement import effective_setup, trajectory_of
-from pkm_post.posting.run import Findings, Log, PostContext, Posted, Progress, Run, no_log, no_progress
-from pkm_post.report import Results, draw_report, summary, write_page
-from pkm_post.system import beside, memory_guard, require_usable, result_files, staged, write_fault
+from pkm_post.posting.run import CollisionSearch, Findings, Log, PostContext, Posted, Progress, Run, no_log, no_progress
+from pkm_post.report import Results, summary, write_page
+from pkm_post.system import in_background, memory_guard, require_usable, result_files, staged, write_fault
 from pkm_post.toolpath import with_optional_stops
 from pkm_post.writing import TABLES, controller_settings, manifest, outputs, program_files, read_texts, trajectory_file
 
@@ -51,6 +52,8 @@ _SHARES = {
     _REPORT: 1.0,
 }  # fmt: skip
 """The steps in order, with their approximate relative durations."""
+_SHORT = 10_000
+"""Segments of a trajectory whose file is read in a few milliseconds."""
 _SHARE_OF_ANOTHER = 0.2
 """The same for an additional output."""
 
@@ -63,6 +66,7 @@ def post(
     log: Log = no_log,
     found: Findings = (),
     progress: Progress = no_progress,
+    search: CollisionSearch = find_collisions,
 ) -> Posted:
     """Make a certified motion program, with its trajectory, set-up file and report beside it.
 
@@ -74,6 +78,7 @@ def post(
         log: receives a line for each step.
         found: diagnostics from reading these; returned with those found here.
         progress: called a few times a second; an exception from it aborts the run, and nothing is written.
+        search: finds the collisions with part, stock and fixtures, or knows those of the same trajectory and set-up.
 
     Raises:
         Refused: the input has an error, or the folder cannot be written; nothing was written.
@@ -90,17 +95,18 @@ def post(
         results = staged(program_path.parent, manifest.manifest_name(program_path.stem))
         with memory_guard(str(program_path)), results as folder:
             settings = run.value(controller_settings(machine))
-            frame = PostContext(folder / program_path.name, machine, *settings, options)
+            frame = PostContext(folder / program_path.name, machine, *settings, options, search)
             parts, report = _all_steps(run, frame, program, setup)
+            with run.goes_on():
+                manifest.write(folder, program_path.stem, {frame.trajectory.name: frame.trajectory_hash})
             run.end()
-            manifest.write(folder, program_path.stem, {frame.trajectory.name: frame.trajectory_hash})
             posted = _posted(run, program_path, sorted(os.listdir(folder)), parts, report)
     except OSError as fault:
         if fault is run.raised_outside:
             raise
         raise Refused([*run.warnings, write_fault(program_path, fault)]) from fault
     gone = [path for path in posted.files if not path.is_file()]
-    run.accept(tuple(Diagnostic("F142", Place(str(path)), "it was written") for path in gone))
+    run.accept(tuple(Diagnostic("F142", Place(str(path)), Phrase("it was written")) for path in gone))
     return posted
 
 
@@ -131,8 +137,9 @@ def _all_steps(run: Run, frame: PostContext, program: Program, setup: Setup) -> 
     motion, feed, names, covered = _written_program(run, frame, trajectory, setup)
     played, certificate, files = _certificate(run, frame, trajectory, motion, covered)
     results = Results(
-        trajectory, frame.machine, motion, played, certificate, frame.tolerances, feed, program.reading, files
-    )
+        trajectory, frame.machine, motion, played, certificate, frame.tolerances, feed, program.reading, files,
+        setup, _work_offset(frame), frame.options.report_unit, frame.options.report_date,
+    )  # fmt: skip
     report = _report(run, frame, results)
     for name in frame.options.also:
         _write_another(run, frame, name, results)
@@ -143,8 +150,17 @@ def _stored_trajectory(run: Run, frame: PostContext, program: Program) -> Trajec
     """The trajectory as read back from its file: the plan is made from the stored data."""
     with run.step(_TRAJECTORY) as notes:
         trajectory = run.value(trajectory_file.read(_store(run, frame, program)))
+        run.accept(_outputs_without_threads(trajectory, frame.options))
         notes.append(f"{len(trajectory)} segments")
     return trajectory
+
+
+def _outputs_without_threads(trajectory: Trajectory, options: Options) -> tuple[Diagnostic, ...]:
+    """K157 for outputs whose format has no spindle that is an axis."""
+    others = [f"--also {name}" for name in options.also if name != PICTURE]
+    if not others or not (found := threads(trajectory.events)):
+        return ()
+    return (Diagnostic("K157", trajectory.place(found[0].first), f"with {', '.join(others)}"),)
 
 
 def _store(run: Run, frame: PostContext, program: Program) -> Path:
@@ -168,8 +184,10 @@ def _written_program(
 def _planned(run: Run, frame: PostContext, trajectory: Trajectory, setup: Setup) -> tuple[Plan, tuple[Coverage, ...]]:
     """Tool poses and strut lengths by time, and the coverage."""
     with (
-        beside(lambda: find_collisions(trajectory, frame.machine, setup, frame.tolerances)) as found,
-        beside(lambda: frame.trajectory_hash) as fingerprint,
+        in_background(
+            lambda: frame.search(trajectory, frame.machine, setup, frame.tolerances), not setup.is_empty
+        ) as found,
+        in_background(lambda: frame.trajectory_hash, len(trajectory) > _SHORT) as fingerprint,
     ):
         feed_plan = _feed_plan(run, frame, trajectory)
         covered = _collisions(run, found, setup)
@@ -181,7 +199,10 @@ def _feed_plan(run: Run, frame: PostContext, trajectory: Trajectory) -> FeedPlan
     """The path with rounded corners, and its schedule."""
     with run.step(_FEED_PLAN) as notes:
         feed_plan, faults = plan_feed(trajectory, frame.machine, frame.tolerances)
-        if errors(faults):  # if home itself is out of reach, moving the part does not help
+        if errors(faults):
+            from pkm_post.posting.machine_check import home_faults
+
+            # if home itself is out of reach, moving the part does not help
             faults = (*home_faults(frame.machine, frame.machine.name), *faults)
         feed_plan = run.value((feed_plan, faults))
         notes.append(f"{feed_plan.schedule.rests_ms[-1] / 1000:.1f} s of motion")
@@ -223,7 +244,7 @@ def _write_parts(frame: PostContext, trajectory: Trajectory, struts: StrutMotion
     names = outputs.write_parts(frame.path, parts)
     setup = controller.setup_text(settings, machine.name, machine.strut_stroke)
     if setup is not None:
-        outputs.write_parts(frame.beside(controller.SETUP_SUFFIX), (setup,))
+        outputs.write_parts(frame.sibling(controller.SETUP_SUFFIX), (setup,))
     return names
 
 
@@ -252,6 +273,12 @@ def write_program(
     return _write_parts(frame, trajectory, plan.struts), faults
 
 
+def _work_offset(frame: PostContext) -> tuple[str, Array]:
+    """Name of the work offset, and the (4, 4) pose of {C} in {M}; the trajectory exists, so a name is known."""
+    offset = frame.options.work_offset
+    return (offset, frame.machine.work_offsets[offset]) if isinstance(offset, str) else ("as given", offset)
+
+
 def _certificate(
     run: Run, frame: PostContext, trajectory: Trajectory, motion: Motion, covered: tuple[Coverage, ...]
 ) -> tuple[StrutMotion, Certificate, dict[str, Any]]:
@@ -276,8 +303,8 @@ def _report(run: Run, frame: PostContext, results: Results) -> dict[str, Any]:
     """Write the report as JSON and as a page; return its content."""
     with run.step(_REPORT) as notes:
         report = summary.report(results)
-        summary.write(report, frame.beside(result_files.REPORT))
-        write_page(frame.beside(result_files.PAGE), report, results)
+        summary.write(report, frame.sibling(result_files.REPORT))
+        write_page(frame.sibling(result_files.PAGE), report, results)
         notes.extend(summary.verdict(results.certificate))
     run.print([*results.reading, *report["certificate"]["meaning"]])
     return report
@@ -291,10 +318,14 @@ def _write_another(run: Run, frame: PostContext, name: str, results: Results) ->
             run.accept(outputs.write_for_linuxcnc(frame.path, trajectory, frame.tolerances.tip))
             return
         if name == PICTURE:
-            run.accept(draw_report(frame.beside(result_files.PICTURE), results))
+            from pkm_post.report import draw_report
+
+            run.accept(draw_report(frame.sibling(result_files.PICTURE), results))
             return
         if name == CARTESIAN:
-            file = frame.beside(result_files.SIDE_OUTPUTS[CARTESIAN])
+            from pkm_post.posting.cartesian_form import write_cartesian
+
+            file = frame.sibling(result_files.SIDE_OUTPUTS[CARTESIAN])
             off = write_cartesian(file, results.struts, frame.trajectory, frame.machine)
             notes.append(f"struts at most {off:.1e} mm from those of the program at its points")
             return

@@ -18,6 +18,7 @@ from pkm_post.reading.part_program import (
     read_part_program,
     with_tool_table,
 )
+from pkm_post.reading.threads import without_idle_starts
 from pkm_post.reading.units import UNITS
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ __all__ = [
     "LONG_DWELL",
     "MESH_READERS",
     "SPINDLE_SYNCHRONISED",
+    "without_idle_starts",
     "STEP_SUFFIXES",
     "SUFFIXES",
     "UNITS",

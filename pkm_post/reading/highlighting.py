@@ -51,7 +51,7 @@ class Span:
 
 
 @dataclass(frozen=True)
-class Row:
+class HighlightRule:
     """One row of a table of colours.
 
     Attributes:
@@ -70,41 +70,43 @@ class Row:
 _FUNCTIONS = "abs|acos|asin|atan|cos|exists|exp|fix|fup|ln|round|sin|sqrt|tan"
 _FLOW = r"break|call|continue|do|else\s*if|else|end\s*(?:if|repeat|sub|while)|if|repeat|return|sub|while"  # O words
 
-GCODE: tuple[Row, ...] = (
-    Row(Colour.KEYWORD, ("TRAORI", "TRAFOOF"), r"TRAORI(?:\s*\(\s*\d*\s*\))?|TRAFOOF"),
-    Row(Colour.COMMENT, ("COMMENT",), r"\([^()]*\)?|;.*"),
-    Row(Colour.PARAMETER, ("HASH", "NAME"), r"\#|<[^<>]*>?"),
-    Row(Colour.FUNCTION, ("FUNCTION", "ATAN", "EXISTS"), rf"(?:{_FUNCTIONS})(?=[\s(]*\[)"),
-    Row(
+GCODE: tuple[HighlightRule, ...] = (
+    HighlightRule(Colour.KEYWORD, ("TRAORI", "TRAFOOF"), r"TRAORI(?:\s*\(\s*\d*\s*\))?|TRAFOOF"),
+    HighlightRule(Colour.COMMENT, ("COMMENT",), r"\([^()]*\)?|;.*"),
+    HighlightRule(Colour.PARAMETER, ("HASH", "NAME"), r"\#|<[^<>]*>?"),
+    HighlightRule(Colour.FUNCTION, ("FUNCTION", "ATAN", "EXISTS"), rf"(?:{_FUNCTIONS})(?=[\s(]*\[)"),
+    HighlightRule(
         Colour.KEYWORD,
         ("O_CALL", "O_CONDITION", "O_RESULT", "O_PLAIN"),
         rf"(?<![a-z])(?:{_FLOW})(?![a-z])",
     ),
-    Row(Colour.KEYWORD, ("GOTO", "IF", "THEN", "WHILE", "DO", "END"), r"(?<![a-z])(?:go\s*to|then|end)(?![a-z])"),
+    HighlightRule(
+        Colour.KEYWORD, ("GOTO", "IF", "THEN", "WHILE", "DO", "END"), r"(?<![a-z])(?:go\s*to|then|end)(?![a-z])"
+    ),
     # G and L before a function look like these: gexp[1] is g exp[1], and ltan[1] is l tan[1]
-    Row(
+    HighlightRule(
         Colour.OPERATOR,
         ("LOGIC", "COMPARISON", "PRODUCT", "POWER"),
         r"and|x?or|mod|(?:eq|ne|[gl][te])(?!xp|xists|an)|\*\*|[*/]",
     ),
-    Row(Colour.KEYWORD, ("LN", "_O", "PERCENT"), r"LN|O|:|%"),
-    Row(Colour.OPERATOR, ("DELETE", "EQUAL", "LSQB", "RSQB"), r"[][/=]"),
-    Row(Colour.WORD, ("NAMED", "SURFACE", "LETTER"), r"[ABC]\s*3(?=\s*=)|[NT]\s*[XYZ]|[A-MP-Z@^]"),
-    Row(Colour.LINE_NUMBER, ("_N",), r"N(?:\s*\d+\.?\d*)?"),  # with its number
-    Row(Colour.NUMBER, ("NUMBER", "SIGN"), r"[+-]?(?:\d+\.?\d*|\.\d+)|[+-]"),
+    HighlightRule(Colour.KEYWORD, ("LN", "_O", "PERCENT"), r"LN|O|:|%"),
+    HighlightRule(Colour.OPERATOR, ("DELETE", "EQUAL", "LSQB", "RSQB"), r"[][/=]"),
+    HighlightRule(Colour.WORD, ("NAMED", "SURFACE", "LETTER"), r"[ABC]\s*3(?=\s*=)|[NT]\s*[XYZ]|[A-MP-Z@^]"),
+    HighlightRule(Colour.LINE_NUMBER, ("_N",), r"N(?:\s*\d+\.?\d*)?"),  # with its number
+    HighlightRule(Colour.NUMBER, ("NUMBER", "SIGN"), r"[+-]?(?:\d+\.?\d*|\.\d+)|[+-]"),
 )
 """Colour table of G-code. Blanks have no colour."""
 
 _TEXT_WORDS = r"PARTNO|PPRINT|INSERT|LETTER|DISPLY|TPRINT|REMARK|MACHIN|TOOL[ \t]+PATH|OPERATION[ \t]+NAME"
 
-CLDATA: tuple[Row, ...] = (
-    Row(Colour.COMMENT, (), r"\$\$.*"),
-    Row(Colour.OPERATOR, (), r"\$(?=\s*$)"),  # continuation line
-    Row(Colour.KEYWORD, ("TEXT_WORD",), rf"^\s*(?:{_TEXT_WORDS})(?![\w.-])", rest=Colour.TEXT),
-    Row(Colour.TEXT, ("STRING", "TEXT"), r"'[^']*'?|\"[^\"]*\"?"),
-    Row(Colour.NUMBER, ("NUMBER",), r"(?<![\w.+-])[+-]?(?:\d+\.?\d*|\.\d+)(?:E[+-]?\d+)?(?![\w.+-])"),
-    Row(Colour.WORD, ("WORD",), r"[0-9]*[a-z_][a-z0-9_.]*(?:-[a-z0-9_.]+)*"),
-    Row(Colour.OPERATOR, ("COMMA", "SLASH", "EQUAL", "LPAR", "RPAR"), r"[,/=()]"),
+CLDATA: tuple[HighlightRule, ...] = (
+    HighlightRule(Colour.COMMENT, (), r"\$\$.*"),
+    HighlightRule(Colour.OPERATOR, (), r"\$(?=\s*$)"),  # continuation line
+    HighlightRule(Colour.KEYWORD, ("TEXT_WORD",), rf"^\s*(?:{_TEXT_WORDS})(?![\w.-])", rest=Colour.TEXT),
+    HighlightRule(Colour.TEXT, ("STRING", "TEXT"), r"'[^']*'?|\"[^\"]*\"?"),
+    HighlightRule(Colour.NUMBER, ("NUMBER",), r"(?<![\w.+-])[+-]?(?:\d+\.?\d*|\.\d+)(?:E[+-]?\d+)?(?![\w.+-])"),
+    HighlightRule(Colour.WORD, ("WORD",), r"[0-9]*[a-z_][a-z0-9_.]*(?:-[a-z0-9_.]+)*"),
+    HighlightRule(Colour.OPERATOR, ("COMMA", "SLASH", "EQUAL", "LPAR", "RPAR"), r"[,/=()]"),
 )
 """Colour table of CL data."""
 
@@ -116,24 +118,26 @@ _SIEMENS_FLOW = (
 _SIEMENS_FUNCTIONS = (
     r"A?SIN|A?COS|TAN|ATAN2|SQRT|ABS|POT|TRUNC|ROUND(?:UP)?|LN|EXP|MINVAL|MAXVAL|BOUND|[AID]C|AC[NP]"  # AC(1) as well
 )
-SIEMENS: tuple[Row, ...] = (
-    Row(Colour.TEXT, ("text",), r"\"[^\"]*\"?"),
-    Row(Colour.COMMENT, (), r";.*"),
-    Row(Colour.LINE_NUMBER, ("letter", "number", "name", "sign"), rf"{_NO_LETTER}(?:N\s*\d+|[A-Z_][A-Z_]\w*\s*:(?!=))"),
-    Row(Colour.OPERATOR, ("name",), rf"{_NO_LETTER}(?:DIV|MOD|AND|X?OR|NOT|B_(?:AND|X?OR|NOT))(?!\w)"),
-    Row(Colour.KEYWORD, ("name",), rf"{_NO_LETTER}(?:{_SIEMENS_FLOW})(?!\w)"),
-    Row(Colour.KEYWORD, ("sign", "name"), r"%_N_\w+"),
-    Row(Colour.FUNCTION, ("name",), rf"{_NO_LETTER}(?:{_SIEMENS_FUNCTIONS})(?=\s*\()"),
-    Row(Colour.PARAMETER, ("letter", "number", "name"), rf"{_NO_LETTER}(?:R\s*\d+|R(?=\s*\[)|\$[A-Z_]+\w*)"),
-    Row(Colour.WORD, ("letter", "number", "name"), r"[A-Z]\d+(?=\s*=(?!=))|[A-Z_][A-Z_]\w*(?=\s*=(?!=))"),
-    Row(Colour.KEYWORD, ("name",), r"[A-Z_][A-Z_]\w*"),
-    Row(Colour.WORD, ("letter",), r"[A-Z]"),
-    Row(Colour.NUMBER, ("number",), r"'[HB][0-9A-F]+'|(?:\d+\.?\d*|\.\d+)(?:EX[+-]?\d+)?"),
-    Row(Colour.OPERATOR, ("sign",), r"<<|<>|[<>=]=|[-+*/(),\[\]=<>:%.]"),
+SIEMENS: tuple[HighlightRule, ...] = (
+    HighlightRule(Colour.TEXT, ("text",), r"\"[^\"]*\"?"),
+    HighlightRule(Colour.COMMENT, (), r";.*"),
+    HighlightRule(
+        Colour.LINE_NUMBER, ("letter", "number", "name", "sign"), rf"{_NO_LETTER}(?:N\s*\d+|[A-Z_][A-Z_]\w*\s*:(?!=))"
+    ),
+    HighlightRule(Colour.OPERATOR, ("name",), rf"{_NO_LETTER}(?:DIV|MOD|AND|X?OR|NOT|B_(?:AND|X?OR|NOT))(?!\w)"),
+    HighlightRule(Colour.KEYWORD, ("name",), rf"{_NO_LETTER}(?:{_SIEMENS_FLOW})(?!\w)"),
+    HighlightRule(Colour.KEYWORD, ("sign", "name"), r"%_N_\w+"),
+    HighlightRule(Colour.FUNCTION, ("name",), rf"{_NO_LETTER}(?:{_SIEMENS_FUNCTIONS})(?=\s*\()"),
+    HighlightRule(Colour.PARAMETER, ("letter", "number", "name"), rf"{_NO_LETTER}(?:R\s*\d+|R(?=\s*\[)|\$[A-Z_]+\w*)"),
+    HighlightRule(Colour.WORD, ("letter", "number", "name"), r"[A-Z]\d+(?=\s*=(?!=))|[A-Z_][A-Z_]\w*(?=\s*=(?!=))"),
+    HighlightRule(Colour.KEYWORD, ("name",), r"[A-Z_][A-Z_]\w*"),
+    HighlightRule(Colour.WORD, ("letter",), r"[A-Z]"),
+    HighlightRule(Colour.NUMBER, ("number",), r"'[HB][0-9A-F]+'|(?:\d+\.?\d*|\.\d+)(?:EX[+-]?\d+)?"),
+    HighlightRule(Colour.OPERATOR, ("sign",), r"<<|<>|[<>=]=|[-+*/(),\[\]=<>:%.]"),
 )
 """Colour table of Siemens's language; its terminals are the kinds of ``siemens.tokens``, and several rows have one."""
 
-TABLES: dict[Language, tuple[Row, ...]] = {
+TABLES: dict[Language, tuple[HighlightRule, ...]] = {
     Language.GCODE: GCODE,
     Language.CLDATA: CLDATA,
     Language.SIEMENS: SIEMENS,
@@ -150,7 +154,7 @@ def shown_language(file: str, content: bytes, flavour: str | None) -> Language:
 
     Args:
         file: name, with a known suffix.
-        content: of the file, or as much as tells its language.
+        content: of the file, or as much as its language is recognised by.
         flavour: as chosen, None to guess it.
     """
     from pkm_post.reading.siemens import siemens_evidence

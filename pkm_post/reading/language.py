@@ -19,7 +19,7 @@ class Language(enum.Enum):
     GCODE = "G-code"
     CLDATA = "CL data"
     SIEMENS = "Siemens's language"
-    """Counts as G-code by its name and among options; the content tells it."""
+    """Counts as G-code by its name and among options; the content decides."""
 
 
 SUFFIXES: dict[str, Language | None] = {

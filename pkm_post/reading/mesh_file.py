@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Mesh, Place
+from pkm_post.model import Array, Diagnostic, Mesh, Phrase, Place
 
 SUFFIX = ".stl"
 STEP_SUFFIXES = (".step", ".stp")
@@ -80,10 +80,10 @@ def decode(content: bytes, name: str) -> Result:
 def mesh_of_triangles(triangles: Array, name: str) -> Result:
     """Build a mesh from triangles (T, 3, 3); there must be at least one, with plausible coordinates."""
     if not len(triangles):
-        return None, (Diagnostic("K138", Place(name), "no triangles"),)
+        return None, (Diagnostic("K138", Place(name), Phrase("no triangles")),)
     if not np.all(np.abs(triangles) <= _LARGEST_COORDINATE):
         bad = int(np.argmin(np.all(np.abs(triangles) <= _LARGEST_COORDINATE, axis=(1, 2))))
-        return None, (Diagnostic("K138", Place(name), f"triangle {bad + 1} has an implausible coordinate"),)
+        return None, (Diagnostic("K138", Place(name), Phrase("triangle {} has an implausible coordinate", bad + 1)),)
     # Without its folder the name in messages and certificates is independent of the location of the file.
     return Mesh(Path(name).name, triangles), ()
 

@@ -22,10 +22,9 @@ from pathlib import Path
 import numpy as np
 
 from pkm_post.geometry import dot
-from pkm_post.model import Diagnostic, EventKind, Kind, Place, Program, Tool
+from pkm_post.model import Diagnostic, EventKind, Kind, Phrase, Place, Program, Tool
 from pkm_post.reading import gcode, siemens
 from pkm_post.reading.language import Language, language_of
-from pkm_post.reading.tool_table import read_tool_table
 
 _Result = tuple[Program | None, tuple[Diagnostic, ...]]
 
@@ -58,6 +57,7 @@ class ReadingOptions:
         goto_values: meanings of the values of those GOTO statements of CL data that have as many, as in
             ``cldata.ReadOptions``.
         functions: numbers of M codes of G-code that the machine has for purposes of its own: they become events.
+        spindle_axis: whether the spindle of the machine is an axis: without one tapping in G-code is refused.
         feed: speed of cutting moves before the first feed of the file, mm/s; None refuses such moves.
         lengths: gauge lengths of tools, and values of length offsets (H), by number, mm.
         work_offsets: by name, such as "G54" and "G54.1P7", origin in mm and rotation about z in degrees in {C}.
@@ -84,6 +84,7 @@ class ReadingOptions:
     machine_zero: tuple[float, float, float] | None = None
     left_out: tuple[str, ...] = ()
     functions: tuple[int, ...] = ()
+    spindle_axis: bool = False
     feed: float | None = None
     goto_values: tuple[str, ...] = ()
     work_offsets: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
@@ -155,6 +156,8 @@ def with_tool_table(reading: ReadingOptions, language: Language) -> tuple[Readin
     """
     if reading.tool_table is None:
         return reading, ()
+    from pkm_post.reading.tool_table import read_tool_table
+
     table, faults = read_tool_table(reading.tool_table)
     if table is None:
         return reading, faults
@@ -195,6 +198,7 @@ def _read_gcode(content: bytes, file: str, reading: ReadingOptions, folder: Path
         machine_zero=reading.machine_zero,
         left_out=reading.left_out,
         functions=reading.functions,
+        spindle_axis=reading.spindle_axis,
         feed=reading.feed,
         work_offsets=reading.work_offsets,
         machine_offsets=reading.machine_offsets,
@@ -211,7 +215,10 @@ def _read_gcode(content: bytes, file: str, reading: ReadingOptions, folder: Path
     missing = np.flatnonzero(np.isnan(program.side_offset))
     if len(missing):
         place = program.place(int(missing[0]))
-        return None, (*diagnostics, Diagnostic("G411", place, "cutter compensation with a tool of unknown diameter"))
+        return None, (
+            *diagnostics,
+            Diagnostic("G411", place, Phrase("cutter compensation with a tool of unknown diameter")),
+        )
     known = {number: _zero_where_unknown(tool) for number, tool in program.tools.items()}
     return replace(program, tools=known), diagnostics
 

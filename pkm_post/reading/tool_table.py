@@ -47,7 +47,7 @@ class _TableError(ValueError):
 
 
 @dataclass(frozen=True)
-class _Row:
+class _ToolEntry:
     """A tool as its file states it; lengths in mm, None where they are not stated."""
 
     line: int
@@ -90,7 +90,7 @@ def _content(file: Path) -> str:
     return content.decode("utf-8-sig", "replace")
 
 
-def _table_of(rows: Iterator[_Row]) -> ToolTable:
+def _table_of(rows: Iterator[_ToolEntry]) -> ToolTable:
     table = ToolTable()
     seen: set[int] = set()
     for row in rows:
@@ -106,14 +106,14 @@ def _table_of(rows: Iterator[_Row]) -> ToolTable:
     return table
 
 
-def _cutter(row: _Row, diameter: float) -> Tool:
+def _cutter(row: _ToolEntry, diameter: float) -> Tool:
     corner = 0.0 if row.corner is None else row.corner
     if not 0 <= corner <= _within(row, "diameter", diameter) / 2:
         raise _TableError(f"corner radius {corner:g} mm of tool {row.number}, diameter {diameter:g} mm", row.line)
     return Tool(row.number, row.name, diameter, corner, 0.0, corner_known=row.corner is not None)
 
 
-def _within(row: _Row, name: str, value: float) -> float:
+def _within(row: _ToolEntry, name: str, value: float) -> float:
     if not 0 < value < math.inf:
         raise _TableError(f"{name} {value:g} mm of tool {row.number}, expected more than 0", row.line)
     return value
@@ -144,7 +144,7 @@ _OF_LINUXCNC = f"TPZD{_OFFSETS}IJQ"
 """Words of a row: tool, pocket, length, diameter, offsets, angles of turning tools and their orientation."""
 
 
-def _linuxcnc(text: str, _: Path, unit: str) -> Iterator[_Row]:
+def _linuxcnc(text: str, _: Path, unit: str) -> Iterator[_ToolEntry]:
     """``T1 P1 Z50 D6 ;remark``: Z is the length, D the diameter; 0 stands for what was not measured."""
     scale = _scale(unit, "a tool table of LinuxCNC")
     for line, content in enumerate(text.splitlines(), 1):
@@ -160,13 +160,13 @@ def _linuxcnc(text: str, _: Path, unit: str) -> Iterator[_Row]:
                 raise _TableError(f"offset {letter}{given[letter]}, expected 0: a tool has a length along Z", line)
         length, diameter = (_number(given.get(letter, "0"), line) * scale for letter in "ZD")
         number = _tool_number(given["T"], line)
-        yield _Row(line, number, remark.strip(), diameter or None, None, length or None)
+        yield _ToolEntry(line, number, remark.strip(), diameter or None, None, length or None)
 
 
 _COLUMNS = ("number", "name", "diameter", "corner_radius", "length")
 
 
-def _csv(text: str, _: Path, unit: str) -> Iterator[_Row]:
+def _csv(text: str, _: Path, unit: str) -> Iterator[_ToolEntry]:
     """Columns by their headings; others than ``_COLUMNS`` are remarks. An empty cell states nothing."""
     scale = _scale(unit, "a table")
     lines = text.splitlines()
@@ -184,14 +184,14 @@ def _csv(text: str, _: Path, unit: str) -> Iterator[_Row]:
             _number(cells[name], line) * scale if cells.get(name) else None
             for name in ("diameter", "corner_radius", "length")
         ]
-        yield _Row(line, _tool_number(cells["number"], line), cells.get("name", ""), *lengths)
+        yield _ToolEntry(line, _tool_number(cells["number"], line), cells.get("name", ""), *lengths)
 
 
 _QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)) ?(mm|cm|m|in|\")")
 _OF_FREECAD = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, '"': 25.4}
 
 
-def _freecad(text: str, file: Path, unit: str) -> Iterator[_Row]:
+def _freecad(text: str, file: Path, unit: str) -> Iterator[_ToolEntry]:
     """The numbers of a library, and the diameter and corner of each bit, which is in a file of its own."""
     if unit:
         raise _TableError(f"a library of FreeCAD states its units: leave out {unit}")
@@ -203,7 +203,7 @@ def _freecad(text: str, file: Path, unit: str) -> Iterator[_Row]:
         bit = _bit_file(file, path)
         content = _json(_content(bit), bit)
         diameter, corner = _sizes(content, bit)
-        yield _Row(0, _tool_number(str(number), 0), str(content.get("name", "")), diameter, corner)
+        yield _ToolEntry(0, _tool_number(str(number), 0), str(content.get("name", "")), diameter, corner)
 
 
 def _json(text: str, file: Path) -> dict[str, Any]:
@@ -251,5 +251,9 @@ def _quantity(parameters: dict[str, Any], name: str, bit: Path) -> float | None:
     return float(found[1]) * _OF_FREECAD[found[2]]
 
 
-_READERS: dict[str, Callable[[str, Path, str], Iterator[_Row]]] = {".tbl": _linuxcnc, ".csv": _csv, ".fctl": _freecad}
+_READERS: dict[str, Callable[[str, Path, str], Iterator[_ToolEntry]]] = {
+    ".tbl": _linuxcnc,
+    ".csv": _csv,
+    ".fctl": _freecad,
+}
 """Readers by suffix."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Grid: evenly spaced nodes around the stock, in bricks of 8 x 8 x 8.
 
-A cutter changes only the bricks that it touches, and only those are drawn anew. A value per node is an array
+A cutter changes only the bricks that it touches, and only those are redrawn. A value per node is an array
 (B, 512), brick by brick; within a brick x is the slowest index and z the fastest. Units: mm.
 """
 
@@ -35,7 +35,7 @@ class Grid:
     bricks: tuple[int, int, int]
 
     @classmethod
-    def around(cls, low: Array, high: Array, step: float) -> Grid:
+    def enclosing(cls, low: Array, high: Array, step: float) -> Grid:
         """The smallest grid around a box, with a margin.
 
         Args:
@@ -83,7 +83,7 @@ class Grid:
         split = values.reshape(x, BRICK, y, BRICK, z, BRICK)
         return np.ascontiguousarray(split.transpose(0, 2, 4, 1, 3, 5)).reshape(self.count, BRICK**3)
 
-    def places(self, brick: Array, before: int, after: int) -> Array:
+    def node_indices(self, brick: Array, before: int, after: int) -> Array:
         """Flat indices into (B, 512) of the nodes of bricks and of some layers around them.
 
         Beyond the grid the outermost node stands for its neighbours.

@@ -18,7 +18,7 @@ from pkm_post.removal.grid import Grid
 
 _LONGEST = 2.0
 """Longest edge of a triangle, in steps: few nodes lie in the box of a triangle without being near it."""
-_BESIDE = 1.0
+_BAND = 1.0
 """Steps from the mesh within which nodes are compared with every triangle."""
 _ROUNDS = 2
 _CLOSER = 0.01
@@ -37,7 +37,7 @@ def mesh_distances(grid: Grid, triangles: Array, band: float) -> Array:
         band: largest distance that matters, mm.
     """
     small = subdivide(triangles, _LONGEST * grid.step)
-    nearest = _spread(_beside(grid, small), round(band / grid.step) + 1)
+    nearest = _spread(_nearest_triangles(grid, small), round(band / grid.step) + 1)
     distance = np.full(nearest.size, band)
     rows = np.flatnonzero(nearest >= 0)
     for some in (rows[first : first + _PAIRS] for first in range(0, len(rows), _PAIRS)):
@@ -78,19 +78,19 @@ def _nodes(grid: Grid, number: Array) -> Array:
     return np.column_stack([axis[at] for axis, at in zip(grid.axes, index, strict=True)])
 
 
-def _beside(grid: Grid, triangles: Array) -> Array:
+def _nearest_triangles(grid: Grid, triangles: Array) -> Array:
     """The nearest triangle of each node beside the mesh, (X, Y, Z); -1 elsewhere."""
     shape = tuple(len(axis) for axis in grid.axes)
     best, nearest = np.full(np.prod(shape), np.inf), np.full(np.prod(shape), -1, dtype=np.int64)
     normal, level = _planes(triangles)
     for node, triangle in _pairs(grid, triangles):
         point = _nodes(grid, node)
-        near = np.abs(dot(normal[triangle], point) - level[triangle]) <= _BESIDE * grid.step
+        near = np.abs(dot(normal[triangle], point) - level[triangle]) <= _BAND * grid.step
         node, triangle = node[near], triangle[near]
         away = to_triangles(point[near], triangles[triangle])
         order = np.lexsort((away, node))
         order = order[np.append(True, np.diff(node[order]) > 0)]
-        order = order[(away[order] < best[node[order]]) & (away[order] <= _BESIDE * grid.step)]
+        order = order[(away[order] < best[node[order]]) & (away[order] <= _BAND * grid.step)]
         best[node[order]], nearest[node[order]] = away[order], triangle[order]
     return nearest.reshape(shape)
 
@@ -98,7 +98,7 @@ def _beside(grid: Grid, triangles: Array) -> Array:
 def _pairs(grid: Grid, triangles: Array) -> Iterator[tuple[Array, Array]]:
     """Nodes in the boxes around triangles, in batches."""
     shape = np.array([len(axis) for axis in grid.axes])
-    room = _BESIDE * grid.step
+    room = _BAND * grid.step
     begin = np.ceil((triangles.min(axis=1) - room - grid.origin) / grid.step).astype(np.int64)
     end = np.floor((triangles.max(axis=1) + room - grid.origin) / grid.step).astype(np.int64) + 1
     begin, end = np.clip(begin, 0, shape), np.clip(end, 0, shape)

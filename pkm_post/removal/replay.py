@@ -15,7 +15,7 @@ from pkm_post.geometry import Array, angle_between, expand_counts, norm
 from pkm_post.removal.rotating_shape import RotatingShape
 from pkm_post.removal.stock import Stock
 
-_STRETCH = 64
+_POSES_PER_RUN = 64
 """Poses after which the changed bricks are kept."""
 _MOST_KEPT = 100_000
 """Bricks kept, of 2 kB each; with more of them two stretches become one."""
@@ -105,18 +105,18 @@ class Replay:
             changed.append(self._undo())
         end = due if most is None else min(due, self.done + most)
         while self.done < end:
-            changed += self._cut(min(end, self._stretch_end()))
+            changed += self._cut(min(end, self._run_end()))
         return np.unique(np.concatenate(changed)) if changed else np.empty(0, dtype=np.int64)
 
     def _due(self, seconds: float) -> int:
         return int(np.searchsorted(self.path.seconds, seconds, side="right"))
 
-    def _stretch_end(self) -> int:
+    def _run_end(self) -> int:
         """The last pose of the present stretch and of the present tool."""
-        if not self._kept or self.done >= self._kept[-1][0] + _STRETCH:
+        if not self._kept or self.done >= self._kept[-1][0] + _POSES_PER_RUN:
             self._kept.append((self.done, {}))
             self._forget()
-        end = min(self._kept[-1][0] + _STRETCH, len(self.path.seconds))
+        end = min(self._kept[-1][0] + _POSES_PER_RUN, len(self.path.seconds))
         same = self.path.tool[self.done : end] == self.path.tool[self.done]
         return end if same.all() else self.done + int(np.argmin(same))
 

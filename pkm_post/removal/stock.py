@@ -20,7 +20,7 @@ from pkm_post.removal.rotating_shape import RotatingShape
 
 BAND = 3.0
 """Steps up to which distances from the surface are kept."""
-_BESIDE = 1.75
+_BAND = 1.75
 """Steps around a tool within which nodes get to know its surface: those of a cell that it passes."""
 _PAIRS = 2048
 """Pairs of a brick and a pose that are computed together: their arrays stay in the cache."""
@@ -52,7 +52,7 @@ class Stock:
             step: distance of nodes, mm.
         """
         corners = triangles.reshape(-1, 3)
-        grid = Grid.around(corners.min(axis=0), corners.max(axis=0), step)
+        grid = Grid.enclosing(corners.min(axis=0), corners.max(axis=0), step)
         return cls(grid, mesh_distances(grid, triangles, BAND * step), BAND * step)
 
     @property
@@ -84,9 +84,9 @@ class Stock:
 
     def _touched(self, tip: Array, axis: Array, shape: RotatingShape) -> tuple[Array, Array]:
         """Poses and bricks in which these may take something, sorted by brick."""
-        grid, room = self.grid, self.grid.half_diagonal + _BESIDE * self.grid.step
+        grid, room = self.grid, self.grid.half_diagonal + _BAND * self.grid.step
         ends = np.stack([tip, tip + shape.top * axis])
-        wide = shape.widest * np.sqrt(np.maximum(1.0 - axis * axis, 0.0)) + _BESIDE * grid.step
+        wide = shape.widest * np.sqrt(np.maximum(1.0 - axis * axis, 0.0)) + _BAND * grid.step
         size = BRICK * grid.step
         low, high = (ends.min(axis=0) - wide - grid.origin) / size, (ends.max(axis=0) + wide - grid.origin) / size
         begin = np.clip(np.floor(low).astype(np.int64), 0, grid.bricks)

@@ -21,7 +21,7 @@ _AT_ONCE = 256
 _CELLS = BRICK + 1
 _CORNERS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
 _EDGES = np.array([(a, b) for a in range(8) for b in range(a + 1, 8) if (_CORNERS[a] != _CORNERS[b]).sum() == 1])
-_AROUND = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+_EDGE_CELLS = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
 """Cells around an edge, anticlockwise as seen from its end, along the next two coordinates."""
 
 
@@ -53,7 +53,7 @@ def patches(stock: Stock, brick: Array, part: Array | None = None) -> Iterator[P
         part: (B, 512) distances of the nodes from the part, mm, for the values.
     """
     for some in (brick[first : first + _AT_ONCE] for first in range(0, len(brick), _AT_ONCE)):
-        places = stock.grid.places(some, 1, 1)
+        places = stock.grid.node_indices(some, 1, 1)
         field = stock.field.reshape(-1)[places]
         cell, points, normals, values = _vertices(field, None if part is None else part.reshape(-1)[places])
         points = points * stock.grid.step + _first_nodes(stock.grid, some)[cell // _CELLS**3]
@@ -86,7 +86,7 @@ def _vertices(field: Array, part: Array | None) -> tuple[Array, Array, Array, Ar
         axis=1,
     )
     normal = slope / np.maximum(np.sqrt((slope**2).sum(axis=1)), 1e-12)[:, None]
-    values = np.zeros(len(row)) if part is None else _between(part[(row[:, None], *at)], place)
+    values = np.zeros(len(row)) if part is None else _trilinear(part[(row[:, None], *at)], place)
     return ((row * _CELLS + x) * _CELLS + y) * _CELLS + z, index + place, normal, values
 
 
@@ -100,7 +100,7 @@ def _mean_crossing(corner: Array) -> Array:
     return np.asarray(total / crossed.sum(axis=1)[:, None])
 
 
-def _between(corner: Array, place: Array) -> Array:
+def _trilinear(corner: Array, place: Array) -> Array:
     """Values (M, 8) at the corners, trilinearly at places (M, 3) in the cell."""
     weight = np.where(_CORNERS, place[:, None], 1.0 - place[:, None]).prod(axis=2)
     value: Array = (corner * weight).sum(axis=1)
@@ -120,7 +120,7 @@ def _faces(field: Array, cell: Array) -> tuple[Array, Array]:
         row, *node = np.nonzero(start != end)
         out = start[(row, *node)]
         around = []
-        for shift in _AROUND:
+        for shift in _EDGE_CELLS:
             at = [one + 1 for one in node]
             at[(axis + 1) % 3] = node[(axis + 1) % 3] + shift[0]
             at[(axis + 2) % 3] = node[(axis + 2) % 3] + shift[1]

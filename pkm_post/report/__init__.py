@@ -11,19 +11,20 @@ from pkm_post.report.summary import heading
 
 if TYPE_CHECKING:
     from pkm_post.report.animated_png import animate
-    from pkm_post.report.plots import draw_reach, draw_report
+    from pkm_post.report.plots import draw_levels, draw_reach, draw_report
 else:
     __getattr__ = at_first_use(
         __name__,
         {
             "animated_png": "animate",
-            "plots": "draw_reach draw_report",
+            "plots": "draw_levels draw_reach draw_report",
         },
     )
 
 __all__ = [
     "Results",
     "animate",
+    "draw_levels",
     "draw_reach",
     "draw_report",
     "heading",

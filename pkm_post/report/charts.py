@@ -16,13 +16,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import distinct
+from pkm_post.model import checkpoint, distinct
 
 _WIDTH, _HEIGHT = 1000.0, 240.0
 _LEFT, _RIGHT, _TOP, _BOTTOM = 78.0, 990.0, 14.0, 210.0
 _COLUMNS = 500
 """Columns of a chart; each shows the minimum and maximum of its values."""
 _TICKS = 6
+_LETTER = 7.0
+"""Width of a letter: the name of a band stands in it where there is room."""
 _ROOM = 0.04
 """Share of the range that stays free above and below the lines."""
 
@@ -71,6 +73,7 @@ def chart(
         bands: drawn behind the lines, every other one shaded.
         span: lowest and highest value shown; by default those of lines and limits.
     """
+    checkpoint()
     low, high = span or _span(lines, limits)
 
     def x_of(time: Array) -> Array:
@@ -86,8 +89,10 @@ def chart(
         shade = "band odd" if number % 2 else "band"
         parts.append(f'<rect class="{shade}" x="{left:.1f}" y="{_TOP:.1f}" width="{right - left:.1f}" '
                      f'height="{_BOTTOM - _TOP:.1f}"><title>{html.escape(band.name)}</title></rect>')  # fmt: skip
-    parts += [_across("grid", y, f"{tick:g}") for tick, y in _placed(low, high, y_of)]
-    parts += [_upright(x, f"{tick:g}") for tick, x in _placed(0.0, duration, x_of)]
+        if len(band.name) * _LETTER < right - left:
+            parts.append(f'<text class="tick" x="{left + 3:.1f}" y="{_TOP - 4:.1f}">{html.escape(band.name)}</text>')
+    parts += [_across("grid", y, f"{tick:g}") for tick, y in _ticks(low, high, y_of)]
+    parts += [_upright(x, f"{tick:g}") for tick, x in _ticks(0.0, duration, x_of)]
     parts += [_across("limit", float(y_of(np.array(limit)))) for limit in limits if low <= limit <= high]
     parts += [_polyline(line, x_of, y_of) for line in lines]
     middle = (_TOP + _BOTTOM) / 2
@@ -122,7 +127,7 @@ def _span(lines: Sequence[Line], limits: Sequence[float]) -> tuple[float, float]
     return low - room, high + room
 
 
-def _placed(low: float, high: float, place: object) -> list[tuple[float, float]]:
+def _ticks(low: float, high: float, place: object) -> list[tuple[float, float]]:
     """Round numbers between two values, and where they are."""
     step = 10 ** math.floor(math.log10((high - low) / _TICKS))
     step *= next(factor for factor in (1, 2, 5, 10, 20) if (high - low) / (factor * step) <= _TICKS)
@@ -143,6 +148,7 @@ def _upright(x: float, text: str) -> str:
 
 
 def _polyline(line: Line, x_of: object, y_of: object) -> str:
+    checkpoint()
     time, values = decimated(line.time, line.values)
     points = np.stack([x_of(time), y_of(values)], axis=1).ravel().tolist()  # type: ignore[operator]
     text = ("%.1f,%.1f " * len(time) % tuple(points)).rstrip()

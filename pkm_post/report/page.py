@@ -3,7 +3,8 @@
 
 Enters: the content of the report, the planned motion, the program as read back and its certificate. Leaves: the file,
 with the verdict, the path in 3D, charts over time and the tables. A click on a row or into a chart marks that instant
-everywhere. The page has no date: the same job gives the same bytes.
+everywhere. It has a date only if one
+is given: the same job gives the same bytes.
 """
 
 from __future__ import annotations
@@ -18,13 +19,15 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds
-from pkm_post.model import FeedStudy, Kind, Motion, StrutMotion, Trajectory, distinct
+from pkm_post.model import FeedStudy, Kind, Motion, StrutMotion, Trajectory, checkpoint, distinct
 from pkm_post.report.charts import Band, Line, chart, legend
 from pkm_post.report.results import Results
+from pkm_post.report.tables import certificate_tables, origin, row_cells, setup_table, time_table, tool_table
+from pkm_post.report.units import Shown, shown
 
-_PLACES = 6000
+_PATH_POINTS = 6000
 """Instants at which the path is drawn in 3D."""
-_CHART_PLACES = 1000
+_CHART_POINTS = 1000
 """Instants at which charts show the cubics, in addition to the knots."""
 _AXES, _AXIS_LENGTH = 150, 15.0
 """Tool axes drawn, and their length in mm."""
@@ -49,15 +52,17 @@ def write_page(path: Path, report: Mapping[str, Any], results: Results) -> None:
     duration = float(results.struts.time_ms[-1]) / 1000
     bands = list(_operations(trajectory, motion, duration))
     parts = [
-        _heading(report, machine.name),
+        _heading(report, machine.name, results),
         "<h2>Tool path</h2>",
         f'<p class="hint">{_HINT}</p><canvas id="path"></canvas>',
         f'<script type="application/json" id="path-data">{_path(trajectory, motion)}</script>',
-        _feed(report["feed"], results.feed, duration, bands),
+        _feed(report["feed"], results.feed, duration, bands, results.unit),
         _charts(results, duration, bands),
-        _certificate_tables(report["certificate"]),
-        _time_table(report["machining_time"]),
-        _origin(report),
+        certificate_tables(report["certificate"], results.unit),
+        time_table(report["machining_time"]),
+        tool_table(report["program"]["tools"], results.unit),
+        setup_table(report["setup"], results.unit),
+        origin(report),
     ]
     style, script = (Path(__file__).with_name(name).read_text("utf-8") for name in _ASSETS)
     title = html.escape(f"{trajectory.source} on {machine.name}")
@@ -69,7 +74,7 @@ def write_page(path: Path, report: Mapping[str, Any], results: Results) -> None:
 _ASSETS = ("page.css", "page.js")
 
 
-def _heading(report: Mapping[str, Any], machine: str) -> str:
+def _heading(report: Mapping[str, Any], machine: str, results: Results) -> str:
     certificate, program, motion = report["certificate"], report["program"], report["motion"]
     holds = certificate["holds"]
     verdict = "Certified, as far as the table below says" if holds else "Not certified"
@@ -78,11 +83,12 @@ def _heading(report: Mapping[str, Any], machine: str) -> str:
         "machine": machine,
         "machining time": f"{report['machining_time']['total_s']:g} s",
         "points": f"{motion['points']}",
-        "cutting length": f"{program['cutting_length_mm']:g} mm",
-        "tolerance of the tip": f"{_MM_IN_UM * tolerances['tip_mm']:g} um",
+        "cutting length": shown("mm", results.unit).text(program["cutting_length_mm"]),
+        "tolerance of the tip": shown("mm", results.unit, tolerances["tip_mm"]).text(tolerances["tip_mm"]),
         "tolerance of the axis": f"{tolerances['axis_deg']:g} degrees",
-        "tools": ", ".join(f"T{tool['number']} {tool['name']} {tool['length']:g} mm" for tool in program["tools"]),
     }
+    if results.date:
+        numbers["date"] = results.date
     items = "".join(f"<li><span>{name}</span> <b>{html.escape(value)}</b></li>" for name, value in numbers.items())
     return (
         f"<h1>{html.escape(program['source'])}</h1>\n"
@@ -92,10 +98,12 @@ def _heading(report: Mapping[str, Any], machine: str) -> str:
 
 def _path(trajectory: Trajectory, motion: Motion) -> str:
     """The drawn path as JSON: points, instants, runs of one operation, and tool axes."""
-    time, interval, share = _instants(motion.time_ms, _PLACES)
+    time, interval, share = _instants(motion.time_ms, _PATH_POINTS)
     after, duration = interval + 1, np.diff(motion.time_ms)[interval] / 1000
     ends = (motion.tip[interval].T, motion.tip_rate[interval].T, motion.tip[after].T, motion.tip_rate[after].T)
+    checkpoint()
     tip = hermite_columns(*ends, duration, share[None])[:, 0].T
+    checkpoint()
     row = np.minimum(np.searchsorted(motion.joint_time, time), len(trajectory) - 1)
     operation, rapid = trajectory.operation[row], trajectory.kind[row] == Kind.RAPID
     first = np.flatnonzero(np.append(True, (np.diff(operation) != 0) | (np.diff(rapid) != 0)))
@@ -134,38 +142,43 @@ def _instants(time_ms: Array, count: int) -> tuple[Array, Array, Array]:
 
 def _charts(results: Results, duration: float, bands: Sequence[Band]) -> str:
     machine, certificate, tolerances = results.machine, results.certificate, results.tolerances
-    time, length, speed = _strut_course(results.struts)
+    long, fast, small = (shown(unit, results.unit) for unit in ("mm", "mm/s", "um"))
+    time, length, speed = _sampled_struts(results.struts)
+    checkpoint()
     lengths, speeds = (
         [Line(f"strut {number}", time, column, f"c{number}") for number, column in enumerate(values, 1)]
-        for values in (length, speed)
+        for values in (long.factor * length, fast.factor * speed)
     )
-    tip = Line("tip", certificate.time, _MM_IN_UM * certificate.tip_deviation, "c1")
+    tip = Line("tip", certificate.time, small.factor * _MM_IN_UM * certificate.tip_deviation, "c1")
     axis = Line("axis", certificate.time, np.degrees(certificate.axis_deviation), "c2")
-    limit = machine.strut_speed
+    limit, stroke = fast.factor * machine.strut_speed, [long.factor * end for end in machine.strut_stroke]
     return "\n".join(
         [
             "<h2>Struts, as read back from the program</h2>",
             legend(lengths),
-            chart("length, mm", lengths, duration, machine.strut_stroke, bands),
-            chart("speed, mm/s", speeds, duration, (-limit, limit), bands),
+            chart(f"length, {long.unit}", lengths, duration, stroke, bands),
+            chart(f"speed, {fast.unit}", speeds, duration, (-limit, limit), bands),
             "<h2>Deviation from the programmed path</h2>",
-            chart("tip, um", [tip], duration, [_MM_IN_UM * tolerances.tip], bands),
+            chart(f"tip, {small.unit}", [tip], duration, [small.factor * _MM_IN_UM * tolerances.tip], bands),
             chart("axis, degrees", [axis], duration, [float(np.degrees(tolerances.axis))], bands),
         ]
     )
 
 
-def _feed(shares: Mapping[str, Any], feed: FeedStudy | None, duration: float, bands: Sequence[Band]) -> str:
+def _feed(
+    shares: Mapping[str, Any], feed: FeedStudy | None, duration: float, bands: Sequence[Band], of_page: str
+) -> str:
     """The feed over time, and what limits it."""
     if feed is None or not shares:
         return ""
-    highest = _FEED_SHOWN * float(feed.asked[feed.cutting].max())
+    fast = shown("mm/s", of_page)
+    highest = _FEED_SHOWN * fast.factor * float(feed.asked[feed.cutting].max())
     lines = [
-        Line("programmed", feed.time, feed.asked, "faint"),
-        Line("possible", feed.time, feed.possible, "c3"),
-        Line("planned", feed.time, feed.planned, "c1"),
+        Line("programmed", feed.time, fast.factor * feed.asked, "faint"),
+        Line("possible", feed.time, fast.factor * feed.possible, "c3"),
+        Line("planned", feed.time, fast.factor * feed.planned, "c1"),
     ]
-    rows = "".join(map(_limit, shares["limits"]))
+    rows = "".join(_limit(row, fast) for row in shares["limits"])
     return "\n".join(
         [
             "<h2>Feed</h2>",
@@ -173,28 +186,29 @@ def _feed(shares: Mapping[str, Any], feed: FeedStudy | None, duration: float, ba
             f" allows that feed in {_percent(shares['feed_possible'])} of it, and the plan is at 95 % of what is"
             f" possible there in {_percent(shares['as_possible'])}.</p>",
             legend(lines),
-            chart("tip speed, mm/s", lines, duration, (), bands, (0.0, highest)),
-            f"<table><tr><th>what limits the feed<th>share of cutting time<th>slowest, mm/s<th>programmed<th>time, s"
-            f"<th>operation<th>line</tr>{rows}</table>",
+            chart(f"tip speed, {fast.unit}", lines, duration, (), bands, (0.0, highest)),
+            f"<table><tr><th>what limits the feed<th>share of cutting time<th>slowest, {fast.unit}<th>programmed"
+            f"<th>time, s<th>operation<th>line</tr>{rows}</table>",
         ]
     )
 
 
-def _limit(row: Mapping[str, Any]) -> str:
+def _limit(row: Mapping[str, Any], fast: Shown) -> str:
     cells = [
-        row["limit"], _percent(row["share"]), f"{row['slowest_mm_s']:.4g}", f"{row['asked_mm_s']:.4g}",
+        row["limit"], _percent(row["share"]), f"{fast.factor * row['slowest_mm_s']:.4g}",
+        f"{fast.factor * row['asked_mm_s']:.4g}",
         f"{row['time_s']:.3f}", row["operation"], str(row["line"]),
     ]  # fmt: skip
-    return f'<tr data-time="{row["time_s"]:.6g}">{_cells(cells)}</tr>'
+    return f'<tr data-time="{row["time_s"]:.6g}">{row_cells(cells)}</tr>'
 
 
 def _percent(share: float) -> str:
     return f"{100 * share:.1f} %"
 
 
-def _strut_course(struts: StrutMotion) -> tuple[Array, Array, Array]:
+def _sampled_struts(struts: StrutMotion) -> tuple[Array, Array, Array]:
     """Time, (N,) s; strut lengths and speeds on the cubics, (6, N) each."""
-    time, interval, share = _instants(struts.time_ms, _CHART_PLACES)
+    time, interval, share = _instants(struts.time_ms, _CHART_POINTS)
     p0, v0, p1, v1, duration = struts.cubics(interval)
     ends = p0, v0, p1, v1, duration, share[:, None]
     return time, hermite_lengths(*ends)[:, 0].T, hermite_speeds(*ends)[:, 0].T
@@ -207,63 +221,3 @@ def _operations(trajectory: Trajectory, motion: Motion, duration: float) -> Iter
     end = np.append(begin[1:], duration)
     for row, since, until in zip(np.append(0, change), begin.tolist(), end.tolist(), strict=True):
         yield Band(trajectory.operations[trajectory.operation[row]], since, until)
-
-
-def _certificate_tables(certificate: Mapping[str, Any]) -> str:
-    findings = "".join(map(_finding, certificate["findings"]))
-    figures = "".join(
-        _finding(figure | {"limit": None, "holds": True, "is_least": False}) for figure in certificate["figures"]
-    )
-    covered = "".join(
-        _row([row["topic"], row["what"], row["extent"], row["detail"]]) for row in certificate["coverage"]
-    )
-    return (
-        f"<h2>Worst values, {certificate['instants']} poses measured</h2>\n"
-        "<table><tr><th>quantity<th>value<th>limit<th>time, s<th>operation<th>line</tr>"
-        f"{findings}{figures}</table>\n"
-        "<h2>What certified means</h2>\n"
-        f"<table><tr><th>topic<th>hazard<th>coverage<th>how</tr>{covered}</table>"
-    )
-
-
-def _finding(row: Mapping[str, Any]) -> str:
-    unit = f" {row['unit']}" if row["unit"] else ""
-    value = "none" if row["value"] is None else f"{row['value']:.4g}{unit}"
-    bound = "at least " if row["is_least"] else ""
-    limit = "" if row["limit"] is None else f"{bound}{row['limit']:.4g}{unit}"
-    cells = [row["what"], value, limit, f"{row['time_s']:.3f}", row["operation"], str(row["line"])]
-    fails = "" if row["holds"] else ' class="fails"'
-    return f'<tr data-time="{row["time_s"]:.6g}"{fails}>{_cells(cells)}</tr>'
-
-
-def _time_table(machining: Mapping[str, Any]) -> str:
-    rows = (
-        _row([one["name"], *(f"{one[part]:.1f}" for part in ("cutting_s", "rapid_s", "dwell_s"))])
-        for one in machining["operations"]
-    )
-    return (
-        f"<h2>Machining time, s</h2>\n<table><tr><th>operation<th>cutting<th>rapid<th>dwell</tr>{''.join(rows)}</table>"
-    )
-
-
-def _origin(report: Mapping[str, Any]) -> str:
-    files = report["files"]
-    rows = [
-        ("machine file", report["machine"]["sha256"]),
-        ("trajectory", files.get("trajectory_sha256", "")),
-        *(("program", digest) for digest in files.get("programs_sha256", [])),
-    ]
-    hashes = "".join(f"<tr><td>{name}<td><code>{digest}</code></tr>" for name, digest in rows)
-    reading = "".join(f"<li>{html.escape(line)}</li>" for line in report["program"]["reading"])
-    return (
-        f"<h2>Files, SHA-256</h2>\n<table>{hashes}</table>"
-        + f"<h2>How the source was read</h2><ul>{reading}</ul>" * bool(reading)
-    )
-
-
-def _row(cells: Sequence[str]) -> str:
-    return f"<tr>{_cells(cells)}</tr>"
-
-
-def _cells(cells: Sequence[str]) -> str:
-    return "".join(f"<td>{html.escape(cell)}</td>" for cell in cells)

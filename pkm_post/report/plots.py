@@ -141,6 +141,20 @@ def draw_reach(path: Path, machine: str, tip: Array, cone: Array) -> tuple[Diagn
         tip: (N, 3) grid points in {M}, mm.
         cone: (N,) half angles, rad; negative for unreachable points.
     """
+    degrees = np.where(cone < 0, np.nan, np.degrees(cone))
+    return draw_levels(path, f"Reach of {machine}", "widest cone of the tool axis, degrees", tip, degrees)
+
+
+def draw_levels(path: Path, title: str, label: str, tip: Array, values: Array) -> tuple[Diagnostic, ...]:
+    """Draw values on a grid to a PNG file, a panel for each of some heights.
+
+    Args:
+        path: path of the file.
+        title: heading, shown as it is.
+        label: what the values are, with their unit.
+        tip: (N, 3) grid points in {M}, mm.
+        values: (N,) from 0; NaN where there is none.
+    """
     missing = missing_matplotlib(path)
     if missing:
         return missing
@@ -152,23 +166,22 @@ def draw_reach(path: Path, machine: str, tip: Array, cone: Array) -> tuple[Diagn
     figure = Figure(figsize=(4.2 * min(3, len(shown)), 4.0 * -(-len(shown) // 3)), layout="constrained")
     FigureCanvasAgg(figure)
     panels = figure.subplots(-(-len(shown) // 3), min(3, len(shown)), squeeze=False, sharex=True, sharey=True)
-    degrees = np.where(cone < 0, np.nan, np.degrees(cone))
     for panel in panels.ravel()[len(shown) :]:
         panel.remove()
     for panel, height in zip(panels.ravel(), shown, strict=False):
         level = tip[:, 2] == height
-        image = _level(panel, tip[level], degrees[level], float(np.nanmax(degrees, initial=1.0)))
+        image = _level(panel, tip[level], values[level], float(np.nanmax(values, initial=1.0)))
         panel.set_title(f"z = {height:g} mm")
-    figure.colorbar(image, ax=panels.ravel().tolist()[: len(shown)], label="widest cone of the tool axis, degrees")
-    figure.suptitle(f"Reach of {machine}", parse_math=False)
+    figure.colorbar(image, ax=panels.ravel().tolist()[: len(shown)], label=label)
+    figure.suptitle(title, parse_math=False)
     save(figure, path, dpi=90)
     return ()
 
 
-def _level(panel: Any, tip: Array, degrees: Array, highest: float) -> Any:
+def _level(panel: Any, tip: Array, values: Array, highest: float) -> Any:
     x, y = np.unique(tip[:, 0]), np.unique(tip[:, 1])
     order = np.lexsort([tip[:, 0], tip[:, 1]])
-    field = degrees[order].reshape(len(y), len(x))
+    field = values[order].reshape(len(y), len(x))
     panel.set_aspect("equal")
     panel.set_xlabel("x, mm")
     panel.set_ylabel("y, mm")

@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from pkm_post.model import Certificate, FeedStudy, Machine, Motion, StrutMotion, Tolerances, Trajectory
+from pkm_post.geometry import Array
+from pkm_post.model import Certificate, FeedStudy, Machine, Motion, Setup, StrutMotion, Tolerances, Trajectory
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,10 @@ class Results:
         feed: feed of the plan; None if only the program is known.
         reading: how the input was read, as in ``model.Program``.
         files: hashes of the files (``summary.hashes``).
+        setup: what is on the table; None if it is not known.
+        work_offset: name of the work offset and the (4, 4) pose of {C} in {M}; None if it is not known.
+        unit: of lengths on the page, mm or inch.
+        date: text on the page; empty for none.
     """
 
     trajectory: Trajectory
@@ -35,3 +40,7 @@ class Results:
     feed: FeedStudy | None = None
     reading: Sequence[str] = ()
     files: Mapping[str, Any] = field(default_factory=dict)
+    setup: Setup | None = None
+    work_offset: tuple[str, Array] | None = None
+    unit: str = "mm"
+    date: str = ""

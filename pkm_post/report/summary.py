@@ -82,6 +82,7 @@ def report(results: Results) -> dict[str, Any]:
             "tools": [vars(tool) for tool in _tools(trajectory)],
         },
         "machine": {"name": machine.name, "sha256": machine.fingerprint},
+        "setup": _setup(results),
         "files": dict(results.files),
         "tolerances": {
             "tip_mm": tolerances.tip,
@@ -106,6 +107,21 @@ def report(results: Results) -> dict[str, Any]:
             "coverage": [_coverage(row) for row in certificate.coverage],
         },
     }
+
+
+def _setup(results: Results) -> dict[str, Any]:
+    """What is on the table by name, and where the work frame is; without what is not known."""
+    found: dict[str, Any] = {}
+    if results.work_offset is not None:
+        name, pose = results.work_offset
+        axes = {f"{axis}_axis": _rounded(pose[:3, column], 9) for column, axis in enumerate("xyz")}
+        found["work_offset"] = {"name": name, "origin_mm": _rounded(pose[:3, 3], 6), **axes}
+    setup = results.setup
+    if setup is not None:
+        for kind, body in (("part", setup.part), ("stock", setup.stock)):
+            found[kind] = "" if body is None else body.source
+        found["fixtures"] = [body.source for body in setup.fixtures]
+    return found
 
 
 def machining_time(trajectory: Trajectory, motion: Motion) -> dict[str, Any]:

@@ -7,7 +7,7 @@ The command line starts in a Python without NumPy: what needs NumPy is imported 
 from typing import TYPE_CHECKING
 
 from pkm_post import at_first_use
-from pkm_post.system import packages, result_files
+from pkm_post.system import result_files
 from pkm_post.system.file_names import require_usable, unusable_name
 from pkm_post.system.freecad_command import VARIABLE as FREECADCMD
 from pkm_post.system.freecad_command import FreeCADCommand, freecad_command
@@ -18,9 +18,10 @@ from pkm_post.system.staged_folder import staged_folder
 from pkm_post.system.thread_count import VARIABLE as THREADS
 from pkm_post.system.thread_count import ThreadCountError, threads
 from pkm_post.system.thread_count import share as thread_share
-from pkm_post.system.workers import beside, columns_in_workers, in_workers, workers
+from pkm_post.system.workers import columns_in_workers, in_background, in_workers, workers
 
 if TYPE_CHECKING:
+    from pkm_post.system import packages
     from pkm_post.system.decimals import DecimalReader
     from pkm_post.system.document import DocumentContent, Job, read_document
     from pkm_post.system.document_archive import DamagedDocument
@@ -28,6 +29,7 @@ else:
     __getattr__ = at_first_use(
         __name__,
         {
+            "": "packages",
             "document": "DocumentContent Job read_document",
             "document_archive": "DamagedDocument",
             "decimals": "DecimalReader",
@@ -46,7 +48,7 @@ __all__ = [
     "Lock",
     "OwnerRecord",
     "ThreadCountError",
-    "beside",
+    "in_background",
     "columns_in_workers",
     "freecad_command",
     "lock_owner",

@@ -27,6 +27,8 @@ _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _UTF8_NAME = 1 << 11
 _KNOWN_FLAGS = 0b110 | _UTF8_NAME
 """Compression level, and UTF-8 name. FreeCAD reads members with a trailing data descriptor as empty."""
+_NAMES = "utf-8"
+"""Encoding of names: FreeCAD writes UTF-8 without the flag, and 1.1 in Chinese names its tool bits in Chinese."""
 _MOST_UNPACKED = 4 << 30
 """Total bytes of all members. The packed size of a FreeCAD archive cannot exceed this either."""
 _PIECE = 1 << 20
@@ -83,12 +85,12 @@ def verified_archive(stream: BinaryIO) -> Iterator[zipfile.ZipFile]:
     if stream.read(len(_SIGNATURE)) != _SIGNATURE:
         raise _not_a_document("it does not begin as a ZIP archive")
     try:
-        archive = zipfile.ZipFile(stream)
+        archive = zipfile.ZipFile(stream, metadata_encoding=_NAMES)
     except _BROKEN as fault:
         raise _damaged_archive(f"no directory at its end, the file may be truncated: {fault}") from fault
     with archive:
         _check_end(archive, stream)
-        _check_places(archive, stream)
+        _check_member_offsets(archive, stream)
         for member in archive.infolist():
             _check_content(archive, member)
         yield archive
@@ -102,7 +104,7 @@ def _check_end(archive: zipfile.ZipFile, stream: BinaryIO) -> None:
         raise _damaged_archive("the file does not end where the archive does")
 
 
-def _check_places(archive: zipfile.ZipFile, stream: BinaryIO) -> None:
+def _check_member_offsets(archive: zipfile.ZipFile, stream: BinaryIO) -> None:
     """Check that the directory lists the members in sequence and agrees with their local headers."""
     end, names = 0, set()
     for member in sorted(archive.infolist(), key=lambda each: each.header_offset):

@@ -23,7 +23,7 @@ _NAMES = ("freecadcmd", "FreeCADCmd", "freecad.cmd")
 _IN_APPIMAGE = "freecadcmd"
 """An AppImage of FreeCAD runs the program of its own that its first argument names."""
 _APPIMAGE = ".appimage"
-_PLACES: dict[str, tuple[tuple[str, str], ...]] = {
+_LOCATIONS: dict[str, tuple[tuple[str, str], ...]] = {
     "win32": (
         ("ProgramFiles", "FreeCAD*/bin/freecadcmd.exe"),
         ("LOCALAPPDATA", "Programs/FreeCAD*/bin/freecadcmd.exe"),
@@ -103,12 +103,12 @@ def _with_program(file: str) -> tuple[str, ...]:
 
 def _installed(environment: Mapping[str, str], system: str) -> Iterator[Path]:
     """Yield the installed FreeCADs, in each place the highest version first."""
-    for folder, pattern in _places(environment, system):
+    for folder, pattern in _locations(environment, system):
         yield from sorted(folder.glob(pattern), key=_version, reverse=True)
 
 
-def _places(environment: Mapping[str, str], system: str) -> Iterator[tuple[Path, str]]:
-    for variable, pattern in _PLACES.get(system, ()):
+def _locations(environment: Mapping[str, str], system: str) -> Iterator[tuple[Path, str]]:
+    for variable, pattern in _LOCATIONS.get(system, ()):
         folder = environment.get(variable, "") if variable else "/"
         if folder:
             yield Path(folder), pattern.lstrip("/")
@@ -120,5 +120,5 @@ def _version(file: Path) -> list[int]:
 
 
 def _searched(environment: Mapping[str, str], system: str) -> str:
-    places = [str(folder / pattern) for folder, pattern in _places(environment, system)]
+    places = [str(folder / pattern) for folder, pattern in _locations(environment, system)]
     return f", nor in {', '.join(places)}" if places else ""

@@ -43,7 +43,7 @@ def memory_guard(subject: str) -> Iterator[None]:
         Refused: memory ran out, F130. Memory held by the calls inside is released.
     """
     try:
-        _start_workers()
+        _begin()
         yield
         return
     except MEMORY_FAULTS as fault:
@@ -72,13 +72,14 @@ def memory_diagnostic(fault: BaseException, subject: str) -> Diagnostic | None:
     return Diagnostic("F130", Place(subject), found)
 
 
-def _start_workers() -> None:
-    """Start the workers while there is memory for them, and before anything is written."""
-    from pkm_post.system.thread_count import VARIABLE, ThreadCountError
-    from pkm_post.system.workers import workers
+def _begin() -> None:
+    """Refuse a senseless number of threads, and compute once while there is memory, before anything is written."""
+    from pkm_post.system.thread_count import VARIABLE, ThreadCountError, threads
+    from pkm_post.system.workers import compute_once
 
     try:
-        workers()
+        threads()
+        compute_once()
     except ThreadCountError as fault:
         from pkm_post.model import Diagnostic, Place, Refused
 

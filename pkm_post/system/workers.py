@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Workers: one pool of compute threads, as many as ``threads`` says, kept for the life of the process.
 
-All threads start and compute once before any receives work. A thread that Python starts without memory can wait
-forever, and OpenBLAS, which NumPy uses, allocates memory at the first use in a thread and ends the process if there is
-none: half-written files would remain. Work in a worker must not submit work to the pool.
+The pool starts when there is work for it: small jobs are done before. All its threads start and compute once before any
+receives work. A thread that Python starts without memory can wait forever, and OpenBLAS, which NumPy uses, allocates
+memory at the first use in a thread and ends the process if there is none: half-written files would remain. Work in a
+worker must not submit work to the pool.
 """
 
 from __future__ import annotations
 
 import functools
+import os
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from itertools import chain, islice
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -20,6 +21,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from pkm_post.system.thread_count import threads
 
 if TYPE_CHECKING:
+    from concurrent.futures import Future, ThreadPoolExecutor
+
     import numpy as np
 
     Column = np.ndarray[Any, Any]
@@ -34,8 +37,21 @@ _MATRICES, _ROWS = 8, 96
 enough for OpenBLAS to take no further threads, which would wait busily for more work for a tenth of a second."""
 _AHEAD = 4
 """Items for each thread that are taken ahead: with fewer, a thread would wait where items differ in length."""
-_BETWEEN_CHECKPOINTS = 0.1
+_CHECKPOINT_PERIOD = 0.1
 """s between two checkpoints of a caller that waits."""
+
+
+@functools.cache
+def compute_once() -> None:
+    """Let this thread compute, once in the life of the process: OpenBLAS takes its memory for it now.
+
+    Raises:
+        MemoryError: there is not enough memory.
+    """
+    import numpy as np
+
+    np.empty(_FOR_EACH, dtype=np.uint8)
+    np.linalg.inv(np.eye(_ROWS))
 
 
 @functools.cache
@@ -46,6 +62,8 @@ def workers() -> ThreadPoolExecutor:
         MemoryError: there is not enough memory for the threads.
         ThreadCountError: as ``threads``.
     """
+    from concurrent.futures import ThreadPoolExecutor
+
     import numpy as np
 
     count = threads()
@@ -63,6 +81,10 @@ def workers() -> ThreadPoolExecutor:
         pool.shutdown()
         raise
     return pool
+
+
+if hasattr(os, "register_at_fork"):  # POSIX
+    os.register_at_fork(after_in_child=workers.cache_clear)  # a process that was forked has none of the threads
 
 
 class _EndedError(Exception):
@@ -106,16 +128,17 @@ def in_workers(function: Callable[[Item], Result], items: Iterable[Item]) -> Ite
 
 
 @contextmanager
-def beside(function: Callable[[], Result]) -> Iterator[Callable[[], Result]]:
+def in_background(function: Callable[[], Result], is_long: bool = True) -> Iterator[Callable[[], Result]]:
     """Let a worker compute something while the block goes on; the block gets a function that waits for the result.
 
-    With one thread it is computed when the result is asked for. When the block ends earlier, the worker stops at its
-    next checkpoint.
+    With one thread, and where it takes no time, it is computed when the result is asked for. When the block ends
+    earlier, the worker stops at its next checkpoint.
 
     Args:
         function: must not submit work to the pool.
+        is_long: whether it takes longer than to start the pool, some milliseconds.
     """
-    if threads() == 1:
+    if not is_long or threads() == 1:
         yield function
         return
     ended = threading.Event()
@@ -161,8 +184,10 @@ def _until(ended: threading.Event, function: Callable[[Item], Result], item: Ite
 
 def _awaited(future: Future[Result]) -> Result:
     """The result of a future, with checkpoints until it is there."""
+    from concurrent.futures import wait
+
     from pkm_post.model import checkpoint
 
-    while not wait([future], _BETWEEN_CHECKPOINTS).done:
+    while not wait([future], _CHECKPOINT_PERIOD).done:
         checkpoint()
     return future.result()

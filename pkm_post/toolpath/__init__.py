@@ -4,7 +4,6 @@
 from typing import TYPE_CHECKING
 
 from pkm_post import at_first_use
-from pkm_post.toolpath.compressor.bounds import SplineBounds
 from pkm_post.toolpath.compressor.compress import compress
 from pkm_post.toolpath.compressor.splines import Splines, direction
 from pkm_post.toolpath.place import place
@@ -15,10 +14,12 @@ if TYPE_CHECKING:
     from pkm_post.toolpath.chords import CHORD_ERROR, with_chords
     from pkm_post.toolpath.compensation.compensate import compensate
     from pkm_post.toolpath.compensation.contact import tip_from_contact
-    from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
     from pkm_post.toolpath.compensation.cutter import Cutter
+    from pkm_post.toolpath.compensation.offset_options import OffsetOptions
     from pkm_post.toolpath.compensation.swept_volume import SweptVolume, stock_left
-    from pkm_post.toolpath.from_line import StartLine, begun_at, modal_events, row_of_line
+    from pkm_post.toolpath.compressor.bounds import SplineBounds
+    from pkm_post.toolpath.from_line import StartLine, begun_at, modal_events, not_repeated, row_of_line
+    from pkm_post.toolpath.machine_offsets import MachineOffsets, with_machine_offsets
     from pkm_post.toolpath.optional_stops import OPTIONAL_STOPS, with_optional_stops
     from pkm_post.toolpath.sides import with_side
     from pkm_post.toolpath.surface.moves import program_from_poses
@@ -42,10 +43,12 @@ else:
             "chords": "CHORD_ERROR with_chords",
             "compensation.compensate": "compensate",
             "compensation.contact": "tip_from_contact",
-            "compensation.contour_elements": "OffsetOptions",
             "compensation.cutter": "Cutter",
+            "compensation.offset_options": "OffsetOptions",
             "compensation.swept_volume": "SweptVolume stock_left",
-            "from_line": "StartLine begun_at modal_events row_of_line",
+            "compressor.bounds": "SplineBounds",
+            "from_line": "StartLine begun_at modal_events not_repeated row_of_line",
+            "machine_offsets": "MachineOffsets with_machine_offsets",
             "optional_stops": "OPTIONAL_STOPS with_optional_stops",
             "sides": "with_side",
             "surface.moves": "program_from_poses",
@@ -69,6 +72,7 @@ __all__ = [
     "CHORD_ERROR",
     "MIRRORS",
     "OPTIONAL_STOPS",
+    "with_machine_offsets",
     "with_optional_stops",
     "with_side",
     "with_chords",
@@ -80,6 +84,7 @@ __all__ = [
     "Cutter",
     "Seam",
     "LeadMove",
+    "MachineOffsets",
     "PassLines",
     "OffsetOptions",
     "PassOrder",
@@ -99,6 +104,7 @@ __all__ = [
     "StartLine",
     "begun_at",
     "modal_events",
+    "not_repeated",
     "row_of_line",
     "Splines",
     "compensate",

@@ -2,10 +2,11 @@
 """From line: a program that begins at a line of its source, after an abort or a loss of power.
 
 The rows before the line are left out. What they have switched on is found: the last spindle speed with its wait, the
-last coolant, and the tool. The way to the line begins where the whole program begins; it leads over the tool-change
-pose, if the machine file states one, above everything the program reaches to above the line, and down along the tool
-axis, with the feed of the line where that cuts. Spindle and coolant are switched on before that last move. As a part of
-the trajectory, the way is planned, checked for reach and collisions and certified like any move.
+last coolant, the tool, and, where that is wanted, the M codes of the machine. The way to the line begins where the
+whole program begins; it leads over the tool-change pose, if the machine file states one, above everything the program
+reaches to above the line, and down along the tool axis, with the feed of the line where that cuts. Spindle and
+coolant are switched on before that last move. As a part of the trajectory, the way is planned, checked for reach and
+collisions and certified like any move.
 
 Enters: a trajectory on its machine. Leaves: the trajectory from the line on. Units: mm, rad, mm/s.
 """
@@ -25,8 +26,10 @@ from pkm_post.model import (
     EventKind,
     Kind,
     Machine,
+    Phrase,
     Place,
     Trajectory,
+    threads,
 )
 from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
 
@@ -43,14 +46,16 @@ class StartLine:
     Attributes:
         line: line of the source, or number of the command in its operation.
         operation: name of the operation; empty for the first one with such a line.
+        repeat_codes: whether the M codes of the machine before it are repeated.
     """
 
     line: int
     operation: str = ""
+    repeat_codes: bool = False
 
 
 @dataclass(frozen=True)
-class _Way:
+class _Approach:
     """The way to a row: M poses.
 
     Attributes:
@@ -73,9 +78,21 @@ def row_of_line(trajectory: Trajectory, start: StartLine) -> int | None:
     return int(rows[0]) if len(rows) else None
 
 
-def modal_events(trajectory: Trajectory, row: int) -> tuple[Event, ...]:
-    """What the program has switched on before a row: the last event of each kind."""
-    last = {each.kind: each for each in trajectory.events if each.row <= row and each.kind in _MODAL}
+def modal_events(trajectory: Trajectory, row: int, repeat_codes: bool = False) -> tuple[Event, ...]:
+    """What the program has switched on before a row: the last event of each kind, in the order of the program.
+
+    Args:
+        trajectory: the program.
+        row: where it begins.
+        repeat_codes: whether M codes of the machine are among them, each once: where it came last.
+    """
+    last: dict[tuple[EventKind, float], Event] = {}
+    for each in trajectory.events:
+        is_code = repeat_codes and each.kind is EventKind.FUNCTION
+        if each.row <= row and (each.kind in _MODAL or is_code):
+            key = each.kind, each.value if is_code else 0.0
+            last.pop(key, None)
+            last[key] = each
     return tuple(last.values())
 
 
@@ -91,23 +108,26 @@ def begun_at(trajectory: Trajectory, start: StartLine, machine: Machine) -> tupl
     if row is None:
         place = Place(trajectory.source, start.operation, start.line)
         return None, (Diagnostic("K150", place, f"operations {', '.join(trajectory.operations) or 'without a name'}"),)
+    row = min([each.first for each in threads(trajectory.events) if each.first <= row < each.end], default=row)
     if row == 0:
         return trajectory, ()
-    way = _way(trajectory, row, machine)
+    way = _approach(trajectory, row, machine)
     if way is None:
         tilt = float(np.degrees(np.arccos(trajectory.axis_before()[row, 2])))
-        return None, (Diagnostic("K151", trajectory.place(row), f"{tilt:.3f} degrees from upright"),)
-    return _joined(trajectory, row, way), _not_repeated(trajectory, row)
+        return None, (Diagnostic("K151", trajectory.place(row), Phrase("{} degrees from upright", f"{tilt:.3f}")),)
+    return _joined(trajectory, row, way, start.repeat_codes), (
+        () if start.repeat_codes else not_repeated(trajectory, row)
+    )
 
 
-def _not_repeated(trajectory: Trajectory, row: int) -> Findings:
+def not_repeated(trajectory: Trajectory, row: int) -> Findings:
     """K152 with the M codes of the machine before a row: what they do, and for how long, is not known."""
     codes = [f"M{each.value:.0f}" for each in _before(trajectory, row) if each.kind is EventKind.FUNCTION]
     found = ", ".join(dict.fromkeys(codes))
     return (Diagnostic("K152", trajectory.place(row), found),) if found else ()
 
 
-def _way(trajectory: Trajectory, row: int, machine: Machine) -> _Way | None:
+def _approach(trajectory: Trajectory, row: int, machine: Machine) -> _Approach | None:
     """The way from where the program begins to a row; None if the tool is tilted too far to come down to it."""
     begin = ToolPose(trajectory.start_tip, trajectory.start_axis, trajectory.start_spin)
     tips, axes = trajectory.tip_before()[row], trajectory.axis_before()[row]
@@ -124,7 +144,7 @@ def _way(trajectory: Trajectory, row: int, machine: Machine) -> _Way | None:
     changed = replace(leaves, tip=leaves.tip - (lengths[1] - lengths[0]) * leaves.axis)
     back = _moves(changed, clearance_path(changed, end, height))
     start = begin if there else changed
-    return _Way(start.tip, [*there, *back], [first] * len(there) + [tool] * len(back), len(there))
+    return _Approach(start.tip, [*there, *back], [first] * len(there) + [tool] * len(back), len(there))
 
 
 def _before(trajectory: Trajectory, row: int) -> list[Event]:
@@ -141,7 +161,7 @@ def _moves(begin: ToolPose, way: tuple[ToolPose, ...]) -> list[ToolPose]:
     return found
 
 
-def _joined(trajectory: Trajectory, row: int, way: _Way) -> Trajectory:
+def _joined(trajectory: Trajectory, row: int, way: _Approach, repeat_codes: bool) -> Trajectory:
     """The way, and the rows from a row on."""
     count, number = len(way.poses), len(trajectory.operations)
     columns: dict[str, Any] = {
@@ -149,12 +169,12 @@ def _joined(trajectory: Trajectory, row: int, way: _Way) -> Trajectory:
         for name, added in _columns(trajectory, row, way, number).items()
     }
     later = (replace(each, row=each.row - row + count) for each in trajectory.events if each.row > row)
-    events = (*_events(trajectory, row, way), *later)
+    events = (*_events(trajectory, row, way, repeat_codes), *later)
     operations = (*trajectory.operations, APPROACH)
     return replace(trajectory, **columns, events=events, operations=operations, start_tip=way.start)
 
 
-def _columns(trajectory: Trajectory, row: int, way: _Way, operation: int) -> dict[str, Array]:
+def _columns(trajectory: Trajectory, row: int, way: _Approach, operation: int) -> dict[str, Array]:
     """The columns of the way; its last move cuts if the row does."""
     count = len(way.poses)
     columns = {name: np.repeat(getattr(trajectory, name)[row : row + 1], count, axis=0) for name in TRAJECTORY_COLUMNS}
@@ -171,7 +191,7 @@ def _columns(trajectory: Trajectory, row: int, way: _Way, operation: int) -> dic
     return columns | _extents(trajectory, way, columns)
 
 
-def _extents(trajectory: Trajectory, way: _Way, columns: dict[str, Array]) -> dict[str, Array]:
+def _extents(trajectory: Trajectory, way: _Approach, columns: dict[str, Array]) -> dict[str, Array]:
     """Length and angle of each move of the way."""
     count = len(way.poses)
     before = np.vstack([way.start, columns["tip"]])[:count]
@@ -181,17 +201,22 @@ def _extents(trajectory: Trajectory, way: _Way, columns: dict[str, Array]) -> di
     return {"length": norm(columns["tip"] - before), "angle": angle_between(axes, columns["axis"])}
 
 
-def _events(trajectory: Trajectory, row: int, way: _Way) -> tuple[Event, ...]:
-    """What has to be switched on: the tool where it is changed, spindle and coolant before the last move."""
+def _events(trajectory: Trajectory, row: int, way: _Approach, repeat_codes: bool) -> tuple[Event, ...]:
+    """What has to be switched on: the tool where it is changed, all else before the last move."""
     earlier = _before(trajectory, row)
     tools = [each for each in earlier if each.kind is EventKind.TOOL_CHANGE]
     found = [replace(tools[-1], row=way.changed)] if tools else []
     last = max(len(way.poses) - 1, 0)
-    for one in modal_events(trajectory, row):
+    for one in modal_events(trajectory, row, repeat_codes):
         found.append(replace(one, row=last))
         if one.kind is EventKind.SPINDLE and one.value:
             found += [replace(each, row=last) for each in _wait_after(earlier, one)]
-    return tuple(found)
+    begun = (
+        Event(len(way.poses), EventKind.SPINDLE_AXIS, each.lead)
+        for each in threads(trajectory.events)
+        if each.first == row
+    )
+    return (*found, *begun)
 
 
 def _wait_after(events: list[Event], spindle: Event) -> list[Event]:

@@ -18,27 +18,37 @@ from pkm_post.geometry import Array, angle_between, arc_length, arc_sweep, cross
 from pkm_post.model import (
     MAX_SPIN,
     MIN_TOLERANCE,
+    Amount,
     Diagnostic,
     Event,
     EventKind,
     Kind,
     Machine,
+    Phrase,
     Place,
     Program,
     Trajectory,
     checkpoint,
+    distinct,
     errors,
     gauge_lengths,
+    pieces,
+    threads,
 )
 from pkm_post.toolpath.sides import HALF_TURN
 from pkm_post.toolpath.spindle_dwells import with_spindle_waits
 from pkm_post.toolpath.symmetry.transform import mirrors, transform
+from pkm_post.toolpath.threads import thread_faults, thread_feeds
 from pkm_post.toolpath.tool_change import with_tool_changes
 
 _NO_MOVE = 1e-9
 """mm and rad: a row that moves less is dropped."""
 _NO_CORNER = 1e-6
 """rad, and rad/mm of the tool axis: smaller changes count as none."""
+_AT_ONCE = 1 << 14
+"""Joints in one pass: the working arrays take more memory than the result."""
+_AT_JOINTS = ("kind", "tip", "axis", "arc_centre", "arc_axis", "sweep", "length", "angle")
+"""Columns that say whether the path goes on smoothly."""
 _TANGENT = np.radians(0.1)
 """rad: rounding of tangents by the decimals of a program; an exact path does not stop for it."""
 _BEYOND_REACH = 10
@@ -66,7 +76,7 @@ def place(
     if placed is None:
         return None, faults
     if mirrors(machine_from_work):
-        return None, (Diagnostic("K109", Place(machine.name), "the work offset is a mirror"),)
+        return None, (Diagnostic("K109", Place(machine.name), Phrase("the work offset is a mirror")),)
     placed, added = with_tool_changes(placed, machine)
     placed, waits = with_spindle_waits(placed, machine)
     checkpoint()
@@ -121,7 +131,7 @@ def _path_columns(placed: Program, machine: Machine) -> dict[str, Any]:
         "axis_before": axis_before,
         "axis": axis,
         "spin": np.nan_to_num(placed.spin),
-        "feed": np.fmin(placed.feed, np.where(placed.kind == Kind.RAPID, machine.rapid_speed, machine.feed_speed)),
+        "feed": np.fmin(placed.feed, _highest_feeds(placed, machine)),
         "arc_centre": centre,
         "arc_axis": turn,
         "sweep": sweep,
@@ -132,6 +142,11 @@ def _path_columns(placed: Program, machine: Machine) -> dict[str, Any]:
         "operation": placed.operation,
         "line": placed.line,
     }
+
+
+def _highest_feeds(placed: Program, machine: Machine) -> Array:
+    highest = np.where(placed.kind == Kind.RAPID, machine.rapid_speed, machine.feed_speed)
+    return np.minimum(highest, thread_feeds(placed, machine)) if placed.events else highest
 
 
 def _tool_by_row(program: Program) -> Array:
@@ -146,7 +161,7 @@ def _tool_by_row(program: Program) -> Array:
 
 def _faults(program: Program, machine: Machine, way: dict[str, Any], keep: Array) -> Iterator[Diagnostic]:
     if not keep.any():
-        yield Diagnostic("J103", Place(program.source), "no move at all")
+        yield Diagnostic("J103", Place(program.source), Phrase("no move at all"))
     yield from _of_moves(program, machine, way)
     for event in program.events:
         speed = abs(event.value) if event.kind is EventKind.SPINDLE else 0.0
@@ -154,6 +169,7 @@ def _faults(program: Program, machine: Machine, way: dict[str, Any], keep: Array
             text = f"{speed:g} rpm, the machine allows {machine.spindle_least_speed:g} to {machine.spindle_speed:g}"
             yield Diagnostic("K107", program.place(min(event.row, len(program) - 1)), text)
     yield from _of_tools(program, machine, way["tool"])
+    yield from thread_faults(program, machine, way["tip_before"], way["axis_before"])
     fast = program.feed > machine.feed_speed
     for row in _first_of_each(program.operation, fast):
         text = f"F{60 * program.feed[row]:g} mm/min, limited to {60 * machine.feed_speed:g}"
@@ -180,8 +196,8 @@ def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterat
 
 def _of_tools(program: Program, machine: Machine, number: Array) -> Iterator[Diagnostic]:
     """The tools in use that the spindle does not accept, each at its first use."""
-    for used, row in zip(*np.unique(number, return_index=True), strict=True):
-        tool, place = program.tools[int(used)], program.place(int(row))
+    for used in map(int, distinct(number)):
+        tool, place = program.tools[used], program.place(int(np.argmax(number == used)))
         for what, size, most in (
             ("diameter", tool.diameter, machine.largest_tool_diameter),
             ("gauge length", tool.length, machine.longest_tool),
@@ -189,13 +205,15 @@ def _of_tools(program: Program, machine: Machine, number: Array) -> Iterator[Dia
             if size > most:
                 yield Diagnostic("K140", place, f"T{tool.number}: {what} {size:g} mm, at most {most:g} mm")
         if tool.diameter == 0 and machine.largest_tool_diameter < np.inf:
-            yield Diagnostic("K144", place, f"T{tool.number}, at most {machine.largest_tool_diameter:g} mm")
+            yield Diagnostic(
+                "K144", place, Phrase("T{}, at most {}", tool.number, Amount(machine.largest_tool_diameter, "mm", "g"))
+            )
 
 
 def _first_of_each(operation: Array, wrong: Array) -> list[int]:
     """The first faulty row of each operation."""
     rows = np.flatnonzero(wrong)
-    return rows[np.unique(operation[rows], return_index=True)[1]].tolist()
+    return [int(rows[np.argmax(operation[rows] == one)]) for one in distinct(operation[rows])]
 
 
 def _columns(placed: Program, way: dict[str, Any], keep: Array, events: tuple[Event, ...]) -> dict[str, Any]:
@@ -229,9 +247,11 @@ def _events_on_kept_rows(events: tuple[Event, ...], keep: Array) -> tuple[Event,
 
 
 def _stops(events: tuple[Event, ...], segments: int) -> Array:
-    """Segments that end at standstill, (N,): before an event, and at the end of the program."""
+    """Segments that end at standstill, (N,): before an event, in a thread, and at the end of the program."""
     stops = np.zeros(segments, dtype=bool)
     stops[[event.row - 1 for event in events if event.row > 0]] = True
+    for thread in threads(events):  # where the tap turns round
+        stops[thread.first : thread.end] = True
     stops[-1:] = True
     return stops
 
@@ -264,10 +284,20 @@ def smooth(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Ar
         tip_before: (N, 3) tips at their starts.
         axis_before: (N, 3) unit tool axes at their starts.
     """
+    goes_on = np.zeros(len(tip_before), dtype=np.bool_)
+    for joints in pieces(len(goes_on) - 1, _AT_ONCE):
+        rows = slice(joints.start, joints.stop + 1)
+        part = {name: columns[name][rows] for name in _AT_JOINTS}
+        goes_on[joints] = _goes_on(part, tip_before[rows], axis_before[rows])
+    return goes_on
+
+
+def _goes_on(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Array:
+    """The same for the joints between N segments, (N - 1,)."""
     at_start, at_end = _tangents(columns, tip_before)
     corner = norm(at_start[1:] - at_end[:-1]) + _jump_of_rate(columns, axis_before)
     moves = columns["length"] > _NO_MOVE
-    return np.append((corner < _NO_CORNER) & moves[1:] & moves[:-1], False)
+    return np.asarray((corner < _NO_CORNER) & moves[1:] & moves[:-1])
 
 
 def _jump_of_rate(columns: dict[str, Any], axis_before: Array) -> Array:

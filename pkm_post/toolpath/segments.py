@@ -133,9 +133,7 @@ class Segments:
 
     def is_curve(self, segment: Array) -> Array:
         """Which of the given segments, (M,), are part of a smooth curve."""
-        curve = np.zeros(len(segment), dtype=np.bool_)
-        curve[self.splines.among(segment)[0]] = True
-        return curve
+        return self.splines.number(segment) >= 0
 
     def turn(self) -> Array:
         """The larger rate of turn of tool axis or arc, by path length, (N,)."""
@@ -181,9 +179,12 @@ class Segments:
         axis, rate = select_rows(self.axis, segment), select_rows(self.axis_rate, segment)
         if not rate.any():  # as in all three-axis work
             return axis, rate, np.zeros_like(rate)
-        turned = along_rates(axis, u[:, None] * rate, rate, np.zeros_like(rate))
-        if self.splines.turns:
-            rows, curves = self.splines.among(segment)
+        rows, curves = self.splines.among(segment) if self.splines.turns else (segment[:0], segment[:0])
+        if len(rows) < len(segment):
+            turned = along_rates(axis, u[:, None] * rate, rate, np.zeros_like(rate))
+        else:
+            turned = np.empty_like(axis), np.empty_like(axis), np.empty_like(axis)
+        if len(rows):
             smoothed = direction(self.splines.at(curves, u[rows], self.splines.axis))
             for value, smooth in zip(turned, smoothed, strict=True):
                 value[rows] = smooth.T

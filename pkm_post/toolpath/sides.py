@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import Array, angle_between
-from pkm_post.model import Diagnostic, Event, EventKind, Kind, Place, Program
+from pkm_post.model import Diagnostic, Event, EventKind, Kind, Phrase, Place, Program
 
 HALF_TURN = np.pi - 1e-6
 """rad: a tool axis that turns by this much in one row defines no direction of rotation."""
@@ -40,7 +40,7 @@ def with_side(program: Program, side: int | None) -> tuple[Program | None, Findi
     starts = side_starts(program)
     if not 1 <= side <= len(starts):
         count = f"{len(starts)} side{'s' * (len(starts) > 1)}"
-        return None, (Diagnostic("K153", Place(program.source), f"side {side} of {count}"),)
+        return None, (Diagnostic("K153", Place(program.source), Phrase("side {} of {}", side, count)),)
     begin, end = starts[side - 1], [*starts, len(program)][side]
     return _rows(program, begin, end, f"side {side} of {len(starts)}, as chosen"), ()
 
@@ -82,10 +82,16 @@ def _events(program: Program, begin: int, end: int) -> tuple[Event, ...]:
     """
     before = {each.kind: each for each in program.events if each.row < begin and each.kind in _MODAL}
     is_last = end == len(program)
-    own = [each for each in program.events if begin <= each.row < end or (is_last and each.row == end)]
+    last = len(program) if is_last else end - 1
+    own = [each for each in program.events if begin <= each.row - _ends_thread(each) <= last]
     started = (replace(before[kind], row=begin) for kind in _MODAL if kind in before)
     found = [*started, *own]
     if not is_last:
         state = {each.kind: each.value for each in found}
         found += [Event(end, kind, 0.0) for kind in _OFF if state.get(kind)]
     return tuple(replace(each, row=each.row - begin) for each in found)
+
+
+def _ends_thread(event: Event) -> bool:
+    """Whether an event belongs to the row before it: the spindle ends to be an axis where a thread ends."""
+    return event.kind is EventKind.SPINDLE_AXIS and event.value == 0

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Program
+from pkm_post.model import Diagnostic, Event, EventKind, Machine, Phrase, Program, cuts_by_speed
 
 _PER_SECOND = 1000
 """Waits are whole milliseconds."""
@@ -72,6 +72,8 @@ def _waited(events: tuple[Event, ...], ramp: _Ramp) -> Iterator[Event]:
             coasting = 0.0 if event.value else speed or coasting
             speed = event.value
         else:
+            if event.kind is EventKind.SPINDLE_AXIS:  # its code has stopped the spindle
+                speed, coasting = 0.0, 0.0
             yield event
 
 
@@ -83,14 +85,16 @@ def _wait(row: int, seconds: float) -> Iterator[Event]:
 def _cuts_at_rest(program: Program) -> Iterator[Diagnostic]:
     """The first cut between a tool change that stops a running spindle and the next spindle event."""
     speed = 0.0
-    cuts = np.append(np.flatnonzero(program.kind != Kind.RAPID), len(program))
+    cuts = np.append(np.flatnonzero(cuts_by_speed(program.kind, program.events)), len(program))
     stopped_at: int | None = None
     for event in (*program.events, Event(len(program), EventKind.SPINDLE, 0.0)):
         if event.kind is EventKind.SPINDLE:
             if stopped_at is not None:
                 row = int(cuts[np.searchsorted(cuts, stopped_at)])
                 if row < event.row:
-                    yield Diagnostic("K143", program.place(row), f"the spindle was at {abs(speed):g} rpm before")
+                    yield Diagnostic(
+                        "K143", program.place(row), Phrase("the spindle was at {} rpm before", f"{abs(speed):g}")
+                    )
             stopped_at, speed = None, event.value
         elif event.kind is EventKind.TOOL_CHANGE and speed:
             stopped_at = event.row

@@ -17,6 +17,7 @@ import numpy as np
 from pkm_post.geometry import Array, dot, norm
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Place, Program
 from pkm_post.toolpath.compensation.cutter import Cutter, known_cutter
+from pkm_post.toolpath.threads import without_threads
 
 _LEAST_SHARE = 0.1
 """Share of the cutter diameter: near the tip of a ball the edge does not move at any spindle speed."""
@@ -51,6 +52,9 @@ def with_surface_speed(
     Returns:
         The program, None if the diameter of a tool is unknown; and the diagnostics.
     """
+    faults = without_threads(program, "with a surface speed")
+    if faults:
+        return None, faults
     tool, spindle = _in_force(program, EventKind.TOOL_CHANGE), _in_force(program, EventKind.SPINDLE)
     diameter = np.full(len(program), np.nan)
     for number in np.unique(tool[~np.isnan(tool)]).astype(int).tolist():

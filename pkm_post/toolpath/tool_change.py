@@ -167,7 +167,7 @@ def _goes_on(program: Program, machine: Machine, row: int) -> ToolPose | None:
 def _approach(program: Program, machine: Machine, pose: ToolChange) -> _Detour:
     """The route from home to the first point; the first row is its last move."""
     return _Detour(
-        0, "approach", (), clearance_path(_pose_before(program, machine, 0), _end_of(program, 0), pose.safe_height)[:-1]
+        0, _APPROACH, (), clearance_path(_pose_before(program, machine, 0), _end_of(program, 0), pose.safe_height)[:-1]
     )
 
 
@@ -178,7 +178,7 @@ def _change(program: Program, machine: Machine, pose: ToolChange, row: int, befo
     if target is not None and program.kind[row] == Kind.RAPID:
         way_back = way_back[:-1]  # the row itself moves there
     way_there = clearance_path(_pose_before(program, machine, row), there, pose.safe_height)
-    return _Detour(row, f"tool change T{after.number}", way_there, way_back)
+    return _Detour(row, f"{_CHANGE}{after.number}", way_there, way_back)
 
 
 def _low_tips(program: Program, pose: ToolChange, changes: tuple[_Tools, ...]) -> Iterator[Diagnostic]:
@@ -198,6 +198,15 @@ def _flat_axes(program: Program, machine: Machine, pose: ToolChange, rows: list[
                 tilt, most = (float(np.degrees(np.arccos(rise))) for rise in (end.axis[2], FLATTEST))
                 text = f"{tilt:.3f} degrees from upright, at most {most:.1f}"
                 yield Diagnostic("K142", _place(program, row), text)
+
+
+_APPROACH, _CHANGE = "approach", "tool change T"
+"""Names of the operations that are added; behind the latter comes the number of the tool."""
+
+
+def is_detour(operation: str) -> bool:
+    """Whether an operation has this name: a way to a tool change and back, or an approach."""
+    return operation == _APPROACH or operation.startswith(_CHANGE)
 
 
 def _place(program: Program, row: int) -> Place:

@@ -5,14 +5,15 @@ from typing import TYPE_CHECKING
 
 from pkm_post import at_first_use
 from pkm_post.writing import manifest, outputs, trajectory_file
-from pkm_post.writing.controllers import pmac, power_pmac, program_files
-from pkm_post.writing.controllers.pmac import read_part
+from pkm_post.writing.controllers import program_files
 from pkm_post.writing.controllers.program_files import read_text, read_texts
 from pkm_post.writing.controllers.pvt.parts import split_motion
 from pkm_post.writing.controllers.registry import TABLES, Controller, controller_of, controller_settings
 
 if TYPE_CHECKING:
     from pkm_post.writing import kinematics
+    from pkm_post.writing.controllers import pmac, power_pmac
+    from pkm_post.writing.controllers.pmac import read_part
     from pkm_post.writing.controllers.pmac.program import program_text, rotary_opening
     from pkm_post.writing.controllers.pmac.settings import PmacSettings, setup_text
     from pkm_post.writing.controllers.power_pmac import PowerPmacSettings
@@ -24,6 +25,8 @@ else:
         __name__,
         {
             "": "kinematics",
+            "controllers": "pmac power_pmac",
+            "controllers.pmac": "read_part",
             "conversion": "TARGETS convert",
             "controllers.pmac.program": "program_text rotary_opening",
             "controllers.pmac.settings": "PmacSettings setup_text",

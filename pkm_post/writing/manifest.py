@@ -91,7 +91,7 @@ def check(file: Path) -> tuple[Manifest | None, Findings]:
         The manifest and no finding, or None and the reason: F106 where a listed file is missing or has changed, F108
         where the manifest cannot be read, and the warning F107 where no manifest lists the file.
     """
-    for path in _manifests_near(file):
+    for path in _candidate_manifests(file):
         try:
             manifest = _read(path)
         except (OSError, _UnreadableError) as fault:
@@ -138,7 +138,7 @@ def _parts(stream: BinaryIO) -> Iterator[bytes]:
         yield part
 
 
-def _manifests_near(file: Path) -> list[Path]:
+def _candidate_manifests(file: Path) -> list[Path]:
     """Manifests beside a file whose stem is a prefix of its name, the longest first."""
     name = file.name.casefold()
     found = [path for path in file.parent.glob("*" + ENDING) if name.startswith(_stem(path).casefold())]

@@ -32,7 +32,8 @@ enum pkmt_instruction_kind {
     PKMT_COOLANT = 3,
     PKMT_DWELL = 4,
     PKMT_STOP = 5,
-    PKMT_FUNCTION = 6
+    PKMT_FUNCTION = 6,
+    PKMT_SPINDLE_AXIS = 7
 };
 
 /* A string: UTF-8 without an end mark, counted from the beginning of the text table. */

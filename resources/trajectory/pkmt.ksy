@@ -313,3 +313,4 @@ enums:
     4: dwell
     5: stop
     6: function
+    7: spindle_axis

@@ -408,8 +408,12 @@
         <translation>刀轴被移入圆锥内的点数</translation>
     </message>
     <message>
-        <source>Deepest cut into the model found at points CheckSpacing apart, mm; deeper between them may be missed; -1 if not measured</source>
-        <translation>在间距为 CheckSpacing 的各点上测得的最大过切深度，mm；点与点之间可能更深而未被发现；未测量时为 -1</translation>
+        <source>Deepest cut into the model that was found, mm; -1 if not measured</source>
+        <translation>测得的切入模型的最大深度，毫米；-1 表示未测量</translation>
+    </message>
+    <message>
+        <source>How much deeper a cut between the points may be at most, mm; -1 if not measured</source>
+        <translation>检查点之间的过切最多还可能深多少，毫米；-1 表示未测量</translation>
     </message>
     <message>
         <source>Where that is</source>
@@ -646,6 +650,10 @@
         <translation>播放</translation>
     </message>
     <message>
+        <source>Struts</source>
+        <translation>支链</translation>
+    </message>
+    <message>
         <source>Not connected</source>
         <translation>未连接</translation>
     </message>
@@ -800,6 +808,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>先接近</translation>
     </message>
     <message>
+        <source>Repeat M codes</source>
+        <translation>重复 M 代码</translation>
+    </message>
+    <message>
         <source>Single block</source>
         <translation>单段</translation>
     </message>
@@ -814,6 +826,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>Bring the tool to the beginning; to a line always</source>
         <translation>将刀具移到起点；从某一行开始时总是如此</translation>
+    </message>
+    <message>
+        <source>Repeat the M codes of the machine before the line, each once, above it</source>
+        <translation>在该行上方重复该行之前机床的 M 代码，每个一次</translation>
     </message>
     <message>
         <source>Rest at the end of each line, until Go on</source>
@@ -852,6 +868,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>在路径上的下一个停止点结束</translation>
     </message>
     <message>
+        <source>Retract by</source>
+        <translation>退刀</translation>
+    </message>
+    <message>
+        <source>Up along the tool axis, while it waits, as at feed 0; Go on leads back first</source>
+        <translation>等待时（例如进给为 0 时）沿刀轴向上退刀；“继续”先沿原路返回</translation>
+    </message>
+    <message>
         <source>the beginning</source>
         <translation>开头</translation>
     </message>
@@ -876,8 +900,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>打开轨迹</translation>
     </message>
     <message>
-        <source>Trajectories</source>
-        <translation>轨迹</translation>
+        <source>Not sent: the way has to be above zero</source>
+        <translation>未发送：距离必须大于零</translation>
     </message>
     <message>
         <source>of any operation</source>
@@ -1046,10 +1070,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>there is no connection</source>
         <translation>没有连接</translation>
-    </message>
-    <message>
-        <source>a Power PMAC can be watched, held and aborted alone</source>
-        <translation>Power PMAC 只能监视、进给保持和中止</translation>
     </message>
     <message>
         <source>the controller does not answer</source>
@@ -1224,6 +1244,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>尚未回零：支链 {}</translation>
     </message>
     <message>
+        <source>{} and {} to go; {}</source>
+        <translation>剩余 {}，{}；{}</translation>
+    </message>
+    <message>
         <source>runs</source>
         <translation>运行中</translation>
     </message>
@@ -1260,12 +1284,16 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>第 {} 行</translation>
     </message>
     <message>
-        <source>feed {}, {:.0f} % reached</source>
-        <translation>进给 {}，达到 {:.0f} %</translation>
+        <source>feed {} ({:.0f} %)</source>
+        <translation>进给 {}（{:.0f} %）</translation>
     </message>
     <message>
-        <source>{}; {} and {} to go</source>
-        <translation>{}；剩余 {}，{}</translation>
+        <source>{} left</source>
+        <translation>剩余 {}</translation>
+    </message>
+    <message>
+        <source>feed {}, {:.0f} % reached</source>
+        <translation>进给 {}，达到 {:.0f} %</translation>
     </message>
     <message>
         <source>Ended by the operator</source>
@@ -1290,6 +1318,3448 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>at most</source>
         <translation>至多</translation>
+    </message>
+    <message>
+        <source>No file</source>
+        <translation>没有文件</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation>无</translation>
+    </message>
+    <message>
+        <source>Part</source>
+        <translation>零件</translation>
+    </message>
+    <message>
+        <source>The finished part</source>
+        <translation>加工完成的零件</translation>
+    </message>
+    <message>
+        <source>Stock</source>
+        <translation>毛坯</translation>
+    </message>
+    <message>
+        <source>The stock before the first operation</source>
+        <translation>第一个操作之前的毛坯</translation>
+    </message>
+    <message>
+        <source>Fixtures</source>
+        <translation>夹具</translation>
+    </message>
+    <message>
+        <source>Clamps and vices, one or several files</source>
+        <translation>压板和虎钳，一个或多个文件</translation>
+    </message>
+    <message>
+        <source>Skip /</source>
+        <translation>跳过 /</translation>
+    </message>
+    <message>
+        <source>The posting without the blocks behind /</source>
+        <translation>不含 / 后程序段的后处理结果</translation>
+    </message>
+    <message>
+        <source>The same program posted with --block-delete</source>
+        <translation>同一程序用 --block-delete 后处理得到的轨迹</translation>
+    </message>
+    <message>
+        <source>no posting without the blocks behind / was opened</source>
+        <translation>没有打开不含 / 后程序段的后处理结果</translation>
+    </message>
+    <message>
+        <source>Skip the blocks behind / that come next</source>
+        <translation>跳过接下来 / 后的程序段</translation>
+    </message>
+    <message>
+        <source>At the machine</source>
+        <translation>机床上的改动</translation>
+    </message>
+    <message>
+        <source>Solids</source>
+        <translation>实体</translation>
+    </message>
+    <message>
+        <source>Shift of the work offset since the posting: X, Y, Z</source>
+        <translation>后处理之后工件偏置的移动：X、Y、Z</translation>
+    </message>
+    <message>
+        <source>Check the way to the beginning against</source>
+        <translation>检查到起点的路线是否碰到</translation>
+    </message>
+    <message>
+        <source>How far the work offset has moved in the machine frame, as measure prints it</source>
+        <translation>工件偏置在机床坐标系中移动了多少，即 measure 所显示的值</translation>
+    </message>
+    <message>
+        <source>Gauge length of the tool as it is now, instead of that of the posting</source>
+        <translation>刀具现在的长度（主轴端面到刀尖），代替后处理时的长度</translation>
+    </message>
+    <message>
+        <source>STL or STEP file, mm in the work frame</source>
+        <translation>STL 或 STEP 文件，工件坐标系，单位 mm</translation>
+    </message>
+    <message>
+        <source>Trajectories</source>
+        <translation>轨迹</translation>
+    </message>
+</context>
+<context>
+    <name>Core</name>
+    <message>
+        <source>the program has an unknown or misplaced line</source>
+        <translation>程序有一行未知或位置不对</translation>
+    </message>
+    <message>
+        <source>post the job again; do not edit the program</source>
+        <translation>重新对作业进行后处理；不要编辑程序</translation>
+    </message>
+    <message>
+        <source>the program is larger than the controller&apos;s memory and has no rest where it can be split</source>
+        <translation>程序超过控制器的内存，且没有可以分割的静止处</translation>
+    </message>
+    <message>
+        <source>post fewer operations at a time, or put a stop into the job where the tool is free; or post it with a higher controller.memory_words, and play the trajectory (pmac play)</source>
+        <translation>每次对较少的操作进行后处理，或在作业中刀具离开工件处加入停止；或以更大的 controller.memory_words 进行后处理，并播放轨迹 (pmac play)</translation>
+    </message>
+    <message>
+        <source>the line is too long for the controller</source>
+        <translation>该行对控制器来说太长</translation>
+    </message>
+    <message>
+        <source>use fewer decimals in the machine file</source>
+        <translation>在机床文件中使用更少的小数位</translation>
+    </message>
+    <message>
+        <source>an event has no code of the controller</source>
+        <translation>一个事件没有对应的控制器代码</translation>
+    </message>
+    <message>
+        <source>give it one under [controller.codes] in the machine file</source>
+        <translation>在机床文件的 [controller.codes] 中给出</translation>
+    </message>
+    <message>
+        <source>the parts of the program do not belong together</source>
+        <translation>程序的各部分不属于同一组</translation>
+    </message>
+    <message>
+        <source>keep all parts of one posting together; post the job again</source>
+        <translation>将一次后处理的所有部分放在一起；重新对作业进行后处理</translation>
+    </message>
+    <message>
+        <source>the table has a malformed line</source>
+        <translation>表中有一行的格式错误</translation>
+    </message>
+    <message>
+        <source>post the job again; do not edit the table</source>
+        <translation>重新对作业进行后处理；不要编辑该表</translation>
+    </message>
+    <message>
+        <source>the table differs from the motion it was made from</source>
+        <translation>表与生成它的运动不一致</translation>
+    </message>
+    <message>
+        <source>the program has a character that the controller does not accept, or executes immediately</source>
+        <translation>程序中有控制器不接受或会立即执行的字符</translation>
+    </message>
+    <message>
+        <source>post the job again; do not edit the program: it is printable ASCII, in lines that end with LF or CR LF</source>
+        <translation>重新对作业进行后处理；不要编辑程序：它由可打印的 ASCII 字符组成，各行以 LF 或 CR LF 结束</translation>
+    </message>
+    <message>
+        <source>the program was changed: the SHA-256 in its heading is not that of its lines</source>
+        <translation>程序已被更改：其开头的 SHA-256 与各行内容不符</translation>
+    </message>
+    <message>
+        <source>nothing shows that the program was certified</source>
+        <translation>没有任何内容表明程序经过验证</translation>
+    </message>
+    <message>
+        <source>keep the trajectory file, the report and all parts of one posting in the folder of the program, or post the job again; pmac --uncertified loads it nevertheless</source>
+        <translation>将一次后处理的轨迹文件、报告和所有部分放在程序所在的文件夹中，或重新对作业进行后处理；pmac --uncertified 仍可下载它</translation>
+    </message>
+    <message>
+        <source>the program has tools of several lengths, and the form in tip and axis knows one</source>
+        <translation>程序有多种长度的刀具，而刀尖和刀轴形式只有一种长度</translation>
+    </message>
+    <message>
+        <source>post the operations of each tool as a program of their own, or load the program of strut lengths</source>
+        <translation>将每把刀具的操作分别后处理为单独的程序，或下载杆长程序</translation>
+    </message>
+    <message>
+        <source>with what may be changed at the machine the program does not hold</source>
+        <translation>考虑在机床上可能的更改时，程序不成立</translation>
+    </message>
+    <message>
+        <source>allow less, by --tool-range and --origin-range, or move the part; the faults that follow are those there</source>
+        <translation>用 --tool-range 和 --origin-range 减小允许的范围，或移动零件；以下是在那种情况下的错误</translation>
+    </message>
+    <message>
+        <source>with this segment time the program does not hold</source>
+        <translation>采用此分段时间时，程序不成立</translation>
+    </message>
+    <message>
+        <source>take a shorter one for --segment-time and SegMoveTime, or 0 for no segmentation, or post with more tolerance; the faults that follow are those of the motion in segments</source>
+        <translation>为 --segment-time 和 SegMoveTime 取更短的时间，或取 0 表示不分段，或以更宽的公差进行后处理；以下是分段运动的错误</translation>
+    </message>
+    <message>
+        <source>the command moves nothing</source>
+        <translation>该命令不产生任何运动</translation>
+    </message>
+    <message>
+        <source>give a direction and a distance</source>
+        <translation>给出方向和距离</translation>
+    </message>
+    <message>
+        <source>no pose of the platform belongs to the strut lengths on the way</source>
+        <translation>途中的杆长没有对应的动平台位姿</translation>
+    </message>
+    <message>
+        <source>jog less far, or jog the tool</source>
+        <translation>减小点动距离，或点动刀具</translation>
+    </message>
+    <message>
+        <source>a line that is entered by hand cannot change the tool</source>
+        <translation>手动输入的行不能换刀</translation>
+    </message>
+    <message>
+        <source>change it by hand, and enter its gauge length</source>
+        <translation>手动换刀，并输入其刀具长度</translation>
+    </message>
+    <message>
+        <source>the motion needs more memory than one program has</source>
+        <translation>运动所需的内存超过一个程序的内存</translation>
+    </message>
+    <message>
+        <source>jog less far, or program a higher feed</source>
+        <translation>减小点动距离，或提高编程进给</translation>
+    </message>
+    <message>
+        <source>the source lines of the program are unknown</source>
+        <translation>程序的源行未知</translation>
+    </message>
+    <message>
+        <source>keep all results of a posting together in one folder, or post the job again</source>
+        <translation>将一次后处理的所有结果放在同一文件夹中，或重新对作业进行后处理</translation>
+    </message>
+    <message>
+        <source>the trajectory has no line to begin with</source>
+        <translation>轨迹没有可以开始的行</translation>
+    </message>
+    <message>
+        <source>name a line up to the last one that moves, and the operation it belongs to with --operation</source>
+        <translation>指定不超过最后一个移动的行，并用 --operation 指定其所属的操作</translation>
+    </message>
+    <message>
+        <source>another client controls the machine</source>
+        <translation>另一个客户端正在控制机床</translation>
+    </message>
+    <message>
+        <source>wait until it ends, or end it; if it no longer exists, stop the machine first (hold, then abort); status, monitor, hold and abort remain available</source>
+        <translation>等待其结束，或将其结束；如果它已不存在，先使机床停下（先进给保持，再中止）；查看状态、监视、进给保持和中止仍可使用</translation>
+    </message>
+    <message>
+        <source>another client has taken control of the machine</source>
+        <translation>另一个客户端接管了机床的控制</translation>
+    </message>
+    <message>
+        <source>check what the machine does, and start again when the other client has ended</source>
+        <translation>检查机床在做什么，待另一个客户端结束后重新开始</translation>
+    </message>
+    <message>
+        <source>the lock of the controller cannot be kept on this computer</source>
+        <translation>不能在此计算机上保持控制器的锁</translation>
+    </message>
+    <message>
+        <source>make the folder for temporary files writable</source>
+        <translation>使临时文件的文件夹可写</translation>
+    </message>
+    <message>
+        <source>the variables that identify the controlling client have invalid values</source>
+        <translation>标识控制客户端的变量的值无效</translation>
+    </message>
+    <message>
+        <source>keep P8187 to P8191 free in the programs of the controller; P8187..8191=0 in the terminal frees them</source>
+        <translation>控制器的程序中不要使用 P8187 到 P8191；在终端中用 P8187..8191=0 释放它们</translation>
+    </message>
+    <message>
+        <source>a program buffer is open that this port cannot close</source>
+        <translation>一个程序缓冲区处于打开状态，此端口不能将其关闭</translation>
+    </message>
+    <message>
+        <source>close it where it was opened, or disconnect what loads a program there</source>
+        <translation>在打开它的地方将其关闭，或断开正在那里下载程序的设备</translation>
+    </message>
+    <message>
+        <source>the file with the known host keys cannot be read</source>
+        <translation>记录已知主机密钥的文件不能读取</translation>
+    </message>
+    <message>
+        <source>correct or remove that line, or name another file with --known-hosts</source>
+        <translation>改正或删除该行，或用 --known-hosts 指定其他文件</translation>
+    </message>
+    <message>
+        <source>the touch probe is touched before its move</source>
+        <translation>测头在移动之前已触发</translation>
+    </message>
+    <message>
+        <source>jog it free; if it is free, state the value of its input with --input, as M1000=0</source>
+        <translation>点动使其脱离；如果已经脱离，用 --input 给出其输入的值，例如 M1000=0</translation>
+    </message>
+    <message>
+        <source>the touch probe met nothing</source>
+        <translation>测头没有碰到任何物体</translation>
+    </message>
+    <message>
+        <source>begin closer, or allow a longer way with --within</source>
+        <translation>从更近处开始，或用 --within 允许更长的路径</translation>
+    </message>
+    <message>
+        <source>the touch probe stays touched where its move began</source>
+        <translation>测头在其移动开始处仍处于触发状态</translation>
+    </message>
+    <message>
+        <source>jog it free and look at the probe and its input</source>
+        <translation>点动使其脱离，并检查测头及其输入</translation>
+    </message>
+    <message>
+        <source>the touch probe was touched on a way that should be free</source>
+        <translation>测头在应无障碍的路径上触发</translation>
+    </message>
+    <message>
+        <source>jog it free, and give --diameter, --depth and --clearance as the part has them</source>
+        <translation>点动使其脱离，并按零件给出 --diameter、--depth 和 --clearance</translation>
+    </message>
+    <message>
+        <source>the output cannot be written</source>
+        <translation>输出不能写出</translation>
+    </message>
+    <message>
+        <source>check the folder, its permissions and the free space</source>
+        <translation>检查文件夹、其权限和剩余空间</translation>
+    </message>
+    <message>
+        <source>the picture was not made: matplotlib is missing or cannot be imported</source>
+        <translation>没有生成图片：缺少 matplotlib 或不能导入</translation>
+    </message>
+    <message>
+        <source>install it, as by python3 -m pkm_post install matplotlib, in a version that fits NumPy</source>
+        <translation>安装与 NumPy 相配的版本，例如用 python3 -m pkm_post install matplotlib</translation>
+    </message>
+    <message>
+        <source>the file cannot be read</source>
+        <translation>文件不能读取</translation>
+    </message>
+    <message>
+        <source>check the path and its permissions</source>
+        <translation>检查路径及其权限</translation>
+    </message>
+    <message>
+        <source>the folder has files of an earlier result that do not belong to this one</source>
+        <translation>文件夹中有不属于本次结果的以前的文件</translation>
+    </message>
+    <message>
+        <source>remove them, so that they are not run with this program</source>
+        <translation>删除它们，以免与此程序一起运行</translation>
+    </message>
+    <message>
+        <source>results of two jobs would have the same name</source>
+        <translation>两个作业的结果会同名</translation>
+    </message>
+    <message>
+        <source>give the jobs labels that differ in letters or digits, not in their case and not in an ending such as -setup</source>
+        <translation>为作业取字母或数字不同的标签，不能只是大小写不同，也不能只是 -setup 之类的结尾不同</translation>
+    </message>
+    <message>
+        <source>results are not those that were posted together</source>
+        <translation>这些结果不是同一次后处理得到的</translation>
+    </message>
+    <message>
+        <source>post again, or bring back every file that the manifest lists</source>
+        <translation>重新后处理，或恢复清单列出的每个文件</translation>
+    </message>
+    <message>
+        <source>no manifest lists this file and its results</source>
+        <translation>没有清单列出此文件及其结果</translation>
+    </message>
+    <message>
+        <source>post again, and keep the manifest and all that it lists with the program</source>
+        <translation>重新后处理，并将清单及其列出的所有文件与程序放在一起</translation>
+    </message>
+    <message>
+        <source>the manifest of results cannot be read</source>
+        <translation>结果清单不能读取</translation>
+    </message>
+    <message>
+        <source>post again, or bring back the manifest</source>
+        <translation>重新后处理，或恢复清单</translation>
+    </message>
+    <message>
+        <source>another process is moving its files into the folder</source>
+        <translation>另一个进程正在将其文件移入该文件夹</translation>
+    </message>
+    <message>
+        <source>try again when it has ended, or choose another folder</source>
+        <translation>等其结束后再试，或选择其他文件夹</translation>
+    </message>
+    <message>
+        <source>not all files were replaced, and earlier files could not be restored</source>
+        <translation>并非所有文件都已替换，以前的文件也未能恢复</translation>
+    </message>
+    <message>
+        <source>close the programs that have the named files open, remove them, and try again</source>
+        <translation>关闭打开了所列文件的程序，删除这些文件，然后再试</translation>
+    </message>
+    <message>
+        <source>CAM&apos;s dialog saves one text, and this result has several files</source>
+        <translation>CAM 的对话框只保存一个文本，而此结果有多个文件</translation>
+    </message>
+    <message>
+        <source>post with Post of the PKM Post workbench, which writes them together</source>
+        <translation>用 PKM Post 工作台的“后处理”，它将所有文件一起写出</translation>
+    </message>
+    <message>
+        <source>CAM&apos;s dialog saves the program alone</source>
+        <translation>CAM 的对话框只保存程序</translation>
+    </message>
+    <message>
+        <source>post with Post of the PKM Post workbench to have its report, trajectory and set-up file beside it: a program without them is not loaded into the controller (C110)</source>
+        <translation>用 PKM Post 工作台的“后处理”，使报告、轨迹和设置文件与程序放在一起：没有这些文件的程序不会下载到控制器 (C110)</translation>
+    </message>
+    <message>
+        <source>a file is open in another program</source>
+        <translation>一个文件正被另一个程序打开</translation>
+    </message>
+    <message>
+        <source>close it there, or wait until a virus scanner or a cloud folder has done with it, and try again</source>
+        <translation>在那里关闭它，或等待病毒扫描程序或云文件夹用完，然后再试</translation>
+    </message>
+    <message>
+        <source>a result cannot have this name</source>
+        <translation>结果不能使用此名称</translation>
+    </message>
+    <message>
+        <source>choose another name for the program or the job, or a folder with a shorter path</source>
+        <translation>为程序或作业选择其他名称，或选择路径更短的文件夹</translation>
+    </message>
+    <message>
+        <source>the number of threads is not a whole number above zero</source>
+        <translation>线程数不是大于零的整数</translation>
+    </message>
+    <message>
+        <source>set PKM_THREADS to one, or do not set it</source>
+        <translation>将 PKM_THREADS 设为这样的数，或不设置</translation>
+    </message>
+    <message>
+        <source>the list of jobs is not valid</source>
+        <translation>作业列表无效</translation>
+    </message>
+    <message>
+        <source>write it as docs/workbench.md describes it</source>
+        <translation>按 docs/workbench.md 所述书写</translation>
+    </message>
+    <message>
+        <source>there is something of this name already</source>
+        <translation>已有同名的内容</translation>
+    </message>
+    <message>
+        <source>choose another folder for the result, or remove what is there</source>
+        <translation>为结果选择其他文件夹，或删除已有的内容</translation>
+    </message>
+    <message>
+        <source>there is not enough memory</source>
+        <translation>内存不足</translation>
+    </message>
+    <message>
+        <source>close other programs, do fewer operations or files at a time, or use a computer with more memory</source>
+        <translation>关闭其他程序，每次处理较少的操作或文件，或使用内存更大的计算机</translation>
+    </message>
+    <message>
+        <source>FreeCAD could not be started</source>
+        <translation>FreeCAD 不能启动</translation>
+    </message>
+    <message>
+        <source>install FreeCAD 1.0 or newer, or name its FreeCADCmd in the environment variable FREECADCMD</source>
+        <translation>安装 FreeCAD 1.0 或更新的版本，或在环境变量 FREECADCMD 中指定其 FreeCADCmd</translation>
+    </message>
+    <message>
+        <source>FreeCAD ended before the command had run in it</source>
+        <translation>命令在 FreeCAD 中运行之前 FreeCAD 就结束了</translation>
+    </message>
+    <message>
+        <source>see what was printed before, and that FREECADCMD, if it is set, names FreeCADCmd of FreeCAD 1.0 or newer</source>
+        <translation>查看此前的输出；如果设置了 FREECADCMD，确认它指定的是 FreeCAD 1.0 或更新版本的 FreeCADCmd</translation>
+    </message>
+    <message>
+        <source>a result is missing</source>
+        <translation>缺少一个结果</translation>
+    </message>
+    <message>
+        <source>check that nothing else removes files from the folder, and post again</source>
+        <translation>确认没有其他程序从文件夹中删除文件，然后重新后处理</translation>
+    </message>
+    <message>
+        <source>a character is not allowed here</source>
+        <translation>此处不允许该字符</translation>
+    </message>
+    <message>
+        <source>remove it, or put the text into a comment</source>
+        <translation>删除它，或将文字放入注释</translation>
+    </message>
+    <message>
+        <source>a number is malformed</source>
+        <translation>数的格式错误</translation>
+    </message>
+    <message>
+        <source>write it as -12.5: one sign, one point, no blanks and no exponent</source>
+        <translation>写成 -12.5 的形式：一个符号，一个小数点，没有空格，没有指数</translation>
+    </message>
+    <message>
+        <source>a number is too large</source>
+        <translation>数太大</translation>
+    </message>
+    <message>
+        <source>correct the number</source>
+        <translation>改正该数</translation>
+    </message>
+    <message>
+        <source>a line is too long</source>
+        <translation>行太长</translation>
+    </message>
+    <message>
+        <source>split it; a block has at most 10000 characters</source>
+        <translation>将其拆开；一个程序段最多 10000 个字符</translation>
+    </message>
+    <message>
+        <source>the G or M code does not exist</source>
+        <translation>没有这个 G 或 M 代码</translation>
+    </message>
+    <message>
+        <source>write G with at most one decimal, M with none, no sign</source>
+        <translation>G 最多带一位小数，M 不带小数，均不带符号</translation>
+    </message>
+    <message>
+        <source>there are more faults than are shown</source>
+        <translation>错误数量超过所显示的数量</translation>
+    </message>
+    <message>
+        <source>correct those that are shown, then check again</source>
+        <translation>改正已显示的错误，然后再次检查</translation>
+    </message>
+    <message>
+        <source>a word has no number</source>
+        <translation>地址字没有数值</translation>
+    </message>
+    <message>
+        <source>write a number, a parameter or an expression after the letter</source>
+        <translation>在字母后写出数、参数或表达式</translation>
+    </message>
+    <message>
+        <source>a block has two values of one letter</source>
+        <translation>一个程序段中同一字母有两个值</translation>
+    </message>
+    <message>
+        <source>remove one of them, or make it two blocks</source>
+        <translation>删除其中一个，或分成两个程序段</translation>
+    </message>
+    <message>
+        <source>a comment contains another comment</source>
+        <translation>注释中含有另一个注释</translation>
+    </message>
+    <message>
+        <source>remove the inner parentheses</source>
+        <translation>去掉里面的括号</translation>
+    </message>
+    <message>
+        <source>a comment is not closed</source>
+        <translation>注释没有结束</translation>
+    </message>
+    <message>
+        <source>close it with ) on the same line</source>
+        <translation>在同一行内用 ) 结束</translation>
+    </message>
+    <message>
+        <source>a bracket is not closed</source>
+        <translation>方括号没有结束</translation>
+    </message>
+    <message>
+        <source>close it with ] on the same line</source>
+        <translation>在同一行内用 ] 结束</translation>
+    </message>
+    <message>
+        <source>unexpected text in the block</source>
+        <translation>程序段中有意外的文字</translation>
+    </message>
+    <message>
+        <source>write what is expected there, or put it on a line of its own</source>
+        <translation>写出此处应有的内容，或将其另写一行</translation>
+    </message>
+    <message>
+        <source>an end has no matching beginning</source>
+        <translation>结束语句没有对应的开始</translation>
+    </message>
+    <message>
+        <source>remove it, or add the beginning</source>
+        <translation>删除它，或补上开始语句</translation>
+    </message>
+    <message>
+        <source>a name is malformed</source>
+        <translation>名称的格式错误</translation>
+    </message>
+    <message>
+        <source>write names as &lt;name&gt;, of letters, digits, blanks, _, . and -</source>
+        <translation>名称写成 &lt;name&gt; 的形式，由字母、数字、空格、_、. 和 - 组成</translation>
+    </message>
+    <message>
+        <source>a value is missing</source>
+        <translation>缺少一个值</translation>
+    </message>
+    <message>
+        <source>write a number, a parameter or an expression in its place</source>
+        <translation>在此处写出数、参数或表达式</translation>
+    </message>
+    <message>
+        <source>a part of the block is in the wrong place</source>
+        <translation>程序段的一部分位置不对</translation>
+    </message>
+    <message>
+        <source>write / first, then N; O words, LN and % begin a block; NX to TZ stand after LN</source>
+        <translation>先写 /，再写 N；O 字、LN 和 % 位于程序段开头；NX 到 TZ 位于 LN 之后</translation>
+    </message>
+    <message>
+        <source>an expression is nested too deeply</source>
+        <translation>表达式嵌套过深</translation>
+    </message>
+    <message>
+        <source>split it, with parameters for its parts</source>
+        <translation>将其拆开，用参数存放各部分</translation>
+    </message>
+    <message>
+        <source>blocks after the percent sign that ends the file are not read</source>
+        <translation>结束文件的百分号之后的程序段不被读取</translation>
+    </message>
+    <message>
+        <source>remove them, or the sign</source>
+        <translation>删除这些程序段，或删除百分号</translation>
+    </message>
+    <message>
+        <source>the program is in another language than G-code</source>
+        <translation>程序使用的语言不是 G 代码</translation>
+    </message>
+    <message>
+        <source>read Siemens&apos;s language with --flavour siemens; else post it again for a control that reads G-code</source>
+        <translation>西门子语言的程序用 --flavour siemens 读取；否则重新后处理为使用 G 代码的数控系统的程序</translation>
+    </message>
+    <message>
+        <source>a length has no decimal point, and is taken in whole units</source>
+        <translation>一个长度没有小数点，按整数单位处理</translation>
+    </message>
+    <message>
+        <source>write a point; some controls take such a number for thousandths, others for whole mm or inches as here</source>
+        <translation>写出小数点；有些数控系统将这样的数视为千分之一，另一些与此处相同，视为整毫米或整英寸</translation>
+    </message>
+    <message>
+        <source>a parameter has no value</source>
+        <translation>参数没有值</translation>
+    </message>
+    <message>
+        <source>assign a value first</source>
+        <translation>先赋值</translation>
+    </message>
+    <message>
+        <source>the parameter does not exist</source>
+        <translation>没有这个参数</translation>
+    </message>
+    <message>
+        <source>use whole numbers from 1 to 5601, or a name</source>
+        <translation>使用 1 到 5601 的整数，或名称</translation>
+    </message>
+    <message>
+        <source>the parameter belongs to the control, and its value is unknown</source>
+        <translation>该参数属于数控系统，其值未知</translation>
+    </message>
+    <message>
+        <source>write the value itself</source>
+        <translation>直接写出数值</translation>
+    </message>
+    <message>
+        <source>a division by zero</source>
+        <translation>除数为零</translation>
+    </message>
+    <message>
+        <source>correct the divisor</source>
+        <translation>改正除数</translation>
+    </message>
+    <message>
+        <source>the value cannot be computed</source>
+        <translation>该值不能计算</translation>
+    </message>
+    <message>
+        <source>use values for which the function or operator is defined</source>
+        <translation>使用函数或运算符有定义的值</translation>
+    </message>
+    <message>
+        <source>the value is not a G or M code</source>
+        <translation>该值不是 G 或 M 代码</translation>
+    </message>
+    <message>
+        <source>use a number with at most one decimal for G, a whole number for M</source>
+        <translation>G 使用最多一位小数的数，M 使用整数</translation>
+    </message>
+    <message>
+        <source>an O word has no matching beginning</source>
+        <translation>O 字没有对应的开始</translation>
+    </message>
+    <message>
+        <source>write the beginning first, with the same label</source>
+        <translation>先写出标号相同的开始语句</translation>
+    </message>
+    <message>
+        <source>a subprogram, loop or branch has no end</source>
+        <translation>子程序、循环或分支没有结束</translation>
+    </message>
+    <message>
+        <source>end it: sub, if, while, do and repeat by O word, O numbers by M99</source>
+        <translation>写出其结束：sub、if、while、do 和 repeat 用 O 字，带编号的 O 用 M99</translation>
+    </message>
+    <message>
+        <source>there is no such subprogram</source>
+        <translation>没有这个子程序</translation>
+    </message>
+    <message>
+        <source>put it into the program, or into a file of its number or name, such as O1234.nc or name.ngc, beside it or in a folder that --subprograms names</source>
+        <translation>将其写入程序，或写入以其编号或名称命名的文件（例如 O1234.nc 或 name.ngc），放在程序旁边或 --subprograms 指定的文件夹中</translation>
+    </message>
+    <message>
+        <source>a label is used twice</source>
+        <translation>一个标号使用了两次</translation>
+    </message>
+    <message>
+        <source>give each its own label</source>
+        <translation>为每处使用各自的标号</translation>
+    </message>
+    <message>
+        <source>this is not a label</source>
+        <translation>这不是标号</translation>
+    </message>
+    <message>
+        <source>write a whole number that is not negative, or a name in &lt; &gt;</source>
+        <translation>写出非负整数，或 &lt; &gt; 中的名称</translation>
+    </message>
+    <message>
+        <source>this is not allowed here</source>
+        <translation>此处不允许这样写</translation>
+    </message>
+    <message>
+        <source>call with call and end with endsub, or with M98 and M99</source>
+        <translation>用 call 调用并以 endsub 结束，或用 M98 和 M99</translation>
+    </message>
+    <message>
+        <source>the program does not end</source>
+        <translation>程序不会结束</translation>
+    </message>
+    <message>
+        <source>correct its loops, or raise the limit</source>
+        <translation>改正其中的循环，或提高上限</translation>
+    </message>
+    <message>
+        <source>subprograms call each other too deeply</source>
+        <translation>子程序相互调用的层次过深</translation>
+    </message>
+    <message>
+        <source>correct the calls, or raise the limit</source>
+        <translation>改正调用，或提高上限</translation>
+    </message>
+    <message>
+        <source>a call has too many arguments</source>
+        <translation>调用的自变量太多</translation>
+    </message>
+    <message>
+        <source>pass at most 30</source>
+        <translation>最多传递 30 个</translation>
+    </message>
+    <message>
+        <source>this is not a call of a subprogram</source>
+        <translation>这不是子程序调用</translation>
+    </message>
+    <message>
+        <source>write M98 P and L with whole numbers, P always, and no M99; G67 before what may not stand under G66</source>
+        <translation>M98 的 P 和 L 写整数，P 必须写出，且不写 M99；不得处于 G66 之下的内容之前先写 G67</translation>
+    </message>
+    <message>
+        <source>the tool axis or normal cannot be given in this way here</source>
+        <translation>此处不能这样给出刀轴或法线</translation>
+    </message>
+    <message>
+        <source>write the tool axis alone, on straight moves</source>
+        <translation>在直线移动上单独写出刀轴</translation>
+    </message>
+    <message>
+        <source>several files may be the subprogram</source>
+        <translation>有多个文件可能是该子程序</translation>
+    </message>
+    <message>
+        <source>leave one of them in the folder, or give the folder with the right one with --subprograms</source>
+        <translation>文件夹中只保留其中一个，或用 --subprograms 给出正确文件所在的文件夹</translation>
+    </message>
+    <message>
+        <source>the program stops with an alarm of its own</source>
+        <translation>程序因自身的报警而停止</translation>
+    </message>
+    <message>
+        <source>correct what the message beside it says, such as a missing argument</source>
+        <translation>按其旁边的信息改正，例如补上缺少的自变量</translation>
+    </message>
+    <message>
+        <source>there is no block with this sequence number</source>
+        <translation>没有此顺序号的程序段</translation>
+    </message>
+    <message>
+        <source>write the block&apos;s N, or correct the jump</source>
+        <translation>为该程序段写出 N，或改正跳转</translation>
+    </message>
+    <message>
+        <source>the code is not supported</source>
+        <translation>不支持该代码</translation>
+    </message>
+    <message>
+        <source>replace it by supported codes, or, if it does not move the tool, leave it out with --leave-out or with part_programs.leave_out of the machine file; M codes that the controller is to get belong into controller.codes.functions there</source>
+        <translation>用支持的代码代替；如果它不移动刀具，可用 --leave-out 或机床文件的 part_programs.leave_out 略去；应传给控制器的 M 代码写入机床文件的 controller.codes.functions</translation>
+    </message>
+    <message>
+        <source>the code has no meaning on this machine</source>
+        <translation>该代码在此机床上没有意义</translation>
+    </message>
+    <message>
+        <source>write the program without it, or leave it out with --leave-out if it does not move the tool</source>
+        <translation>编写不含它的程序；如果它不移动刀具，可用 --leave-out 略去</translation>
+    </message>
+    <message>
+        <source>two codes of one group in a block exclude each other</source>
+        <translation>同一程序段中同组的两个代码相互排斥</translation>
+    </message>
+    <message>
+        <source>write them in two blocks</source>
+        <translation>写成两个程序段</translation>
+    </message>
+    <message>
+        <source>no code of the block uses the word</source>
+        <translation>程序段中没有代码使用这个字</translation>
+    </message>
+    <message>
+        <source>remove it, or add the code that it belongs to</source>
+        <translation>删除它，或补上它所属的代码</translation>
+    </message>
+    <message>
+        <source>a word is missing</source>
+        <translation>缺少一个字</translation>
+    </message>
+    <message>
+        <source>add it</source>
+        <translation>补上它</translation>
+    </message>
+    <message>
+        <source>a word has an invalid value</source>
+        <translation>字的值无效</translation>
+    </message>
+    <message>
+        <source>correct it</source>
+        <translation>改正它</translation>
+    </message>
+    <message>
+        <source>the axis words are ambiguous</source>
+        <translation>轴的字有歧义</translation>
+    </message>
+    <message>
+        <source>write one motion in a block, with its words</source>
+        <translation>一个程序段只写一个运动及其字</translation>
+    </message>
+    <message>
+        <source>a cutting move has no feed</source>
+        <translation>切削移动没有进给速度</translation>
+    </message>
+    <message>
+        <source>write F above zero before the move, or in it with G93, or give --feed</source>
+        <translation>在移动之前写出大于零的 F，使用 G93 时写在移动中，或给出 --feed</translation>
+    </message>
+    <message>
+        <source>the arc does not fit its end points</source>
+        <translation>圆弧与其端点不相符</translation>
+    </message>
+    <message>
+        <source>correct end point, centre or radius</source>
+        <translation>改正终点、圆心或半径</translation>
+    </message>
+    <message>
+        <source>the arc has no centre</source>
+        <translation>圆弧没有圆心</translation>
+    </message>
+    <message>
+        <source>write I J K of its plane, or R, which is CR= in Siemens&apos;s language</source>
+        <translation>写出其平面的 I J K，或 R（西门子语言中为 CR=）</translation>
+    </message>
+    <message>
+        <source>the tool is unknown</source>
+        <translation>刀具未知</translation>
+    </message>
+    <message>
+        <source>give its diameter and corner radius: --tool NUMBER=D[,R]</source>
+        <translation>给出其直径和圆角半径：--tool NUMBER=D[,R]</translation>
+    </message>
+    <message>
+        <source>the offset of this coordinate system is unknown</source>
+        <translation>该坐标系的偏置未知</translation>
+    </message>
+    <message>
+        <source>give it with --origin NAME=X,Y,Z, or set it with G10 L2; for G53 give the place of the machine&apos;s zero with --machine-zero X,Y,Z</source>
+        <translation>用 --origin NAME=X,Y,Z 给出，或用 G10 L2 设置；对 G53 用 --machine-zero X,Y,Z 给出机床零点的位置</translation>
+    </message>
+    <message>
+        <source>the reference point is unknown</source>
+        <translation>参考点未知</translation>
+    </message>
+    <message>
+        <source>give it with --machine-zero X,Y,Z, or set it with G28.1 or G30.1</source>
+        <translation>用 --machine-zero X,Y,Z 给出，或用 G28.1 或 G30.1 设置</translation>
+    </message>
+    <message>
+        <source>rotary words have no meaning here</source>
+        <translation>旋转轴的字在此处没有意义</translation>
+    </message>
+    <message>
+        <source>give the rotary axes with --axis-words, and write G43.4 before cuts with a tilted tool</source>
+        <translation>用 --axis-words 给出旋转轴，并在倾斜刀具切削之前写 G43.4</translation>
+    </message>
+    <message>
+        <source>the tool axis is unknown</source>
+        <translation>刀轴未知</translation>
+    </message>
+    <message>
+        <source>write I, J and K, not all zero, after G43.5</source>
+        <translation>在 G43.5 之后写出不全为零的 I、J 和 K</translation>
+    </message>
+    <message>
+        <source>the position of the tool is not yet known</source>
+        <translation>刀具的位置尚未知道</translation>
+    </message>
+    <message>
+        <source>first move to X, Y and Z</source>
+        <translation>先移动到 X、Y 和 Z</translation>
+    </message>
+    <message>
+        <source>the path tolerance of the program is not used</source>
+        <translation>程序的路径公差未被使用</translation>
+    </message>
+    <message>
+        <source>write G64 with a P above zero, alone</source>
+        <translation>单独写 G64，其 P 大于零</translation>
+    </message>
+    <message>
+        <source>the cycle cannot be executed</source>
+        <translation>循环不能执行</translation>
+    </message>
+    <message>
+        <source>correct its words</source>
+        <translation>改正其中的字</translation>
+    </message>
+    <message>
+        <source>this is not allowed while cutter compensation is active</source>
+        <translation>刀具半径补偿有效时不允许这样做</translation>
+    </message>
+    <message>
+        <source>cancel it with G40 first</source>
+        <translation>先用 G40 取消补偿</translation>
+    </message>
+    <message>
+        <source>the program contains no motion</source>
+        <translation>程序中没有运动</translation>
+    </message>
+    <message>
+        <source>check the file</source>
+        <translation>检查文件</translation>
+    </message>
+    <message>
+        <source>the active length offset is not that of the tool, and the tool axis can tilt</source>
+        <translation>当前的刀具长度补偿不是该刀具的，而刀轴可能倾斜</translation>
+    </message>
+    <message>
+        <source>write the tool&apos;s own H</source>
+        <translation>写出该刀具自己的 H</translation>
+    </message>
+    <message>
+        <source>the surface normal is unknown</source>
+        <translation>曲面法线未知</translation>
+    </message>
+    <message>
+        <source>write NX, NY and NZ, not all zero</source>
+        <translation>写出不全为零的 NX、NY 和 NZ</translation>
+    </message>
+    <message>
+        <source>the surface normal was not of unit length and was normalised</source>
+        <translation>曲面法线不是单位长度，已归一化</translation>
+    </message>
+    <message>
+        <source>write unit vectors with 6 decimals</source>
+        <translation>写出有 6 位小数的单位向量</translation>
+    </message>
+    <message>
+        <source>the tool is tilted, and X Y Z do not refer to its tip</source>
+        <translation>刀具已倾斜，而 X Y Z 不是刀尖的坐标</translation>
+    </message>
+    <message>
+        <source>write upright words for the tool axis before TRAFOOF, G43 or G49, or TRAORI, G43.4 or G43.5 before the move</source>
+        <translation>在 TRAFOOF、G43 或 G49 之前写出使刀轴竖直的字，或在移动之前写 TRAORI、G43.4 或 G43.5</translation>
+    </message>
+    <message>
+        <source>mill the threads as helices; or tap them by G74 or G84 with S and F, on a machine whose spindle is an axis: state [spindle.axis] in its machine file</source>
+        <translation>用螺旋线铣削螺纹;或者在主轴可作为轴的机床上,用带 S 和 F 的 G74 或 G84 攻丝:在其机床文件中写明 [spindle.axis]</translation>
+    </message>
+    <message>
+        <source>the modal words of the cycle are ambiguous here</source>
+        <translation>循环的模态字在此处有歧义</translation>
+    </message>
+    <message>
+        <source>write R and the depth again where G90, G91 or the unit changes; write G80 before another plane or height of the origin, and the whole cycle after it</source>
+        <translation>在 G90、G91 或单位改变处重新写出 R 和深度；在更换平面或改变原点高度之前写 G80，其后重新写出整个循环</translation>
+    </message>
+    <message>
+        <source>a dwell in milliseconds has a decimal point</source>
+        <translation>以毫秒为单位的暂停带有小数点</translation>
+    </message>
+    <message>
+        <source>write whole milliseconds without a point, or seconds in the whole program and --dwell-unit s</source>
+        <translation>写出不带小数点的整毫秒，或整个程序使用秒并给出 --dwell-unit s</translation>
+    </message>
+    <message>
+        <source>a dwell lasts longer than a minute</source>
+        <translation>暂停超过一分钟</translation>
+    </message>
+    <message>
+        <source>check it; read a part program whose dwells are in ms with --dwell-unit ms</source>
+        <translation>请检查；暂停以毫秒为单位的零件程序用 --dwell-unit ms 读取</translation>
+    </message>
+    <message>
+        <source>a cycle drills along the normal of its plane, and the tool is tilted against it</source>
+        <translation>循环沿其平面的法向钻孔，而刀具相对该方向倾斜</translation>
+    </message>
+    <message>
+        <source>write the hole as G0 and G1 along the tool, or set the tool upright before the cycle</source>
+        <translation>用沿刀轴的 G0 和 G1 写出该孔，或在循环之前使刀具竖直</translation>
+    </message>
+    <message>
+        <source>the program has no end: it may be truncated</source>
+        <translation>程序没有结束：可能不完整</translation>
+    </message>
+    <message>
+        <source>get the complete file; if it is complete, add M2 or M30 at its end, give --allow-open-end, or set OpenEnd of the program object</source>
+        <translation>取得完整的文件；如果已经完整，在末尾加上 M2 或 M30，给出 --allow-open-end，或设置程序对象的 OpenEnd</translation>
+    </message>
+    <message>
+        <source>the tool is tilted before G43.4, where the place of its tip depends on another machine</source>
+        <translation>刀具在 G43.4 之前已倾斜，此处刀尖的位置取决于另一台机床</translation>
+    </message>
+    <message>
+        <source>check the way there: the next move goes straight to the first place with G43.4; or write G43.4 first</source>
+        <translation>检查到那里的路径：下一个移动直接到 G43.4 之后的第一个位置；或先写 G43.4</translation>
+    </message>
+    <message>
+        <source>it is not clear here how the tool stands to the tilted plane</source>
+        <translation>此处不清楚刀具相对倾斜面的方向</translation>
+    </message>
+    <message>
+        <source>write G53.1 directly after G68.2, G69 with the tool retracted, and rotary words of 0 before the next cut</source>
+        <translation>紧接 G68.2 之后写 G53.1，退刀后再写 G69，并在下一次切削之前将旋转轴的字写为 0</translation>
+    </message>
+    <message>
+        <source>the tool turns to a tilted plane, where the place of its tip depends on another machine</source>
+        <translation>刀具转向倾斜面，此处刀尖的位置取决于另一台机床</translation>
+    </message>
+    <message>
+        <source>check the way there: the next move goes straight to the first place in the plane</source>
+        <translation>检查到那里的路径：下一个移动直接到该平面内的第一个位置</translation>
+    </message>
+    <message>
+        <source>a factor of scaling has no decimal point, and counts in units that a parameter of the control sets</source>
+        <translation>比例缩放系数没有小数点，其单位由数控系统的参数设定</translation>
+    </message>
+    <message>
+        <source>write it with a point, as in P2. for twice the size</source>
+        <translation>写出小数点，例如放大一倍写 P2.</translation>
+    </message>
+    <message>
+        <source>controls differ in what this means while scaling is in force</source>
+        <translation>比例缩放有效时，各数控系统对此的解释不同</translation>
+    </message>
+    <message>
+        <source>write G50 before it</source>
+        <translation>在其之前写 G50</translation>
+    </message>
+    <message>
+        <source>the place of no move is known</source>
+        <translation>没有任何移动的位置是已知的</translation>
+    </message>
+    <message>
+        <source>give X, Y and Z in the first moves: a control would begin them wherever the tool stands</source>
+        <translation>在最初的移动中给出 X、Y 和 Z：否则数控系统会从刀具当时所在的位置开始</translation>
+    </message>
+    <message>
+        <source>controls differ in whether this code acts before the move of its block or after it</source>
+        <translation>此代码在其程序段的移动之前还是之后起作用，各数控系统不同</translation>
+    </message>
+    <message>
+        <source>write it in a block of its own</source>
+        <translation>将其写在单独的程序段中</translation>
+    </message>
+    <message>
+        <source>the tool axis tilts, and this form of G-code cannot express it</source>
+        <translation>刀轴倾斜，而此 G 代码形式不能表示</translation>
+    </message>
+    <message>
+        <source>choose a form with five axes</source>
+        <translation>选择五轴形式</translation>
+    </message>
+    <message>
+        <source>the tool axis points down, and this form of G-code cannot express it</source>
+        <translation>刀轴朝下，而此 G 代码形式不能表示</translation>
+    </message>
+    <message>
+        <source>choose vectors or a head</source>
+        <translation>选择向量形式或摆头形式</translation>
+    </message>
+    <message>
+        <source>arcs that this form of G-code cannot express are written as lines</source>
+        <translation>此 G 代码形式不能表示的圆弧写成了直线</translation>
+    </message>
+    <message>
+        <source>no action is needed</source>
+        <translation>无需处理</translation>
+    </message>
+    <message>
+        <source>surface normals cannot be expressed in this form of G-code and are left out</source>
+        <translation>曲面法线不能用此 G 代码形式表示，已略去</translation>
+    </message>
+    <message>
+        <source>keep the source of the program</source>
+        <translation>保留程序的来源</translation>
+    </message>
+    <message>
+        <source>a control that interpolates these angles linearly swings the tool axis off its programmed path</source>
+        <translation>对这些角度作线性插补的数控系统会使刀轴偏离编程路径</translation>
+    </message>
+    <message>
+        <source>divide the moves in the CAM system, or write the tool axis as vectors</source>
+        <translation>在 CAM 系统中细分这些移动，或将刀轴写成向量</translation>
+    </message>
+    <message>
+        <source>a feed is so slow that it would be written as zero</source>
+        <translation>进给太慢，会被写成零</translation>
+    </message>
+    <message>
+        <source>program a feed of 0.001 a minute at least</source>
+        <translation>编程进给至少为每分钟 0.001</translation>
+    </message>
+    <message>
+        <source>the statement is malformed</source>
+        <translation>语句的格式错误</translation>
+    </message>
+    <message>
+        <source>write it as the programming manual of the control does; docs/siemens.md lists it</source>
+        <translation>按数控系统编程手册的格式书写；docs/siemens.md 列出了各语句</translation>
+    </message>
+    <message>
+        <source>this part of Siemens&apos;s language is not read</source>
+        <translation>不读取西门子语言的这一部分</translation>
+    </message>
+    <message>
+        <source>let the CAM system write plain moves and tool axes as vectors</source>
+        <translation>让 CAM 系统写出普通移动，刀轴写成向量</translation>
+    </message>
+    <message>
+        <source>the name is not known</source>
+        <translation>名称未知</translation>
+    </message>
+    <message>
+        <source>define the variable with DEF, put the subprogram into the file, or remove what is for another machine</source>
+        <translation>用 DEF 定义变量，将子程序写入文件，或删除用于其他机床的内容</translation>
+    </message>
+    <message>
+        <source>the jump has no destination in this program</source>
+        <translation>跳转在此程序中没有目标</translation>
+    </message>
+    <message>
+        <source>write the label or block number</source>
+        <translation>写出标号或程序段号</translation>
+    </message>
+    <message>
+        <source>a loop, branch or subprogram has no matching end</source>
+        <translation>循环、分支或子程序没有对应的结束</translation>
+    </message>
+    <message>
+        <source>write it, in the same program</source>
+        <translation>在同一程序中写出它</translation>
+    </message>
+    <message>
+        <source>the value is not possible here</source>
+        <translation>此处不可能有这个值</translation>
+    </message>
+    <message>
+        <source>rotary words have no meaning here, or several</source>
+        <translation>旋转轴的字在此处没有意义，或有多种含义</translation>
+    </message>
+    <message>
+        <source>write the tool axis as a vector, A3= B3= C3=; or give the rotary axes with --axis-words AC, BC or AB, and write them after TRAORI in a frame that is not turned</source>
+        <translation>将刀轴写成向量 A3= B3= C3=；或用 --axis-words AC、BC 或 AB 给出旋转轴，并在 TRAORI 之后、未旋转的坐标系中书写</translation>
+    </message>
+    <message>
+        <source>the angles of the tool axis have two readings, Euler angles and RPY angles</source>
+        <translation>刀轴的角度有两种读法：欧拉角和 RPY 角</translation>
+    </message>
+    <message>
+        <source>write ORIEULER or ORIRPY before them</source>
+        <translation>在其之前写 ORIEULER 或 ORIRPY</translation>
+    </message>
+    <message>
+        <source>the place of this coordinate system is unknown</source>
+        <translation>该坐标系的位置未知</translation>
+    </message>
+    <message>
+        <source>give it with --origin, such as G55=X,Y,Z; for SUPA, G53 and G153 give --machine-zero X,Y,Z</source>
+        <translation>用 --origin 给出，例如 G55=X,Y,Z；对 SUPA、G53 和 G153 给出 --machine-zero X,Y,Z</translation>
+    </message>
+    <message>
+        <source>the way of the tool while the plane swivels depends on another machine</source>
+        <translation>平面摆转时刀具的路径取决于另一台机床</translation>
+    </message>
+    <message>
+        <source>check the way there: the next move goes straight to the first place in the new plane</source>
+        <translation>检查到那里的路径：下一个移动直接到新平面内的第一个位置</translation>
+    </message>
+    <message>
+        <source>the file cannot be opened as a FreeCAD document</source>
+        <translation>该文件不能作为 FreeCAD 文档打开</translation>
+    </message>
+    <message>
+        <source>check the path, or save the document again</source>
+        <translation>检查路径，或重新保存文档</translation>
+    </message>
+    <message>
+        <source>there is no CAM job to post</source>
+        <translation>没有可后处理的 CAM 作业</translation>
+    </message>
+    <message>
+        <source>add a Job in the CAM workbench, or name the job with --job</source>
+        <translation>在 CAM 工作台中添加作业，或用 --job 指定作业</translation>
+    </message>
+    <message>
+        <source>the job has no active operation with a path</source>
+        <translation>作业中没有带轨迹的启用的操作</translation>
+    </message>
+    <message>
+        <source>activate an operation and recompute</source>
+        <translation>启用一个操作并重新计算</translation>
+    </message>
+    <message>
+        <source>the command is unknown or not allowed here</source>
+        <translation>该命令未知，或不允许用在此处</translation>
+    </message>
+    <message>
+        <source>remove it, or use a G0, G1, G2 or G3 move</source>
+        <translation>删除它，或改用 G0、G1、G2 或 G3 移动</translation>
+    </message>
+    <message>
+        <source>set the feed in the tool controller, in mm/min above zero</source>
+        <translation>在刀具控制器中设置大于零的进给速度（mm/min）</translation>
+    </message>
+    <message>
+        <source>an arc in this plane is not supported</source>
+        <translation>不支持此平面内的圆弧</translation>
+    </message>
+    <message>
+        <source>use XY-plane arcs (G17), or straight moves</source>
+        <translation>使用 XY 平面内的圆弧 (G17)，或改用直线移动</translation>
+    </message>
+    <message>
+        <source>regenerate the operation; the radii must agree to 0.005 mm</source>
+        <translation>重新生成该操作；两端半径之差不得超过 0.005 mm</translation>
+    </message>
+    <message>
+        <source>a dress-up or array that does not support tool-axis words contains moves with them</source>
+        <translation>不支持刀轴字的修饰或阵列中含有带刀轴字的移动</translation>
+    </message>
+    <message>
+        <source>remove it, or apply it to an operation without tool-axis words</source>
+        <translation>删除该修饰或阵列，或将其用于不含刀轴字的操作</translation>
+    </message>
+    <message>
+        <source>only some of the cutting moves have a tool axis</source>
+        <translation>只有部分切削移动带有刀轴</translation>
+    </message>
+    <message>
+        <source>give every G1 of the operation I J K words</source>
+        <translation>为该操作的每个 G1 写出 I J K</translation>
+    </message>
+    <message>
+        <source>the tool axis has no direction</source>
+        <translation>刀轴没有方向</translation>
+    </message>
+    <message>
+        <source>give I J K words that are not all zero</source>
+        <translation>写出不全为零的 I J K</translation>
+    </message>
+    <message>
+        <source>the operation has no tool controller</source>
+        <translation>操作没有刀具控制器</translation>
+    </message>
+    <message>
+        <source>choose a tool controller for it</source>
+        <translation>为其选择刀具控制器</translation>
+    </message>
+    <message>
+        <source>the gauge length of the tool is unknown</source>
+        <translation>刀具长度（主轴端面到刀尖）未知</translation>
+    </message>
+    <message>
+        <source>enter it under Gauge lengths in the panel of Post to a hexapod, set the property GaugeLength of its tool controller, or pass --tool-length NUMBER=MM</source>
+        <translation>在“后处理到六自由度并联机床”面板的“刀具长度”中输入，或设置其刀具控制器的属性 GaugeLength，或给出 --tool-length NUMBER=MM</translation>
+    </message>
+    <message>
+        <source>two tools have the same number</source>
+        <translation>两把刀具的编号相同</translation>
+    </message>
+    <message>
+        <source>give every tool controller its own tool number</source>
+        <translation>为每个刀具控制器设置各自的刀具编号</translation>
+    </message>
+    <message>
+        <source>rotary words have no meaning on this machine</source>
+        <translation>旋转轴的字在此机床上没有意义</translation>
+    </message>
+    <message>
+        <source>give the tool axis as I J K words</source>
+        <translation>用 I J K 给出刀轴</translation>
+    </message>
+    <message>
+        <source>the operation could not be computed</source>
+        <translation>操作未能计算</translation>
+    </message>
+    <message>
+        <source>repair it in FreeCAD until it recomputes without error</source>
+        <translation>在 FreeCAD 中修复它，直到重新计算时没有错误</translation>
+    </message>
+    <message>
+        <source>the job&apos;s options are not valid</source>
+        <translation>作业的选项无效</translation>
+    </message>
+    <message>
+        <source>correct the arguments of the post-processor</source>
+        <translation>改正后处理器的参数</translation>
+    </message>
+    <message>
+        <source>the tool axis was not of unit length and was normalised</source>
+        <translation>刀轴不是单位长度，已归一化</translation>
+    </message>
+    <message>
+        <source>a coordinate of a move is not a finite number</source>
+        <translation>移动的一个坐标不是有限的数</translation>
+    </message>
+    <message>
+        <source>regenerate the operation</source>
+        <translation>重新生成该操作</translation>
+    </message>
+    <message>
+        <source>a CAM operation cannot represent all of the part program</source>
+        <translation>CAM 操作不能表示零件程序的全部内容</translation>
+    </message>
+    <message>
+        <source>post the part program itself</source>
+        <translation>直接对零件程序进行后处理</translation>
+    </message>
+    <message>
+        <source>a property of a document object has an invalid value</source>
+        <translation>文档对象的一个属性的值无效</translation>
+    </message>
+    <message>
+        <source>the drilling cycle cannot be executed</source>
+        <translation>钻孔循环不能执行</translation>
+    </message>
+    <message>
+        <source>correct its words; cycles are drilled along Z (G17), after a move to a known height, in operations without tool-axis words</source>
+        <translation>改正其中的字；循环沿 Z 向钻孔 (G17)，须在移动到已知高度之后，并位于不含刀轴字的操作中</translation>
+    </message>
+    <message>
+        <source>correct it if it is not intended; dwells of CAM commands are in seconds</source>
+        <translation>如非本意请改正；CAM 命令中的暂停以秒为单位</translation>
+    </message>
+    <message>
+        <source>an option overrides a value of the job or the program</source>
+        <translation>一个选项取代了作业或程序中的值</translation>
+    </message>
+    <message>
+        <source>leave the option out if this is not intended</source>
+        <translation>如非本意，请去掉该选项</translation>
+    </message>
+    <message>
+        <source>an option gives the length of a tool that does not exist</source>
+        <translation>选项给出了不存在的刀具的长度</translation>
+    </message>
+    <message>
+        <source>correct the number of the tool, or leave it out</source>
+        <translation>改正刀具编号，或去掉该选项</translation>
+    </message>
+    <message>
+        <source>CAM requests an operation that is not in the job</source>
+        <translation>CAM 要求的操作不在作业中</translation>
+    </message>
+    <message>
+        <source>choose among the operations of the job</source>
+        <translation>从作业的操作中选择</translation>
+    </message>
+    <message>
+        <source>the active length offset (H) is not that of the tool, and its value is unknown</source>
+        <translation>当前的刀具长度补偿 (H) 不是该刀具的，其值未知</translation>
+    </message>
+    <message>
+        <source>pass its value with --tool-length NUMBER=MM; if it holds the length of the tool, pass that length</source>
+        <translation>用 --tool-length NUMBER=MM 给出其值；如果其中存的是刀具长度，则给出该长度</translation>
+    </message>
+    <message>
+        <source>the file of the document is damaged</source>
+        <translation>文档的文件已损坏</translation>
+    </message>
+    <message>
+        <source>use an intact copy of the document, such as its backup file (.FCBak)</source>
+        <translation>使用文档的完好副本，例如其备份文件 (.FCBak)</translation>
+    </message>
+    <message>
+        <source>the content of the document is inconsistent</source>
+        <translation>文档的内容前后矛盾</translation>
+    </message>
+    <message>
+        <source>FreeCAD did not read all operations of the job</source>
+        <translation>FreeCAD 没有读入作业的全部操作</translation>
+    </message>
+    <message>
+        <source>the path of an active operation is empty</source>
+        <translation>一个启用的操作的轨迹为空</translation>
+    </message>
+    <message>
+        <source>mark the operation to be recomputed and recompute the document, or deactivate the operation</source>
+        <translation>将该操作标记为需要重新计算并重新计算文档，或停用该操作</translation>
+    </message>
+    <message>
+        <source>an operation is out of date: it or its inputs changed after it was computed</source>
+        <translation>一个操作已过时：它或它的输入在计算之后有更改</translation>
+    </message>
+    <message>
+        <source>switch Skip Recomputes off and recompute the document</source>
+        <translation>关闭“跳过重新计算”并重新计算文档</translation>
+    </message>
+    <message>
+        <source>FreeCAD could not read the path or another property of an operation</source>
+        <translation>FreeCAD 不能读取某个操作的轨迹或其他属性</translation>
+    </message>
+    <message>
+        <source>the path of an operation holds characters that are not UTF-8</source>
+        <translation>一个操作的轨迹含有非 UTF-8 字符</translation>
+    </message>
+    <message>
+        <source>remove them from the inputs of the operation, mark it to be recomputed, and recompute the document</source>
+        <translation>从该操作的输入中删除这些字符，将其标记为需要重新计算，并重新计算文档</translation>
+    </message>
+    <message>
+        <source>an object among the operations of the job has no path</source>
+        <translation>作业的操作中有一个对象没有轨迹</translation>
+    </message>
+    <message>
+        <source>remove it from the operations</source>
+        <translation>将其从操作中移除</translation>
+    </message>
+    <message>
+        <source>the document is being recomputed, and the paths of its operations are not complete</source>
+        <translation>文档正在重新计算，其操作的轨迹还不完整</translation>
+    </message>
+    <message>
+        <source>wait for the end of the recompute, then post or check again</source>
+        <translation>等待重新计算结束，然后再次后处理或检查</translation>
+    </message>
+    <message>
+        <source>a strut would be too short</source>
+        <translation>一条支链会过短</translation>
+    </message>
+    <message>
+        <source>move or turn the part on the table, or use another tool length; Find a place in the panel of Reach and python3 -m pkm_post reach --place look for one that suffices</source>
+        <translation>在工作台上移动或旋转零件，或使用其他长度的刀具；“可达性”面板中的“寻找位置”和 python3 -m pkm_post reach --place 可寻找满足要求的位置</translation>
+    </message>
+    <message>
+        <source>a strut would be too long</source>
+        <translation>一条支链会过长</translation>
+    </message>
+    <message>
+        <source>a base joint would swing too far</source>
+        <translation>一个底座铰链会摆动过大</translation>
+    </message>
+    <message>
+        <source>tilt the tool less, or move the part; Find a place in the panel of Reach and python3 -m pkm_post reach --place look for one that suffices</source>
+        <translation>减小刀具倾斜，或移动零件；“可达性”面板中的“寻找位置”和 python3 -m pkm_post reach --place 可寻找满足要求的位置</translation>
+    </message>
+    <message>
+        <source>a platform joint would swing too far</source>
+        <translation>一个动平台铰链会摆动过大</translation>
+    </message>
+    <message>
+        <source>the path comes too close to a singular pose</source>
+        <translation>路径离奇异位姿太近</translation>
+    </message>
+    <message>
+        <source>the tool axis turns by half a turn in one move</source>
+        <translation>刀轴在一个移动中转动了半周</translation>
+    </message>
+    <message>
+        <source>insert a move that defines the direction of rotation; where the part is turned over, post each side by --side N, with its work offset</source>
+        <translation>插入一个确定旋转方向的移动；零件翻面时，用 --side N 及其工件偏置分别对每一面进行后处理</translation>
+    </message>
+    <message>
+        <source>the spindle does not support this speed</source>
+        <translation>主轴不支持此转速</translation>
+    </message>
+    <message>
+        <source>program a speed within its limits</source>
+        <translation>编程转速应在其极限之内</translation>
+    </message>
+    <message>
+        <source>the work offset is unknown to the machine</source>
+        <translation>机床没有这个工件偏置</translation>
+    </message>
+    <message>
+        <source>two fixtures of the job are in the same place</source>
+        <translation>作业的两个工件坐标系位于同一位置</translation>
+    </message>
+    <message>
+        <source>the trajectory has threads, which are neither played nor stepped through block by block</source>
+        <translation>轨迹中有螺纹,螺纹既不能播放,也不能单段运行</translation>
+    </message>
+    <message>
+        <source>run its motion program: pmac run, or Load and Start of the panel</source>
+        <translation>运行其运动程序:pmac run,或面板的“装入”和“启动”</translation>
+    </message>
+    <message>
+        <source>what was changed at the machine does not fit the program</source>
+        <translation>在机床上所作的更改与程序不符</translation>
+    </message>
+    <message>
+        <source>name tools of the program; where an arc follows a change of a tool in its place, post again with the new length</source>
+        <translation>请指定程序中的刀具；若原位换刀之后紧接圆弧，请以新的长度重新进行后处理</translation>
+    </message>
+    <message>
+        <source>tapping needs a feed synchronised with the spindle, which is not supported here</source>
+        <translation>攻丝需要与主轴同步的进给,此处不支持</translation>
+    </message>
+    <message>
+        <source>give the second one its own with --origin NAME=X,Y,Z</source>
+        <translation>用 --origin NAME=X,Y,Z 为第二个给出其自己的位置</translation>
+    </message>
+    <message>
+        <source>an option gives the place of a fixture that the job does not have, or has as its first one</source>
+        <translation>选项给出了一个工件坐标系的位置，而作业没有该坐标系，或它是作业的第一个</translation>
+    </message>
+    <message>
+        <source>correct its name, or leave it out; the first fixture is where --work-offset puts it</source>
+        <translation>改正其名称，或去掉该选项；第一个工件坐标系位于 --work-offset 指定的位置</translation>
+    </message>
+    <message>
+        <source>a job with several fixtures is to be copied as a whole</source>
+        <translation>有多个工件坐标系的作业要整体复制</translation>
+    </message>
+    <message>
+        <source>make the copies in the job, as operations of Mirror or Rotate, or leave --copies out</source>
+        <translation>在作业中用“镜像操作”或“旋转操作”生成副本，或去掉 --copies</translation>
+    </message>
+    <message>
+        <source>Split Output of the job is not followed: one program holds all of it</source>
+        <translation>未按作业的“拆分输出”执行：一个程序包含全部内容</translation>
+    </message>
+    <message>
+        <source>deactivate operations, or take fixtures out of the job, to post a part of it</source>
+        <translation>如只需后处理其中一部分，请停用部分操作，或从作业中移除部分夹具</translation>
+    </message>
+    <message>
+        <source>add it to the machine file, or pass --work-offset, or --origin for a further fixture of a CAM job</source>
+        <translation>将其加入机床文件，或给出 --work-offset；CAM 作业的其他工件坐标系用 --origin 给出</translation>
+    </message>
+    <message>
+        <source>the matrix is not a rotation, a mirror or a shift</source>
+        <translation>该矩阵不是旋转、镜像或平移</translation>
+    </message>
+    <message>
+        <source>use a matrix without scale or shear</source>
+        <translation>使用没有缩放和剪切的矩阵</translation>
+    </message>
+    <message>
+        <source>the feed is beyond the machine and is limited</source>
+        <translation>进给超出机床的能力，已受限制</translation>
+    </message>
+    <message>
+        <source>program a feed that the machine can run</source>
+        <translation>编程进给应为机床能够达到的进给</translation>
+    </message>
+    <message>
+        <source>cutter compensation would leave its plane</source>
+        <translation>刀具半径补偿会离开其平面</translation>
+    </message>
+    <message>
+        <source>compensate before the path is turned or mirrored</source>
+        <translation>在旋转或镜像轨迹之前进行补偿</translation>
+    </message>
+    <message>
+        <source>two struts come too close to each other</source>
+        <translation>两条支链相距太近</translation>
+    </message>
+    <message>
+        <source>turn the platform about the tool axis, or move the part</source>
+        <translation>使动平台绕刀轴转动，或移动零件</translation>
+    </message>
+    <message>
+        <source>a strut comes too close to the spindle or its platform</source>
+        <translation>一条支链离主轴或其动平台太近</translation>
+    </message>
+    <message>
+        <source>tilt the tool less, or turn the platform</source>
+        <translation>减小刀具倾斜，或转动动平台</translation>
+    </message>
+    <message>
+        <source>a strut comes too close to an object on the table</source>
+        <translation>一条支链离工作台上的物体太近</translation>
+    </message>
+    <message>
+        <source>move the part or the fixture</source>
+        <translation>移动零件或夹具</translation>
+    </message>
+    <message>
+        <source>the spindle or holder comes too close to an object on the table</source>
+        <translation>主轴或刀柄离工作台上的物体太近</translation>
+    </message>
+    <message>
+        <source>use a longer tool, or tilt it</source>
+        <translation>使用更长的刀具，或使其倾斜</translation>
+    </message>
+    <message>
+        <source>the spindle or holder comes too close to the part</source>
+        <translation>主轴或刀柄离零件太近</translation>
+    </message>
+    <message>
+        <source>a strut cannot keep up with the feed, and the tool will be slower</source>
+        <translation>一条支链跟不上进给，刀具会变慢</translation>
+    </message>
+    <message>
+        <source>program a lower feed</source>
+        <translation>降低编程进给</translation>
+    </message>
+    <message>
+        <source>the machine is too compliant along the surface normal</source>
+        <translation>机床沿曲面法向的刚度太低</translation>
+    </message>
+    <message>
+        <source>tilt the tool less, or move the part</source>
+        <translation>减小刀具倾斜，或移动零件</translation>
+    </message>
+    <message>
+        <source>the tool axis is perpendicular to the plane of the spin rule</source>
+        <translation>刀轴垂直于自转角规则的平面</translation>
+    </message>
+    <message>
+        <source>choose another spin</source>
+        <translation>选择其他自转角</translation>
+    </message>
+    <message>
+        <source>a strut comes too close to the part</source>
+        <translation>一条支链离零件太近</translation>
+    </message>
+    <message>
+        <source>move or turn the part on the table</source>
+        <translation>在工作台上移动或旋转零件</translation>
+    </message>
+    <message>
+        <source>a pass cannot be reversed: its approach and retract moves are unknown</source>
+        <translation>一次走刀不能反向：其进刀和退刀移动未知</translation>
+    </message>
+    <message>
+        <source>lift the tool along its axis between the passes, or do without climb milling</source>
+        <translation>在各次走刀之间沿刀轴抬刀，或不保持顺铣</translation>
+    </message>
+    <message>
+        <source>the path begins with a rapid move to a point in the material, where the original ends</source>
+        <translation>轨迹以快速移动开始，移到材料中原操作结束的点</translation>
+    </message>
+    <message>
+        <source>check that the point is free, or lift the tool along its axis at the end of the original</source>
+        <translation>确认该点没有材料，或在原操作结束时沿刀轴抬刀</translation>
+    </message>
+    <message>
+        <source>a reversed pass begins at its deep end</source>
+        <translation>反向的走刀从其较深的一端开始</translation>
+    </message>
+    <message>
+        <source>check that the cutter can start there</source>
+        <translation>确认刀具可以从那里开始</translation>
+    </message>
+    <message>
+        <source>an event lies within a pass that is to be reversed</source>
+        <translation>要反向的走刀中有一个事件</translation>
+    </message>
+    <message>
+        <source>move it between the passes, or do without climb milling</source>
+        <translation>将其移到各次走刀之间，或不保持顺铣</translation>
+    </message>
+    <message>
+        <source>an arc begins at a change to a tool of another length</source>
+        <translation>圆弧从更换为另一长度刀具之处开始</translation>
+    </message>
+    <message>
+        <source>make a straight move before the arc</source>
+        <translation>在圆弧之前做一个直线移动</translation>
+    </message>
+    <message>
+        <source>a move takes longer than a day</source>
+        <translation>一个移动超过一天</translation>
+    </message>
+    <message>
+        <source>give it a higher feed</source>
+        <translation>为其给出更高的进给</translation>
+    </message>
+    <message>
+        <source>a strut cannot keep up with a rapid move, and the tool will be slower there</source>
+        <translation>一条支链跟不上快速移动，刀具在那里会变慢</translation>
+    </message>
+    <message>
+        <source>nothing has to be done, the move takes longer; tool_path.rapid_speed of the machine file is the speed of rapid moves</source>
+        <translation>无需处理，只是该移动用时更长；快速移动的速度是机床文件的 tool_path.rapid_speed</translation>
+    </message>
+    <message>
+        <source>the shank of the tool goes into the part</source>
+        <translation>刀杆进入零件</translation>
+    </message>
+    <message>
+        <source>use a tool with longer cutting edges or a thinner shank, or tilt it</source>
+        <translation>使用切削刃更长或刀杆更细的刀具，或使其倾斜</translation>
+    </message>
+    <message>
+        <source>a rapid move takes the cutter through the part</source>
+        <translation>快速移动使刀具穿过零件</translation>
+    </message>
+    <message>
+        <source>raise the clearance and retract heights of the operation</source>
+        <translation>提高该操作的安全高度和退刀高度</translation>
+    </message>
+    <message>
+        <source>the cutter goes deeper into the part than its surface</source>
+        <translation>刀具切入零件，低于其表面</translation>
+    </message>
+    <message>
+        <source>check the depths, and what the flank of the cutter does</source>
+        <translation>检查深度，以及刀具侧刃的切削</translation>
+    </message>
+    <message>
+        <source>the tool or the machine comes too close to a fixture</source>
+        <translation>刀具或机床离夹具太近</translation>
+    </message>
+    <message>
+        <source>move the fixture or the path, or use a longer tool</source>
+        <translation>移动夹具或轨迹，或使用更长的刀具</translation>
+    </message>
+    <message>
+        <source>a body other than the cutter enters uncut stock</source>
+        <translation>刀具切削部分以外的物体进入未切除的毛坯</translation>
+    </message>
+    <message>
+        <source>rough the part before, use a longer tool, or give the stock as it is before the first operation</source>
+        <translation>先对零件粗加工，使用更长的刀具，或给出第一个操作之前的毛坯</translation>
+    </message>
+    <message>
+        <source>a body other than the cutter enters stock that may still be there</source>
+        <translation>刀具切削部分以外的物体进入可能尚未切除的毛坯</translation>
+    </message>
+    <message>
+        <source>check that it is cut before, or give the stock as it is before the first operation</source>
+        <translation>确认其已先被切除，或给出第一个操作之前的毛坯</translation>
+    </message>
+    <message>
+        <source>a rapid move goes through uncut stock</source>
+        <translation>快速移动穿过未切除的毛坯</translation>
+    </message>
+    <message>
+        <source>raise the clearance and retract heights, or give the stock as it is before the first operation</source>
+        <translation>提高安全高度和退刀高度，或给出第一个操作之前的毛坯</translation>
+    </message>
+    <message>
+        <source>a rapid move goes through stock that may still be there</source>
+        <translation>快速移动穿过可能尚未切除的毛坯</translation>
+    </message>
+    <message>
+        <source>the solid cannot be read</source>
+        <translation>实体不能读取</translation>
+    </message>
+    <message>
+        <source>write it as an STL file, ASCII or binary, in mm and in work coordinates, or as STEP where FreeCAD is installed</source>
+        <translation>写成 STL 文件（ASCII 或二进制，单位 mm，工件坐标），安装了 FreeCAD 时也可用 STEP</translation>
+    </message>
+    <message>
+        <source>the mesh of the stock is not closed, and only its surface is checked</source>
+        <translation>毛坯的网格不封闭，只检查其表面</translation>
+    </message>
+    <message>
+        <source>write a closed solid as STL</source>
+        <translation>将封闭的实体写成 STL</translation>
+    </message>
+    <message>
+        <source>the tool is larger than the spindle accepts</source>
+        <translation>刀具超过主轴允许的尺寸</translation>
+    </message>
+    <message>
+        <source>use a smaller tool, or correct spindle.largest_tool_diameter or spindle.longest_tool of the machine file</source>
+        <translation>使用更小的刀具，或改正机床文件的 spindle.largest_tool_diameter 或 spindle.longest_tool</translation>
+    </message>
+    <message>
+        <source>the tip of a tool would be below the safe height at the tool-change pose</source>
+        <translation>在换刀位姿处，一把刀具的刀尖会低于安全高度</translation>
+    </message>
+    <message>
+        <source>raise tool_change.nose, lower tool_change.safe_height, or use a shorter tool</source>
+        <translation>提高 tool_change.nose，降低 tool_change.safe_height，或使用更短的刀具</translation>
+    </message>
+    <message>
+        <source>the tool is tilted too far to be retracted along its axis to the safe height</source>
+        <translation>刀具倾斜太大，不能沿其轴线退到安全高度</translation>
+    </message>
+    <message>
+        <source>tilt the tool less before the tool change and after it</source>
+        <translation>在换刀前后减小刀具倾斜</translation>
+    </message>
+    <message>
+        <source>the program cuts after a tool change without starting the spindle</source>
+        <translation>程序在换刀后未启动主轴就切削</translation>
+    </message>
+    <message>
+        <source>start the spindle with M3 or M4 between the tool change and the cut</source>
+        <translation>在换刀与切削之间用 M3 或 M4 启动主轴</translation>
+    </message>
+    <message>
+        <source>the diameter of a tool is unknown, and the limit of the spindle is not checked</source>
+        <translation>一把刀具的直径未知，未检查主轴的极限</translation>
+    </message>
+    <message>
+        <source>give the diameter: --tool NUMBER=D for G-code, the tool of the CAM job, or the tool statement of CL data</source>
+        <translation>给出直径：G 代码用 --tool NUMBER=D，CAM 作业用其刀具，CL 数据用刀具语句</translation>
+    </message>
+    <message>
+        <source>the motion takes longer than can be planned</source>
+        <translation>运动用时过长，不能规划</translation>
+    </message>
+    <message>
+        <source>raise the feeds, or the speeds and accelerations of the machine file; or post fewer operations at a time</source>
+        <translation>提高进给，或提高机床文件的速度和加速度；或每次对较少的操作进行后处理</translation>
+    </message>
+    <message>
+        <source>the tolerance of a move is too small</source>
+        <translation>一个移动的公差太小</translation>
+    </message>
+    <message>
+        <source>raise P of its G64, or leave P out</source>
+        <translation>增大其 G64 的 P，或不写 P</translation>
+    </message>
+    <message>
+        <source>the platform is turned too far about the tool axis</source>
+        <translation>动平台绕刀轴转动过大</translation>
+    </message>
+    <message>
+        <source>write the spin within a few turns</source>
+        <translation>自转角应写在几周之内</translation>
+    </message>
+    <message>
+        <source>a copy of the program would be reached by a feed move</source>
+        <translation>程序的一个副本会由进给移动到达</translation>
+    </message>
+    <message>
+        <source>begin the program with a rapid move (G0, RAPID) above the part</source>
+        <translation>程序应以到零件上方的快速移动（G0、RAPID）开始</translation>
+    </message>
+    <message>
+        <source>the program has no line to begin at</source>
+        <translation>程序没有可以开始的行</translation>
+    </message>
+    <message>
+        <source>name a line up to the last one that moves, and its operation: --from-line OPERATION:N</source>
+        <translation>指定不超过最后一个移动的行及其操作：--from-line OPERATION:N</translation>
+    </message>
+    <message>
+        <source>the tool is tilted too far to come down to the line along its axis</source>
+        <translation>刀具倾斜太大，不能沿其轴线下到该行</translation>
+    </message>
+    <message>
+        <source>begin at an earlier line, where it is tilted less</source>
+        <translation>从刀具倾斜较小的较前一行开始</translation>
+    </message>
+    <message>
+        <source>M codes of the machine before the line are not repeated</source>
+        <translation>该行之前的机床 M 代码不会重复执行</translation>
+    </message>
+    <message>
+        <source>bring the machine into the state that they left it in, repeat them with --repeat-codes, or begin at an earlier line</source>
+        <translation>使机床处于这些代码之后的状态，用 --repeat-codes 重复它们，或从较前一行开始</translation>
+    </message>
+    <message>
+        <source>the program has no such side</source>
+        <translation>程序没有这一面</translation>
+    </message>
+    <message>
+        <source>name one of its sides, counted from 1: --side N</source>
+        <translation>指定其中一面，从 1 开始计数：--side N</translation>
+    </message>
+    <message>
+        <source>a thread needs a spindle that is an axis, and the machine file states none</source>
+        <translation>螺纹需要可作为轴的主轴,而机床文件中没有写明</translation>
+    </message>
+    <message>
+        <source>state [spindle.axis] and its codes in the machine file if the spindle is one, or mill the threads as helices</source>
+        <translation>如果主轴可作为轴,在机床文件中写明 [spindle.axis] 及其代码,或用螺旋线铣削螺纹</translation>
+    </message>
+    <message>
+        <source>a thread is not made of feed moves along the tool axis</source>
+        <translation>螺纹不是由沿刀轴的进给移动组成的</translation>
+    </message>
+    <message>
+        <source>tap along the tool axis</source>
+        <translation>沿刀轴攻丝</translation>
+    </message>
+    <message>
+        <source>the spindle as an axis cannot keep up with the feed of a thread, and the thread will be slower</source>
+        <translation>作为轴的主轴跟不上螺纹的进给,螺纹将加工得较慢</translation>
+    </message>
+    <message>
+        <source>nothing has to be done, the lead is kept; a lower spindle speed of the thread has the same effect</source>
+        <translation>无需处理,导程保持不变;降低螺纹的主轴转速效果相同</translation>
+    </message>
+    <message>
+        <source>threads cannot be tapped in this way</source>
+        <translation>不能以这种方式攻丝</translation>
+    </message>
+    <message>
+        <source>leave that option out, or post the threads as a program of their own</source>
+        <translation>去掉该选项,或将螺纹单独后处理为一个程序</translation>
+    </message>
+    <message>
+        <source>the machine file states no stiffness of the struts</source>
+        <translation>机床文件没有说明支链的刚度</translation>
+    </message>
+    <message>
+        <source>state struts.stiffness in it, and struts.rigidity where screws are long</source>
+        <translation>请在其中写明 struts.stiffness；丝杠较长时再写明 struts.rigidity</translation>
+    </message>
+    <message>
+        <source>remove it, or put the text into a comment after $$</source>
+        <translation>删除它，或将文字放入 $$ 之后的注释</translation>
+    </message>
+    <message>
+        <source>write it as -12.5 or 1.0E-05</source>
+        <translation>写成 -12.5 或 1.0E-05 的形式</translation>
+    </message>
+    <message>
+        <source>a statement is too long</source>
+        <translation>语句太长</translation>
+    </message>
+    <message>
+        <source>split it</source>
+        <translation>将其拆开</translation>
+    </message>
+    <message>
+        <source>a text in quotes is not closed</source>
+        <translation>引号中的文字没有结束</translation>
+    </message>
+    <message>
+        <source>close it on the same line</source>
+        <translation>在同一行内结束它</translation>
+    </message>
+    <message>
+        <source>a $ is inside a line</source>
+        <translation>$ 位于行的中间</translation>
+    </message>
+    <message>
+        <source>put $ at the end of a line that is continued, $$ before a comment</source>
+        <translation>$ 写在续行的行末，$$ 写在注释之前</translation>
+    </message>
+    <message>
+        <source>a statement does not begin with a word</source>
+        <translation>语句没有以词开头</translation>
+    </message>
+    <message>
+        <source>begin it with its major word, such as GOTO</source>
+        <translation>以其主词开头，例如 GOTO</translation>
+    </message>
+    <message>
+        <source>unexpected text in the statement</source>
+        <translation>语句中有意外的文字</translation>
+    </message>
+    <message>
+        <source>write WORD/item,item,... on a line of its own</source>
+        <translation>另起一行写成 WORD/item,item,... 的形式</translation>
+    </message>
+    <message>
+        <source>a parenthesis is not closed</source>
+        <translation>圆括号没有结束</translation>
+    </message>
+    <message>
+        <source>close it with )</source>
+        <translation>用 ) 结束</translation>
+    </message>
+    <message>
+        <source>a closing parenthesis has no opening one</source>
+        <translation>右括号没有对应的左括号</translation>
+    </message>
+    <message>
+        <source>remove it, or add the opening one</source>
+        <translation>删除它，或补上左括号</translation>
+    </message>
+    <message>
+        <source>parentheses are nested too deeply</source>
+        <translation>圆括号嵌套过深</translation>
+    </message>
+    <message>
+        <source>write the statement without them</source>
+        <translation>写出不含圆括号的语句</translation>
+    </message>
+    <message>
+        <source>the statement is not supported</source>
+        <translation>不支持该语句</translation>
+    </message>
+    <message>
+        <source>let the CAM system write the motion in plain points and arcs</source>
+        <translation>让 CAM 系统用普通的点和圆弧写出运动</translation>
+    </message>
+    <message>
+        <source>the items of the statement are not valid</source>
+        <translation>语句的项无效</translation>
+    </message>
+    <message>
+        <source>give it the items described in docs/cl-data.md</source>
+        <translation>按 docs/cl-data.md 所述写出各项</translation>
+    </message>
+    <message>
+        <source>a value is not possible</source>
+        <translation>不可能有这个值</translation>
+    </message>
+    <message>
+        <source>the word is unknown and was ignored</source>
+        <translation>词未知，已忽略</translation>
+    </message>
+    <message>
+        <source>check that the job does not need it</source>
+        <translation>确认作业不需要它</translation>
+    </message>
+    <message>
+        <source>give I, J and K, not all zero</source>
+        <translation>给出不全为零的 I、J 和 K</translation>
+    </message>
+    <message>
+        <source>write FEDRAT before it, or give --feed</source>
+        <translation>在其之前写 FEDRAT，或给出 --feed</translation>
+    </message>
+    <message>
+        <source>regenerate the path; the radii must agree to 0.05 mm</source>
+        <translation>重新生成轨迹；两端半径之差不得超过 0.05 mm</translation>
+    </message>
+    <message>
+        <source>the arc fits its end points badly</source>
+        <translation>圆弧与其端点吻合较差</translation>
+    </message>
+    <message>
+        <source>write more decimals; the radii should agree to 0.0005 mm</source>
+        <translation>写出更多小数；两端半径之差应不超过 0.0005 mm</translation>
+    </message>
+    <message>
+        <source>the unit of length is uncertain</source>
+        <translation>长度单位不确定</translation>
+    </message>
+    <message>
+        <source>check the size of the part, and give --unit mm or --unit inch</source>
+        <translation>检查零件的大小，并给出 --unit mm 或 --unit inch</translation>
+    </message>
+    <message>
+        <source>the gauge length of the tool is unknown; 0 is used</source>
+        <translation>刀具长度（主轴端面到刀尖）未知，按 0 处理</translation>
+    </message>
+    <message>
+        <source>give the tool with its length</source>
+        <translation>给出带长度的刀具</translation>
+    </message>
+    <message>
+        <source>correct its items, or let the CAM system write single moves</source>
+        <translation>改正其各项，或让 CAM 系统写出逐个移动</translation>
+    </message>
+    <message>
+        <source>the file contains no motion</source>
+        <translation>文件中没有运动</translation>
+    </message>
+    <message>
+        <source>an arc has no end point</source>
+        <translation>圆弧没有终点</translation>
+    </message>
+    <message>
+        <source>write GOTO after it</source>
+        <translation>在其后写 GOTO</translation>
+    </message>
+    <message>
+        <source>statements after FINI were ignored</source>
+        <translation>FINI 之后的语句已忽略</translation>
+    </message>
+    <message>
+        <source>remove them, or remove FINI</source>
+        <translation>删除这些语句，或删除 FINI</translation>
+    </message>
+    <message>
+        <source>an inverse time feed needs a move of non-zero length</source>
+        <translation>反比时间进给需要长度不为零的移动</translation>
+    </message>
+    <message>
+        <source>give such moves a feed in mm/min</source>
+        <translation>为这样的移动给出以 mm/min 为单位的进给</translation>
+    </message>
+    <message>
+        <source>write FROM or GOTO first</source>
+        <translation>先写 FROM 或 GOTO</translation>
+    </message>
+    <message>
+        <source>e and f do not put the corner of the cutter against its bottom and side, and were ignored</source>
+        <translation>e 和 f 不能使刀具圆角与其底面和侧面相接，已忽略</translation>
+    </message>
+    <message>
+        <source>write the e and f of a corner that touches both, or leave them out</source>
+        <translation>写出与两者都相接的圆角的 e 和 f，或将其略去</translation>
+    </message>
+    <message>
+        <source>the words of this cycle differ between CAM systems</source>
+        <translation>此循环的词在各 CAM 系统中含义不同</translation>
+    </message>
+    <message>
+        <source>name the CAM system with --cl-dialect, or let the CAM system write single moves</source>
+        <translation>用 --cl-dialect 指明 CAM 系统，或让 CAM 系统写出逐个移动</translation>
+    </message>
+    <message>
+        <source>the numbers of the cycle have no words, and their meaning is unknown</source>
+        <translation>循环的数值没有词，含义未知</translation>
+    </message>
+    <message>
+        <source>give the meaning with --cycle-values, such as depth,feed,clearance</source>
+        <translation>用 --cycle-values 给出含义，例如 depth,feed,clearance</translation>
+    </message>
+    <message>
+        <source>the tool axis turns by more than 60 degrees on the way to a hole</source>
+        <translation>到孔的途中刀轴转动超过 60 度</translation>
+    </message>
+    <message>
+        <source>let the CAM system write the moves between</source>
+        <translation>让 CAM 系统写出其间的移动</translation>
+    </message>
+    <message>
+        <source>a motion begins or ends at a hole of a cycle, where the tool is not</source>
+        <translation>运动的起点或终点在循环的孔处，而刀具不在那里</translation>
+    </message>
+    <message>
+        <source>write CYCLE/OFF and a GOTO before it</source>
+        <translation>在其之前写 CYCLE/OFF 和一个 GOTO</translation>
+    </message>
+    <message>
+        <source>CUTCOM has two readings: its points may be the contour of the part or the centre of the tool</source>
+        <translation>CUTCOM 有两种读法：其各点可能是零件轮廓，也可能是刀具中心</translation>
+    </message>
+    <message>
+        <source>give --contour-data contour or --contour-data centre, or set ContourData of the program object</source>
+        <translation>给出 --contour-data contour 或 --contour-data centre，或设置程序对象的 ContourData</translation>
+    </message>
+    <message>
+        <source>the points under CUTCOM were taken for the centre of the tool, by their arcs</source>
+        <translation>根据其中的圆弧，CUTCOM 下的点被视为刀具中心</translation>
+    </message>
+    <message>
+        <source>check the size of the part, and give --contour-data centre or contour</source>
+        <translation>检查零件的大小，并给出 --contour-data centre 或 contour</translation>
+    </message>
+    <message>
+        <source>the unit of length is unknown</source>
+        <translation>长度单位未知</translation>
+    </message>
+    <message>
+        <source>give --unit mm or --unit inch, or set Unit of the program object</source>
+        <translation>给出 --unit mm 或 --unit inch，或设置程序对象的 Unit</translation>
+    </message>
+    <message>
+        <source>the wear of a tool has no effect</source>
+        <translation>刀具的磨损量没有作用</translation>
+    </message>
+    <message>
+        <source>give --wear for a tool that the CL data compensates by CUTCOM</source>
+        <translation>对 CL 数据用 CUTCOM 补偿的刀具给出 --wear</translation>
+    </message>
+    <message>
+        <source>the file has no end: it may be truncated</source>
+        <translation>文件没有结束：可能不完整</translation>
+    </message>
+    <message>
+        <source>get the complete file; if it is complete, add FINI at its end, give --allow-open-end, or set OpenEnd of the program object</source>
+        <translation>取得完整的文件；如果已经完整，在末尾加上 FINI，给出 --allow-open-end，或设置程序对象的 OpenEnd</translation>
+    </message>
+    <message>
+        <source>an option does not apply to this input</source>
+        <translation>该选项不适用于此输入</translation>
+    </message>
+    <message>
+        <source>leave it out</source>
+        <translation>去掉它</translation>
+    </message>
+    <message>
+        <source>the file gives a tool several gauge lengths; none of them is used</source>
+        <translation>文件给出了同一刀具的多个长度；均未使用</translation>
+    </message>
+    <message>
+        <source>give its length with --tool-length</source>
+        <translation>用 --tool-length 给出其长度</translation>
+    </message>
+    <message>
+        <source>the home position of the machine is unknown</source>
+        <translation>机床的原位未知</translation>
+    </message>
+    <message>
+        <source>give it with --machine-zero X,Y,Z, or set MachineZero of the program object</source>
+        <translation>用 --machine-zero X,Y,Z 给出，或设置程序对象的 MachineZero</translation>
+    </message>
+    <message>
+        <source>the strokes of this kind of cycle are not known</source>
+        <translation>此类循环的动作未知</translation>
+    </message>
+    <message>
+        <source>give them with --cycle-kinds, such as BORE=ream, or let the CAM system write single moves</source>
+        <translation>用 --cycle-kinds 给出，例如 BORE=ream，或让 CAM 系统写出逐个移动</translation>
+    </message>
+    <message>
+        <source>the curve cannot be followed</source>
+        <translation>曲线不能跟随</translation>
+    </message>
+    <message>
+        <source>the tool table is not valid</source>
+        <translation>刀具表无效</translation>
+    </message>
+    <message>
+        <source>write it as docs/g-code.md describes it: LinuxCNC&apos;s .tbl or .csv with the unit, as in --tool-table tools.tbl,mm, or FreeCAD&apos;s .fctl</source>
+        <translation>按 docs/g-code.md 所述书写：LinuxCNC 的 .tbl 或带单位的 .csv，例如 --tool-table tools.tbl,mm，或 FreeCAD 的 .fctl</translation>
+    </message>
+    <message>
+        <source>the machine file cannot be read</source>
+        <translation>机床文件不能读取</translation>
+    </message>
+    <message>
+        <source>check the path; python3 -m pkm_post machine list shows presets</source>
+        <translation>检查路径；python3 -m pkm_post machine list 列出自带的机床</translation>
+    </message>
+    <message>
+        <source>the machine file is not valid TOML</source>
+        <translation>机床文件不是有效的 TOML</translation>
+    </message>
+    <message>
+        <source>correct it at the place shown</source>
+        <translation>在所示位置改正</translation>
+    </message>
+    <message>
+        <source>an entry is missing</source>
+        <translation>缺少一个条目</translation>
+    </message>
+    <message>
+        <source>add it; docs/machine-file.md describes every entry</source>
+        <translation>补上它；docs/machine-file.md 说明了每个条目</translation>
+    </message>
+    <message>
+        <source>an entry has the wrong form</source>
+        <translation>一个条目的格式错误</translation>
+    </message>
+    <message>
+        <source>correct it; docs/machine-file.md describes every entry</source>
+        <translation>改正它；docs/machine-file.md 说明了每个条目</translation>
+    </message>
+    <message>
+        <source>an entry is not known</source>
+        <translation>一个条目未知</translation>
+    </message>
+    <message>
+        <source>remove it or correct its spelling</source>
+        <translation>删除它，或改正其拼写</translation>
+    </message>
+    <message>
+        <source>entries contradict each other</source>
+        <translation>各条目相互矛盾</translation>
+    </message>
+    <message>
+        <source>correct the one shown, or what it is compared with</source>
+        <translation>改正所示的条目，或与之相比较的条目</translation>
+    </message>
+    <message>
+        <source>an entry of this machine is unknown</source>
+        <translation>此机床的一个条目未知</translation>
+    </message>
+    <message>
+        <source>measure it or ask the maker, and write it in place of &quot;unknown&quot;</source>
+        <translation>测量它或询问制造商，并将其写在 &quot;unknown&quot; 处</translation>
+    </message>
+    <message>
+        <source>the machine cannot reach its home pose</source>
+        <translation>机床不能到达其零位位姿</translation>
+    </message>
+    <message>
+        <source>correct tool_path.home_tip, or the limit that is in the way</source>
+        <translation>改正 tool_path.home_tip，或改正妨碍它的极限</translation>
+    </message>
+    <message>
+        <source>the machine cannot reach the tool-change pose</source>
+        <translation>机床不能到达换刀位姿</translation>
+    </message>
+    <message>
+        <source>correct tool_change.nose, or the limit that is in the way</source>
+        <translation>改正 tool_change.nose，或改正妨碍它的极限</translation>
+    </message>
+    <message>
+        <source>the measurements cannot be read</source>
+        <translation>测量数据不能读取</translation>
+    </message>
+    <message>
+        <source>check the path; docs/machine-file.md describes the file</source>
+        <translation>检查路径；docs/machine-file.md 说明了该文件</translation>
+    </message>
+    <message>
+        <source>a row of the measurements is malformed</source>
+        <translation>测量数据有一行的格式错误</translation>
+    </message>
+    <message>
+        <source>correct it; docs/machine-file.md describes the file</source>
+        <translation>改正它；docs/machine-file.md 说明了该文件</translation>
+    </message>
+    <message>
+        <source>no machine fits the measurements</source>
+        <translation>没有机床与测量数据相符</translation>
+    </message>
+    <message>
+        <source>look for wrong rows, units and frames in the measurements</source>
+        <translation>检查测量数据中是否有错误的行、单位或坐标系</translation>
+    </message>
+    <message>
+        <source>the calibrated machine cannot be written</source>
+        <translation>标定后的机床不能写出</translation>
+    </message>
+    <message>
+        <source>correct the faults reported for the written file</source>
+        <translation>改正针对所写文件报告的错误</translation>
+    </message>
+    <message>
+        <source>the poses do not determine all parameters</source>
+        <translation>这些位姿不能确定全部参数</translation>
+    </message>
+    <message>
+        <source>measure at more poses, with more tilt and spin</source>
+        <translation>在更多位姿处测量，倾角和自转角更大</translation>
+    </message>
+    <message>
+        <source>the machine file is too large</source>
+        <translation>机床文件太大</translation>
+    </message>
+    <message>
+        <source>remove what docs/machine-file.md does not describe</source>
+        <translation>删除 docs/machine-file.md 未说明的内容</translation>
+    </message>
+    <message>
+        <source>the machine file is nested too deeply</source>
+        <translation>机床文件嵌套过深</translation>
+    </message>
+    <message>
+        <source>write tables and lists as docs/machine-file.md has them</source>
+        <translation>按 docs/machine-file.md 的形式书写表和列表</translation>
+    </message>
+    <message>
+        <source>a contact point, normal or tool axis is not a number or has no direction</source>
+        <translation>接触点、法线或刀轴不是数，或没有方向</translation>
+    </message>
+    <message>
+        <source>regenerate the path</source>
+        <translation>重新生成轨迹</translation>
+    </message>
+    <message>
+        <source>the surface is undercut: the corner of the cutter does not touch it</source>
+        <translation>曲面内凹：刀具的圆角接触不到</translation>
+    </message>
+    <message>
+        <source>lean the tool further back</source>
+        <translation>增大刀具后倾</translation>
+    </message>
+    <message>
+        <source>the normal is parallel to the tool axis and no direction of travel is known</source>
+        <translation>法线平行于刀轴，且没有已知的走刀方向</translation>
+    </message>
+    <message>
+        <source>lean the tool</source>
+        <translation>使刀具倾斜</translation>
+    </message>
+    <message>
+        <source>the surface is flatter than the bottom of the cutter: its corner does not touch it</source>
+        <translation>曲面比刀具底面更平：刀具的圆角接触不到</translation>
+    </message>
+    <message>
+        <source>lean the tool, or take a cutter with a flatter bottom</source>
+        <translation>使刀具倾斜，或使用底面更平的刀具</translation>
+    </message>
+    <message>
+        <source>normal and tool axis are nearly parallel, and the side on which the cutter lies depends on rounding</source>
+        <translation>法线与刀轴几乎平行，刀具所在的一侧取决于舍入</translation>
+    </message>
+    <message>
+        <source>lean the tool, or give normals with more decimals</source>
+        <translation>使刀具倾斜，或给出小数位更多的法线</translation>
+    </message>
+    <message>
+        <source>the tip jumps sideways where normal and tool axis are nearly parallel</source>
+        <translation>在法线与刀轴几乎平行处，刀尖横向跳动</translation>
+    </message>
+    <message>
+        <source>lean the tool there, or take a ball end mill</source>
+        <translation>在那里使刀具倾斜，或使用球头铣刀</translation>
+    </message>
+    <message>
+        <source>an arc would not stay an arc in 3D compensation</source>
+        <translation>圆弧经三维补偿后不再是圆弧</translation>
+    </message>
+    <message>
+        <source>let the CAM system write straight moves</source>
+        <translation>让 CAM 系统写出直线移动</translation>
+    </message>
+    <message>
+        <source>there are no surface normals to compensate with</source>
+        <translation>没有可用于补偿的曲面法线</translation>
+    </message>
+    <message>
+        <source>let the CAM system write normals</source>
+        <translation>让 CAM 系统写出法线</translation>
+    </message>
+    <message>
+        <source>the cutter the path was made for is not known</source>
+        <translation>轨迹所针对的刀具未知</translation>
+    </message>
+    <message>
+        <source>pass --tool NUMBER=D,R with its diameter and corner radius; in a CAM job complete the tool bit</source>
+        <translation>用 --tool NUMBER=D,R 给出其直径和圆角半径；在 CAM 作业中补全刀头的数据</translation>
+    </message>
+    <message>
+        <source>a cutting move ends on no face of the model</source>
+        <translation>一个切削移动的终点不在模型的任何面上</translation>
+    </message>
+    <message>
+        <source>correct the operation; give the faces it cuts, a LeadLength for leads, or a wider Tolerance</source>
+        <translation>改正该操作；给出它所切削的面，用于进退刀的 LeadLength，或更大的 Tolerance</translation>
+    </message>
+    <message>
+        <source>a point is at an edge between faces with different normals</source>
+        <translation>一个点位于法线不同的面之间的边上</translation>
+    </message>
+    <message>
+        <source>choose the face that is cut in the property Faces, or keep the path off the edge</source>
+        <translation>在属性 Faces 中选择所切削的面，或使轨迹避开该边</translation>
+    </message>
+    <message>
+        <source>the surface normal or the tool axis turns too much from one point to the next</source>
+        <translation>从一点到下一点，曲面法线或刀轴转动太大</translation>
+    </message>
+    <message>
+        <source>put the points of the operation closer together, end the cut at the edge, or allow more as ChordTolerance</source>
+        <translation>使操作的点更密，在边处结束切削，或用 ChordTolerance 允许更大的偏差</translation>
+    </message>
+    <message>
+        <source>the tool leans in the direction of travel, and there is none at a contact point</source>
+        <translation>刀具沿走刀方向倾斜，而一个接触点处没有走刀方向</translation>
+    </message>
+    <message>
+        <source>keep the tool axis of the operation, or let the cut go on from there</source>
+        <translation>保持该操作的刀轴，或使切削从那里继续</translation>
+    </message>
+    <message>
+        <source>there is no face to touch</source>
+        <translation>没有可接触的面</translation>
+    </message>
+    <message>
+        <source>choose the faces again, or leave Faces empty for all of the model</source>
+        <translation>重新选择面，或将 Faces 留空以使用整个模型</translation>
+    </message>
+    <message>
+        <source>compensation does not support the shape of the tool</source>
+        <translation>补偿不支持该刀具的形状</translation>
+    </message>
+    <message>
+        <source>use a flat, ball or bull nose end mill</source>
+        <translation>使用平底、球头或圆角铣刀</translation>
+    </message>
+    <message>
+        <source>the corner radius of a cutter is not known</source>
+        <translation>刀具的圆角半径未知</translation>
+    </message>
+    <message>
+        <source>pass it behind the diameter, 0 for a flat end mill, D/2 for a ball nose: --tool NUMBER=D,R for the cutter the path was made for, --actual-tool NUMBER=D,R for the one in the spindle</source>
+        <translation>写在直径之后，平底铣刀为 0，球头铣刀为 D/2：轨迹所针对的刀具用 --tool NUMBER=D,R，主轴中的刀具用 --actual-tool NUMBER=D,R</translation>
+    </message>
+    <message>
+        <source>the program has no such tool</source>
+        <translation>程序中没有这把刀具</translation>
+    </message>
+    <message>
+        <source>pass --actual-tool with the number of a tool of the program</source>
+        <translation>用 --actual-tool 给出程序中刀具的编号</translation>
+    </message>
+    <message>
+        <source>points of contact are not tool tips</source>
+        <translation>接触点不是刀尖位置</translation>
+    </message>
+    <message>
+        <source>post the program, which makes tips of them by the cutter</source>
+        <translation>对程序进行后处理，由刀具从接触点得出刀尖位置</translation>
+    </message>
+    <message>
+        <source>cutter compensation begins or ends on an arc</source>
+        <translation>刀具半径补偿在圆弧上开始或结束</translation>
+    </message>
+    <message>
+        <source>begin and end it on a straight move</source>
+        <translation>在直线移动上开始和结束补偿</translation>
+    </message>
+    <message>
+        <source>the tool is too large for the block</source>
+        <translation>刀具对该程序段来说太大</translation>
+    </message>
+    <message>
+        <source>use a smaller tool, or let such blocks be removed</source>
+        <translation>使用更小的刀具，或允许删去这样的程序段</translation>
+    </message>
+    <message>
+        <source>the tool is too large for the block, which is left out</source>
+        <translation>刀具对该程序段来说太大，该程序段已略去</translation>
+    </message>
+    <message>
+        <source>check what is not cut there</source>
+        <translation>检查那里未切除的部分</translation>
+    </message>
+    <message>
+        <source>the tool would cut into the contour</source>
+        <translation>刀具会切入轮廓</translation>
+    </message>
+    <message>
+        <source>use a smaller tool, or change the contour there</source>
+        <translation>使用更小的刀具，或更改那里的轮廓</translation>
+    </message>
+    <message>
+        <source>the tool cuts into the contour where compensation begins, ends or changes its side</source>
+        <translation>在补偿开始、结束或换侧之处，刀具切入轮廓</translation>
+    </message>
+    <message>
+        <source>begin and end it farther from the contour, at right angles to it</source>
+        <translation>在离轮廓较远处、与轮廓成直角开始和结束补偿</translation>
+    </message>
+    <message>
+        <source>the plane of cutter compensation is not unique here</source>
+        <translation>此处刀具半径补偿的平面不唯一</translation>
+    </message>
+    <message>
+        <source>keep plane and tool axis, and arcs in the plane</source>
+        <translation>保持平面和刀轴不变，圆弧位于该平面内</translation>
+    </message>
+    <message>
+        <source>only closed lines along u or v can be joined to a spiral</source>
+        <translation>只有沿 u 或 v 的封闭线能连成螺旋</translation>
+    </message>
+    <message>
+        <source>choose Zigzag or One way</source>
+        <translation>选择“往复”或“单向”</translation>
+    </message>
+    <message>
+        <source>the faces have no area to cover</source>
+        <translation>这些面没有可覆盖的面积</translation>
+    </message>
+    <message>
+        <source>choose faces that have an area</source>
+        <translation>选择有面积的面</translation>
+    </message>
+    <message>
+        <source>the cutter does not fit into a hollow of the surface, so there is no stepover for a scallop height</source>
+        <translation>刀具放不进曲面的凹处，因此没有与残留高度相应的行距</translation>
+    </message>
+    <message>
+        <source>take a smaller cutter, or give the stepover as a distance</source>
+        <translation>使用更小的刀具，或以距离给出行距</translation>
+    </message>
+    <message>
+        <source>the tool is tilted too far to be lifted along its axis</source>
+        <translation>刀具倾斜太大，不能沿其轴线抬起</translation>
+    </message>
+    <message>
+        <source>lower ConeLimit, the field Cone limit of the operation, or lower Lead and Tilt</source>
+        <translation>减小 ConeLimit（操作的“锥角极限”），或减小 Lead 和 Tilt</translation>
+    </message>
+    <message>
+        <source>the tolerances cannot be kept by straight moves</source>
+        <translation>用直线移动不能保持公差</translation>
+    </message>
+    <message>
+        <source>raise the tolerances, or lean the tool less</source>
+        <translation>放宽公差，或减小刀具倾斜</translation>
+    </message>
+    <message>
+        <source>the surface has an edge, where the tool axis jumps</source>
+        <translation>曲面有一条边，刀轴在此处跳变</translation>
+    </message>
+    <message>
+        <source>cover the faces at the edge one by one</source>
+        <translation>逐个覆盖该边处的面</translation>
+    </message>
+    <message>
+        <source>the path lies above the height at which the tool traverses</source>
+        <translation>轨迹高于刀具横移的高度</translation>
+    </message>
+    <message>
+        <source>raise SafeHeight and ClearanceHeight</source>
+        <translation>提高 SafeHeight 和 ClearanceHeight</translation>
+    </message>
+    <message>
+        <source>no face is chosen</source>
+        <translation>没有选择面</translation>
+    </message>
+    <message>
+        <source>add faces as base geometry</source>
+        <translation>添加面作为基准几何</translation>
+    </message>
+    <message>
+        <source>a value is not valid</source>
+        <translation>一个值无效</translation>
+    </message>
+    <message>
+        <source>correct the property</source>
+        <translation>改正该属性</translation>
+    </message>
+    <message>
+        <source>the machine cannot reach the part with the tool upright</source>
+        <translation>刀具竖直时机床够不到零件</translation>
+    </message>
+    <message>
+        <source>move the part, or take another tool</source>
+        <translation>移动零件，或使用其他刀具</translation>
+    </message>
+    <message>
+        <source>the cutter goes deeper into the model than ChordTolerance</source>
+        <translation>刀具切入模型的深度超过 ChordTolerance</translation>
+    </message>
+    <message>
+        <source>lean the tool away from what is beside the face, take a smaller cutter, or choose other faces; CheckSpacing 0 shows the path without the measurement</source>
+        <translation>使刀具偏离该面旁边的部分，使用更小的刀具，或选择其他面；CheckSpacing 设为 0 时显示轨迹而不测量</translation>
+    </message>
+    <message>
+        <source>the file is not a trajectory file</source>
+        <translation>该文件不是轨迹文件</translation>
+    </message>
+    <message>
+        <source>give a .pkmt file</source>
+        <translation>给出 .pkmt 文件</translation>
+    </message>
+    <message>
+        <source>the trajectory file has a version that this program does not know</source>
+        <translation>本软件不认识该轨迹文件的版本</translation>
+    </message>
+    <message>
+        <source>use a newer PKM Post</source>
+        <translation>使用更新的 PKM Post</translation>
+    </message>
+    <message>
+        <source>the trajectory file is damaged</source>
+        <translation>轨迹文件已损坏</translation>
+    </message>
+    <message>
+        <source>make it again from its source</source>
+        <translation>由其来源重新生成</translation>
+    </message>
+    <message>
+        <source>the trajectory was made for another machine</source>
+        <translation>轨迹是为另一台机床生成的</translation>
+    </message>
+    <message>
+        <source>name that machine, as by --machine, or post again for this one</source>
+        <translation>指定那台机床（例如用 --machine），或为此机床重新后处理</translation>
+    </message>
+    <message>
+        <source>the trajectory file does not state the requested tolerances</source>
+        <translation>轨迹文件没有给出所要求的公差</translation>
+    </message>
+    <message>
+        <source>post the job again</source>
+        <translation>重新对作业进行后处理</translation>
+    </message>
+    <message>
+        <source>the trajectory file is inconsistent</source>
+        <translation>轨迹文件前后矛盾</translation>
+    </message>
+    <message>
+        <source>the trajectory exceeds the limits of its machine</source>
+        <translation>轨迹超出其机床的极限</translation>
+    </message>
+    <message>
+        <source>post the job again for this machine</source>
+        <translation>为此机床重新对作业进行后处理</translation>
+    </message>
+    <message>
+        <source>the tool tip leaves the programmed path</source>
+        <translation>刀尖偏离编程路径</translation>
+    </message>
+    <message>
+        <source>request a wider tolerance, or report this as a fault</source>
+        <translation>要求更宽的公差，或将其作为软件错误报告</translation>
+    </message>
+    <message>
+        <source>the tool axis leaves the programmed axis</source>
+        <translation>刀轴偏离编程刀轴</translation>
+    </message>
+    <message>
+        <source>a strut is faster than the machine allows</source>
+        <translation>一条支链的速度超过机床允许值</translation>
+    </message>
+    <message>
+        <source>report this as a fault of the feed planner</source>
+        <translation>作为进给规划的错误报告</translation>
+    </message>
+    <message>
+        <source>a strut accelerates more than the machine allows</source>
+        <translation>一条支链的加速度超过机床允许值</translation>
+    </message>
+    <message>
+        <source>the program does not start or end at rest</source>
+        <translation>程序不是从静止开始或不在静止处结束</translation>
+    </message>
+    <message>
+        <source>a strut leaves its stroke</source>
+        <translation>一条支链超出其行程</translation>
+    </message>
+    <message>
+        <source>no pose of the platform belongs to the strut lengths</source>
+        <translation>杆长没有对应的动平台位姿</translation>
+    </message>
+    <message>
+        <source>post the job again; do not edit it</source>
+        <translation>重新对作业进行后处理；不要编辑它</translation>
+    </message>
+    <message>
+        <source>the feed is exceeded</source>
+        <translation>进给超过编程值</translation>
+    </message>
+    <message>
+        <source>the program does not execute the events of the job</source>
+        <translation>程序没有执行作业的事件</translation>
+    </message>
+    <message>
+        <source>the program does not follow the whole path</source>
+        <translation>程序没有走完整条路径</translation>
+    </message>
+    <message>
+        <source>the struts deviate from their plan</source>
+        <translation>支链偏离其规划</translation>
+    </message>
+    <message>
+        <source>the acceleration of a strut changes too fast</source>
+        <translation>一条支链的加速度变化太快</translation>
+    </message>
+    <message>
+        <source>the tool axis turns faster than the machine allows</source>
+        <translation>刀轴转动速度超过机床允许值</translation>
+    </message>
+    <message>
+        <source>the tip accelerates more than the machine allows</source>
+        <translation>刀尖的加速度超过机床允许值</translation>
+    </message>
+    <message>
+        <source>the acceleration of the tip changes too fast</source>
+        <translation>刀尖的加速度变化太快</translation>
+    </message>
+    <message>
+        <source>points are too close together for the controller</source>
+        <translation>各点的间隔对控制器来说太短</translation>
+    </message>
+    <message>
+        <source>the point rate is too high for the controller</source>
+        <translation>点的频率对控制器来说太高</translation>
+    </message>
+    <message>
+        <source>lower the feed, request a wider tolerance, or correct controller.block_rate of the machine file</source>
+        <translation>降低进给，要求更宽的公差，或改正机床文件的 controller.block_rate</translation>
+    </message>
+    <message>
+        <source>the program has too few decimals</source>
+        <translation>程序的小数位太少</translation>
+    </message>
+    <message>
+        <source>state more in controller.length_decimals and controller.speed_decimals, and controller.line_limit for longer lines if the controller accepts them</source>
+        <translation>增大 controller.length_decimals 和 controller.speed_decimals；如果控制器接受更长的行，增大 controller.line_limit</translation>
+    </message>
+    <message>
+        <source>the path needs points closer together than the controller accepts</source>
+        <translation>路径所需的点比控制器允许的更密</translation>
+    </message>
+    <message>
+        <source>request a wider tolerance, lower the feed, or correct controller.shortest_interval of the machine file</source>
+        <translation>要求更宽的公差，降低进给，或改正机床文件的 controller.shortest_interval</translation>
+    </message>
+    <message>
+        <source>the depth of a thread is off what the turns of the spindle make of it</source>
+        <translation>螺纹的深度偏离主轴转数对应的深度</translation>
+    </message>
+    <message>
+        <source>post the job again; do not edit the program. If it was just posted, state more controller.length_decimals, or a wider spindle.axis.lead_tolerance</source>
+        <translation>重新后处理该作业;不要编辑程序。如果刚刚后处理过,增大 controller.length_decimals,或放宽 spindle.axis.lead_tolerance</translation>
+    </message>
+    <message>
+        <source>the spindle turns faster in a thread than the machine allows</source>
+        <translation>主轴在螺纹中的转速超过机床允许值</translation>
+    </message>
+    <message>
+        <source>the spindle accelerates more in a thread than the machine allows</source>
+        <translation>主轴在螺纹中的加速度超过机床允许值</translation>
+    </message>
+    <message>
+        <source>the spindle turns on at the end of the program</source>
+        <translation>程序结束时主轴仍在转动</translation>
+    </message>
+    <message>
+        <source>let the program stop it, by M5, M2 or SPINDL/OFF</source>
+        <translation>用 M5、M2 或 SPINDL/OFF 使程序停止主轴</translation>
+    </message>
+    <message>
+        <source>the program ends with the tool low</source>
+        <translation>程序结束时刀具位置较低</translation>
+    </message>
+    <message>
+        <source>check that the program is complete, and retract the tool at its end if it has to be clear</source>
+        <translation>确认程序完整；如果刀具须离开工件，在程序末尾退刀</translation>
+    </message>
+    <message>
+        <source>tool path</source>
+        <translation>刀具路径</translation>
+    </message>
+    <message>
+        <source>machine limits</source>
+        <translation>机床极限</translation>
+    </message>
+    <message>
+        <source>collisions</source>
+        <translation>碰撞</translation>
+    </message>
+    <message>
+        <source>approach, tool change, spindle</source>
+        <translation>接近、换刀、主轴</translation>
+    </message>
+    <message>
+        <source>machine and set-up</source>
+        <translation>机床与设置</translation>
+    </message>
+    <message>
+        <source>proven</source>
+        <translation>已证明</translation>
+    </message>
+    <message>
+        <source>sampled</source>
+        <translation>抽样</translation>
+    </message>
+    <message>
+        <source>not covered</source>
+        <translation>未涵盖</translation>
+    </message>
+    <message>
+        <source>interval without a pose</source>
+        <translation>没有位姿的区间</translation>
+    </message>
+    <message>
+        <source>deviation of the tool tip</source>
+        <translation>刀尖偏差</translation>
+    </message>
+    <message>
+        <source>deviation of the tool axis</source>
+        <translation>刀轴偏差</translation>
+    </message>
+    <message>
+        <source>tool tip off a programmed point</source>
+        <translation>刀尖偏离编程点</translation>
+    </message>
+    <message>
+        <source>tool axis off a programmed one</source>
+        <translation>刀轴偏离编程刀轴</translation>
+    </message>
+    <message>
+        <source>strut off its plan</source>
+        <translation>支链偏离规划</translation>
+    </message>
+    <message>
+        <source>tip speed</source>
+        <translation>刀尖速度</translation>
+    </message>
+    <message>
+        <source>strut speed</source>
+        <translation>支链速度</translation>
+    </message>
+    <message>
+        <source>strut acceleration</source>
+        <translation>支链加速度</translation>
+    </message>
+    <message>
+        <source>turning rate of the tool axis</source>
+        <translation>刀轴转动速度</translation>
+    </message>
+    <message>
+        <source>tip acceleration</source>
+        <translation>刀尖加速度</translation>
+    </message>
+    <message>
+        <source>shortest strut</source>
+        <translation>最短杆长</translation>
+    </message>
+    <message>
+        <source>longest strut</source>
+        <translation>最长杆长</translation>
+    </message>
+    <message>
+        <source>shortest interval</source>
+        <translation>最短区间</translation>
+    </message>
+    <message>
+        <source>depth of a thread off its turns</source>
+        <translation>螺纹深度相对转数的偏差</translation>
+    </message>
+    <message>
+        <source>spindle speed in a thread</source>
+        <translation>螺纹中的主轴转速</translation>
+    </message>
+    <message>
+        <source>spindle acceleration in a thread</source>
+        <translation>螺纹中的主轴加速度</translation>
+    </message>
+    <message>
+        <source>step of strut acceleration at a knot</source>
+        <translation>节点处支链加速度的突变</translation>
+    </message>
+    <message>
+        <source>blocks in one second</source>
+        <translation>一秒内的程序段数</translation>
+    </message>
+    <message>
+        <source>strut jerk</source>
+        <translation>支链加加速度</translation>
+    </message>
+    <message>
+        <source>tip jerk</source>
+        <translation>刀尖加加速度</translation>
+    </message>
+    <message>
+        <source>tip moved by one count of each strut</source>
+        <translation>各支链一个计数引起的刀尖位移</translation>
+    </message>
+    <message>
+        <source>contour error by following errors</source>
+        <translation>跟随误差引起的轮廓误差</translation>
+    </message>
+    <message>
+        <source>tool tip and axis</source>
+        <translation>刀尖和刀轴</translation>
+    </message>
+    <message>
+        <source>feed</source>
+        <translation>进给</translation>
+    </message>
+    <message>
+        <source>events</source>
+        <translation>事件</translation>
+    </message>
+    <message>
+        <source>strut length, speed and acceleration</source>
+        <translation>杆长、支链速度和加速度</translation>
+    </message>
+    <message>
+        <source>tip acceleration and turning rate of the tool axis</source>
+        <translation>刀尖加速度和刀轴转动速度</translation>
+    </message>
+    <message>
+        <source>intervals between points</source>
+        <translation>各点的时间间隔</translation>
+    </message>
+    <message>
+        <source>joints and singular poses</source>
+        <translation>铰链和奇异位姿</translation>
+    </message>
+    <message>
+        <source>geometry of the machine</source>
+        <translation>机床几何</translation>
+    </message>
+    <message>
+        <source>work offset and gauge lengths</source>
+        <translation>工件偏置和刀具长度</translation>
+    </message>
+    <message>
+        <source>controller set-up, codes and override</source>
+        <translation>控制器设置、代码和倍率</translation>
+    </message>
+    <message>
+        <source>stiffness, heat and cutting forces</source>
+        <translation>刚度、热和切削力</translation>
+    </message>
+    <message>
+        <source>blocks in a second</source>
+        <translation>每秒程序段数</translation>
+    </message>
+    <message>
+        <source>following error</source>
+        <translation>跟随误差</translation>
+    </message>
+    <message>
+        <source>way to the start of the program</source>
+        <translation>到程序起点的路径</translation>
+    </message>
+    <message>
+        <source>approach from the start to the first point</source>
+        <translation>从起点到第一个点的接近</translation>
+    </message>
+    <message>
+        <source>tool change</source>
+        <translation>换刀</translation>
+    </message>
+    <message>
+        <source>spindle speed at the first cut</source>
+        <translation>第一次切削时的主轴转速</translation>
+    </message>
+    <message>
+        <source>steps of acceleration at knots</source>
+        <translation>节点处加速度的突变</translation>
+    </message>
+    <message>
+        <source>strut and strut</source>
+        <translation>支链与支链</translation>
+    </message>
+    <message>
+        <source>strut and platform</source>
+        <translation>支链与动平台</translation>
+    </message>
+    <message>
+        <source>strut and fixture</source>
+        <translation>支链与夹具</translation>
+    </message>
+    <message>
+        <source>spindle and fixture</source>
+        <translation>主轴与夹具</translation>
+    </message>
+    <message>
+        <source>the link is back</source>
+        <translation>连接已恢复</translation>
+    </message>
+    <message>
+        <source>the link is lost; the machine comes to rest on the path: {}</source>
+        <translation>连接已丢失；机床在路径上停下：{}</translation>
+    </message>
+    <message>
+        <source>no pose of the platform reachable in small steps from home has these strut lengths</source>
+        <translation>从回零位姿以小步可到达的平台位姿中，没有一个具有这些支链长度</translation>
+    </message>
+    <message>
+        <source>the tool is {} above its path; it goes back before the play goes on</source>
+        <translation>刀具在其路径上方 {}；继续播放之前先返回</translation>
+    </message>
+    <message>
+        <source>no retract: {}</source>
+        <translation>没有退刀：{}</translation>
+    </message>
+    <message>
+        <source>{} points, this the first</source>
+        <translation>共 {} 个点，这是第一个</translation>
+    </message>
+    <message>
+        <source>a recompute is under way</source>
+        <translation>正在重新计算</translation>
+    </message>
+    <message>
+        <source>{}{}</source>
+        <translation>{}{}</translation>
+    </message>
+    <message>
+        <source>{}, the machine file has {}</source>
+        <translation>{}，机床文件有 {}</translation>
+    </message>
+    <message>
+        <source>nothing to post</source>
+        <translation>没有可后处理的内容</translation>
+    </message>
+    <message>
+        <source>none is set</source>
+        <translation>未设置</translation>
+    </message>
+    <message>
+        <source>T{}, no tool controller has this number</source>
+        <translation>T{}，没有刀具控制器使用此编号</translation>
+    </message>
+    <message>
+        <source>{}: {}</source>
+        <translation>{}：{}</translation>
+    </message>
+    <message>
+        <source>{} at X {}, Y {}, Z {}</source>
+        <translation>{}，位于 X {}、Y {}、Z {}</translation>
+    </message>
+    <message>
+        <source>FreeCAD reads only files with Unicode names</source>
+        <translation>FreeCAD 只能读取 Unicode 文件名的文件</translation>
+    </message>
+    <message>
+        <source>OpenCASCADE cannot read it as STEP</source>
+        <translation>OpenCASCADE 无法按 STEP 读取</translation>
+    </message>
+    <message>
+        <source>no job in the document</source>
+        <translation>文档中没有作业</translation>
+    </message>
+    <message>
+        <source>without {}</source>
+        <translation>没有 {}</translation>
+    </message>
+    <message>
+        <source>it needs {} beside it</source>
+        <translation>旁边需要有 {}</translation>
+    </message>
+    <message>
+        <source>{} of {} moves</source>
+        <translation>{}，涉及 {} 个移动</translation>
+    </message>
+    <message>
+        <source>Base is empty</source>
+        <translation>Base 为空</translation>
+    </message>
+    <message>
+        <source>a machine limits the tilt from upright: ConeAxis is not (0, 0, 1)</source>
+        <translation>机床限制相对竖直方向的倾角：ConeAxis 不是 (0, 0, 1)</translation>
+    </message>
+    <message>
+        <source>{} at {}</source>
+        <translation>{}，工件偏置 {}</translation>
+    </message>
+    <message>
+        <source>{}, {} {}, by {}</source>
+        <translation>{}，{} {}，差 {}</translation>
+    </message>
+    <message>
+        <source>{} against the {}{}</source>
+        <translation>{}对{}{}</translation>
+    </message>
+    <message>
+        <source>machine and rapid moves against the stock</source>
+        <translation>机床和快速移动对毛坯</translation>
+    </message>
+    <message>
+        <source>machine and tool against the part</source>
+        <translation>机床和刀具对零件</translation>
+    </message>
+    <message>
+        <source>machine and tool against clamps and fixtures</source>
+        <translation>机床和刀具对压板和夹具</translation>
+    </message>
+    <message>
+        <source>spindle and holder</source>
+        <translation>主轴和刀柄</translation>
+    </message>
+    <message>
+        <source>struts</source>
+        <translation>支链</translation>
+    </message>
+    <message>
+        <source>cutters in rapid moves</source>
+        <translation>快速移动中的刀具</translation>
+    </message>
+    <message>
+        <source>cutters in cutting moves</source>
+        <translation>切削移动中的刀具</translation>
+    </message>
+    <message>
+        <source>shanks</source>
+        <translation>刀杆</translation>
+    </message>
+    <message>
+        <source>cutters</source>
+        <translation>刀具</translation>
+    </message>
+    <message>
+        <source>strut</source>
+        <translation>支链</translation>
+    </message>
+    <message>
+        <source>part</source>
+        <translation>零件</translation>
+    </message>
+    <message>
+        <source>stock</source>
+        <translation>毛坯</translation>
+    </message>
+    <message>
+        <source>fixture</source>
+        <translation>夹具</translation>
+    </message>
+    <message>
+        <source>{} in a rapid move</source>
+        <translation>{}（快速移动中）</translation>
+    </message>
+    <message>
+        <source>{} triangles</source>
+        <translation>{} 个三角形</translation>
+    </message>
+    <message>
+        <source>shank of {}</source>
+        <translation>{} 的刀杆</translation>
+    </message>
+    <message>
+        <source>{}, stock {}, at X{:.1f} Y{:.1f} Z{:.1f}</source>
+        <translation>{}，毛坯 {}，位于 X{:.1f} Y{:.1f} Z{:.1f}</translation>
+    </message>
+    <message>
+        <source>it was written</source>
+        <translation>曾经写入</translation>
+    </message>
+    <message>
+        <source>no triangles</source>
+        <translation>没有三角形</translation>
+    </message>
+    <message>
+        <source>triangle {} has an implausible coordinate</source>
+        <translation>三角形 {} 的坐标不合理</translation>
+    </message>
+    <message>
+        <source>cutter compensation with a tool of unknown diameter</source>
+        <translation>刀具直径未知却使用刀具半径补偿</translation>
+    </message>
+    <message>
+        <source>its ends would move {} apart</source>
+        <translation>其两端会分开 {}</translation>
+    </message>
+    <message>
+        <source>T{}, the program has {}</source>
+        <translation>T{}，程序有 {}</translation>
+    </message>
+    <message>
+        <source>no row of the tool has one</source>
+        <translation>该刀具的所有行都没有</translation>
+    </message>
+    <message>
+        <source>T{}, of which the diameter alone is given: {}</source>
+        <translation>T{}，只给出了直径：{}</translation>
+    </message>
+    <message>
+        <source>{} degrees from upright</source>
+        <translation>与竖直方向相差 {} 度</translation>
+    </message>
+    <message>
+        <source>no move at all</source>
+        <translation>没有任何移动</translation>
+    </message>
+    <message>
+        <source>the work offset is a mirror</source>
+        <translation>工件偏置是镜像</translation>
+    </message>
+    <message>
+        <source>T{}, at most {}</source>
+        <translation>T{}，最多 {}</translation>
+    </message>
+    <message>
+        <source>side {} of {}</source>
+        <translation>第 {} 面，共 {} 面</translation>
+    </message>
+    <message>
+        <source>the spindle was at {} rpm before</source>
+        <translation>之前主轴转速为 {} 转/分</translation>
+    </message>
+    <message>
+        <source>{} degrees above the horizontal, at least {} are needed</source>
+        <translation>高于水平面 {} 度，至少需要 {} 度</translation>
+    </message>
+    <message>
+        <source>the tip is at z = {}, the plane at {}</source>
+        <translation>刀尖在 z = {}，平面在 {}</translation>
+    </message>
+    <message>
+        <source>radius of the corner {}</source>
+        <translation>圆角半径 {}</translation>
+    </message>
+    <message>
+        <source>no pass lies on it</source>
+        <translation>没有走刀落在其上</translation>
+    </message>
+    <message>
+        <source>after {} halvings, {} moves are too long</source>
+        <translation>经过 {} 次对分后，仍有 {} 个移动过长</translation>
+    </message>
+    <message>
+        <source>its first move is a feed move</source>
+        <translation>其第一个移动是进给移动</translation>
+    </message>
+    <message>
+        <source>no lift leads away from the end of this pass</source>
+        <translation>这条走刀的末端没有抬刀</translation>
+    </message>
+    <message>
+        <source>the lift from this pass ends below where rapid moves went</source>
+        <translation>这条走刀的抬刀终点低于快速移动的高度</translation>
+    </message>
+    <message>
+        <source>the plane is not parallel to two axes any more</source>
+        <translation>该平面不再与两个轴平行</translation>
+    </message>
+    <message>
+        <source>lead {}</source>
+        <translation>导程 {}</translation>
+    </message>
+    <message>
+        <source>it begins towards the spindle</source>
+        <translation>它朝向主轴开始</translation>
+    </message>
+    <message>
+        <source>{} moves have one</source>
+        <translation>{} 个移动有</translation>
+    </message>
+    <message>
+        <source>{} and {}</source>
+        <translation>{} 与 {}</translation>
+    </message>
+    <message>
+        <source>no machine of this name comes with PKM Post</source>
+        <translation>PKM Post 没有附带此名称的机床</translation>
+    </message>
+    <message>
+        <source>strut {part} by {by}</source>
+        <translation>支链 {part}，差 {by}</translation>
+    </message>
+    <message>
+        <source>struts {part} by {by}</source>
+        <translation>支链 {part}，差 {by}</translation>
+    </message>
+    <message>
+        <source>{} and part</source>
+        <translation>{} 与零件</translation>
+    </message>
+    <message>
+        <source>{part} by {by}</source>
+        <translation>{part}，差 {by}</translation>
+    </message>
+    <message>
+        <source>{} and fixture</source>
+        <translation>{} 与夹具</translation>
+    </message>
+    <message>
+        <source>strut and part</source>
+        <translation>支链与零件</translation>
+    </message>
+    <message>
+        <source>joint {part} by {by}</source>
+        <translation>铰链 {part}，超出 {by}</translation>
+    </message>
+    <message>
+        <source>smallest singular value below {least} by {by}</source>
+        <translation>最小奇异值低于 {least}，差 {by}</translation>
+    </message>
+    <message>
+        <source>singular poses</source>
+        <translation>奇异位姿</translation>
+    </message>
+    <message>
+        <source>strut {part} by {by}; it reaches {limit}</source>
+        <translation>支链 {part}，超出 {by}；极限为 {limit}</translation>
+    </message>
+    <message>
+        <source>shortest struts</source>
+        <translation>最短杆长</translation>
+    </message>
+    <message>
+        <source>strut {part} by {by}; it shortens to {limit}</source>
+        <translation>支链 {part}，短了 {by}；最短可到 {limit}</translation>
+    </message>
+    <message>
+        <source>longest struts</source>
+        <translation>最长杆长</translation>
+    </message>
+    <message>
+        <source>strut {part} by {by}; it extends to {limit}</source>
+        <translation>支链 {part}，长了 {by}；最长可到 {limit}</translation>
+    </message>
+    <message>
+        <source>base joints</source>
+        <translation>底座铰链</translation>
+    </message>
+    <message>
+        <source>platform joints</source>
+        <translation>动平台铰链</translation>
+    </message>
+    <message>
+        <source>below {least} by {by}</source>
+        <translation>低于 {least}，差 {by}</translation>
+    </message>
+    <message>
+        <source>stiffness along the normal</source>
+        <translation>沿法向的刚度</translation>
+    </message>
+    <message>
+        <source>{name} {value}, allowed {limit}, {time:.3f} s after the start</source>
+        <translation>{name} {value}，允许 {limit}，开始后 {time:.3f} s</translation>
+    </message>
+    <message>
+        <source>{name} {value}, at least {limit}, {time:.3f} s after the start</source>
+        <translation>{name} {value}，至少 {limit}，开始后 {time:.3f} s</translation>
+    </message>
+</context>
+<context>
+    <name>CoreTexts</name>
+    <message>
+        <source>error</source>
+        <translation>错误</translation>
+    </message>
+    <message>
+        <source>warning</source>
+        <translation>警告</translation>
+    </message>
+    <message>
+        <source>line {}</source>
+        <translation>第 {} 行</translation>
+    </message>
+    <message>
+        <source>{code} {cause}: {found}; {cure}</source>
+        <translation>{code} {cause}：{found}；{cure}</translation>
+    </message>
+    <message>
+        <source>{place}: {severity} {code}: {cause}: {found}; {cure}</source>
+        <translation>{place}：{severity} {code}：{cause}：{found}；{cure}</translation>
+    </message>
+</context>
+<context>
+    <name>DeviationMap</name>
+    <message>
+        <source>left: {}</source>
+        <translation>残留：{}</translation>
+    </message>
+    <message>
+        <source>gouged: {}</source>
+        <translation>过切：{}</translation>
+    </message>
+    <message>
+        <source>distance from the part</source>
+        <translation>与零件的距离</translation>
+    </message>
+</context>
+<context>
+    <name>FaultLinks</name>
+    <message>
+        <source>{code}: {cause}.
+What helps: {cure}.</source>
+        <translation>{code}：{cause}。
+解决办法：{cure}。</translation>
     </message>
 </context>
 <context>
@@ -1333,6 +4803,61 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>T{}: {} of --tool-length in More arguments goes before the field.</source>
         <translation>T{}：其他参数中 --tool-length 的 {} 优先于此输入框。</translation>
+    </message>
+</context>
+<context>
+    <name>JogPanel</name>
+    <message>
+        <source>X</source>
+        <translation>X</translation>
+    </message>
+    <message>
+        <source>Y</source>
+        <translation>Y</translation>
+    </message>
+    <message>
+        <source>Z</source>
+        <translation>Z</translation>
+    </message>
+    <message>
+        <source>Tilt about X</source>
+        <translation>绕 X 倾斜</translation>
+    </message>
+    <message>
+        <source>Tilt about Y</source>
+        <translation>绕 Y 倾斜</translation>
+    </message>
+    <message>
+        <source>Spin</source>
+        <translation>自转角</translation>
+    </message>
+    <message>
+        <source>Jog the machine</source>
+        <translation>点动机床</translation>
+    </message>
+    <message>
+        <source>Home</source>
+        <translation>原位</translation>
+    </message>
+    <message>
+        <source>Step</source>
+        <translation>步长</translation>
+    </message>
+    <message>
+        <source>Turn by</source>
+        <translation>转角步长</translation>
+    </message>
+    <message>
+        <source>The machine cannot stand here</source>
+        <translation>机床不能处于此位姿</translation>
+    </message>
+    <message>
+        <source>The machine can stand here</source>
+        <translation>机床可以处于此位姿</translation>
+    </message>
+    <message>
+        <source>Left: {} of a stroke, {} of a joint. Struts: {}</source>
+        <translation>余量：行程 {}，铰链 {}。支链：{}</translation>
     </message>
 </context>
 <context>
@@ -1428,8 +4953,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>已替换 {} 处</translation>
     </message>
     <message>
-        <source>{} blocks, {} arcs, {:.1f} mm</source>
-        <translation>{} 个程序段，{} 段圆弧，{:.1f} mm</translation>
+        <source>{} blocks, {} arcs, {}</source>
+        <translation>{} 个程序段，{} 段圆弧，{}</translation>
     </message>
     <message>
         <source>Open</source>
@@ -1561,6 +5086,25 @@ Is the way of all struts, of the platform and of the tool free?</source>
     </message>
 </context>
 <context>
+    <name>PKM_Example</name>
+    <message>
+        <source>New from example</source>
+        <translation>从示例新建</translation>
+    </message>
+    <message>
+        <source>Make a document with a blade and the job that finishes it on a hexapod</source>
+        <translation>新建一个文档，内含叶片以及在六自由度并联机床上对其精加工的作业</translation>
+    </message>
+    <message>
+        <source>Hexapod example</source>
+        <translation>并联机床示例</translation>
+    </message>
+    <message>
+        <source>A blade with a job for a hexapod machine tool, of PKM Post</source>
+        <translation>PKM Post 的示例：叶片及其并联机床作业</translation>
+    </message>
+</context>
+<context>
     <name>PKM_InstallPackages</name>
     <message>
         <source>Install packages</source>
@@ -1580,6 +5124,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>Add the machine around the part, with the work offset of the job</source>
         <translation>按作业的工件偏置，在零件周围添加机床</translation>
+    </message>
+    <message>
+        <source>Jog</source>
+        <translation>点动</translation>
     </message>
     <message>
         <source>Move it home</source>
@@ -1670,12 +5218,28 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>机床不能跟随该作业</translation>
     </message>
     <message>
+        <source>points only</source>
+        <translation>仅各点</translation>
+    </message>
+    <message>
         <source>{}, line {}</source>
         <translation>{}，第 {} 行</translation>
     </message>
     <message>
         <source>Open the findings</source>
         <translation>打开检查结果</translation>
+    </message>
+    <message>
+        <source>worst check</source>
+        <translation>最差的检查</translation>
+    </message>
+    <message>
+        <source>{:.4g} of the largest</source>
+        <translation>最大值的 {:.4g}</translation>
+    </message>
+    <message>
+        <source>out of limits</source>
+        <translation>超出极限</translation>
     </message>
 </context>
 <context>
@@ -1736,8 +5300,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>{}，第 {} 行</translation>
     </message>
     <message>
-        <source>At this override strut {} would have to do {:.4g} of {:.4g} mm/s</source>
-        <translation>在此倍率下，支链 {} 的速度须达 {:.4g} mm/s，而极限为 {:.4g} mm/s</translation>
+        <source>At this override strut {} would have to do {} of {} {}</source>
+        <translation>在此倍率下，支链 {} 的速度须达 {}，而极限为 {} {}</translation>
     </message>
     <message>
         <source>Play and pause</source>
@@ -1790,14 +5354,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>Open the player</source>
         <translation>打开播放器</translation>
-    </message>
-    <message>
-        <source>Lengths in mm</source>
-        <translation>杆长，mm</translation>
-    </message>
-    <message>
-        <source>Speeds in mm/s</source>
-        <translation>速度，mm/s</translation>
     </message>
     <message>
         <source>Readout</source>
@@ -1926,6 +5482,25 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>Tool</source>
         <translation>刀具</translation>
+    </message>
+    <message>
+        <source>Lengths in {}</source>
+        <translation>杆长，{}</translation>
+    </message>
+    <message>
+        <source>Speeds in {}</source>
+        <translation>速度，{}</translation>
+    </message>
+</context>
+<context>
+    <name>PKM_Stiffness</name>
+    <message>
+        <source>Stiffness</source>
+        <translation>刚度</translation>
+    </message>
+    <message>
+        <source>Show how stiff the tool is held along the job, and over the table</source>
+        <translation>显示刀具沿作业以及在工作台上的支承刚度</translation>
     </message>
 </context>
 <context>
@@ -2063,6 +5638,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>圆弧</translation>
     </message>
     <message>
+        <source>Measure and colour again</source>
+        <translation>重新测量并着色</translation>
+    </message>
+    <message>
+        <source>The document keeps the worst values, not the colours: computes them again</source>
+        <translation>文档只保存最差值，不保存颜色：重新计算</translation>
+    </message>
+    <message>
         <source>Tool controller</source>
         <translation>刀具控制器</translation>
     </message>
@@ -2113,6 +5696,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
 <context>
     <name>PlaceRow</name>
     <message>
+        <source>Stop</source>
+        <translation>停止</translation>
+    </message>
+    <message>
+        <source>Stop the search, as Escape does</source>
+        <translation>停止搜索，与 Escape 键相同</translation>
+    </message>
+    <message>
         <source>Find a place</source>
         <translation>寻找位置</translation>
     </message>
@@ -2131,6 +5722,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>Looking for a place ...</source>
         <translation>正在寻找位置……</translation>
+    </message>
+    <message>
+        <source>Stopped.</source>
+        <translation>已停止。</translation>
     </message>
     <message>
         <source>shift {amount} in {axis}</source>
@@ -2424,6 +6019,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <source>What the post panel shows at first for a job that has no arguments of its own.</source>
         <translation>对没有自身参数的作业，后处理面板最初显示的内容。</translation>
     </message>
+    <message>
+        <source>Along paths of five axes, in Reach and in the player</source>
+        <translation>沿五轴轨迹，在可达性检查和播放器中</translation>
+    </message>
 </context>
 <context>
     <name>PostSteps</name>
@@ -2497,6 +6096,63 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>{}: gouges</source>
         <translation>{}：过切</translation>
+    </message>
+</context>
+<context>
+    <name>Sanity</name>
+    <message>
+        <source>The machine can follow the job</source>
+        <translation>机床能够跟随该作业</translation>
+    </message>
+</context>
+<context>
+    <name>StiffnessPanel</name>
+    <message>
+        <source>Stiffness of {}</source>
+        <translation>{} 的刚度</translation>
+    </message>
+    <message>
+        <source>Show the table: tool upright, at the lowest height of the job</source>
+        <translation>显示工作台：刀具竖直，位于作业的最低高度</translation>
+    </message>
+    <message>
+        <source>The struts hold the tool tip by {} to {} in the softest direction</source>
+        <translation>各支链在最软方向上支承刀尖的刚度为 {} 至 {}</translation>
+    </message>
+    <message>
+        <source>stiffness</source>
+        <translation>刚度</translation>
+    </message>
+    <message>
+        <source>Stiffness</source>
+        <translation>刚度</translation>
+    </message>
+    <message>
+        <source>{}, line {}: {} along ({}) of the machine</source>
+        <translation>{}，第 {} 行：{}，沿机床方向 ({})</translation>
+    </message>
+</context>
+<context>
+    <name>SurfaceFinish</name>
+    <message>
+        <source>The machine cannot follow</source>
+        <translation>机床无法跟随</translation>
+    </message>
+    <message>
+        <source>The machine can follow</source>
+        <translation>机床可以跟随</translation>
+    </message>
+    <message>
+        <source>Not computed yet: Apply computes it</source>
+        <translation>尚未计算：按“应用”进行计算</translation>
+    </message>
+    <message>
+        <source>Gouges are not looked for: set a distance of check points</source>
+        <translation>未检查过切：请设置检查点间距</translation>
+    </message>
+    <message>
+        <source>No gouge: {} at the deepest, between the points at most {} deeper; {} left at most, at points {} apart</source>
+        <translation>无过切：最深 {}，检查点之间最多再深 {}；最多残留 {}，检查点间距 {}</translation>
     </message>
 </context>
 <context>

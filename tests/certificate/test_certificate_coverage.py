@@ -8,13 +8,13 @@ import machines
 import numpy as np
 import pytest
 from posted_jobs import NARROW, of, preset
-from programs import ON_PALLET, TOOLS, cone, program, random_job
+from programs import ON_PALLET, TOOLS, cone, program, random_job, tapped_hole
 
 from pkm_post.certificate.coverage import CERTIFIED, CHECKED_ELSEWHERE, coverage
 from pkm_post.machine import find_machine
 from pkm_post.machine.description.fields import FIELDS
 from pkm_post.machine.description.reader import read_machine
-from pkm_post.model import Event, EventKind
+from pkm_post.model import Event, EventKind, SpindleAxis
 from pkm_post.model.certificate import Extent, Topic, coverage_summary
 from pkm_post.toolpath.place import place
 
@@ -36,7 +36,8 @@ NO_LIMITS = {
     "controller.codes.spindle_clockwise", "controller.codes.spindle_counterclockwise",
     "controller.codes.spindle_stop", "controller.codes.coolant_flood", "controller.codes.coolant_mist",
     "controller.codes.coolant_off", "controller.codes.stop", "controller.codes.optional_stop",
-    "controller.codes.functions",
+    "controller.codes.functions", "spindle.axis.motor", "spindle.axis.letter", "spindle.axis.counts_per_turn",
+    "controller.codes.spindle_axis", "controller.codes.spindle_speed",
 }  # fmt: skip
 """Entries that say what the machine is, where things are and what its controller is set to."""
 
@@ -137,7 +138,10 @@ def test_jerk_is_covered_where_a_limit_is_stated():
 
 def all_stated():
     """The example machine with every limit that a file can state."""
-    return dataclasses.replace(preset("example_6tps"), strut_jerk=1e6, tip_jerk=1e6)
+    axis = SpindleAxis(
+        motor=7, letter="Z", counts_per_turn=36000.0, speed=25.0, acceleration=200.0, lead_tolerance=0.005
+    )
+    return dataclasses.replace(preset("example_6tps"), strut_jerk=1e6, tip_jerk=1e6, spindle_axis=axis)
 
 
 def test_every_entry_stands_in_one_place():
@@ -148,7 +152,9 @@ def test_every_entry_stands_in_one_place():
 def test_certified_limits_are_findings_of_a_certificate():
     *_, certificate, faults = of(all_stated(), random_job(np.random.default_rng(3)), NARROW)
     assert faults == ()
-    names = {row.name for row in certificate.findings}
+    *_, of_a_thread, faults = of(all_stated(), tapped_hole(), NARROW)
+    assert faults == ()
+    names = {row.name for row in (*certificate.findings, *of_a_thread.findings)}
     assert {name for rows in CERTIFIED.values() for name in rows} <= names
 
 

@@ -10,6 +10,7 @@ import pytest
 from lying_trajectories import is_refused_by_name, lie, posted, verified
 from machines import example
 from programs import ON_PALLET, cone
+from series import cases
 
 from pkm_post.cli import main
 from pkm_post.machine import machine_named
@@ -18,7 +19,7 @@ from pkm_post.posting.verify import verify
 from pkm_post.toolpath.place import place
 from pkm_post.writing.trajectory_file import decode, write, writer
 
-SEEDS = 250
+SEEDS = cases(100)
 TIMES_THE_SIZE = 12
 """What reading a file takes, by its size, beside what any file takes."""
 BESIDE = 512 * 1024

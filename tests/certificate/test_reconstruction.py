@@ -42,7 +42,7 @@ def refusals(struts, trajectory, machine, tolerances=TOLERANCES):
     measured = certify(
         struts, "job.pmc", trajectory, machine, found.motion, tolerances, spin_deviation=found.spin_deviation
     )
-    return errors((*measured[1], *reach_faults(machine, trajectory, *found.way())))
+    return errors((*measured[1], *reach_faults(machine, trajectory, *found.pose_path())))
 
 
 def placed(job, machine):

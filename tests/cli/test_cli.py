@@ -26,7 +26,7 @@ def pkm_post(*arguments, cwd=None, python="python3"):
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=300,
         check=False,
     )
 
@@ -100,7 +100,7 @@ def test_batch_from_inside_freecad(tmp_path):
         str(script),
     ]
     reported = subprocess.run(
-        command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=False
+        command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=300, check=False
     )
     assert reported.returncode == 0, reported.stderr
     assert {"a.pmc", "b.pmc"} <= {path.name for path in (tmp_path / "out").iterdir()}

@@ -19,7 +19,7 @@ def run_unread(*arguments, python=("python3",)):
         command = [*python, "-m", "pkm_post", *map(str, arguments)]
         found = os.environ | {"PYTHONPATH": str(ADDON)}
         return subprocess.run(
-            command, env=found, stdout=writes, stderr=subprocess.PIPE, text=True, timeout=120, check=False
+            command, env=found, stdout=writes, stderr=subprocess.PIPE, text=True, timeout=300, check=False
         )
     finally:
         os.close(writes)

@@ -26,7 +26,7 @@ def command(*arguments):
 def run(*arguments, cwd=None, **environment):
     return subprocess.run(
         command(*arguments), cwd=cwd, env=os.environ | {"PYTHONPATH": str(ADDON)} | environment,
-        stdin=subprocess.DEVNULL, capture_output=True, timeout=120, check=False,
+        stdin=subprocess.DEVNULL, capture_output=True, timeout=300, check=False,
     )  # fmt: skip
 
 
@@ -37,7 +37,7 @@ def run_without(closed, *arguments):
         [PYTHON, "-c", script, *command(*arguments)],
         env=os.environ | {"PYTHONPATH": str(ADDON)},
         stderr=subprocess.PIPE,
-        timeout=120,
+        timeout=300,
         check=False,
     )
     return ran.returncode, ran.stderr.decode()
@@ -65,7 +65,7 @@ from pkm_post.cli import main
 assert main(["machine", "list"]) == 0
 assert list(sys.stdin) == [] and sys.stdin.readline() == ""
 """
-    ran = subprocess.run([PYTHON, "-c", script], capture_output=True, text=True, timeout=60, check=False)
+    ran = subprocess.run([PYTHON, "-c", script], capture_output=True, text=True, timeout=300, check=False)
     assert ran.returncode == 0, ran.stderr
 
 
@@ -201,5 +201,5 @@ def test_ctrl_c_ends_a_command_quietly():
     )
     assert ran.stdout.readline() == "asleep\n"
     ran.send_signal(signal.SIGINT)
-    _, errors = ran.communicate(timeout=30)
+    _, errors = ran.communicate(timeout=300)
     assert (ran.returncode, errors) == (130, "")

@@ -20,7 +20,7 @@ main(sys.argv[1:])
 def test_arguments_are_explained_without_numpy(words):
     command = ["python3", "-c", RUN, *words.split(), "--help"]
     found = os.environ | {"PYTHONPATH": str(ADDON)}
-    ran = subprocess.run(command, env=found, capture_output=True, text=True, timeout=60, check=False)
+    ran = subprocess.run(command, env=found, capture_output=True, text=True, timeout=300, check=False)
     assert ran.returncode == 0, ran.stderr
     assert ran.stdout.startswith("usage:")
 
@@ -32,5 +32,5 @@ def test_the_arguments_of_a_document_are_taken_without_numpy(words):
     )
     found = os.environ | {"PYTHONPATH": str(ADDON)}
     command = ["python3", "-c", run, *words.split()]
-    ran = subprocess.run(command, env=found, capture_output=True, text=True, timeout=60, check=False)
+    ran = subprocess.run(command, env=found, capture_output=True, text=True, timeout=300, check=False)
     assert ran.returncode == 0, ran.stderr

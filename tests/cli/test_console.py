@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 from interpreter import PYTHON
 
-from pkm_post.cli import console, processes
+from pkm_post.cli import console, parallel
 
 NO_WINDOW, NEW_GROUP, CTRL_BREAK = 0x08000000, 0x200, 1
 
@@ -22,7 +22,7 @@ def windows(monkeypatch):
     monkeypatch.setattr(console, "_NO_WINDOW", NO_WINDOW)
     monkeypatch.setattr(console, "_NEW_GROUP", NEW_GROUP)
     monkeypatch.setattr(console, "BREAK", CTRL_BREAK)
-    monkeypatch.setattr(processes, "_HAS_GROUPS", False)
+    monkeypatch.setattr(parallel, "_HAS_GROUPS", False)
 
 
 class Running(SimpleNamespace):
@@ -50,7 +50,7 @@ def test_no_window_opens_and_ctrl_c_reaches_what_it_should(windows, monkeypatch,
 @pytest.mark.parametrize(("has", "done"), [(True, CTRL_BREAK), (False, "terminated")])
 def test_parallel_processes_get_a_break_in_place_of_ctrl_c(windows, monkeypatch, has, done):
     monkeypatch.setattr(console, "has_console", lambda: has)
-    child = processes._Child(["post"], {}, Running())
+    child = parallel._Child(["post"], {}, Running())
     child.interrupt()
     assert child.process.done == [done]
     assert not child.is_wanted
@@ -91,7 +91,7 @@ except KeyboardInterrupt:
     process = subprocess.Popen(
         [PYTHON, "-c", outer], env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}, start_new_session=True
     )
-    end = time.monotonic() + 60
+    end = time.monotonic() + 300
     while not (tmp_path / "begun").exists() and time.monotonic() < end:
         time.sleep(0.01)
     os.killpg(process.pid, signal.SIGINT)

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from interpreter import PYTHON
 
-from pkm_post.cli.processes import run_parallel
+from pkm_post.cli.parallel import run_parallel
 
 ADDON = Path(__file__).parents[2]
 G_CODE = """\
@@ -55,7 +55,7 @@ def test_at_most_so_many_at_a_time(tmp_path):
     reported = subprocess.run(
         [PYTHON, "-c", f"""
 import sys
-from pkm_post.cli.processes import run_parallel
+from pkm_post.cli.parallel import run_parallel
 commands = [[sys.executable, "-c", {script!r}, {str(tmp_path)!r}, str(number)] for number in range(6)]
 sys.exit(run_parallel(commands, 2, "counted"))
 """],
@@ -87,7 +87,7 @@ def programs(tmp_path):
 def test_batch_is_reported_file_by_file(programs, tmp_path):
     programs[1].write_text(G_CODE.replace("F600", "F0"))
     reported = post(*programs, *REACHED, "--out", tmp_path / "out", "--jobs", 3)
-    printed, errors = reported.communicate(timeout=120)
+    printed, errors = reported.communicate(timeout=300)
     assert reported.returncode == 1
     written = [Path(line).name for line in printed.splitlines() if line.startswith(str(tmp_path))]
     assert written == [
@@ -102,7 +102,7 @@ def test_batch_is_reported_file_by_file(programs, tmp_path):
 def test_batch_gives_the_bytes_that_one_process_gives(programs, tmp_path):
     for jobs in (1, 2):
         reported = post(*programs, *REACHED, "--out", tmp_path / str(jobs), "--jobs", jobs)
-        reported.communicate(timeout=120)
+        reported.communicate(timeout=300)
         assert reported.returncode == 0
     one, two = ({path.name: path.read_bytes() for path in (tmp_path / str(jobs)).iterdir()} for jobs in (1, 2))
     assert one == two
@@ -111,7 +111,7 @@ def test_batch_gives_the_bytes_that_one_process_gives(programs, tmp_path):
 @pytest.mark.parametrize("jobs", ["0", "-1", "many"])
 def test_number_of_processes_that_makes_no_sense(programs, jobs):
     reported = post(*programs, "--jobs", jobs)
-    reported.communicate(timeout=60)
+    reported.communicate(timeout=300)
     assert reported.returncode == 2
 
 
@@ -119,19 +119,19 @@ def test_an_interrupt_ends_all(tmp_path):
     sleep = f"import os, pathlib, time; pathlib.Path({str(tmp_path)!r}, str(os.getpid())).touch(); time.sleep(60)"
     script = f"""
 import sys
-from pkm_post.cli.processes import run_parallel
+from pkm_post.cli.parallel import run_parallel
 sys.exit(run_parallel([[sys.executable, "-c", {sleep!r}]] * 3, 2, "slept"))
 """
     parent = subprocess.Popen(
         [PYTHON, "-c", script], env=os.environ | {"PYTHONPATH": str(ADDON)},
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
-    end = time.monotonic() + 30
+    end = time.monotonic() + 300
     while len(list(tmp_path.iterdir())) < 2 and time.monotonic() < end:
         time.sleep(0.05)
     children = [int(path.name) for path in tmp_path.iterdir()]
     assert len(children) == 2
     parent.send_signal(signal.SIGINT)
-    parent.communicate(timeout=30)
+    parent.communicate(timeout=300)
     assert parent.returncode == 130
     assert [pid for pid in children if Path(f"/proc/{pid}").exists()] == []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Part programs in files: what `check` tells of them and what `convert` makes of them."""
+"""Part programs in files: what `check` says of them and what `convert` makes of them."""
 
 import json
 from dataclasses import replace

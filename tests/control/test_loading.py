@@ -5,7 +5,6 @@ import copy
 import dataclasses
 import json
 import logging
-import os
 import shutil
 import sys
 from itertools import islice
@@ -16,6 +15,7 @@ import pytest
 from best_segment import deviation_from_any
 from program_mutants import mutants
 from programs import ON_PALLET, cone
+from series import cases
 
 sys.path.insert(0, str(Path(__file__).with_name("link")))
 
@@ -41,8 +41,8 @@ from pkm_post.writing.controllers import (
     program_files,
 )
 
-MUTANTS = int(os.environ.get("PKM_MUTANTS", "60"))
-"""Of each program; ``PKM_MUTANTS=3000`` for a long series."""
+MUTANTS = cases(25)
+"""Of each program."""
 STOPS = (Event(0, EventKind.TOOL_CHANGE, 1), Event(6, EventKind.STOP, 0.0), Event(9, EventKind.SPINDLE, 900.0))
 
 
@@ -77,7 +77,7 @@ def program(original, tmp_path):
 @pytest.fixture(scope="module")
 def in_parts(tmp_path_factory):
     """A program in parts, and its machine."""
-    machine = machine_of(memory_words=800)
+    machine = machine_of(memory_words=600)
     return posted_in(tmp_path_factory.mktemp("parts"), machine), machine
 
 
@@ -224,7 +224,7 @@ def test_a_part_in_the_place_of_another_is_refused(in_parts, tmp_path):
 
 def test_uncertified_is_taken_when_that_is_said_and_logged(program, machine, caplog):
     settings, _ = pmac.settings_of(machine)
-    program.write_text(next(mutants(program.read_text(), seed=5)))
+    program.write_text(next(mutants(program.read_text(), seed=4)))
     assert job_to_load(program, machine, settings)[0] is None
     with caplog.at_level(logging.WARNING):
         job, _ = job_to_load(program, machine, settings, uncertified=True)

@@ -5,6 +5,7 @@ Here it is the upper four millimetres of the column, in all four quadrants; the 
 by ``column_over_links.py``. What is shorter is the number of passes: they are built, posted and certified alike.
 """
 
+import functools
 import importlib.util
 import json
 import re
@@ -27,6 +28,7 @@ LOWEST = 76.0
 """mm: the column is 80 mm high, and its passes are 2.5 mm apart."""
 LAST_BITS = 2e-6
 """mm: the controller keeps numbers in 36 bits, and the struts of the program have six decimals."""
+LINKS = pytest.mark.parametrize("kind", ["tcp", "serial", "ssh"])
 COUNT = 1e-4
 """mm: what the encoder of the example counts."""
 
@@ -40,15 +42,13 @@ def power_machine(tmp_path_factory):
     return file
 
 
-@pytest.fixture(scope="module", params=["tcp", "serial", "ssh"])
-def posted(request, power_machine, tmp_path_factory):
-    """A kind of link, the machine, and the motion program of the upper part of the column for its controller."""
-    machine = power_machine if request.param == "ssh" else "example_6tps"
-    return request.param, machine, _program(tmp_path_factory.mktemp("upper"), machine)
+@pytest.fixture(scope="module")
+def posted(tmp_path_factory):
+    """Posts the upper part of the column for a machine as CAM's Post Process command does it, once for all links."""
+    return functools.cache(lambda machine: _program(tmp_path_factory.mktemp("upper"), machine))
 
 
 def _program(folder, machine):
-    """Post the upper part of the column as CAM's Post Process command does it."""
     spec = importlib.util.spec_from_file_location("tapered_column_build_upper", EXAMPLE / "build.py")
     build = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = build
@@ -61,8 +61,10 @@ def _program(folder, machine):
     return folder / "upper.pmc"
 
 
-def test_the_tool_keeps_to_the_programmed_path_within_the_certificate(posted):
-    kind, machine, program = posted
+@LINKS
+def test_the_tool_keeps_to_the_programmed_path_within_the_certificate(kind, posted, power_machine):
+    machine = power_machine if kind == "ssh" else "example_6tps"
+    program = posted(machine)
     report = json.loads(program.with_name("upper-report.json").read_text())
     reported = {finding["what"]: finding["value"] for finding in report["certificate"]["findings"]}
     followed = follow(program, kind, machine=machine)
@@ -74,9 +76,9 @@ def test_the_tool_keeps_to_the_programmed_path_within_the_certificate(posted):
     assert followed.end < COUNT
 
 
-@pytest.mark.parametrize("kind", ["tcp", "serial", "ssh"])
-def test_the_same_when_it_is_played_and_its_operator_never_rests(kind, tmp_path):
-    program = _program(tmp_path, "example_6tps")
+@LINKS
+def test_the_same_when_it_is_played_and_its_operator_never_rests(kind, posted):
+    program = posted("example_6tps")
     trajectory, tolerances, faults = read_playable(program.with_suffix(".pkmt"), MACHINE)
     assert not faults
     follower, operator, results = play_operated(trajectory, tolerances, kind)

@@ -36,10 +36,17 @@ def moves_of(operation):
     return program, {name: getattr(program, name)[moves] for name in ("kind", "position", "tool_axis", "feed")}
 
 
+def plunges(program):
+    """How far the plunge to each pass goes, mm."""
+    begins = pass_rows(program)[:, 0] - 1
+    return np.linalg.norm(program.position[begins] - program.position[begins - 1], axis=1)
+
+
 @pytest.mark.parametrize(
     "choices",
     [
         {"Order": "One way", "Lead": 5.0, "Tilt": 10.0},
+        {"Order": "One way", "Lead": 5.0, "Tilt": 10.0, "ApproachDistance": 9.0},  # more than the safe height
         {"Order": "One way", "Lead": 5.0, "Tilt": -20.0, "LeadMove": "Arc"},
         {"Order": "One way", "Lines": "Along V", "Lead": 12.0, "LeadMove": "Tangent"},
         {"Order": "One way", "ConeLimit": 0.0},
@@ -56,11 +63,12 @@ def test_twice_is_the_operation_and_once_plunges_as_it_did(document, choices):
     once = create_mirror(operation, (0, 1, 0), point=(0, 15, 0), keep_climb=True)
     twice = create_mirror(once, (0, 1, 0), point=(0, 15, 0), keep_climb=True)
     document.recompute()
-    (_, before), (between, _), (_, after) = (moves_of(valid(each)) for each in (operation, once, twice))
+    (original, before), (between, _), (_, after) = (moves_of(valid(each)) for each in (operation, once, twice))
     for name, column in before.items():
         np.testing.assert_allclose(after[name], column, atol=SIX_DECIMALS, err_msg=name)
-    begins = pass_rows(between)[:, 0] - 1
-    np.testing.assert_allclose(between.feed[begins], PLUNGE)
-    approach = operation.ApproachDistance.Value
-    down = np.linalg.norm(between.position[begins] - between.position[begins - 1], axis=1)
-    np.testing.assert_allclose(down, approach, atol=SIX_DECIMALS)
+    np.testing.assert_allclose(between.feed[pass_rows(between)[:, 0] - 1], PLUNGE)
+    approach, down = operation.ApproachDistance.Value, plunges(between)
+    # where the safe height is nearer than the approach, the plunge begins there, as that of the original does
+    nearer = down < approach - SIX_DECIMALS
+    assert nearer.any() == ("ApproachDistance" in choices)
+    np.testing.assert_allclose(down, np.where(nearer, plunges(original), approach), atol=SIX_DECIMALS)

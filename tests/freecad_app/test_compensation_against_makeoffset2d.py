@@ -7,8 +7,8 @@ import Part
 import pytest
 
 from pkm_post.model import Kind, Program, Tool
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
 from pkm_post.toolpath.compensation.contour_offset import offset_contours
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 MICRON = 1e-3
 ARC_CORNERS, MITRED_CORNERS = 0, 2

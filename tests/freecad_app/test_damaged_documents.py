@@ -116,6 +116,16 @@ def test_a_bit_that_flips_is_refused_or_changes_nothing(part, intact):
     assert 0 < unseen < FLIPS / 4
 
 
+def test_a_tool_bit_with_a_chinese_name_is_posted(part):
+    """FreeCAD 1.1 names the members of the archive by it, in UTF-8 and without the flag that says so."""
+    document = App.openDocument(str(part))
+    document.addObject("Part::Box", "立铣刀")
+    document.recompute()
+    document.save()
+    App.closeDocument(document.Name)
+    assert posted(part)
+
+
 SMALL = {
     "no archive": b"not xml " * 1600,
     "no XML": b" " * 12_000_000,

@@ -38,13 +38,13 @@ CUT = [
 ]
 ALWAYS = {"--work-offset": "--work-offset=0,0,250", "--surface-speed": "--surface-speed=100"}
 """Where the machine reaches, and what --keep-chip-load needs; in every job but where the option itself is tried."""
-NO_EFFECT_HERE = {"--corners", "--leads", "--swallowed", "--keep-climb"}
-"""They are for contours with the tool beside them, and for copies, which this job has not."""
+NO_EFFECT_HERE = {"--origin", "--corners", "--leads", "--swallowed", "--keep-climb", "--repeat-codes"}
+"""They are for contours with the tool beside them, copies, and M codes of the machine, which this job has not."""
 MESHES = {"far": -5000.0, "farther": -6000.0}
 """Files with a triangle so far below the part that nothing touches it, and its height, mm."""
 FOR_PART_PROGRAMS = {"--tool", "--tool-table", "--unit", "--contour-data", "--wear", "--cl-dialect", "--cycle-values",
                      "--cycle-kinds", "--goto-values", "--allow-open-end", "--feed", "--flavour", "--machine-zero",
-                     "--leave-out", "--origin", "--subprograms", "--block-delete", "--side"}  # fmt: skip
+                     "--leave-out", "--subprograms", "--block-delete", "--side"}  # fmt: skip
 """What G-code and CL data do not say; a job has nothing to be read so."""
 NORMALS = "--actual-tool"
 """Only a path with surface normals can be posted with it."""
@@ -114,13 +114,22 @@ def as_the_job_says(job, arguments, folder):
 
 OF_THE_JOB = [by_cam, by_panel, as_the_job_says]
 """They have nothing but the job."""
-DOORS = [*OF_THE_JOB, by_command_line, by_macro, by_macro_with_the_file]
+TYPED = [by_command_line, by_macro, by_macro_with_the_file]
+DOORS = [*OF_THE_JOB, *TYPED]
 WHERE = ["job", "command line", "both"]
+
+
+def doors_for(flag, where):
+    """For what the job says two doors, and one of the macros for what is typed, in turn; the command line warns."""
+    turn = FLAGS.index(flag)
+    if where == "job":
+        return [DOORS[(2 * turn + place) % len(DOORS)] for place in range(2)]
+    return [by_command_line] if where == "both" else [by_command_line, (by_macro, by_macro_with_the_file)[turn % 2]]
 
 
 @pytest.mark.parametrize("where", WHERE)
 @pytest.mark.parametrize("flag", [flag for flag in FLAGS if flag not in {NORMALS, *FOR_PART_PROGRAMS}])
-def test_every_option_at_every_door(job, tmp_path, flag, where, capsys):
+def test_every_option_is_taken_at_a_door(job, tmp_path, flag, where, capsys):
     others = [text for name, text in ALWAYS.items() if name != flag]
     of_job = others + (words(flag, 0) if where != "command line" else [])
     over_it = words(flag, 1) if where != "job" else []
@@ -128,7 +137,7 @@ def test_every_option_at_every_door(job, tmp_path, flag, where, capsys):
     wanted = by_pipeline(job, shlex.join([*of_job, *over_it]), made(tmp_path / "wanted"))
     if where == "both" and flag not in NO_EFFECT_HERE:
         assert wanted != by_pipeline(job, shlex.join(of_job), made(tmp_path / "of the job alone"))
-    for door in DOORS if where == "job" else set(DOORS) - set(OF_THE_JOB):
+    for door in doors_for(flag, where):
         folder = made(tmp_path / door.__name__)
         door(job, over_it, folder)
         assert contents(folder) == wanted, door.__name__
@@ -137,6 +146,44 @@ def test_every_option_at_every_door(job, tmp_path, flag, where, capsys):
         where
     ]
     assert (f"warning J125: an option overrides a value of the job or the program: {flag} " in reported) == replaced
+
+
+IMPERIAL = 3
+"""The unit system with inches and decimals."""
+
+
+def test_the_page_of_the_report_has_the_units_of_the_document(job, tmp_path):
+    says(job, ALWAYS["--work-offset"])
+    in_mm, in_inch = (
+        by_pipeline(job, f"{ALWAYS['--work-offset']} --report-unit {unit}", made(tmp_path / unit))
+        for unit in ("mm", "inch")
+    )
+    assert {name for name, content in in_mm.items() if content != in_inch[name]} == {
+        "part-manifest.json",
+        "part-report.html",
+    }
+    systems = job.Document.getEnumerationsOfProperty("UnitSystem")
+    assert len(systems) == 10
+    for system, name in enumerate(systems):
+        job.Document.UnitSystem = name
+        job.Document.save()
+        for door in DOORS if system == IMPERIAL else [by_panel]:
+            folder = made(tmp_path / f"{door.__name__} {system}")
+            door(job, [], folder)
+            assert contents(folder) == (in_mm if is_metric(system) else in_inch), (door.__name__, name)
+    job.Document.UnitSystem = systems[IMPERIAL]
+    says(job, f"{ALWAYS['--work-offset']} --report-unit mm")
+    by_panel(job, [], made(tmp_path / "said"))
+    assert contents(tmp_path / "said") == in_mm
+
+
+def is_metric(system):
+    """Whether FreeCAD shows lengths of a part in metric units in this unit system."""
+    App.Units.setSchema(system)
+    try:
+        return "m" in App.Units.Quantity("100 mm").getUserPreferred()[2]
+    finally:
+        App.Units.setSchema(0)
 
 
 @pytest.mark.parametrize("flag", sorted(FOR_PART_PROGRAMS))
@@ -231,20 +278,20 @@ def test_a_machine_file_lies_beside_the_document_wherever_freecad_was_started(jo
         assert contents(folder) == wanted
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(6))
 def test_arguments_by_chance(job, tmp_path, seed):
-    """Some options in the job, some typed, some in both, in any order."""
+    """Some options in the job; in every second series some typed, some in both, in any order."""
     chance = random.Random(seed)
     tried = [flag for flag in FLAGS if flag not in {*ALWAYS, *NO_EFFECT_HERE, *FOR_PART_PROGRAMS, NORMALS}]
     of_job = [
         *ALWAYS.values(),
         *(word for flag in chance.sample(tried, 4) for word in words(flag, chance.randrange(2))),
     ]
-    over_it = [word for flag in chance.sample(tried, 3) for word in words(flag, chance.randrange(2))]
+    over_it = [word for flag in chance.sample(tried, 3 * (seed % 2)) for word in words(flag, chance.randrange(2))]
     chance.shuffle(of_job)
     says(job, shlex.join(of_job))
     wanted = by_pipeline(job, shlex.join([*of_job, *over_it]), made(tmp_path / "wanted"))
-    for door in (by_command_line, by_macro):
+    for door in TYPED if over_it else DOORS:
         folder = made(tmp_path / door.__name__)
         door(job, over_it, folder)
         assert contents(folder) == wanted

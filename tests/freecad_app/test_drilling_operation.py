@@ -7,13 +7,14 @@ import Part
 import Path.Main.Job
 import Path.Op.Drilling
 import pytest
-from cam_jobs import moves
+from cam_jobs import add_operation, job_in_reach, moves
+from machines import spindle_axis_text
 
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.post_job import post_job
 from pkm_post.freecad_app.symmetry import create_mirror
 from pkm_post.freecad_app.tools import set_gauge_length
-from pkm_post.model import EventKind, Kind
+from pkm_post.model import EventKind, Kind, Refused
 from pkm_post.options.choices import Options
 
 CENTRES = [(10.0, 10.0), (30.0, 10.0), (30.0, 30.0)]
@@ -92,3 +93,26 @@ def test_drilling_is_posted(job, tmp_path):
     posted = post_job(job, "example_6tps", tmp_path, Options(work_offset=offset))
     assert posted.report["certificate"]["holds"]
     assert [reported.code for reported in posted.diagnostics] == ["J125"], "the offset stands in for the job's fixture"
+
+
+def test_tapped_holes_are_posted_for_a_spindle_that_is_an_axis(document, tmp_path):
+    file = tmp_path / "machine.toml"
+    file.write_text(spindle_axis_text(), encoding="utf-8")
+    job = job_in_reach(document, top=0.0)
+    taps = [f"G84 X{x} Y5 Z-4 R2 F1.25 S600" for x in (5, 10)]
+    add_operation(job, ["G0 X0 Y0 Z10", *taps, "G80", "G0 Z20", "G0 X0 Y0", "G1 Z8 F10", "G0 Z30"])
+    add_operation(job, ["G0 Z30", *taps, "G80", "G0 Z30"], "Again")
+    offset = np.eye(4)
+    offset[2, 3] = 250.0
+    posted = post_job(job, str(file), tmp_path / "out", Options(work_offset=offset))
+    lines = posted.program.read_text(encoding="ascii").splitlines()
+    codes = [line for line in lines if line in ("M29", "M28", "S9000 M3", "M5")]
+    thread = ["M29", "M28"]
+    assert codes == ["S9000 M3", *thread, *thread, "S9000 M3", *thread, *thread, "S9000 M3", "M5"]
+    off = next(
+        row for row in posted.report["certificate"]["findings"] if row["what"] == "depth of a thread off its turns"
+    )
+    assert off["holds"]
+    with pytest.raises(Refused) as refused:
+        post_job(job, "example_6tps", tmp_path / "none", Options(work_offset=offset))
+    assert {fault.code for fault in refused.value.diagnostics} >= {"J123"}

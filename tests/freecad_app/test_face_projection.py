@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Feet found in bulk are those that OpenCASCADE finds one by one."""
 
+import functools
+
 import FreeCAD as App
 import numpy as np
 import Part
@@ -118,7 +120,18 @@ FACES = {
     "patch over the seam": lambda: leaning(over_the_seam()),
     "rational": lambda: by_kind(Part.makeCylinder(20, 50).toNurbs(), "BSplineSurface"),
 }
-EVERY_FACE = pytest.mark.parametrize("face", [make() for make in FACES.values()], ids=FACES.keys())
+EVERY_FACE = pytest.mark.parametrize("face", FACES, indirect=True)
+
+
+@functools.cache
+def made(name):
+    return FACES[name]()
+
+
+@pytest.fixture
+def face(request):
+    """A face by its name, made by the test that is the first to use it: OpenCASCADE starts threads for some."""
+    return made(request.param)
 
 
 def around(face, count, seed, reach=2.0):

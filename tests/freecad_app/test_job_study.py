@@ -2,8 +2,11 @@
 """One study of a job for Reach, Simulation and posting: the same findings, computed once, again after a change."""
 
 import dataclasses
+import re
 
+import FreeCAD as App
 import numpy as np
+import Part
 import pytest
 from cam_jobs import BELOW, add_operation, job_in_reach
 
@@ -14,6 +17,7 @@ from pkm_post.freecad_app.post_job import post_job
 from pkm_post.freecad_app.reach_object import create_reach
 from pkm_post.freecad_app.simulation_object import create_simulation
 from pkm_post.freecad_app.tools import set_gauge_length
+from pkm_post.machine import find_machine
 from pkm_post.model import Refused, errors
 
 THROUGH_THE_PART = ["G0 X0 Y0 Z60", "G0 Z-15", "G1 X2 Y1 Z-15 F25", "G0 Z60"]
@@ -64,27 +68,109 @@ def test_the_checks_run_once_for_all_who_show_them(document, job, checks):
     assert len(checks) == 1
 
 
-@pytest.mark.parametrize("change", ["path", "tool length", "tool diameter", "stock", "offset", "tolerance"])
-def test_whatever_matters_makes_another_study(document, job, checks, change):
-    reach = create_reach(job)
-    document.recompute()
+CHANGES = ["path", "tool length", "tool diameter", "stock", "offset", "tolerance", "part", "machine"]
+
+
+def _change(document, job, what, folder):
+    """Change one thing that checks depend on."""
     controller = job.Tools.Group[0]
-    if change == "path":
+    if what == "path":
         operation = document.getObject("Custom")
         operation.Gcode = [*operation.Gcode, "G0 X11 Y4 Z30"]
-    elif change == "tool length":
+    elif what == "tool length":
         set_gauge_length(controller, 121)
-    elif change == "tool diameter":
+    elif what == "tool diameter":
         controller.Tool.Diameter = "7 mm"
-    elif change == "stock":
+    elif what == "stock":
         job.Stock.ExtZpos = "3 mm"
-    elif change == "offset":
+    elif what == "offset":
         job.PostProcessorArgs = job.PostProcessorArgs.replace("0,0,250", "0,0,251")
-    else:
+    elif what == "tolerance":
         job.PostProcessorArgs += " --tip-tolerance=0.003"
+    elif what == "part":
+        document.getObject("Stock").Shape = Part.makeBox(20, 20, 19, App.Vector(0, 0, BELOW - 20.0))
+    else:
+        text = find_machine("example_6tps").read_text(encoding="utf-8")
+        other = folder / "other.toml"
+        other.write_text(re.sub(r"(?m)^speed = .*", "speed = 450.0", text, count=1), encoding="utf-8")
+        job.PostProcessorArgs = job.PostProcessorArgs.replace("example_6tps", str(other))
     document.recompute()
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_whatever_matters_makes_another_study(document, job, checks, tmp_path, change):
+    reach = create_reach(job)
+    document.recompute()
+    _change(document, job, change, tmp_path)
     assert len(checks) == 2
     assert reach.Proxy.study is placed_job(job).study()
+
+
+@pytest.fixture
+def searches(monkeypatch):
+    """Counts the searches for collisions; none is known at first."""
+    run, calls = job_study.find_collisions, []
+    monkeypatch.setattr(job_study, "find_collisions", lambda *given: calls.append(given) or run(*given))
+    job_study._COLLISIONS.clear()
+    return calls
+
+
+def posted(job, folder):
+    """Files of a post by name, its report and its diagnostics; or the diagnostics alone of a refusal."""
+    try:
+        result = post_job(job, out=folder)
+    except Refused as refused:
+        assert list(folder.iterdir()) == []
+        return None, None, [str(each) for each in refused.diagnostics]
+    files = {path.name: path.read_bytes() for path in result.files}
+    assert files
+    return files, result.report, [str(each) for each in result.diagnostics]
+
+
+@pytest.mark.parametrize("lines", [None, THROUGH_THE_PART], ids=["certified", "refused"])
+def test_a_post_takes_collisions_of_the_study_and_gives_back_its_own(document, job, searches, tmp_path, lines):
+    if lines is not None:
+        document.getObject("Custom").Gcode = lines
+        document.recompute()
+    alone = posted(job, _folder(tmp_path, "alone"))
+    assert len(searches) == 1
+    reach = create_reach(job)
+    document.recompute()
+    assert len(searches) == 1 and reach.Reachable == (lines is None)  # those of the post
+    assert posted(job, _folder(tmp_path, "again")) == alone
+    assert len(searches) == 1
+    job_study._COLLISIONS.clear()
+    reach.touch()
+    reach.Proxy.study = None
+    document.recompute()
+    assert len(searches) == 2
+    assert posted(job, _folder(tmp_path, "after reach")) == alone
+    assert len(searches) == 2
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_a_post_of_a_changed_job_is_as_without_a_study(document, job, searches, tmp_path, change):
+    reach = create_reach(job)
+    document.recompute()
+    reach.Active = False
+    _change(document, job, change, tmp_path)
+    assert len(searches) == 1
+    after = posted(job, _folder(tmp_path, "after"))
+    assert len(searches) == 2
+    job_study._COLLISIONS.clear()
+    assert posted(job, _folder(tmp_path, "alone")) == after
+
+
+def test_a_job_without_a_part_and_a_stock_searches_for_nothing(document, job, searches, tmp_path):
+    job.PostProcessorArgs += " --part none --stock none"
+    posted(job, _folder(tmp_path, "alone"))
+    assert not job_study._COLLISIONS
+
+
+def _folder(parent, name):
+    made = parent / name
+    made.mkdir()
+    return made
 
 
 def test_the_findings_are_those_of_the_study_of_the_command_line(document, job):

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Commands of operations become columns: modal words, tool axes, arcs, events, and every fault with its place."""
 
+import inspect
+
+import FreeCAD as App
 import numpy as np
+import Part
 import Path
 import pytest
 
 from pkm_post.freecad_app.commands import read_commands
-from pkm_post.model import EventKind, Kind
+from pkm_post.model import EventKind, Kind, threads
 
 FIRST = "G0 X0 Y0 Z10"
 SIX_DECIMALS = 1e-6
@@ -208,3 +212,31 @@ def test_all_faults_are_reported_in_one_run_in_order():
         ("J115", 5),
         ("J110", 7),
     ]
+
+
+def test_tapping_has_its_lead_in_f_where_the_spindle_is_an_axis():
+    taps = "G98", "G84 X10 Y5 Z-4 R2 F1.25 S600 P0.5", "G84 X20 Y5 Z-4 R2 F1.25 S600", "G80", "G0 Z20"
+    program = program_of(FIRST, *taps, spindle_axis=True)
+    assert [thread.lead for thread in threads(program.events)] == [1.25, 1.25]
+    first = threads(program.events)[0].first
+    assert program.position[first : first + 2, 2].tolist() == [-4.0, 2.0]
+    assert program.feed[first] == 12.5
+    assert [event.value for event in program.events if event.kind is EventKind.DWELL] == [0.5, 0.5]
+
+
+@pytest.mark.parametrize("line", ["G84 X1 Y1 Z1 R2 S600", "G84 X1 Y1 Z1 R2 F1.25", "G33.1 Z1 K1"])
+def test_tapping_without_its_lead_is_refused(line):
+    program, faults = read(FIRST, line, spindle_axis=True)
+    assert program is None
+    assert [(fault.code, fault.place.line) for fault in faults] == [("J123", 2)]
+
+
+def test_the_cycle_of_cams_own_generator_is_read():
+    tapping = pytest.importorskip("Path.Base.Generator.tapping")
+    if "pitch" not in inspect.signature(tapping.generate).parameters:
+        pytest.skip("this FreeCAD writes no lead")
+    edge = Part.makeLine(App.Vector(10, 5, 0), App.Vector(10, 5, -8))
+    (made,) = tapping.generate(edge, 0.0, 1, 2.0, False, 1.5, 400.0)
+    program, faults = read_commands([*commands(FIRST), made], "part.FCStd", "Cut", spindle_axis=True)
+    assert faults == ()
+    assert [thread.lead for thread in threads(program.events)] == [-1.5]

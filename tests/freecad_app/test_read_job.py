@@ -184,12 +184,6 @@ def test_faults_of_all_operations_are_reported_together(job):
     assert faults_of(job) == [("J104", "First", 7), ("J105", "Second", 4)]
 
 
-def test_several_fixtures(job):
-    add_operation(job)
-    job.Fixtures = ["G54", "G55"]
-    assert faults_of(job) == [("J111", "Job", 0)]
-
-
 def test_operation_without_tool_controller(job):
     add_operation(job).ToolController = None
     assert faults_of(job) == [("J112", "Cut", 0)]

@@ -74,11 +74,11 @@ def test_an_operation_of_another_job_is_refused_by_name(job):
 def test_the_fixture_of_the_dialog_is_the_work_offset(job, tmp_path):
     job.Fixtures = ["G54", "G55"]
     job.PostProcessorArgs = ""
-    assert refused("hexapod_linuxcnc", job) == ["J111"]
+    assert refused("hexapod_linuxcnc", job) == ["K108"]  # the example machine has G54 alone
     assert settings_of(job, selection=Selection(fixtures=["G55"])).options.work_offset == "G55"
     handed = {"job": job, "operations": list(job.Operations.Group)}
-    assert "K108" in refused("hexapod_linuxcnc", handed, selected_fixtures=["G55"])  # the example machine has G54 alone
-    assert refused("hexapod_linuxcnc", handed, selected_fixtures=[]) == ["J111"]
+    assert "K108" in refused("hexapod_linuxcnc", handed, selected_fixtures=["G55"])
+    assert refused("hexapod_linuxcnc", handed, selected_fixtures=[]) == ["K108"]
 
 
 def test_a_machine_of_freecad_changes_nothing(job):

@@ -12,11 +12,18 @@ from part_jobs import job_on
 from Path.Base.Util import opProperty, toolControllerForOp
 from surface_finishes import AT_G54, MICRON, SIX_DECIMALS, finish, plate_with_hole, poses, valid
 
+from pkm_post.freecad_app import surface_check
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.post_job import find_job, post_job
 from pkm_post.freecad_app.surface_finish import SurfaceFinish, create_surface_finish
 from pkm_post.freecad_app.symmetry import create_mirror
 from pkm_post.model import Kind
+
+
+@pytest.fixture(autouse=True)
+def few_close_points(monkeypatch):
+    """What is measured is none of these tests' matter; ``test_surface_finish_measured`` has it whole."""
+    monkeypatch.setattr(surface_check, "_MOST_CLOSE", 1000)
 
 
 @pytest.fixture

@@ -35,6 +35,22 @@ def test_gouge_and_material_left_are_reported_with_their_places(document):
     assert (valid(operation).MaximumGouge, operation.MaximumExcess) == (-1.0, -1.0)
 
 
+def test_every_measured_point_is_kept_for_the_map(document):
+    floor = lambda face: face.BoundBox.XMin > 9.9 and abs(face.BoundBox.ZMax - 10) < 0.1 and face.normalAt(0, 0).z > 0.9  # noqa: E731,E501
+    operation = finish(job_on(document, step()), floor, Stepover=2.0, CheckSpacing=1.0)
+    found = operation.Proxy.measured
+    assert found.depth.max() == operation.MaximumGouge == pytest.approx(5.0, abs=0.01)
+    ours = np.isfinite(found.left)
+    assert found.left[ours].max() == operation.MaximumExcess
+    np.testing.assert_allclose(found.points[ours][:, 2], 10.0)  # only the floor is to be covered
+    assert (found.points[~ours][:, 0] <= 10.0 + MICRON).any()  # the wall beside it is measured as well
+    # triangles cover the floor whole, and the other faces but for cells across the border of the L-shaped ones
+    a, b, c = (found.points[found.triangles[:, corner]] for corner in range(3))
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    assert area[ours[found.triangles].all(axis=1)].sum() == pytest.approx(30 * 20, rel=1e-6)
+    assert area.sum() == pytest.approx(sum(face.Area for face in step().Faces), rel=0.01)
+
+
 @pytest.mark.parametrize("spacing", [3.0, 1.5])
 def test_ridges_are_found_where_the_spacing_fits_the_passes(document, spacing):
     # Passes of a ball of R 5, as far apart as the points or half as far: a grid alone lies on the passes.
@@ -49,7 +65,7 @@ def test_nothing_is_posted_over_a_gouge(document, tmp_path):
     job = job_on(document, step())
     operation = finish(job, floor, Stepover=4.0, CheckSpacing=2.0)
     assert not operation.isValid()
-    assert "5.000 mm at (10.000" in operation.getStatusString()
+    assert "5 mm at X 10 mm, Y " in operation.getStatusString()
     assert operation.Path.Size == 0
     with pytest.raises(Refused) as refused:
         post_job(job, "example_6tps", tmp_path, AT_G54)
@@ -75,6 +91,7 @@ def column():
         Order="One way",
         CutMode="Climb",
         LeadMove="Arc",
+        CheckSpacing=3.0,
     )
     yield valid(operation), job, example.wall(solid)
     App.closeDocument(document.Name)

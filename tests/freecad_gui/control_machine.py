@@ -91,15 +91,14 @@ def program_file(name, *events):
     return file
 
 
-def posted_file(name, *lines):
-    """A part program that was posted for the machine of the panel."""
+def posted_file(name, *lines, **how):
+    """A part program that was posted for the machine of the panel; options of ``post_file`` by name."""
     from pkm_post.posting.post_file import post_file
 
     source = FOLDER / name
     source.write_text("\n".join(("G21 G90 G54", *lines, "M30", "")), encoding="ascii")
-    return post_file(
-        source, "example_6tps", FOLDER, tool_lengths={0: the_panel().panel.connecting.taken_length}
-    ).program
+    lengths = {0: the_panel().panel.connecting.taken_length}
+    return post_file(source, "example_6tps", FOLDER, tool_lengths=lengths, **how).program
 
 
 def connect_and_home():

@@ -3,7 +3,7 @@
 
 A scene is a script that FreeCAD runs in its window: functions marked as steps, and a call of ``main``. An exception in
 a step is its result, and the others still run. The environment names the folder for what is written (PKM_FOLDER), since
-FreeCAD would open files that its command line names. The last thing a scene tells is what stands in the Report view.
+FreeCAD would open files that its command line names. The last thing a scene reports is the text of the Report view.
 """
 
 import json
@@ -51,7 +51,7 @@ def settle():
         QtWidgets.QApplication.processEvents()
 
 
-def until(condition, seconds=20):
+def until(condition, seconds=300):
     """Let the window work until something is so; that it does not come to be so is an exception."""
     end = time.monotonic() + seconds
     while not condition():
@@ -142,6 +142,20 @@ def new_document(name):
     return document
 
 
+def job_on(name, shape, feed="0 mm/min"):
+    """A document of this name with a solid of this shape and a job on it; the solid and the job."""
+    import Path.Main.Gui.Job
+
+    document = FreeCAD.newDocument(name)
+    solid = document.addObject("Part::Feature", "Block")
+    solid.Shape = shape
+    document.recompute()
+    Path.Main.Gui.Job.Create([solid.Name], None, openTaskPanel=False)
+    job = document.getObject("Job")
+    job.Tools.Group[0].HorizFeed = job.Tools.Group[0].VertFeed = feed
+    return solid, job
+
+
 def main():
     """Run the steps of the scene when the window stands, then end FreeCAD."""
     QtCore.QTimer.singleShot(1500, _run)
@@ -154,6 +168,7 @@ def _run():
             results[function.__name__] = function()
         except Exception:
             results[function.__name__] = {"exception": traceback.format_exc()}
+        (FOLDER / "so_far.txt").write_text("\n".join(results), encoding="utf-8")  # what a scene that hangs has done
     results["report view"] = _report_view()
     (FOLDER / "result.json").write_text(json.dumps(results, indent=1), encoding="utf-8")
     sys.stdout.flush()

@@ -193,7 +193,7 @@ def chips_are_made():
     page = content.material
     page.resolution.setCurrentIndex(page.resolution.findData("medium"))
     whole = page.material.replay.stock.volume
-    content.lists.setCurrentWidget(page)
+    content.show_page(page)
     half = player().simulation.duration / 2
     content.timeline.wanted.emit(half)
     until(lambda: page.is_current, 120)

@@ -5,7 +5,7 @@ import FreeCAD
 import FreeCADGui
 import numpy as np
 from control_machine import idle, messages, newest, press_in_box, read_again, the_panel
-from gui import click, main, picture_of_all, press, settle, step, until
+from gui import FOLDER, click, main, picture_of_all, press, settle, step, until
 from PySide import QtCore, QtGui, QtWidgets
 
 
@@ -211,6 +211,40 @@ def the_machine_of_the_document_shows_its_own_pose_again():
     panel.close()
     until(lambda: not panel.console.waits, 60)
     return {"open": panel.isVisible(), "played": machine.ViewObject.Proxy.played}
+
+
+@step
+def a_power_pmac_is_homed_and_jogged_as_well():
+    """The same panel with a machine file that names a Power PMAC; its first jog is rehearsed."""
+    from pkm_post.control.numerical_control.homing import HomingPhase
+    from pkm_post.machine import find_machine
+
+    file = FOLDER / "power.toml"
+    text = find_machine("example_6tps").read_text(encoding="utf-8")
+    file.write_text(text.replace('kind = "turbo_pmac"', 'kind = "power_pmac"'), encoding="utf-8")
+    press("PKM_Control")
+    panel = the_panel()
+    face = panel.panel
+    face.connecting.machine.setEditText(str(file))
+    click(face.connecting.train)
+    until(lambda: newest().status is not None)
+    until(lambda: face.homing.home.isEnabled())
+    face.homing.trigger.setText("#1HM #2HM #3HM #4HM #5HM #6HM")
+    press_in_box("OK")
+    click(face.homing.home)
+    until(lambda: newest().homing is not None and newest().homing.phase is not HomingPhase.SEARCHING, 60)
+    idle()
+    said = []
+    session = panel.console.connection.session
+    send = session.command
+    session.command = lambda text: said.append(text) or send(text)
+    face.jog.step.setProperty("rawValue", 2.0)
+    face.jog.speed.setProperty("rawValue", 10.0)
+    before, after = _jogged("X")
+    found = {"x": list(after.tip - before.tip), "starts": [line for line in said if line.endswith("R")]}
+    panel.close()
+    until(lambda: not panel.console.waits, 60)
+    return found
 
 
 main()

@@ -50,7 +50,7 @@ def a_program_is_loaded_held_and_resumed():
     found["loaded"], found["bar"] = messages()[-1], face.program.bar.value() == face.program.bar.maximum()
     until(lambda: face.program.start.isEnabled())
     face.stops.override.setValue(40)
-    until(lambda: newest().status.override == 40, 10)
+    until(lambda: newest().status.override == 40)
     idle()
     found["override"] = newest().status.override
     click(face.program.start)
@@ -76,7 +76,7 @@ def it_starts_from_its_start_alone_and_is_brought_there():
     panel = the_panel()
     face, page = panel.panel, panel.panel.program
     face.stops.override.setValue(100)
-    until(lambda: newest().status.override == 100, 10)
+    until(lambda: newest().status.override == 100)
     idle()
     face.jog.step.setProperty("rawValue", 3.0)
     click(face.jog.buttons["X", 1])
@@ -86,7 +86,7 @@ def it_starts_from_its_start_alone_and_is_brought_there():
         until(lambda button=button: button.isEnabled())
         before = len(messages())
         click(button)
-        until(lambda: not panel.console.has_orders, 30)
+        until(lambda: not panel.console.has_orders)
         settle()
         idle()
         found[name] = messages()[before:]
@@ -105,7 +105,7 @@ def it_runs_line_by_line():
     until(lambda: len(messages()) > before and not console.waits)
     found["refused"] = messages()[before:]
     face.stops.override.setValue(100)
-    until(lambda: newest().status.override == 100, 10)
+    until(lambda: newest().status.override == 100)
     idle()
     page.read(posted_file("lines.ngc", *LINES))
     until(lambda: page.name.text().startswith("lines.pmc") and not console.waits)
@@ -121,7 +121,7 @@ def it_runs_line_by_line():
     for number in range(2, len(LINES) + 2):
         until(lambda: page.step.isEnabled())
         click(page.step)
-        until(lambda number=number: newest().block.number == number, 30)
+        until(lambda number=number: newest().block.number == number)
         idle()
         places.append(newest().pose.tip.tolist())
     settle()
@@ -202,19 +202,13 @@ def it_is_not_closed_beside_a_machine_that_moves():
 
 @step
 def it_holds_the_machine_and_closes_then():
-    panel, held = the_panel(), []
+    panel = the_panel()  # to ask for it later would show it again
     _begin_to_move(-1)
     press_in_box("Hold it, then close")
     panel.close()
-    found = {"open before": panel.isVisible()}
-
-    def is_closed():
-        status = panel.console.state.status  # to ask for the panel would show it again
-        held.append(status is not None and status.held)
-        return panel.console.connection is None and not panel.console.waits
-
-    until(is_closed, 60)
-    found["held"], found["open"] = any(held), panel.isVisible()
+    found, worker = {"open before": panel.isVisible()}, panel.console.connection.worker
+    until(lambda: panel.console.connection is None and not panel.console.waits)
+    found["held"], found["open"] = worker.state.status.held, panel.isVisible()  # by what it was closed at
     found["activity"] = panel.panel.activity.text()
     return found
 
@@ -227,7 +221,7 @@ def a_lost_link_shows_what_to_do():
     _begin_to_move(1)
     panel.console.connection._session._pause = 0.01  # between calls; a second of silence tells nothing new
     panel.console.connection._simulated.close()
-    until(lambda: bool(newest().emergency), 60)
+    until(lambda: bool(newest().emergency))
     until(lambda: "EMERGENCY STOP" in face.banner.text())
     found = {
         "banner": face.banner.text().splitlines(),
@@ -238,7 +232,7 @@ def a_lost_link_shows_what_to_do():
     picture("lost.png")
     press_in_box("Close; the machine goes on")
     panel.close()
-    until(lambda: not panel.console.waits, 90)
+    until(lambda: not panel.console.waits)
     found["open"] = panel.isVisible()
     found["connected"] = panel.console.connection is not None
     return found

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Machine and Reach from their buttons."""
 
+import contextlib
 import os
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, click, main, new_document, picture_of_all, press, settle, step, until
+from gui import FOLDER, click, click_named, main, new_document, picture, picture_of_all, press, settle, step, until
 from pivy import coin
-from PySide import QtWidgets
+from PySide import QtCore, QtWidgets
 
+from pkm_post.freecad_app.core_texts import fault_text
 from pkm_post.freecad_app.post_job import post_job
 from pkm_post.freecad_gui.place_row import PlaceRow
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
@@ -82,6 +84,11 @@ def reach_from_its_button():
     scene = found.Machine.ViewObject.Proxy
     camera, point = FreeCADGui.activeView().getCameraNode(), found.WorstPoints[row]
     direction = camera.orientation.getValue().multVec(coin.SbVec3f(0, 0, -1)) * camera.focalDistance.getValue()
+    panel_axes = table.parentWidget().findChild(QtWidgets.QSpinBox)
+    panel_axes.setValue(2)
+    reported["axes"] = view._axes.getNumChildren()
+    panel_axes.setValue(0)
+    reported["no axes"] = view._axes.getNumChildren()
     reported["seen"] = [a - b for a, b in zip((camera.position.getValue() + direction).getValue(), point, strict=True)]
     reported["verdict"], reported["posed"] = _verdict(table.parentWidget()), scene.played
     found.Machine.ViewObject.Visibility = False
@@ -172,12 +179,217 @@ def reach_of_a_collision():
     return reported
 
 
+@step
+def icons_say_what_reach_found():
+    """Job and operations in the tree: no sign, then green, old after a change, and red where an error is."""
+    import Path.Main.Gui.Job
+    import Path.Op.Gui.Base
+    import Path.Op.Gui.Custom
+    from cam_jobs import add_operation
+
+    document = new_document("icons")
+    job, good = document.getObject("Job"), document.getObject("Custom")
+    job.PostProcessorArgs += " --part none --stock none"
+    bad = add_operation(job, label="Bad")
+    job.ViewObject.Proxy = Path.Main.Gui.Job.ViewProvider(job.ViewObject)
+    for each in (good, bad):
+        each.ViewObject.Proxy = Path.Op.Gui.Base.ViewProvider(each.ViewObject, Path.Op.Gui.Custom.Command.res)
+    labels = {"job": "Job", "good": good.Label, "bad": bad.Label}
+    found = {"at first": _signs(labels)}
+    press("PKM_Reach", job)
+    reach = document.getObject("Reach")
+    labels["reach"] = reach.Label
+    until(lambda: all(_signs(labels).values()))
+    found["all well"] = _signs(labels)
+    bad.Gcode = ["G0 X0 Y0 Z30", "G1 X900 Y0 Z30 F25"]
+    until(lambda: not _signs({"bad": bad.Label})["bad"])
+    found["changed"] = _signs({"bad": bad.Label})
+    document.recompute()
+    until(lambda: _signs(labels)["bad"] == "bad")
+    found["out of reach"] = _signs(labels)
+    found["saved"] = picture("verdict_icons.png")
+    document.removeObject(reach.Name)
+    until(lambda: not _signs({"job": "Job"})["job"])
+    others = {name: label for name, label in labels.items() if name != "reach"}
+    found["without reach"] = _signs(others)
+    from pkm_post.freecad_app.simulation_object import create_simulation
+
+    create_simulation(job)
+    document.recompute()
+    until(lambda: _signs(others)["bad"] == "bad")
+    found["by a simulation"] = _signs(others)
+    document.removeObject("Simulation")
+    until(lambda: not _signs({"job": "Job"})["job"])
+    found["refused"] = _signs_after_post(job, others)
+    bad.Gcode = ["G0 X0 Y0 Z30", "G1 X9 Y0 Z30 F25"]
+    document.recompute()
+    until(lambda: not _signs({"job": "Job"})["job"])
+    found["mended"] = _signs(others)
+    found["posted"] = _signs_after_post(job, others)
+    good.Visibility = not good.Visibility  # changes nothing of what was posted
+    found["hidden"] = _signs(others)
+    FreeCAD.closeDocument("icons")
+    return found
+
+
+def _signs_after_post(job, labels):
+    """The signs that a post brings."""
+    folder = FOLDER / "icons"
+    folder.mkdir(exist_ok=True)
+    with contextlib.suppress(Refused):
+        post_job(job, out=folder)
+    until(lambda: _signs({"job": "Job"})["job"])
+    return _signs(labels)
+
+
+@step
+def icons_of_dressups_and_copies_say_it_too():
+    """A compensated operation and its copies have signs; what they are made from has none where it is not posted."""
+    from cam_jobs import add_operation, job_in_reach
+
+    from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
+
+    document = FreeCAD.newDocument("dressups")
+    job = job_in_reach(document)
+    job.PostProcessorArgs += " --part none --stock none"
+    contacts = add_operation(job, ["G0 X5 Y5 Z40", "G1 Z20 F10", "G1 X15", "G0 Z40"], "Contacts")
+    press("PKM_NormalCompensation", contacts)
+    for command in ("PKM_Mirror", "PKM_Rotate"):
+        press(command, job.Operations.Group[0])
+        SymmetryPanel.opened.accept()
+        settle()
+    compensated, mirrored, turned = job.Operations.Group
+    labels = {"base": contacts.Label, "compensated": compensated.Label, "mirrored": mirrored.Label}
+    labels["turned"] = turned.Label
+    found = {"at first": _signs(labels, "dressups")}
+    press("PKM_Reach", job)
+    until(lambda: _signs(labels, "dressups")["turned"])
+    found["all well"] = _signs(labels, "dressups")
+    found["saved"] = picture("verdict_dressups.png")
+    contacts.Gcode = ["G0 X5 Y5 Z900", "G1 Z20 F10", "G1 X15", "G0 Z900"]
+    until(lambda: not _signs(labels, "dressups")["compensated"])
+    document.recompute()
+    until(lambda: _signs(labels, "dressups")["turned"] == "bad")
+    found["out of reach"] = _signs(labels, "dressups")
+    FreeCAD.closeDocument("dressups")
+    return found
+
+
+def _signs(labels, name="icons"):
+    """For each object the sign in its icon in the tree, by the colour that its lower right corner has."""
+    trees = FreeCADGui.getMainWindow().findChildren(QtWidgets.QTreeWidget)
+    (tree,) = [each for each in trees if each.topLevelItemCount()]
+
+    def entry(label):
+        tree.expandAll()  # FreeCAD 1.0 fills what is closed when it is opened
+        document = _index(tree.model(), FreeCAD.getDocument(name).Label, QtCore.QModelIndex())
+        return None if document is None else _index(tree.model(), label, document)
+
+    until(lambda: all(entry(label) is not None for label in labels.values()))
+    return {name: _sign(entry(label)) for name, label in labels.items()}
+
+
+def _index(model, text, below):
+    """The entry with this text in the tree; a wrapped item would not outlive that of its parent."""
+    left = [model.index(row, 0, below) for row in range(model.rowCount(below))]
+    while left:
+        index = left.pop()
+        if index.data() == text:
+            return index
+        left += [model.index(row, 0, index) for row in range(model.rowCount(index))]
+    return None
+
+
+def _sign(index):
+    image = index.data(QtCore.Qt.ItemDataRole.DecorationRole).pixmap(64, 64).toImage()
+    width, height = image.width(), image.height()
+    pixels = [image.pixelColor(x, y) for x in range(width * 5 // 8, width) for y in range(height * 5 // 8, height)]
+    signs = {"good": (27, 127, 59), "bad": (179, 38, 30)}
+    found = {
+        sign: sum(max(abs(p.red() - r), abs(p.green() - g), abs(p.blue() - b)) < 40 for p in pixels) / len(pixels)
+        for sign, (r, g, b) in signs.items()
+    }
+    return next((sign for sign, share in found.items() if share > 0.25), "")
+
+
 def _refusals(job):
     try:
         post_job(job, out=FOLDER)
     except Refused as refused:
-        return sorted(str(each) for each in errors(refused.diagnostics))
+        return sorted(map(fault_text, errors(refused.diagnostics)))
     return []
+
+
+@step
+def jogged_after_a_double_click():
+    """Steps, typed values, out of limits, home; Cancel takes all of it back. The camera shows the new machine."""
+    from pkm_post.freecad_gui.jog_panel import JogPanel
+
+    document = new_document("jogged")
+    camera = FreeCADGui.activeView().getCameraNode()
+    camera.height = 5.0  # the machine is a metre wide
+    press("PKM_Machine", document.getObject("Job"))
+    machine = document.getObject("Machine")
+    until(lambda: camera.height.getValue() > 500.0)
+    view, begun = machine.ViewObject.Proxy, list(machine.Tip)
+    opened, panels = JogPanel.__init__, []
+    JogPanel.__init__ = lambda panel, obj: (opened(panel, obj), panels.append(panel))[0]
+    try:
+        view.doubleClicked(machine.ViewObject)
+        settle()
+    finally:
+        JogPanel.__init__ = opened
+    (panel,) = panels
+    found = {"verdict": _verdict(panel.form), "fields": len(panel.fields), "saved": picture("jog.png")}
+    panel.buttons[0][1].click()
+    panel.buttons[4][1].click()
+    found |= {
+        "moved": [a - b for a, b in zip(machine.Tip, begun, strict=True)],
+        "axis": list(machine.ToolAxis),
+        "struts": [machine.Strut1.Value, machine.Strut4.Value],
+    }
+    panel.fields[0].setProperty("rawValue", 900.0)
+    panel.fields[0].editingFinished.emit()
+    found |= {"far": machine.Tip.x, "out": _verdict(panel.form)[1], "words": list(machine.OutOfLimits) != []}
+    found["saved too"] = picture("jog_out.png")
+    panel.home.click()
+    found["home"] = [a - b for a, b in zip(machine.Tip, begun, strict=True)]
+    panel.buttons[2][0].click()
+    panel.reject()
+    settle()
+    found |= {"back": list(machine.Tip) == begun, "closed": not FreeCADGui.Control.activeDialog()}
+    FreeCAD.closeDocument("jogged")
+    return found
+
+
+@step
+def stiffness_from_its_button():
+    """The map over job and table, the softest place of each operation."""
+    from pkm_post.freecad_gui.stiffness_panel import NAME
+
+    document = FreeCAD.getDocument("hexapod")
+    FreeCAD.setActiveDocument("hexapod")
+    FreeCADGui.ActiveDocument = FreeCADGui.getDocument("hexapod")
+    graph = FreeCADGui.activeView().getSceneGraph()
+    before = graph.getNumChildren()
+    press("PKM_Stiffness", document.getObject("Job"))
+    form = FreeCADGui.getMainWindow().findChild(QtWidgets.QWidget, NAME)
+    (line,), (rows,) = form.findChildren(Verdict), form.findChildren(FindingRows)
+    (table,) = form.findChildren(QtWidgets.QCheckBox)
+    found = {"summary": line.text(), "rows": [rows.item(row).text() for row in range(rows.count())]}
+    rows.picked.emit(1)
+    settle()
+    machine = document.getObject("Machine").ViewObject
+    found["selected"] = [item.Label for item in FreeCADGui.Selection.getSelection()]
+    found["posed"] = machine.Proxy.played
+    table.setChecked(True)
+    machine.Visibility = False
+    found["saved"] = picture_of_all("stiffness.png")
+    machine.Visibility = True
+    click_named("Close")
+    found["nodes left"] = graph.getNumChildren() - before
+    found["posed at rest again"] = not machine.Proxy.played
+    return found
 
 
 main()

@@ -6,7 +6,7 @@ import time
 
 import FreeCAD
 import FreeCADGui
-from gui import main, new_document, press, select, settle, step
+from gui import FOLDER, click, job_on, main, new_document, picture_of_all, press, select, settle, step, until
 from PySide import QtCore, QtGui, QtWidgets
 
 
@@ -64,19 +64,11 @@ def normal_compensation_from_its_button():
 @step
 def surface_finish_from_its_button():
     import Part
-    import Path.Main.Gui.Job
 
-    document = FreeCAD.newDocument("finish")
-    stock = document.addObject("Part::Feature", "Block")
-    stock.Shape = Part.makeBox(20, 20, 20)
-    document.recompute()
-    Path.Main.Gui.Job.Create([stock.Name], None, openTaskPanel=False)
-    job = document.getObject("Job")
-    controller = job.Tools.Group[0]
-    controller.HorizFeed = controller.VertFeed = "600 mm/min"
-    document.UndoMode = 1
+    stock, job = job_on("finish", Part.makeBox(20, 20, 20), "600 mm/min")
+    job.Document.UndoMode = 1
     active = {}
-    for name, item in (("job", job), ("face", stock), ("controller", controller)):
+    for name, item in (("job", job), ("face", stock), ("controller", job.Tools.Group[0])):
         select(item)
         active[name] = FreeCADGui.Command.get("PKM_SurfaceFinish").isActive()
     select(stock, "Face6")
@@ -95,7 +87,7 @@ def surface_finish_from_its_button():
     }
     reported["stepover_shown"] = _change_stepover(view.panel, 2.0)
     view.panel.accept()
-    document.recompute()
+    job.Document.recompute()
     reported["accepted"], reported["passes"] = operation.Stepover.Value, operation.PassCount
     operation.ViewObject.Document.setEdit(operation.ViewObject, 0)
     settle()
@@ -103,8 +95,8 @@ def surface_finish_from_its_button():
     view.panel.reject()
     settle()
     reported["rejected"], reported["panel_is_left_open"] = operation.Stepover.Value, FreeCADGui.Control.activeDialog()
-    while document.UndoCount and job.Operations.Group:
-        document.undo()
+    while job.Document.UndoCount and job.Operations.Group:
+        job.Document.undo()
     reported["after_undo"] = len(job.Operations.Group)
     FreeCAD.closeDocument("finish")
     return reported
@@ -155,20 +147,12 @@ def escape_stops_a_long_computation():
 @step
 def escape_pressed_twice_leaves_the_operation():
     import Part
-    import Path.Main.Gui.Job
 
     from pkm_post.freecad_app import surface_finish
     from pkm_post.freecad_app.progress import Stopped
 
-    document = FreeCAD.newDocument("twice")
-    block = document.addObject("Part::Feature", "Block")
-    block.Shape = Part.makeBox(20, 20, 20)
-    document.recompute()
-    Path.Main.Gui.Job.Create([block.Name], None, openTaskPanel=False)
-    job = document.getObject("Job")
-    controller = job.Tools.Group[0]
-    controller.HorizFeed = controller.VertFeed = "600 mm/min"
-    document.UndoMode = 1
+    block, job = job_on("twice", Part.makeBox(20, 20, 20), "600 mm/min")
+    job.Document.UndoMode = 1
     select(block, "Face6")
     press("PKM_SurfaceFinish")
     (operation,) = job.Operations.Group
@@ -213,6 +197,84 @@ def escape_pressed_twice_leaves_the_operation():
     settle()
     FreeCAD.closeDocument("twice")
     return reported
+
+
+@step
+def a_gouge_is_seen_on_the_part():
+    """The floor beside a wall, finished with an upright flat mill: an error, in red, with a map."""
+    import Part
+
+    block, job = job_on("gouge", Part.makeBox(40, 20, 10).fuse(Part.makeBox(10, 20, 30)).removeSplitter(), "600 mm/min")
+    faces = block.Shape.Faces
+    is_floor = [abs(face.BoundBox.ZMax - 10) < 0.1 and face.BoundBox.ZLength < 0.1 for face in faces]
+    select(block, f"Face{is_floor.index(True) + 1}")
+    press("PKM_SurfaceFinish")
+    (operation,) = job.Operations.Group
+    page = operation.ViewObject.Proxy.panel.featurePages[-1]
+    reported = {"before": _outcome(page)}
+    nodes = FreeCADGui.activeView().getSceneGraph().getNumChildren()
+    operation.ViewObject.Proxy.panel.clicked(QtWidgets.QDialogButtonBox.StandardButton.Apply)
+    settle()
+    reported |= {
+        "gouged": _outcome(page),
+        "state": operation.getStatusString(),
+        "depth": operation.MaximumGouge,
+        "map": FreeCADGui.activeView().getSceneGraph().getNumChildren() - nodes,
+        "saved": picture_of_all("gouge.png"),
+    }
+    page.form.fields["CheckSpacing"].setProperty("rawValue", 0.0)
+    operation.ViewObject.Proxy.panel.clicked(QtWidgets.QDialogButtonBox.StandardButton.Apply)
+    settle()
+    reported["not looked for"] = _outcome(page)
+    operation.ViewObject.Proxy.panel.accept()
+    settle()
+    reported["left"] = FreeCADGui.activeView().getSceneGraph().getNumChildren() - nodes
+    FreeCAD.closeDocument("gouge")
+    return reported
+
+
+@step
+def the_map_of_a_reopened_document_comes_back_by_a_click():
+    import Part
+
+    block, job = job_on("again", Part.makeBox(20, 20, 20), "600 mm/min")
+    select(block, "Face6")
+    press("PKM_SurfaceFinish")
+    (operation,) = job.Operations.Group
+    operation.ViewObject.Proxy.panel.accept()
+    job.Document.recompute()
+    name = operation.Name
+    measured = operation.MaximumGouge, operation.UnseenGouge
+    file = FOLDER / "again.FCStd"
+    job.Document.saveAs(str(file))
+    FreeCAD.closeDocument(job.Document.Name)
+    document = FreeCAD.openDocument(str(file))
+    FreeCADGui.activateWorkbench("CAMWorkbench")
+    operation = document.getObject(name)
+    reported = {"kept": (operation.MaximumGouge, operation.UnseenGouge) == measured and measured[1] > 0.0}
+    operation.ViewObject.Document.setEdit(operation.ViewObject, 0)
+    settle()
+    page = operation.ViewObject.Proxy.panel.featurePages[-1]
+    nodes = FreeCADGui.activeView().getSceneGraph().getNumChildren()
+    reported |= {"before": _outcome(page), "offered": not page.form.again.isHidden()}
+    click(page.form.again)
+    until(page.form.again.isHidden)
+    reported |= {
+        "after": _outcome(page),
+        "map": FreeCADGui.activeView().getSceneGraph().getNumChildren() - nodes,
+        "saved": picture_of_all("map_again.png"),
+    }
+    operation.ViewObject.Proxy.panel.reject()
+    settle()
+    FreeCAD.closeDocument(document.Name)
+    return reported
+
+
+def _outcome(page):
+    """The line at the top of the page, and its colour."""
+    line = page.form.verdict
+    colours = {"#1b7f3b": "green", "#b3261e": "red"}
+    return [line.text(), next((name for code, name in colours.items() if code in line.styleSheet()), "")]
 
 
 main()

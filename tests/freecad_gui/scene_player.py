@@ -8,7 +8,7 @@ from gui import FOLDER, main, picture_of_all, press, settle, step, until
 from pivy import coin
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_gui.player_view import tool_axes
+from pkm_post.freecad_gui.axis_vectors import tool_axes
 
 SLOT = [
     "G0 X-15 Y10 Z40 I0 J0 K1",
@@ -127,7 +127,7 @@ def view_is_chosen():
             reported[name].append([shown, *_transparencies(scene._switches[name])])
         choice.setCurrentIndex(0)
     page.every.setValue(2)
-    ends = tool_axes(player.simulation, 2, 15.0)
+    ends = tool_axes(player.simulation.trajectory, 2, 15.0)
     reported["axes"] = [page._axes.getNumChildren(), len(ends[0]), len(player.simulation.trajectory)]
     camera = FreeCADGui.activeView().getCameraNode()
     player.go_to(1.0)
@@ -142,7 +142,21 @@ def view_is_chosen():
     reported["whole"] = not FreeCADGui.activeView().hasClippingPlane()
     page.every.setValue(0)
     reported["no axes"] = page._axes.getNumChildren() == 0
+    reported["preference"] = _chosen_in_preferences(page, 3), _chosen_in_preferences(page, 0)
     return reported
+
+
+def _chosen_in_preferences(page, every):
+    """What the page of the player shows before and after the page of preferences is stored, and what is drawn then."""
+    from pkm_post.freecad_gui.preferences import PostPreferences
+
+    preferences, before = PostPreferences(), page.every.value()
+    preferences.loadSettings()
+    stored = preferences.every.value()
+    preferences.every.setValue(every)
+    unsaved = page.every.value()
+    preferences.saveSettings()
+    return [stored == before == unsaved, page.every.value(), page._axes.getNumChildren()]
 
 
 def _position(camera):
@@ -183,7 +197,7 @@ def film_has_a_caption():
     player.controls.factor.setCurrentText("10x")
     page = _content().material
     page.resolution.setCurrentIndex(page.resolution.findData("coarse"))
-    written = player.film(4, 320, 240).write_pictures(frames)
+    written = player.recording(4, 320, 240).write_pictures(frames)
     images = [QtGui.QImage(str(file)) for file in sorted(frames.glob("*.png"))]
     strips = [image.copy(0, image.height() - 16, image.width(), 16) for image in images]
     dark = QtGui.QColor("#2e3436").rgb()

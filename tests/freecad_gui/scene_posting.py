@@ -11,7 +11,7 @@ from unittest import mock
 import FreeCAD
 import FreeCADGui
 from gui import FOLDER, answer, click, main, new_document, picture, picture_of_all, press, select, settle, step, until
-from PySide import QtCore, QtWidgets
+from PySide import QtCore, QtGui, QtWidgets
 
 LONG = ["G0 X0 Y0 Z30", *(f"G1 X{x % 2 * 20} Y{x * 0.02} Z20 F30" for x in range(400)), "G0 Z30"]
 
@@ -182,6 +182,37 @@ def refused_job_is_reported_and_leaves_nothing():
 
 
 @step
+def refusal_that_a_place_mends_offers_one():
+    """The job stands where the machine does not reach. Escape stops a search; what a second one finds is posted."""
+    from pkm_post.freecad_gui.place_row import PlaceRow
+
+    document, folder = saved("place")
+    job = document.getObject("Job")
+    job.PostProcessorArgs = "--work-offset=600,0,200 --part none --stock none"
+    panel = open_panel(document)
+    (row,) = panel.form.findChildren(PlaceRow)
+    found = {"at first": row.isVisible()}
+    panel.post()
+    found |= {"refused": panel.rows(), "offered": row.isVisible()}
+    click(row.search)
+    found["bar"] = row.bar.isVisible() and row.stop.isVisible()
+    escape = QtGui.QKeyEvent(
+        QtCore.QEvent.Type.KeyPress, QtCore.Qt.Key.Key_Escape, QtCore.Qt.KeyboardModifier.NoModifier
+    )
+    QtWidgets.QApplication.sendEvent(panel.form, escape)
+    until(row.search.isEnabled)
+    found |= {"stopped": row.result.text(), "panel": panel.form.isVisible(), "nothing": row.found is None}
+    click(row.search)
+    until(lambda: row.found is not None, 60)
+    click(row.take)
+    found["offset"] = panel.choices.work_offset.currentText()
+    panel.post()
+    found |= {"verdict": panel.outcome.verdict.text(), "files": names_in(folder), "kept": job.PostProcessorArgs}
+    close()
+    return found
+
+
+@step
 def refusal_of_cams_own_command_is_shown_once():
     """Its rows stand in a window; the document, its undo steps and the folder are as before."""
     FreeCADGui.activateWorkbench("CAMWorkbench")
@@ -204,7 +235,15 @@ def refusal_of_cams_own_command_is_shown_once():
         "transaction is open": document.HasPendingTransaction,
         "drawn": picture("cam_refused.png"),
         "clicked": clicked(rows, rows.item(0)),
+        "offers a place": shown.place.isVisible(),
     }
+    document.getObject("Custom").Gcode = ["G0 X0 Y0 Z30", "G1 X10 F10"]
+    job.PostProcessorArgs = "--work-offset=600,0,200 --part none --stock none"
+    document.recompute()
+    press("CAM_Post", job)
+    windows = FreeCADGui.getMainWindow().findChildren(QtWidgets.QDialog, "PkmRefusal")
+    (shown,) = [each for each in windows if each.isVisible()]
+    found["offers a place out of reach"] = shown.place.isVisible()
     shown.reject()
     return found
 
@@ -369,4 +408,6 @@ def column_is_posted():
 
 if "PKM_PICTURES" in os.environ:
     step(column_is_posted)
+
+
 main()

@@ -37,7 +37,7 @@ def simulation_from_its_button():
     made = document.getObject("Simulation")
     reported |= {
         "machine": made.Machine.Name,
-        "icon": os.path.basename(made.ViewObject.Proxy.getIcon()),
+        "icon": made.ViewObject.Proxy.icon,
         "count": len([item for item in document.Objects if item.Name.startswith("Simulation")]),
         "valid": made.isValid(),
         "duration": made.Duration.getValueAs("s").Value,
@@ -84,7 +84,7 @@ def override_scales_time_and_speeds():
     before = player.widget().plot.grab().toImage()
     player.controls.override.setValue(50)
     settle()
-    reported = {"pace": player.controls.pace(), "curves_change": player.widget().plot.grab().toImage() != before}
+    reported = {"pace": player.controls.time_scale(), "curves_change": player.widget().plot.grab().toImage() != before}
     player.controls.override.setValue(200)
     reported["reported"] = player.controls.text()
     reported["limit"] = player.simulation.machine.strut_speed
@@ -98,8 +98,8 @@ def film_is_written():
     player, frames = _player(), FOLDER / "frames"
     frames.mkdir()
     player.controls.factor.setCurrentText("10x")
-    written = player.film(2, 320, 240).write_pictures(frames)
-    played = player.film(4, 320, 240).write_animation(FOLDER / "film.png")
+    written = player.recording(2, 320, 240).write_pictures(frames)
+    played = player.recording(4, 320, 240).write_animation(FOLDER / "film.png")
     return {"written": written, "pictures": sorted(os.listdir(frames)), "played": played}
 
 

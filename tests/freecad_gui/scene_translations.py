@@ -3,14 +3,18 @@
 
 import FreeCAD
 import FreeCADGui
-from gui import main, new_document, picture, press, settle, step
+from gui import FOLDER, job_on, main, new_document, picture, press, settle, step
 from PySide import QtCore, QtWidgets
+
+from pkm_post.freecad_app.post_job import post_job
+
+IMPERIAL = 3
 
 
 def _buttons():
     window = FreeCADGui.getMainWindow()
     bars = [bar for bar in window.findChildren(QtWidgets.QToolBar) if bar.objectName() == "PKM Post"]
-    return [(action.text(), action.statusTip()) for bar in bars for action in bar.actions()]
+    return [(action.text(), action.statusTip()) for bar in bars for action in bar.actions() if not action.isSeparator()]
 
 
 def _labels(widget):
@@ -55,16 +59,12 @@ def post_panel_is_chinese():
 @step
 def choices_are_chinese_and_properties_are_not():
     import Part
-    import Path.Main.Gui.Job
 
     from pkm_post.freecad_app.surface_finish import create_surface_finish
     from pkm_post.freecad_gui.surface_finish_panel import CHOICES, ROWS
 
-    document = FreeCAD.newDocument("finish")
-    stock = document.addObject("Part::Feature", "Block")
-    stock.Shape = Part.makeBox(20, 20, 20)
-    Path.Main.Gui.Job.Create([stock.Name], None, openTaskPanel=False)
-    operation = create_surface_finish(document.getObject("Job"), [])
+    _, job = job_on("finish", Part.makeBox(20, 20, 20))
+    operation = create_surface_finish(job, [])
     operation.Active = False
     operation.ViewObject.Document.setEdit(operation.ViewObject, 0)
     settle()
@@ -77,6 +77,43 @@ def choices_are_chinese_and_properties_are_not():
     settle()
     words = [word for kind, name, _ in ROWS if kind == "choice" for word in operation.getEnumerationsOfProperty(name)]
     return chosen | {"unknown": sorted(set(words) - set(CHOICES))}
+
+
+@step
+def findings_are_chinese_and_in_the_units_of_the_user():
+    """The job stands where the machine does not reach."""
+    from pkm_post.freecad_gui.post_outcome import PostOutcome
+    from pkm_post.freecad_gui.verdict import FindingRows
+
+    document = new_document("far")
+    job = document.getObject("Job")
+    job.PostProcessorArgs = "--machine example_6tps --work-offset=600,0,200,10 --part none --stock none"
+    press("PKM_Reach", job)
+    FreeCAD.Units.setSchema(IMPERIAL)
+    found = document.getObject("Reach")
+    found.ViewObject.Proxy.doubleClicked(found.ViewObject)
+    settle()
+    (table,) = FreeCADGui.getMainWindow().findChildren(QtWidgets.QTableWidget, "PkmReachTable")
+    (rows,) = table.parentWidget().findChildren(FindingRows)
+    reported = {
+        "checks": [[table.item(row, column).text() for column in range(5)] for row in range(table.rowCount())],
+        "rows": [rows.item(row).text() for row in range(rows.count())],
+        "kept": list(found.Violations),
+        "drawn": picture("findings.png"),
+    }
+    FreeCADGui.getDocument("far").resetEdit()
+    settle()
+    job.PostProcessorArgs = "--machine example_6tps --work-offset=0,0,250 --part none --stock none"
+    document.recompute()
+    outcome = PostOutcome()
+    outcome.show_posted(post_job(job, out=FOLDER))
+    table = outcome.findings
+    reported["certificate"] = [
+        [table.item(row, column).text() for column in range(4)] for row in range(table.rowCount())
+    ]
+    reported["meaning"] = outcome.meaning.text().splitlines()
+    FreeCAD.Units.setSchema(0)
+    return reported
 
 
 @step

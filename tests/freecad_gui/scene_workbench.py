@@ -12,7 +12,7 @@ def workbench_has_its_commands():
     settle()
     window = FreeCADGui.getMainWindow()
     bars = [bar for bar in window.findChildren(QtWidgets.QToolBar) if bar.windowTitle() == "PKM Post"]
-    actions = [action for bar in bars for action in bar.actions()]
+    actions = [action for bar in bars for action in bar.actions() if not action.isSeparator()]
     return {
         "listed": "PkmPostWorkbench" in FreeCADGui.listWorkbenches(),
         "buttons": [action.text() for action in actions],
@@ -56,23 +56,22 @@ def _active():
 def cam_menu_has_the_commands():
     FreeCADGui.activateWorkbench("CAMWorkbench")
     settle()
-    texts = []
-    for action in FreeCADGui.getMainWindow().menuBar().actions():
-        if action.menu():
-            texts += [item.text().replace("&", "") for item in _all_actions(action.menu())]
-    bars = FreeCADGui.getMainWindow().findChildren(QtWidgets.QToolBar)
-    ours = {bar.objectName(): [item.text() for item in bar.actions()] for bar in bars}
+    FreeCADGui.activateWorkbench("PartDesignWorkbench")
+    FreeCADGui.activateWorkbench("CAMWorkbench")  # again: they must be there once
+    settle()
+    menus = FreeCADGui.getMainWindow().menuBar().actions()
+    ours = [action.menu() for action in menus if action.menu() and action.text().replace("&", "") == "PKM Post"]
+    bars = [bar for bar in FreeCADGui.getMainWindow().findChildren(QtWidgets.QToolBar)
+            if bar.objectName() == "PKM Post" and bar.isVisible()]  # fmt: skip
     return {
-        "has": [text in texts for text in ("Mirror operation", "Rotate operation", "Post to a hexapod")],
-        "bars": {name: ours[name][-1] for name in ("Project Setup", "New Operations", "Path Modification")},
+        "menus": [[_text(action) for action in menu.actions()] for menu in ours],
+        "bars": [[_text(action) for action in bar.actions()] for bar in bars],
+        "cam": any(action.text().replace("&", "") == "CAM" for action in menus),
     }
 
 
-def _all_actions(menu):
-    for action in menu.actions():
-        yield action
-        if action.menu():
-            yield from _all_actions(action.menu())
+def _text(action):
+    return "-" if action.isSeparator() else action.text().replace("&", "")
 
 
 @step

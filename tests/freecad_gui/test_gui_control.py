@@ -133,6 +133,12 @@ def test_a_program_goes_on_after_its_stop(programs):
     assert found["out"] == pytest.approx([1.0, 0.0], abs=NEAR_MM)
 
 
+def test_a_power_pmac_is_homed_and_jogged_as_well(session):
+    found = session["a_power_pmac_is_homed_and_jogged_as_well"]
+    assert found["x"] == pytest.approx([2, 0, 0], abs=NEAR_MM)
+    assert found["starts"] == ["&1B999R"] * 2  # the rehearsal and the jog
+
+
 def test_an_abort_ends_a_jog(programs):
     found = programs["an_abort_ends_a_jog"]
     assert found["enabled"] and found["left"] > 1.0  # of 20 mm, which take two seconds

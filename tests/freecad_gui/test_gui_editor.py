@@ -14,7 +14,7 @@ def test_program_is_opened_with_its_path_and_the_block_under_the_cursor(session)
     assert (found["moves"], found["view"], found["title"]) == (5, "ProgramView", "program.ngc - PKM Post")
     assert (found["findings"], found["coloured"]) == ([], 9)  # an empty line has no colour
     # mm: down 25, hypot(10, 4) along, half a circle of radius 5, up 25
-    assert found["size"] == "5 blocks, 1 arcs, 76.5 mm"
+    assert found["size"] == "5 blocks, 1 arcs, 76.48 mm"
     assert (found["drawn"], found["points"]) == (1, 61)  # half a turn in steps of 3 degrees
     assert session.drew("editor.png")
 
@@ -25,7 +25,7 @@ def test_editor_finds_planted_errors(session):
     assert found["underlined"] == ["1..5", "Q"]
     assert (found["jumped"], found["after_undo"]) == (8, [])
     over, beside = found["tool_tips"]
-    assert over.startswith("error G102: a number is malformed: '1..5'; write it as")
+    assert over.startswith("G102 a number is malformed: '1..5'; write it as")
     assert beside == ""
 
 
@@ -41,7 +41,7 @@ def test_editor_replaces_renumbers_and_saves(session):
 def test_editor_colours_only_the_lines_in_sight(session):
     found = session["editor_colours_the_lines_in_sight_of_a_large_file"]
     assert (found["out_of_sight"], found["in_sight"]) == (0, 7)  # GOTO / 1 , 2 , 3
-    assert (found["size"], found["back"]) == ("19998 blocks, 0 arcs, 0.0 mm", True)
+    assert (found["size"], found["back"]) == ("19998 blocks, 0 arcs, 0 mm", True)
 
 
 def test_siemens_language_has_its_colours(session):
@@ -81,7 +81,7 @@ def test_editor_asks_who_wrote_cl_data(session):
 def test_editor_shows_a_program_without_an_end_and_takes_it_where_it_may(session):
     found = session["editor_asks_whether_a_program_may_have_no_end"]
     assert found["codes"] == [["G430"], ["V130"]]
-    assert (found["size"], found["after"]) == ("5 blocks, 1 arcs, 76.5 mm", False)
+    assert (found["size"], found["after"]) == ("5 blocks, 1 arcs, 76.48 mm", False)
 
 
 def test_editor_opens_a_part_program_that_is_dropped_among_other_files(session):

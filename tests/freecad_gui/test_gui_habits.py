@@ -46,8 +46,8 @@ def test_menu_switches_an_operation_off_in_one_step(session):
 
 def test_objects_of_a_job_have_menus(session):
     found = session["objects_of_a_job_have_menus"]
-    assert found["machine"] == ["Move it home", "Reach", "Simulate", "Post to a hexapod"]
-    assert found["alone"] == ["Move it home"]
+    assert found["machine"] == ["Jog", "Move it home", "Reach", "Simulate", "Post to a hexapod"]
+    assert found["alone"] == ["Jog", "Move it home"]
     assert found["reach"] == ["Open the findings", "Active", "Simulate", "Post to a hexapod"]
     assert found["simulation"] == ["Open the player", "Active", "Reach", "Post to a hexapod"]
     assert found["findings"]

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Operations from their buttons in a FreeCAD with a window."""
 
+import numpy as np
 import pytest
+from matplotlib.image import imread
 
 
 @pytest.fixture(scope="module")
@@ -53,3 +55,30 @@ def test_escape_stops_the_computing_and_never_deletes_the_operation(session):
     assert (found["operations"], found["open"]) == (1, True)
     assert len(found["stopped"]) == 1 and "stopped at" in found["stopped"][0]
     assert found["computed later"]
+
+
+def test_the_map_of_a_reopened_document_comes_back_by_a_click(session):
+    found = session["the_map_of_a_reopened_document_comes_back_by_a_click"]
+    assert found["kept"] and found["offered"]
+    assert found["before"][0].split("\n")[0] == found["after"][0].split("\n")[0]
+    assert found["before"][0].startswith("No gouge: ") and ", between the points at most " in found["before"][0]
+    assert found["map"] == 1 and session.drew("map_again.png")
+
+
+def test_a_gouge_is_an_error_in_red_with_a_map_on_the_part(session):
+    found = session["a_gouge_is_seen_on_the_part"]
+    assert found["before"] == ["Not computed yet: Apply computes it", ""]
+    # the mill is 5 mm wide and its axis comes to the wall: it is in it by its radius
+    assert found["depth"] == pytest.approx(2.5, abs=0.01)
+    text, colour = found["gouged"]
+    assert colour == "red" and "N311" in text and "N311" in found["state"]
+    assert (found["map"], found["left"]) == (1, 0)
+    assert found["not looked for"] == ["Gouges are not looked for: set a distance of check points", ""]
+    assert session.drew("gouge.png") and has_red(session.folder / "gouge.png")
+
+
+def has_red(path):
+    """Whether the full red of the map covers more than what a mark does."""
+    pixels = imread(path)[..., :3]
+    near = np.abs(pixels - np.array([0.85, 0.0, 0.0])).max(axis=-1) < 0.06
+    return near.sum() > 500

@@ -75,6 +75,8 @@ def test_the_view_has_tool_axes_follows_the_tool_and_is_cut_open(session):
     children, axes, blocks = found["axes"]
     assert (children, axes) == (1, blocks // 2)
     assert found["followed"] and found["section"] and found["whole"] and found["no axes"]
+    (kept, every, drawn), off = found["preference"]
+    assert (kept, every, drawn, off) == (True, 3, 1, [True, 0, 0])
 
 
 def test_bodies_that_come_too_close_are_red_until_they_part(session):

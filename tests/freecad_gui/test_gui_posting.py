@@ -53,6 +53,14 @@ def test_panel_fits_a_dock_of_380_pixels_and_shows_no_empty_decimals(session):
         assert option in found["text"].split()
 
 
+def test_a_refusal_that_a_place_mends_offers_to_look_for_one(session):
+    found = session["refusal_that_a_place_mends_offers_one"]
+    assert not found["at first"] and found["offered"] and any("K102" in row for row in found["refused"])
+    assert found["bar"] and found["stopped"] == "Stopped." and found["panel"] and found["nothing"]
+    assert found["offset"] and "600" not in found["offset"] and f"--work-offset={found['offset']}" in found["kept"]
+    assert found["verdict"].startswith("Certified") and "place.pmc" in found["files"]
+
+
 def test_refused_job_is_reported_and_leaves_nothing(session):
     found = session["refused_job_is_reported_and_leaves_nothing"]
     assert found["files"] == ["refused.FCStd"]
@@ -69,6 +77,7 @@ def test_refusal_of_cams_own_command_is_shown_once_and_changes_nothing(session):
     assert found["verdict"].startswith("Refused")
     assert (found["undo steps"], found["transaction is open"]) == (0, False)
     assert found["clicked"][0] == ["Custom"]
+    assert not found["offers a place"] and found["offers a place out of reach"]
 
 
 def test_lack_of_memory_is_reported_and_leaves_nothing(session):

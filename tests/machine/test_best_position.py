@@ -7,7 +7,8 @@ from programs import ON_PALLET, cone
 
 from pkm_post.machine.description.presets import machine_named
 from pkm_post.machine.reach.best_position import best_position
-from pkm_post.machine.spin.normalised_margins import JOINTS, STROKE, SampledPoses, normalised_margins
+from pkm_post.machine.spin.normalised_margins import SampledPoses, normalised_margins
+from pkm_post.machine.spin.policy import JOINTS, STROKE
 from pkm_post.toolpath.place import place
 
 

@@ -26,6 +26,8 @@ REACHED = ("--tool-length=1=60", "--work-offset=0,0,250")
 FOR_CLDATA = ("--contour-data", "--cl-dialect", "--cycle-values", "--cycle-kinds", "--goto-values")
 FOR_GCODE = ("--flavour", "--leave-out", "--origin", "--subprograms", "--block-delete")
 FOR_BOTH = ("--tool", "--tool-table", "--unit", "--feed", "--allow-open-end", "--wear", "--machine-zero")
+FOR_JOBS_TOO = {"--origin"}
+"""A CAM job may have further fixtures."""
 FOR_POSTING = ("--side",)
 """What is asked of part programs, but by the post and not by the reader."""
 FOR_PART_PROGRAMS = (*FOR_CLDATA, *FOR_GCODE, *FOR_BOTH)
@@ -60,7 +62,7 @@ def test_each_option_fits_or_is_named(flag, source):
     unfit = {
         InputKind.GCODE: FOR_CLDATA,
         InputKind.CLDATA: FOR_GCODE,
-        InputKind.JOB: (*FOR_PART_PROGRAMS, *FOR_POSTING),
+        InputKind.JOB: {*FOR_PART_PROGRAMS, *FOR_POSTING} - FOR_JOBS_TOO,
     }
     fits = flag not in unfit[source]
     assert [each.split()[0] for each in inapplicable_options(given, {source})] == ([] if fits else [flag])

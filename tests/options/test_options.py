@@ -2,6 +2,7 @@
 """The arguments of every way into PKM Post become options in mm and rad."""
 
 import argparse
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -21,7 +22,7 @@ from pkm_post.options.choices import Options
 from pkm_post.options.conversion import argument_values, tools_from
 from pkm_post.reading import cldata
 from pkm_post.reading.part_program import AS_WRITTEN
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 from pkm_post.toolpath.from_line import StartLine
 from pkm_post.toolpath.surface_speed import SurfaceSpeed
 
@@ -114,6 +115,9 @@ def test_a_line_to_begin_at(text, wanted):
     chosen = options_from(parsed("--from-line", text))
     assert chosen.from_line == wanted and options_from(parsed()).from_line is None
     assert argument_values(chosen)["from_line"] == (None if wanted is None else (wanted.line, wanted.operation))
+    repeated = options_from(parsed("--from-line", text, "--repeat-codes"))
+    assert repeated.from_line == (None if wanted is None else replace(wanted, repeat_codes=True))
+    assert argument_values(repeated)["repeat_codes"] == (wanted is not None)
 
 
 def test_every_rule_of_the_spin_can_be_chosen():

@@ -70,8 +70,8 @@ def compensated(text):
     """What the product makes of it: the moves as rs274 has them, or None, and the diagnostics."""
     from pkm_post.model import Tool
     from pkm_post.reading.gcode import ReadOptions, read
-    from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
     from pkm_post.toolpath.compensation.contour_offset import offset_contours
+    from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
     nothing = (0.0, 0.0, 0.0)
     options = ReadOptions(default_tool=Tool(0, "", 0.0, 0.0, 0.0), work_offsets={"G54": (*nothing, 0.0)})

@@ -17,9 +17,9 @@ def straight(places, speed, acceleration, jerk):
     ends, one = spline.ends, np.ones((1, len(spline.ends.place)))
     zero = np.zeros_like(one)
     return spline, (
-        Limits(ends, np.stack([zero, zero, one / speed**2]), each=True, jerk=False),
-        Limits(ends, np.stack([zero, one / acceleration, zero]), each=True, jerk=False),
-        Limits(ends, np.stack([one / jerk, zero, zero]), each=False, jerk=True),
+        Limits(ends, np.stack([zero, zero, one / speed**2]), jerk=False),
+        Limits(ends, np.stack([zero, one / acceleration, zero]), jerk=False),
+        Limits(ends, np.stack([one / jerk, zero, zero]), jerk=True),
     )
 
 
@@ -56,7 +56,7 @@ def test_a_vector_is_limited_by_its_length():
     # Two numbers of one vector, 3/5 and 4/5 of the acceleration, are one limit of the whole; each alone is looser.
     spline, limits = straight(graded(6.0), 20.0, 100.0, 1000.0)
     whole = limits[1].weights
-    parted = Limits(limits[1].ends, np.concatenate([0.6 * whole, 0.8 * whole], axis=1), each=False, jerk=False)
+    parted = Limits(limits[1].ends, np.concatenate([0.6 * whole, 0.8 * whole], axis=1), jerk=False)
     start = Solution(like_from_rests(spline, 100.0))
     found, expected = (
         fastest(spline.weight, (limits[0], one, limits[2]), start, 1e-8).unknowns for one in (parted, limits[1])

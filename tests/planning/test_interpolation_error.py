@@ -199,7 +199,7 @@ def test_the_number_of_threads_does_not_matter(monkeypatch, workers):
 def test_even_marks_cut_a_motion_without_a_trace():
     rests, edges = np.array([0, 1000, 1003, 9000]), np.array([77, 400, 2000])
 
-    def error(start, end):
+    def error(start, end, group=None):
         return (end - start) / (10 + start % 50)
 
     marks = even_marks(rests)
@@ -268,3 +268,14 @@ def test_the_most_of_an_interval_is_that_of_its_places():
     assert (most == 0).any()
     np.testing.assert_array_equal(intervals[np.array([3, 5])].start, start[[3, 5]])
     assert len(intervals[np.array([], dtype=int)].at_joints(joint_time).maximum(np.empty(0), 0)) == 0
+
+
+def test_some_of_the_joints_are_spread_over_each_interval():
+    """All where there are no more than asked for; else so many, of even parts of them each the one in the middle."""
+    joint_time = np.arange(1, 1001) / 1000
+    intervals = Intervals.of(joint_time, np.array([0, 100, 300]), np.array([4, 151, 301]))
+    every, some = intervals.at_joints(joint_time), intervals.at_joints(joint_time, 5)
+    np.testing.assert_array_equal(np.bincount(every.row, minlength=3), [3, 50, 0])
+    np.testing.assert_array_equal(np.bincount(some.row, minlength=3), [3, 5, 0])
+    np.testing.assert_array_equal(some.segment[:3], every.segment[:3])
+    np.testing.assert_array_equal(some.segment[3:] - every.segment[3], [5, 15, 25, 35, 45])

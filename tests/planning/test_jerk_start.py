@@ -10,7 +10,7 @@ from programs import ON_PALLET, program
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import jerk_limits
 from pkm_post.planning.jerk_demands import Demands
-from pkm_post.planning.jerk_start import first_places, long_held, start, with_middles
+from pkm_post.planning.jerk_start import first_places, long_held, start, unknowns, with_middles
 from pkm_post.planning.motion import tool_path
 from pkm_post.planning.speed_profile import stations
 from pkm_post.planning.speed_spline import SpeedSpline, durations
@@ -29,10 +29,10 @@ def begun():
     path = tool_path(trajectory, Tolerances(1e-2, 1e-4))
     marks = stations(path)
     s, rest = first_places(marks)
-    demands = Demands.at(path, machine, marks, with_middles(s))
+    steady = Demands.at(path, machine, marks, with_middles(s)).steady()
+    fastest, held = start(s, rest, steady)
     spline = SpeedSpline.of(s, rest)
-    limits = demands.limits(spline, np.ones(len(s) - 1), np.full(len(spline.left), np.nan))
-    return machine, path, marks, spline, *start(spline, limits)
+    return machine, path, marks, spline, unknowns(spline, fastest, held), held
 
 
 def test_joints_rests_and_edges_are_places_and_cells_grow_in_steps():
@@ -45,7 +45,7 @@ def test_joints_rests_and_edges_are_places_and_cells_grow_in_steps():
 
 
 def test_plateaus_are_at_the_feed_and_away_from_corners():
-    _, path, _, spline, unknowns, held = begun()
+    _, path, _, spline, first, held = begun()
     middle = (spline.s[1:] + spline.s[:-1]) / 2
     segment = np.searchsorted(path.starts, middle) - 1
     known = ~np.isnan(held)
@@ -53,13 +53,13 @@ def test_plateaus_are_at_the_feed_and_away_from_corners():
     np.testing.assert_allclose(held[known], path.feed[segment[known]] ** 2, rtol=1e-6)
     corners = path.starts[[0, 1, 3, 4, 5]]
     assert np.abs(middle[known][:, None] - corners).min() > 0.5
-    np.testing.assert_array_equal(unknowns[known[spline.left]], held[known])
+    np.testing.assert_array_equal(first[known[spline.left]], held[known])
 
 
 def test_the_motion_is_the_same_without_plateaus(monkeypatch):
     machine, path, marks, *_ = begun()
     found = []
-    for held in (start, lambda *given: (start(*given)[0], np.full(len(given[0].s) - 1, np.nan))):
+    for held in (start, lambda *given: (start(*given)[0], np.full(len(given[0]) - 1, np.nan))):
         monkeypatch.setattr(jerk_limits, "start", held)
         motion = jerk_limits.jerk_limited(path, marks, machine)
         found.append(durations(np.diff(motion.s), motion.square, motion.acceleration).sum())

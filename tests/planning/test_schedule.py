@@ -6,10 +6,7 @@ from programs import ON_PALLET, cone, program
 from pkm_post.model import Event, EventKind
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import plan_feed
-from pkm_post.planning.knots import LONGEST_MS, knots
 from pkm_post.toolpath.place import place
-
-NO_EDGES = np.array([], dtype=np.int64)
 
 
 def schedule_of(made):
@@ -49,34 +46,6 @@ def test_feed_is_kept_and_reached():
     _, path, schedule = schedule_of(program([[0, 0, 60], [0, 0, 50], [100, 0, 50]], feed=30.0))
     cutting = schedule.law.s > path.starts[1]
     assert 29.9 < schedule.law.speed[cutting].max() <= 30.0
-
-
-def test_knots_halve_until_the_error_holds():
-    # An error that grows with the width and is large near 500 ms: knots must crowd there and nowhere else.
-    def error(start, end):
-        near = (start <= 500) & (end >= 500)
-        return np.where(near, (end - start) / 4, (end - start) / 64)
-
-    found = knots(np.array([0, 1000, 1003]), NO_EDGES, error)
-    width = np.diff(found)
-    assert {0, 1000, 1003} <= set(found.tolist())
-    assert width.max() <= 64 < LONGEST_MS
-    assert width[np.searchsorted(found, 500) - 1] <= 4
-    assert (error(found[:-1], found[1:]) <= 1).all()
-
-
-def test_an_error_that_never_holds_ends_at_one_millisecond():
-    found = knots(np.array([0, 37]), NO_EDGES, lambda start, end: np.full(len(start), 2.0))
-    np.testing.assert_array_equal(found, np.arange(38))
-
-
-def test_cuts_are_made_at_edges():
-    # A path of straights with short blends: an interval holds when no edge lies inside it.
-    edges = np.array([20, 23, 57, 60, 91, 94])
-    found = knots(
-        np.array([0, 120]), edges, lambda start, end: 2.0 * ((edges[:, None] > start) & (edges[:, None] < end)).any(0)
-    )
-    np.testing.assert_array_equal(found, [0, *edges, 120])
 
 
 def test_when_a_place_is_passed_is_when_the_motion_law_is_there():

@@ -10,11 +10,12 @@ from programs import ON_PALLET, program
 
 from pkm_post.certificate import certify
 from pkm_post.geometry import norm
+from pkm_post.machine import strut_rates
 from pkm_post.model import Kind, Tolerances
 from pkm_post.planning import interpolate, plan_feed
 from pkm_post.planning.fast_poses import fast_poses
 from pkm_post.planning.motion import tool_path
-from pkm_post.planning.rough_limits import DerivativeBounds
+from pkm_post.planning.rough_limits import DerivativeBounds, deviates_in_blends, straight_groups
 from pkm_post.toolpath.place import place
 
 MICRON = 1e-3
@@ -121,6 +122,37 @@ def test_no_derivative_is_larger_than_its_bound(lean):
         ("half_tilt", half_tilt),
     ):
         assert (found.reshape(count, -1).max(axis=1) <= getattr(bounds, name) * (1 + 1e-6) + 1e-7).all(), name
+
+
+@pytest.mark.parametrize("lean", [0.0, 0.2])
+def test_segments_of_a_curve_that_count_as_one_line_are_straight(lean):
+    """Within 0.01 mm and 1e-4 rad of the chord, as stated, and 0.5 % for the way along it being no even one."""
+    path = tool_path(scan(2, lean=lean), Tolerances(MICRON, THOUSANDTH))
+    bounds = DerivativeBounds.of(path)
+    inside = straight_groups(path, bounds, deviates_in_blends(path, bounds))
+    assert inside.mean() > 0.5
+    joints = np.flatnonzero(np.append(True, ~inside))
+    ends, several = path.starts[joints], np.diff(joints) > 1
+    s = ends[:-1] + SHARES[:, None] * np.diff(ends)
+    poses, way = path.at(s.ravel()), SHARES[:, None, None]
+    for value, most in ((poses.tip, 0.01), (poses.axis, 1e-4), (poses.spin[:, None], 1e-4)):
+        value = value.reshape(*s.shape, -1)
+        chord = value[0] + way * (value[-1] - value[0])
+        assert norm(value - chord)[:, several].max() <= 1.005 * most
+
+
+def test_an_unreachable_place_on_a_curve_is_named_by_its_line():
+    """A stroke that the longest strut exceeds by 0.05 mm; the worst place may be beside the joint that is longest."""
+    trajectory, tolerances = scan(1), Tolerances(MICRON, THOUSANDTH)
+    path = tool_path(trajectory, tolerances)
+    poses = path.at(path.starts)
+    length = strut_rates(example(), poses)[0].max(axis=1)
+    assert length.max() > length[[0, -1]].max() + 0.05
+    machine = dataclasses.replace(example(), strut_stroke=(example().strut_stroke[0], length.max() - 0.05))
+    _, faults = plan_feed(trajectory, machine, tolerances)
+    assert [fault.code for fault in faults] == ["K102"]
+    longest = trajectory.line[poses.segment[np.argmax(length)]]
+    assert abs(faults[0].place.line - longest) <= 1
 
 
 def test_a_wider_tolerance_of_the_program_smooths_more():

@@ -16,7 +16,7 @@ from pkm_post.planning.cell_limits import demand
 from pkm_post.planning.motion import tool_path
 from pkm_post.planning.refinement import refined
 from pkm_post.planning.rough_limits import DerivativeBounds, below_feed, deviates_in_blends, rough_limits
-from pkm_post.planning.speed_limits import PLANNED_SHARE, SAFE_SHARE, following
+from pkm_post.planning.speed_limits import PLANNED_SHARE, SAFE_SHARE, next_segment
 from pkm_post.planning.speed_profile import cell_times, stations
 from pkm_post.planning.switches import with_lower_switches
 from pkm_post.toolpath.place import place
@@ -97,7 +97,7 @@ def test_rough_limits_are_below_the_true_ones(name):
     path, _, machine = path_of(JOBS[name])
     rough = rough_limits_of(path, machine)
     marks = stations(path)
-    after = following(path, marks.segment, marks.u)
+    after = next_segment(path, marks.segment, marks.u)
     square, along = (np.minimum(one[marks.segment], one[after]) for one in rough)
     limits, share = limits_within(path, machine, marks.segment, marks.u), np.full(len(square), PLANNED_SHARE)
     for part, acceleration in ((1.0, along), (1.0, -along), (0.0, along), (0.5, -along)):

@@ -11,7 +11,7 @@ from programs import ON_PALLET, cone, program, square_with_arc
 from pkm_post.geometry import norm
 from pkm_post.machine import strut_lengths
 from pkm_post.model import Tolerances
-from pkm_post.planning import PathState, course, strut_motion
+from pkm_post.planning import PathState, strut_motion, window_planner
 from pkm_post.planning.speed_limits import SAFE_SHARE
 from pkm_post.toolpath.place import place
 
@@ -23,7 +23,7 @@ PROGRAMS = {"cone": cone(60), "corners": square_with_arc(), "line": program([[0,
 @functools.cache
 def course_of(name):
     trajectory, _ = place(PROGRAMS[name], MACHINE, ON_PALLET)
-    found, faults = course(trajectory, MACHINE, TOLERANCES, 1.5)
+    found, faults = window_planner(trajectory, MACHINE, TOLERANCES, 1.5)
     assert not faults
     return found
 

@@ -77,18 +77,10 @@ def test_a_posting_writes_it_beside_the_program(posted, tmp_path):
     assert lines[-1].startswith("also cartesian") and "struts at most" in lines[-1]
 
 
-@pytest.mark.parametrize(
-    ("change", "code"), [({"kind": "power_pmac"}, "M104"), ({"letters": ["X", "Y", "Z", "U", "V", "W"]}, None)]
-)
-def test_a_posting_without_it_is_none(tmp_path, change, code):
+def test_struts_may_have_the_letters_of_the_form(tmp_path):
     machine = machine_named("example_6tps")[0]
-    other = dataclasses.replace(machine, controller={**machine.controller, **change})
-    if code is None:
-        assert post(JOB, other, tmp_path / "job.pmc", Options(also=("cartesian",)))
-        return
-    with pytest.raises(Refused, match=code):
-        post(JOB, other, tmp_path / "job.pmc", Options(also=("cartesian",)))
-    assert not list(tmp_path.iterdir())
+    other = dataclasses.replace(machine, controller={**machine.controller, "letters": ["X", "Y", "Z", "U", "V", "W"]})
+    assert post(JOB, other, tmp_path / "job.pmc", Options(also=("cartesian",)))
 
 
 def test_heading_says_what_it_runs_with(posted):
@@ -204,10 +196,3 @@ def test_command_prints_the_certificate_and_the_file(posted, tmp_path, capsys):
     assert main(["cartesian", *arguments, "--out", str(out)]) == 0
     printed = capsys.readouterr().out.splitlines()
     assert printed[-1] == str(out) and any(line.startswith("deviation of the tool tip: ") for line in printed)
-
-
-def test_a_power_pmac_is_refused(posted, tmp_path):
-    machine, folder, _ = posted
-    power = dataclasses.replace(machine, controller={**machine.controller, "kind": "power_pmac"})
-    with pytest.raises(Refused, match="M104"):
-        cartesian_program(folder / "job.pmc", folder / "job.pkmt", power, tmp_path / "tip.pmc")

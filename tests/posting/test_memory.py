@@ -9,76 +9,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from long_programs import ALL, PIECES, scan
 
-from pkm_post.certificate import diagnosis, dynamics, joints, struts, tool_spline
 from pkm_post.options.choices import Options
-from pkm_post.planning import (
-    acceleration_limits,
-    fastest_profile,
-    interpolation,
-    motion,
-    played_acceleration,
-    schedule,
-    speed_profile,
-    switches,
-)
 from pkm_post.posting.post_file import post_file
 from pkm_post.posting.run import give_back_memory
 from pkm_post.reading.part_program import ReadingOptions
-from pkm_post.writing import outputs
-from pkm_post.writing.controllers.pvt import reader as program_reader
-from pkm_post.writing.controllers.pvt import writer
-from pkm_post.writing.trajectory_file import invariants as parts
-from pkm_post.writing.trajectory_file import reader as trajectory_reader
 
 resource = pytest.importorskip("resource")  # POSIX
 
-PIECES = (
-    (motion, "_KNOTS_AT_ONCE"),
-    (motion, "_STATIONS_AT_ONCE"),
-    (motion, "_STRETCH_MS"),
-    (motion, "_STRETCH_ROWS"),
-    (interpolation, "_INTERVALS_AT_ONCE"),
-    (acceleration_limits, "_AT_ONCE"),
-    (fastest_profile, "_CELLS_AT_ONCE"),
-    (played_acceleration, "_AT_ONCE"),
-    (switches, "_CELLS_AT_ONCE"),
-    (speed_profile, "_AT_ONCE"),
-    (schedule, "_AT_ONCE"),
-    (struts, "_AT_ONCE"),
-    (tool_spline, "_AT_ONCE"),
-    (joints, "_AT_ONCE"),
-    (dynamics, "_KNOTS_AT_ONCE"),
-    (diagnosis, "_AT_ONCE"),
-    (writer, "_ROWS_PER_CHUNK"),
-    (program_reader, "_CHUNK"),
-    (outputs, "_CHARACTERS_AT_ONCE"),
-    (parts, "SEGMENTS_PER_CHUNK"),
-    (trajectory_reader, "SEGMENTS_PER_CHUNK"),
-)
-ALL = 1 << 30
 BYTES_PER_LINE = 1600
 """Of a rough surface with 1.4 points of the motion to a line, at most: it takes 1300, and took 3100 in one piece."""
 ON_PALLET = np.eye(4)
 ON_PALLET[2, 3] = 200.0
-
-
-def scan(lines, leans):
-    """G-code of a scan over a rough surface, with two tools, a dwell, an arc, and a tool that leans if wished for."""
-    rng = np.random.default_rng(1)
-    x = 0.3 * np.abs(np.arange(lines) % 400 - 200) - 30
-    z = 10 + np.sin(x / 9) + rng.uniform(-0.005, 0.005, lines)
-    lean = np.sin(x / 20) / 5
-    axes = np.column_stack([np.sin(lean), 0 * lean, np.cos(lean)])
-    words = [f" I{i:.6f} J{j:.6f} K{k:.6f}" if leans else "" for i, j, k in axes]
-    rows = zip(x, np.linspace(0, 50, lines), z, words, strict=True)
-    moves = [f"G1 X{a:.4f} Y{b:.4f} Z{c:.4f}{word}" for a, b, c, word in rows]
-    offset = "G43.5" if leans else "G43"
-    half = lines // 2
-    middle = ["G4 P0.5", "G0 Z40", "T2 M6", f"{offset} H2", "S8000 M3", "G0 X0 Y0"]
-    arc = [] if leans else ["G1 Z10", "G3 X10 Y0 I5 J0"]
-    return "\n".join(["G21 G90 G17", "T1 M6", f"{offset} H1", "S9000 M3", "G0 X30 Y0 Z40", "F2400", *moves[:half],
-                      *middle, *arc, *moves[half:], "G91 G0 Z10", "M5", "M2", ""])  # fmt: skip
 
 
 def post(folder, lines, leans=False, name="scan"):
@@ -96,7 +39,7 @@ def test_pieces_of_any_size_give_the_same_files(monkeypatch, tmp_path, leans):
     def posted(size):
         for module, name in PIECES:
             monkeypatch.setattr(module, name, size)
-        return post(tmp_path, 400, leans, str(size))
+        return post(tmp_path, 100, leans, str(size))
 
     whole = posted(ALL)
     expected = json.loads(whole["scan-report.json"].read_text())
@@ -126,8 +69,8 @@ def assert_alike(found, expected):
 
 def test_memory_for_a_line_is_bounded(tmp_path):
     """The difference of two jobs: what does not depend on their length, as the pieces themselves, is in both."""
-    few, many = 5000, 20000
-    post(tmp_path, few)  # what is imported and kept for later jobs is there then
+    few, many = 4000, 12000
+    post(tmp_path, 500)  # what is imported and kept for later jobs is there then
     peaks = [peak_of(tmp_path, lines) for lines in (few, many)]
     assert (peaks[1] - peaks[0]) / (many - few) < BYTES_PER_LINE
 

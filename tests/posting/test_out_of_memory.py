@@ -26,7 +26,7 @@ from pkm_post.system.out_of_memory import memory_guard
 GCODE = "T1 M6\nS1000 M3\nG0 X0 Y0 Z60\nG1 X10 F600\nG2 X20 Y0 I5 J0\nM5\nM2\n"
 CLDATA = "UNITS/MM\nLOADTL/1,LENGTH,120.0\nFEDRAT/MMPM,600\nGOTO/0,0,60\nGOTO/10,0,60\nEND\nFINI\n"
 RESULTS_ARE_THERE = ("cli.post._tell", "cli.progress_line.ProgressLine")
-"""What only tells of results that are whole and certified by then."""
+"""What only reports results that are whole and certified by then."""
 
 
 @pytest.fixture(scope="module")
@@ -103,7 +103,7 @@ def test_memory_runs_out_in_each_module_once(files, tmp_path, capsys):
 STEPS = {
     "trajectory": "trajectory_of",
     "reach and feed plan": "plan_feed",
-    "collisions": "find_collisions",
+    "collisions": "setup_names",
     "interpolation": "interpolate",
     "motion program": "summary.heading",
     "certificate": "certify",
@@ -246,7 +246,7 @@ def limited(loaded, megabytes, arguments, folder):
     }
     return subprocess.run(
         [PYTHON, "-c", LIMITED, loaded, str(megabytes), *arguments],
-        capture_output=True, text=True, check=False, timeout=120, cwd=folder, env=environment,
+        capture_output=True, text=True, check=False, timeout=300, cwd=folder, env=environment,
     )  # fmt: skip
 
 

@@ -267,7 +267,7 @@ def test_the_command_line_needs_no_freecad_for_part_programs(tmp_path):
         env={"PYTHONPATH": str(ADDON), "PATH": "/usr/bin:/bin", "MPLBACKEND": "Agg"},
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=300,
         check=False,
     )
     assert reported.returncode == 0, reported.stderr

@@ -19,7 +19,7 @@ class StoppedError(Exception):
 
 @pytest.fixture(autouse=True)
 def at_every_checkpoint(monkeypatch):
-    monkeypatch.setattr(run, "_BETWEEN_CALLS", 0.0)
+    monkeypatch.setattr(run, "_PROGRESS_PERIOD", 0.0)
 
 
 def posted(folder, progress):
@@ -30,7 +30,7 @@ def posted(folder, progress):
 def calls(tmp_path_factory):
     made = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(run, "_BETWEEN_CALLS", 0.0)
+        patch.setattr(run, "_PROGRESS_PERIOD", 0.0)
         posted(tmp_path_factory.mktemp("calls"), lambda *call: made.append(call))
     return made
 

@@ -2,12 +2,12 @@
 """Programs that were posted before are verified again; programs that were changed since are found out."""
 
 import dataclasses
-import os
 import re
 
 import numpy as np
 import pytest
 from programs import ON_PALLET, cone
+from series import cases
 from verified_reports import agree
 
 from pkm_post.certificate import certify, reconstruct
@@ -23,8 +23,7 @@ from pkm_post.writing import trajectory_file
 from pkm_post.writing.controllers import pmac
 
 TOLERANCES = Tolerances(0.001, np.radians(0.001))
-MUTANTS = int(os.environ.get("PKM_MUTANTS", "500"))
-"""``PKM_MUTANTS=3000`` for a long series."""
+MUTANTS = cases(50)
 LAST_DIGIT = 1e-6
 """mm, of a length in the program: the planned length was rounded to it."""
 KNOT = re.compile(r"(?P<letter>[A-Z])(?P<length>-?\d+\.\d+):(?P<speed>-?\d+\.\d+)")

@@ -134,7 +134,7 @@ def test_a_shape_is_negative_inside_the_cutter_alone_and_a_distance_below_it(nam
 
 
 def test_distances_of_a_box_and_of_a_ball_are_theirs():
-    grid = Grid.around(np.array([-9.0, -7.0, -5.0]), np.array([9.0, 7.0, 5.0]), 0.8)
+    grid = Grid.enclosing(np.array([-9.0, -7.0, -5.0]), np.array([9.0, 7.0, 5.0]), 0.8)
     x, y, z = np.meshgrid(*grid.axes, indexing="ij")
     points = np.stack([x, y, z], axis=-1)
     beyond = np.abs(points) - [9.0, 7.0, 5.0]

@@ -9,6 +9,7 @@ import pytest
 from programs import cone
 
 from pkm_post.machine import machine_named
+from pkm_post.options import Options
 from pkm_post.posting.steps import post
 
 MARKUP = "</script><script>alert(1)</script>"
@@ -64,6 +65,41 @@ def test_the_page_shows_the_feed_and_what_limits_it(made):
     assert f"{100 * feed['at_feed']:.1f} % of the cutting time" in page
     for row in feed["limits"]:
         assert f"<td>{row['limit']}<" in page
+
+
+def test_the_page_has_tools_and_set_up(made):
+    posted, page = made
+    (tool,) = posted.report["program"]["tools"]
+    assert f"<td>T{tool['number']}</td><td>{tool['name']}</td>" in page and f"<td>{tool['length']:g} mm<" in page
+    setup = posted.report["setup"]
+    assert setup["work_offset"] == {
+        "name": "G54", "origin_mm": [0.0, 0.0, 150.0], "x_axis": [1.0, 0.0, 0.0], "y_axis": [0.0, 1.0, 0.0],
+        "z_axis": [0.0, 0.0, 1.0],
+    }  # fmt: skip
+    assert "<td>work offset</td><td>G54<" in page and "<td>0  0  150<" in page
+    assert setup["part"] == "" and "<td>part</td><td>not known" in page
+
+
+def test_small_lengths_are_in_um_and_angles_in_degrees(made):
+    posted, page = made
+    found = {row["what"]: row for row in posted.report["certificate"]["findings"]}
+    tip, axis = found["deviation of the tool tip"], found["deviation of the tool axis"]
+    assert f"<td>{1000 * tip['value']:.4g} um</td><td>{1000 * tip['limit']:.4g} um<" in page
+    assert f"<td>{axis['value']:.4g} degrees<" in page
+
+
+def test_the_page_can_be_in_inch_and_have_a_date(made, tmp_path):
+    options = Options(report_unit="inch", report_date="2026-11-28")
+    posted = post(cone(), machine_named("example_6tps")[0], tmp_path / "part.pmc", options)
+    page = (tmp_path / "part-report.html").read_text(encoding="utf-8")
+    assert posted.report == made[0].report  # the report is in mm, and has no date
+    found = {row["what"]: row for row in posted.report["certificate"]["findings"]}
+    tip, speed = found["deviation of the tool tip"], found["strut speed"]
+    assert f"<td>{tip['value'] / 25.4:.4g} in</td>" in page
+    assert f"<td>{speed['value'] / 25.4 * 60:.4g} in/min</td>" in page
+    assert "<b>2026-11-28</b>" in page and "2026-11-28" not in made[1]
+    without = re.sub(r"<svg.*?</svg>|<script.*?</script>|<h2>What certified.*?</table>", "", page, flags=re.DOTALL)
+    assert not re.search(r"\d (mm|um)\b", without)
 
 
 def test_the_page_needs_no_network(made):

@@ -214,6 +214,22 @@ def test_content_that_contradicts_itself(file, old, new, found):
     assert found in reported
 
 
+def test_names_are_utf8_without_the_flag_for_it_as_freecad_writes_them(tmp_path):
+    """In FreeCAD 1.1 the names of objects may be Chinese, and with them those of the members."""
+    xml = XML.replace('file="Bore.nc"', 'file="立铣刀.nc"').encode()
+    members = {"Document.xml": xml, **{name: MEMBERS[name] for name in ("Job.nc", "Cut.nc")}, "123456789.nc": b""}
+    file = written(tmp_path / "part.FCStd", members)
+    file.write_bytes(file.read_bytes().replace(b"123456789.nc", "立铣刀.nc".encode()))
+    assert read_document(file).members[-1] == "立铣刀.nc"
+
+
+def test_names_in_another_encoding_are_damage(tmp_path):
+    file = written(tmp_path / "part.FCStd", MEMBERS | {"123456.nc": b""})
+    code, reported = damage(file, file.read_bytes().replace(b"123456.nc", "立铣刀.nc".encode("gb18030")))
+    assert code == "J129"
+    assert "utf-8" in reported
+
+
 SMALL = {
     "blanks": b" " * 12_000_000,
     "no markup": b"not xml " * 1_000_000,

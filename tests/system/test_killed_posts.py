@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from interpreter import PYTHON
 from killed_posts import MANIFEST, NAMES, post, whole, written
+from series import cases
 
 from pkm_post.system import staged
 from pkm_post.system.lock import try_lock
@@ -17,7 +18,7 @@ from pkm_post.system.staged import BusyError
 from pkm_post.writing import manifest
 
 ROOT = Path(__file__).parents[2]
-KILLS = 200
+KILLS = cases(60)
 POSTS = 40
 RESULTS = sorted([*NAMES, MANIFEST])
 
@@ -32,7 +33,7 @@ def started(folder, *words):
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="it kills copies of a process")
 def test_no_kill_leaves_a_mixture(tmp_path):
     process = started(tmp_path, KILLS)
-    reported, _ = process.communicate(timeout=120)
+    reported, _ = process.communicate(timeout=300)
     assert process.returncode == 0
     found = json.loads(reported)
     assert {"earlier ones", "refused, earlier ones", "refused, none", "refused, new ones", "new ones"} == set(

@@ -38,7 +38,7 @@ def test_a_process_that_is_killed_leaves_no_lock(tmp_path):
         assert try_lock(path) is None and lock_owner(path) == {"what": "child"}
     finally:
         child.kill()
-        child.communicate(timeout=20)
+        child.communicate(timeout=120)
     assert path.exists()
     try_lock(path).release()
 

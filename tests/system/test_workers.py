@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Workers: results come in order, callers are visited while they wait, and workers stop when their caller leaves."""
 
+import os
+import signal
 import threading
 
 import numpy as np
 import pytest
 
 from pkm_post.model import checkpoint, checkpoints
-from pkm_post.system import beside, columns_in_workers, in_workers
+from pkm_post.system import columns_in_workers, in_background, in_workers
 
-LONG_S = 60
+LONG_S = 300
 
 
 @pytest.mark.parametrize("count", [0, 1, 7])
@@ -55,9 +57,9 @@ def test_few_items_are_taken_ahead_of_the_caller():
 @pytest.mark.parametrize("threads", ["1", "2"])
 def test_a_result_beside_a_block_is_there_when_it_is_asked_for(monkeypatch, threads):
     monkeypatch.setenv("PKM_THREADS", threads)
-    with beside(lambda: 6 * 7) as result:
+    with in_background(lambda: 6 * 7) as result:
         assert result() == 42
-    with pytest.raises(ZeroDivisionError), beside(lambda: 1 / 0) as result:
+    with pytest.raises(ZeroDivisionError), in_background(lambda: 1 / 0) as result:
         result()
 
 
@@ -73,7 +75,7 @@ def test_a_worker_beside_a_block_stops_when_the_block_fails(monkeypatch):
         finally:
             ended.set()
 
-    with pytest.raises(KeyError), beside(work):
+    with pytest.raises(KeyError), in_background(work):
         assert began.wait(LONG_S)
         raise KeyError
     assert ended.wait(LONG_S)
@@ -84,3 +86,14 @@ def test_columns_in_workers_are_those_of_the_whole(rows):
     square, same = columns_in_workers(rows, 5, lambda part: (np.arange(rows)[part] ** 2, np.full(rows, 3.0)[part]))
     assert np.array_equal(square, np.arange(rows) ** 2)
     assert np.array_equal(same, np.full(rows, 3.0))
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="it forks")
+@pytest.mark.filterwarnings("ignore:.*multi-threaded, use of fork:DeprecationWarning")
+def test_a_forked_process_computes_with_threads_of_its_own():
+    assert list(in_workers(abs, [-1, -2, -3])) == [1, 2, 3]
+    child = os.fork()
+    if not child:
+        signal.alarm(LONG_S)  # ends a child that waits for threads of its parent
+        os._exit(0 if list(in_workers(abs, [-4, -5, -6])) == [4, 5, 6] else 1)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0

@@ -123,6 +123,19 @@ def test_codes_of_the_machine_before_the_line_are_named_and_left_out():
     assert [each.value for each in found.events] == [11.0]
 
 
+def test_codes_of_the_machine_are_repeated_where_that_is_wanted():
+    kinds = EventKind.FUNCTION, EventKind.SPINDLE, EventKind.DWELL, EventKind.COOLANT
+    events = ((0, 0, 10), (0, 1, 800), (0, 2, 3), (1, 0, 21), (1, 3, 1), (1, 0, 10), (3, 0, 11))
+    whole = replace(placed(), events=tuple(Event(row, kinds[kind], float(value)) for row, kind, value in events))
+    found, faults = begun_at(whole, StartLine(int(whole.line[2]), repeat_codes=True), MACHINE)
+    assert not faults
+    above = [each for each in found.events if each.row < len(found) - len(whole) + 3]
+    wanted = [(1, 800), (2, 3), (0, 21), (3, 1), (0, 10)]  # each where it came last, the dwell behind its spindle
+    assert [(each.kind, each.value) for each in above] == [(kinds[kind], value) for kind, value in wanted]
+    assert {each.row for each in above} == {len(found) - len(whole) + 2 - 1}
+    assert begun_at(whole, StartLine(int(whole.line[0]), repeat_codes=True), MACHINE) == (whole, ())
+
+
 def test_the_first_line_changes_nothing_and_others_are_refused():
     whole = placed()
     assert begun(whole, 1) is whole

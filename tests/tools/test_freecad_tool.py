@@ -61,7 +61,7 @@ class Machine:
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=300,
         )
 
 
@@ -109,7 +109,7 @@ def test_signal_reaches_the_command(machine):
         assert process.poll() is None
         time.sleep(0.02)
     process.send_signal(signal.SIGTERM)
-    assert process.wait(timeout=30) == 9
+    assert process.wait(timeout=300) == 9
 
 
 def test_exec_finds_what_is_beside_freecad(machine):

@@ -2,12 +2,15 @@
 """tools/run_script.py makes freecadcmd run a script as python3 would, and run_tests.py counts what ran."""
 
 import os
+import re
 import subprocess
 from pathlib import Path
 
 import pytest
 
 TOOLS = Path(__file__).parents[2] / "tools"
+LONGEST_S = 600
+"""FreeCAD starts slowly on a busy computer."""
 
 
 def freecad(script, *arguments):
@@ -17,7 +20,7 @@ def freecad(script, *arguments):
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=LONGEST_S,
     )
 
 
@@ -93,3 +96,21 @@ def test_suite_without_tests_fails(script):
     reported = freecad(TOOLS / "run_tests.py", f"--rootdir={path.parent}", "-p", "no:cacheprovider", path)
     assert reported.returncode == 5
     assert "No test was executed" in reported.stderr
+
+
+def test_one_result_counts_what_all_processes_ran_and_where_one_died(script, monkeypatch):
+    monkeypatch.setenv("PKM_TEST_PROCESSES", "3")
+    body = "import os, signal\ndef test_before():\n    pass\ndef test_it():\n    os.kill(os.getpid(), signal.SIGKILL)\n"
+    script(body, "test_killed.py")
+    script("def test_fails():\n    assert 1 == 2\n", "test_failing.py")
+    folder = script("def test_passes():\n    pass\n", "test_passing.py").parent
+    reported = freecad(TOOLS / "run_tests.py", f"--rootdir={folder}", "-p", "no:cacheprovider", folder)
+    assert reported.returncode == 1
+    assert "2 failed, 2 passed" in reported.stdout.splitlines()[-1]
+    assert "The process of this test died: signal 9." in reported.stdout
+    assert "assert 1 == 2" in reported.stdout
+    failed = [line for line in reported.stdout.splitlines() if line.startswith("FAILED ")]
+    assert sorted(re.findall(r"test_\w+\.py::test_\w+", " ".join(failed))) == [
+        "test_failing.py::test_fails",
+        "test_killed.py::test_it",
+    ]

@@ -13,7 +13,7 @@ from pkm_post.control.link.errors import (
 )
 from pkm_post.control.link.ownership import claim, owned
 from pkm_post.control.link.ports import Port, port_named
-from pkm_post.control.link.program import Job
+from pkm_post.control.link.program import Job, PmacProgram
 from pkm_post.control.link.run import check_setup, resume_program, set_feed_override, start_program
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.ssh_link import PASSWORD, ssh_package
@@ -35,6 +35,7 @@ __all__ = [
     "OpenBufferPolicy",
     "PASSWORD",
     "PmacError",
+    "PmacProgram",
     "Port",
     "REST_DEADLINE_S",
     "RefusedError",

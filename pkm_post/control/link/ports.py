@@ -45,7 +45,7 @@ class Port:
     """The address of a controller.
 
     Attributes:
-        kind: ``"serial"``, ``"tcp"`` or ``"ssh"``.
+        kind: ``"serial"``, ``"tcp"`` or ``"ssh"``; ``"shell"`` is the shell of a simulated Power PMAC in this process.
         address: of the device or host.
         number: of the TCP port.
         baud: of a serial line, as set by I54 of the controller.
@@ -79,7 +79,7 @@ class Port:
     @property
     def is_power(self) -> bool:
         """Whether it leads to a Power PMAC; else to a Turbo PMAC."""
-        return self.kind == "ssh"
+        return self.kind in ("ssh", "shell")
 
     def link(self) -> Link:
         """A link, not yet connected: ``restart`` connects."""
@@ -98,6 +98,7 @@ _PROTOCOLS: dict[str, Callable[[float], CommandProtocol]] = {
     "serial": SerialProtocol,
     "tcp": EthernetProtocol,
     "ssh": GpasciiProtocol,
+    "shell": GpasciiProtocol,
 }
 _HOST = r"(?P<address>[^:@\[\]]+|\[[0-9A-Fa-f:.]+\])(?::(?P<number>\d{1,5}))?"
 _FORMS = (

@@ -103,15 +103,20 @@ def _motor_faults(status: Status) -> Iterator[str]:
 
 
 def _axis_faults(session: Session, settings: PmacSettings) -> Iterator[str]:
-    """Compare ``#n->`` with the axis definitions of the setup file."""
-    scale = Decimal(repr(float(settings.counts_per_mm)))
-    for motor, letter, zero in zip(MOTORS, settings.letters, settings.zero_length, strict=True):
-        wanted = (scale, letter, -scale * Decimal(repr(float(zero))))
+    """Compare ``#n->`` with the axis definitions of the setup file; an axis of the spindle begins at zero."""
+    scale, spindle = Decimal(repr(float(settings.counts_per_mm))), settings.spindle_axis
+    expected = [
+        (motor, (scale, letter, -scale * Decimal(repr(float(zero)))))
+        for motor, letter, zero in zip(MOTORS, settings.letters, settings.zero_length, strict=True)
+    ]
+    if spindle is not None:
+        expected.append((spindle.motor, (Decimal(repr(float(spindle.counts_per_turn))), spindle.letter, Decimal(0))))
+    for motor, wanted in expected:
         answer = query_line(session, f"&{settings.coordinate_system}#{motor}->").replace(" ", "")
         found = _DEFINITION.fullmatch(answer.removeprefix(f"#{motor}->").upper())
         got = found and (Decimal(found[1] or 1), found[2], Decimal(found[3] or 0))
         if got != wanted:
-            stated = f"{wanted[0].normalize():f}{letter}{wanted[2].normalize():+f}"
+            stated = f"{wanted[0].normalize():f}{wanted[1]}{wanted[2].normalize():+f}"
             yield f"#{motor}->: expected {stated}, the controller has {answer or 'nothing'}"
 
 
@@ -121,6 +126,10 @@ def _variable_faults(session: Session, settings: PmacSettings) -> Iterator[str]:
     for motor, letter in zip(MOTORS, settings.letters, strict=True):
         if letter in _ROTARY:
             expected[f"I{motor}27"] = (0, "no rollover of a strut")
+    if settings.spindle_axis is not None:
+        motor, letter = settings.spindle_axis.motor, settings.spindle_axis.letter
+        expected |= {f"I{motor}{end}": (0, "no soft limit of the spindle") for end in (13, 14)}
+        expected |= {f"I{motor}27": (0, "no rollover of the spindle")} if letter in _ROTARY else {}
     for name, (value, why) in expected.items():
         got = read_number(session, name)
         if got != value:

@@ -10,7 +10,7 @@ from pkm_post.control.numerical_control.connection import (
 )
 from pkm_post.control.numerical_control.control import NumericalControl
 from pkm_post.control.numerical_control.control_state import ControlState
-from pkm_post.control.numerical_control.execute import continue_after_stop, program_stops, silence_s, target_deviation
+from pkm_post.control.numerical_control.execute import continue_after_stop, program_stops, target_deviation
 from pkm_post.control.numerical_control.homing import Homing, HomingPhase, check_trigger, missing_homes, start_homing
 from pkm_post.control.numerical_control.interlocks import (
     Interlock,
@@ -74,7 +74,6 @@ __all__ = [
     "origin_for",
     "program_stops",
     "read_blocks",
-    "silence_s",
     "start_homing",
     "target_deviation",
 ]

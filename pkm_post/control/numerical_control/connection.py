@@ -15,14 +15,22 @@ import numpy as np
 
 from pkm_post.control.link.ports import Port, port_named
 from pkm_post.control.link.session import OpenBufferPolicy, Session
+from pkm_post.control.link.status import AnySettings
 from pkm_post.control.numerical_control.control import NumericalControl
 from pkm_post.control.numerical_control.worker import Worker
-from pkm_post.control.simulator import Controller, Server, SimulatorSettings
+from pkm_post.control.simulator import (
+    Controller,
+    PowerPmac,
+    Server,
+    SimulatorSettings,
+    function_programs,
+    refused_line,
+)
 from pkm_post.control.simulator.server import LOOPBACK
 from pkm_post.machine import machine_named, strut_lengths
 from pkm_post.model import Diagnostic, Machine
 from pkm_post.options import MANUAL_MOVE_PROGRAM
-from pkm_post.writing import PmacSettings, pmac, power_pmac, setup_text
+from pkm_post.writing import PowerPmacSettings, pmac, power_pmac
 
 SIMULATED_HOMING = " ".join(f"#{motor}HM" for motor in range(1, 7))
 """The line that homes a simulated machine; the order of its motors does not matter."""
@@ -39,13 +47,13 @@ _CLOSE_S = 10.0
 
 
 class SimulatedMachine:
-    """The simulated machine.
+    """The simulated machine, with the controller that its machine file names.
 
     Attributes:
-        port: its name for ``ports.port_named``.
+        port: where it is served.
     """
 
-    def __init__(self, machine: Machine, settings: PmacSettings, tool_length: float, speed: float = 1.0) -> None:
+    def __init__(self, machine: Machine, settings: AnySettings, tool_length: float, speed: float = 1.0) -> None:
         """Start serving.
 
         Args:
@@ -54,11 +62,14 @@ class SimulatedMachine:
             tool_length: gauge length of the tool in the spindle, mm.
             speed: simulated seconds per real second.
         """
-        self._controller, self._is_homed = _controller(settings, machine.strut_stroke), False
+        made = _controller(settings, machine)
+        self._controller, self._is_homed = made.controller if isinstance(made, PowerPmac) else made, False
         self._home_lines = _home_jogs(machine, settings, tool_length)
-        server = Server(self._controller, speed)
-        self.port = f"tcp:{LOOPBACK}:{server.add_tcp(0)}"
-        self._server, self._closed = server, threading.Event()
+        self._server, self._closed = Server(self._controller, speed), threading.Event()
+        if isinstance(made, PowerPmac):
+            self.port = Port("shell", LOOPBACK, self._server.add_shell(made))
+        else:
+            self.port = Port("tcp", LOOPBACK, self._server.add_tcp(0))
         self._thread = threading.Thread(target=self._run, name="simulated machine", daemon=True)
         self._thread.start()
 
@@ -90,7 +101,7 @@ class SimulatedMachine:
         return self._closed.is_set()
 
 
-def _home_jogs(machine: Machine, settings: PmacSettings, tool_length: float) -> list[str]:
+def _home_jogs(machine: Machine, settings: AnySettings, tool_length: float) -> list[str]:
     """Lines that move the struts to the machine's home; none if that exceeds their stroke."""
     pose = machine.home_tip[None], machine.home_axis[None], np.array([machine.home_spin]), np.array([tool_length])
     length = strut_lengths(machine, *pose)[0]
@@ -101,13 +112,20 @@ def _home_jogs(machine: Machine, settings: PmacSettings, tool_length: float) -> 
     return [f"#{motor}J={count:.0f}" for motor, count in enumerate(counts, start=1)]
 
 
-def _controller(settings: PmacSettings, stroke: tuple[float, float]) -> Controller:
-    """A controller set up for the machine, with drives that are fast enough."""
+def _controller(settings: AnySettings, machine: Machine) -> Controller | PowerPmac:
+    """A controller set up for the machine with its M codes, with drives that are fast enough."""
     scale = settings.counts_per_mm
-    made = Controller(SimulatorSettings(tick_ms=_TICK_MS, home_flag=_FLAG_MM * scale))
-    made.load(setup_text(settings, "simulated", stroke).splitlines())
+    motors = SimulatorSettings(tick_ms=_TICK_MS, home_flag=_FLAG_MM * scale)
+    is_power = isinstance(settings, PowerPmacSettings)
+    made = PowerPmac(motors=motors) if is_power else Controller(motors)
+    kind: Any = power_pmac if is_power else pmac
+    refused = refused_line(made, kind.setup_text(settings, "simulated", machine.strut_stroke).splitlines())
+    if refused is not None:
+        raise ValueError(f"settings: expected a set-up that the simulator takes, got {refused}")
+    controller = made.controller if isinstance(made, PowerPmac) else made
+    controller.load(function_programs((*machine.functions, *machine.thread_codes)))
     for motor in range(1, 7):
-        made.load([_DRIVES.format(motor, *(value * scale for value in _PER_COUNT)), f"#{motor}J/"])
+        controller.load([_DRIVES.format(motor, *(value * scale for value in _PER_COUNT)), f"#{motor}J/"])
     return made
 
 
@@ -118,17 +136,12 @@ class ConnectionTarget:
     Attributes:
         port: of the controller; None for a simulated one.
         machine: the machine.
-        settings: of its controller: a Turbo PMAC or, over ssh, a Power PMAC.
+        settings: of its controller: a Turbo PMAC or, over ssh or simulated, a Power PMAC.
     """
 
     port: Port | None
     machine: Machine
     settings: Any
-
-    @property
-    def watch_only(self) -> bool:
-        """Whether this controller can only be monitored and stopped."""
-        return self.port is not None and self.port.is_power
 
 
 @dataclass(frozen=True)
@@ -183,7 +196,8 @@ def connection_target(port: str | None, machine: str) -> tuple[ConnectionTarget 
     model, diagnostics = machine_named(machine)
     if model is None:
         return None, diagnostics
-    kind: Any = power_pmac if found is not None and found.is_power else pmac
+    is_power = model.controller.get("kind") == PowerPmacSettings.KIND if found is None else found.is_power
+    kind: Any = power_pmac if is_power else pmac
     settings, faults = kind.settings_of(model)
     return (None if settings is None else ConnectionTarget(found, model, settings)), diagnostics + tuple(faults)
 
@@ -203,7 +217,7 @@ def connect(target: ConnectionTarget, tool_length: float, simulated_speed: float
     simulated, port = None, target.port
     if port is None:
         simulated = SimulatedMachine(target.machine, target.settings, tool_length, simulated_speed)
-        port = port_named(simulated.port)
+        port = simulated.port
     session = Session(port, open_buffer=OpenBufferPolicy.STOP)
     number = _manual_program(target.settings.program)
     try:

@@ -22,12 +22,11 @@ from pkm_post.control.link.ownership import claim
 from pkm_post.control.link.program import Job
 from pkm_post.control.link.run import check_setup
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import Status, read_status, settled_status
+from pkm_post.control.link.status import AnySettings, Status, read_status, settled_status
 from pkm_post.control.link.stopping import emergency_text
 from pkm_post.control.link.tool_pose import ToolPoseReadout, pose_from_home
 from pkm_post.control.numerical_control import execute, manual_moves
 from pkm_post.control.numerical_control.control_state import ControlState
-from pkm_post.control.numerical_control.execute import Watchdog
 from pkm_post.control.numerical_control.homing import (
     HomingPhase,
     HomingWatch,
@@ -36,11 +35,12 @@ from pkm_post.control.numerical_control.homing import (
     start_homing,
 )
 from pkm_post.control.numerical_control.plan import Plan, planned
+from pkm_post.control.numerical_control.rehearsal import Silence, longest_silence
 from pkm_post.control.numerical_control.single_block import BlockDisplay, ProgramBlocks
-from pkm_post.model import Diagnostic, Machine, Tolerances, Trajectory
+from pkm_post.control.numerical_control.watchdog import Watchdog
+from pkm_post.model import Diagnostic, Machine, Tolerances, Trajectory, errors
 from pkm_post.options import APPROACH_MM_S, MANUAL_MOVE_PROGRAM, START_TOLERANCE_MM
 from pkm_post.toolpath import ToolPose
-from pkm_post.writing import PmacSettings
 
 Findings = tuple[Diagnostic, ...]
 
@@ -58,7 +58,7 @@ class NumericalControl:
         self,
         session: Session,
         machine: Machine,
-        settings: PmacSettings,
+        settings: AnySettings,
         tool_length: float,
         number: int = MANUAL_MOVE_PROGRAM,
     ) -> None:
@@ -78,6 +78,7 @@ class NumericalControl:
         self._last = ControlState(None, None)
         self._may_move = False
         self._watchdog: Watchdog | None = None
+        self._silence: Silence | None = None
         self._is_operator_present: Callable[[], bool] = lambda: True
         self.tool_length = tool_length
 
@@ -154,8 +155,20 @@ class NumericalControl:
             *manual_moves.mdi_trajectory(line, self._machine, self.standing_pose(), self.tool_length, reading)
         )
 
-    def plan_approach(self, job: Job, feed: float = APPROACH_MM_S) -> tuple[Plan | None, Findings]:
+    def plan_approach(
+        self,
+        job: Job,
+        feed: float = APPROACH_MM_S,
+        free: float = -math.inf,
+        check: Callable[[Trajectory], Findings] = lambda way: (),
+    ) -> tuple[Plan | None, Findings]:
         """Plan the approach from the current pose to the start of a program; as ``manual_moves.approach_trajectory``.
+
+        Args:
+            job: the program.
+            feed: mm/s; while the tip stands, degrees per second.
+            free: z in {M} above which the way crosses, mm; by default nothing is known of it.
+            check: what the way would touch, where that is known; an error is no plan.
 
         Raises:
             NotReadyError: the tool pose is unknown, the machine moves, or the start has no pose.
@@ -163,7 +176,10 @@ class NumericalControl:
         here, start = self.standing_pose(), pose_from_home(self._machine, job.first, self.tool_length)
         if start is None:
             raise NotReadyError(["no pose of the platform reachable in small steps from home is that of the start"])
-        return self._plan(*manual_moves.approach_trajectory(self._machine, here, start, self.tool_length, feed))
+        way, found = manual_moves.approach_trajectory(self._machine, here, start, self.tool_length, feed, free)
+        if way is not None:
+            found += check(way)
+        return self._plan(None if errors(found) else way, found)
 
     def execute(self, plan: Plan, near: float = START_TOLERANCE_MM) -> Status:
         """Load a plan, verify its listing and start it; as ``execute.execute``.
@@ -172,7 +188,8 @@ class NumericalControl:
         """
         order = self._session, self._machine, self._settings, plan.job
         if plan.is_jog:
-            status, self._watchdog = self._with_ownership("jog", lambda: execute.execute_watched(*order))
+            silence = self.longest_silence_s()
+            status, self._watchdog = self._with_ownership("jog", lambda: execute.execute_watched(*order, silence))
         else:
             status = self._with_ownership("run", lambda: execute.execute(*order, near))
         if plan.block and self._blocks is not None:
@@ -183,6 +200,12 @@ class NumericalControl:
     def silence_s(self) -> float | None:
         """Longest time from silence to standstill at 100 %, s; None when no jog is active."""
         return None if self._watchdog is None else self._watchdog.silence_s
+
+    def longest_silence_s(self) -> float:
+        """Longest time from silence to standstill of a jog, s; a Power PMAC is tried out, as ``longest_silence``."""
+        order = self._session, self._machine, self._settings, self._number, self._silence
+        self._silence = self._with_ownership("jog", lambda: longest_silence(*order))
+        return self._silence.seconds
 
     def renew(self) -> None:
         """Renew the watchdog of an active jog while the operator is watching; call several times a second."""

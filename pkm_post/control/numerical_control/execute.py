@@ -6,8 +6,7 @@ Enters: a session and a plan; only planning with its checks creates one. Leaves:
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -17,113 +16,14 @@ from pkm_post.control.link import run as operate
 from pkm_post.control.link.download import download
 from pkm_post.control.link.errors import NotReadyError, PmacError
 from pkm_post.control.link.ownership import owned
-from pkm_post.control.link.program import Job, PmacProgram, read_job
-from pkm_post.control.link.queries import read_number
+from pkm_post.control.link.program import Job, read_job
 from pkm_post.control.link.run import check_setup, check_start
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings, Array, Status, read_status
-from pkm_post.control.numerical_control.plan import LONGEST_MOVE_MS
+from pkm_post.control.numerical_control.watchdog import Watchdog, watchdog_of
 from pkm_post.model import EventKind, Machine, StrutMotion
 from pkm_post.options import START_TOLERANCE_MM
-from pkm_post.writing import PmacSettings, PowerPmacSettings, pmac, power_pmac, split_motion
-
-CREDIT_MS = 600
-"""Time a program may run after a renewal: several readings over a serial line."""
-_AHEAD_MS = 2 * LONGEST_MOVE_MS
-"""Moves beyond the credit: those the controller computes ahead, and those that one watchdog line covers."""
-_FULL_SLEW = 1644.0
-"""Isx95 at which a hold takes one second [TurboPMAC, Isx95]."""
-_INTERVAL, _MOVE = re.compile(r"PVT(\d+)"), re.compile(r"[A-Z]\S+:\S+ .*")
-
-
-@dataclass(frozen=True)
-class Watchdog:
-    """The watchdog of a program.
-
-    Attributes:
-        program: with the watchdog lines.
-        variable: number of the P-variable that counts down.
-        silence_s: longest time from silence to standstill, s, at an override of 100 %.
-    """
-
-    program: PmacProgram
-    variable: int
-    silence_s: float
-
-    def renew(self, session: Session) -> None:
-        """Let the program continue; retried when the link fails, as a repeated renewal does no harm.
-
-        Raises:
-            PmacError: the controller is unreachable, or refuses.
-        """
-        session.query(_credit(self.variable))
-
-
-def watchdog_of(session: Session, settings: PmacSettings, program: PmacProgram) -> Watchdog:
-    """Insert a watchdog into a program; its P-variable has the number of the program.
-
-    Args:
-        session: an open session.
-        settings: of the controller.
-        program: as it was certified.
-
-    Raises:
-        NotReadyError: a hold would never finish on this controller.
-    """
-    silence = silence_s(session, settings)
-    lines = with_watchdog(program.lines, program.number, settings.coordinate_system)
-    return Watchdog(PmacProgram(program.number, lines), program.number, silence)
-
-
-def silence_s(session: Session, settings: PmacSettings) -> float:
-    """Longest time from silence to standstill of a watched program, s, at an override of 100 %.
-
-    Raises:
-        NotReadyError: a hold would never finish on this controller.
-    """
-    name = f"I{50 + settings.coordinate_system}95"
-    slew = abs(read_number(session, name))
-    if slew == 0:
-        raise NotReadyError(
-            [f"{name} is 0: a hold would not stop the struts, so nothing stops them when the link fails"]
-        )
-    return (CREDIT_MS + _AHEAD_MS) / 1000 + _FULL_SLEW / slew
-
-
-def with_watchdog(lines: Sequence[str], variable: int, coordinate_system: int) -> tuple[str, ...]:
-    """Insert the lines of a watchdog into those of a program.
-
-    Args:
-        lines: of a program whose moves are no longer than ``plan.LONGEST_MOVE_MS``.
-        variable: number of the P-variable.
-        coordinate_system: to hold.
-    """
-    guard = f'IF(P{variable}<0)COMMAND"&{coordinate_system}H"'
-    made = [_credit(variable)]
-    for ms, group in _groups(lines):
-        made += [f"P{variable}=P{variable}-{ms}", guard] if ms else []
-        made += group
-    return tuple(made)
-
-
-def _credit(variable: int) -> str:
-    return f"P{variable}={CREDIT_MS}"
-
-
-def _groups(lines: Sequence[str]) -> Iterator[tuple[int, list[str]]]:
-    """Groups of lines with their total ms, none longer than the longest single move may be."""
-    interval, total, group = 0, 0, list[str]()
-    for line in lines:
-        stated = _INTERVAL.fullmatch(line)
-        interval = int(stated[1]) if stated else interval
-        ms = interval if _MOVE.fullmatch(line) else 0
-        if ms and total + ms > LONGEST_MOVE_MS:
-            yield total, group
-            total, group = 0, []
-        total += ms
-        group.append(line)
-    yield total, group
-
+from pkm_post.writing import PowerPmacSettings, pmac, power_pmac, split_motion
 
 _POLL_S = 0.05
 
@@ -153,9 +53,19 @@ def execute(
         return operate.start_program(session, settings, job.program, job.first, near, machine)
 
 
-def execute_watched(session: Session, machine: Machine, settings: PmacSettings, job: Job) -> tuple[Status, Watchdog]:
-    """Load a program with a watchdog and start it; unless renewed, the watchdog holds it. Otherwise as ``execute``."""
-    watchdog = watchdog_of(session, settings, job.program)
+def execute_watched(
+    session: Session, machine: Machine, settings: AnySettings, job: Job, silence_s: float
+) -> tuple[Status, Watchdog]:
+    """Load a program with a watchdog and start it; unless renewed, the watchdog holds it. Otherwise as ``execute``.
+
+    Args:
+        session: as for ``execute``, like the next three.
+        machine: the machine.
+        settings: of its controller.
+        job: of a plan.
+        silence_s: longest time from silence to standstill, s.
+    """
+    watchdog = watchdog_of(settings, job.program, silence_s)
     return execute(session, machine, settings, replace(job, program=watchdog.program)), watchdog
 
 
@@ -254,9 +164,9 @@ def job_of(motion: StrutMotion, settings: AnySettings, name: str) -> Job:
 
 def same(one: StrutMotion, other: StrutMotion) -> bool:
     """Whether two motions are identical to the last digit."""
-    return one.events == other.events and all(
-        np.array_equal(getattr(one, name), getattr(other, name)) for name in ("time_ms", "length", "speed")
-    )
+    pairs = [(getattr(one, name), getattr(other, name)) for name in ("time_ms", "length", "speed")]
+    pairs += [(getattr(one.turns, name), getattr(other.turns, name)) for name in ("knot", "angle", "speed")]
+    return one.events == other.events and all(np.array_equal(*pair) for pair in pairs)
 
 
 def continue_after_stop(

@@ -18,8 +18,7 @@ from dataclasses import dataclass
 from pkm_post.control.link.errors import NotReadyError
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import MOTORS, Status, settled_status
-from pkm_post.writing import PmacSettings
+from pkm_post.control.link.status import MOTORS, AnySettings, Status, settled_status
 
 _FORMS = {
     "ENABLE PLC n": re.compile(r"ENA(?:BLE)? ?PLC ?\d{1,2}", re.IGNORECASE),
@@ -76,7 +75,7 @@ def check_trigger(trigger: str) -> None:
         raise ValueError(f"trigger: expected {' or '.join(_FORMS)}, got {trigger!r}")
 
 
-def start_homing(session: Session, settings: PmacSettings, trigger: str) -> HomingWatch:
+def start_homing(session: Session, settings: AnySettings, trigger: str) -> HomingWatch:
     """Send the line that starts the homing of the machine.
 
     Raises:

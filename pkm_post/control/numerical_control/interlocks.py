@@ -33,6 +33,7 @@ class OperatorCommand(enum.Enum):
     OVERRIDE = "override"
     PLAY = "play"
     PLAY_ON = "play on"
+    RETRACT = "retract"
     PLAY_END = "end the play"
 
 
@@ -40,7 +41,6 @@ class Interlock(enum.Enum):
     """Why a command is not allowed."""
 
     NOT_CONNECTED = "there is no connection"
-    WATCH_ONLY = "a Power PMAC can be watched, held and aborted alone"
     NO_ANSWER = "the controller does not answer"
     BUSY = "another order is being carried out"
     NO_JOB = "no program was opened"
@@ -60,10 +60,7 @@ class Interlock(enum.Enum):
 
 _AT_REST = (Interlock.BUSY, Interlock.PLAYS, Interlock.RUNS, Interlock.HELD, Interlock.MOVES)
 _READY = (*_AT_REST, Interlock.NOT_HOMED)
-_LINK, _ORDERS = (
-    (Interlock.NOT_CONNECTED, Interlock.NO_ANSWER),
-    (Interlock.NOT_CONNECTED, Interlock.WATCH_ONLY, Interlock.NO_ANSWER),
-)
+_ORDERS = (Interlock.NOT_CONNECTED, Interlock.NO_ANSWER)
 
 INTERLOCKS_OF: dict[OperatorCommand, tuple[Interlock, ...]] = {
     OperatorCommand.HOME: (*_ORDERS, *_AT_REST),
@@ -81,6 +78,7 @@ INTERLOCKS_OF: dict[OperatorCommand, tuple[Interlock, ...]] = {
     OperatorCommand.OVERRIDE: (*_ORDERS, Interlock.BUSY, Interlock.PLAYS, Interlock.HELD),
     OperatorCommand.PLAY: (*_ORDERS, Interlock.NO_TRAJECTORY, *_READY),
     OperatorCommand.PLAY_ON: (Interlock.NOT_CONNECTED, Interlock.NOT_PLAYING, Interlock.NOT_WAITING),
+    OperatorCommand.RETRACT: (Interlock.NOT_CONNECTED, Interlock.NOT_PLAYING, Interlock.NOT_WAITING),
     OperatorCommand.PLAY_END: (Interlock.NOT_CONNECTED, Interlock.NOT_PLAYING),
 }
 """The last reading never blocks a stop: it may be stale."""
@@ -92,7 +90,6 @@ class PanelState:
 
     Attributes:
         connected: whether a connection is open.
-        watch_only: whether the controller accepts stops only.
         busy: whether a command is in progress.
         has_job: whether a program is open.
         loaded: whether it is in the controller, as far as known here.
@@ -100,12 +97,12 @@ class PanelState:
         has_trajectory: whether a trajectory is open, to be played.
         playing: whether one is played.
         waiting: whether that waits for the operator.
+        held_back: whether it waits to be resumed, at rest between two pieces.
         stepping: whether its blocks are open in single block mode.
         homing: whether a homing started here is being monitored.
     """
 
     connected: bool = False
-    watch_only: bool = False
     busy: bool = False
     has_job: bool = False
     loaded: bool = False
@@ -113,6 +110,7 @@ class PanelState:
     has_trajectory: bool = False
     playing: bool = False
     waiting: bool = False
+    held_back: bool = False
     stepping: bool = False
     homing: bool = False
 
@@ -125,7 +123,6 @@ def active_interlocks(state: ControlState, panel: PanelState) -> frozenset[Inter
     searches = panel.homing and state.homing is not None and state.homing.phase is HomingPhase.SEARCHING
     holds = {
         Interlock.NOT_CONNECTED: not panel.connected,
-        Interlock.WATCH_ONLY: panel.watch_only,
         Interlock.NO_ANSWER: not answers,
         Interlock.BUSY: panel.busy,
         Interlock.NO_JOB: not panel.has_job,
@@ -138,7 +135,7 @@ def active_interlocks(state: ControlState, panel: PanelState) -> frozenset[Inter
         Interlock.NO_STOP: not panel.has_stops,
         Interlock.RUNS: status is not None and status.running and not held,
         Interlock.HELD: held,
-        Interlock.NOT_HELD: not held,
+        Interlock.NOT_HELD: not (held or panel.held_back),
         Interlock.MOVES: searches or (status is not None and not status.standing),
         Interlock.NOT_HOMED: status is None or not all(status.homed),
     }

@@ -95,11 +95,11 @@ def jog_trajectory(
 
 
 def approach_trajectory(
-    machine: Machine, here: ToolPose, start: ToolPose, tool_length: float, feed: float
+    machine: Machine, here: ToolPose, start: ToolPose, tool_length: float, feed: float, free: float = -math.inf
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """The safe approach to the start of a program: up along the tool axis, across, down along the axis of the start.
 
-    It crosses at the height of the start, or at the machine file's safe height if that is higher.
+    It crosses at the highest of the height of the start, the machine file's safe height, and the height that is free.
 
     Args:
         machine: its geometry, safe height and highest feed.
@@ -107,8 +107,9 @@ def approach_trajectory(
         start: target pose.
         tool_length: gauge length of the tool in the spindle, mm.
         feed: of the tip, mm/s; while the tip stands, degrees per second.
+        free: z in {M} above which nothing is known to stand, mm; by default nothing is known of it.
     """
-    height = float(start.tip[2])
+    height = max(float(start.tip[2]), free)
     if machine.tool_change is not None:
         height = max(height, machine.tool_change.safe_height)
     if not (here.rises_to(height) and start.rises_to(height)):
@@ -119,6 +120,13 @@ def approach_trajectory(
         return None, (Diagnostic("C201", Place("approach"), "the tool is at the start of the program"),)
     trajectory, diagnostics = _through(machine, here, pose_columns(moved), tool_length, min(feed, machine.feed_speed))
     return None if trajectory is None else replace(trajectory, source="approach"), diagnostics
+
+
+def straight_trajectory(
+    machine: Machine, here: ToolPose, end: ToolPose, tool_length: float, feed: float
+) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
+    """One straight move; arguments as for ``approach_trajectory``."""
+    return _through(machine, here, pose_columns([end]), tool_length, min(feed, machine.feed_speed))
 
 
 def stationary_trajectory(

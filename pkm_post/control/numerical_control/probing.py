@@ -4,7 +4,7 @@
 A controller that knows nothing of the tool cannot catch its pose in the instant of contact. So a touch has three parts.
 A search goes along a line until the input of the probe is seen, and is held there: it passes the surface by less than
 the probe allows, since its feed is that way divided by the longest time to standstill of a jog. A second, slower search
-tells the place better. Then trials halve what is left between a place where the probe is free and one where it is
+finds the place better. Then trials halve what is left between a place where the probe is free and one where it is
 touched. Each trial starts where the probe is free and ends at rest, where the actual lengths of the struts have to show
 it within the resolution, so neither the link nor the feed has a part in the result.
 
@@ -137,7 +137,7 @@ class Probe:
             session: that of the control.
             control: its ``tool_length`` is that to the centre of the ball.
             settings: of the probe.
-            silence_s: longest time from silence to standstill of a jog, s, as ``execute.silence_s``.
+            silence_s: longest time from silence to standstill of a jog, s, as ``control.longest_silence_s``.
         """
         self._session, self._control, self.settings = session, control, settings
         self.feed = settings.overtravel / silence_s

@@ -11,10 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.control.link.status import MOTORS, Array
+from pkm_post.control.link.status import MOTORS, AnySettings, Array
 from pkm_post.control.link.tool_pose import ToolPoseReadout
 from pkm_post.control.simulator import Controller
-from pkm_post.writing import PmacSettings
 
 Body = Callable[[Array], float]
 """Distance of a point (3,) in {M} from its surface."""
@@ -76,7 +75,7 @@ class SimulatedProbe:
     """
 
     controller: Controller
-    settings: PmacSettings
+    settings: AnySettings
     readout: ToolPoseReadout
     ball: float
     body: Body

@@ -30,6 +30,7 @@ from pkm_post.model import (
     Place,
     Trajectory,
     errors,
+    threads,
 )
 from pkm_post.reading import is_part_program
 from pkm_post.system import result_files
@@ -184,6 +185,8 @@ def read_blocks(program: Path, machine: Machine) -> tuple[ProgramBlocks | None, 
     trajectory, faults = trajectory_file.read(file)
     if trajectory is None:
         return None, faults
+    if threads(trajectory.events):
+        return None, (*faults, Diagnostic("C208", Place(str(file)), "a block of a thread is no motion of its own"))
     if trajectory.machine_fingerprint != machine.fingerprint:
         found = f"made for {trajectory.machine}, to be run on {machine.name}"
         return None, (*faults, Diagnostic("T104", Place(str(file)), found))

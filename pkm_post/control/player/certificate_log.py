@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.control.player.legs import Leg
+from pkm_post.control.player.certified_motion import CertifiedMotion
 from pkm_post.geometry import Array
 from pkm_post.model import Finding
 
@@ -39,10 +39,10 @@ class CertificateLog:
         """Duration of the motions."""
         return self._ms / 1000
 
-    def add(self, leg: Leg) -> None:
+    def add(self, motion: CertifiedMotion) -> None:
         """Add the next motion."""
-        blocks = self._blocks(leg)
-        for finding in leg.certificate.findings:
+        blocks = self._blocks(motion)
+        for finding in motion.certificate.findings:
             if finding.code == _BLOCKS:
                 value = float(max(blocks, finding.value))
                 finding = replace(finding, value=value, holds=value <= finding.limit)
@@ -50,7 +50,7 @@ class CertificateLog:
             before = self._worst.get(key)
             if before is None or _use(finding) > _use(before):
                 self._worst[key] = replace(finding, time=finding.time + self.seconds)
-        self._ms += int(leg.struts.time_ms[-1])
+        self._ms += int(motion.struts.time_ms[-1])
         self.motions += 1
 
     @property
@@ -63,9 +63,9 @@ class CertificateLog:
         """Whether everything holds."""
         return all(finding.holds for finding in self.findings)
 
-    def _blocks(self, leg: Leg) -> int:
+    def _blocks(self, motion: CertifiedMotion) -> int:
         """Most points in any second up to the end of a motion."""
-        times = np.concatenate([self._recent, self._ms + leg.struts.time_ms[1:]])
+        times = np.concatenate([self._recent, self._ms + motion.struts.time_ms[1:]])
         count = np.searchsorted(times, times + _SECOND_MS) - np.arange(len(times))
         self._recent = times[times > times[-1] - _SECOND_MS]
         return int(count.max())

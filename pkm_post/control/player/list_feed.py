@@ -18,13 +18,13 @@ from itertools import islice
 from pkm_post.control.link.errors import LinkLostError, OutcomeUnknownError, PmacError
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings
+from pkm_post.control.player.certified_motion import CertifiedMotion
 from pkm_post.control.player.knot_list import (
     Layout,
     assignment_lines,
     point_assignments,
     read_assignments,
 )
-from pkm_post.control.player.legs import Leg
 from pkm_post.control.player.pieces import Piece
 
 _KEPT = 2
@@ -42,13 +42,13 @@ class Point:
     Attributes:
         place: its first variable.
         ms: interval to it.
-        leg: the motion it belongs to.
+        motion: the motion it belongs to.
         knot: its number in that.
     """
 
     place: int
     ms: int
-    leg: Leg
+    motion: CertifiedMotion
     knot: int
 
 
@@ -91,8 +91,9 @@ class ListFeed:
         self._first = 0  # number of the first one of _points
         self._entry: _Entry | None = None
         self._at = -1
+        self._early: _Branch | None = None
         self.current: Point | None = None
-        self.stopped_at: Leg | None = None
+        self.stopped_at: CertifiedMotion | None = None
 
     def clear(self) -> None:
         """Empty the list; no program runs that reads it."""
@@ -101,7 +102,7 @@ class ListFeed:
         self._points.clear()
         self._branches.clear()
         self._first, self._entry, self._at = 0, None, -1
-        self.current, self.stopped_at = None, None
+        self._early, self.current, self.stopped_at = None, None, None
 
     @property
     def capacity(self) -> int:
@@ -110,8 +111,15 @@ class ListFeed:
 
     @property
     def ahead_ms(self) -> int:
-        """Time until the last stop begins, from the end of the move that was computed last."""
+        """Time until the last stop begins, from the end of the move that was computed last; 0 within a stop."""
+        if self.stopped_at is not None:
+            return 0
         return sum(point.ms for point in islice(self._points, self._at + 1 - self._first, None))
+
+    @property
+    def last(self) -> Point | None:
+        """The point where the last stop begins; within a stop the current one, and None in an empty list."""
+        return self._points[-1] if self._points and self.stopped_at is None else self.current
 
     @property
     def is_taking_in(self) -> bool:
@@ -138,7 +146,36 @@ class ListFeed:
         self._set(entry.commit)
         self._take_in(entry)
 
-    def look(self) -> Iterator[Leg]:
+    @property
+    def ends_early(self) -> bool:
+        """Whether the list leads into a stop before its last one."""
+        return self._early is not None
+
+    def end_soon(self) -> None:
+        """Lead the list into its next stop; where the controller was faster, into the one after it, when called again.
+
+        Raises:
+            LinkLostError: it leads there or not.
+        """
+        branch = next((each for each in self._branches if each.after > self._at), None)
+        if branch is not None and branch is not self._early and self.stopped_at is None:
+            self._set(f"P{self._points[branch.after - self._first].place}={branch.points[0].place}")
+            self._early = branch
+
+    def end_at_its_end(self) -> None:
+        """Take ``end_soon`` back, unless the controller has gone there already.
+
+        Raises:
+            LinkLostError: it was taken back or not.
+        """
+        if self._early is None or self.stopped_at is not None:
+            return
+        after = self._early.after - self._first
+        if 0 <= after < len(self._points) - 1:
+            self._set(f"P{self._points[after].place}={self._points[after + 1].place}")
+        self._early = None
+
+    def look(self) -> Iterator[CertifiedMotion]:
         """Ask where the motion is; the motions that it has begun since.
 
         Raises:
@@ -154,8 +191,8 @@ class ListFeed:
         """Whether the point computed last is one at rest, behind which there is nothing."""
         return (
             self.current is not None
-            and self.current.knot == len(self.current.leg.struts) - 1
-            and not (self.current.leg.end.speed.any())
+            and self.current.knot == len(self.current.motion.struts) - 1
+            and not (self.current.motion.end.speed.any())
         )
 
     def _take_in(self, entry: _Entry) -> None:
@@ -165,19 +202,19 @@ class ListFeed:
         self._entry = None
 
     def _prepared(self, piece: Piece) -> _Entry:
-        points = self._placed(piece.leg)
+        points = self._placed(piece.motion)
         stop = self._placed(piece.stop) if piece.stop is not None else ()
-        written = point_assignments(piece.leg.struts, [point.place for point in points], self._settings)
+        written = point_assignments(piece.motion.struts, [point.place for point in points], self._settings)
         if piece.stop is not None:
             written += point_assignments(piece.stop.struts, [point.place for point in stop], self._settings)
             written.append(f"P{points[-1].place}={stop[0].place}")
         before = self._points[-1].place if self._points else self._layout.next
         return _Entry(points, stop, tuple(assignment_lines(written)), f"P{before}={points[0].place}")
 
-    def _placed(self, leg: Leg) -> tuple[Point, ...]:
-        times = leg.struts.time_ms.tolist()
+    def _placed(self, motion: CertifiedMotion) -> tuple[Point, ...]:
+        times = motion.struts.time_ms.tolist()
         return tuple(
-            Point(self._free.popleft(), times[knot] - times[knot - 1], leg, knot) for knot in range(1, len(times))
+            Point(self._free.popleft(), times[knot] - times[knot - 1], motion, knot) for knot in range(1, len(times))
         )
 
     def _compare(self, entry: _Entry) -> None:
@@ -195,7 +232,7 @@ class ListFeed:
                     raise PmacError(f"P{number}: expected {wanted[number]}, the controller has {value!r}")
             begin = end
 
-    def _arrived(self, place: int) -> Iterator[Leg]:
+    def _arrived(self, place: int) -> Iterator[CertifiedMotion]:
         entry = self._entry
         if entry is not None and any(point.place == place for point in (*entry.points, *entry.stop)):
             self._take_in(entry)  # it was taken in, and the answer got lost
@@ -204,8 +241,8 @@ class ListFeed:
                 if point.place == place:
                     yield from self._passed(branch.after)
                     if self.stopped_at is None:
-                        self.stopped_at = point.leg
-                        yield point.leg
+                        self.stopped_at = point.motion
+                        yield point.motion
                     self.current = point
                     return
         for number in range(max(self._at, self._first), self._first + len(self._points)):
@@ -215,12 +252,12 @@ class ListFeed:
                 return
         raise PmacError(f"P{self._layout.current}: the controller is at {place}, which is no point of the list")
 
-    def _passed(self, number: int) -> Iterator[Leg]:
+    def _passed(self, number: int) -> Iterator[CertifiedMotion]:
         """The motions that begin up to a point."""
         for at in range(self._at + 1, number + 1):
             point = self._points[at - self._first]
             if point.knot == 1:
-                yield point.leg
+                yield point.motion
         if number >= self._first:
             self._at, self.current = number, self._points[number - self._first]
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Operator input: where the operator's orders arrive, from any thread, and what they have come to.
 
-Enters: orders. Leaves: the override, single block, and whether to go on or to end; holds and resumes go to the
-controller at once.
+Enters: orders. Leaves: the override, single block, stops at M1, and whether to go on or to end; holds and resumes go
+to the controller at once.
 """
 
 from __future__ import annotations
@@ -20,17 +20,34 @@ class OperatorInput:
     """The operator's side of a player.
 
     Attributes:
-        override: factor of the feed; 0 for a stop on the path.
         single_block: whether to rest at the end of each line.
+        optional_stop: whether M1 stops.
+        block_skip: whether the blocks behind ``/`` that come next are skipped.
+        retract_mm: how far to go up along the tool axis, while the player waits; 0 for not at all.
         is_over: whether to end at the next stop on the path.
         may_start: whether a start was ordered since this was cleared.
-        is_held_back: whether a hold found nothing that ran: nothing starts until it is resumed.
+        is_held_back: whether a hold is a stop that is planned, or found nothing that ran: nothing starts until it is
+            resumed.
     """
 
-    def __init__(self, choices: PlayOptions) -> None:
-        self.override, self.single_block = choices.override, choices.single_block
+    def __init__(self, choices: PlayOptions, holds_on_path: bool = False) -> None:
+        """Prepare.
+
+        Args:
+            choices: at the beginning.
+            holds_on_path: whether a hold is a stop that is planned; by default it is that of the controller.
+        """
+        self._asked, self._holds_on_path = choices.override, holds_on_path
+        self.single_block = choices.single_block
+        self.optional_stop = choices.optional_stop
+        self.block_skip, self.retract_mm = choices.block_skip, 0.0
         self.is_over = self.may_start = self.is_held_back = False
         self._orders: queue.SimpleQueue[Order] = queue.SimpleQueue()
+
+    @property
+    def override(self) -> float:
+        """Factor of the feed; 0 for a stop on the path."""
+        return 0.0 if self._holds_on_path and self.is_held_back else self._asked
 
     def order(self, order: Order) -> None:
         """Give an order, from any thread."""
@@ -44,7 +61,9 @@ class OperatorInput:
         """
         while not self._orders.empty():
             order = self._orders.get()
-            if order.kind == "hold":
+            if order.kind == "hold" and self._holds_on_path:
+                self.is_held_back = True
+            elif order.kind == "hold":
                 self.is_held_back = not stopping.hold(session, settings).held
             elif order.kind == "resume" and self.is_held_back:
                 self.is_held_back = False
@@ -55,9 +74,15 @@ class OperatorInput:
 
     def _note(self, order: Order) -> None:
         if order.kind == "override":
-            self.override = min(max(order.value, 0.0), HIGHEST_OVERRIDE)
+            self._asked = min(max(order.value, 0.0), HIGHEST_OVERRIDE)
         elif order.kind == "single":
             self.single_block = bool(order.value)
+        elif order.kind == "optional":
+            self.optional_stop = bool(order.value)
+        elif order.kind == "skip":
+            self.block_skip = bool(order.value)
+        elif order.kind == "retract":
+            self.retract_mm = max(order.value, 0.0)
         elif order.kind == "start":
             self.may_start = True
         elif order.kind == "end":

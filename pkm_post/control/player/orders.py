@@ -13,12 +13,15 @@ import numpy as np
 
 from pkm_post.control.player.knot_list import FIRST_VARIABLE
 from pkm_post.control.player.list_feed import Point
-from pkm_post.model import EventKind, Kind, Trajectory
+from pkm_post.geometry import Array
+from pkm_post.model import EMPTY_SETUP, EventKind, Kind, Setup, Trajectory
 from pkm_post.options import PLAYER_PROGRAM
 
 WAITS = "waits: "
 """Begins the phase of a player that waits for its operator; what for comes behind it."""
-OrderKind = Literal["override", "hold", "resume", "single", "start", "end"]
+HELD_BACK = "hold"
+"""What it waits for where a hold found nothing that ran: to be resumed."""
+OrderKind = Literal["override", "hold", "resume", "single", "optional", "retract", "skip", "start", "end"]
 
 
 @dataclass(frozen=True)
@@ -26,10 +29,12 @@ class Order:
     """An order.
 
     Attributes:
-        kind: ``override`` sets the factor of the feed; ``hold`` and ``resume`` are those of the controller; ``single``
-            switches single block; ``start`` goes on after a stop of the program, a block or an override of 0; ``end``
-            ends at the next stop on the path.
-        value: of ``override``, a factor; of ``single``, 0 or 1.
+        kind: ``override`` sets the factor of the feed; ``hold`` and ``resume`` are those of the controller, or with
+            limits of jerk a stop that is planned, and its end; ``single`` switches single block, ``optional`` whether
+            M1 stops; ``retract`` brings the tool up along its axis while the player waits; ``skip`` switches whether
+            the blocks behind ``/`` that come next are skipped; ``start`` goes on after a
+            stop of the program, a block or an override of 0; ``end`` ends at the next stop on the path.
+        value: of ``override``, a factor; of ``single``, ``optional`` and ``skip``, 0 or 1; of ``retract``, mm.
     """
 
     kind: OrderKind
@@ -43,31 +48,37 @@ class PlayOptions:
     Attributes:
         override: factor of the feed at the beginning.
         single_block: whether to rest at the end of each line of the program.
-        optional_stop: whether M1 stops.
+        optional_stop: whether M1 stops, at the beginning.
         dry_feed: feed of all moves but rapid ones, mm/s, without spindle and coolant; None for the program's own.
+        skipped: the same program without its blocks behind ``/``, where they may be skipped; None otherwise.
+        block_skip: whether they are, at the beginning.
         first_row: row of the trajectory to begin with.
         approach: whether to go to that row first; to one inside the program always.
+        repeat_codes: whether the M codes of the machine before that row are repeated above it.
         first_variable: first P-variable of the knot list.
         program: number of the resident program.
         patience_s: how long a lost link is waited for.
+        setup: part, stock and fixtures, which the way to the first row is checked against; by default none are known.
     """
 
     override: float = 1.0
     single_block: bool = False
     optional_stop: bool = False
     dry_feed: float | None = None
+    skipped: Trajectory | None = None
+    block_skip: bool = False
     first_row: int = 0
     approach: bool = False
+    repeat_codes: bool = False
     first_variable: int = FIRST_VARIABLE
     program: int = PLAYER_PROGRAM
     patience_s: float = 30.0
+    setup: Setup = EMPTY_SETUP
 
     def applied_to(self, trajectory: Trajectory) -> Trajectory:
         """The trajectory as it is to be played."""
         out = set() if self.dry_feed is None else {EventKind.SPINDLE, EventKind.COOLANT, EventKind.DWELL}
         events = tuple(each for each in trajectory.events if each.kind not in out)
-        if not self.optional_stop:
-            events = tuple(each for each in events if not (each.kind is EventKind.STOP and each.value))
         if self.dry_feed is None:
             return replace(trajectory, events=events)
         feed = np.where(trajectory.kind == Kind.RAPID, trajectory.feed, self.dry_feed)
@@ -85,7 +96,8 @@ class PlayState:
         row: of the trajectory.
         feed: of the program there, mm/s; degrees a second where only the tool axis turns.
         to_go: way of the tip to the end of the program, mm.
-        remaining: s to its end at this override, without corners, stops and dwells.
+        remaining: s to its end at this override: what is planned, and behind it the programmed times and dwells, the
+            former times what the pieces so far took longer. Without codes of the machine and waits for the operator.
         override: that is asked for.
         reached: mean speed of the last piece by that of the program.
         ahead: s of motion that the controller has, without the stop behind it.
@@ -113,32 +125,60 @@ class PlayState:
         return f"{self.phase}, {where}: {self.to_go:.1f} mm, {self.remaining:.0f} s to go; {speed}"
 
 
-class Way:
-    """The way along a trajectory, and what is left of it."""
+@dataclass(frozen=True)
+class Ahead:
+    """What is planned of the motion, and how it compares with the programmed feed.
+
+    Attributes:
+        ms: of motion that the controller has, without the stop behind it.
+        last: where that ends; None where it has none.
+        slower: time of what was planned by that of the programmed feed at its override.
+    """
+
+    ms: int = 0
+    last: Point | None = None
+    slower: float = 1.0
+
+
+class PathProgress:
+    """How far a point is along a trajectory, and what remains."""
 
     def __init__(self, trajectory: Trajectory) -> None:
         self._trajectory = trajectory
         self._length = np.append(np.cumsum(trajectory.length[::-1])[::-1], 0.0)
         moving = np.maximum(trajectory.length, np.degrees(trajectory.angle))
         self._seconds = np.append(np.cumsum((moving / trajectory.feed)[::-1])[::-1], 0.0)
+        self._dwells = [(each.row, each.value) for each in trajectory.events if each.kind is EventKind.DWELL]
 
     def state(
-        self, point: Point | None, phase: str, override: float, reached: float, ahead_ms: int, row: int | None = None
+        self, point: Point | None, phase: str, override: float, reached: float, ahead: Ahead, row: int | None = None
     ) -> PlayState:
         """The state at a point of the list, or before a row."""
-        share = 0.0
+        share, last = 0.0, ahead.last if row is None else None
         if row is None and point is not None:
-            row, share = int(point.leg.row[point.knot]), float(point.leg.share[point.knot])
+            row, share = _place(point)
         row = min(row or 0, len(self._trajectory) - 1)
         place = self._trajectory.place(row)
-        to_go, seconds = (float(way[row] + share * (way[row + 1] - way[row])) for way in (self._length, self._seconds))
-        remaining = seconds / override if override > 0 else np.inf
+        behind = (row, share) if last is None else _place(last)
+        seconds = ahead.slower * self._left(self._seconds, *behind) / override if override > 0 else np.inf
+        remaining = ahead.ms / 1000 + seconds + sum(value for at, value in self._dwells if at > row)
         where = place.operation, place.line, row, float(self._trajectory.feed[row])
-        return PlayState(phase, *where, to_go, remaining, override, reached, ahead_ms / 1000)
+        to_go = self._left(self._length, row, share)
+        return PlayState(phase, *where, to_go, remaining, override, reached, ahead.ms / 1000)
+
+    @staticmethod
+    def _left(way: Array, row: int, share: float) -> float:
+        """What is left of a way behind a place."""
+        return float(way[row] + share * (way[row + 1] - way[row]))
 
     def text(self, point: Point | None) -> str:
         """Where a point is, in words."""
         if point is None:
             return "before the first point"
-        place = self._trajectory.place(int(point.leg.row[point.knot]))
+        place = self._trajectory.place(_place(point)[0])
         return " ".join(filter(None, ("in", place.operation, f"line {place.line}")))
+
+
+def _place(point: Point) -> tuple[int, float]:
+    """The row of a point, and the share of it that is behind."""
+    return int(point.motion.row[point.knot]), float(point.motion.share[point.knot])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Pieces: what a player sends next, planned from where the motion before it is left, and certified.
 
-A piece is a fraction of a second of motion and the stop from its end, both certified by themselves (``legs``). A piece
-that a certificate refuses is never sent; the stop that the controller has already is what happens.
+A piece is a fraction of a second of motion and the stop from its end, each a ``certified_motion``. A piece that is not
+certified is never sent: the controller executes the stop that it has already.
 
 Enters: a part of a trajectory, where the motion is, an override. Leaves: points with their certificates.
 """
@@ -15,11 +15,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.control.link.status import AnySettings
-from pkm_post.control.player.legs import At, Leg, LegMaker
+from pkm_post.control.player.certified_motion import CertifiedMotion, MotionCertifier, MotionState
 from pkm_post.control.player.sections import Part, Section, sections_of
 from pkm_post.machine import strut_lengths
 from pkm_post.model import Machine, Refused, Tolerances, Trajectory
-from pkm_post.planning import Course, PathState, Schedule, course
+from pkm_post.planning import PathState, Schedule, WindowPlanner, window_planner
 
 HIGHEST_OVERRIDE = 1.5
 PIECE_MS = 250
@@ -28,8 +28,6 @@ SHORTEST_PIECE_MS = 40
 """Duration of a piece where the list of points is short."""
 _FOLLOWED_MS = 40
 """Part of a stop that is followed before the wanted motion is tried again."""
-_BRAKING = 0.1
-"""Share of the lowest limit of acceleration with which the horizon of a window is estimated."""
 _LEAST = 1e-6
 """mm: places that are nearer are the same."""
 
@@ -39,21 +37,21 @@ class Piece:
     """What is sent next.
 
     Attributes:
-        leg: the motion.
+        motion: the motion.
         stop: the stop from its end; None where it ends at rest.
         reached: its mean speed by that of the program at an override of 1.
         is_end: whether the part ends with it.
     """
 
-    leg: Leg
-    stop: Leg | None
+    motion: CertifiedMotion
+    stop: CertifiedMotion | None
     reached: float
     is_end: bool
 
     @property
     def size(self) -> int:
         """Points that are sent."""
-        return sum(len(leg.struts) - 1 for leg in (self.leg, self.stop) if leg is not None)
+        return sum(len(motion.struts) - 1 for motion in (self.motion, self.stop) if motion is not None)
 
 
 class PiecePlanner:
@@ -73,21 +71,21 @@ class PiecePlanner:
         Args:
             trajectory: the whole.
             part: its rows; at least one.
-            machine: geometry and limits, without a limit of jerk.
+            machine: geometry and limits.
             settings: of its controller; decimals of what is sent.
             tolerances: limits for the certificate.
             planned_for: the machine with lower limits, such as the block rate of a link; by default the same.
         """
         self._machine, self._tolerances = machine, tolerances
-        self._legs = LegMaker(machine, settings, tolerances)
+        self._certifier = MotionCertifier(machine, settings, tolerances)
         self._planned_for = planned_for or machine
         self._coming = sections_of(trajectory, part, tolerances)
         self._next: Section | None = None
         self._count = 0
-        self._sections: dict[int, tuple[Section, Course]] = {}
+        self._sections: dict[int, tuple[Section, WindowPlanner]] = {}
         self._lock = threading.RLock()
 
-    def start(self) -> At:
+    def start(self) -> MotionState:
         """The beginning of the part, at rest.
 
         Raises:
@@ -96,7 +94,7 @@ class PiecePlanner:
         section, _ = self._section(0)
         rows = section.trajectory
         pose = rows.start_tip[None], rows.start_axis[None], np.array([rows.start_spin]), rows.tool_length()[:1]
-        return At(0, PathState(0.0, 0.0, 1.0), strut_lengths(self._machine, *pose)[0], np.zeros(6))
+        return MotionState(0, PathState(0.0, 0.0, 1.0), strut_lengths(self._machine, *pose)[0], np.zeros(6))
 
     def prepare(self, number: int) -> None:
         """Plan the path of the section after one of a number, if there is one; in a thread of its own.
@@ -107,7 +105,9 @@ class PiecePlanner:
         if section.over is not None:
             self._section(number + 1)
 
-    def next_piece(self, at: At, override: float, single_block: bool = False, piece_ms: int = PIECE_MS) -> Piece:
+    def next_piece(
+        self, at: MotionState, override: float, single_block: bool = False, piece_ms: int = PIECE_MS
+    ) -> Piece:
         """The next piece.
 
         Args:
@@ -120,96 +120,100 @@ class PiecePlanner:
             Refused: what is out of reach, or not certified.
         """
         at = self._moved_on(at)
-        section, along = self._section(at.section)
+        section, windows = self._section(at.section)
         state = at.state
-        reach = self._horizon(along, override, piece_ms) if not single_block else np.inf
-        schedule = self._wanted(section, along, state, override, reach) if override > 0 else None
-        most = piece_ms
+        schedule = None
+        if override > 0 and single_block:
+            schedule = self._to_end_of_line(section, windows, state, override)
+        elif override > 0:
+            schedule = windows.ahead(state, override, piece_ms / 1000)
+        most, is_stop = piece_ms, schedule is None
         if schedule is None:
-            schedule, most = along.stop(state), _FOLLOWED_MS if override > 0 else piece_ms
+            schedule, most = windows.stop(state), _FOLLOWED_MS if override > 0 else piece_ms
             override = state.override
+        override = windows.factor(schedule, override)
         end_ms = int(schedule.rests_ms[-1])
         shortest = self._machine.shortest_interval
-        most = min(most, self._time_to_limit(section, along, schedule))
+        most = min(most, self._time_to_limit(section, windows, schedule))
+        if is_stop and not windows.leaves_stops:
+            most = end_ms
         until = end_ms if end_ms < most + max(shortest, 2) else most
-        leg = self._legs.leg(section, along, at, schedule, until, override)
+        motion = self._certifier.motion(section, windows, at, schedule, until, override)
         rests = until == end_ms
-        stop = None if rests else self._stop(leg.end)
-        return Piece(leg, stop, self._reached(along, state, leg), rests and self._is_end(section, along, leg.end))
+        stop = None if rests else self._stop(motion.end)
+        return Piece(motion, stop, self._reached(windows, state, motion), rests and self.is_end(motion.end))
 
-    def _wanted(
-        self, section: Section, along: Course, state: PathState, override: float, reach: float
+    def _to_end_of_line(
+        self, section: Section, windows: WindowPlanner, state: PathState, override: float
     ) -> Schedule | None:
-        """The wanted motion over a distance, or to the end of a line if that is infinite; None if it cannot be met."""
-        rest = along.next_rest(state.s)
-        if np.isfinite(reach):
-            return along.window(state, min(rest, state.s + reach), override)
+        """The motion to the end of the first line that can be rested at; None if there is none up to the next rest."""
+        rest = windows.next_rest(state.s)
         line, operation = section.trajectory.line, section.trajectory.operation
         ends = np.append((np.diff(line) != 0) | (np.diff(operation) != 0), True)
-        places = along.path.starts[1:][ends]
+        places = windows.path.starts[1:][ends]
         for place in places[(places > state.s + _LEAST) & (places <= rest)]:
-            found = along.window(state, float(place), override)
+            found = windows.window(state, float(place), override)
             if found is not None:
                 return found
         return None
 
-    def _time_to_limit(self, section: Section, along: Course, schedule: Schedule) -> int:
+    def _time_to_limit(self, section: Section, windows: WindowPlanner, schedule: Schedule) -> int:
         """Whole ms until the motion is so far in a section that the next one has to take over."""
         s = schedule.law.s
         if section.over is None:
             return int(schedule.rests_ms[-1])
-        limit = (along.path.starts[section.over - section.first + 1] + along.length) / 2
+        limit = (windows.path.starts[section.over - section.first + 1] + windows.length) / 2
         if s[-1] <= limit:
             return int(schedule.rests_ms[-1])
         return max(int(1000 * schedule.law.when(np.array([limit]))[0]), self._machine.shortest_interval)
 
-    def _horizon(self, along: Course, override: float, piece_ms: int) -> float:
-        """How far a window reaches: a piece at the highest feed and half as much, and a distance to stop behind it."""
-        machine, speed = self._machine, float(along.feed(override).max())
-        slowest = _BRAKING * min(machine.tip_acceleration, machine.strut_acceleration)
-        return 1.5 * speed * piece_ms / 1000 + speed**2 / (2 * slowest)
+    def _stop(self, at: MotionState) -> CertifiedMotion:
+        section, windows = self._section(at.section)
+        schedule = windows.stop(at.state)
+        return self._certifier.motion(section, windows, at, schedule, int(schedule.rests_ms[-1]), at.state.override)
 
-    def _stop(self, at: At) -> Leg:
-        section, along = self._section(at.section)
-        schedule = along.stop(at.state)
-        return self._legs.leg(section, along, at, schedule, int(schedule.rests_ms[-1]), at.state.override)
+    def _reached(self, windows: WindowPlanner, state: PathState, motion: CertifiedMotion) -> float:
+        """Mean speed of a motion relative to the programmed feed."""
+        starts = windows.path.starts
+        places = np.concatenate(
+            [[state.s], starts[(starts > state.s) & (starts < motion.end.state.s)], [motion.end.state.s]]
+        )
+        row = np.clip(np.searchsorted(starts, places[:-1], side="right") - 1, 0, len(windows.programmed) - 1)
+        programmed = float((np.diff(places) / windows.programmed[row]).sum())
+        return programmed / (float(motion.struts.time_ms[-1]) / 1000)
 
-    def _reached(self, along: Course, state: PathState, leg: Leg) -> float:
-        """Mean speed of a leg by the programmed feed."""
-        starts = along.path.starts
-        places = np.concatenate([[state.s], starts[(starts > state.s) & (starts < leg.end.state.s)], [leg.end.state.s]])
-        row = np.clip(np.searchsorted(starts, places[:-1], side="right") - 1, 0, len(along.programmed) - 1)
-        programmed = float((np.diff(places) / along.programmed[row]).sum())
-        return programmed / (float(leg.struts.time_ms[-1]) / 1000)
+    def is_end(self, at: MotionState) -> bool:
+        """Whether the part ends at a place."""
+        section, windows = self._section(at.section)
+        return section.over is None and at.state.s >= windows.length - _LEAST
 
-    def _is_end(self, section: Section, along: Course, at: At) -> bool:
-        return section.over is None and at.state.s >= along.length - _LEAST
-
-    def _moved_on(self, at: At) -> At:
+    def _moved_on(self, at: MotionState) -> MotionState:
         """The same place in the next section, where that takes over."""
-        section, along = self._section(at.section)
+        section, windows = self._section(at.section)
         if section.over is None:
             return at
         row = section.over - section.first
-        starts = along.path.starts
+        starts = windows.path.starts
         if at.state.s < (starts[row] + starts[row + 1]) / 2:
             return at
         following, ahead = self._section(at.section + 1)
         s = at.state.s - starts[row] + ahead.path.starts[section.over - following.first]
-        self._sections.pop(at.section - 1, None)
-        return replace(at, section=at.section + 1, state=replace(at.state, s=float(s)))
+        self._sections.pop(at.section - 2, None)  # a stop that is still in the list may be in the one before
+        return replace(at, section=at.section + 1, state=at.state.moved(float(s)))
 
-    def _section(self, number: int) -> tuple[Section, Course]:
-        """A section and its course, planned once; another thread may be planning it.
+    def _section(self, number: int) -> tuple[Section, WindowPlanner]:
+        """A section and its window planner, made once; another thread may be making it.
 
         Raises:
             Refused: it is out of reach.
         """
+        if (ready := self._sections.get(number)) is not None:
+            return ready  # a piece does not wait for the section that is being prepared
         with self._lock:
             while number not in self._sections:
                 if self._next is None:
                     self._next = next(self._coming)
-                found, diagnostics = course(
+                found, diagnostics = window_planner(
                     self._next.trajectory, self._planned_for, self._tolerances, HIGHEST_OVERRIDE
                 )
                 if found is None:

@@ -21,19 +21,22 @@ from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.run import check_setup, set_feed_override, start_program
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings, Status, read_status
+from pkm_post.control.player.block_skip import chosen_parts
 from pkm_post.control.player.certificate_log import CertificateLog
+from pkm_post.control.player.certified_motion import MotionState
 from pkm_post.control.player.knot_list import Layout, resident_program
-from pkm_post.control.player.legs import At
 from pkm_post.control.player.list_feed import ListFeed, Point
 from pkm_post.control.player.operator_input import OperatorInput
-from pkm_post.control.player.orders import WAITS, Order, PlayOptions, PlayState, Way
+from pkm_post.control.player.orders import HELD_BACK, WAITS, Ahead, Order, PathProgress, PlayOptions, PlayState
 from pkm_post.control.player.pieces import PiecePlanner
+from pkm_post.control.player.retract import Retract
 from pkm_post.control.player.run_to_rest import RunToRest, Timing
-from pkm_post.control.player.sections import Part, parts_of
+from pkm_post.control.player.sections import Part
 from pkm_post.control.player.start_line import go_to_row
-from pkm_post.control.player.stop_events import Task, run_events
-from pkm_post.model import EventKind, Machine, Tolerances, Trajectory
+from pkm_post.control.player.stop_events import PlayContext, run_events
+from pkm_post.model import EventKind, Machine, Phrase, Tolerances, Trajectory
 from pkm_post.options import START_TOLERANCE_MM
+from pkm_post.planning import limits_jerk
 
 _POLL_S = 0.02
 _THREADS = 2
@@ -97,7 +100,7 @@ class Player:
 
         Args:
             session: an open session.
-            machine: the machine, without a limit of jerk.
+            machine: the machine.
             settings: of its controller.
             trajectory: what to play.
             tolerances: limits for the certificate.
@@ -108,12 +111,13 @@ class Player:
         """
         self._session, self._machine, self._settings = session, machine, settings
         self._choices = choices or PlayOptions()
-        self._trajectory, self._tolerances = self._choices.applied_to(trajectory), tolerances
-        self._task = Task(session, machine, settings, self._trajectory)
+        self._whole, self._tolerances, skipped = self._choices.applied_to(trajectory), tolerances, self._choices.skipped
+        self._skipped = None if skipped is None else self._choices.applied_to(skipped)
+        self._follow(self._whole)
         self._planning_machine = replace(machine, block_rate=min(machine.block_rate, _MOST_RATE))
         self._host = host or Host()
-        self._way, self._show, self._planning = Way(self._trajectory), show, planning
-        self._operator, self._timing = OperatorInput(self._choices), Timing()
+        self._show, self._planning = show, planning
+        self._operator, self._timing = OperatorInput(self._choices, limits_jerk(machine)), Timing()
         self._layout = Layout(self._choices.first_variable)
         self._feed = ListFeed(session, settings, self._layout)
         self._program = resident_program(self._layout, settings, self._choices.program)
@@ -121,6 +125,7 @@ class Player:
         self._stops, self._losses, self._is_waiting = 0, 0, False
         self._lost_at: float | None = None
         self._point: Point | None = None
+        self._retract = Retract(self._task)
         self.log = CertificateLog()
 
     def order(self, order: Order) -> None:
@@ -145,7 +150,10 @@ class Player:
             self._begin()
             own = self._planning or ThreadPoolExecutor(_THREADS)
             try:
-                for part in parts_of(self._trajectory, self._choices.first_row):
+                row, skips = self._choices.first_row, lambda: self._operator.block_skip
+                for trajectory, part in chosen_parts(self._whole, self._skipped, row, skips):
+                    if trajectory is not self._trajectory:
+                        self._follow(trajectory)
                     if not self._operator.is_over:
                         self._between(part)
                     if part.end > part.first and not self._operator.is_over:
@@ -155,6 +163,11 @@ class Player:
                     own.shutdown(wait=False, cancel_futures=True)  # a stop does not wait for a plan
         return PlayResult(self.log, self._stops, self._losses, not self._operator.is_over)
 
+    def _follow(self, trajectory: Trajectory) -> None:
+        """The posting whose rows count from now on."""
+        self._trajectory, self._way = trajectory, PathProgress(trajectory)
+        self._task = PlayContext(self._session, self._machine, self._settings, trajectory, self._choices.setup)
+
     def _begin(self) -> None:
         """Where the program is not played from its beginning, go there, when the operator has put the tool in."""
         row = self._choices.first_row
@@ -162,7 +175,7 @@ class Player:
             tool = self._trajectory.tools[int(self._trajectory.tool[row])]
             self._wait(f"T{tool.number}, {tool.length:g} mm long, in the spindle", row)
             if not self._operator.is_over:
-                go_to_row(self._task, row)
+                go_to_row(self._task, row, repeat_codes=self._choices.repeat_codes)
 
     def _between(self, part: Part) -> None:
         """Carry out the events before a part; its stops wait for the operator."""
@@ -173,8 +186,10 @@ class Player:
                 self._wait_if_held_back(part.first)
             if at and not self._operator.is_over:
                 run_events(self._task, part.first, tuple(events[:at]))
-            if at < len(events):
-                self._wait("M1" if events[at].value else "M0", part.first)
+            if at < len(events) and not events[at].value:
+                self._wait("M0", part.first)
+            elif at < len(events) and self._operator.optional_stop:
+                self._wait("M1", part.first, until=lambda: not self._operator.optional_stop)
             events = events[at + 1 :]
 
     def _play_part(self, part: Part, planning: Executor) -> None:
@@ -186,22 +201,24 @@ class Player:
             if operator.single_block:
                 self._wait("single block")
             if operator.override == 0:
-                self._wait("override 0", until=lambda: operator.override > 0)
+                what = HELD_BACK if operator.is_held_back else "override 0"
+                self._wait(what, until=lambda: operator.override > 0)
             if operator.override > 0 and not operator.is_over:
                 self._feed.clear()
                 self._run = RunToRest(self._session, self._feed, planner, at, operator, planning)
                 at, is_end = self._run_to_rest(self._run)
 
-    def _run_to_rest(self, run: RunToRest) -> tuple[At, bool]:
+    def _run_to_rest(self, run: RunToRest) -> tuple[MotionState, bool]:
         """Where the run has come to rest, and whether the part ends there."""
         while True:
             status = self._look(run.is_started)
             if run.is_started and status is not None and not status.running and status.standing:
-                self._stops += run.was_late()
+                self._stops += run.was_late(self._timing)
                 return run.rest(lambda: self._way.text(self._feed.current))
             if run.is_void():
                 return run.begin, False
             try:
+                run.steer()
                 run.plan(self._timing)
                 run.send(self._timing)
                 if not run.is_started:
@@ -234,8 +251,8 @@ class Player:
             self._operator.carry_out(self._session, self._settings)
             status = read_status(self._session, self._settings)
             if is_started:
-                for leg in self._feed.look():
-                    self.log.add(leg)
+                for motion in self._feed.look():
+                    self.log.add(motion)
         except LinkLostError as lost:
             self._lose(lost)
             return None
@@ -245,7 +262,7 @@ class Player:
         self._operator.is_held_back &= not status.held
         if self._lost_at is not None:
             self._losses, self._lost_at = self._losses + 1, None
-            _log.warning("the link is back")
+            _log.warning("%s", Phrase("the link is back"))
         if not self._is_waiting:
             self._show(self._state("held" if status.held else "runs" if status.running else "rests"))
         return status
@@ -259,7 +276,7 @@ class Player:
         now = self._session.now()
         if self._lost_at is None:
             self._lost_at = now
-            _log.warning("the link is lost; the machine comes to rest on the path: %s", lost)
+            _log.warning("%s", Phrase("the link is lost; the machine comes to rest on the path: {}", lost))
         if now - self._lost_at > self._choices.patience_s:
             raise lost
         self._show(self._state("no link"))
@@ -268,23 +285,35 @@ class Player:
     def _wait(self, what: str, row: int | None = None, until: Callable[[], bool] = lambda: False) -> None:
         """Wait until an operator starts again, or ends, or something holds."""
         operator = self._operator
-        operator.may_start, self._is_waiting = False, True
+        operator.may_start, operator.retract_mm, self._is_waiting = False, 0.0, True
         while not (operator.may_start or operator.is_over or until()):
             self._look(False)
+            if operator.retract_mm:
+                self._retract.up(operator.retract_mm, self._tool_length(row))
+                operator.retract_mm = 0.0
             self._show(self._state(WAITS + what, row))
             self._session.sleep(_POLL_S)
+        if not operator.is_over:
+            self._retract.back(self._tool_length(row))
         self._is_waiting = False
         operator.is_held_back &= not operator.may_start
+
+    def _tool_length(self, row: int | None) -> float:
+        """Gauge length of the tool in the spindle before a row, or where the motion is, mm."""
+        if row is None:
+            row = self._choices.first_row if self._point is None else int(self._point.motion.row[self._point.knot])
+        return float(self._trajectory.tool_length()[min(row, len(self._trajectory) - 1)])
 
     def _wait_if_held_back(self, row: int | None = None) -> None:
         """Where a hold found nothing that ran, wait until it is resumed."""
         operator = self._operator
         if operator.is_held_back:
-            self._wait("hold", row, lambda: not operator.is_held_back)
+            self._wait(HELD_BACK, row, lambda: not operator.is_held_back)
 
     def _state(self, phase: str, row: int | None = None) -> PlayState:
         reached = 0.0 if self._run is None else self._run.reached
         self._point = self._feed.current or self._point  # an empty list says nothing of the place
         if row is None and self._point is None:
             row = self._choices.first_row
-        return self._way.state(self._point, phase, self._operator.override, reached, self._feed.ahead_ms, row)
+        ahead = Ahead(self._feed.ahead_ms, self._feed.last, self._timing.slower)
+        return self._way.state(self._point, phase, self._operator.override, reached, ahead, row)

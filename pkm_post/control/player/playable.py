@@ -6,23 +6,25 @@ Enters: a file, a machine, a line. Leaves: the trajectory, its tolerances and a 
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 from pkm_post.certificate import machine_fault, values_beyond_machine
-from pkm_post.model import Diagnostic, Machine, Place, Tolerances, Trajectory, errors
-from pkm_post.toolpath import StartLine, row_of_line
+from pkm_post.model import Diagnostic, Machine, Place, Tolerances, Trajectory, errors, threads
+from pkm_post.toolpath import MachineOffsets, StartLine, not_repeated, row_of_line, with_machine_offsets
 from pkm_post.writing import trajectory_file
 
 Findings = tuple[Diagnostic, ...]
 
 
-def read_playable(file: Path, machine: Machine) -> tuple[Trajectory | None, Tolerances | None, Findings]:
+def read_playable(
+    file: Path, machine: Machine, offsets: MachineOffsets | None = None
+) -> tuple[Trajectory | None, Tolerances | None, Findings]:
     """A trajectory and the tolerances it was made for, or what is against playing it.
 
     Args:
         file: a trajectory file.
         machine: the machine to play it on.
+        offsets: what was changed at the machine since the posting; nothing by default.
     """
     trajectory, faults = trajectory_file.read(file)
     if trajectory is None or errors(faults):
@@ -33,23 +35,33 @@ def read_playable(file: Path, machine: Machine) -> tuple[Trajectory | None, Tole
     faults += tuple(Diagnostic("T107", at, found) for at, found in values_beyond_machine(trajectory, machine))
     if trajectory.tolerances is None:
         faults += (Diagnostic("T105", place, "none"),)
-    if math.isfinite(machine.strut_jerk) or math.isfinite(machine.tip_jerk):
-        limits = f"struts {machine.strut_jerk:g} mm/s^3, tip {machine.tip_jerk:g} mm/s^3"
-        faults += (Diagnostic("C206", Place(machine.name), limits),)
-    return (None, None, faults) if errors(faults) else (trajectory, trajectory.tolerances, faults)
+    faults += thread_faults(trajectory, file)
+    if errors(faults):
+        return None, None, faults
+    moved, found = with_machine_offsets(trajectory, machine, offsets or MachineOffsets())
+    return moved, trajectory.tolerances, (*faults, *found)
 
 
-def first_row(trajectory: Trajectory, line: int, operation: str, file: Path) -> tuple[int | None, Findings]:
-    """The row to begin with for a line of the source, or that there is none.
+def thread_faults(trajectory: Trajectory, file: Path) -> Findings:
+    """C208 for a trajectory with threads: what it is sent by has no axis for the spindle."""
+    found = threads(trajectory.events)
+    return (Diagnostic("C208", Place(str(file)), f"{len(found)} of them"),) if found else ()
+
+
+def first_row(
+    trajectory: Trajectory, line: int, operation: str, file: Path, repeat_codes: bool = False
+) -> tuple[int | None, Findings]:
+    """The row to begin with for a line of the source, and what is not repeated (K152); or that there is none.
 
     Args:
         trajectory: the program.
         line: line, or number of the command, in the source.
         operation: its name; empty for the first one with such a line.
         file: of the trajectory, for the diagnostic.
+        repeat_codes: whether the M codes of the machine before it are repeated.
     """
     row = row_of_line(trajectory, StartLine(line, operation))
     if row is not None:
-        return row, ()
+        return row, not_repeated(trajectory, row) if row and not repeat_codes else ()
     place = Place(str(file), operation, line)
     return None, (Diagnostic("C207", place, f"operations {', '.join(trajectory.operations) or 'without a name'}"),)

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Run to rest: keep the list of the controller ahead of it, from one rest to the next.
 
-The list reaches at least so far ahead of the point that was computed last:
+The list reaches at least so far ahead of the point that was computed last, when the next piece is asked for:
 
     lead = 2 (longest planning + longest sending of the last pieces) + 2 longest intervals, at least half a second
 
-Two, for one piece may just have missed its turn; the intervals, for the controller computes two moves ahead. A piece
-lasts two and a half times as long as planning one, from a quarter of a second to one second: what planning takes hardly
-depends on it. The list has room for two pieces with their stops at least, so pieces with many points are shorter;
-where it has no room for all of the lead, it starts when it is full.
+Planning counts from asking for a piece until it is there: what the computer does besides counts as well. A piece
+lasts longer than planning and sending it takes, so the list is as far ahead after it as before. The second planning
+and sending are for one short piece, at the end of a section: it takes as long and adds next to nothing. The intervals
+are for the controller, which computes two moves ahead, and for the 20 ms between two looks. The list has room for two
+pieces with their stops at least, so pieces with many points are shorter; where it has no room for all of the lead, it
+starts when it is full.
 
 Enters: a planner, a place at rest, the operator's input. Leaves: the place at rest where the motion has ended.
 """
@@ -24,7 +26,7 @@ import numpy as np
 
 from pkm_post.control.link.errors import PmacError
 from pkm_post.control.link.session import Session
-from pkm_post.control.player.legs import LONGEST_MS, At, Leg
+from pkm_post.control.player.certified_motion import LONGEST_MS, CertifiedMotion, MotionState
 from pkm_post.control.player.list_feed import ListFeed
 from pkm_post.control.player.operator_input import OperatorInput
 from pkm_post.control.player.pieces import PIECE_MS, SHORTEST_PIECE_MS, Piece, PiecePlanner
@@ -32,15 +34,21 @@ from pkm_post.model import Refused
 
 LEAST_LEAD_S = 0.25
 _AHEAD = 2.5
-"""Duration of a piece by that of its planning."""
-_LONGEST_PIECE_MS = 1000
+"""Duration of a piece by that of its planning, which hardly depends on it; to it comes that of sending the piece."""
+_LONGEST_PIECE_MS = 2000
+_FITTING = 0.9
+"""Share of the room for a piece for which it is planned, by the points of the one before."""
 _PIECES_IN_LIST = 2
 """Pieces with their stops that fit into the list together: one runs while the other one is written."""
-_PIECES_TIMED = 8
-"""Last pieces of which the longest planning and sending count."""
+_PIECES_TIMED = 64
+"""Last pieces of which the longest planning and sending count: what comes every half a minute is not forgotten."""
 
-Planned = tuple[Piece, float]
-"""A piece, and the s that planning took."""
+_Moment = tuple[float, int]
+"""s of the session's clock, and how often it had connected."""
+
+
+def _last_times() -> deque[float]:
+    return deque([0.0], maxlen=_PIECES_TIMED)
 
 
 @dataclass
@@ -48,22 +56,37 @@ class Timing:
     """What the last pieces took.
 
     Attributes:
-        spent: s of planning and of sending.
+        planning: s from asking for a piece until it was there; of one that came too late, until it was given up.
+        sending: s of sending it.
+        planned, programmed: s of all pieces that were sent, and at the programmed feed and their override.
     """
 
-    spent: deque[tuple[float, float]] = field(default_factory=lambda: deque([(0.0, 0.0)], maxlen=_PIECES_TIMED))
+    planning: deque[float] = field(default_factory=_last_times)
+    sending: deque[float] = field(default_factory=_last_times)
+    planned: float = 0.0
+    programmed: float = 0.0
+
+    def add(self, piece: Piece) -> None:
+        """Count the motion of a piece that was sent."""
+        seconds = float(piece.motion.struts.time_ms[-1]) / 1000
+        self.planned += seconds
+        self.programmed += seconds * piece.reached / piece.motion.end.state.override
+
+    @property
+    def slower(self) -> float:
+        """Time of what was planned by that of the programmed feed; 1 before the first piece."""
+        return self.planned / self.programmed if self.programmed else 1.0
 
     @property
     def lead_s(self) -> float:
         """How far the list has to reach ahead, s."""
-        planning, sending = (max(values) for values in zip(*self.spent, strict=True))
-        return max(2 * (planning + sending), LEAST_LEAD_S) + 2 * LONGEST_MS / 1000
+        return max(2 * (max(self.planning) + max(self.sending)), LEAST_LEAD_S) + 2 * LONGEST_MS / 1000
 
     @property
     def piece_ms(self) -> int:
-        """Duration of a piece, so that planning keeps ahead."""
-        planning = max(planning for planning, _ in self.spent)
-        return int(np.clip(1000 * _AHEAD * planning, PIECE_MS, _LONGEST_PIECE_MS))
+        """Duration of a piece, so that planning and sending keep ahead."""
+        wanted = 1000 * (_AHEAD * max(self.planning) + max(self.sending))
+        return int(np.clip(wanted, PIECE_MS, _LONGEST_PIECE_MS))
 
 
 class RunToRest:
@@ -79,7 +102,7 @@ class RunToRest:
         session: Session,
         feed: ListFeed,
         planner: PiecePlanner,
-        at: At,
+        at: MotionState,
         operator: OperatorInput,
         planning: Executor,
     ) -> None:
@@ -101,16 +124,17 @@ class RunToRest:
             planning,
         )
         self._begin = self._ahead = at
-        self._pending: Future[Planned] | None = None
-        self._planned: Planned | None = None
-        self._last: Leg | None = None
+        self._pending: Future[Piece] | None = None
+        self._asked: _Moment | None = None
+        self._planned: Piece | None = None
+        self._last: CertifiedMotion | None = None
         self._fault: Refused | PmacError | None = None
         self._is_block_end, self._section = False, -1
         self._fitting_ms = _LONGEST_PIECE_MS
         self.reached, self.is_started = 0.0, False
 
     @property
-    def begin(self) -> At:
+    def begin(self) -> MotionState:
         """Where it begins."""
         return self._begin
 
@@ -124,13 +148,28 @@ class RunToRest:
         """Have the next piece planned when the list becomes short, and fetch it when it is."""
         is_short = self._feed.ahead_ms / 1000 < timing.lead_s
         if self._pending is None and self._planned is None and self.is_wanted and is_short:
+            self._asked = self._now()
             self._pending = self._planning.submit(self._next_piece, self._ahead, timing.piece_ms)
+        if self._operator.is_held_back:
+            self._asked = None  # the operator may be waited for meanwhile
         if self._pending is not None and self._pending.done():
+            self._time(timing.planning, self._asked)
             try:
                 self._planned = self._pending.result()
             except (Refused, PmacError) as fault:
                 self._fault = fault
             self._pending = None
+
+    def steer(self) -> None:
+        """Lead a list that runs into the next stop where nothing more is wanted, and back where it is.
+
+        Raises:
+            LinkLostError: to be tried again.
+        """
+        if self.is_started and (self._operator.override == 0 or self._operator.is_over):
+            self._feed.end_soon()
+        elif self.is_started:
+            self._feed.end_at_its_end()
 
     def send(self, timing: Timing) -> None:
         """Send the piece that is planned, unless the stop before it has begun, or it is not wanted any more.
@@ -143,17 +182,18 @@ class RunToRest:
         if self._feed.stopped_at is not None or not (self.is_wanted or self._feed.is_taking_in):
             self._planned = None
             return
-        piece, planning_s = self._planned
+        piece = self._planned
         if not self._feed.has_room(piece):
             return
-        if piece.leg.end.section != self._section:
-            self._section = piece.leg.end.section
+        if piece.motion.end.section != self._section:
+            self._section = piece.motion.end.section
             self._planning.submit(self._planner.prepare, self._section)
-        began = self._session.now()
+        began = self._now()
         self._feed.append(piece)
-        timing.spent.append((planning_s, self._session.now() - began))
-        self._planned, self._ahead = None, piece.leg.end
-        self._last = piece.leg if piece.is_end else None
+        self._time(timing.sending, began)
+        timing.add(piece)
+        self._planned, self._ahead = None, piece.motion.end
+        self._last = piece.motion if piece.is_end else None
         self._is_block_end = piece.stop is None and self._operator.single_block
         if piece.stop is not None:
             self.reached = piece.reached
@@ -161,7 +201,7 @@ class RunToRest:
     def may_start(self, lead_s: float) -> bool:
         """Whether the list is long enough to be started, complete, or full."""
         ahead = self._feed.ahead_ms / 1000
-        is_full = self._planned is not None and not self._feed.has_room(self._planned[0])
+        is_full = self._planned is not None and not self._feed.has_room(self._planned)
         if self.is_started or self._operator.is_over:
             return False
         return ahead >= lead_s or (ahead > 0 and (is_full or not self.is_wanted))
@@ -180,7 +220,7 @@ class RunToRest:
             raise self._fault
         return True
 
-    def rest(self, where: Callable[[], str]) -> tuple[At, bool]:
+    def rest(self, where: Callable[[], str]) -> tuple[MotionState, bool]:
         """Where the machine has come to rest, and whether the part ends there.
 
         Args:
@@ -195,28 +235,40 @@ class RunToRest:
             raise PmacError(f"the program was ended from elsewhere {where()}; go on with --from-line")
         if self._fault is not None:
             raise self._fault
-        return point.leg.end, point.leg is self._last
+        return point.motion.end, self._planner.is_end(point.motion.end)  # a stop may lead there as well
 
-    def was_late(self) -> bool:
-        """Whether it has come to rest although more motion was wanted."""
-        return self._feed.stopped_at is not None and self._operator.override > 0 and not self._operator.is_over
+    def was_late(self, timing: Timing) -> bool:
+        """Whether it has come to rest although more motion was wanted; the lead is longer then from now on."""
+        if self._pending is not None:
+            self._time(timing.planning, self._asked)
+        was_stopped = self._feed.stopped_at is not None and not self._feed.ends_early
+        return was_stopped and self._operator.override > 0 and not self._operator.is_over
 
-    def _next_piece(self, at: At, piece_ms: int) -> Planned:
+    def _now(self) -> _Moment:
+        return self._session.now(), self._session.connections
+
+    def _time(self, times: deque[float], since: _Moment | None) -> None:
+        """Note what something took; where the link was lost meanwhile, that says nothing."""
+        now, connections = self._now()
+        if since is not None and since[1] == connections:
+            times.append(now - since[0])
+
+    def _next_piece(self, at: MotionState, piece_ms: int) -> Piece:
         """Plan a piece that leaves room for another one in the list; in a thread that plans.
 
         Raises:
             PmacError: the list is too short for the shortest piece and its stop.
         """
-        began = self._session.now()
-        piece_ms = min(piece_ms, 2 * self._fitting_ms)
+        room = self._feed.capacity // _PIECES_IN_LIST
+        piece_ms = max(min(piece_ms, self._fitting_ms), SHORTEST_PIECE_MS)
         while True:
             piece = self._planner.next_piece(at, self._operator.override, self._operator.single_block, piece_ms)
-            is_shortest = piece_ms <= SHORTEST_PIECE_MS
-            if is_shortest or piece.size <= self._feed.capacity // _PIECES_IN_LIST:
+            lasts_ms = min(piece_ms, int(piece.motion.struts.time_ms[-1]))
+            self._fitting_ms = int(_FITTING * lasts_ms * room / piece.size)
+            if piece.size <= room or piece_ms <= SHORTEST_PIECE_MS:
                 break
-            piece_ms = max(piece_ms // 2, SHORTEST_PIECE_MS)
-        self._fitting_ms = piece_ms
+            piece_ms = max(self._fitting_ms, SHORTEST_PIECE_MS)
         if piece.size > self._feed.capacity:
-            room = f"the list has {self._feed.capacity} points, a piece and its stop take {piece.size}"
-            raise PmacError(f"{room}: choose lower --variables")
-        return piece, self._session.now() - began
+            need = f"the list has {self._feed.capacity} points, a piece and its stop take {piece.size}"
+            raise PmacError(f"{need}: choose lower --variables")
+        return piece

@@ -6,7 +6,10 @@ stays a line: runs end there, and a curve is the same in every section that has 
 between such lines, and some rows more on both sides; from the middle of the line between its blocks on, the motion may
 go over to the next section. The last rows of a section are its reserve for stopping.
 
-Enters: a trajectory. Leaves: its parts, from one event to the next, and their sections as trajectories.
+The subpath between two points is what a motion between them is certified against: a line becomes a shorter line, an arc
+an arc of the same circle or helix, and the tool axis stays on its great circle.
+
+Enters: a trajectory. Leaves: its parts, from one event to the next, their sections, and subpaths, as trajectories.
 """
 
 from __future__ import annotations
@@ -18,6 +21,7 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.model import TRAJECTORY_COLUMNS, Event, Tolerances, Trajectory
+from pkm_post.toolpath import Segments
 
 BLOCK_ROWS = 1024
 _CHOICE = 64
@@ -58,18 +62,29 @@ class Section:
     over: int | None
 
 
-def parts_of(trajectory: Trajectory, first: int = 0) -> tuple[Part, ...]:
-    """The parts of a trajectory from a row on; the last one may have no rows, but events.
+def parts_of(
+    trajectory: Trajectory, first: int = 0, end: int | None = None, has_events: bool | None = None
+) -> tuple[Part, ...]:
+    """The parts of some rows of a trajectory; the last one may have no rows, but events.
 
-    What takes place before a first row inside the trajectory belongs to the way there.
+    Args:
+        trajectory: the program.
+        first: its first row.
+        end: the row behind the last one; behind that of all rows, the default, comes what takes place at the end.
+        has_events: whether what takes place before the first row belongs to them; by default that is so for row 0, and
+            with a row inside the trajectory it belongs to the way there.
     """
     count = len(trajectory)
-    rows = sorted({first, *(each.row for each in trajectory.events if each.row > first), count})
+    end = count + 1 if end is None else end
+    has_events = first == 0 if has_events is None else has_events
+    stop = min(end, count)
+    cuts = {first, *(each.row for each in trajectory.events if first < each.row < end)}
+    rows = sorted(cuts | {count} if end > count else cuts)
     found = []
-    for begin, end in zip(rows, [*rows[1:], count], strict=True):
-        events = tuple(each for each in trajectory.events if each.row == begin and (begin > first or first == 0))
-        if end > begin or events:
-            found.append(Part(begin, end, events))
+    for begin, following in zip(rows, [*rows[1:], stop], strict=True):
+        events = tuple(each for each in trajectory.events if each.row == begin and (begin > first or has_events))
+        if following > begin or events:
+            found.append(Part(begin, following, events))
     return tuple(found)
 
 
@@ -115,3 +130,53 @@ def _kept_lines(rows: Trajectory, kept: list[int], tolerances: Tolerances) -> Tr
     tolerance: Array = np.array(rows.tip_tolerance)
     tolerance[kept] = np.where(tolerance[kept] > 0, tolerance[kept], tolerances.tip) * _LESS
     return replace(rows, tip_tolerance=tolerance)
+
+
+@dataclass(frozen=True)
+class PathPoint:
+    """A place on a trajectory.
+
+    Attributes:
+        row: of the segment.
+        share: of the segment, from 0 at its start to 1 at its end.
+    """
+
+    row: int
+    share: float
+
+
+def subpath(trajectory: Trajectory, start: PathPoint, end: PathPoint) -> Trajectory:
+    """The part between two places.
+
+    Args:
+        trajectory: one without events.
+        start: where it begins.
+        end: a place behind it.
+    """
+    rows = rows_of(trajectory, start.row, end.row + 1)
+    share = np.ones(len(rows))
+    share[-1] = end.share
+    share[0] -= start.share
+    tip, axis, spin = _poses(rows, np.array([0, len(rows) - 1]), np.array([start.share, end.share]))
+    tips, axes, spins = np.array(rows.tip), np.array(rows.axis), np.array(rows.spin)
+    tips[-1], axes[-1], spins[-1] = tip[1], axis[1], spin[1]
+    return replace(
+        rows,
+        tip=tips,
+        axis=axes,
+        spin=spins,
+        sweep=rows.sweep * share,
+        length=rows.length * share,
+        angle=rows.angle * share,
+        start_tip=tip[0],
+        start_axis=axis[0],
+        start_spin=float(spin[0]),
+    )
+
+
+def _poses(rows: Trajectory, segment: Array, share: Array) -> tuple[Array, Array, Array]:
+    """Tips (K, 3), axes (K, 3) and spins (K,) at shares of segments, as programmed."""
+    segments = Segments.of(rows)
+    u = share * segments.extent[segment]
+    tip, axis, spin = (at(segment, u)[0] for at in (segments.tip_at, segments.axis_at, segments.spin_at))
+    return tip, axis, spin

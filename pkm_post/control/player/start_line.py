@@ -2,8 +2,9 @@
 """Start line: begin a trajectory at a line of its source, after an abort or a loss of power.
 
 What the rows before the line have switched on is found, spindle, coolant and tool; the way to the line is that of an
-approach: up along the tool axis, across, and down along the axis of the start, planned, certified and checked for reach
-like any move by hand. Spindle and coolant are switched on above the start, before the last move down.
+approach: up along the tool axis, across above everything that the program reaches to, and down along the axis of the
+start, planned, certified and checked for reach like any move by hand, and against part, stock and fixtures where these
+are known. Spindle and coolant are switched on above the start, before the last move down.
 
 Enters: a trajectory, a line, a machine that stands anywhere with the tool of that line in its spindle. Leaves: the row,
 and a machine at its beginning.
@@ -11,6 +12,7 @@ and a machine at its beginning.
 
 from __future__ import annotations
 
+import logging
 from dataclasses import replace
 
 import numpy as np
@@ -21,10 +23,13 @@ from pkm_post.control.link.tool_pose import pose_from_home
 from pkm_post.control.numerical_control.execute import execute, wait_for_rest
 from pkm_post.control.numerical_control.manual_moves import approach_trajectory
 from pkm_post.control.numerical_control.plan import Plan, planned
-from pkm_post.control.player.stop_events import TOLERANCES, Task, pose_before, run_events
-from pkm_post.model import Event, Refused, Trajectory
+from pkm_post.control.player.approach_check import approach_faults
+from pkm_post.control.player.stop_events import TOLERANCES, PlayContext, pose_before, run_events
+from pkm_post.model import Event, Refused, Trajectory, errors
 from pkm_post.options import APPROACH_MM_S
 from pkm_post.toolpath import modal_events
+
+_log = logging.getLogger(__name__)
 
 _THERE = "C201"
 """The tool stands where the approach leads to."""
@@ -33,20 +38,21 @@ _SLOWEST = 0.05
 _MORE_S = 30.0
 
 
-def go_to_row(task: Task, row: int, feed: float = APPROACH_MM_S) -> None:
+def go_to_row(task: PlayContext, row: int, feed: float = APPROACH_MM_S, repeat_codes: bool = False) -> None:
     """Bring the tool to the start of a row, with what has to be switched on.
 
     Args:
         task: the program and the machine.
         row: where to begin.
         feed: of the tip, mm/s; while the tip stands, degrees per second.
+        repeat_codes: whether M codes of the machine are switched on as well.
 
     Raises:
         NotReadyError: the pose of the tool is unknown, or the machine is not ready.
         Refused: the way is not certified.
         PmacError: it did not arrive.
     """
-    events = modal_events(task.trajectory, row)
+    events = modal_events(task.trajectory, row, repeat_codes)
     plan = approach_to_row(task, row, events, feed)
     if plan is None:
         if events:
@@ -58,7 +64,7 @@ def go_to_row(task: Task, row: int, feed: float = APPROACH_MM_S) -> None:
         raise PmacError("the approach did not arrive: " + "; ".join(status.fault_texts() or ("it is held",)))
 
 
-def approach_to_row(task: Task, row: int, events: tuple[Event, ...], feed: float) -> Plan | None:
+def approach_to_row(task: PlayContext, row: int, events: tuple[Event, ...], feed: float) -> Plan | None:
     """The way to the start of a row, with events above it; None where the tool is there.
 
     Raises:
@@ -69,11 +75,17 @@ def approach_to_row(task: Task, row: int, events: tuple[Event, ...], feed: float
     here = pose_from_home(machine, settled_status(task.session, settings).commanded, length)
     if here is None:
         raise NotReadyError(["no pose of the platform reachable in small steps from home has these strut lengths"])
-    way, diagnostics = approach_trajectory(machine, here, start, length, feed)
+    free = float(task.trajectory.tip[:, 2].max())
+    way, diagnostics = approach_trajectory(machine, here, start, length, feed, free)
     if way is None:
         if [each.code for each in diagnostics] == [_THERE]:
             return None
         raise Refused(diagnostics)
+    touched = approach_faults(task, row, way)
+    for each in touched:
+        _log.warning("%s", each)
+    if errors(touched):
+        raise Refused(errors(touched))
     plan, diagnostics = planned(_with_events(way, events), machine, settings, TOLERANCES)
     if plan is None:
         raise Refused(diagnostics)

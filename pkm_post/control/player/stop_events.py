@@ -18,7 +18,7 @@ from pkm_post.control.numerical_control.execute import execute, wait_for_rest
 from pkm_post.control.numerical_control.manual_moves import stationary_trajectory
 from pkm_post.control.numerical_control.plan import planned
 from pkm_post.control.player.sections import rows_of
-from pkm_post.model import Event, EventKind, Machine, Refused, Tolerances, Trajectory
+from pkm_post.model import EMPTY_SETUP, Event, EventKind, Machine, Refused, Setup, Tolerances, Trajectory
 from pkm_post.toolpath import ToolPose
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
@@ -36,7 +36,7 @@ def pose_before(trajectory: Trajectory, row: int) -> tuple[ToolPose, float]:
 
 
 @dataclass(frozen=True)
-class Task:
+class PlayContext:
     """What is played, and where.
 
     Attributes:
@@ -44,15 +44,17 @@ class Task:
         machine: its geometry and limits.
         settings: of its controller.
         trajectory: the program.
+        setup: part, stock and fixtures, where known.
     """
 
     session: Session
     machine: Machine
     settings: AnySettings
     trajectory: Trajectory
+    setup: Setup = EMPTY_SETUP
 
 
-def run_events(task: Task, row: int, events: tuple[Event, ...]) -> None:
+def run_events(task: PlayContext, row: int, events: tuple[Event, ...]) -> None:
     """Carry out events before a row, and wait until they are done.
 
     Raises:

@@ -4,17 +4,34 @@
 The worker reads nothing else meanwhile; what the player reads is its state. Stops that are ordered of the worker come
 first, and the play goes on behind a hold. When the worker is closed, the play ends, and the machine rests on the path.
 
-Enters: a connection, a trajectory, orders from the thread of the window. Leaves: the newest state, and a result.
+Enters: a connection, a trajectory, orders from the thread of the window. Leaves: the newest state, notes, and a result.
 """
 
 from __future__ import annotations
 
+import logging
+import queue
 from concurrent.futures import Future
 
 from pkm_post.control.numerical_control.connection import Connection
-from pkm_post.control.player.orders import Order, PlayOptions, PlayState
+from pkm_post.control.player.orders import HELD_BACK, Order, PlayOptions, PlayState
 from pkm_post.control.player.play import Host, Player, PlayResult
 from pkm_post.model import Tolerances, Trajectory
+
+_log = logging.getLogger(__package__)
+"""All modules of the player write to loggers below this one."""
+
+
+class _Notes(logging.Handler):
+    """Puts records into a queue."""
+
+    def __init__(self, notes: queue.SimpleQueue[logging.LogRecord]) -> None:
+        super().__init__()
+        self._notes = notes
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Called by the logger, in the worker's thread."""
+        self._notes.put(record)
 
 
 class WindowPlay:
@@ -22,6 +39,7 @@ class WindowPlay:
 
     Attributes:
         state: the newest state; None before the first one.
+        notes: what the player has noted beside its states, such as a retract that cannot be.
         done: the result, or why it ended.
     """
 
@@ -38,6 +56,7 @@ class WindowPlay:
         """
         worker, target = connection.worker, connection.target
         self.state: PlayState | None = None
+        self.notes: queue.SimpleQueue[logging.LogRecord] = queue.SimpleQueue()
         host = Host(worker.see, worker.give_way)
         self._player = Player(
             connection.session,
@@ -49,16 +68,31 @@ class WindowPlay:
             self._show,
             host=host,
         )
-        self.done: Future[PlayResult] = worker.submit(lambda _control: self._player.play())
+        self.done: Future[PlayResult] = worker.submit(lambda _control: self._played())
 
     @property
     def waits_for(self) -> str:
         """What it waits for the operator for; empty while it does not."""
         return "" if self.state is None else self.state.waits_for
 
+    @property
+    def is_held_back(self) -> bool:
+        """Whether it waits to be resumed, since a hold found nothing that ran."""
+        return self.waits_for == HELD_BACK
+
     def order(self, order: Order) -> None:
         """Give an order; return at once."""
         self._player.order(order)
+
+    def _played(self) -> PlayResult:
+        """Called in the worker's thread: play, with the notes of the player kept meanwhile."""
+        handler = _Notes(self.notes)
+        _log.setLevel(logging.INFO)
+        _log.addHandler(handler)
+        try:
+            return self._player.play()
+        finally:
+            _log.removeHandler(handler)
 
     def _show(self, state: PlayState) -> None:
         """Called in the worker's thread."""

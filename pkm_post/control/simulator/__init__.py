@@ -5,7 +5,7 @@ It is written from the manuals and imports no other room: its verdict on a progr
 the program.
 """
 
-from pkm_post.control.simulator.controller import LEAST_MEMORY, Controller, SimulatorSettings
+from pkm_post.control.simulator.controller import LEAST_MEMORY, Controller, SimulatorSettings, function_programs
 from pkm_post.control.simulator.errors import ERROR_TEXTS, CommandError
 from pkm_post.control.simulator.ethernet_port import EthernetPort
 from pkm_post.control.simulator.gpascii_shell import GpasciiShell, refused_line
@@ -24,5 +24,6 @@ __all__ = [
     "SerialPort",
     "Server",
     "SimulatorSettings",
+    "function_programs",
     "refused_line",
 ]

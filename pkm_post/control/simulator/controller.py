@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 
@@ -40,6 +40,20 @@ MACHINE_CODES: tuple[str, ...] = (
 )
 """Programs behind M and T codes, for a machine without hardware: M3, M4 and M5 write 1, -1 and 0 to P7001, M8, M7 and
 M9 write 1, 2 and 0 to P7002; M0 and M1 stop until R; T accepts any tool from 0 to 99, and M6 changes it instantly."""
+
+
+def function_programs(numbers: Iterable[int]) -> list[str]:
+    """Lines that add programs behind M codes of a machine, such as 21: they leave their number in P7004.
+
+    Args:
+        numbers: of codes that have no program yet.
+    """
+    lines = []
+    for number in sorted(set(numbers)):
+        hundreds, rest = divmod(number, 100)
+        label = f"N{1000 * rest} P7004={number} RETURN"
+        lines += ["CLOSE", f"OPEN PROG {1001 + 10 * hundreds}", label, "CLOSE"]
+    return lines
 
 
 LEAST_MEMORY = 1000

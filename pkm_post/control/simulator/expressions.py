@@ -16,7 +16,7 @@ from functools import cache
 from typing import Protocol
 
 from pkm_post.control.simulator.errors import DATA, CommandError
-from pkm_post.control.simulator.variables import WORDS, Numbers
+from pkm_post.control.simulator.variables import DOUBLES, ELEMENT, WORDS, Numbers
 
 
 @cache
@@ -128,6 +128,9 @@ class Scope(Protocol):
     def write(self, letter: str, number: int, value: float) -> None:
         """Assign a value to a variable."""
 
+    def element(self, name: str) -> float:
+        """The value of an element of a Power PMAC's data structure."""
+
 
 @dataclass(frozen=True)
 class Expression:
@@ -215,6 +218,9 @@ def _factor(scanner: Scanner, depth: int) -> Expression:
         return Expression(f"({inner.text})", inner.words + 1, inner.value)
     if match := scanner.take(rf"(?P<name>{'|'.join(FUNCTIONS)})\("):
         return _applied(match["name"].upper(), _closed(scanner, depth), scanner.numbers)
+    if scanner.numbers is DOUBLES and (match := scanner.take(ELEMENT)):
+        name = match["element"]
+        return Expression(name, 1, lambda scope: scope.element(name))
     if scanner.take("-"):
         inner = expression_factor(scanner, depth)
         return Expression(f"-{inner.text}", inner.words, lambda scope: -inner.value(scope), inner.constant)

@@ -16,10 +16,13 @@ from dataclasses import dataclass
 
 from pkm_post.control.simulator.controller import Controller
 from pkm_post.control.simulator.errors import DATA, CommandError
-from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SYSTEMS
+from pkm_post.control.simulator.programs import LETTERS
+from pkm_post.control.simulator.variables import ELEMENT, SIMULATED_MOTORS, SYSTEMS
 
-NAME = r"(?P<element>(?:Sys|(?P<kind>Motor|Coord)\[(?P<index>[0-9]{1,3})\])\.[A-Za-z]+(?:\[[0-9]+\])?)"
 _ROLLOVER = re.compile(r"posrollover\[([0-9]|1[0-9]|2[0-9]|3[01])\]")
+_FACTOR = re.compile(r"coordsf\[([0-9]|[12][0-9]|3[01])\]")
+_SLEW = 2.0**23
+"""Of ms per servo cycle, the unit of Isx94 and Isx95; no manual that was at hand has that of the elements."""
 _LEAST_LIMIT = 1e-6
 """counts: stands for a soft limit at 0, which is none for an I-variable."""
 
@@ -76,6 +79,8 @@ _COORD: dict[str, Converted] = {
     "segmovetime": Converted(13, to_variable=_only_zero),
     "ta": Converted(87),
     "ts": Converted(88),
+    "timebaseslew": Converted(94, *_times(_SLEW)),
+    "feedholdslew": Converted(95, *_times(_SLEW)),
 }
 
 
@@ -97,6 +102,8 @@ class Elements:
             return {"maxcoords": float(SYSTEMS), "maxmotors": SIMULATED_MOTORS + 1.0}[element]
         if _ROLLOVER.fullmatch(element) and kind == "coord":
             return 0.0
+        if (factor := _FACTOR.fullmatch(element)) and kind == "motor":
+            return self._factor(index, int(factor[1]))
         if (index, element) in self._limits and kind == "motor":
             return self._limits[index, element]
         table = _MOTOR if kind == "motor" else _COORD
@@ -123,6 +130,13 @@ class Elements:
         if entry is None or converted is None:
             raise CommandError(DATA)
         self._controller.variables.write("I", _number(kind, index, entry.which), converted)
+
+    def _factor(self, motor: int, axis: int) -> float:
+        """The scale factor of a motor's linear axis definition for an axis, by its place among all letters."""
+        system = self._controller.system_of(motor)
+        definition = system.axes.definitions[motor] if system else None
+        is_of_it = definition is not None and LETTERS.find(definition.letter) == axis
+        return definition.scale if definition and is_of_it else 0.0
 
     def _set_limits(self, motor: int) -> None:
         """Soft limits act while the higher one is above the lower one [PowerPMAC, Overtravel Limits]."""
@@ -155,7 +169,7 @@ class Elements:
 
 
 def _split(name: str) -> tuple[str, int, str]:
-    match = re.fullmatch(NAME, name, re.IGNORECASE)
+    match = re.fullmatch(ELEMENT, name, re.IGNORECASE)
     if match is None:
         raise CommandError(DATA)
     kind, index = (match["kind"] or "sys").lower(), int(match["index"] or 0)

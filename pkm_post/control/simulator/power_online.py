@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -20,10 +20,10 @@ from pkm_post.control.simulator.errors import DATA, NO_PROGRAM, RUNNING, Command
 from pkm_post.control.simulator.expressions import Scanner, expression, variable_number
 from pkm_post.control.simulator.machine_state import PortSession
 from pkm_post.control.simulator.modal_state import parse_axis_definition
-from pkm_post.control.simulator.power_elements import NAME, Elements
+from pkm_post.control.simulator.power_elements import Elements
 from pkm_post.control.simulator.power_program import BlockReader, listed_line, without_comment
 from pkm_post.control.simulator.programs import Program
-from pkm_post.control.simulator.variables import DOUBLES, MOTORS, SIMULATED_MOTORS, SYSTEMS, SystemScope
+from pkm_post.control.simulator.variables import DOUBLES, ELEMENT, MOTORS, SIMULATED_MOTORS, SYSTEMS, SystemScope
 
 HIGHEST_VARIABLE = 8191
 """The P-variables of a Power PMAC go to 65535; those of this simulator to this one."""
@@ -41,17 +41,26 @@ class PowerPmac:
         elements: its data structure.
     """
 
-    def __init__(self, memory_words: int | None = None, form: type[Controller] = Controller) -> None:
+    def __init__(
+        self,
+        memory_words: int | None = None,
+        form: type[Controller] = Controller,
+        motors: SimulatorSettings | None = None,
+    ) -> None:
         """Create one, as after a reset.
 
         Args:
             memory_words: program memory in words of 8 bytes; 16 MiB by default, as projects have it.
             form: of motors and programs; one that records them, for instance.
+            motors: settings of its motors and of the period; other settings have no meaning here.
         """
         words = DEFAULT_WORDS if memory_words is None else memory_words
-        settings = SimulatorSettings(numbers=DOUBLES, memory_words=words, identity="604020", firmware="2.8.3.0")
+        settings = replace(
+            motors or SimulatorSettings(), numbers=DOUBLES, memory_words=words, identity="604020", firmware="2.8.3.0"
+        )
         self.controller = form(settings)
         self.elements = Elements(self.controller)
+        self.controller.inputs.element = self.elements.read
 
 
 @dataclass(eq=False)
@@ -293,7 +302,7 @@ COMMANDS: tuple[tuple[str, Act], ...] = (
     (r"#(?P<number>[0-9]{1,3}) *->", _axis),
     (r"(?P<sign>[#&])(?P<number>[0-9]{1,3})\?", _status),
     (r"(?P<sign>[#&])(?P<number>[0-9]{1,3})", _address),
-    (NAME, _element),
+    (ELEMENT, _element),
     (r"open *prog *(?P<number>[0-9]{1,5})", _open),
     (rf"close{_ALONE}", _close),
     (r"list *prog *(?P<number>[0-9]{1,5})", _list),
@@ -313,6 +322,6 @@ COMMANDS: tuple[tuple[str, Act], ...] = (
     (rf"(?:home|hm)(?P<here>z)?{_ALONE}", _as_turbo(online_motion.home)),
     (rf"(?:kill|k){_ALONE}", _as_turbo(online_motion.kill)),
     (rf"(?P<what>[pvf]){_ALONE}", _report),
-    (r"(?P<letter>[PQ])(?=[0-9(])", _variable),
+    (r"(?P<letter>[PQM])(?=[0-9(])", _variable),
 )
 """Command patterns and what carries them out; the first match wins [PowerPMAC, Command Syntax Summary]."""

@@ -23,6 +23,7 @@ _CONDITION = re.compile(r" *(?P<word>if|while) *\(", re.IGNORECASE)
 _BLOCK = re.compile(r"\}|(?<![A-Z])(?:if|while) *\(", re.IGNORECASE)
 _OF_CONDITIONS = (("&&", " AND "), ("||", " OR "), ("<>", "!="), (">=", "!<"), ("<=", "!>"), ("==", "="))
 """Operators of conditions, and those of the Turbo PMAC; the comparison with one sign comes last."""
+_HOLD = re.compile(r"(?<![A-Z])hold([0-9]{1,3})(?![0-9])", re.IGNORECASE)
 _ENDS = {"IF": "ENDIF", "WHILE": "ENDWHILE"}
 
 
@@ -55,7 +56,7 @@ class BlockReader:
         """
         text = without_comment(line)
         if '"' not in text:
-            text = _LABEL.sub(r"N\1 ", text.replace(";", " "))
+            text = _HOLD.sub(r'COMMAND"&\1H"', _LABEL.sub(r"N\1 ", text.replace(";", " ")))
         found: list[Statement] = []
         while text := text.strip():
             text = self._block(text, found) or self._plain(text, found)

@@ -86,7 +86,7 @@ class Server:
         self._selector = selectors.DefaultSelector()
         self._ethernet, self._channels = SerialPort(controller), dict[int | socket.socket, Channel]()
         self._closers: list[Callable[[], None]] = []
-        self._listeners: dict[socket.socket, float] = {}
+        self._listeners: dict[socket.socket, tuple[float, Callable[[socket.socket], None]]] = {}
         self._serial: list[tuple[SerialPort, Channel]] = []
         self._log_ins: list[tuple[socket.socket, GpasciiShell]] = []
 
@@ -99,9 +99,26 @@ class Server:
         Raises:
             OSError: the port is taken.
         """
+        return self._add_listener(port, lambda connection: self._attach(connection, EthernetPort(self._ethernet)))
+
+    def add_shell(self, machine: PowerPmac) -> int:
+        """Offer the shell of a Power PMAC's computer at a free local TCP port, without ssh: for who started it.
+
+        Args:
+            machine: the Power PMAC, whose controller is the one that is served.
+
+        Returns:
+            The port.
+
+        Raises:
+            OSError: there is none.
+        """
+        return self._add_listener(0, lambda connection: self._log_ins.append((connection, GpasciiShell(machine))))
+
+    def _add_listener(self, port: int, attach: Callable[[socket.socket], None]) -> int:
         listener = socket.create_server((LOOPBACK, port))
         listener.setblocking(False)
-        self._listen(listener)
+        self._listen(listener, attach)
         self._closers.append(listener.close)
         return int(listener.getsockname()[1])
 
@@ -158,17 +175,24 @@ class Server:
             now = time.monotonic()
             self._pass(1000 * self._speed * min(now - before, LONGEST_LAPSE_S))
             before = now
-            self._take_log_ins()
-            for key, _ in ready:
-                key.data()
-            for line, channel in self._serial:
-                output = line.output()
-                channel.unsent += output if channel.is_heard else b""
-            for source, channel in list(self._channels.items()):
-                channel.take()
-                self._send(source, channel)
-                self._hear(source, channel)
-            self._listen_again(now)
+            self._serve(ready)
+
+    def serve(self) -> None:
+        """Serve what has come from clients, once and without waiting; simulated time stands."""
+        self._serve(self._selector.select(0))
+
+    def _serve(self, ready: list[tuple[selectors.SelectorKey, int]]) -> None:
+        self._take_log_ins()
+        for key, _ in ready:
+            key.data()
+        for line, channel in self._serial:
+            output = line.output()
+            channel.unsent += output if channel.is_heard else b""
+        for source, channel in list(self._channels.items()):
+            channel.take()
+            self._send(source, channel)
+            self._hear(source, channel)
+        self._listen_again(time.monotonic())
 
     def _pass(self, ms: float) -> None:
         """Advance simulated time; what does not fit into a turn is lost."""
@@ -185,28 +209,30 @@ class Server:
             closer()
         self._selector.close()
 
-    def _listen(self, listener: socket.socket) -> None:
-        self._selector.register(listener, selectors.EVENT_READ, lambda: self._accept(listener))
+    def _listen(self, listener: socket.socket, attach: Callable[[socket.socket], None]) -> None:
+        self._selector.register(listener, selectors.EVENT_READ, lambda: self._accept(listener, attach))
 
     def _listen_again(self, now: float) -> None:
-        for listener, due in list(self._listeners.items()):
+        for listener, (due, attach) in list(self._listeners.items()):
             if now >= due:
                 del self._listeners[listener]
-                self._listen(listener)
+                self._listen(listener, attach)
 
     def _has_untaken(self) -> bool:
         return any(channel.untaken and channel.is_heard for channel in self._channels.values())
 
-    def _accept(self, listener: socket.socket) -> None:
+    def _accept(self, listener: socket.socket, attach: Callable[[socket.socket], None]) -> None:
         try:
             connection, _ = listener.accept()
         except OSError:  # out of descriptors, or the client has disconnected: serve the others meanwhile
             self._selector.unregister(listener)
-            self._listeners[listener] = time.monotonic() + NO_DESCRIPTOR_S
+            self._listeners[listener] = time.monotonic() + NO_DESCRIPTOR_S, attach
             return
-        connection.setblocking(False)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        port = EthernetPort(self._ethernet)
+        attach(connection)
+
+    def _attach(self, connection: socket.socket, port: EthernetPort) -> None:
+        connection.setblocking(False)
         self._watch(connection, Channel(connection.recv, _sender(connection), connection.close, port))
 
     def _take_log_ins(self) -> None:

@@ -131,8 +131,18 @@ def _defaults() -> dict[int, float]:
     return values
 
 
+ELEMENT = r"(?P<element>(?:Sys|(?P<kind>Motor|Coord)\[(?P<index>[0-9]{1,3})\])\.[A-Za-z]+(?:\[[0-9]+\])?)"
+"""Name of an element of a Power PMAC's data structure."""
+
+
 class Inputs(dict[int, Callable[[], float]]):
-    """What inputs of the machine read, by number of their M-variable. They belong to no saved state."""
+    """What inputs of the machine read, by number of their M-variable. They belong to no saved state.
+
+    Attributes:
+        element: the value of an element of the data structure, by its name; a Turbo PMAC has none.
+    """
+
+    element: Callable[[str], float] | None = None
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Inputs:
         return Inputs()
@@ -164,6 +174,16 @@ class Variables:
         if letter == "M" and number in self.inputs:
             return self.inputs[number]()
         return self._table(letter, number, system).get(number, 0.0)
+
+    def element(self, name: str) -> float:
+        """The value of an element of the data structure.
+
+        Raises:
+            CommandError: there is none of this name.
+        """
+        if self.inputs.element is None:
+            raise CommandError(DATA)
+        return self.inputs.element(name)
 
     def write(self, letter: str, number: int, value: float, system: int = 1) -> None:
         """Assign a value to a variable.
@@ -212,6 +232,10 @@ class SystemScope:
     def read(self, letter: str, number: int) -> float:
         """The value of a variable."""
         return self.variables.read(letter, number, self.system)
+
+    def element(self, name: str) -> float:
+        """The value of an element of the data structure."""
+        return self.variables.element(name)
 
     def write(self, letter: str, number: int, value: float) -> None:
         """Assign a value to a variable."""

@@ -22,6 +22,7 @@ from pkm_post.freecad_app.commands.words import (
     EVENTS,
     LETTERS,
     MOVES,
+    TAPPING,
     Array,
     CommandDiagnostics,
     Words,
@@ -40,12 +41,12 @@ _UNIT_TOLERANCE = 1e-3
 _SIX_DECIMALS = 1e-6
 """FreeCAD stores six decimals: a shorter vector has no direction, and a shorter radius counts as zero."""
 
-_CODES = (*MOVES, *CYCLES, *EVENTS, "G80", "G98", "G99")
+_CODES = (*MOVES, *CYCLES, *TAPPING, *EVENTS, "G80", "G98", "G99")
 """The codes that do something; the others that are permitted name what holds anyway."""
 _ANY_TOOL = Tool(number=0, name="", diameter=0.0, corner_radius=0.0, length=0.0)
 """The tools of a job are not read from its commands."""
 _OPTIONS = gcode.ReadOptions(default_tool=_ANY_TOOL, feed_time=1.0, needs_motion=False, most_reported=1)
-_CHECKED_BEFORE = {"G428"}
+_CHECKED_BEFORE = {"G425", "G428"}
 """Diagnostics of blocks that checks of the words give as well."""
 _FAULTS = {"G408": "J105", "G409": "J107", "G410": "J107"}
 """Diagnostics of blocks as those of commands; others are of cycles or arcs, or of words."""
@@ -57,7 +58,11 @@ _TEXTS = {
 
 
 def read_commands(
-    commands: Iterable[Any], source: str, operation: str, start: ArrayLike = (np.nan, np.nan, np.nan)
+    commands: Iterable[Any],
+    source: str,
+    operation: str,
+    start: ArrayLike = (np.nan, np.nan, np.nan),
+    spindle_axis: bool = False,
 ) -> tuple[Program | None, tuple[Diagnostic, ...]]:
     """Convert one operation to a program without tools, or report the faults of its commands.
 
@@ -66,6 +71,7 @@ def read_commands(
         source: name of the document.
         operation: name of the operation.
         start: (3,) tool tip before the first command, mm; NaN if it is unknown.
+        spindle_axis: whether the spindle of the machine is an axis: without one tapping is refused.
 
     Returns:
         The program, with command numbers from 1 as its lines; None if there are errors.
@@ -75,13 +81,14 @@ def read_commands(
         words = Words.of(commands)
     except UnicodeDecodeError as fault:
         return None, (undecodable_command(fault, source, operation),)
-    check_words(words, diagnostics)
+    check_words(words, diagnostics, spindle_axis)
     if diagnostics.has("J119"):
         return None, diagnostics.in_order()
 
     axes = _tool_axes(words, diagnostics)
     known = np.asarray(start, dtype=np.float64)
-    options = _OPTIONS if np.isnan(known).any() else replace(_OPTIONS, start=tuple(known.tolist()))
+    options = replace(_OPTIONS, spindle_axis=spindle_axis and not diagnostics.has("J123"))
+    options = options if np.isnan(known).any() else replace(options, start=tuple(known.tolist()))
     program, faults = gcode.resolve(_blocks(words, known, source), options)
     for fault in (each for each in faults if each.code not in _CHECKED_BEFORE):
         _add(fault, words, diagnostics)
@@ -99,6 +106,8 @@ def _blocks(words: Words, start: Array, source: str) -> gcode.Blocks:
     columns = {letter: np.where(_takes(words, letter), words.value(letter), np.nan) for letter in "XYZRQPSTF"}
     columns |= {letter: np.where(words.among("G2", "G3"), words.value(letter), np.nan) for letter in "IJ"}
     columns["F"][words.among("G0")] = np.nan
+    taps = words.among(*TAPPING)
+    columns["F"][taps] *= columns["S"][taps] / 60  # from a lead in mm to mm/s
     for letter, before in zip("XYZ", start, strict=True):
         # a move without any of them, which turns the tool or rests, is a move to where the tool is
         idle = words.among(*MOVES) & (words.count("XYZ") == 0)
@@ -129,7 +138,9 @@ def _add(fault: Diagnostic, words: Words, diagnostics: CommandDiagnostics) -> No
     """Add the diagnostic of a block as that of its command, unless other checks have found it."""
     row = fault.place.line - 1
     name, line = words.name(row), np.array([fault.place.line])
-    code = _FAULTS.get(fault.code, "J122" if name in CYCLES else "J107" if name in ("G2", "G3") else "J104")
+    code = _FAULTS.get(
+        fault.code, "J122" if name in (*CYCLES, *TAPPING) else "J107" if name in ("G2", "G3") else "J104"
+    )
     if fault.code == "G406" and fault.found.startswith("F"):
         code = "J105"
     if code == "J104" and diagnostics.has_errors():
@@ -146,7 +157,7 @@ def _tool_axes(words: Words, diagnostics: CommandDiagnostics) -> Array:
     moves, given, count = words.among(*MOVES), words.axis_words(), words.count("IJK")
     if not given.any():
         return np.broadcast_to(np.array([0.0, 0.0, 1.0]), (len(words), 3))
-    drilled = words.among(*CYCLES)
+    drilled = words.among(*CYCLES, *TAPPING)
     diagnostics.add("J122", drilled, lambda row: f"{words.name(row)}: other moves have I J K words")
     lacking = moves & (words.among("G1") | given) & (count < 3)
     diagnostics.add("J109", lacking, lambda row: f"{count[row]} of the words I J K")

@@ -33,6 +33,9 @@ CYCLES: dict[str, str] = {
     "G89": "XYZRPF",
 }
 """The same for drilling cycles, except cycles that turn or has_errors the spindle."""
+TAPPING: dict[str, str] = dict.fromkeys(("G74", "G84"), "XYZRPSF")
+"""The same for tapping, on machines whose spindle is an axis. Their F is the lead in mm, as CAM of FreeCAD 1.1 writes
+it; that of 1.0 writes neither S nor F."""
 _OTHERS: dict[str, str] = {
     "G4": "P",
     "M0": "",
@@ -48,7 +51,7 @@ _OTHERS: dict[str, str] = {
     "G18": "",
     "G19": "",
 } | dict.fromkeys(("G21", "G40", "G49", "G54", "G80", "G90", "G94", "G98", "G99"), "")
-LETTERS: dict[str, str] = MOVES | CYCLES | _OTHERS
+LETTERS: dict[str, str] = MOVES | CYCLES | TAPPING | _OTHERS
 """Every supported code with its permitted letters; all others are refused."""
 
 EVENTS: dict[str, tuple[EventKind, str, float]] = {
@@ -219,11 +222,15 @@ def undecodable_command(fault: UnicodeDecodeError, source: str, operation: str) 
     return Diagnostic("J135", Place(source, operation), repr(fault.object))
 
 
-def check_words(words: Words, diagnostics: CommandDiagnostics) -> None:
-    """Report unsupported commands and words."""
+def check_words(words: Words, diagnostics: CommandDiagnostics, spindle_axis: bool = False) -> None:
+    """Report unsupported commands and words; tapping is supported where the spindle is an axis."""
     for code in words.codes:
         if code not in LETTERS and code != COMMENT:
             diagnostics.add("J123" if code in SPINDLE_SYNCHRONISED else "J104", words.among(code), code)
+    for code in TAPPING:
+        diagnostics.add("J123", words.among(code) & (not spindle_axis), code)
+        lacks = words.among(code) & ~(words.has("S") & words.has("F")) & spindle_axis
+        diagnostics.add("J123", lacks, f"{code} without S and F")
     known = words.among(*LETTERS)
     for letter, given in words.given.items():
         owners = [code for code, letters in LETTERS.items() if letter in letters]
@@ -233,11 +240,11 @@ def check_words(words: Words, diagnostics: CommandDiagnostics) -> None:
     for code, letter in _NEEDED.items():
         diagnostics.add("J104", words.among(code) & ~words.has(letter), f"{code} without {letter}")
         diagnostics.add("J104", words.among(code) & (words.value(letter) < 0), _shown(words, letter))
-    diagnostics.add("J124", words.among("G4", *CYCLES) & (words.value("P") > LONG_DWELL), _shown(words, "P"))
+    diagnostics.add("J124", words.among("G4", *CYCLES, *TAPPING) & (words.value("P") > LONG_DWELL), _shown(words, "P"))
     number = words.value("T")
     diagnostics.add("J104", words.among("M6") & np.isfinite(number) & (number != np.round(number)), _shown(words, "T"))
     diagnostics.add("J106", words.among("G2", "G3") & ~_in_xy_plane(words), "an arc after G18 or G19")
-    diagnostics.add("J122", words.among(*CYCLES) & ~_in_xy_plane(words), "a cycle after G18 or G19")
+    diagnostics.add("J122", words.among(*CYCLES, *TAPPING) & ~_in_xy_plane(words), "a cycle after G18 or G19")
     diagnostics.add("J106", words.among("G2", "G3") & (np.nan_to_num(words.value("K")) != 0), _shown(words, "K"))
 
 

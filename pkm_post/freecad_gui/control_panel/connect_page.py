@@ -12,6 +12,7 @@ import FreeCAD
 from PySide import QtWidgets
 
 from pkm_post.control.numerical_control import ControlState, Interlock, connection_target
+from pkm_post.freecad_app.core_texts import exception_text, fault_text
 from pkm_post.freecad_gui.control_panel.buttons import plain_button, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.post_fields import editable_box, quantity_field, show_quantity, with_button
@@ -71,7 +72,8 @@ class ConnectPage(QtWidgets.QWidget):
         layout.addRow(translate("ControlPanel", "Port"), self.port)
         layout.addRow(translate("ControlPanel", "Machine"), with_button(self.machine, self._ask_machine))
         layout.addRow(translate("ControlPanel", "Tool length"), self.tool_length)
-        layout.addRow(side_by_side(self.connect, self.train, self.leave))
+        layout.addRow(side_by_side(self.connect, self.leave))
+        layout.addRow(self.train)
 
     def refresh(self, _state: ControlState, found: frozenset[Interlock]) -> None:
         """Enable what is possible."""
@@ -96,10 +98,10 @@ class ConnectPage(QtWidgets.QWidget):
         try:
             target, diagnostics = connection_target(port, name)
         except ValueError as fault:  # invalid port name
-            self._console.message.emit(str(fault), True)
+            self._console.message.emit(exception_text(fault), True)
             return False
         for each in diagnostics:
-            self._console.message.emit(str(each), target is None)
+            self._console.message.emit(fault_text(each), target is None)
         if target is None:
             return False
         FreeCAD.ParamGet(GROUP).SetString(_MACHINE, name)

@@ -7,6 +7,7 @@ polls ten times a second. Nothing here blocks: long calls run in the worker thre
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -29,8 +30,9 @@ from pkm_post.control.numerical_control import (
     program_stops,
 )
 from pkm_post.control.player import Order, PlayResult, WindowPlay
+from pkm_post.freecad_app.core_texts import exception_text, fault_text
 from pkm_post.freecad_gui.background import CallQueue, Then
-from pkm_post.freecad_gui.control_panel.play_texts import result_texts
+from pkm_post.freecad_gui.control_panel.texts import note_text, result_texts
 from pkm_post.model import Diagnostic, Refused
 
 translate = FreeCAD.Qt.translate
@@ -53,6 +55,7 @@ class Console(QtCore.QObject):
         stepping: whether its blocks are in use for single block.
         has_trajectory: whether a trajectory is open, to be played.
         play: the trajectory that is played; None if none is.
+        stop_count: how many stops were ordered; what is being prepared is not begun after one.
         progress: its loaded lines, and the total.
         calls: runs what needs no controller.
     """
@@ -66,9 +69,9 @@ class Console(QtCore.QObject):
         super().__init__(parent)
         self.connection: Connection | None = None
         self.take_job(None)
-        self.has_trajectory, self.play = False, None
+        self.has_trajectory, self.play, self.stop_count = False, None, 0
         self._under_way: list[tuple[Future[Any], Then | None]] = []
-        self.calls = CallQueue(self, lambda fault: self.message.emit(str(fault), True), _REPORTED)
+        self.calls = CallQueue(self, lambda fault: self.message.emit(exception_text(fault), True), _REPORTED)
         self.calls.changed.connect(self.refreshed)
         self._cancelled, self._homing, self._is_wanted = threading.Event(), False, True
         self._timer = QtCore.QTimer(self)
@@ -90,11 +93,10 @@ class Console(QtCore.QObject):
         """Whether orders are pending."""
         return bool(self._under_way)
 
-    def desk(self) -> PanelState:
+    def panel_state(self) -> PanelState:
         """What the panel knows besides the state."""
         return PanelState(
             connected=self.connection is not None,
-            watch_only=self.connection is not None and self.connection.target.watch_only,
             busy=self.has_orders or self.waits,
             has_job=self.job is not None,
             loaded=self.loaded,
@@ -102,13 +104,14 @@ class Console(QtCore.QObject):
             has_trajectory=self.has_trajectory,
             playing=self.play is not None,
             waiting=self.play is not None and bool(self.play.waits_for),
+            held_back=self.play is not None and self.play.is_held_back,
             stepping=self.stepping,
             homing=self._homing,
         )
 
     def found(self) -> frozenset[Interlock]:
         """All current reasons against orders."""
-        return active_interlocks(self.state, self.desk())
+        return active_interlocks(self.state, self.panel_state())
 
     def connect_to(self, target: ConnectionTarget, tool_length: float) -> None:
         """Connect beside the window; mm."""
@@ -142,6 +145,7 @@ class Console(QtCore.QObject):
     def stop(self, call: Call) -> None:
         """Run a stop next: waiting orders are cancelled, and so are their continuations."""
         assert self.connection is not None
+        self.stop_count += 1
         self._cancelled.set()
         self._under_way = [(future, None) for future, _ in self._under_way]
         self._under_way.append((self.connection.worker.submit(call, urgent=True), None))
@@ -166,6 +170,11 @@ class Console(QtCore.QObject):
         self.play = play
         self.refreshed.emit()
 
+    def _show_notes(self) -> None:
+        while self.play is not None and not self.play.notes.empty():
+            record = self.play.notes.get()
+            self.message.emit(note_text(record), record.levelno >= logging.WARNING)
+
     def _played(self, result: PlayResult) -> None:
         for text, is_bad in result_texts(result):
             self.message.emit(text, is_bad)
@@ -189,7 +198,7 @@ class Console(QtCore.QObject):
 
     def _planned(self, plan: Plan | None, diagnostics: tuple[Diagnostic, ...], then: Then, sends: bool) -> None:
         for each in diagnostics:
-            self.message.emit(str(each), plan is None)
+            self.message.emit(fault_text(each), plan is None)
         then(plan)
         if plan is not None and sends:
             self.order(lambda control: control.execute(plan))
@@ -231,6 +240,7 @@ class Console(QtCore.QObject):
         while ended := next((each for each in self._under_way if each[0].done()), None):
             self._under_way.remove(ended)
             self._end(*ended)
+        self._show_notes()
         if self.play is not None and self.play.done.done():
             future, self.play = self.play.done, None
             self._end(future, self._played)
@@ -242,7 +252,7 @@ class Console(QtCore.QObject):
             return
         fault = future.exception()
         if isinstance(fault, _REPORTED):
-            self.message.emit(str(fault), True)
+            self.message.emit(exception_text(fault), True)
         elif fault is not None:
             raise fault
         elif then is not None:

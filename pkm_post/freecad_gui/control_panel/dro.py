@@ -14,7 +14,9 @@ import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.control.link import Status
+from pkm_post.freecad_gui.control_panel.buttons import side_by_side
 from pkm_post.freecad_gui.control_panel.texts import strut_text
+from pkm_post.freecad_gui.theme import theme
 from pkm_post.geometry import Array
 from pkm_post.toolpath import ToolPose
 
@@ -27,8 +29,9 @@ _TITLES = (
     QT_TRANSLATE_NOOP("ControlPanel", "Home"),
     QT_TRANSLATE_NOOP("ControlPanel", "State"),
 )
-_NOTHING = "-"
-_BAD = QtGui.QColor(204, 0, 0)
+_NOTHING, _BETWEEN = "-", 12
+_FARTHEST, _AXIS = "-0000.000 mm", "I -0.000000  J 0.000000  K 0.000000"
+"""Texts for which there is room from the beginning."""
 _MM_DECIMALS = 3
 
 
@@ -47,10 +50,10 @@ class PoseReadout(QtWidgets.QWidget):
         self.work_offset = QtWidgets.QComboBox()
         self.work_offset.setToolTip(translate("ControlPanel", "Frame of the large digits, and of lines of G-code"))
         self.in_work, self.in_machine = (
-            {name: _digits(large=True) for name in "XYZ"},
-            {name: _digits() for name in "XYZ"},
+            {name: _digits(_FARTHEST, large=True) for name in "XYZ"},
+            {name: _digits(_FARTHEST) for name in "XYZ"},
         )
-        self.axis, self.tilt, self.spin = _digits(), _digits(), _digits()
+        self.axis, self.tilt, self.spin = _digits(_AXIS), _digits(), _digits()
         layout = QtWidgets.QGridLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setColumnStretch(1, 1)
@@ -60,14 +63,13 @@ class PoseReadout(QtWidgets.QWidget):
         for row, name in enumerate("XYZ", start=1):
             for column, widget in enumerate((QtWidgets.QLabel(name), self.in_work[name], self.in_machine[name])):
                 layout.addWidget(widget, row, column)
-        below = (
-            (translate("ControlPanel", "Axis"), self.axis),
-            (translate("ControlPanel", "Tilt"), self.tilt),
-            (translate("ControlPanel", "Spin"), self.spin),
-        )
-        for row, (text, label) in enumerate(below, start=4):
-            layout.addWidget(QtWidgets.QLabel(text), row, 0)
-            layout.addWidget(label, row, 1)
+        layout.addWidget(QtWidgets.QLabel(translate("ControlPanel", "Axis")), 4, 0)
+        layout.addWidget(self.axis, 4, 1, 1, 2)
+        layout.addWidget(QtWidgets.QLabel(translate("ControlPanel", "Tilt")), 5, 0)
+        turned = side_by_side(self.tilt, QtWidgets.QLabel(translate("ControlPanel", "Spin")), self.spin)
+        turned.setSpacing(_BETWEEN)
+        layout.addLayout(turned, 5, 1, 1, 2)
+        layout.setVerticalSpacing(2)
 
     def refresh(self, pose: ToolPose | None, machine_from_work: Array) -> None:
         """Show a pose, or that there is none."""
@@ -95,6 +97,7 @@ class StrutTable(QtWidgets.QTableWidget):
         self.setVerticalHeaderLabels([str(number) for number in range(1, 7)])
         self.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
         self.setSelectionMode(QtWidgets.QAbstractItemView.SelectionMode.NoSelection)
+        self.setTabKeyNavigation(False)
         self.horizontalHeader().setStretchLastSection(True)
         self.verticalHeader().setDefaultSectionSize(self.fontMetrics().height() + 4)
         for row in range(6):
@@ -104,14 +107,14 @@ class StrutTable(QtWidgets.QTableWidget):
 
     def refresh(self, status: Status | None) -> None:
         """Show a state, or that none was read."""
+        red = QtGui.QBrush(QtGui.QColor(theme().bad))
         for row in range(6):
             texts = (_NOTHING,) * 4 if status is None else _strut_row(status, row)
             for column, text in enumerate(texts):
                 self.item(row, column).setText(text)
             bad = status is not None and not status.homed[row]
-            colour = QtGui.QBrush(_BAD) if bad else QtGui.QBrush()
-            self.item(row, 2).setForeground(colour)
-            self.item(row, 3).setForeground(QtGui.QBrush(_BAD))
+            self.item(row, 2).setForeground(red if bad else QtGui.QBrush())
+            self.item(row, 3).setForeground(red)
 
 
 def length_text(millimetres: float) -> str:
@@ -141,13 +144,14 @@ def _strut_row(status: Status, row: int) -> tuple[str, ...]:
     return (*lengths, home, strut_text(status, row))
 
 
-def _digits(large: bool = False) -> QtWidgets.QLabel:
-    """A label for a changing number that does not shift its neighbours."""
+def _digits(room: str = "", large: bool = False) -> QtWidgets.QLabel:
+    """A label for a changing number, with room for a text, that does not shift its neighbours."""
     label, font = QtWidgets.QLabel(_NOTHING), QtGui.QFontDatabase.systemFont(QtGui.QFontDatabase.SystemFont.FixedFont)
     if large:
         font.setPointSizeF(1.8 * font.pointSizeF())
         font.setBold(True)
     label.setFont(font)
+    label.setMinimumWidth(label.fontMetrics().horizontalAdvance(room))
     label.setAlignment(QtCore.Qt.AlignmentFlag.AlignRight | QtCore.Qt.AlignmentFlag.AlignVCenter)
     label.setTextInteractionFlags(QtCore.Qt.TextInteractionFlag.TextSelectableByMouse)
     return label

@@ -22,6 +22,7 @@ from pkm_post.control.numerical_control import (
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.dro import angle_text, length_text
+from pkm_post.freecad_gui.post_fields import narrow_box
 from pkm_post.reading import AXIS_WORDS
 
 translate = FreeCAD.Qt.translate
@@ -70,7 +71,7 @@ class MdiPage(QtWidgets.QWidget):
     def __init__(self, console: Console, work_offset: QtWidgets.QComboBox) -> None:
         super().__init__()
         self._console, self._work_offset = console, work_offset
-        self.line, self.axis_words, self.outcome = HistoryLine(), QtWidgets.QComboBox(), QtWidgets.QLabel()
+        self.line, self.axis_words, self.outcome = HistoryLine(), narrow_box(), QtWidgets.QLabel()
         self.line.setPlaceholderText("G1 X10 F300")
         self.line.returnPressed.connect(self._enter)
         self.axis_words.addItems(list(AXIS_WORDS))

@@ -57,6 +57,8 @@ _FIELDS = (
     ("turn", QT_TRANSLATE_NOOP("ControlPanel", "Turn"), 1.0, "deg"),
     ("speed", QT_TRANSLATE_NOOP("ControlPanel", "Speed"), 5.0, "mm/s"),
 )
+_FIELD_WIDTH, _JOG_WIDTH = 92, 36
+"""px, at least: FreeCAD's own hints have room for many more digits."""
 _TURNING_AT_FIRST, _TURNING_MOST = 2.0, 90.0
 
 
@@ -79,9 +81,13 @@ class JogPage(QtWidgets.QWidget):
         self.turning.setSuffix(" °/s")
         self.strut.addItems([str(number) for number in range(1, 7)])
         self.buttons: dict[tuple[str, int], OrderButton] = {}
-        layout = QtWidgets.QHBoxLayout(self)
-        layout.addLayout(self._fields(), 1)
-        layout.addLayout(self._grid(), 1)
+        for field in (self.step, self.turn, self.speed, self.turning):
+            field.setMinimumWidth(_FIELD_WIDTH)
+        layout, both = QtWidgets.QVBoxLayout(self), QtWidgets.QHBoxLayout()
+        both.addLayout(self._fields(), 1)
+        both.addLayout(self._grid(), 1)
+        layout.addLayout(both)
+        layout.addStretch(1)  # a higher page beside it does not pull the rows apart
 
     def _fields(self) -> QtWidgets.QFormLayout:
         form = QtWidgets.QFormLayout()
@@ -100,6 +106,7 @@ class JogPage(QtWidgets.QWidget):
             self._add_row(grid, row, label, translate("ControlPanel", label), translate("ControlPanel", tip), make)
         tip = translate("ControlPanel", "One strut alone; it takes the platform with it")
         self._add_row(grid, len(_TOOL), "strut", translate("ControlPanel", "Strut"), tip, self._of_strut)
+        grid.setVerticalSpacing(2)
         for column in (1, 2):
             grid.setColumnStretch(column, 1)  # buttons take the spare width, so each label stays beside its own
         return grid
@@ -110,6 +117,7 @@ class JogPage(QtWidgets.QWidget):
         grid.addWidget(QtWidgets.QLabel(label), row, 0)
         for column, (sign, text) in enumerate(((-1, "−"), (1, "+")), start=1):
             button = OrderButton(text, tip, OperatorCommand.JOG, lambda sign=sign: self._jog(make(sign), name))
+            button.setStyleSheet(f"QPushButton {{ min-width: {_JOG_WIDTH}px; }}")
             self.buttons[name, sign] = button
             grid.addWidget(button, row, column)
 

@@ -10,6 +10,7 @@ import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.control.numerical_control import Connection, ControlState
+from pkm_post.freecad_gui.control_panel.buttons import line_label, show_line
 from pkm_post.freecad_gui.control_panel.connect_page import ConnectPage
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.dro import PoseReadout, StrutTable
@@ -19,12 +20,17 @@ from pkm_post.freecad_gui.control_panel.motion_pages import HomingPage, JogPage
 from pkm_post.freecad_gui.control_panel.play_page import PlayPage
 from pkm_post.freecad_gui.control_panel.program_page import ProgramPage
 from pkm_post.freecad_gui.control_panel.stop_bar import StopBar
-from pkm_post.freecad_gui.control_panel.texts import activity_text, emergency_text
+from pkm_post.freecad_gui.control_panel.texts import activity_text, emergency_text, progress_text
+from pkm_post.freecad_gui.fault_links import link_codes
+from pkm_post.freecad_gui.theme import theme
 from pkm_post.geometry import Array
 
 translate = FreeCAD.Qt.translate
 
-_MOST_TOLD, _LINES_TOLD = 200, 6
+_MOST_TOLD, _LINES_TOLD = 200, 3
+_ACTIVITY_LINES = 2
+_BESIDE_BAR = 6
+"""px between the digits and the scroll bar."""
 _RED = "background-color: #cc0000; color: white; font-weight: bold; padding: 4px;"
 _YELLOW = "background-color: #edd400; color: black; font-weight: bold; padding: 4px;"
 
@@ -36,6 +42,7 @@ class PanelContent(QtWidgets.QWidget):
         training: label of a simulated machine.
         banner: fault of the link, and the action to take.
         activity: current activity of the controller.
+        progress: line, feed, time left and operation of what is played, always in sight.
         readout, struts, stops: pose, struts, and the stop bar.
         connecting, homing, jog, mdi, program, play: the pages.
         follows: whether the machine object of the document follows the machine.
@@ -50,6 +57,7 @@ class PanelContent(QtWidgets.QWidget):
             translate("ControlPanel", "SIMULATED MACHINE: for training. Nothing real moves.")
         )
         self.banner, self.activity, self.messages = QtWidgets.QLabel(), QtWidgets.QLabel(), QtWidgets.QListWidget()
+        self.progress = line_label()
         self.readout, self.struts, self.stops = PoseReadout(), StrutTable(), StopBar(console)
         self.follows = QtWidgets.QCheckBox(translate("ControlPanel", "The machine of the document follows"))
         self.follows.toggled.connect(self._follow)
@@ -69,18 +77,29 @@ class PanelContent(QtWidgets.QWidget):
         pages.addTab(self.mdi, translate("ControlPanel", "MDI"))
         pages.addTab(self.program, translate("ControlPanel", "Program"))
         pages.addTab(self.play, translate("ControlPanel", "Play"))
+        state = QtWidgets.QWidget()
+        inside = QtWidgets.QVBoxLayout(state)
+        inside.addWidget(self.struts)
+        inside.addWidget(self.follows)
+        inside.addStretch(1)
+        pages.addTab(state, translate("ControlPanel", "Struts"))
+        pages.tabBar().setUsesScrollButtons(True)
         return pages
 
     def _set_up(self) -> None:
         for label in (self.training, self.banner, self.activity):
             label.setWordWrap(True)
+        self.activity.setFixedHeight(_ACTIVITY_LINES * self.fontMetrics().lineSpacing())  # what is below never moves
+        self.activity.setAlignment(QtCore.Qt.AlignmentFlag.AlignTop)
         self.training.setStyleSheet(_YELLOW)
         self.messages.setWordWrap(True)
+        link_codes(self.messages)
         self.messages.setFixedHeight(_LINES_TOLD * self.fontMetrics().height())
         self.messages.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         seen, above = QtWidgets.QWidget(), QtWidgets.QScrollArea()
         inside = QtWidgets.QVBoxLayout(seen)
-        for part in (self.activity, self.readout, self.follows, self.struts, self.pages):
+        inside.setContentsMargins(0, 0, _BESIDE_BAR, 0)
+        for part in (self.activity, self.readout, self.pages):
             inside.addWidget(part)
         above.setWidget(seen)
         above.setWidgetResizable(True)
@@ -89,8 +108,9 @@ class PanelContent(QtWidgets.QWidget):
         above.setMinimumWidth(seen.minimumSizeHint().width() + above.verticalScrollBar().sizeHint().width())
         layout = QtWidgets.QVBoxLayout(self)
         layout.addWidget(self.training)
-        layout.addWidget(self.banner)
         layout.addWidget(above, 1)
+        layout.addWidget(self.banner)  # above it nothing moves when it comes, and below it nothing does either
+        layout.addWidget(self.progress)
         layout.addWidget(self.stops)
         layout.addWidget(self.messages)
 
@@ -98,7 +118,7 @@ class PanelContent(QtWidgets.QWidget):
         """Add a message."""
         item = QtWidgets.QListWidgetItem(text)
         if is_bad:
-            item.setForeground(QtGui.QBrush(QtGui.QColor(204, 0, 0)))
+            item.setForeground(QtGui.QBrush(QtGui.QColor(theme().bad)))
         self.messages.addItem(item)
         while self.messages.count() > _MOST_TOLD:
             self.messages.takeItem(0)
@@ -111,7 +131,11 @@ class PanelContent(QtWidgets.QWidget):
         if connection is not self._connection:
             self._take(connection)
         self._show_link(state)
-        self.activity.setText(activity_text(state) if connection else translate("ControlPanel", "Not connected"))
+        activity = activity_text(state) if connection else translate("ControlPanel", "Not connected")
+        self.activity.setText(activity)
+        self.activity.setToolTip(activity)
+        shown = None if console.play is None else console.play.state
+        show_line(self.progress, "" if shown is None else progress_text(shown))
         self.readout.refresh(state.pose, self._machine_from_work())
         self.struts.refresh(state.status)
         for part in (self.connecting, self.homing, self.jog, self.mdi, self.program, self.play, self.stops):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Play page: opens a trajectory and plays it while it is planned, with override, single block, and where it is.
+"""Play page: opens a trajectory and plays it while it is planned, with override, single block, block skip and retract.
 
 Takes a file, reads it beside the window, and gives the orders of the operator to the play of the console. Hold, Resume
 and Abort are those of the stop bar. All labels keep their height, so that nothing moves under the hand.
@@ -8,18 +8,30 @@ and Abort are those of the stop bar. All labels keep their height, so that nothi
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
-from pkm_post.control.numerical_control import ControlState, Interlock, OperatorCommand
+from pkm_post.control.numerical_control import ControlState, Interlock, OperatorCommand, blocking_interlock
 from pkm_post.control.player import Order, OrderKind, PlayOptions, WindowPlay, first_row, read_playable
-from pkm_post.freecad_gui.control_panel.buttons import OrderButton, plain_button, refresh_all, side_by_side
+from pkm_post.freecad_app.core_texts import fault_text
+from pkm_post.freecad_gui.control_panel.buttons import (
+    OrderButton,
+    line_label,
+    plain_button,
+    refresh_all,
+    set_usable,
+    show_line,
+    side_by_side,
+)
 from pkm_post.freecad_gui.control_panel.console import Console
-from pkm_post.freecad_gui.control_panel.play_texts import placed_text, speeds_text
-from pkm_post.freecad_gui.post_fields import quantity_field, show_quantity
+from pkm_post.freecad_gui.control_panel.play_setup import NUMBER_WIDTH, BlockSkip, PlaySetup, Ready, trajectory_kinds
+from pkm_post.freecad_gui.control_panel.texts import placed_text, speeds_text, why_text
+from pkm_post.freecad_gui.post_fields import narrow_box, quantity_field, show_quantity
 from pkm_post.model import Diagnostic, Tolerances, Trajectory
+from pkm_post.options import LONGEST_TOOL
 
 translate = FreeCAD.Qt.translate
 
@@ -27,7 +39,7 @@ _MOST_LINES = 100_000_000
 _MOST_PERCENT, _STEP_PERCENT = 150, 5
 _SHARES = 1000
 """Steps of the progress bar."""
-_DRY_MM_S = 20.0
+_DRY_MM_S, _RETRACT_MM = 20.0, 10.0
 
 
 class PlayPage(QtWidgets.QWidget):
@@ -35,9 +47,11 @@ class PlayPage(QtWidgets.QWidget):
 
     Attributes:
         name: of the opened file.
-        open, play, go_on, end: the buttons.
+        open, play, go_on, end, retract: the buttons; ``way`` belongs to the last one.
         line, operation: where to begin.
-        approach, single_block, optional_stop, dry_run: the choices; ``dry_feed`` belongs to the last one.
+        approach, repeat_codes, single_block, optional_stop, dry_run: the choices; ``dry_feed`` belongs to the last one.
+        skip: whether blocks behind ``/`` are skipped, and the posting without them.
+        setup: what has changed at the machine, and what the way to the beginning must not touch.
         override: the slider, per cent of the feed.
         place, speeds, bar: where the play is, how fast it is, and the share of its way.
     """
@@ -47,30 +61,37 @@ class PlayPage(QtWidgets.QWidget):
         self._console = console
         self._opened: tuple[Trajectory, Tolerances] | None = None
         self._file, self._way = Path(), 1.0
-        self.name, self.place, self.speeds = (_line() for _ in range(3))
-        self.line, self.operation, self.bar = QtWidgets.QSpinBox(), QtWidgets.QComboBox(), QtWidgets.QProgressBar()
+        self.name, self.place, self.speeds = (line_label() for _ in range(3))
+        self.line, self.operation, self.bar = QtWidgets.QSpinBox(), narrow_box(), QtWidgets.QProgressBar()
         self.override, self._percent = QtWidgets.QSlider(QtCore.Qt.Orientation.Horizontal), QtWidgets.QLabel("100 %")
-        self.dry_feed = quantity_field("mm/s")
+        self.dry_feed, self.way = quantity_field("mm/s"), quantity_field("mm")
+        self.setup, self.skip = PlaySetup(), BlockSkip(console)
         self._make_choices()
         self._make_buttons()
         self._set_up()
 
     def _make_choices(self) -> None:
-        self.approach, self.single_block, self.optional_stop, self.dry_run = (
+        self.approach, self.repeat_codes, self.single_block, self.optional_stop, self.dry_run = (
             QtWidgets.QCheckBox(text)
             for text in (
                 translate("ControlPanel", "Approach first"),
+                translate("ControlPanel", "Repeat M codes"),
                 translate("ControlPanel", "Single block"),
                 translate("ControlPanel", "Stop at M1"),
                 translate("ControlPanel", "Dry run at"),
             )
         )
         self.approach.setToolTip(translate("ControlPanel", "Bring the tool to the beginning; to a line always"))
+        self.repeat_codes.setToolTip(
+            translate("ControlPanel", "Repeat the M codes of the machine before the line, each once, above it")
+        )
         self.single_block.setToolTip(translate("ControlPanel", "Rest at the end of each line, until Go on"))
         self.dry_run.setToolTip(
             translate("ControlPanel", "This feed for all moves but rapid ones, without spindle, coolant and dwells")
         )
         self.single_block.toggled.connect(lambda on: self._order("single", float(on)))
+        self.optional_stop.toggled.connect(lambda on: self._order("optional", float(on)))
+        self.skip.box.toggled.connect(lambda on: self._order("skip", float(on)))
 
     def _make_buttons(self) -> None:
         self.open = plain_button(
@@ -84,8 +105,11 @@ class PlayPage(QtWidgets.QWidget):
              OperatorCommand.PLAY_ON, lambda: self._order("start")),
             (translate("ControlPanel", "End"), translate("ControlPanel", "End it at the next stop on the path"),
              OperatorCommand.PLAY_END, lambda: self._order("end")),
+            (translate("ControlPanel", "Retract by"),
+             translate("ControlPanel", "Up along the tool axis, while it waits, as at feed 0; Go on leads back first"),
+             OperatorCommand.RETRACT, self._retract),
         )  # fmt: skip
-        self.play, self.go_on, self.end = (OrderButton(*row) for row in rows)
+        self.play, self.go_on, self.end, self.retract = (OrderButton(*row) for row in rows)
 
     def _set_up(self) -> None:
         self.line.setRange(0, _MOST_LINES)
@@ -99,20 +123,34 @@ class PlayPage(QtWidgets.QWidget):
         self.override.valueChanged.connect(self._override_changed)
         self._percent.setMinimumWidth(self._percent.fontMetrics().horizontalAdvance("150 %"))
         show_quantity(self.dry_feed, _DRY_MM_S, "mm/s")
+        self.dry_feed.setMinimumWidth(NUMBER_WIDTH)
+        show_quantity(self.way, _RETRACT_MM, "mm")
+        self.way.setProperty("minimum", 0.0)
+        self.way.setProperty("maximum", float(LONGEST_TOOL))
         self.bar.setRange(0, _SHARES)
         self.bar.setTextVisible(False)
-        rows = (
+        at_rest = (self.line, self.operation, self.approach, self.repeat_codes, self.dry_run, self.dry_feed)
+        self._tips = {part: part.toolTip() for part in at_rest}
+        above = (
             (self.open, self.name),
-            (QtWidgets.QLabel(translate("ControlPanel", "Begin at line")), self.line, self.operation),
-            (self.approach, self.single_block, self.optional_stop),
-            (self.dry_run, self.dry_feed),
             (self.play, self.go_on, self.end),
             (QtWidgets.QLabel(translate("ControlPanel", "Feed")), self.override, self._percent),
         )
+        below = (
+            (self.retract, self.way),
+            (QtWidgets.QLabel(translate("ControlPanel", "Begin at line")), self.line),
+            (self.operation, self.approach),
+            (self.repeat_codes, self.single_block),
+            (self.optional_stop, self.dry_run, self.dry_feed),
+        )
         layout = QtWidgets.QVBoxLayout(self)
-        for row in rows:
+        for row in above:
             layout.addLayout(side_by_side(*row))
-        for part in (self.place, self.speeds, self.bar):
+        for part in (self.place, self.speeds, self.bar):  # in sight where the panel is low
+            layout.addWidget(part)
+        for row in below:
+            layout.addLayout(side_by_side(*row))
+        for part in (self.skip, self.setup):
             layout.addWidget(part)
         layout.addStretch(1)
 
@@ -121,32 +159,43 @@ class PlayPage(QtWidgets.QWidget):
         console = self._console
         if console.connection is None and self._opened is not None:
             self._forget()
-        refresh_all((self.play, self.go_on, self.end), found)
+        refresh_all((self.play, self.go_on, self.end, self.retract), found)
         rests = console.play is None
-        self.open.setEnabled(
-            rests and not {Interlock.NOT_CONNECTED, Interlock.WATCH_ONLY} & found and not console.waits
-        )
-        for part in (self.line, self.operation, self.approach, self.optional_stop, self.dry_run, self.dry_feed):
-            part.setEnabled(rests)
+        self.open.setEnabled(rests and Interlock.NOT_CONNECTED not in found and not console.waits)
+        for part, tip in self._tips.items():
+            set_usable((part,), tip, "" if rests else why_text(Interlock.PLAYS))
+        against = blocking_interlock(OperatorCommand.RETRACT, found)
+        set_usable((self.way,), "", "" if against is None else why_text(against))
+        self._refresh_setup(found)
         if self._opened is None:
             self.name.setText(translate("ControlPanel", "no trajectory was opened"))
         shown = None if console.play is None else console.play.state
         if shown is not None:
-            _show(self.place, placed_text(shown))
-            _show(self.speeds, speeds_text(shown))
+            show_line(self.place, placed_text(shown))
+            show_line(self.speeds, speeds_text(shown))
             self.bar.setValue(round(_SHARES * (1 - shown.to_go / self._way)))
+
+    def _refresh_setup(self, found: frozenset[Interlock]) -> None:
+        """Enable what belongs to the trajectory and to the machine; while it plays, only the switch of block skip."""
+        plays = next((why_text(why) for why in (Interlock.PLAYS, Interlock.BUSY) if why in found), "")
+        closed = why_text(Interlock.NO_TRAJECTORY) if self._opened is None else ""
+        self.setup.refresh(plays, closed)
+        self.skip.refresh(plays, closed)
 
     def _forget(self) -> None:
         """The connection has ended, and what was opened belongs to its machine."""
         self._opened = None
+        self.skip.file.take(())
+        self.setup.take(None)
         self.operation.clear()
         self.place.clear()
         self.speeds.clear()
         self.bar.setValue(0)
 
     def _ask(self) -> None:
-        title, kinds = translate("ControlPanel", "Open a trajectory"), translate("ControlPanel", "Trajectories")
-        name = QtWidgets.QFileDialog.getOpenFileName(self, title, "", f"{kinds} (*.pkmt)")[0]
+        name = QtWidgets.QFileDialog.getOpenFileName(
+            self, translate("ControlPanel", "Open a trajectory"), "", trajectory_kinds()
+        )[0]
         if name:
             self.read(Path(name))
 
@@ -165,13 +214,15 @@ class PlayPage(QtWidgets.QWidget):
         diagnostics: tuple[Diagnostic, ...],
     ) -> None:
         for each in diagnostics:
-            self._console.message.emit(str(each), trajectory is None)
+            self._console.message.emit(fault_text(each), trajectory is None)
         if trajectory is None or tolerances is None or self._console.connection is None:
             return
         self._opened, self._file = (trajectory, tolerances), file
         self._way = max(float(trajectory.length.sum()), math.ulp(1.0))
         self._console.has_trajectory = True
-        _show(self.name, file.name, str(file))
+        self.skip.file.take(())
+        self.setup.take(trajectory)
+        show_line(self.name, file.name, str(file))
         self.operation.clear()
         self.operation.addItem(translate("ControlPanel", "of any operation"), "")
         for name in filter(None, dict.fromkeys(trajectory.operations)):
@@ -183,9 +234,9 @@ class PlayPage(QtWidgets.QWidget):
         line, operation = self.line.value(), str(self.operation.currentData() or "")
         if line == 0 and not operation:
             return 0
-        row, diagnostics = first_row(trajectory, line, operation, self._file)
+        row, diagnostics = first_row(trajectory, line, operation, self._file, self.repeat_codes.isChecked())
         for each in diagnostics:
-            self._console.message.emit(str(each), row is None)
+            self._console.message.emit(fault_text(each), row is None)
         return row
 
     def _play(self) -> None:
@@ -194,16 +245,41 @@ class PlayPage(QtWidgets.QWidget):
         row = self._first_row(opened[0])
         if row is None:
             return
+        stops = self._console.stop_count
+        ready = self.setup.preparation(opened[0], self.skip.without, connection.target.machine)
+        self._console.calls.do(ready, lambda made: self._begin(stops, row, made))
+
+    def _choices(self, row: int) -> PlayOptions:
+        """How to play, without what has to be read."""
         dry = float(self.dry_feed.property("rawValue")) if self.dry_run.isChecked() else None
-        choices = PlayOptions(
+        return PlayOptions(
             override=self.override.value() / 100,
             single_block=self.single_block.isChecked(),
             optional_stop=self.optional_stop.isChecked(),
+            block_skip=self.skip.box.isChecked(),
             dry_feed=dry,
             first_row=row,
             approach=self.approach.isChecked(),
+            repeat_codes=self.repeat_codes.isChecked(),
         )
-        self._console.begin_play(WindowPlay(connection, *opened, choices))
+
+    def _begin(self, stops: int, row: int, ready: Ready) -> None:
+        """Begin to play what was prepared, unless a stop came first."""
+        for each in ready.diagnostics:
+            self._console.message.emit(fault_text(each), False)
+        connection, opened = self._console.connection, self._opened
+        if connection is None or opened is None or stops != self._console.stop_count:
+            self._console.message.emit(translate("ControlPanel", "Not carried out: a stop came first"), False)
+            return
+        choices = replace(self._choices(row), skipped=ready.skipped, setup=ready.setup)
+        self._console.begin_play(WindowPlay(connection, ready.trajectory, opened[1], choices))
+
+    def _retract(self) -> None:
+        way = float(self.way.property("rawValue"))
+        if way <= 0.0:
+            self._console.message.emit(translate("ControlPanel", "Not sent: the way has to be above zero"), True)
+            return
+        self._order("retract", way)
 
     def _override_changed(self, percent: int) -> None:
         self._percent.setText(f"{percent} %")
@@ -213,18 +289,3 @@ class PlayPage(QtWidgets.QWidget):
         """Give an order, if something is played."""
         if self._console.play is not None:
             self._console.play.order(Order(kind, value))
-
-
-def _line() -> QtWidgets.QLabel:
-    """A label of one line that takes the width there is."""
-    label = QtWidgets.QLabel()
-    label.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Fixed)
-    label.setMinimumHeight(label.fontMetrics().height())
-    return label
-
-
-def _show(label: QtWidgets.QLabel, text: str, tip: str = "") -> None:
-    """Show a text, shortened to the width; the tip has all of it."""
-    mode = QtCore.Qt.TextElideMode.ElideRight
-    label.setText(label.fontMetrics().elidedText(text, mode, max(label.width(), 1)))
-    label.setToolTip(tip or text)

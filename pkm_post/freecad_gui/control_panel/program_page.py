@@ -21,6 +21,7 @@ from pkm_post.control.numerical_control import (
     ProgramBlocks,
     read_blocks,
 )
+from pkm_post.freecad_app.core_texts import fault_text
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, plain_button, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.model import Diagnostic
@@ -71,18 +72,23 @@ class ProgramPage(QtWidgets.QWidget):
         )  # fmt: skip
         self.load, self.approach, self.start, self.begin_at, self.step, self.go_on = (OrderButton(*row) for row in rows)
         layout = QtWidgets.QVBoxLayout(self)
-        for row in ((self.open, self.name), (self.load, self.cancel, self.approach, self.start)):
+        self.bar.setTextVisible(False)
+        rows_below = (
+            (self.open, self.name),
+            (self.load, self.cancel, self.bar),
+            (self.approach, self.start),
+            (self.begin_at, self.block),
+            (self.step, self.go_on, self.stop),
+        )
+        for row in rows_below:
             layout.addLayout(side_by_side(*row))
-        layout.addWidget(self.bar)
-        layout.addLayout(side_by_side(self.begin_at, self.block, self.step))
-        layout.addLayout(side_by_side(self.go_on, self.stop))
         layout.addStretch(1)
 
     def refresh(self, _state: ControlState, found: frozenset[Interlock]) -> None:
         """Enable what is possible, and show the progress of loading."""
         console, (done, lines) = self._console, self._console.progress
         refresh_all((self.load, self.approach, self.start, self.begin_at, self.step, self.go_on), found)
-        self.open.setEnabled(not {Interlock.NOT_CONNECTED, Interlock.WATCH_ONLY} & found and not console.waits)
+        self.open.setEnabled(Interlock.NOT_CONNECTED not in found and not console.waits)
         self.cancel.setEnabled(console.has_orders and not console.loaded and lines > 0)
         self.bar.setRange(0, max(lines, 1))
         self.bar.setValue(done)
@@ -108,7 +114,7 @@ class ProgramPage(QtWidgets.QWidget):
 
     def _take(self, file: Path, job: Job | None, diagnostics: tuple[Diagnostic, ...]) -> None:
         for each in diagnostics:
-            self._console.message.emit(str(each), job is None)
+            self._console.message.emit(fault_text(each), job is None)
         if job is not None and self._console.connection is not None:
             self._console.take_job(job)
             self._file = file
@@ -142,7 +148,7 @@ class ProgramPage(QtWidgets.QWidget):
 
     def _take_blocks(self, blocks: ProgramBlocks | None, diagnostics: tuple[Diagnostic, ...], at: int) -> None:
         for each in diagnostics:
-            self._console.message.emit(str(each), blocks is None)
+            self._console.message.emit(fault_text(each), blocks is None)
         if blocks is not None and self._console.connection is not None:
             first = min(at, len(blocks))
             opened = lambda count: self._opened(count, first)  # noqa: E731

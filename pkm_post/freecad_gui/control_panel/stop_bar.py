@@ -10,7 +10,7 @@ import FreeCAD
 from PySide import QtCore, QtWidgets
 
 from pkm_post.control.numerical_control import ControlState, Interlock, OperatorCommand, blocking_interlock
-from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all, side_by_side
+from pkm_post.freecad_gui.control_panel.buttons import NARROW, OrderButton, refresh_all, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
 
 translate = FreeCAD.Qt.translate
@@ -43,7 +43,7 @@ _BUTTONS: tuple[tuple[str, str, OperatorCommand, Callable[[Console], None]], ...
     ),
 )
 """Text, tooltip, order and action of each button."""
-_RED = "QPushButton:enabled { background-color: #cc0000; color: white; font-weight: bold; }"
+_RED = f"{NARROW} QPushButton:enabled {{ background-color: #cc0000; color: white; font-weight: bold; }}"
 _QUIET_MS = 300
 """Idle time of the slider before its override is sent."""
 

@@ -1,23 +1,29 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Words: messages of numerical control in the user's language.
+"""Words: messages of numerical control and of the player in the user's language and units.
 
 Takes names and texts of ``pmac_link`` and ``numerical_control``; returns translated text. The English matches theirs
-exactly: a test compares it. Refusals of the controller and diagnostics stay untranslated.
+exactly: a test compares it. Refusals of the controller stay untranslated.
 """
 
 from __future__ import annotations
+
+import logging
+import math
 
 import FreeCAD
 
 from pkm_post.control.link import Bits, Status
 from pkm_post.control.numerical_control import BlockDisplay, ControlState, Homing, HomingPhase, Interlock
+from pkm_post.control.player import PlayResult, PlayState
+from pkm_post.freecad_app.core_texts import fault_text, shown
+from pkm_post.freecad_gui.quantities import length_text, speed_text, time_text
+from pkm_post.model import Diagnostic
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
 WHY = {
     Interlock.NOT_CONNECTED: QT_TRANSLATE_NOOP("ControlPanel", "there is no connection"),
-    Interlock.WATCH_ONLY: QT_TRANSLATE_NOOP("ControlPanel", "a Power PMAC can be watched, held and aborted alone"),
     Interlock.NO_ANSWER: QT_TRANSLATE_NOOP("ControlPanel", "the controller does not answer"),
     Interlock.BUSY: QT_TRANSLATE_NOOP("ControlPanel", "another order is being carried out"),
     Interlock.NO_JOB: QT_TRANSLATE_NOOP("ControlPanel", "no program was opened"),
@@ -41,6 +47,16 @@ PHASES = {
     HomingPhase.FAILED: QT_TRANSLATE_NOOP("ControlPanel", "the homing has failed"),
     HomingPhase.LATE: QT_TRANSLATE_NOOP("ControlPanel", "the homing takes too long"),
 }
+PLAY_PHASES = {
+    "runs": QT_TRANSLATE_NOOP("ControlPanel", "runs"),
+    "held": QT_TRANSLATE_NOOP("ControlPanel", "held"),
+    "rests": QT_TRANSLATE_NOOP("ControlPanel", "rests"),
+    "no link": QT_TRANSLATE_NOOP("ControlPanel", "no link: the machine comes to rest on the path"),
+    "single block": QT_TRANSLATE_NOOP("ControlPanel", "single block"),
+    "override 0": QT_TRANSLATE_NOOP("ControlPanel", "override 0"),
+    "hold": QT_TRANSLATE_NOOP("ControlPanel", "hold"),
+}
+"""Phases of a player, and what it waits for; M0, M1 and tools are named as in the program."""
 MOTOR = {
     "negative_limit": QT_TRANSLATE_NOOP("ControlPanel", "on its lower limit"),
     "positive_limit": QT_TRANSLATE_NOOP("ControlPanel", "on its upper limit"),
@@ -141,3 +157,59 @@ def emergency_text(lines: tuple[str, ...]) -> str:
 
 def _texts_of_bits(bits: Bits, texts: dict[str, str]) -> list[str]:
     return [translate("ControlPanel", texts[name]) for name in bits.FAULT_TEXTS if bits.has(name)]
+
+
+def placed_phase(state: PlayState) -> str:
+    """What it does, or waits for."""
+    phase = state.waits_for or state.phase
+    text = translate("ControlPanel", PLAY_PHASES[phase]) if phase in PLAY_PHASES else phase
+    return translate("ControlPanel", "waits: {}").format(text) if state.waits_for else text
+
+
+def placed_text(state: PlayState) -> str:
+    """What it does, and in which operation and line."""
+    line = translate("ControlPanel", "line {}").format(state.line)
+    return ", ".join(filter(None, (placed_phase(state), state.operation, line)))
+
+
+def note_text(record: logging.LogRecord) -> str:
+    """What a player has noted beside its states."""
+    arguments = record.args if isinstance(record.args, tuple) else ()
+    texts = (fault_text(each) if isinstance(each, Diagnostic) else shown(each) for each in arguments)
+    return str(record.msg) % tuple(texts)
+
+
+def progress_text(state: PlayState) -> str:
+    """Line, feed, time left and operation in one line, and before them what it does, unless it runs."""
+    phase = placed_phase(state) if state.waits_for or state.phase != "runs" else ""
+    line = translate("ControlPanel", "line {}").format(state.line)
+    feed = translate("ControlPanel", "feed {} ({:.0f} %)").format(speed_text(state.feed), 100 * state.reached)
+    left = (
+        "" if math.isinf(state.remaining) else translate("ControlPanel", "{} left").format(time_text(state.remaining))
+    )
+    return ", ".join(filter(None, (phase, line, feed, left, state.operation)))
+
+
+def speeds_text(state: PlayState) -> str:
+    """What is left, the feed of the program, and the share of it that is reached."""
+    feed = translate("ControlPanel", "feed {}, {:.0f} % reached").format(speed_text(state.feed), 100 * state.reached)
+    left = "-" if math.isinf(state.remaining) else time_text(state.remaining)
+    return translate("ControlPanel", "{} and {} to go; {}").format(length_text(state.to_go), left, feed)
+
+
+def result_texts(result: PlayResult) -> list[tuple[str, bool]]:
+    """What was played, and the worst of each quantity with its limit; each with whether it is a fault."""
+    ended = translate("ControlPanel", "Ended by the operator")
+    if result.finished:
+        ended = translate("ControlPanel", "Played to the end")
+    seconds = translate("ControlPanel", "{:.1f} s of motion").format(result.log.seconds)
+    found = [(f"{ended}: {seconds}", False)]
+    if result.stops:
+        text = translate("ControlPanel", "It came to rest {} times because nothing more had come in time")
+        found.append((text.format(result.stops), True))
+    at_least, at_most = translate("ControlPanel", "at least"), translate("ControlPanel", "at most")
+    for each in result.log.findings:
+        if each.unit and each.limit:
+            bound = at_least if each.is_least else at_most
+            found.append((f"{each.name}: {each.value:.6g} {each.unit}, {bound} {each.limit:.6g}", not each.holds))
+    return found

@@ -8,9 +8,11 @@ from functools import partial
 
 from PySide import QtCore, QtWidgets
 
+from pkm_post.freecad_app.core_texts import cure_text, exception_text, finding_text
 from pkm_post.freecad_gui.background import BackgroundCall
 from pkm_post.freecad_gui.editor.text_view import Mark
-from pkm_post.model import RULES, Diagnostic, Refused, Severity
+from pkm_post.freecad_gui.fault_links import link_codes
+from pkm_post.model import Diagnostic, Refused, Severity
 from pkm_post.reading import Language, ReadingOptions, check_text, underlined
 
 PAUSE_MS = 300
@@ -60,7 +62,7 @@ class Checker(QtCore.QObject):
         try:
             checked = task.value()
         except (ImportError, Refused) as missing:
-            self.missing.emit(str(missing))
+            self.missing.emit(exception_text(missing))
         else:
             self.checked.emit(checked)
 
@@ -74,6 +76,7 @@ class Findings(QtWidgets.QListWidget):
         super().__init__(parent)
         self.setMaximumHeight(120)
         self.setWordWrap(True)
+        link_codes(self)
         self.itemClicked.connect(self._show_status)
         self.itemActivated.connect(self._show_status)
 
@@ -82,7 +85,7 @@ class Findings(QtWidgets.QListWidget):
         self.clear()
         for each in diagnostics:
             item = QtWidgets.QListWidgetItem(_icon(self, each), _line_of(each))
-            item.setToolTip(RULES[each.code].cure)
+            item.setToolTip(cure_text(each.code))
             item.setData(QtCore.Qt.ItemDataRole.UserRole, (each.place.line, each.place.column))
             self.addItem(item)
         self.setVisible(bool(diagnostics))
@@ -100,7 +103,7 @@ def marks_of(diagnostics: Sequence[Diagnostic], lines: Sequence[str], language: 
             each.place.line - 1,
             *underlined(lines[each.place.line - 1], each.place.column, language),
             is_error=each.severity is Severity.ERROR,
-            text=each.text,
+            text=finding_text(each),
         )
         for each in diagnostics
         if 0 < each.place.line <= len(lines)
@@ -108,9 +111,9 @@ def marks_of(diagnostics: Sequence[Diagnostic], lines: Sequence[str], language: 
 
 
 def _line_of(diagnostic: Diagnostic) -> str:
-    place, rule = diagnostic.place, RULES[diagnostic.code]
+    place = diagnostic.place
     where = ":".join(str(number) for number in (place.line, place.column) if number)
-    return f"{where} {diagnostic.code} {rule.cause}: {diagnostic.found}; {rule.cure}".strip()
+    return f"{where} {finding_text(diagnostic)}".strip()
 
 
 def _icon(widget: QtWidgets.QWidget, diagnostic: Diagnostic) -> object:

@@ -14,6 +14,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
+from pkm_post.freecad_app.core_texts import exception_text
 from pkm_post.freecad_app.document import is_program
 from pkm_post.freecad_gui.editor import program_link
 from pkm_post.freecad_gui.editor.editor_widget import EditorWidget, FileDrop
@@ -117,7 +118,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
                 with memory_guard(str(self.widget.file)):
                     return program_link.decode_file(self.widget.file, self.widget.reading.chosen(), job)
             except Refused as refused:
-                QtWidgets.QMessageBox.warning(self, title, str(refused))
+                QtWidgets.QMessageBox.warning(self, title, exception_text(refused))
         return None
 
     def post(self) -> None:

@@ -15,6 +15,7 @@ import FreeCAD
 from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_app.program_object import reading_of
+from pkm_post.freecad_app.user_units import amount_text
 from pkm_post.freecad_gui.editor import program_link
 from pkm_post.freecad_gui.editor.checking import Checker, Findings, marks_of
 from pkm_post.freecad_gui.editor.find_bar import FindBar
@@ -38,7 +39,7 @@ translate = FreeCAD.Qt.translate
 _NEW = "new.ngc"
 """The name of a text without a file: it counts as G-code."""
 _HEAD = 65536
-"""Characters of a text that tell its language."""
+"""Characters of a text by which its language is recognised."""
 _NUMBERED = re.compile(r"^[ \t]*/?[ \t]*N\d", re.M)
 """The start of a block that ``renumbered`` has numbered."""
 
@@ -158,8 +159,8 @@ class EditorWidget(QtWidgets.QWidget):
         lines, language = self.text.toPlainText().split("\n"), self._shown_language()
         self.text.set_language(language)
         self.text.set_marks(marks_of(checked.diagnostics, lines, language))
-        text = translate("PKM_Editor", "{} blocks, {} arcs, {:.1f} mm")
-        self.size.setText("" if size is None else text.format(size.blocks, size.arcs, size.length))
+        text = translate("PKM_Editor", "{} blocks, {} arcs, {}")
+        self.size.setText("" if size is None else text.format(size.blocks, size.arcs, amount_text(size.length, "mm")))
         self._show_block()
 
     def _jump(self, line: int, column: int) -> None:

@@ -15,6 +15,7 @@ import FreeCAD
 from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_app.arguments import parse_arguments
+from pkm_post.freecad_app.core_texts import exception_text
 from pkm_post.freecad_app.progress import Stopped
 from pkm_post.freecad_gui.background import BackgroundCall
 from pkm_post.freecad_gui.post_fields import PostChoices
@@ -72,7 +73,7 @@ class Posting(QtCore.QObject):
         try:
             chosen = parse_arguments(arguments, Place(str(file)))
         except Refused as refused:
-            QtWidgets.QMessageBox.warning(self._window, self._title, str(refused))
+            QtWidgets.QMessageBox.warning(self._window, self._title, exception_text(refused))
             self.ended.emit()
             return
         out, given = folder or file.parent, explicit_values(chosen)
@@ -105,7 +106,7 @@ class Posting(QtCore.QObject):
         try:
             posted = task.value()
         except Refused as refused:
-            QtWidgets.QMessageBox.warning(self._window, self._title, str(refused))
+            QtWidgets.QMessageBox.warning(self._window, self._title, exception_text(refused))
         except Stopped:
             text = translate("PKM_Editor", "Stopped. Nothing was written.")
             QtWidgets.QMessageBox.information(self._window, self._title, text)

@@ -20,7 +20,7 @@ from pkm_post.machine.kinematics.inverse import ToolPoses
 from pkm_post.machine.reach.collision_mesh import CollisionMesh, pairs_within
 from pkm_post.machine.reach.limit_checks import HUNDREDTH
 from pkm_post.machine.reach.pose_path import PosePath
-from pkm_post.model import Diagnostic, Mesh, Trajectory
+from pkm_post.model import Amount, Diagnostic, Mesh, Phrase, Trajectory
 
 _FINE = 1.0
 """mm of motion in a stretch, below which distances from triangles are computed."""
@@ -50,7 +50,7 @@ class Contacts:
         return len(self.cell)
 
 
-class _Stretches:
+class _PathIntervals:
     """Positions on the path combine cell and share in one number: cell i reaches from i - 1 to i."""
 
     def __init__(self, way: PosePath, mover: MovingBody) -> None:
@@ -83,7 +83,7 @@ def contacts(
         operation: (N,) operation of each cell of the path; every operation with contacts yields some.
         enough: contacts in an operation, after which its search ends.
     """
-    stretches = _Stretches(way, mover)
+    stretches = _PathIntervals(way, mover)
     start, end = stretches.start, stretches.end
     found: list[tuple[Array, Array, Array]] = []
     counted = np.zeros(int(operation.max(initial=0)) + 1, dtype=np.int64)
@@ -107,7 +107,7 @@ def contacts(
 
 def contacts_at_ends(way: PosePath, mover: MovingBody, part: CollisionMesh, clearance: float) -> Contacts:
     """Contacts at the ends of the mover's cells only; the motion between them is not checked."""
-    stretches = _Stretches(way, mover)
+    stretches = _PathIntervals(way, mover)
     at = mover.cells.astype(np.float64)
     distance, point = _distances_at(stretches, mover, part, at, np.zeros(len(at)), clearance)
     met = distance < clearance
@@ -124,7 +124,7 @@ _NONE = np.empty(0), np.empty((0, 3)), np.empty(0)
 
 
 def _distances_at(
-    stretches: _Stretches, mover: MovingBody, part: CollisionMesh, at: Array, change: Array, clearance: float
+    stretches: _PathIntervals, mover: MovingBody, part: CollisionMesh, at: Array, change: Array, clearance: float
 ) -> tuple[Array, Array]:
     """Distances at positions (M,), and the contact points (M, 3).
 
@@ -192,7 +192,7 @@ def _chunks(count: int, size: int) -> Iterator[Array]:
 
 _PIECES = 32
 """Number of subdivided triangles along the mesh."""
-_LOOKED_AT = 24
+_MAX_DEPTHS = 24
 """Contacts per operation whose depth is computed."""
 
 
@@ -208,17 +208,17 @@ class Obstacle:
     Attributes:
         name: its kind: part, stock, fixture.
         source: source of the mesh.
-        part: its triangles in {M}.
+        mesh: its triangles in {M}.
         triangles: its original number of triangles.
     """
 
-    name: str
+    name: Phrase
     source: str
-    part: CollisionMesh
+    mesh: CollisionMesh
     triangles: int
 
     @classmethod
-    def of(cls, name: str, mesh: Mesh, machine_from_work: Array) -> Obstacle:
+    def of(cls, name: Phrase, mesh: Mesh, machine_from_work: Array) -> Obstacle:
         """An obstacle from a mesh in the work frame."""
         triangles = placed_triangles(mesh, machine_from_work)
         size = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
@@ -233,12 +233,12 @@ class TrajectoryPath:
 
     Attributes:
         trajectory: the source of places in diagnostics.
-        way: its pose path, including the motion between poses.
+        poses: its pose path, including the motion between poses.
         segment: (N,) segment of each cell of the path.
     """
 
     trajectory: Trajectory
-    way: PosePath
+    poses: PosePath
     segment: Array
 
     @property
@@ -255,7 +255,7 @@ def mesh_faults(
     driven: TrajectoryPath, code: str, mover: MovingBody, obstacle: Obstacle, clearance: float
 ) -> Iterator[Diagnostic]:
     """One fault for each operation in which a mover comes too close to an obstacle, at the worst place."""
-    met = contacts(driven.way, mover, obstacle.part, clearance, driven.operation)
+    met = contacts(driven.poses, mover, obstacle.mesh, clearance, driven.operation)
     yield from contact_faults(driven, code, mover, obstacle, met, clearance)
 
 
@@ -266,10 +266,11 @@ def contact_faults(
     operation = driven.operation[met.cell]
     for number in np.unique(operation):
         rows = np.flatnonzero(operation == number)
-        rows = rows[np.unique(np.linspace(0, len(rows) - 1, _LOOKED_AT).astype(np.int64))]
+        rows = rows[np.unique(np.linspace(0, len(rows) - 1, _MAX_DEPTHS).astype(np.int64))]
         lacking = [clearance - _distance(driven, mover, obstacle, met, row) for row in rows.tolist()]
         worst = int(np.argmax(lacking))
-        found = f"{mover.name}, {obstacle.name} {obstacle.source}, by {max(lacking[worst], 0.0):.3f} mm"
+        by = Amount(max(lacking[worst], 0.0), "mm", ".3f")
+        found = Phrase("{}, {} {}, by {}", mover.name, obstacle.name, obstacle.source, by)
         yield driven.fault(code, int(met.cell[rows[worst]]), found)
 
 
@@ -277,8 +278,8 @@ def _distance(driven: TrajectoryPath, mover: MovingBody, obstacle: Obstacle, met
     """Distance at a contact; where the bodies overlap, reduced by the depth of a mesh corner inside the mover."""
     if met.distance[row] > 0:
         return float(met.distance[row])
-    cylinders = mover.cylinders(driven.way.inside(met.cell[row : row + 1], met.share[row : row + 1]))
-    corners = obstacle.part.triangles.reshape(-1, 3)
+    cylinders = mover.cylinders(driven.poses.inside(met.cell[row : row + 1], met.share[row : row + 1]))
+    corners = obstacle.mesh.triangles.reshape(-1, 3)
     deepest = 0.0
     for number, rounding in enumerate(mover.rounding):
         away = corners - cylinders.middle[number]

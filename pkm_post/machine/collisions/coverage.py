@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from pkm_post.model import Coverage, Extent, Topic
+from pkm_post.model import Coverage, Extent, Phrase, Topic
 
 if TYPE_CHECKING:
     from pkm_post.machine.collisions.contacts import Obstacle
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 PART_NOT_KNOWN, FIXTURES_NOT_KNOWN, STOCK_NOT_KNOWN = (
     Coverage(Topic.COLLISIONS, subject, Extent.NOT_COVERED, detail)
     for subject, detail in (
-        ("machine and tool against the part", "part: not known"),
-        ("machine and tool against clamps and fixtures", "none beside those of the machine file is known"),
-        ("machine and rapid moves against the stock", "stock: not known"),
+        (Phrase("machine and tool against the part"), "part: not known"),
+        (Phrase("machine and tool against clamps and fixtures"), "none beside those of the machine file is known"),
+        (Phrase("machine and rapid moves against the stock"), "stock: not known"),
     )
 )
 NO_SETUP = (PART_NOT_KNOWN, FIXTURES_NOT_KNOWN, STOCK_NOT_KNOWN)
@@ -40,7 +40,7 @@ class CoverageRows:
         """All rows."""
         return tuple(self._rows)
 
-    def _add(self, subject: str, extent: Extent, detail: str) -> None:
+    def _add(self, subject: Phrase, extent: Extent, detail: str) -> None:
         self._rows.append(Coverage(Topic.COLLISIONS, subject, extent, detail))
 
     def not_known(self, row: Coverage) -> None:
@@ -50,8 +50,8 @@ class CoverageRows:
     def machine(self, obstacle: Obstacle, bodies: bool, struts: bool) -> None:
         """Record the check of bodies and struts, if the machine file states them."""
         pairs = (
-            ("spindle and holder", bodies, "bodies of the platform"),
-            ("struts", struts, "tubes or rods of the struts"),
+            (Phrase("spindle and holder"), bodies, "bodies of the platform"),
+            (Phrase("struts"), struts, "tubes or rods of the struts"),
         )
         for subject, stated, needed in pairs:
             extent = Extent.PROVEN if stated else Extent.NOT_COVERED
@@ -62,17 +62,17 @@ class CoverageRows:
         """Record the check of shanks, if they are known."""
         if unknown:
             detail = f"{', '.join(unknown)}: it is not known where the cutting edges end"
-            self._add(_against("shanks", obstacle), Extent.NOT_COVERED, detail)
+            self._add(_against(Phrase("shanks"), obstacle), Extent.NOT_COVERED, detail)
         else:
-            self._add(_against("shanks", obstacle), Extent.PROVEN, _detail(obstacle, _WHOLE))
+            self._add(_against(Phrase("shanks"), obstacle), Extent.PROVEN, _detail(obstacle, _WHOLE))
 
     def cutters(self, obstacle: Obstacle, allowance: float) -> None:
         """Record the check of cutters, if their size is known."""
         deeper = f", what is deeper than {allowance:g} mm and was not cut before"
         sampled = f"at ends of moves, 2000 at most for each tool, what is deeper than {allowance:g} mm"
         kinds = [
-            ("cutters in rapid moves", Extent.PROVEN, _WHOLE + deeper),
-            ("cutters in cutting moves", Extent.SAMPLED, sampled),
+            (Phrase("cutters in rapid moves"), Extent.PROVEN, _WHOLE + deeper),
+            (Phrase("cutters in cutting moves"), Extent.SAMPLED, sampled),
         ]
         for subject, extent, detail in kinds:
             if self.unknown_cutters:
@@ -85,24 +85,24 @@ class CoverageRows:
         """Record the check of cutters against a fixture, if their size is known."""
         if self.unknown_cutters:
             detail = f"{', '.join(self.unknown_cutters)}: the diameter is not known"
-            self._add(_against("cutters", obstacle), Extent.NOT_COVERED, detail)
+            self._add(_against(Phrase("cutters"), obstacle), Extent.NOT_COVERED, detail)
         else:
-            self._add(_against("cutters", obstacle), Extent.PROVEN, _detail(obstacle, _WHOLE))
+            self._add(_against(Phrase("cutters"), obstacle), Extent.PROVEN, _detail(obstacle, _WHOLE))
 
     def stock(self, obstacle: Obstacle, step: float, points: int) -> None:
         """Record the check of the stock by grid points."""
         detail = f"as it is left by the cuts before, in {points:,} points {step:.2g} mm apart"
-        self._add("machine and rapid moves against the stock", Extent.SAMPLED, _detail(obstacle, detail))
+        self._add(Phrase("machine and rapid moves against the stock"), Extent.SAMPLED, _detail(obstacle, detail))
 
     def stock_open(self, obstacle: Obstacle) -> None:
         """Record that the stock is not a solid."""
         detail = _detail(obstacle, "its mesh is not closed: rapid moves were not looked at")
-        self._add("machine and rapid moves against the stock", Extent.NOT_COVERED, detail)
+        self._add(Phrase("machine and rapid moves against the stock"), Extent.NOT_COVERED, detail)
 
 
-def _against(subject: str, obstacle: Obstacle) -> str:
+def _against(subject: Phrase, obstacle: Obstacle) -> Phrase:
     source = f" {obstacle.source}" if obstacle.name == "fixture" else ""
-    return f"{subject} against the {obstacle.name}{source}"
+    return Phrase("{} against the {}{}", subject, obstacle.name, source)
 
 
 def _detail(obstacle: Obstacle, how: str) -> str:

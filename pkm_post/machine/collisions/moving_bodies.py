@@ -19,7 +19,7 @@ from pkm_post.machine.kinematics.inverse import ToolPoses, lever_arms
 from pkm_post.machine.kinematics.placed_machine import PlacedMachine, body_reach, rod_speed_ratio, strut_cylinders
 from pkm_post.machine.reach.limit_checks import shortest_distance
 from pkm_post.machine.reach.pose_path import PosePath
-from pkm_post.model import Body, Machine, Shank, Tool
+from pkm_post.model import Body, Machine, Phrase, Shank, Tool
 from pkm_post.toolpath import Cutter
 
 
@@ -93,7 +93,7 @@ def strut_bodies(machine: Machine, way: PosePath) -> MovingBody | None:
     pieces = len(list(strut_cylinders(PlacedMachine.of(machine, way.rows(slice(0, 1))))))
     change = lever * (way.travel + arm * way.turn())
     return MovingBody(
-        "strut", np.arange(1, len(way)), change, lever * arm, np.zeros(6 * pieces), partial(_struts, machine)
+        Phrase("strut"), np.arange(1, len(way)), change, lever * arm, np.zeros(6 * pieces), partial(_struts, machine)
     )
 
 

@@ -39,7 +39,7 @@ from pkm_post.machine.collisions.moving_bodies import (
 from pkm_post.machine.collisions.stock_collisions import Intruder, body_of, rapid_cutter, shank_of, stock_faults
 from pkm_post.machine.collisions.tools_in_use import ToolUse, not_cut_before, tools_in_use
 from pkm_post.machine.kinematics.placed_machine import has_strut_bodies
-from pkm_post.model import Diagnostic, Machine, Mesh, Place, Setup, Tolerances
+from pkm_post.model import Diagnostic, Machine, Mesh, Phrase, Place, Setup, Tolerances
 
 ALLOWANCE = 0.25
 """mm that a cutter or a shank may enter the workpiece: its faces are triangulated, and the cutter has to touch them."""
@@ -71,7 +71,7 @@ class Search:
     extents: CoverageRows = field(default_factory=CoverageRows)
 
     def __post_init__(self) -> None:
-        way = self.driven.way
+        way = self.driven.poses
         self.used = tools_in_use(self.driven, self.setup)
         self.bodies = [platform_body(self.machine, way, body) for body in self.machine.bodies]
         self.struts = strut_bodies(self.machine, way) if has_strut_bodies(self.machine) else None
@@ -82,19 +82,21 @@ class Search:
         if self.setup.part is None:
             self.extents.not_known(PART_NOT_KNOWN)
             return
-        part = self._obstacle("part", self.setup.part)
+        part = self._obstacle(Phrase("part"), self.setup.part)
         self._machine(part, "K117", "K121")
         self._shanks(part, "K130", ALLOWANCE)
         for used in self._with_size(part):
             pieces = cutter_pieces(used.tool, used.edge_length, ALLOWANCE + self.off_tip)
-            self._rapid(part, used, tool_body(f"{used.name} in a rapid move", self.driven.way, used.rapid, pieces))
-            mover = tool_body(used.name, self.driven.way, _sampled(used.cutting), pieces)
-            met = contacts_at_ends(self.driven.way, mover, part.part, _TOUCH)
+            self._rapid(
+                part, used, tool_body(Phrase("{} in a rapid move", used.name), self.driven.poses, used.rapid, pieces)
+            )
+            mover = tool_body(used.name, self.driven.poses, _sampled(used.cutting), pieces)
+            met = contacts_at_ends(self.driven.poses, mover, part.mesh, _TOUCH)
             self.found += contact_faults(self.driven, "K132", mover, part, met, ALLOWANCE)
         self.extents.cutters(part, ALLOWANCE)
 
     def _rapid(self, part: Obstacle, used: ToolUse, mover: MovingBody) -> None:
-        met = contacts(self.driven.way, mover, part.part, _TOUCH, self.driven.operation, _ALL)
+        met = contacts(self.driven.poses, mover, part.mesh, _TOUCH, self.driven.operation, _ALL)
         met = not_cut_before(self.driven, self.used, met)
         self.found += contact_faults(self.driven, "K131", mover, part, met, ALLOWANCE)
 
@@ -103,12 +105,12 @@ class Search:
         if not self.setup.fixtures:
             self.extents.not_known(FIXTURES_NOT_KNOWN)
         for mesh in self.setup.fixtures:
-            fixture = self._obstacle("fixture", mesh)
+            fixture = self._obstacle(Phrase("fixture"), mesh)
             self._machine(fixture, "K133", "K133")
             self._shanks(fixture, "K133", 0.0)
             for used in self._with_size(fixture):
                 pieces = cutter_pieces(used.largest, used.edge_length, 0.0)
-                mover = tool_body(used.name, self.driven.way, used.cells(), pieces)
+                mover = tool_body(used.name, self.driven.poses, used.cells(), pieces)
                 self.found += mesh_faults(self.driven, "K133", mover, fixture, _TOUCH + self.off_tip)
             self.extents.cutters_in_all_moves(fixture)
 
@@ -118,10 +120,10 @@ class Search:
         if mesh is None:
             self.extents.not_known(STOCK_NOT_KNOWN)
             return
-        stock = self._obstacle("stock", mesh)
+        stock = self._obstacle(Phrase("stock"), mesh)
         closed = is_closed(mesh.triangles)
         if not closed:
-            self.found.append(Diagnostic("K139", Place(mesh.source), f"{len(mesh.triangles)} triangles"))
+            self.found.append(Diagnostic("K139", Place(mesh.source), Phrase("{} triangles", len(mesh.triangles))))
         intruders = [*self._in_stock(stock, closed)]
         intruders += [rapid_cutter(used) for used in self.used if used.has_size and len(used.rapid)]
         if closed and intruders:
@@ -142,13 +144,13 @@ class Search:
         for mover, intruder in movers:
             in_points = closed and intruder is not None
             operation, enough = self.driven.operation, 1 if in_points else ENOUGH
-            met = contacts(self.driven.way, mover, stock.part, _TOUCH + self.off_tip, operation, enough)
+            met = contacts(self.driven.poses, mover, stock.mesh, _TOUCH + self.off_tip, operation, enough)
             if len(met) and closed and intruder is not None:
                 yield intruder
             elif len(met):
                 self.found += contact_faults(self.driven, "K135", mover, stock, met, 0.0)
 
-    def _obstacle(self, name: str, mesh: Mesh) -> Obstacle:
+    def _obstacle(self, name: Phrase, mesh: Mesh) -> Obstacle:
         return Obstacle.of(name, mesh, self.driven.trajectory.machine_from_work)
 
     def _machine(self, obstacle: Obstacle, of_bodies: str, strut_bodies: str) -> None:
@@ -169,7 +171,7 @@ class Search:
         for used in self.used:
             pieces = () if used.shank is None else shank_pieces(used.tool, used.shank, allowance + self.off_tip)
             if pieces:
-                yield used, tool_body(f"shank of {used.name}", self.driven.way, used.cells(), pieces)
+                yield used, tool_body(Phrase("shank of {}", used.name), self.driven.poses, used.cells(), pieces)
 
     def _with_size(self, obstacle: Obstacle) -> Iterator[ToolUse]:
         """The tools whose cutters are known; the others are recorded in the coverage."""

@@ -17,7 +17,7 @@ from pkm_post.machine.collisions.contacts import TrajectoryPath
 from pkm_post.machine.collisions.moving_bodies import Profile, cylinder
 from pkm_post.machine.collisions.stock_grid import StockGrid, SweptPoses, first_met, when_cut
 from pkm_post.machine.collisions.tools_in_use import ToolUse
-from pkm_post.model import Body, Diagnostic, Machine, Mesh
+from pkm_post.model import Body, Diagnostic, Machine, Mesh, Phrase
 
 _SCALLOP = 0.1
 """mm: largest ridge between two poses of a cutter, which counts as having cut everything between them."""
@@ -43,14 +43,14 @@ class Intruder:
 
 def rapid_cutter(used: ToolUse) -> Intruder:
     """The cutting part of a tool in rapid moves."""
-    return Intruder(f"{used.name} in a rapid move", ("K136", "K137"), ((used.profile(), used.rapid),))
+    return Intruder(Phrase("{} in a rapid move", used.name), ("K136", "K137"), ((used.profile(), used.rapid),))
 
 
 def shank_of(used: ToolUse) -> Intruder:
     """The shank of a tool, if it has one."""
     assert used.shank is not None
     shape = cylinder(used.shank.start, used.tool.length, used.shank.diameter / 2)
-    return Intruder(f"shank of {used.name}", ("K134", "K135"), ((shape, used.cells()),))
+    return Intruder(Phrase("shank of {}", used.name), ("K134", "K135"), ((shape, used.cells()),))
 
 
 def body_of(machine: Machine, body: Body, used: Sequence[ToolUse]) -> Intruder:
@@ -82,7 +82,8 @@ def stock_faults(
     cuts = [(one, _cuts(driven, one, grid, work_from_machine)) for one in used if one.has_size]
     ridge = max((swept.moved**2 / (4 * one.tool.diameter) for one, swept in cuts), default=0.0)
     less = max(_SCALLOP, ridge) + tolerance
-    unknown = min((float(one.cutting.min(initial=np.inf)) - 1 for one in used if not one.has_size), default=np.inf)
+    unsized = (one.cutting for one in used if not one.has_size and len(one.cutting))
+    unknown = min((float(cells[0]) - 1 for cells in unsized), default=np.inf)
     found: list[Diagnostic] = []
     for one in intruders:
         first = _first_met(driven, one, grid, work_from_machine, less)
@@ -128,7 +129,7 @@ def _swept(
     wide = 2 * float(profile.radius.max())
     length = float(profile.height[-1] - profile.height[0])
     pairs = min(wide, box[0]) * min(wide, box[1]) * min(length, max(box)) / grid.step**3
-    return SweptPoses.of(driven.way, cells, work_from_machine, profile.farthest, step, pairs)
+    return SweptPoses.of(driven.poses, cells, work_from_machine, profile.farthest, step, pairs)
 
 
 def _operation_faults(
@@ -141,5 +142,5 @@ def _operation_faults(
         mine = np.flatnonzero(operation == number)
         begin = mine[np.argmin(met[mine])]
         x, y, z = points[begin]
-        found = f"{name}, stock {stock.source}, at X{x:.1f} Y{y:.1f} Z{z:.1f}"
+        found = Phrase("{}, stock {}, at X{:.1f} Y{:.1f} Z{:.1f}", name, stock.source, x, y, z)
         yield driven.fault(code, int(cells[begin]), found)

@@ -126,7 +126,7 @@ def first_met(grid: StockGrid, swept: SweptPoses, profile: Profile, more: float)
         more: offset of the shape, mm.
     """
     first = np.full(grid.filled.size, np.inf)
-    for pose, number in _near(grid, swept, profile, more):
+    for pose, number in _candidates(grid, swept, profile, more):
         away = grid.points(number) - swept.tip[pose]
         high = dot(away, swept.axis[pose])
         out = np.sqrt(np.maximum(dot(away, away) - high * high, 0.0))
@@ -195,7 +195,7 @@ def _chunks(count: int, size: int) -> Iterator[Array]:
     return (np.arange(first, min(first + size, count)) for first in range(0, count, size))
 
 
-def _near(grid: StockGrid, swept: SweptPoses, profile: Profile, more: float) -> Iterator[tuple[Array, Array]]:
+def _candidates(grid: StockGrid, swept: SweptPoses, profile: Profile, more: float) -> Iterator[tuple[Array, Array]]:
     """Poses and nearby stock points, in batches: those in boxes around short pieces of the shape."""
     radius = float(profile.radius.max()) + max(more, 0.0)
     low, top = float(profile.height[0]) - max(more, 0.0), float(profile.height[-1]) + max(more, 0.0)

@@ -65,7 +65,7 @@ class ToolUse:
 
 def tools_in_use(driven: TrajectoryPath, setup: Setup) -> tuple[ToolUse, ...]:
     """The tools of a trajectory by number."""
-    trajectory, cells = driven.trajectory, np.arange(1, len(driven.way))
+    trajectory, cells = driven.trajectory, np.arange(1, len(driven.poses))
     number, rapid = trajectory.tool[driven.segment[1:]], trajectory.kind[driven.segment[1:]] == Kind.RAPID
     return tuple(
         ToolUse(*_sizes(trajectory.tools[one], setup), setup.shanks.get(one), cells[mine & ~rapid], cells[mine & rapid])
@@ -94,7 +94,7 @@ def not_cut_before(driven: TrajectoryPath, used: Sequence[ToolUse], met: Contact
 
 def _reaches(driven: TrajectoryPath, used: ToolUse, cells: Array, point: Array) -> bool:
     """Whether a cutter reaches a point in some cells, or nearly so."""
-    profile, way = used.largest_profile(), driven.way
+    profile, way = used.largest_profile(), driven.poses
     change = way.travel[cells] + way.angle[cells] * profile.farthest
     wide = float(profile.radius.max())
     high, out = _in_tool(way.tip[cells], way.axis[cells], point)

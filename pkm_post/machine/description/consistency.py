@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from pkm_post.machine.description.faults import Fault
+from pkm_post.machine.description.spindle_axis import AXIS_CHECKS
 from pkm_post.machine.description.value_types import Array
 from pkm_post.model import ToolChange
 
@@ -276,7 +277,7 @@ _TOOL_CHANGE_CHECKS: tuple[tuple[tuple[str, ...], Check], ...] = (
 """Each check with its required entries."""
 
 
-_CHECKS = _REST_CHECKS + _STRUT_CHECKS + _LIMIT_CHECKS + _TOOL_CHANGE_CHECKS
+_CHECKS = AXIS_CHECKS + _REST_CHECKS + _STRUT_CHECKS + _LIMIT_CHECKS + _TOOL_CHANGE_CHECKS
 
 
 def contradictions(values: Values) -> list[Fault]:

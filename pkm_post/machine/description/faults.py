@@ -7,7 +7,6 @@ no line numbers: they are found by searching for the keys.
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -90,6 +89,8 @@ def fault_diagnostics(
 def _suggestion(name: Name) -> str:
     """Known name nearest to an unknown one."""
     known = dict.fromkeys(".".join(field.name[:length]) for field in FIELDS for length in range(1, len(field.name) + 1))
+    import difflib
+
     nearest = difflib.get_close_matches(".".join(name), known, n=1)
     return f"the nearest known entry is {nearest[0]}" if nearest else "no known entry is like it"
 

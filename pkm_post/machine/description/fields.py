@@ -52,6 +52,8 @@ class Field:
 
 MOST_DECIMALS = 9
 MOST_WORDS = 2**24
+MOST_MOTORS = 32
+"""Of a Turbo PMAC."""
 LONGEST_SHORTEST = 50
 """ms: intervals can be split evenly into pieces no shorter than that."""
 OPTIONAL_STOPS = ("written", "stop", "leave-out")
@@ -109,6 +111,12 @@ FIELDS: tuple[Field, ...] = (
     Field("spindle.spin_down_time", forms.POSITIVE, units.TIME, default=None, attribute="spin_down_time"),
     Field("spindle.largest_tool_diameter", forms.POSITIVE, units.LENGTH, None, "largest_tool_diameter"),
     Field("spindle.longest_tool", forms.POSITIVE, units.LENGTH, default=None, attribute="longest_tool"),
+    Field("spindle.axis.motor", forms.whole_number(7, MOST_MOTORS), default=None),
+    Field("spindle.axis.letter", forms.choice(*forms.AXIS_LETTERS), default=None),
+    Field("spindle.axis.counts_per_turn", forms.POSITIVE, units.COUNTS_OF_A_TURN, default=None),
+    Field("spindle.axis.speed", forms.POSITIVE, units.SPINDLE_SPEED, default=None),
+    Field("spindle.axis.acceleration", forms.POSITIVE, units.SPINDLE_ACCELERATION, default=None),
+    Field("spindle.axis.lead_tolerance", forms.POSITIVE, units.LENGTH, default=None),
     Field("tool_change.nose", forms.POINT, units.LENGTH, default=None),
     Field("tool_change.axis", forms.UPWARDS, default=[0.0, 0.0, 1.0]),
     Field("tool_change.spin", forms.NUMBER, units.ANGLE, default=0.0),
@@ -148,6 +156,8 @@ FIELDS: tuple[Field, ...] = (
     Field("controller.codes.coolant_off", forms.CODE),
     Field("controller.codes.stop", forms.CODE),
     Field("controller.codes.optional_stop", forms.CODE),
+    Field("controller.codes.spindle_axis", forms.CODE, default=None),
+    Field("controller.codes.spindle_speed", forms.CODE, default=None),
     Field("controller.codes.functions", forms.FUNCTIONS, default={}),
 )
 

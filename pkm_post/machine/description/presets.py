@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from pkm_post.machine.description.reader import read_machine
-from pkm_post.model import Diagnostic, Machine, Place
+from pkm_post.model import Diagnostic, Machine, Phrase, Place
 
 _PACKAGE = Path(__file__).parents[2]
 _IN_A_WHEEL = _PACKAGE / "resources" / "machines"
@@ -56,5 +56,7 @@ def machine_named(name_or_path: str | Path) -> tuple[Machine | None, tuple[Diagn
     """
     path = find_machine(str(name_or_path))
     if path is None:
-        return None, (Diagnostic("M101", Place(str(name_or_path)), "no machine of this name comes with PKM Post"),)
+        return None, (
+            Diagnostic("M101", Place(str(name_or_path)), Phrase("no machine of this name comes with PKM Post")),
+        )
     return read_machine(path)

@@ -20,6 +20,7 @@ import numpy as np
 from pkm_post.machine.description.consistency import contradictions, rest_axes, tool_change
 from pkm_post.machine.description.faults import MOST_BYTES, Fault, fault_diagnostics, not_toml, too_deep, too_large
 from pkm_post.machine.description.fields import ANY, FIELDS, REQUIRED, Field, Name, section_tree
+from pkm_post.machine.description.spindle_axis import spindle_axis
 from pkm_post.machine.description.units import Scale, stated_units
 from pkm_post.machine.description.value_types import NAME, PROSE, Array, WrongValueError, contains_unknown, quoted
 from pkm_post.model import Diagnostic, Machine, Place
@@ -177,6 +178,7 @@ def _machine(values: dict[str, Any], offsets: list[str], fingerprint: str) -> Ma
         work_offsets=work_offsets(offsets, values),
         controller=_controller(values),
         tool_change=tool_change(values),
+        spindle_axis=spindle_axis(values),
         # omitted entries get the machine's own defaults
         **{name: value for name, value in attributes.items() if value is not None},
     )
@@ -192,5 +194,7 @@ def _controller(values: dict[str, Any]) -> dict[str, Any]:
             for part in sections:
                 section = section.setdefault(part, {})
             section[key] = values[field.entry]
-    settings["codes"] |= settings["codes"].pop("functions")
-    return settings
+    codes = settings["codes"] | settings["codes"].pop("functions")
+    settings["codes"] = {name: text for name, text in codes.items() if text is not None}
+    axis = spindle_axis(values)
+    return settings if axis is None else settings | {"spindle_axis": axis}

@@ -61,13 +61,16 @@ SPINDLE_SPEED = Dimension("spindle speed", "1/min", 1e-2, 1e6)
 """Revolutions per minute regardless of the file units, as is usual for spindles."""
 COUNT_DENSITY = Dimension("counts per length", "1/mm", 1e-3, 1e9)
 """Per mm regardless of the file units: the name of the entry includes the unit."""
+SPINDLE_ACCELERATION = Dimension("spindle acceleration", "turn/s^2", 1e-2, 1e6)
+"""Turns regardless of the file units, as revolutions are for the speed of spindles."""
+COUNTS_OF_A_TURN = Dimension("counts per turn", "1/turn", 1.0, 1e9)
 STIFFNESS = Dimension("stiffness", "N/mm", 1e-3, 1e12)
 """N/mm regardless of the file units, as a file states no unit of force."""
 FORCE = Dimension("force", "N", 1e-3, 1e12)
 SINGULAR_VALUE = Dimension("singular value", "-", 1e-6, 1e3)
 DIMENSIONS = (
-    LENGTH, SPEED, ACCELERATION, JERK, ANGLE, TIME, TURNING_RATE, RATE, BLOCK_RATE, SPINDLE_SPEED, COUNT_DENSITY,
-    STIFFNESS, FORCE, SINGULAR_VALUE,
+    LENGTH, SPEED, ACCELERATION, JERK, ANGLE, TIME, TURNING_RATE, RATE, BLOCK_RATE, SPINDLE_SPEED,
+    SPINDLE_ACCELERATION, COUNT_DENSITY, COUNTS_OF_A_TURN, STIFFNESS, FORCE, SINGULAR_VALUE,
 )  # fmt: skip
 """Dimensions with their own plausible range, in the order of the documentation."""
 _OF_THE_TABLE = {quantity: next(iter(sizes.values())) for quantity, sizes in UNITS.items()}

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.geometry import Array, norm
-from pkm_post.machine.kinematics.inverse import ToolPoses, counted_lengths, platform_rotation, strut_vectors
+from pkm_post.machine.kinematics.inverse import counted_lengths, platform_rotation
 from pkm_post.machine.kinematics.screw import screw_gradient
 from pkm_post.model import Machine
 
@@ -86,42 +86,3 @@ def solve_regular(matrices: Array, right: Array) -> tuple[Array, Array]:
     half = len(right) // 2
     begin, end = (solve_regular(matrices[rows], right[rows]) for rows in (slice(half), slice(half, None)))
     return np.concatenate([begin[0], end[0]]), np.concatenate([begin[1], end[1]])
-
-
-_POSES_AT_ONCE = 8192
-"""Poses per pass: their Jacobians stay in the processor's cache."""
-
-
-def strut_compliance(machine: Machine, distance: Array) -> Array:
-    """Compliance of each strut, (N, 6) in mm/N, for joint distances (N, 6).
-
-    Raises:
-        ValueError: the machine file states no stiffness.
-    """
-    if machine.strut_stiffness is None:
-        raise ValueError("expected a machine with a stiffness of its struts, got one that states none")
-    return 1.0 / machine.strut_stiffness + distance / machine.strut_rigidity
-
-
-def stiffness_along(machine: Machine, pose: ToolPoses, normal: Array) -> Array:
-    """Stiffness of the tip along unit normals, (N,) in N/mm; zero at exactly singular poses.
-
-    Args:
-        machine: with ``strut_stiffness``.
-        pose: tips (N, 3), axes (N, 3), spins (N,) and gauge lengths (N,).
-        normal: (N, 3) unit vectors in {M}.
-    """
-    result = np.empty(len(normal))
-    for first in range(0, len(normal), _POSES_AT_ONCE):
-        rows = slice(first, first + _POSES_AT_ONCE)
-        result[rows] = _stiffness(machine, tuple(column[rows] for column in pose), normal[rows])
-    return result
-
-
-def _stiffness(machine: Machine, pose: tuple[Array, ...], normal: Array) -> Array:
-    tip, axis, spin, tool_length = pose
-    jacobian = jacobian_of_tip(machine, tip, axis, spin, tool_length)
-    wrench = np.concatenate([normal, np.zeros_like(normal)], axis=1)
-    force, held = solve_regular(jacobian.transpose(0, 2, 1), wrench)
-    gives = strut_compliance(machine, norm(strut_vectors(machine, tip, axis, spin, tool_length)))
-    return np.divide(1.0, np.sum(force**2 * gives, axis=1), out=np.zeros(len(normal)), where=held)

@@ -59,7 +59,9 @@ def screw_gradient(unit_struts: Array, distances: Array, rotations: Array, machi
     if machine.screw_lead == 0.0:
         return np.zeros(unit_struts.shape), np.zeros(unit_struts.shape)
     axes = _turned_axes(machine, rotations)
-    of_joint = (_carried(unit_struts, axes) - _carried(unit_struts, machine.base_axes)) / distances[..., None]
+    of_joint = (_turn_with_strut(unit_struts, axes) - _turn_with_strut(unit_struts, machine.base_axes)) / distances[
+        ..., None
+    ]
     lean = dot(unit_struts, axes)
     of_turn = (unit_struts - lean[..., None] * axes) / (1.0 - lean**2)[..., None]
     return _per_turn(machine) * of_joint, _per_turn(machine) * of_turn
@@ -119,7 +121,7 @@ def _twist(along: Array, base: Array, axes: Array) -> tuple[Array, Array]:
     return dot(along, cross(base, axes)), dot(base, axes) - dot(base, along) * dot(axes, along)
 
 
-def _carried(along: Array, axes: Array) -> Array:
+def _turn_with_strut(along: Array, axes: Array) -> Array:
     """(u . a)(a x u) / |a x u|^2: rotation of the second axis about the strut when the strut swings."""
     lean = dot(along, axes)
     return (lean / (1.0 - lean**2))[..., None] * cross(axes, along)

@@ -45,7 +45,7 @@ DRIFT_SHARES = np.array([0.25, 0.5, 0.75])
 _BUMP = 16 * (DRIFT_SHARES * (1 - DRIFT_SHARES)) ** 2
 _ROOM = 1.1
 """Allowance for a drift that is larger between the measured shares."""
-_STEEPEST = 16 / np.sqrt(27)
+_MAX_SLOPE = 16 / np.sqrt(27)
 """Highest slope of 16 x^2 (1 - x)^2."""
 _CURVED = 32.0
 """Largest second derivative of 16 x^2 (1 - x)^2, at both ends."""
@@ -63,7 +63,7 @@ class ToolCubics:
     powers: Array
 
     @classmethod
-    def between(cls, first: Array, rate: Array, last: Array, last_rate: Array, duration: Array) -> ToolCubics:
+    def from_ends(cls, first: Array, rate: Array, last: Array, last_rate: Array, duration: Array) -> ToolCubics:
         """Build cubics from their ends: positions and rates by time, (C, N) each, and durations, (N,) s."""
         return cls(hermite_powers(first, rate, last, last_rate, duration))
 
@@ -177,7 +177,7 @@ def bounded_demand(machine: Machine, tool_length: float, cubics: ToolCubics, dur
         tip_acceleration / (ROUNDED_SHARE * machine.tip_acceleration),
     )
     drift = gain * fourth / 384
-    return Demand(drift, np.zeros(len(duration)), (speed + _STEEPEST * drift) / duration, np.maximum.reduce(by_limit))
+    return Demand(drift, np.zeros(len(duration)), (speed + _MAX_SLOPE * drift) / duration, np.maximum.reduce(by_limit))
 
 
 def measured_demand(
@@ -201,9 +201,9 @@ def measured_demand(
         max_strut_speed(first, last, duration) / machine.strut_speed,
         max_strut_acceleration(first, last, duration) / (ROUNDED_SHARE * machine.strut_acceleration),
         (bend + _CURVED * tip_bump) / duration**2 / (ROUNDED_SHARE * machine.tip_acceleration),
-        (cubics.turn() + _STEEPEST * axis_bump) / duration / machine.axis_speed,
+        (cubics.turn() + _MAX_SLOPE * axis_bump) / duration / machine.axis_speed,
     )
-    return Demand(tip, axis, (speed + _STEEPEST * tip_bump) / duration, np.maximum.reduce(by_limit))
+    return Demand(tip, axis, (speed + _MAX_SLOPE * tip_bump) / duration, np.maximum.reduce(by_limit))
 
 
 def _fastest(begin: Array, middle: Array, end: Array) -> Array:

@@ -19,8 +19,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.machine.spin.normalised_margins import STROKE, SampledPoses, normalised_margins, score
-from pkm_post.model import Machine, Trajectory
+from pkm_post.machine.spin.normalised_margins import SampledPoses, normalised_margins, score
+from pkm_post.machine.spin.policy import STROKE
+from pkm_post.model import Machine, Trajectory, checkpoint
 from pkm_post.toolpath import rotation
 
 _AT_RANDOM = 24
@@ -41,6 +42,7 @@ def pattern_search(height: Callable[[Array], Array], start: Array, first_step: A
     free = np.flatnonzero(first_step)
     at, best, scale = start, float(height(start[None])[0]), 1.0
     for _ in range(_MOST_STEPS):
+        checkpoint()
         if (scale * first_step <= last_step).all():
             break
         directions = random.normal(size=(_AT_RANDOM, len(free)))
@@ -67,6 +69,10 @@ _POSES_THAT_JOIN = 8
 _ROUNDS = 50
 _EQUAL = 1e-6
 """Score difference that counts as zero."""
+_SEARCH_RANGE = np.array([150.0, 150.0, 150.0, *np.radians([20.0, 20.0, 120.0])])
+"""mm and rad: how far from the best position others are tried."""
+_WORTH = 1e-3
+"""Share of the margins times distance in these steps, below which a position is not worth a try."""
 _START_RANGE = np.array([200.0, 200.0, 200.0, *np.radians([10.0, 10.0, 180.0])])
 """mm, rad: how far starts are from the position as it is, in each freedom."""
 
@@ -135,6 +141,51 @@ def best_position(
     Raises:
         ValueError: a letter is unknown, or there is none; or there is no start.
     """
+    job, climbs = _climbs(trajectory, machine, free, weights, fixed, starts, executor)
+    return _position(job, trajectory, climbs[int(np.argmax([least for _, least in climbs]))][0])
+
+
+def good_positions(
+    trajectory: Trajectory,
+    machine: Machine,
+    free: str = "xyzc",
+    fixed: Array | None = None,
+    starts: int = 1,
+    executor: Executor | None = None,
+) -> tuple[WorkpiecePosition, ...]:
+    """Positions for other checks to choose among: arguments and errors as ``best_position``.
+
+    Returns:
+        The best position; and the ends of the other climbs, the best one shifted and turned in its freedoms, as far as
+        they leave something of stroke and joints. Each is far from those before it and leaves much: what speaks against
+        one may not speak against the next.
+    """
+    job, climbs = _climbs(trajectory, machine, free, None, fixed, starts, executor)
+    best = climbs[int(np.argmax([least for _, least in climbs]))][0]
+    steps = [share * _SEARCH_RANGE[row] * np.eye(6)[row] for row, name in enumerate(FREEDOMS) if name in free
+             for share in (-1.0, -0.5, 0.5, 1.0)]  # fmt: skip
+    found = [_position(job, trajectory, best)]
+    left = [
+        _position(job, trajectory, move) for move in (*(end for end, _ in climbs), *(best + step for step in steps))
+    ]
+    while left:
+        worth = [each.after.min() * min(_distance(each.move, other.move) for other in found) for each in left]
+        if max(worth) < _WORTH:
+            break
+        found.append(left.pop(int(np.argmax(worth))))
+    return tuple(found)
+
+
+def _climbs(
+    trajectory: Trajectory,
+    machine: Machine,
+    free: str,
+    weights: dict[int, float] | None,
+    fixed: Array | None,
+    starts: int,
+    executor: Executor | None,
+) -> tuple[_Job, list[tuple[Array, float]]]:
+    """The job, and for each start the move that a climb ends with, (6,), with its score."""
     if not free or set(free) - set(FREEDOMS):
         raise ValueError(f"free: expected letters of {FREEDOMS!r}, got {free!r}")
     if starts < 1:
@@ -143,8 +194,11 @@ def best_position(
     chosen = np.array([letter in free for letter in FREEDOMS])
     task = functools.partial(_climb, job, weights or {STROKE: 1.0}, chosen)
     moves = _starts(starts) * chosen
-    climbs = list(executor.map(task, moves) if executor else map(task, moves))
-    move = climbs[int(np.argmax([least for _, least in climbs]))][0]
+    return job, list(executor.map(task, moves) if executor else map(task, moves))
+
+
+def _position(job: _Job, trajectory: Trajectory, move: Array) -> WorkpiecePosition:
+    checkpoint()
     every = np.arange(len(job.tip))
     return WorkpiecePosition(
         machine_from_work=_matrix(move, job.middle) @ trajectory.machine_from_work,
@@ -152,6 +206,12 @@ def best_position(
         before=job.normalised_margins(np.zeros((1, 6)), every)[0].min(axis=0),
         after=job.normalised_margins(move[None], every)[0].min(axis=0),
     )
+
+
+def _distance(move: Array, other: Array) -> float:
+    """How far two moves are apart, in the steps that are made about the best position."""
+    apart = np.append((move - other)[:3], np.angle(np.exp(1j * (move - other)[3:])))
+    return float(np.abs(apart / _SEARCH_RANGE).max())
 
 
 def _starts(count: int) -> Array:

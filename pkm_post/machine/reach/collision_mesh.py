@@ -67,10 +67,10 @@ class CollisionMesh:
         every = every[np.argsort(_along_a_curve(every.mean(axis=1)), kind="stable")]
         edges = np.roll(every, -1, axis=1) - every
         normal = cross(edges[:, 0], edges[:, 1])[:, None]
-        return cls(every, np.concatenate([normal, edges], axis=1), tuple(_balls_around(every)))
+        return cls(every, np.concatenate([normal, edges], axis=1), tuple(_bounding_balls(every)))
 
 
-def _balls_around(triangles: Array) -> Iterator[tuple[Array, Array]]:
+def _bounding_balls(triangles: Array) -> Iterator[tuple[Array, Array]]:
     """Yield the balls of each level."""
     points = triangles
     while True:

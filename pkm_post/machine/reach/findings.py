@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Diagnostic, Kind, Trajectory
+from pkm_post.model import Amount, Diagnostic, Kind, Pattern, Phrase, Trajectory
 
 DISPLAY_UNITS: dict[str, tuple[str, float]] = {
     "mm": ("mm", 1.0),
@@ -19,6 +19,8 @@ DISPLAY_UNITS: dict[str, tuple[str, float]] = {
     "": ("", 1.0),
 }
 """Display unit and factor for each internal unit."""
+_DIGITS = {"mm": ".3f", "degrees": ".3f", "": ".4f"}
+"""Format of the amount of a violation by its display unit; one decimal for others."""
 
 
 @dataclass(frozen=True)
@@ -30,24 +32,28 @@ class CheckedLimit:
         code: diagnostic code of a violation.
         unit: of the margin, a key of ``DISPLAY_UNITS``.
         parts: what may have the least margin: struts, pairs of bodies.
-        violation: message template of a violation, with {part} and {by}.
+        violation: pattern of the message of a violation, with {part} and {by}.
         rapid_code: diagnostic code of a violation in a rapid move; empty for the same one.
+        values: further values of the pattern.
     """
 
     name: str
     code: str
     unit: str
     parts: tuple[str, ...]
-    violation: str
+    violation: Pattern
     rapid_code: str = field(default="", kw_only=True)
+    values: Mapping[str, object] = field(default_factory=dict, kw_only=True)
 
     def code_of(self, kind: int) -> str:
         """The diagnostic code of a violation in a move of a kind."""
         return self.rapid_code if self.rapid_code and kind == Kind.RAPID else self.code
 
-    def describe(self, part: int, margin: float) -> str:
-        """Format a violation."""
-        return self.violation.format(part=self.parts[part], by=-margin * DISPLAY_UNITS[self.unit][1])
+    def describe(self, part: int, margin: float) -> Phrase:
+        """The message of a violation."""
+        unit, factor = DISPLAY_UNITS[self.unit]
+        by = Amount(-margin * factor, unit, _DIGITS.get(unit, ".1f"))
+        return self.violation.phrase(part=self.parts[part], by=by, **self.values)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,18 +26,20 @@ from pkm_post.machine.kinematics.placed_machine import (
     rod_speed_ratio,
     strut_cylinders,
 )
-from pkm_post.machine.reach.collision_mesh import CollisionMesh, distance_from_mesh
 from pkm_post.machine.reach.limit_checks import HUNDREDTH, STRUTS
 from pkm_post.machine.reach.path_bounds import Check
 from pkm_post.machine.reach.pose_path import PosePath
-from pkm_post.model import Body, Machine
+from pkm_post.model import Body, Machine, Pattern, Phrase
+
+if TYPE_CHECKING:
+    from pkm_post.machine.reach.collision_mesh import CollisionMesh
 
 COMFORT = 10.0
 """mm: distances that exceed the clearance by more are given as a lower bound."""
 _BOX_EDGES = np.array([[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]])
 """Corner pairs of the box edges, in the numbering of ``box_corners``."""
 _FIRST, _SECOND = np.triu_indices(6, 1)
-_PAIRS = tuple(f"{one + 1} and {two + 1}" for one, two in zip(_FIRST, _SECOND, strict=True))
+_PAIRS = tuple(Phrase("{} and {}", one + 1, two + 1) for one, two in zip(_FIRST, _SECOND, strict=True))
 
 
 def strut_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Check, ...]:
@@ -47,11 +50,11 @@ def strut_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Chec
     lever = rod_speed_ratio(machine, shortest)
     reach = max((body_reach(machine, way.tool_length, body) for body in machine.bodies), default=0.0)
     bodies, boxes = (_names(other.name for other in others) for others in (machine.bodies, machine.fixtures))
-    violation, violation_of_two = "strut {part} by {by:.3f} mm", "struts {part} by {by:.3f} mm"
+    violation, violation_of_two = Pattern("strut {part} by {by}"), Pattern("struts {part} by {by}")
     rows = (
-        ("strut and strut", "K113", _PAIRS, violation_of_two, _strut_to_strut, 2 * lever, 2 * lever * arm),
-        ("strut and platform", "K114", bodies, violation, _strut_to_bodies, 1 + lever, lever * arm + reach),
-        ("strut and fixture", "K115", boxes, violation, _strut_to_fixtures, lever, lever * arm),
+        (Phrase("strut and strut"), "K113", _PAIRS, violation_of_two, _strut_to_strut, 2 * lever, 2 * lever * arm),
+        (Phrase("strut and platform"), "K114", bodies, violation, _strut_to_bodies, 1 + lever, lever * arm + reach),
+        (Phrase("strut and fixture"), "K115", boxes, violation, _strut_to_fixtures, lever, lever * arm),
     )
     return tuple(
         Check(name, code, "mm", parts, violation, margins, by_travel, by_turn, HUNDREDTH, COMFORT)
@@ -66,8 +69,9 @@ def body_checks(machine: Machine, way: PosePath) -> tuple[Check, ...]:
         return ()
     return tuple(
         Check(
-            f"{body.name} and fixture", "K116", "mm", tuple(f"{body.name} and {box.name}" for box in machine.fixtures),
-            "{part} by {by:.3f} mm", partial(_body_to_fixtures, body),
+            Phrase("{} and fixture", body.name), "K116", "mm",
+            tuple(Phrase("{} and {}", body.name, box.name) for box in machine.fixtures),
+            Pattern("{part} by {by}"), partial(_body_to_fixtures, body),
             1.0, body_reach(machine, way.tool_length, body), HUNDREDTH, COMFORT,
         )
         for body in machine.bodies
@@ -75,7 +79,7 @@ def body_checks(machine: Machine, way: PosePath) -> tuple[Check, ...]:
 
 
 def _names(others: Iterable[str]) -> tuple[str, ...]:
-    return tuple(f"{strut} and {other}" for other in others for strut in STRUTS)
+    return tuple(Phrase("{} and {}", strut, other) for other in others for strut in STRUTS)
 
 
 def _strut_to_strut(placed: PlacedMachine) -> Array:
@@ -144,7 +148,7 @@ def workpiece_checks(machine: Machine, way: PosePath, shortest: float, part: Col
     far = _FAR + machine.clearance
     checks = [
         Check(
-            f"{body.name} and part", "K117", "mm", (body.name,), "{part} by {by:.3f} mm",
+            Phrase("{} and part", body.name), "K117", "mm", (body.name,), Pattern("{part} by {by}"),
             partial(_of_body, body, part, far), 1.0, body_reach(machine, way.tool_length, body), HUNDREDTH, COMFORT,
         )
         for body in machine.bodies
@@ -153,7 +157,8 @@ def workpiece_checks(machine: Machine, way: PosePath, shortest: float, part: Col
         lever, arm = rod_speed_ratio(machine, shortest), float(lever_arms(machine, way.tool_length).max())
         checks.append(
             Check(
-                "strut and part", "K121", "mm", STRUTS, "strut {part} by {by:.3f} mm", partial(_of_struts, part, far),
+                Phrase("strut and part"), "K121", "mm", STRUTS, Pattern("strut {part} by {by}"),
+                partial(_of_struts, part, far),
                 lever, lever * arm, HUNDREDTH, COMFORT,
             )
         )  # fmt: skip
@@ -162,10 +167,14 @@ def workpiece_checks(machine: Machine, way: PosePath, shortest: float, part: Col
 
 def _of_body(body: Body, part: CollisionMesh, far: float, placed: PlacedMachine) -> Array:
     """Margins of one body, (M, 1)."""
+    from pkm_post.machine.reach.collision_mesh import distance_from_mesh
+
     return distance_from_mesh(body_cylinders(placed, body), part, far)[:, None] - placed.machine.clearance
 
 
 def _of_struts(part: CollisionMesh, far: float, placed: PlacedMachine) -> Array:
     """Margins of the struts, (M, 6)."""
+    from pkm_post.machine.reach.collision_mesh import distance_from_mesh
+
     pieces = [distance_from_mesh(piece, part, far) for piece in strut_cylinders(placed)]
     return np.min(pieces, axis=0).reshape(-1, 6) - placed.machine.clearance

@@ -19,7 +19,7 @@ from pkm_post.machine.kinematics.placed_machine import PlacedMachine
 from pkm_post.machine.reach.findings import CheckedLimit, ReachFinding
 from pkm_post.machine.reach.path_bounds import Check
 from pkm_post.machine.reach.pose_path import PosePath
-from pkm_post.model import Machine
+from pkm_post.model import Amount, Machine, Pattern, Phrase
 
 HUNDREDTH = 0.01
 """mm: resolution of a length margin between two rows."""
@@ -57,15 +57,16 @@ def stroke_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Che
     by_travel = 1.0 + per_turn / shortest
     by_turn = lever_arms(machine, way.tool_length).max() * by_travel + per_turn
 
-    def check(name: str, code: str, violation: str, sign: float, limit: float) -> Check:
+    def check(name: str, code: str, violation: Pattern, sign: float, limit: float) -> Check:
         def margins(placed: PlacedMachine) -> Array:
             return sign * (placed.lengths() - limit)
 
-        return Check(name, code, "mm", STRUTS, violation, margins, by_travel, by_turn, HUNDREDTH)
+        values = {"limit": Amount(limit, "mm", "g")}
+        return Check(name, code, "mm", STRUTS, violation, margins, by_travel, by_turn, HUNDREDTH, values=values)
 
     return (
-        check("shortest struts", "K101", f"strut {{part}} by {{by:.3f}} mm; it shortens to {low:g} mm", 1.0, low),
-        check("longest struts", "K102", f"strut {{part}} by {{by:.3f}} mm; it extends to {high:g} mm", -1.0, high),
+        check(Phrase("shortest struts"), "K101", Pattern("strut {part} by {by}; it shortens to {limit}"), 1.0, low),
+        check(Phrase("longest struts"), "K102", Pattern("strut {part} by {by}; it extends to {limit}"), -1.0, high),
     )
 
 
@@ -80,10 +81,10 @@ def joint_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Chec
     def platform(placed: PlacedMachine) -> Array:
         return machine.platform_cone - joint_swing(placed.in_platform(), -machine.platform_rest)
 
-    violation = "joint {part} by {by:.3f} degrees"
+    violation = Pattern("joint {part} by {by}")
     return (
-        Check("base joints", "K103", "rad", STRUTS, violation, base, by_travel, by_turn, ANGLE),
-        Check("platform joints", "K104", "rad", STRUTS, violation, platform, by_travel, by_turn + 1.0, ANGLE),
+        Check(Phrase("base joints"), "K103", "rad", STRUTS, violation, base, by_travel, by_turn, ANGLE),
+        Check(Phrase("platform joints"), "K104", "rad", STRUTS, violation, platform, by_travel, by_turn + 1.0, ANGLE),
     )
 
 
@@ -111,10 +112,11 @@ def singularity_check(machine: Machine, way: PosePath, shortest: float) -> Check
     swing_by_turn = lever_arms(machine, way.tool_length) / shortest
     by_travel = float(np.sqrt(np.sum(1 + arm**2)) / shortest)
     by_turn = float(np.sqrt(np.sum(swing_by_turn**2 + ((1 + swing_by_turn) * arm) ** 2)))
-    violation = f"smallest singular value below {least:g} by {{by:.4f}}"
+    violation = Pattern("smallest singular value below {least} by {by}")
     return Check(
-        "singular poses", "K105", "", ("",), violation, margins, by_travel, by_turn, SINGULAR, _WELL_CONDITIONED
-    )
+        Phrase("singular poses"), "K105", "", ("",), violation, margins, by_travel, by_turn, SINGULAR,
+        _WELL_CONDITIONED, values={"least": Amount(least, "", "g")},
+    )  # fmt: skip
 
 
 _REGULAR = 1e-6
@@ -202,8 +204,8 @@ def strut_speed_finding(machine: Machine, way: PosePath, shortest: float, durati
         duration: (N,) duration of each cell, s; that of cell 0 is ignored.
     """
     limit = machine.strut_speed
-    violation = f"strut {{part}} by {{by:.1f}} mm/s; it reaches {limit:g}"
-    subject = CheckedLimit("strut speed", "K118", "mm/s", STRUTS, violation, rapid_code="K128")
+    violation, values = Pattern("strut {part} by {by}; it reaches {limit}"), {"limit": Amount(limit, "mm/s", "g")}
+    subject = CheckedLimit(Phrase("strut speed"), "K118", "mm/s", STRUTS, violation, rapid_code="K128", values=values)
     lengths = strut_lengths(machine, *way.rows(slice(None)))
     cells = np.arange(1, len(way))
     margin, part = np.full(len(way), limit), np.zeros(len(way), dtype=np.int32)

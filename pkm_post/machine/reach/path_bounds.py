@@ -23,7 +23,7 @@ from pkm_post.geometry import Array, norm
 from pkm_post.machine.kinematics.inverse import lever_arms
 from pkm_post.machine.kinematics.placed_machine import PlacedMachine
 from pkm_post.machine.reach.findings import CheckedLimit, ReachFinding
-from pkm_post.machine.reach.pose_path import PosePath, turn_between
+from pkm_post.machine.reach.pose_path import PosePath, rotation_bound
 from pkm_post.model import Machine, checkpoint, distinct
 from pkm_post.system import in_workers
 
@@ -196,7 +196,7 @@ class _PathCheck:
         np.minimum.at(least, owner, found)
 
 
-_STRETCH = 8.0
+_INTERVAL_TRAVEL = 8.0
 """mm that tip and platform joints travel on a stretch; one cell if that is longer."""
 _MOST_GROUPS = 1024
 """Most groups: beyond this some margin is small, and surveying along the path is as fast."""
@@ -217,7 +217,7 @@ def unproven_checks(
         checks_for: the checks, with slopes that hold where every strut's joints are at least this far apart, mm.
     """
     checkpoint()
-    stretches = _Stretches.of(machine, way)
+    stretches = _PathIntervals.of(machine, way)
     checkpoint()
     shortest = max(_NEARER * float(PlacedMachine.of(machine, way.rows(stretches.row)).distance.min()), _NO_STRUT)
     checks = checks_for(shortest)
@@ -227,7 +227,9 @@ def unproven_checks(
         checkpoint()
         for number, doubt in list(doubts.items()):
             doubts[number] = doubt = doubt[groups.parent]
+            checkpoint()
             margin, least = groups.bounds(machine, way, checks[number], np.flatnonzero(doubt), shortest)
+            checkpoint()
             doubt[doubt] = ~(least >= 0)
             if margin.min() < 0:
                 violated.add(number)
@@ -239,7 +241,7 @@ def unproven_checks(
 
 
 @dataclass(frozen=True)
-class _Stretches:
+class _PathIntervals:
     """K stretches that cover the whole path, each around one of its rows.
 
     Attributes:
@@ -253,9 +255,10 @@ class _Stretches:
     turn: Array
 
     @classmethod
-    def of(cls, machine: Machine, way: PosePath) -> _Stretches:
+    def of(cls, machine: Machine, way: PosePath) -> _PathIntervals:
         travel, turn = np.cumsum(way.travel), np.cumsum(way.turn())
-        number = np.floor((travel + _longest_arm(machine, way) * turn) / _STRETCH)
+        checkpoint()
+        number = np.floor((travel + _longest_arm(machine, way) * turn) / _INTERVAL_TRAVEL)
         ends = distinct(np.concatenate([[0], np.flatnonzero(np.diff(number)) + 1, [len(way) - 1]]))
         begin, end = ends[: max(len(ends) - 1, 1)], ends[min(len(ends) - 1, 1) :]  # a path of one row has no extent
         row = (begin + end) // 2
@@ -285,34 +288,46 @@ class _Groups:
         """Margins at the anchors of some groups, and the lower bound of each group in margin or distance."""
         placed = PlacedMachine.of(machine, way.rows(self.anchor[at]))
         margin = check.margins(placed).min(axis=1)
+        checkpoint()
         travel, turn = self.travel[at], self.turn[at]
         apart = placed.distance.min(axis=1) - (travel + turn * self.arm)
         return margin, np.minimum(margin - (check.by_travel * travel + check.by_turn * turn), apart - shortest)
 
 
-def _partitions(machine: Machine, way: PosePath, stretches: _Stretches) -> Iterator[_Groups]:
+def _partitions(machine: Machine, way: PosePath, stretches: _PathIntervals) -> Iterator[_Groups]:
     """Yield all stretches as one group, then the groups split in two along their widest extent, and so on."""
     arm = _longest_arm(machine, way)
     tip, axis, spin, tool_length = way.rows(stretches.row)
+    checkpoint()
     place = np.column_stack([tip, arm * axis, arm * spin, tool_length])
     group, parent = np.zeros(len(place), dtype=np.int64), np.zeros(1, dtype=np.int64)
     while len(parent) <= _MOST_GROUPS:
+        checkpoint()
         order = np.argsort(group, kind="stable")
+        checkpoint()
         first = np.searchsorted(group[order], np.arange(len(parent)))
         low, high = (
             np.stack([extreme.reduceat(column[order], first) for column in place.T], axis=1)
             for extreme in (np.minimum, np.maximum)
         )
+        checkpoint()
         middle, widest = (low + high) / 2, np.argmax(high - low, axis=1)
         anchor = np.lexsort((norm(place - middle[group]), group))[first]
+        checkpoint()
         begin = anchor[group]
         # Seen from the platform, a tool change moves the tip at the anchor.
         travel = norm(tip - tip[begin]) + np.abs(tool_length - tool_length[begin]) + stretches.travel
-        turn = turn_between(axis[begin], axis, spin - spin[begin]) + stretches.turn
+        checkpoint()
+        turn = rotation_bound(axis[begin], axis, spin - spin[begin]) + stretches.turn
+        checkpoint()
         farthest = [np.maximum.reduceat(column[order], first) for column in (travel, turn)]
         yield _Groups(parent, stretches.row[anchor], farthest[0], farthest[1], arm)
+        checkpoint()
         beyond = place[np.arange(len(place)), widest[group]] > middle[group, widest[group]]
-        halves, group = np.unique(2 * group + beyond, return_inverse=True)
+        half = 2 * group + beyond
+        checkpoint()
+        halves = distinct(half)
+        group = np.searchsorted(halves, half)
         if len(halves) == len(parent):
             return
         parent = halves // 2

@@ -7,11 +7,12 @@ Checking strut lengths alone is not enough: singular poses can lie well inside t
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.machine.kinematics.jacobian import stiffness_along
-from pkm_post.machine.reach.collision_mesh import CollisionMesh
+from pkm_post.machine.kinematics.stiffness import stiffness_along
 from pkm_post.machine.reach.findings import CheckedLimit, ReachFinding, finding_diagnostics
 from pkm_post.machine.reach.interference import body_checks, strut_checks, workpiece_checks
 from pkm_post.machine.reach.limit_checks import (
@@ -23,7 +24,10 @@ from pkm_post.machine.reach.limit_checks import (
 )
 from pkm_post.machine.reach.path_bounds import Check, check_path, unproven_checks
 from pkm_post.machine.reach.pose_path import PosePath
-from pkm_post.model import Diagnostic, Machine, Trajectory
+from pkm_post.model import Amount, Diagnostic, Machine, Pattern, Phrase, Trajectory
+
+if TYPE_CHECKING:
+    from pkm_post.machine.reach.collision_mesh import CollisionMesh
 
 _NO_STRUT = 1e-3
 """Share of the shortest stroke: below it nothing is provable on a path, and its struts are far too short anyway."""
@@ -76,9 +80,9 @@ def all_checks(machine: Machine, way: PosePath, shortest: float, part: Collision
 
 
 def _stiffness_finding(machine: Machine, way: PosePath, normal: Array, least: float) -> ReachFinding:
-    violation = f"below {least:g} N/mm by {{by:.1f}}"
+    violation, values = Pattern("below {least} by {by}"), {"least": Amount(least, "N/mm", "g")}
     margin = stiffness_along(machine, way.rows(slice(None)), normal) - least
-    subject = CheckedLimit("stiffness along the normal", "K119", "N/mm", ("",), violation)
+    subject = CheckedLimit(Phrase("stiffness along the normal"), "K119", "N/mm", ("",), violation, values=values)
     return ReachFinding(subject, margin, np.zeros(len(way), dtype=np.int32), -np.inf)
 
 

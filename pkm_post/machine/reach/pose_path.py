@@ -18,7 +18,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, along, angle_between, norm, tilt, towards, turn_by_tilt
 from pkm_post.machine.kinematics.inverse import ToolPoses
-from pkm_post.model import map_row_pairs, shifted, uniform
+from pkm_post.model import checkpoint, map_row_pairs, shifted, uniform
 
 
 @dataclass(frozen=True)
@@ -90,12 +90,14 @@ class PosePath:
     def half_tilt(self) -> Array:
         """Tangent of half the highest tilt in each cell, (N,)."""
         tilts = tilt(self.axis)
+        checkpoint()
         return _half_tilt(np.concatenate([tilts[:1], tilts[:-1]]), tilts, self.angle)
 
     def turn(self) -> Array:
         """Upper bound of the platform rotation in each cell, (N,)."""
         if not self.angle.any():
             return np.abs(self.spin_change)
+        checkpoint()
         return np.hypot(self.angle, np.abs(self.spin_change) + self.half_tilt() * self.angle)
 
 
@@ -108,7 +110,7 @@ def _angles(before: Array, after: Array) -> Array:
     return angle
 
 
-def turn_between(start: Array, end: Array, spin_change: Array) -> Array:
+def rotation_bound(start: Array, end: Array, spin_change: Array) -> Array:
     """Upper bound of the platform rotation while axis and spin move between two orientations, (M,).
 
     Args:

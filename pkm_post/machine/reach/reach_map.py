@@ -21,7 +21,7 @@ from pkm_post.model import Machine
 NOWHERE = -1.0
 """Marks a place that even an upright tool does not reach."""
 
-_PLACES_PER_TASK = 64
+_POINTS_PER_TASK = 64
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def reach_map(
         raise ValueError(f"tip: expected (N, 3), got {tip.shape}")
     angles = np.arange(0.0, widest + step / 2, step)
     task = functools.partial(_cones, machine, tool_length, angles, azimuths)
-    parts = np.array_split(tip, -(-len(tip) // _PLACES_PER_TASK) or 1)
+    parts = np.array_split(tip, -(-len(tip) // _POINTS_PER_TASK) or 1)
     done = executor.map(task, parts) if executor else map(task, parts)
     cone, limit = (np.concatenate(columns) for columns in zip(*done, strict=True))
     return ReachMap(tip, cone, limit, float(angles[-1]))

@@ -17,9 +17,6 @@ from pkm_post.machine.kinematics.jacobian import scaled_jacobian
 from pkm_post.model import Machine, Trajectory
 from pkm_post.toolpath import Segments
 
-STROKE, JOINTS, SINGULAR = range(3)
-"""Columns of the shares."""
-
 _CHUNK = 16384
 """Poses per pass: the working arrays fit the processor's cache."""
 

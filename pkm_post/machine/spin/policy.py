@@ -9,7 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from pkm_post.machine.spin.normalised_margins import JOINTS, SINGULAR, STROKE
+STROKE, JOINTS, SINGULAR = range(3)
+"""Columns of ``normalised_margins``, the shares that an objective weighs."""
 
 
 class SpinRule(enum.Enum):

@@ -2,16 +2,18 @@
 """Rules: the table of all input faults by code, with the severity, cause and cure of each.
 
 A code is a letter for the topic, a digit for its part, and two digits. Rows follow the order of the families in
-docs/diagnostics.md, and the number within each. A published code never changes its meaning.
+docs/diagnostics.md, and the number within each. A published code never changes its meaning. The table
+is imported when there is a fault.
 """
 
-from pkm_post.model.rules.cam_job import CAM_JOB_RULES
-from pkm_post.model.rules.cldata import CLDATA_RULES
-from pkm_post.model.rules.gcode import GCODE_RULES
-from pkm_post.model.rules.machining import MACHINING_RULES
-from pkm_post.model.rules.results import RESULT_RULES
+from typing import TYPE_CHECKING
+
+from pkm_post import at_first_use
 from pkm_post.model.rules.rule import Rule, Severity
 
-__all__ = ["RULES", "Rule", "Severity"]
+if TYPE_CHECKING:
+    from pkm_post.model.rules.table import RULES
+else:
+    __getattr__ = at_first_use(__name__, {"table": "RULES"})
 
-RULES: dict[str, Rule] = CAM_JOB_RULES | GCODE_RULES | CLDATA_RULES | MACHINING_RULES | RESULT_RULES
+__all__ = ["RULES", "Rule", "Severity"]

@@ -22,7 +22,9 @@ CAM_JOB_RULES: dict[str, Rule] = {
     ),
     "J109": error("only some of the cutting moves have a tool axis", "give every G1 of the operation I J K words"),
     "J110": error("the tool axis has no direction", "give I J K words that are not all zero"),
-    "J111": error("the job uses several fixtures", "post one fixture at a time"),
+    "J111": error(
+        "two fixtures of the job are in the same place", "give the second one its own with --origin NAME=X,Y,Z"
+    ),
     "J112": error("the operation has no tool controller", "choose a tool controller for it"),
     "J113": error(
         "the gauge length of the tool is unknown",
@@ -78,5 +80,17 @@ CAM_JOB_RULES: dict[str, Rule] = {
     "J137": error(
         "the document is being recomputed, and the paths of its operations are not complete",
         "wait for the end of the recompute, then post or check again",
+    ),
+    "J138": warning(
+        "an option gives the place of a fixture that the job does not have, or has as its first one",
+        "correct its name, or leave it out; the first fixture is where --work-offset puts it",
+    ),
+    "J139": error(
+        "a job with several fixtures is to be copied as a whole",
+        "make the copies in the job, as operations of Mirror or Rotate, or leave --copies out",
+    ),
+    "J140": warning(
+        "Split Output of the job is not followed: one program holds all of it",
+        "deactivate operations, or take fixtures out of the job, to post a part of it",
     ),
 }

@@ -49,7 +49,10 @@ MACHINING_RULES: dict[str, Rule] = {
         " --side N, with its work offset",
     ),
     "K107": error("the spindle does not support this speed", "program a speed within its limits"),
-    "K108": error("the work offset is unknown to the machine", "add it to the machine file, or pass --work-offset"),
+    "K108": error(
+        "the work offset is unknown to the machine",
+        "add it to the machine file, or pass --work-offset, or --origin for a further fixture of a CAM job",
+    ),
     "K109": error("the matrix is not a rotation, a mirror or a shift", "use a matrix without scale or shear"),
     "K110": warning("the feed is beyond the machine and is limited", "program a feed that the machine can run"),
     "K112": error("cutter compensation would leave its plane", "compensate before the path is turned or mirrored"),
@@ -162,9 +165,26 @@ MACHINING_RULES: dict[str, Rule] = {
     ),
     "K152": warning(
         "M codes of the machine before the line are not repeated",
-        "bring the machine into the state that they left it in, or begin at an earlier line",
+        "bring the machine into the state that they left it in, repeat them with --repeat-codes, or begin at an earlier"
+        " line",
     ),
     "K153": error("the program has no such side", "name one of its sides, counted from 1: --side N"),
+    "K154": error(
+        "a thread needs a spindle that is an axis, and the machine file states none",
+        "state [spindle.axis] and its codes in the machine file if the spindle is one, or mill the threads as helices",
+    ),
+    "K155": error("a thread is not made of feed moves along the tool axis", "tap along the tool axis"),
+    "K156": warning(
+        "the spindle as an axis cannot keep up with the feed of a thread, and the thread will be slower",
+        "nothing has to be done, the lead is kept; a lower spindle speed of the thread has the same effect",
+    ),
+    "K157": error(
+        "threads cannot be tapped in this way", "leave that option out, or post the threads as a program of their own"
+    ),
+    "K158": error(
+        "the machine file states no stiffness of the struts",
+        "state struts.stiffness in it, and struts.rigidity where screws are long",
+    ),
     # N1: surface normals, and compensation with them
     "N101": error("a contact point, normal or tool axis is not a number or has no direction", "regenerate the path"),
     "N102": error("the surface is undercut: the corner of the cutter does not touch it", "lean the tool further back"),

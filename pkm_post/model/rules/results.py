@@ -51,6 +51,11 @@ RESULT_RULES: dict[str, Rule] = {
         "with what may be changed at the machine the program does not hold",
         "allow less, by --tool-range and --origin-range, or move the part; the faults that follow are those there",
     ),
+    "C116": error(
+        "with this segment time the program does not hold",
+        "take a shorter one for --segment-time and SegMoveTime, or 0 for no segmentation, or post with more tolerance;"
+        " the faults that follow are those of the motion in segments",
+    ),
     # C2: moves by hand, at the controller
     "C201": error("the command moves nothing", "give a direction and a distance"),
     "C202": error("no pose of the platform belongs to the strut lengths on the way", "jog less far, or jog the tool"),
@@ -62,13 +67,18 @@ RESULT_RULES: dict[str, Rule] = {
         "the source lines of the program are unknown",
         "keep all results of a posting together in one folder, or post the job again",
     ),
-    "C206": error(
-        "the player does not plan with limits of jerk",
-        "post the trajectory's program and run it, or play it with a machine file without these limits, posted for it",
-    ),
     "C207": error(
         "the trajectory has no line to begin with",
         "name a line up to the last one that moves, and the operation it belongs to with --operation",
+    ),
+    "C208": error(
+        "the trajectory has threads, which are neither played nor stepped through block by block",
+        "run its motion program: pmac run, or Load and Start of the panel",
+    ),
+    "C209": error(
+        "what was changed at the machine does not fit the program",
+        "name tools of the program; where an arc follows a change of a tool in its place, post again with the new"
+        " length",
     ),
     "C210": error(
         "another client controls the machine",
@@ -135,6 +145,17 @@ RESULT_RULES: dict[str, Rule] = {
     "V119": error(
         "the path needs points closer together than the controller accepts",
         "request a wider tolerance, lower the feed, or correct controller.shortest_interval of the machine file",
+    ),
+    "V120": error(
+        "the depth of a thread is off what the turns of the spindle make of it",
+        "post the job again; do not edit the program. If it was just posted, state more controller.length_decimals, or"
+        " a wider spindle.axis.lead_tolerance",
+    ),
+    "V121": error(
+        "the spindle turns faster in a thread than the machine allows", "report this as a fault of the feed planner"
+    ),
+    "V122": error(
+        "the spindle accelerates more in a thread than the machine allows", "report this as a fault of the feed planner"
     ),
     # V13: how a program ends
     "V130": warning(

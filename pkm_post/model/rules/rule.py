@@ -34,7 +34,8 @@ def warning(cause: str, cure: str) -> Rule:
 
 
 TAPPING = error(
-    "tapping needs a feed synchronised with the spindle, which this machine's programs do not support",
-    "tap the threads on another machine, or mill them as helices",
+    "tapping needs a feed synchronised with the spindle, which is not supported here",
+    "mill the threads as helices; or tap them by G74 or G84 with S and F, on a machine whose spindle is an axis: state"
+    " [spindle.axis] in its machine file",
 )
 """One rule, with a code for each kind of input."""

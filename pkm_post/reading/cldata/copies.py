@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.model import Array
-from pkm_post.reading.cldata.faults import Faults
+from pkm_post.reading.cldata.diagnostics import StatementDiagnostics
 from pkm_post.reading.cldata.statements import Statement, Statements, Template
 
 MATRIX = "_COPY"
@@ -34,7 +34,7 @@ _VALUES = {"SAME": 0, "TRANSL": 3, "MODIFY": 12, **dict.fromkeys(_PLANES, 1)}
 """Number of values between the word and the number of copies."""
 
 
-def with_copies(statements: Statements, faults: Faults) -> Statements:
+def with_copies(statements: Statements, faults: StatementDiagnostics) -> Statements:
     """Replace each COPY by its copies; the table itself if there is none.
 
     Args:
@@ -64,7 +64,9 @@ def _rows(statements: Statements, word: str) -> list[int]:
     return rows
 
 
-def _copies_at(statements: Statements, row: int, begins: list[int], before: list[_Part], faults: Faults) -> list[_Part]:
+def _copies_at(
+    statements: Statements, row: int, begins: list[int], before: list[_Part], faults: StatementDiagnostics
+) -> list[_Part]:
     """The copies of one COPY; none, with a fault, if it is not understood.
 
     Args:

@@ -16,7 +16,7 @@ from pkm_post.reading.cldata.arcs import resolve_arcs
 from pkm_post.reading.cldata.copies import with_copies
 from pkm_post.reading.cldata.cutcom import cutcom_offsets
 from pkm_post.reading.cldata.cycle_statement import cycle_descriptions
-from pkm_post.reading.cldata.faults import Faults
+from pkm_post.reading.cldata.diagnostics import StatementDiagnostics
 from pkm_post.reading.cldata.interpreter import interpret
 from pkm_post.reading.cldata.logical_lines import LONGEST_LINE, decoded, logical_lines, without_long_lines
 from pkm_post.reading.cldata.nurbs import with_curves
@@ -50,7 +50,7 @@ def read(
         ImportError: lark is not installed.
     """
     options = options or ReadOptions()
-    faults = Faults(file)
+    faults = StatementDiagnostics(file)
     text, too_long = without_long_lines(text)
     for line, size in too_long:
         faults.add("L104", (line, 0), f"a line of {size} bytes, at most {LONGEST_LINE}")

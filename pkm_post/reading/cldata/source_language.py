@@ -24,7 +24,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pkm_post.reading.cldata.cycle_notation import words_of_cycles
-from pkm_post.reading.cldata.faults import Faults
+from pkm_post.reading.cldata.diagnostics import StatementDiagnostics
 from pkm_post.reading.cldata.feeds import FEED_WORDS
 from pkm_post.reading.cldata.interpreter import HANDLERS, IGNORED, UNSUPPORTED
 from pkm_post.reading.cldata.logical_lines import LogicalLines
@@ -77,7 +77,7 @@ class _Macro:
     body: range
 
 
-def expanded(lines: LogicalLines, faults: Faults) -> LogicalLines:
+def expanded(lines: LogicalLines, faults: StatementDiagnostics) -> LogicalLines:
     """Resolve variables, points and macros; the lines themselves if there are none.
 
     Args:
@@ -106,7 +106,7 @@ class _Expander:
     """
 
     lines: LogicalLines
-    faults: Faults
+    faults: StatementDiagnostics
     values: dict[str, _Value] = field(default_factory=dict)
     macros: dict[str, _Macro] = field(default_factory=dict)
     text: list[str] = field(default_factory=list)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from pkm_post.model import Array, EventKind, Tool
 from pkm_post.reading.cldata.cycle_notation import Cycle
-from pkm_post.reading.cldata.faults import Faults
+from pkm_post.reading.cldata.diagnostics import StatementDiagnostics
 from pkm_post.reading.cldata.options import Dialect, ReadOptions
 from pkm_post.reading.cldata.statements import Statement, Statements
 from pkm_post.reading.units import UNITS
@@ -200,7 +200,7 @@ class ReaderState:
     statements: Statements
     dialect: Dialect
     options: ReadOptions
-    faults: Faults
+    faults: StatementDiagnostics
     goto_rows: Array
     gotos_before: Array
     file_unit: LengthUnit

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from pkm_post.model import Array
-from pkm_post.reading.cldata.faults import Faults, fault_of
+from pkm_post.reading.cldata.diagnostics import StatementDiagnostics, fault_of
 from pkm_post.reading.cldata.logical_lines import JOINT, LONGEST_LINE, MARK, LogicalLines
 from pkm_post.reading.grammar import STATEMENT, Fault
 
@@ -151,7 +151,7 @@ class Statements:
         return self.lines.place(int(self.index[row]), len(text) - len(text.lstrip(_BLANKS)))
 
 
-def scan(lines: LogicalLines, faults: Faults) -> Statements:
+def scan(lines: LogicalLines, faults: StatementDiagnostics) -> Statements:
     """Scan logical lines to statements.
 
     Args:
@@ -174,7 +174,7 @@ def scan(lines: LogicalLines, faults: Faults) -> Statements:
     return _table(lines, _values(body), shape, marks, parsed, good)
 
 
-def _without_long_statements(lines: LogicalLines, faults: Faults) -> LogicalLines:
+def _without_long_statements(lines: LogicalLines, faults: StatementDiagnostics) -> LogicalLines:
     """Blank the lines that became too long when joined."""
     too_long = [index for index, text in enumerate(lines.text) if len(text) > LONGEST_LINE]
     if not too_long:

@@ -14,12 +14,20 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import DTypeLike
 
 from pkm_post.model import Array, Place, uniform
 
 if TYPE_CHECKING:
     from lark import Token, Tree
+    from numpy.typing import DTypeLike
+
+SUBPROGRAM_CODES = (98, 99)
+"""M codes that call a subprogram, and that return from it."""
+LARGEST_CODE = 9999.0
+MACRO_CALLS = (65.0, 66.0)
+"""G codes that call a macro, and that make every move call one."""
+LONGEST_LINE = 10_000
+"""Bytes. Longer lines are always rejected."""
 
 
 @dataclass
@@ -112,6 +120,11 @@ class Blocks:
 
     def __len__(self) -> int:
         return len(self.line)
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether execution leaves the blocks as they are: every value is a number, and nothing is called."""
+        return not self.special and not np.isin(self.m, SUBPROGRAM_CODES).any()
 
     def word(self, letter: str) -> Array:
         """The (N,) values of a word, NaN where absent."""

@@ -156,7 +156,14 @@ spindle [LinuxCNC, M19]."""
 SPINDLE_SYNCHRONISED = ("G33", "G33.1", "G74", "G84")
 """Threading codes: thread cutting, rigid tapping, and left-hand and right-hand tapping."""
 
-CYCLES = (730, 810, 820, 830, 850, 860, 890)
+DRILLING = (730, 810, 820, 830, 850, 860, 890)
+TAPPING = (740, 840)
+"""Left-hand and right-hand tapping, on machines whose spindle is an axis."""
+CYCLES = (*DRILLING, *TAPPING)
+RIGID_TAP = 331
+"""G33.1 of LinuxCNC: to a point and back, with a spindle that is an axis."""
+STROKES = (*CYCLES, RIGID_TAP)
+"""Codes of more than one move."""
 CANCEL_CYCLE = 800
 ARCS = (20, 30)
 WORDS_OF_ANY_BLOCK = "FNSTO"

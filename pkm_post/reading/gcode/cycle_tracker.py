@@ -15,10 +15,10 @@ import numpy as np
 
 from pkm_post.model import Array
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import Group, word_of
-from pkm_post.reading.gcode.cycles import CycleSeries, Strokes, cycle_fault, cycle_strokes
+from pkm_post.reading.gcode.codes import RIGID_TAP, Group, Word, word_of
+from pkm_post.reading.gcode.cycles import CycleSeries, Strokes, cycle_fault, cycle_strokes, rigid_tap
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
-from pkm_post.reading.gcode.frames import PLANES, Frame
+from pkm_post.reading.gcode.frames import PLANES, ProgramFrame
 from pkm_post.reading.gcode.modal import Modal, is_cycle
 from pkm_post.reading.gcode.polar import PolarWords
 
@@ -50,9 +50,10 @@ class CycleTracker:
     @cached_property
     def _series_number(self) -> Array:
         """Number of the last non-cycle block up to each block, (N,): constant within a series."""
-        return np.cumsum(~is_cycle(self._modal.active[Group.MOTION]))
+        motion = self._modal.active[Group.MOTION]
+        return np.cumsum(~is_cycle(motion) | (motion == RIGID_TAP))
 
-    def strokes(self, row: int, position: Array, known: Array, frame: Frame) -> Strokes | None:
+    def strokes(self, row: int, position: Array, known: Array, frame: ProgramFrame) -> Strokes | None:
         """The strokes of one block, None if it has a fault.
 
         Args:
@@ -62,6 +63,8 @@ class CycleTracker:
             frame: of these coordinates.
         """
         code = int(self._modal.active[Group.MOTION][row])
+        if code == RIGID_TAP:
+            return self._rigid_tap(row, position, known)
         axes = PLANES[int(self._modal.active[Group.PLANE][row])]
         relative = bool(self._modal.active[Group.DISTANCE][row] == 910)
         given = ~np.isnan(self._words.at(row)) & (not relative)
@@ -86,6 +89,22 @@ class CycleTracker:
         centres = self._centres(row, position, axes, relative, int(repeats))
         return cycle_strokes(series.cycle, hole, centres, axes, position, spindle, self._modal.flavour)
 
+    def _rigid_tap(self, row: int, position: Array, known: Array) -> Strokes | None:
+        """To the point of the block and back, by the lead K [LinuxCNC, G33.1]."""
+        words, lead, spindle = self._words.at(row), float(self._cycle_words["K"][row]), float(self._spindle[row])
+        relative = bool(self._modal.active[Group.DISTANCE][row] == 910)
+        name = word_of(RIGID_TAP)
+        if not known.all():
+            self._faults.add("G416", row, name)
+        elif not lead > 0:
+            self._faults.add("G418", row, (name, " ", Word("K", lead)) if lead <= 0 else (name, " goes on without K"))
+        elif not spindle:
+            self._faults.add("G418", row, (name, " while the spindle stands still"))
+        else:
+            end = position + np.nan_to_num(words) if relative else np.where(np.isnan(words), position, words)
+            return rigid_tap(position, end, spindle)
+        return None
+
     def _stored(self, row: int, position: Array) -> Strokes | None:
         """A cycle that only stores its words; whether it goes to a place of its own, controls do not agree."""
         axes = PLANES[int(self._modal.active[Group.PLANE][row])]
@@ -95,7 +114,7 @@ class CycleTracker:
         self._faults.add("G418", row, (name, " repeated 0 times at another place"))
         return None
 
-    def _extend_series(self, row: int, code: int, position: Array, frame: Frame) -> CycleSeries:
+    def _extend_series(self, row: int, code: int, position: Array, frame: ProgramFrame) -> CycleSeries:
         """Extend the series by the cycle of this block."""
         normal = PLANES[int(self._modal.active[Group.PLANE][row])][2]
         scale = float(self._modal.scale[row])
@@ -124,7 +143,7 @@ class CycleTracker:
         reduction = 0.0 if math.isnan(less) else less
         return replace(series, cycle=replace(series.cycle, peck=first, reduction=reduction, least=least))
 
-    def _mode_conflict(self, row: int, series: CycleSeries, needs_level: bool, frame: Frame) -> Found:
+    def _mode_conflict(self, row: int, series: CycleSeries, needs_level: bool, frame: ProgramFrame) -> Found:
         """What has changed since the modal words were programmed and may alter their meaning."""
         name, plane = word_of(series.cycle.code), int(self._modal.active[Group.PLANE][row])
         distance, scale = int(self._modal.active[Group.DISTANCE][row]), float(self._modal.scale[row])

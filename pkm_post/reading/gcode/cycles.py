@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Drilling cycles: G73, G81, G82, G83, G85, G86 and G89, in any plane.
+"""Canned cycles: G73, G81, G82, G83, G85, G86 and G89 drill, G74 and G84 tap, in any plane.
 
 Enters: cycle blocks and the tool position, in mm and program coordinates. Leaves: rapid and linear moves, with the
 events between them. R, Q, P and the depth are modal as long as the cycle is active, the initial level until another
@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pkm_post.model import Array, EventKind, Kind
-from pkm_post.reading.gcode.codes import Word, word_of
+from pkm_post.reading.gcode.codes import TAPPING, Word, word_of
 from pkm_post.reading.gcode.flavours import RS274, Flavour
 
 PECK_CLEARANCE = 0.254
@@ -28,7 +28,10 @@ _PECKS = (730, 830)
 _STOPS_SPINDLE = 860
 
 
-Words = tuple[float, float, float, float]
+HANDS = {840: 1.0, 740: -1.0}
+"""Of threads: 1 for right-hand ones, -1 for left-hand ones."""
+
+WordBlock = tuple[float, float, float, float]
 """R, depth, Q and P of a block, NaN where absent."""
 
 
@@ -88,7 +91,7 @@ class CycleSeries:
 
     @classmethod
     def after(
-        cls, before: CycleSeries | None, code: int, height: float, words: Words, flavour: Flavour = RS274
+        cls, before: CycleSeries | None, code: int, height: float, words: WordBlock, flavour: Flavour = RS274
     ) -> CycleSeries:
         """Extend the series by one cycle.
 
@@ -126,7 +129,7 @@ class Strokes:
     ends: list[Array] = field(default_factory=list)
     events: list[tuple[int, EventKind, float]] = field(default_factory=list)
 
-    def move(self, kind: Kind, axis: int | tuple[int, int], to: float | Array) -> None:
+    def move(self, kind: Kind, axis: int | tuple[int, ...], to: float | Array) -> None:
         """Move some coordinates, unless the tool is already there."""
         end = self.here.copy()
         end[[axis] if isinstance(axis, int) else list(axis)] = to
@@ -145,7 +148,7 @@ def cycle_fault(
 ) -> tuple[str, tuple[str | Word, ...]] | None:
     """The fault that prevents a cycle from being executed: code and what was found."""
     name = word_of(cycle.code)
-    dwells = flavour.cycle_dwells if flavour.needs_dwell else ()
+    dwells = set(flavour.cycle_dwells) - set(TAPPING) if flavour.needs_dwell else ()
     for letter, value, codes in (("Q", cycle.peck, _PECKS), ("P", cycle.dwell, dwells)):
         if cycle.code in codes and math.isnan(value):
             return "G405", (name, f" without {letter}")
@@ -165,6 +168,8 @@ def cycle_fault(
         return "G418", (name, f": more than {MOST_STROKES} pecks")
     if cycle.code == _STOPS_SPINDLE and not spindle:
         return "G418", (name, " while the spindle stands still")
+    if cycle.code in TAPPING and spindle * HANDS[cycle.code] < 0:
+        return "G418", (name, " while the spindle turns the other way")
     if not cycle.dwell >= 0 and not math.isnan(cycle.dwell):
         return "G418", (name, " ", Word("P", cycle.dwell))
     return None
@@ -201,8 +206,37 @@ def cycle_strokes(
     for centre in centres:
         strokes.move(Kind.RAPID, axes[:2], centre)
         strokes.move(Kind.RAPID, normal, hole.top)
+        if cycle.code in TAPPING:
+            _tap(cycle, hole, normal, strokes, spindle)
+            continue
         _drill_down(cycle, hole, normal, strokes)
         _retract(cycle, hole, normal, strokes, spindle, flavour)
+    return strokes
+
+
+def _tap(cycle: Cycle, hole: Hole, normal: int, strokes: Strokes, spindle: float) -> None:
+    """Down and up to R with a spindle that is an axis, which then turns as before. Its lead is not known here."""
+    if hole.bottom < hole.top:
+        strokes.add_event(EventKind.SPINDLE_AXIS, HANDS[cycle.code])
+        strokes.move(Kind.LINE, normal, hole.bottom)
+        if cycle.dwell > 0:
+            strokes.add_event(EventKind.DWELL, cycle.dwell)
+        strokes.move(Kind.LINE, normal, hole.top)
+        strokes.add_event(EventKind.SPINDLE_AXIS, 0.0)
+        if spindle:
+            strokes.add_event(EventKind.SPINDLE, spindle)
+    strokes.move(Kind.RAPID, normal, hole.clear)
+
+
+def rigid_tap(here: Array, end: Array, spindle: float) -> Strokes:
+    """To a point and back, both (3,), with a spindle that is an axis, which then turns as before."""
+    strokes = Strokes(here)
+    if not np.array_equal(here, end):
+        strokes.add_event(EventKind.SPINDLE_AXIS, math.copysign(1.0, spindle))
+        strokes.move(Kind.LINE, (0, 1, 2), end)
+        strokes.move(Kind.LINE, (0, 1, 2), here)
+        strokes.add_event(EventKind.SPINDLE_AXIS, 0.0)
+        strokes.add_event(EventKind.SPINDLE, spindle)
     return strokes
 
 

@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from pkm_post.model import RULES, Array, Diagnostic, DiagnosticLog, Place, Severity
+from pkm_post.model import Array, Diagnostic, DiagnosticLog, Place, Severity, severity_of
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import Word
 from pkm_post.reading.gcode.options import DEFAULT_OPTIONS
@@ -52,7 +52,7 @@ class BlockDiagnostics:
 
     def add(self, code: str, row: int, found: Found, kind: str = "") -> None:
         """Add a diagnostic of one block, or of the whole file if there are no blocks; kinds are counted apart."""
-        if RULES[code].severity is Severity.ERROR:
+        if severity_of(code) is Severity.ERROR:
             self.faulty.add(row)
         if not self._log.keeps((code, kind)):
             self._log.count(1, (code, kind))
@@ -70,10 +70,12 @@ class BlockDiagnostics:
             found: returns what was found in a row.
         """
         rows = np.flatnonzero(wrong)
-        kind = str(found(int(rows[0]))) if len(rows) else ""
+        if not len(rows):
+            return
+        kind = str(found(int(rows[0])))
         for row in rows[: self.most].tolist():
             self.add(code, row, found(row), kind)
-        if RULES[code].severity is Severity.ERROR:
+        if severity_of(code) is Severity.ERROR:
             self.faulty.update(rows[self.most :].tolist())
         self._log.count(len(rows[self.most :]), (code, kind))
 

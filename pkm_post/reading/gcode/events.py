@@ -126,7 +126,7 @@ def check_dwells(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Blo
     words, unit = blocks.word("P")[rows], dwell_unit(modal, options)
     long = words * DWELL_UNITS[unit] > LONG_DWELL
     for row, word in zip(rows[long].tolist(), words[long].tolist(), strict=True):
-        faults.add("G428", row, _both_ways(word, unit))
+        faults.add("G428", row, _in_both_units(word, unit))
     if unit == "ms" and len(rows):
         for row, word in zip(rows.tolist(), words.tolist(), strict=True):
             if _POINTED.search(faults.source_line(row) or "") or word != round(word):
@@ -141,7 +141,7 @@ def _dwells(blocks: Blocks, modal: Modal) -> Array:
     return np.sort(rows[np.unique(blocks.line[rows], return_index=True)[1]])
 
 
-def _both_ways(word: float, unit: str) -> Found:
+def _in_both_units(word: float, unit: str) -> Found:
     """A long dwell in the assumed unit and in the alternatives."""
     units = sorted(DWELL_UNITS, key=lambda each: each != unit)
     return Word("P", word), " in " + ", or in ".join(f"{each}: {word * DWELL_UNITS[each]:g} s" for each in units)

@@ -15,13 +15,13 @@ import numpy as np
 
 from pkm_post.model import Array, Diagnostic, Place
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
-from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Blocks
 from pkm_post.reading.gcode.call_levels import MissingProgram
 from pkm_post.reading.gcode.flavours import RS274, Flavour
-from pkm_post.reading.gcode.interpreter import PROGRAM_END, SUBPROGRAM_CODES, Interpreter
+from pkm_post.reading.gcode.interpreter import PROGRAM_END, Interpreter
 from pkm_post.reading.gcode.o_words import JumpTargets, link_o_words
 from pkm_post.reading.gcode.options import DEFAULT_LIMITS, ExecutionLimits
-from pkm_post.reading.gcode.parameters import ExecutionFault, Whereabouts
+from pkm_post.reading.gcode.parameters import ExecutionFault, SystemVariables
 from pkm_post.reading.gcode.statements import OWord, Statement, statement_of
 
 
@@ -55,7 +55,7 @@ def execute_as_far_as_possible(
     is_whole: bool = True,
     text: bytes = b"",
     may_add: bool = False,
-    where: Callable[[Blocks], Whereabouts] | None = None,
+    where: Callable[[Blocks], SystemVariables] | None = None,
 ) -> tuple[Blocks, tuple[Diagnostic, ...]]:
     """Execute a program up to its first fault.
 
@@ -76,7 +76,7 @@ def execute_as_far_as_possible(
     Raises:
         MissingProgram: a subprogram is missing that may be added.
     """
-    if not blocks.special and not np.isin(blocks.m, SUBPROGRAM_CODES).any():
+    if blocks.is_plain:
         return blocks, ()
     skipped = blocks.deleted if block_delete else np.zeros(len(blocks), dtype=np.bool_)
     statements, faults = _statements(blocks, skipped, block_delete)

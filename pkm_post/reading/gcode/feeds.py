@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.model import Array, map_rows, uniform
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import Group, Word, word_of
+from pkm_post.reading.gcode.codes import RIGID_TAP, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
 from pkm_post.reading.gcode.modal import Modal, changed, forward_fill
 from pkm_post.reading.gcode.motions import Motions
@@ -64,6 +64,10 @@ def feeds(
         still = by_time & (speed == 0) & (value > 0) & ~rotates
         moving = np.flatnonzero(cuts & (speed > 0))
         speed = np.where(still, forward_fill(moving, speed[moving], np.nan, len(speed)), speed)
+    taps = map_rows(lambda codes: codes == RIGID_TAP, modal.active[Group.MOTION])
+    if taps.any():
+        by_lead = blocks.word("K") * modal.scale * np.abs(spindle) / 60
+        speed = np.where(motions.of_blocks(taps), motions.of_blocks(by_lead), speed)
     missing = cuts & ~(speed > 0)
     if missing.any():
         wrong = np.zeros(len(blocks), dtype=np.bool_)

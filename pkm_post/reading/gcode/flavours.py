@@ -11,13 +11,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from pkm_post.reading.gcode.codes import (
-    CYCLES,
+    DRILLING,
     FURTHER_OFFSET,
     G_CODES,
     M_CODES,
     MOST_FURTHER_OFFSETS,
     NONE,
     ORIENTED_STOP,
+    RIGID_TAP,
+    TAPPING,
     UNSUPPORTED,
     Code,
     Group,
@@ -37,7 +39,7 @@ class Flavour:
         g80_restores_motion: whether G0 to G3 before a cycle are in force again after G80, rather than no motion.
         keeps_cycle_words: whether R, depth, Q and P hold until the series ends, rather than for one cycle.
         cycle_dwells: cycles that dwell at the bottom.
-        needs_dwell: whether these need P.
+        needs_dwell: whether these need P, but those that tap.
         feeds_to_r: cycles that come out with feed as far as R, and rapidly from there; other ones go on with feed.
         stores_cycle: whether a cycle repeated 0 times only stores its words.
         pecks_by_i: whether I, J and K of G73 and G83 are the first peck, how much smaller the next is, and the least.
@@ -96,7 +98,7 @@ RS274 = Flavour(
     exact_path=610,
     g80_restores_motion=False,
     keeps_cycle_words=False,
-    cycle_dwells=(820, 860, 890),
+    cycle_dwells=(820, 860, 890, *TAPPING),
     needs_dwell=True,
     feeds_to_r=(850,),
     stores_cycle=False,
@@ -130,7 +132,7 @@ _FANUC_CODES: dict[int, Code] = {
     541: Code(Group.SYSTEM, "P", "P"),
     682: Code(Group.ROTATION, "XYZIJKPQR", takes_axes=True),
     **{FURTHER_OFFSET - number: Code(Group.SYSTEM) for number in range(1, MOST_FURTHER_OFFSETS + 1)},
-    **{code: Code(Group.MOTION, "XYZRLKPQ") for code in CYCLES},
+    **{code: Code(Group.MOTION, "XYZRLKPQ") for code in DRILLING},
     **{code: Code(Group.MOTION, "XYZRLKPQIJ") for code in (730, 830)},
 }
 _ONLY_HERE = ("G5", "G5.1", "G15", "G16", "G50", "G51", "G68.2", "M50", "M51")
@@ -161,7 +163,7 @@ FANUC = replace(
     exact_path=NONE,
     g80_restores_motion=True,
     keeps_cycle_words=True,
-    cycle_dwells=(820, 890),
+    cycle_dwells=(820, 890, *TAPPING),
     needs_dwell=False,
     feeds_to_r=(850, 890),
     stores_cycle=True,
@@ -187,7 +189,7 @@ FANUC = replace(
         2550: "end of an offset of the work",
     },
     requests={50: _SMOOTHING, 51: _SMOOTHING, 80: _SMOOTHING, 611: _SMOOTHING, 620: "slower corners", 1870: _SMOOTHING},
-    silent_m={29: "rigid tapping, which G74 and G84 are refused for"},
+    silent_m={29: "rigid tapping: G74 and G84 are rigid, or refused"},
     g_codes=_FANUC_CODES,
     unsupported=_FANUC_REFUSED,
 )
@@ -199,6 +201,17 @@ def with_functions(flavour: Flavour, functions: tuple[int, ...]) -> Flavour:
         return flavour
     groups = {code: Group.SPINDLE if code == ORIENTED_STOP else Group.FUNCTION for code in functions}
     return replace(flavour, m_codes={**{code: Code(group) for code, group in groups.items()}, **flavour.m_codes})
+
+
+def with_threads(flavour: Flavour, is_axis: bool) -> Flavour:
+    """A flavour on a machine whose spindle is an axis, or is none: tapping is rigid, or refused."""
+    if not is_axis:
+        return flavour
+    words = flavour.g_codes[820].letters.replace("Q", "")
+    taps = {code: Code(Group.MOTION, words) for code in TAPPING}
+    if flavour.name == RS274.name:
+        taps[RIGID_TAP] = Code(Group.MOTION, "XYZK", "K")
+    return replace(flavour, g_codes={**flavour.g_codes, **taps})
 
 
 FLAVOURS: dict[str, Flavour] = {flavour.name: flavour for flavour in (RS274, FANUC)}

@@ -20,7 +20,7 @@ _OBLIQUE = 1e-12
 
 
 @dataclass(frozen=True)
-class Frame:
+class ProgramFrame:
     """{C} = turn @ program + shift; ``turn`` is a rotation, possibly with a reflection."""
 
     turn: Array
@@ -79,7 +79,7 @@ class RowFrames:
     frame: Array
 
     @classmethod
-    def of(cls, frames: Sequence[Frame], frame: Array) -> RowFrames:
+    def of(cls, frames: Sequence[ProgramFrame], frame: Array) -> RowFrames:
         """Create the frames of rows from frame indices."""
         if is_uniform(frame) and len(frame):
             frames, frame = [frames[frame[0]]], uniform(0, len(frame))

@@ -20,7 +20,6 @@ from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import CANCEL_CYCLE, CYCLES, G_CODES, Group, name_of
 from pkm_post.reading.gcode.flavours import FANUC, RS274, Flavour
 from pkm_post.reading.gcode.modal import forward_fill
-from pkm_post.reading.gcode.parse import is_macro_call
 
 _MOST_SHOWN = 4
 """Pieces of evidence in a line of the report."""
@@ -78,8 +77,8 @@ def _for_fanuc(blocks: Blocks) -> _Found:
     here = here[~(blocks.has("X") | blocks.has("Y"))[blocks.g_row[here]]] if len(here) else here
     yield from _codes(blocks.g[here], blocks.g_row[here], _WITHOUT_PLACE, "G")
     yield from _codes(blocks.m, blocks.m_row, (29,), "M")
-    yield from _word_beside(blocks, (40,), "X", "G4 X", without="P")
-    yield from _word_beside(blocks, CYCLES, "K", "K in a cycle")
+    yield from _word_with_code(blocks, (40,), "X", "G4 X", without="P")
+    yield from _word_with_code(blocks, CYCLES, "K", "K in a cycle")
     yield from _after_g80(blocks)
 
 
@@ -88,7 +87,7 @@ def _for_rs274(blocks: Blocks) -> _Found:
     yield from _named_parameters(blocks)
     yield from _codes(blocks.g, blocks.g_row, _RS274_G, "G")
     yield from _codes(blocks.m, blocks.m_row, _RS274_M, "M")
-    yield from _word_beside(blocks, (640,), "P", "G64 P")
+    yield from _word_with_code(blocks, (640,), "P", "G64 P")
 
 
 def _codes(codes: Array, rows: Array, wanted: tuple[int, ...], letter: str) -> _Found:
@@ -98,7 +97,7 @@ def _codes(codes: Array, rows: Array, wanted: tuple[int, ...], letter: str) -> _
         yield name_of(int(codes[index]), letter), int(rows[index])
 
 
-def _word_beside(blocks: Blocks, codes: tuple[int, ...], letter: str, name: str, without: str = "") -> _Found:
+def _word_with_code(blocks: Blocks, codes: tuple[int, ...], letter: str, name: str, without: str = "") -> _Found:
     """The first block with one of some codes and a word, and without another word."""
     if letter in blocks.words:
         rows = blocks.g_row[np.isin(blocks.g, codes)]
@@ -145,6 +144,8 @@ def _macro_jumps(blocks: Blocks) -> _Found:
 
 def _macro_calls(blocks: Blocks) -> _Found:
     """The first G65 or G66."""
+    from pkm_post.reading.gcode.parse import is_macro_call
+
     for row, tree in sorted(blocks.special.items()):
         if is_macro_call(tree):
             yield "a macro call", row

@@ -13,21 +13,20 @@ from dataclasses import replace
 
 from pkm_post.model import Array
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
-from pkm_post.reading.gcode.blocks import Block, Blocks
+from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Block, Blocks
 from pkm_post.reading.gcode.call_levels import Level, MissingProgram, rows_of_sequence_numbers
-from pkm_post.reading.gcode.codes import CYCLES, name_of
+from pkm_post.reading.gcode.codes import STROKES, name_of
 from pkm_post.reading.gcode.flavours import Flavour
 from pkm_post.reading.gcode.flow_control import FlowControl
 from pkm_post.reading.gcode.macro_calls import Call, call_of
 from pkm_post.reading.gcode.macro_variables import MacroVariables
 from pkm_post.reading.gcode.o_words import JumpTargets
 from pkm_post.reading.gcode.options import ExecutionLimits
-from pkm_post.reading.gcode.parameters import ExecutionFault, Parameters, Whereabouts, whole
+from pkm_post.reading.gcode.parameters import ExecutionFault, Parameters, SystemVariables, whole
 from pkm_post.reading.gcode.statements import MacroCall, OWord, Statement, label_of_number
 
 PROGRAM_END = (2, 30)
-_CALL, _RETURN = 98, 99
-SUBPROGRAM_CODES = (_CALL, _RETURN)
+_CALL, _ = SUBPROGRAM_CODES
 _END_OF_MODAL_CALL, _DWELL = 670, 40
 _MOVING = frozenset("XYZABCUVW")
 _COUNTED = 10_000
@@ -59,7 +58,7 @@ class Interpreter(FlowControl):
         executed: ExecutedBlocksBuilder,
         flavour: Flavour,
         text: bytes,
-        where: Callable[[Blocks], Whereabouts] | None = None,
+        where: Callable[[Blocks], SystemVariables] | None = None,
     ) -> None:
         self.row = 0
         self._blocks, self._statements, self._jumps, self._skipped = blocks, statements, jumps, skipped
@@ -171,7 +170,7 @@ class Interpreter(FlowControl):
             return row + 1
         if _DWELL in block.g:
             return row + 1
-        taken = sorted({*block.g} & {*self._flavour.axis_takers(), *CYCLES})
+        taken = sorted({*block.g} & {*self._flavour.axis_takers(), *STROKES})
         if taken:
             raise ExecutionFault("G316", f"{name_of(taken[0])} while G66 is in force")
         return self._call_macro(row, call, row + 1) if {*block.words} & _MOVING else row + 1

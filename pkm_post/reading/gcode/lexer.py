@@ -19,8 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.model import Array
-from pkm_post.reading.gcode.blocks import Block
-from pkm_post.reading.gcode.parse import LARGEST_CODE, MACRO_CALLS, parse_line
+from pkm_post.reading.gcode.blocks import LARGEST_CODE, MACRO_CALLS, Block
 
 _MARK = b"\x01"
 """Marker of a number in a pattern."""
@@ -208,8 +207,8 @@ class Patterns(dict[bytes, int]):
         number = PARSED_ALONE
         if b"[" not in pattern:  # a code in brackets contains a marker, and a lone number there counts as plain
             plain = plain_block(pattern)
-            block = parse_line(pattern.replace(_MARK, b" 1 ")) if plain is None else plain
-            if isinstance(block, Block) and block.tree is None:
+            block = plain if plain is not None else _parsed(pattern)
+            if block is not None and block.tree is None:
                 number = len(self._blocks)
                 self._blocks.append(block)
         self[pattern] = number
@@ -220,6 +219,14 @@ class Patterns(dict[bytes, int]):
         if len(self._table_of.filled) < len(self._blocks):
             self._table_of = _table_of(self._blocks)
         return self._table_of
+
+
+def _parsed(pattern: bytes) -> Block | None:
+    """The block of a pattern with more than plain words, None where the grammar has no such block."""
+    from pkm_post.reading.gcode.parse import parse_line
+
+    block = parse_line(pattern.replace(_MARK, b" 1 "))
+    return block if isinstance(block, Block) else None
 
 
 def _table_of(blocks: list[Block]) -> PatternTable:

@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.model import Array, distinct, is_uniform, map_rows, uniform
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import ARCS, CYCLES, NONE, Group
+from pkm_post.reading.gcode.codes import ARCS, NONE, STROKES, Group
 from pkm_post.reading.gcode.flavours import RS274, Flavour
 
 POLAR_WORDS = ("@", "^")
@@ -146,8 +146,8 @@ def is_arc(motion: Array) -> Array:
 
 
 def is_cycle(motion: Array) -> Array:
-    """Whether each motion is a cycle, (n,)."""
-    return map_rows(lambda codes: np.isin(codes, CYCLES), motion)
+    """Whether each motion is a cycle, or rigid tapping, (n,)."""
+    return map_rows(lambda codes: np.isin(codes, STROKES), motion)
 
 
 def _moves(

@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.model import Array, is_uniform, uniform
 from pkm_post.reading.gcode.events import CycleEvent
-from pkm_post.reading.gcode.frames import Frame
+from pkm_post.reading.gcode.frames import ProgramFrame
 from pkm_post.reading.gcode.modal import forward_fill
 
 
@@ -72,7 +72,7 @@ class Motions:
     first: Array
     start: Array
     start_known: Array
-    frames: tuple[Frame, ...]
+    frames: tuple[ProgramFrame, ...]
     in_cycles: list[CycleEvent]
 
     def __len__(self) -> int:
@@ -104,7 +104,7 @@ def as_slice(rows: Array) -> Array | slice:
     return rows
 
 
-def concatenated(sections: Sequence[Section], frames: Sequence[Frame], in_cycles: list[CycleEvent]) -> Motions:
+def concatenated(sections: Sequence[Section], frames: Sequence[ProgramFrame], in_cycles: list[CycleEvent]) -> Motions:
     """Concatenate consecutive sections."""
     if not sections:
         none, nowhere, never = np.zeros(0, np.int32), np.zeros((0, 3)), np.zeros(0, np.bool_)

@@ -67,6 +67,7 @@ class ReadOptions:
         dwell_unit: unit of P of G4 and of cycles, a key of ``DWELL_UNITS``; that of the flavour if None.
         left_out: codes, such as "M21", that are left out where the reader does not understand them.
         functions: numbers of M codes that the machine has for purposes of its own, such as 21: they become events.
+        spindle_axis: whether the spindle of the machine is an axis: without one tapping is refused.
         feed: speed of cutting moves before the first F, mm/s, where F is per minute; None if unknown: such moves are
             refused.
         folders: where files of subprograms that a program calls are looked for, in this order.
@@ -92,6 +93,7 @@ class ReadOptions:
     dwell_unit: str | None = None
     left_out: tuple[str, ...] = ()
     functions: tuple[int, ...] = ()
+    spindle_axis: bool = False
     feed: float | None = None
     folders: tuple[Path, ...] = ()
     needs_end: bool = False

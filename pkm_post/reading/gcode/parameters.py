@@ -55,7 +55,7 @@ _SETTINGS_OF_THE_MACHINE = ("_hal[", "_ini[")
 _OF_A_CALL = ("_value", "_value_returned", "_call_level")
 """Names set by subprogram calls only, not by assignment."""
 
-_PLACES = (5420, 5421, 5422)
+_POSITION = (5420, 5421, 5422)
 """X, Y and Z of the current position in the work frame of the program."""
 
 Name = int | str
@@ -76,8 +76,8 @@ class ExecutionFault(Exception):  # noqa: N818 - it is no error of the program
         self.code, self.found, self.column = code, found, column
 
 
-class Whereabouts(Protocol):
-    """What a program can know of the state that it has come to, in its own units."""
+class SystemVariables(Protocol):
+    """Position and modal state that a running program can read, in its own units."""
 
     def coordinate(self, axis: int, number: int) -> float:
         """A coordinate of the tool in the work frame of the program, for the parameter of that number."""
@@ -104,7 +104,7 @@ class Parameters:
     """Functions and operators that mean something else than in RS274NGC."""
 
     def __init__(self) -> None:
-        self.where: Callable[[], Whereabouts] | None = None
+        self.where: Callable[[], SystemVariables] | None = None
         self._numbered = [0.0] * (HIGHEST + 1)
         self._global: dict[str, float] = dict.fromkeys(_OF_A_CALL, 0.0)
         self._levels = [_Level({}, None)]
@@ -121,8 +121,8 @@ class Parameters:
             ExecutionFault: it is undefined, or reserved for the control.
         """
         if isinstance(name, int):
-            if name in _PLACES and self.where is not None:
-                return self.where().coordinate(_PLACES.index(name), name)
+            if name in _POSITION and self.where is not None:
+                return self.where().coordinate(_POSITION.index(name), name)
             return self._numbered[_numbered(name)]
         _refuse_names_of_the_machine(name)
         value = self._named(name).get(name)

@@ -11,21 +11,15 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from pkm_post.reading.gcode.blocks import Block
+from pkm_post.reading.gcode.blocks import LARGEST_CODE, LONGEST_LINE, MACRO_CALLS, Block
 from pkm_post.reading.grammar import BLOCK, Fault
 
 if TYPE_CHECKING:
     from lark import Token, Tree, UnexpectedInput
 
-LONGEST_LINE = 10_000
-"""Bytes. Longer lines are always rejected."""
-
 _DEEPEST_TREE = 100
 """Levels of an expression, so recursive tree traversal is safe."""
 
-LARGEST_CODE = 9999.0
-
-MACRO_CALLS = (65.0, 66.0)
 MAY_BE_REPEATED = "IJK"
 """Arguments of a macro that may stand several times in a block."""
 

@@ -7,12 +7,14 @@ frame or move in a special manner form a section and are processed as columns; o
 
 from __future__ import annotations
 
+from functools import cached_property
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from pkm_post.model import Array, is_uniform, map_rows
+from pkm_post.model import Array, checkpoint, is_uniform, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import CYCLES, NONE, Group, word_of
-from pkm_post.reading.gcode.cycle_tracker import CycleTracker
+from pkm_post.reading.gcode.codes import NONE, STROKES, Group, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.events import CycleEvent
 from pkm_post.reading.gcode.modal import Modal, PositionWords, is_cycle, track_coordinate
@@ -21,6 +23,9 @@ from pkm_post.reading.gcode.options import ReadOptions
 from pkm_post.reading.gcode.polar import PolarWords
 from pkm_post.reading.gcode.tilted_planes import TURN_TO_PLANE
 from pkm_post.reading.gcode.work_offsets import IN_ORDER, SETS_OFFSETS, TIP_CONTROL, OffsetCodes
+
+if TYPE_CHECKING:
+    from pkm_post.reading.gcode.cycle_tracker import CycleTracker
 
 _ROTARY = "ABC"
 """Axes of other machines: G28 with them alone moves no other one."""
@@ -44,12 +49,11 @@ class PositionTracker:
         faults: BlockDiagnostics,
     ):
         self.blocks, self.modal, self.options, self.faults = blocks, modal, options, faults
-        self.tools, self.spindle, self.lost = tools, spindle, lost
+        self.tools, self.spindle, self.dwells, self.lost = tools, spindle, dwells, lost
         self.polar = PolarWords(blocks, modal, PositionWords.of(blocks, modal), faults)
         self.words, self._is_polar = self.polar.words, self.polar.rows()
         self.relative = modal.active[Group.DISTANCE] == 910
         self.offset_codes = OffsetCodes(blocks, modal, self.words, tools, options, faults)
-        self.drilling = CycleTracker(blocks, modal, self.polar, spindle, dwells, faults)
         zero = options.machine_zero
         self.home = {280: options.home or zero, 300: options.second_home or zero}
         self.in_cycles: list[CycleEvent] = []
@@ -61,6 +65,13 @@ class PositionTracker:
         start = options.start
         self.position = np.zeros(3) if start is None else self.frame.to_program(np.array(start))
         self.known = np.full(3, start is not None)
+
+    @cached_property
+    def drilling(self) -> CycleTracker:
+        """The canned cycles; few programs have any."""
+        from pkm_post.reading.gcode.cycle_tracker import CycleTracker
+
+        return CycleTracker(self.blocks, self.modal, self.polar, self.spindle, self.dwells, self.faults)
 
     def motions(self) -> Motions:
         """Process all blocks."""
@@ -88,7 +99,7 @@ class PositionTracker:
         """Mask of blocks that change the frame or move in a special manner, (N,)."""
         programmed = self.modal.programmed
         section_ends = self.modal.moves & is_cycle(self.modal.active[Group.MOTION])
-        special = map_rows(lambda codes: np.isin(codes, _SPECIAL_CODES), programmed[Group.ONCE])
+        special = map_rows(lambda codes: np.isin(codes, _SPECIAL_CODES, kind="table"), programmed[Group.ONCE])
         for group in (Group.CHANGE, *IN_ORDER[1:]):
             special = special | (programmed[group] != NONE)
         if not is_uniform(programmed[Group.LENGTH]):
@@ -109,7 +120,9 @@ class PositionTracker:
         index = as_slice(rows)
         ends, known_from = np.empty((len(rows), 3)), np.zeros(3, np.int64)
         for axis, column in enumerate(self.words.columns):
+            checkpoint()
             ends[:, axis], known_from[axis] = track_coordinate(column[index], self.relative[index], self.position[axis])
+        checkpoint()
         known_from[self.known] = 0
         motion = self.modal.active[Group.MOTION][index]
         self._add(rows, motion, ends, int(known_from.max()), known_from < len(rows))
@@ -175,7 +188,7 @@ class PositionTracker:
         elif once in (281, 301):
             self.offset_codes.require_position(row, self.known, word_of(once))
             self.home[once - 1] = tuple(self.frame.to_work(self.position).tolist())
-        elif self.modal.moves[row] and self.modal.active[Group.MOTION][row] in CYCLES:
+        elif self.modal.moves[row] and self.modal.active[Group.MOTION][row] in STROKES:
             self._drill(row)
         else:
             return False

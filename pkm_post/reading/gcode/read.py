@@ -13,8 +13,6 @@ from functools import partial
 
 from pkm_post.model import Diagnostic, Place, errors
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.call_levels import MissingProgram
-from pkm_post.reading.gcode.execute import execute_as_far_as_possible
 from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, Flavour
 from pkm_post.reading.gcode.foreign import foreign_language
 from pkm_post.reading.gcode.guess import guessed_flavour
@@ -23,7 +21,6 @@ from pkm_post.reading.gcode.recovery import first_line, merged, own_faults
 from pkm_post.reading.gcode.resolve import resolve
 from pkm_post.reading.gcode.scan import scan_recovering, with_line_feeds
 from pkm_post.reading.gcode.subprograms import Source, with_operations, with_places
-from pkm_post.reading.gcode.whereabouts import ExecutedBlocks
 
 _COMMENT = re.compile(rb"\([^()\n]*\)|;[^\n]*")
 _WITHOUT_A_POINT = re.compile(rb"(?<![A-Za-z#\]])[XYZIJxyzij][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])")
@@ -73,7 +70,16 @@ def read(
 def _executed(
     source: Source, options: ReadOptions, limits: ExecutionLimits, is_whole: bool
 ) -> tuple[Source, Blocks, tuple[Diagnostic, ...]]:
-    """Execute a program, with the files of the subprograms that it calls: each is added when it is found missing."""
+    """Execute a program, with the files of the subprograms that it calls: each is added when it is found missing.
+
+    What executes is imported for programs with something to execute.
+    """
+    if source.blocks.is_plain:
+        return source, source.blocks, ()
+    from pkm_post.reading.gcode.call_levels import MissingProgram
+    from pkm_post.reading.gcode.execute import execute_as_far_as_possible
+    from pkm_post.reading.gcode.system_variables import ExecutedBlocks
+
     flavour, may_add = FLAVOURS[options.flavour or RS274.name], bool(options.folders)
     where = partial(ExecutedBlocks, options=options)
     of_files: tuple[Diagnostic, ...] = ()

@@ -34,14 +34,14 @@ from pkm_post.reading.gcode.codes import NONE, Group
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, never_given
 from pkm_post.reading.gcode.events import ENDS, check_dwells, dwell_words, events_of_blocks, ordered_events
 from pkm_post.reading.gcode.feeds import INVERSE_TIME, feeds, path_modes
-from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, with_functions
+from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, with_functions, with_threads
 from pkm_post.reading.gcode.frames import RowFrames, normal_coordinate
 from pkm_post.reading.gcode.modal import Modal, modal_state
 from pkm_post.reading.gcode.motions import Motions
 from pkm_post.reading.gcode.options import UNITS, ReadOptions, axis_names
 from pkm_post.reading.gcode.position_tracker import PositionTracker
 from pkm_post.reading.gcode.recovery import first_line, own_faults
-from pkm_post.reading.gcode.scaling import scaled
+from pkm_post.reading.gcode.tapping import with_leads
 from pkm_post.reading.gcode.tilted_planes import check_cuts_from_turns, check_tilted_planes
 from pkm_post.reading.gcode.tool_axes import check_cycles, spins, surface_normals, tool_axes
 from pkm_post.reading.gcode.tools import side_offsets, spindle_speeds, tools_in_spindle
@@ -73,12 +73,15 @@ def resolve(
     if blocks.special:
         raise ValueError(f"expected plain blocks, got {len(blocks.special)} that have to be executed first")
     flavour = with_functions(FLAVOURS[options.flavour or RS274.name], options.functions)
+    flavour = with_threads(flavour, options.spindle_axis)
     blocks, ended = _up_to_end(blocks, options)
     blocks, notes = adapted(blocks, flavour, options.left_out)
     faults = BlockDiagnostics(blocks, text, options.most_reported)
     modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), flavour)
     check(blocks, modal, options, faults)
     if (modal.programmed[Group.SCALING] != NONE).any():
+        from pkm_post.reading.gcode.scaling import scaled
+
         blocks = scaled(blocks, modal, faults)
         modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), flavour)
     check_dwells(blocks, modal, options, faults)
@@ -184,7 +187,7 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
     tracker = PositionTracker(blocks, modal, states.tools, states.spindle, dwells, states.lost, options, faults)
     motions = tracker.motions()
     checkpoint()
-    _check_lost_places(motions, states.lost, faults)
+    _check_unknown_positions(motions, states.lost, faults)
     check_cuts_from_turns(blocks, motions, faults)
     centre, axis = arc_geometry(blocks, modal, motions, faults)
     if faults.has_errors():
@@ -208,11 +211,12 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
         "line": motions.of_blocks(blocks.line),
         **{name: motions.of_blocks(column) for name, column in modes.items()},
     }
+    events = ordered_events(
+        events_of_blocks(blocks, modal, states.tools, states.spindle, dwells), motions.in_cycles, motions.block
+    )
     return Program(
         **{name: read_only(column) for name, column in columns.items()},
-        events=ordered_events(
-            events_of_blocks(blocks, modal, states.tools, states.spindle, dwells), motions.in_cycles, motions.block
-        ),
+        events=with_leads(events, blocks, motions, columns["feed"], faults),
         operations=("",),
         tools=_tools(states.tools, options),
         source=blocks.source,
@@ -222,7 +226,7 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
     )
 
 
-def _check_lost_places(motions: Motions, lost: Array, faults: BlockDiagnostics) -> None:
+def _check_unknown_positions(motions: Motions, lost: Array, faults: BlockDiagnostics) -> None:
     """Report cuts to places that are not known again after the tool was turned where its tip is not known."""
     if not lost.any():
         return

@@ -20,9 +20,8 @@ import numpy as np
 
 from pkm_post.model import Array, Diagnostic, Place, checkpoint, errors
 from pkm_post.reading.gcode.block_builders import BlocksBuilder
-from pkm_post.reading.gcode.blocks import Block, Blocks
+from pkm_post.reading.gcode.blocks import LONGEST_LINE, Block, Blocks
 from pkm_post.reading.gcode.lexer import EMPTY, PARSED_ALONE, Lexed, Patterns, lex
-from pkm_post.reading.gcode.parse import LONGEST_LINE, parse_line
 from pkm_post.reading.gcode.syntax_faults import SyntaxFaults, readable
 from pkm_post.system import DecimalReader
 
@@ -92,6 +91,8 @@ def scan_by_block(text: bytes | str, file: str) -> Scanned:
     Raises:
         ImportError: lark is not installed.
     """
+    from pkm_post.reading.gcode.parse import parse_line
+
     whole = with_line_feeds(text)
     part = _up_to_percent(whole)
     faults, builder = SyntaxFaults(file), BlocksBuilder(part.text.count(b"\n"))
@@ -132,7 +133,12 @@ def _parse_alone(
     """Parse the lines without a plain pattern one by one; return their blocks, and which lines are faulty."""
     blocks: dict[int, Block] = {}
     faulty: set[int] = set()
-    for index in np.flatnonzero(pattern == PARSED_ALONE).tolist():
+    alone = np.flatnonzero(pattern == PARSED_ALONE).tolist()
+    if not alone:
+        return blocks, faulty
+    from pkm_post.reading.gcode.parse import parse_line
+
+    for index in alone:
         line = piece[line_start[index] : line_start[index + 1] - 1]
         block = parse_line(line)
         if isinstance(block, Block):

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from pkm_post.reading.gcode.blocks import Block
+from pkm_post.reading.gcode.blocks import LARGEST_CODE, Block
 from pkm_post.reading.gcode.expressions import (
     Expression,
     Target,
@@ -21,19 +21,19 @@ from pkm_post.reading.gcode.expressions import (
     target_of,
 )
 from pkm_post.reading.gcode.parameters import ARGUMENTS, ExecutionFault, Parameters, whole
-from pkm_post.reading.gcode.parse import LARGEST_CODE, dialect_codes, is_macro_call
+from pkm_post.reading.gcode.parse import dialect_codes, is_macro_call
 
 if TYPE_CHECKING:
     from lark import Token, Tree
 
     Node = Tree[Token] | Token
 
-_NEAR_A_CODE = 1e-3
+_CODE_TOLERANCE = 1e-3
 """Tolerance for accepting a value as a code, in units of its smallest step."""
 
 
 @dataclass
-class Words:
+class WordBlock:
     """A block of words, codes and assignments.
 
     Attributes:
@@ -118,7 +118,7 @@ class MacroCall:
         return sum(len(value.steps) for _, value in self.words)
 
 
-Statement = Words | OWord | MacroCall
+Statement = WordBlock | OWord | MacroCall
 
 
 def statement_of(tree: Tree[Token], block_delete: bool = False) -> Statement:
@@ -133,7 +133,7 @@ def statement_of(tree: Tree[Token], block_delete: bool = False) -> Statement:
     """
     if is_macro_call(tree):
         return _macro_call_of(tree)
-    words = Words()
+    words = WordBlock()
     for place, child in enumerate(tree.children):
         if isinstance(child, str):
             if child.type == "DELETE" and place > 0 and block_delete:
@@ -153,7 +153,7 @@ def _macro_call_of(tree: Tree[Token]) -> MacroCall:
     return MacroCall(tuple((str(word.children[0]).upper(), expression_of(word.children[1])) for word in words))
 
 
-def _add_word(words: Words, word: Tree[Token]) -> None:
+def _add_word(words: WordBlock, word: Tree[Token]) -> None:
     name = "".join(str(word.children[0]).split()).upper()
     value = expression_of(word.children[1])
     if name == "G":
@@ -164,12 +164,12 @@ def _add_word(words: Words, word: Tree[Token]) -> None:
         words.values.append((name, value))
 
 
-def _add_assignment(words: Words, assignment: Tree[Token]) -> None:
+def _add_assignment(words: WordBlock, assignment: Tree[Token]) -> None:
     parameter, value = assignment.children
     words.assignments.append((target_of(parameter), expression_of(value)))
 
 
-_ADD: dict[str, Callable[[Words, Tree[Token]], None]] = {
+_ADD: dict[str, Callable[[WordBlock, Tree[Token]], None]] = {
     "word": _add_word,
     "named_word": _add_word,
     "surface_word": _add_word,
@@ -231,6 +231,6 @@ def _code(letter: str, code: Expression, parts: int, parameters: Parameters) -> 
     """Evaluate a G or M code as an integer multiple of 1 / ``parts``."""
     number = code.value(parameters)
     rounded = round(number * parts)
-    if abs(number * parts - rounded) > _NEAR_A_CODE or not 0 <= number <= LARGEST_CODE:
+    if abs(number * parts - rounded) > _CODE_TOLERANCE or not 0 <= number <= LARGEST_CODE:
         raise ExecutionFault("G306", f"{letter}{number:.10g}", code.column)
     return rounded

@@ -14,13 +14,16 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pkm_post.model import IN_SUBPROGRAM_FILE, Array, Diagnostic, Place, Program, errors
 from pkm_post.reading.gcode.blocks import Blocks, SubprogramFile, located
-from pkm_post.reading.gcode.call_levels import MissingProgram
 from pkm_post.reading.gcode.scan import scan_recovering, with_line_feeds
+
+if TYPE_CHECKING:
+    from pkm_post.reading.gcode.call_levels import MissingProgram
 
 _SUFFIXES = r"\.(?:ngc|nc|cnc|tap|gcode|mpf|spf|sub|eia|iso|txt)"
 _BYTES = 256 * 1024 * 1024

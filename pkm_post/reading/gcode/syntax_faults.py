@@ -11,7 +11,7 @@ import re
 from typing import TYPE_CHECKING
 
 from pkm_post.model import Diagnostic, DiagnosticLog, Place
-from pkm_post.reading.gcode.parse import LONGEST_LINE
+from pkm_post.reading.gcode.blocks import LONGEST_LINE
 from pkm_post.reading.grammar import Fault, in_words
 
 if TYPE_CHECKING:

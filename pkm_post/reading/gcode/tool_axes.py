@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.geometry import torsion
-from pkm_post.model import Array, read_only, uniform
+from pkm_post.model import Array, checkpoint, read_only, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import NONE, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
@@ -44,11 +44,13 @@ def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockD
     lost = uniform(KEPT, len(blocks), np.uint8)
     if options.axis_words != "RPY":
         # Without tip control, X Y Z are slide positions, and the tip position depends on the machine.
+        checkpoint()
         idle = modal.moves & (modal.active[Group.LENGTH] != code)
         if find is _angles and idle.any():
-            lost = _places_lost(modal, axes, given, idle, faults)
+            lost = _unknown_positions(modal, axes, given, idle, faults)
             idle &= lost == KEPT
         faults.add_where("G424", idle & ~given & _tilted(axes), lambda row: _shown(axes[row]))
+    checkpoint()
     return read_only(axes), lost
 
 
@@ -62,7 +64,7 @@ def _shown(axis: Array) -> str:
     return f"({axis[0]:.6f}, {axis[1]:.6f}, {axis[2]:.6f})"
 
 
-def _places_lost(modal: Modal, axes: Array, given: Array, idle: Array, faults: BlockDiagnostics) -> Array:
+def _unknown_positions(modal: Modal, axes: Array, given: Array, idle: Array, faults: BlockDiagnostics) -> Array:
     """What rapid moves without tip control leave known, (N,): where they tilt the tool, or bring it upright again.
 
     A head turns about its own axes then, and the tip goes where a machine brings it that is not this one. The next
@@ -98,10 +100,13 @@ def _vectors(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
     """Tool axes, (N, 3), and the blocks with words for them, (N,)."""
     on_arc, in_cycle = is_arc(modal.active[Group.MOTION]), is_cycle(modal.active[Group.MOTION])
     words = [_component(blocks, letter, modal.moves & on_arc, in_cycle, faults) for letter in "IJK"]
+    checkpoint()
     count = np.where(modal.moves & ~on_arc, np.sum([~np.isnan(word) for word in words], axis=0, dtype=np.uint8), 0)
+    checkpoint()
     inactive = (count > 0) & (modal.active[Group.LENGTH] != _BY_VECTOR)
     faults.add_where("G415", inactive, lambda _: "I J K without G43.5")
     faults.add_where("G415", ~inactive & (count > 0) & (count < 3), lambda row: f"{count[row]} of the words I J K")
+    checkpoint()
     whole = np.flatnonzero(count == 3)
     unit, length = _unit([word[as_slice(whole)] for word in words])
     for row in whole[length == 0].tolist():
@@ -111,6 +116,7 @@ def _vectors(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
         return uniform(_UPRIGHT, len(blocks)), count > 0
     axes = np.empty((len(blocks), 3))
     for column, before in enumerate(_UPRIGHT):
+        checkpoint()
         axes[:, column] = forward_fill(whole, unit[column], before, len(blocks))
     return axes, count > 0
 

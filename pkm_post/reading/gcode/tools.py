@@ -11,7 +11,7 @@ import numpy as np
 
 from pkm_post.model import Array, Tool
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import CYCLES, NONE, Group, Word, word_of
+from pkm_post.reading.gcode.codes import NONE, STROKES, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.modal import Modal, changed, forward_fill
 from pkm_post.reading.gcode.options import ReadOptions
@@ -19,7 +19,7 @@ from pkm_post.reading.gcode.options import ReadOptions
 
 def tools_in_spindle(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> Array:
     """Number of the tool in the spindle in each block, (N,); ``NONE`` before the first M6."""
-    selected, change = _modal_word(blocks, "T", NONE), np.flatnonzero(modal.programmed[Group.CHANGE] == 6)
+    selected, change = modal_word(blocks, "T", NONE), np.flatnonzero(modal.programmed[Group.CHANGE] == 6)
     number = selected[change].astype(np.int32)
     for row, called in zip(change.tolist(), number.tolist(), strict=True):
         if options.tool(called) is None:
@@ -27,7 +27,7 @@ def tools_in_spindle(blocks: Blocks, modal: Modal, options: ReadOptions, faults:
     return forward_fill(change, number, NONE, len(blocks))
 
 
-def _modal_word(blocks: Blocks, letter: str, before: float) -> Array:
+def modal_word(blocks: Blocks, letter: str, before: float) -> Array:
     """The modal value of a word in each block, (N,)."""
     rows = np.flatnonzero(blocks.has(letter))
     return forward_fill(rows, blocks.word(letter)[rows], before, len(blocks))
@@ -42,7 +42,7 @@ def spindle_speeds(blocks: Blocks, modal: Modal) -> Array:
     """Signed spindle speed in each block, (N,), 1/min, positive clockwise, 0 when stopped."""
     codes = modal.programmed[Group.SPINDLE]
     rows = np.flatnonzero((codes != NONE) | blocks.has("S"))
-    speed = _modal_word(blocks, "S", 0.0)[rows]
+    speed = modal_word(blocks, "S", 0.0)[rows]
     switched = np.flatnonzero(codes != NONE)
     turns = np.select([codes[switched] == 3, codes[switched] == 4], [1.0, -1.0], 0.0)
     sense = forward_fill(switched, turns, 0.0, len(blocks))[rows]
@@ -89,5 +89,5 @@ def _check_frame_changes(blocks: Blocks, modal: Modal, faults: BlockDiagnostics)
         codes = modal.programmed[group]
         frame = np.where((codes != NONE) & (codes != 40), codes, frame)
     faults.add_where("G419", on & (frame != NONE), lambda row: word_of(frame[row]))
-    cycle = modal.moves & np.isin(modal.active[Group.MOTION], CYCLES)
+    cycle = modal.moves & np.isin(modal.active[Group.MOTION], STROKES)
     faults.add_where("G419", on & cycle, lambda row: word_of(modal.active[Group.MOTION][row]))

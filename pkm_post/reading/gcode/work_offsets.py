@@ -19,7 +19,7 @@ from pkm_post.model import Array, Tool
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import FURTHER_OFFSET, NONE, WORK_OFFSETS, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
-from pkm_post.reading.gcode.frames import PLANES, Frame, rotation
+from pkm_post.reading.gcode.frames import PLANES, ProgramFrame, rotation
 from pkm_post.reading.gcode.modal import Modal, PositionWords
 from pkm_post.reading.gcode.options import ReadOptions
 from pkm_post.reading.gcode.tools import tool_in_use
@@ -99,14 +99,14 @@ class _Offsets:
         """Rotation matrix of a work offset, (3, 3)."""
         return rotation(170, self.angles.get(system, 0.0))
 
-    def frame(self, system: int | None = None) -> Frame:
+    def frame(self, system: int | None = None) -> ProgramFrame:
         """The active frame, or the frame with another work offset."""
         system = self.system if system is None else system
         turn, shift = self._inner()
         about = self.work_offset_turn(system)
         longer = np.zeros(3) if self.length is None else self.length - np.array([0.0, 0.0, self.own_length])
         origin = self.origins.get(system, np.zeros(3))
-        return Frame(about @ turn, about @ (shift + self.local) + origin + longer)
+        return ProgramFrame(about @ turn, about @ (shift + self.local) + origin + longer)
 
     def set_local_here(self, words: Array, position: Array) -> None:
         """G92: set the coordinates of the current (3,) position to the (3,) words, NaN where absent."""

@@ -18,7 +18,7 @@ from pkm_post.model import Array
 from pkm_post.reading.gcode.arcs import ArcWords, arc_axes, centres
 from pkm_post.reading.gcode.codes import Word
 from pkm_post.reading.gcode.frames import PLANES
-from pkm_post.reading.siemens.faults import BlockFault
+from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.state import CLOCKWISE
 
 CENTRE = ("I", "J", "K")

@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.expressions import Expression, index_of
-from pkm_post.reading.siemens.faults import BlockFault
 from pkm_post.reading.siemens.items import Assignment, Item, Name, Word
 from pkm_post.reading.siemens.variables import Value, Variables
 
 _LINES_SHOWN = 3
-_NEAR_A_CODE = 1e-3
+_CODE_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ def _add_word(block: Block, word: Word, variables: Variables) -> None:
         name = name[0]
     if name in ("G", "M"):
         code = value if isinstance(value, str) else round(value)
-        if isinstance(value, str) or isinstance(code, str) or abs(value - code) > _NEAR_A_CODE or code < 0:
+        if isinstance(value, str) or isinstance(code, str) or abs(value - code) > _CODE_TOLERANCE or code < 0:
             raise BlockFault("G105", f"{name}{value}", word.column)
         (block.g if name == "G" else block.m).append(code)
         block.columns.setdefault(f"{name}{code}", word.column)

@@ -125,7 +125,7 @@ REFUSED = _reasons({
 })  # fmt: skip
 """Names that change the motion and are not read, with the reason."""
 
-TAPPING = frozenset({"CYCLE84", "CYCLE840", "CYCLE97", "CYCLE98", "CYCLE99"})
+TAPPING = frozenset({"CYCLE840", "CYCLE97", "CYCLE98", "CYCLE99"})
 
 SILENT_M = frozenset({40, 41, 42, 43, 44, 45, 70})
 """M codes of gears and of the spindle as an axis, which move no tool."""

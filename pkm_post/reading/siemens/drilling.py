@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Drilling: CYCLE81, 82, 83, 85 and 89 at the place of the tool, and rows and circles of holes.
+"""Drilling: CYCLE81, 82, 83, 84, 85 and 89 at the place of the tool, and rows and circles of holes.
 
 Enters: calls with their arguments, in the unit in force. Leaves: moves and dwells [SiemensCycles, drilling cycles]. All
 come from RFP + SDIS and go back to RTP; the depth is DP, or RFP - DPR where DPR is given. Motion code and feed are as
@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,47 +17,19 @@ from pkm_post.model import Array
 from pkm_post.reading.gcode.cycles import MOST_STROKES
 from pkm_post.reading.gcode.frames import PLANES
 from pkm_post.reading.siemens.blocks import Call
-from pkm_post.reading.siemens.faults import BlockFault
+from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.machine import Machine
+from pkm_post.reading.siemens.one_hole import NAMES, Drill, Hole
 from pkm_post.reading.siemens.state import LINE, RAPID
+from pkm_post.reading.siemens.tapping import CYCLE as TAPPING
+from pkm_post.reading.siemens.tapping import MODES, check_tapping, tap
 
 _ALONG = 1 - 1e-12
 _CHIP_RETRACT = 1.0
 """mm that CYCLE83 goes back to break a chip, where _VRT is 0 [SiemensCycles, CYCLE83]."""
 _LEAST_GAP, _MOST_GAP, _GAP_PER_DEPTH, _SHALLOW = 0.6, 7.0, 50.0, 30.0
 """mm that CYCLE83 stops before the depth reached: 0.6 up to 30 mm of depth, then a fiftieth, up to 7."""
-_NAMES = ("X", "Y", "Z")
 _INVERSE_TIME = 93
-
-
-@dataclass(frozen=True)
-class Hole:
-    """Heights of a cycle, in the unit in force: retraction plane, reference plane, start of the feed, bottom."""
-
-    retract: float
-    reference: float
-    start: float
-    bottom: float
-
-
-class Drill:
-    """One hole at the place of the tool."""
-
-    def __init__(self, machine: Machine, row: int, call: Call) -> None:
-        self.machine, self.row, self.call = machine, row, call
-        self._normal = _NAMES[PLANES[machine.state.plane][2]]
-
-    def to(self, motion: int, height: float, feed: float = math.nan) -> None:
-        """Move along the normal of the plane."""
-        words = {self._normal: height} | ({} if math.isnan(feed) else {"F": feed})
-        self.machine.move(self.row, motion, words)
-
-    def dwell(self, value: float, in_turns: bool = False) -> None:
-        """Wait some seconds, or turns of the spindle by a value below zero [SiemensCycles, DTB]."""
-        if value < 0 or (in_turns and value):
-            self.machine.dwell(self.row, self.machine.seconds_of_turns(abs(value)))
-        elif value:
-            self.machine.dwell(self.row, value)
 
 
 def drill(machine: Machine, row: int, call: Call) -> None:
@@ -67,6 +38,7 @@ def drill(machine: Machine, row: int, call: Call) -> None:
     Raises:
         BlockFault: its arguments have no meaning.
     """
+    check_tapping(machine, call)
     state = machine.state
     if state.side:
         raise BlockFault("G419", call.name, call.column)
@@ -197,6 +169,7 @@ CYCLES: dict[str, tuple[Callable[[Drill, Hole, bool], None], int]] = {
     "CYCLE81": (_simple, 6),
     "CYCLE82": (_simple, 6),
     "CYCLE83": (_deep, 17),
+    TAPPING: (tap, MODES),
     "CYCLE85": (_ream, 8),
     "CYCLE89": (_bore, 6),
 }
@@ -216,7 +189,7 @@ def holes(machine: Machine, row: int, call: Call) -> None:
     before = machine.scratch()
     here = machine.state.position[[first, second]] / machine.state.scale
     for place in _row(call, here) if call.name == PATTERNS[0] else _circle(call):
-        machine.move(row, RAPID, {_NAMES[first]: float(place[0]), _NAMES[second]: float(place[1])})
+        machine.move(row, RAPID, {NAMES[first]: float(place[0]), NAMES[second]: float(place[1])})
         machine.path.flush()
         drill(machine, row, machine.modal_call)
     machine.restore(before)

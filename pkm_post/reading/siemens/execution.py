@@ -15,8 +15,8 @@ from pkm_post.model import EventKind
 from pkm_post.reading.siemens import codes
 from pkm_post.reading.siemens.blocks import Block, Call
 from pkm_post.reading.siemens.buffer import ABSOLUTE, RELATIVE
+from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.drilling import CYCLES, PATTERNS, drill, holes
-from pkm_post.reading.siemens.faults import BlockFault
 from pkm_post.reading.siemens.frames import FRAMES, LENGTHS, frame_of
 from pkm_post.reading.siemens.machine import Machine
 from pkm_post.reading.siemens.modal_codes import (
@@ -34,6 +34,7 @@ from pkm_post.reading.siemens.modal_codes import (
 from pkm_post.reading.siemens.scan import LARGEST, PLAIN
 from pkm_post.reading.siemens.state import BY_POINT, LINE, NO_MOTION, RAPID, TANGENT
 from pkm_post.reading.siemens.swivel import resets, swivel
+from pkm_post.reading.siemens.tapping import check_tapping
 
 _MOTION_NAMES = {"CIP": BY_POINT, "CT": TANGENT}
 _MODES = {"AC": ABSOLUTE, "DC": ABSOLUTE, "ACP": ABSOLUTE, "ACN": ABSOLUTE, "IC": RELATIVE}
@@ -211,6 +212,7 @@ def _modal(machine: Machine, block: Block, call: Call) -> None:
     for other in others:
         if other.name in codes.TAPPING:
             raise BlockFault("G425", other.name, other.column)
+        check_tapping(machine, other)
         if other.name not in CYCLES:
             raise BlockFault("G602", f"MCALL {other.name}: {', '.join(CYCLES)} are read", other.column)
     machine.modal_call = others[0] if others else None

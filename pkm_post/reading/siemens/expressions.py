@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pkm_post.reading.siemens.faults import BlockFault
+from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.operators import (
     ARITHMETIC,
     COMPARISON_PRIORITY,

@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.expressions import Expression, expression
-from pkm_post.reading.siemens.faults import BlockFault
 from pkm_post.reading.siemens.items import Assignment, Name, address, item_of
 from pkm_post.reading.siemens.tokens import Cursor, Token
 from pkm_post.reading.siemens.variables import TYPES

@@ -15,14 +15,14 @@ import numpy as np
 
 from pkm_post.model import Array
 from pkm_post.reading.gcode.frames import PLANES, rotation
-from pkm_post.reading.siemens.faults import BlockFault
+from pkm_post.reading.siemens.diagnostics import BlockFault
 
 _SAME = 1e-12
 _AXES = "XYZ"
 
 
 @dataclass(frozen=True)
-class Frame:
+class ProgrammableFrame:
     """{C} = matrix @ program + shift.
 
     Attributes:
@@ -35,9 +35,11 @@ class Frame:
     shift: Array = field(default_factory=lambda: np.zeros(3))
     turn: Array = field(default_factory=lambda: np.eye(3))
 
-    def then(self, inner: Frame) -> Frame:
+    def then(self, inner: ProgrammableFrame) -> ProgrammableFrame:
         """The chain of two frames, the inner one nearer to the program."""
-        return Frame(self.matrix @ inner.matrix, self.matrix @ inner.shift + self.shift, self.turn @ inner.turn)
+        return ProgrammableFrame(
+            self.matrix @ inner.matrix, self.matrix @ inner.shift + self.shift, self.turn @ inner.turn
+        )
 
     def points(self, points: Array) -> Array:
         """Transform (n, 3) or (3,) points of the program to {C}."""
@@ -89,16 +91,16 @@ def about(axis: int, degrees: float) -> Array:
     return rotation({0: 190, 1: 180, 2: 170}[axis], float(np.radians(degrees)))
 
 
-def turned(matrix: Array) -> Frame:
+def turned(matrix: Array) -> ProgrammableFrame:
     """A frame of a rotation or reflection, (3, 3)."""
-    return Frame(matrix, np.zeros(3), matrix)
+    return ProgrammableFrame(matrix, np.zeros(3), matrix)
 
 
-def _translation(words: Mapping[str, float], plane: int) -> Frame:
-    return Frame(shift=np.array([words.get(axis, 0.0) for axis in _AXES]))
+def _translation(words: Mapping[str, float], plane: int) -> ProgrammableFrame:
+    return ProgrammableFrame(shift=np.array([words.get(axis, 0.0) for axis in _AXES]))
 
 
-def _rotation(words: Mapping[str, float], plane: int) -> Frame:
+def _rotation(words: Mapping[str, float], plane: int) -> ProgrammableFrame:
     """About Z, the new Y and the new X, in this order [SiemensNC, ROT: RPY notation Z, Y', X'']; or in the plane."""
     if "RPL" in words:
         if len(words) > 1:
@@ -108,14 +110,14 @@ def _rotation(words: Mapping[str, float], plane: int) -> Frame:
     return turned(about(2, z) @ about(1, y) @ about(0, x))
 
 
-def _scaling(words: Mapping[str, float], plane: int) -> Frame:
+def _scaling(words: Mapping[str, float], plane: int) -> ProgrammableFrame:
     factors = [words.get(axis, 1.0) for axis in _AXES]
     if min(factors) <= 0:
         raise BlockFault("G606", f"a factor of {min(factors):g}")
-    return Frame(matrix=np.diag(factors))
+    return ProgrammableFrame(matrix=np.diag(factors))
 
 
-def _mirroring(words: Mapping[str, float], plane: int) -> Frame:
+def _mirroring(words: Mapping[str, float], plane: int) -> ProgrammableFrame:
     """The values of the words mean nothing [SiemensNC, MIRROR]."""
     return turned(np.diag([-1.0 if axis in words else 1.0 for axis in _AXES]))
 
@@ -127,7 +129,7 @@ LENGTHS = frozenset({"TRANS", "ATRANS"})
 """Those whose words are lengths."""
 
 
-def frame_of(name: str, words: Mapping[str, float], plane: int, before: Frame) -> Frame:
+def frame_of(name: str, words: Mapping[str, float], plane: int, before: ProgrammableFrame) -> ProgrammableFrame:
     """The programmable frame after a frame statement.
 
     Args:

@@ -14,15 +14,15 @@ from dataclasses import dataclass, field
 from pkm_post.model import checkpoint
 from pkm_post.reading.gcode.options import ExecutionLimits
 from pkm_post.reading.siemens.blocks import assign, block_of, computed
+from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
 from pkm_post.reading.siemens.execution import BUILT_IN, carry_out, run_lines
 from pkm_post.reading.siemens.expressions import Expression, index_of
-from pkm_post.reading.siemens.faults import BlockFault, Faults
 from pkm_post.reading.siemens.flow import Flow
 from pkm_post.reading.siemens.items import Assignment, Name, Word
 from pkm_post.reading.siemens.machine import Machine
 from pkm_post.reading.siemens.modal_codes import ENDS, RETURNS
 from pkm_post.reading.siemens.statements import Statement
-from pkm_post.reading.siemens.structure import Program, Structure
+from pkm_post.reading.siemens.structure import ProgramRows, Structure
 from pkm_post.reading.siemens.subprograms import MissingProgram
 from pkm_post.reading.siemens.variables import Value, Variables
 
@@ -44,7 +44,7 @@ class _Section:
 class _Level:
     """A running program: passes that are left, the row behind its call, and its arguments for further passes."""
 
-    program: Program
+    program: ProgramRows
     passes: int
     return_row: int
     arguments: tuple[Value | None, ...] = ()
@@ -67,7 +67,7 @@ class Interpreter:
         structure: Structure,
         machine: Machine,
         limits: ExecutionLimits,
-        faults: Faults,
+        faults: LineDiagnostics,
         elsewhere: frozenset[str] = frozenset(),
     ) -> None:
         self._elsewhere = elsewhere - BUILT_IN

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pkm_post.reading.siemens.codes import ADDRESSES, NOTED_ELEMENTS
+from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.expressions import Expression, expression
-from pkm_post.reading.siemens.faults import BlockFault
 from pkm_post.reading.siemens.tokens import Cursor, Token
 
 MODES = ("AC", "IC", "DC", "ACP", "ACN")

@@ -11,7 +11,7 @@ from pkm_post.reading.gcode.events import LONG_DWELL
 from pkm_post.reading.gcode.options import UNITS, ReadOptions
 from pkm_post.reading.siemens.blocks import Call, Notes
 from pkm_post.reading.siemens.buffer import ABSOLUTE
-from pkm_post.reading.siemens.faults import BlockFault, Faults
+from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
 from pkm_post.reading.siemens.path import Path
 from pkm_post.reading.siemens.scan import Lines
 from pkm_post.reading.siemens.tools import Tools
@@ -27,7 +27,7 @@ class Machine:
         faults: collects the faults.
     """
 
-    def __init__(self, lines: Lines, options: ReadOptions, tools: Tools, faults: Faults) -> None:
+    def __init__(self, lines: Lines, options: ReadOptions, tools: Tools, faults: LineDiagnostics) -> None:
         self.options, self.tools, self.notes = options, tools, Notes()
         self.path = Path(lines, options.axis_words, faults)
         self.state = self.path.state

@@ -13,8 +13,8 @@ import numpy as np
 from pkm_post.model import EventKind
 from pkm_post.reading.siemens import codes
 from pkm_post.reading.siemens.blocks import Block, Call
-from pkm_post.reading.siemens.faults import BlockFault
-from pkm_post.reading.siemens.frames import Frame, about
+from pkm_post.reading.siemens.diagnostics import BlockFault
+from pkm_post.reading.siemens.frames import ProgrammableFrame, about
 from pkm_post.reading.siemens.machine import Machine
 from pkm_post.reading.siemens.scan import PLAIN_WORDS
 
@@ -200,7 +200,7 @@ def _work_offset(machine: Machine, _: Block, code: int) -> None:
     if places:
         x, y, z, degrees = places[f"G{code}"]
         turn = about(2, degrees)
-        state.set_frames(Frame(turn, np.array([x, y, z]), turn), state.swivel, state.programmed)
+        state.set_frames(ProgrammableFrame(turn, np.array([x, y, z]), turn), state.swivel, state.programmed)
     elif not state.has_moved or state.system is None:
         state.system = code
     state.unplaced = "" if places or code == state.system else f"G{code} after G{state.system}"

@@ -15,7 +15,7 @@ from pkm_post.model import Array
 from pkm_post.reading.gcode.modal import track_coordinate
 from pkm_post.reading.siemens import arcs
 from pkm_post.reading.siemens.buffer import Columns
-from pkm_post.reading.siemens.faults import BlockFault, Faults
+from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
 from pkm_post.reading.siemens.state import BY_POINT, CLOCKWISE, COUNTERCLOCKWISE, LINE, TANGENT, State
 
 AXES = ("X", "Y", "Z")
@@ -86,7 +86,7 @@ class Motions:
         return index
 
 
-def motions_of(columns: Columns, motion: Array, state: State, faults: Faults) -> Motions:
+def motions_of(columns: Columns, motion: Array, state: State, faults: LineDiagnostics) -> Motions:
     """Motions of blocks whose X Y Z are those of the tip; the state keeps their last point.
 
     Args:
@@ -142,7 +142,7 @@ class _Arcs:
     columns: Columns
     lengths: dict[str, Array]
     state: State
-    faults: Faults
+    faults: LineDiagnostics
 
     def fill(self) -> None:
         """Fill in centres, axes and turns.

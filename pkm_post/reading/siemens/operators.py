@@ -10,7 +10,7 @@ import math
 import operator
 from collections.abc import Callable
 
-from pkm_post.reading.siemens.faults import BlockFault
+from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.variables import Value
 
 _SAME = 1e-12

@@ -16,7 +16,7 @@ from pkm_post.model import Array
 from pkm_post.reading.gcode.modal import forward_fill, track_coordinate
 from pkm_post.reading.gcode.options import AXIS_WORDS
 from pkm_post.reading.gcode.tool_axes import axis_of
-from pkm_post.reading.siemens.faults import BlockFault
+from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.state import UPRIGHT, State
 
 VECTOR, ANGLES, ROTARY = ("A3", "B3", "C3"), ("A2", "B2", "C2"), ("A", "B", "C")

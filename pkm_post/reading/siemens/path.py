@@ -18,7 +18,7 @@ from pkm_post.model import Array, EventKind
 from pkm_post.reading.gcode.modal import forward_fill
 from pkm_post.reading.siemens import orientation
 from pkm_post.reading.siemens.buffer import ABSOLUTE, Buffer, Columns, motion_given
-from pkm_post.reading.siemens.faults import BlockFault, Faults
+from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
 from pkm_post.reading.siemens.motions import AXES, LENGTHS, Motions, motions_of
 from pkm_post.reading.siemens.scan import Lines
 from pkm_post.reading.siemens.sections import Section, Sections
@@ -58,7 +58,7 @@ class Path:
         faults: collects the faults.
     """
 
-    def __init__(self, lines: Lines, notation: str, faults: Faults) -> None:
+    def __init__(self, lines: Lines, notation: str, faults: LineDiagnostics) -> None:
         self.state = State()
         self.buffer = Buffer(lines)
         self.sections = Sections()

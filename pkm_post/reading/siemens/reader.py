@@ -10,13 +10,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from pkm_post.model import Diagnostic, Place, Program, Severity, errors
+import numpy as np
+
+from pkm_post.model import Diagnostic, Kind, Place, Program, Severity, errors
 from pkm_post.reading.gcode.diagnostics import never_given
 from pkm_post.reading.gcode.options import DEFAULT_LIMITS, DEFAULT_OPTIONS, ExecutionLimits, ReadOptions, ReadResult
 from pkm_post.reading.gcode.recovery import merged
 from pkm_post.reading.gcode.scan import with_line_feeds
 from pkm_post.reading.gcode.subprograms import with_operations, with_places
-from pkm_post.reading.siemens.faults import Faults, with_column
+from pkm_post.reading.siemens.diagnostics import LineDiagnostics, with_column
 from pkm_post.reading.siemens.interpreter import Interpreter
 from pkm_post.reading.siemens.machine import Machine
 from pkm_post.reading.siemens.path import Path
@@ -24,6 +26,7 @@ from pkm_post.reading.siemens.scan import Lines, scan
 from pkm_post.reading.siemens.structure import structure_of
 from pkm_post.reading.siemens.subprograms import MissingProgram, Source, files_by_name
 from pkm_post.reading.siemens.tools import Tools
+from pkm_post.reading.threads import without_idle_starts
 
 _CONSEQUENCES = ("G301", "G407", "G408", "G416", "G420", "G424", "G430", "G436", "G604", "G605")
 """Faults that another one before them may cause."""
@@ -54,7 +57,7 @@ def _read(
     Raises:
         MissingProgram: it calls another one, of which there is a file.
     """
-    faults = Faults(file)
+    faults = LineDiagnostics(file)
     lines = scan(source.text)
     structure = structure_of(lines, options.block_delete, faults)
     tools = Tools([lines.line(row) for row in structure.statements], options)
@@ -74,7 +77,7 @@ def _read(
     return with_operations(program, source.files), diagnostics
 
 
-def _report_no_motion(path: Path, lines: int, faults: Faults) -> None:
+def _report_no_motion(path: Path, lines: int, faults: LineDiagnostics) -> None:
     """Report a program without moves, or the first of moves none of which has a known place; nothing after a fault."""
     if faults.has_errors():
         return
@@ -105,7 +108,7 @@ def _program(machine: Machine, file: str, files: tuple[str, ...]) -> Program:
     columns: dict[str, Any] = machine.path.sections.columns()
     return Program(
         **columns,
-        events=tuple(machine.path.sections.events),
+        events=without_idle_starts(tuple(machine.path.sections.events), np.flatnonzero(columns["kind"] != Kind.RAPID)),
         operations=("",),
         tools=tools or ({initial.number: initial} if initial is not None else {}),
         source=file,

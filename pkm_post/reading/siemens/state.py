@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pkm_post.model import Array
-from pkm_post.reading.siemens.frames import Frame
+from pkm_post.reading.siemens.frames import ProgrammableFrame
 
 NO_MOTION, RAPID, LINE, CLOCKWISE, COUNTERCLOCKWISE, BY_POINT, TANGENT = range(-1, 6)
 """Motion codes: G0 to G3, CIP and CT."""
@@ -91,16 +91,16 @@ class State:
     system: int | None = None
     unplaced: str = ""
     in_machine_frame: bool = False
-    offset: Frame = field(default_factory=Frame)
-    swivel: Frame = field(default_factory=Frame)
-    programmed: Frame = field(default_factory=Frame)
+    offset: ProgrammableFrame = field(default_factory=ProgrammableFrame)
+    swivel: ProgrammableFrame = field(default_factory=ProgrammableFrame)
+    programmed: ProgrammableFrame = field(default_factory=ProgrammableFrame)
     position: Array = field(default_factory=lambda: np.zeros(3))
     known: Array = field(default_factory=lambda: np.zeros(3, dtype=np.bool_))
     has_moved: bool = False
     tangent: Array = field(default_factory=lambda: np.zeros(3))
-    frame: Frame = field(default_factory=Frame)
+    frame: ProgrammableFrame = field(default_factory=ProgrammableFrame)
 
-    def set_frames(self, offset: Frame, swivel: Frame, programmed: Frame) -> None:
+    def set_frames(self, offset: ProgrammableFrame, swivel: ProgrammableFrame, programmed: ProgrammableFrame) -> None:
         """Change the frames; the tool stays where it is, and its coordinates change."""
         mixed = self.frame.mixed()
         point = self.frame.points(self.position)

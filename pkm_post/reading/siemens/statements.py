@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pkm_post.reading.siemens.faults import BlockFault
+from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.flow import FLOW, Flow
 from pkm_post.reading.siemens.items import Item, item_of
 from pkm_post.reading.siemens.scan import LONGEST_LINE

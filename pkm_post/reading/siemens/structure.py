@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pkm_post.reading.gcode.call_levels import rows_of_sequence_numbers
-from pkm_post.reading.siemens.faults import BlockFault, Faults
+from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
 from pkm_post.reading.siemens.flow import Flow
 from pkm_post.reading.siemens.scan import STATEMENT, Lines
 from pkm_post.reading.siemens.statements import Statement, statement_of
@@ -25,7 +25,7 @@ _BEGINS = frozenset(_ENDS.values())
 
 
 @dataclass(frozen=True)
-class Program:
+class ProgramRows:
     """A program or subprogram of the file: its name, the first of its rows and the one behind its last."""
 
     name: str
@@ -47,8 +47,8 @@ class Structure:
 
     lines: Lines
     statements: dict[int, Statement] = field(default_factory=dict)
-    programs: dict[str, Program] = field(default_factory=dict)
-    main: Program = field(default_factory=lambda: Program("", 0, 0))
+    programs: dict[str, ProgramRows] = field(default_factory=dict)
+    main: ProgramRows = field(default_factory=lambda: ProgramRows("", 0, 0))
     partners: dict[int, int] = field(default_factory=dict)
     labels: dict[str, list[int]] = field(default_factory=dict)
     _numbers: dict[str, list[int]] | None = None
@@ -63,11 +63,11 @@ class Structure:
             self._numbers = rows_of_sequence_numbers(self.lines.text, np.arange(1, len(self.lines) + 1))
         return self._numbers.get(target[1:], [])
 
-    def program_of(self, row: int) -> Program:
+    def program_of(self, row: int) -> ProgramRows:
         """The program that a row belongs to."""
         return next((each for each in self.programs.values() if each.first <= row < each.end), self.main)
 
-    def destination(self, program: Program, row: int, target: str) -> int:
+    def destination(self, program: ProgramRows, row: int, target: str) -> int:
         """The row that a jump goes to [SiemensNC, program jumps].
 
         Args:
@@ -91,7 +91,7 @@ class Structure:
             return row + 1
         raise BlockFault("G604", target)
 
-    def section(self, program: Program, row: int, flow: Flow) -> tuple[int, int]:
+    def section(self, program: ProgramRows, row: int, flow: Flow) -> tuple[int, int]:
         """The first row of a section that REPEAT repeats, and the row behind it [SiemensNC, section repetition].
 
         It ends behind its second label or ENDLABEL, or else before REPEAT itself; that of REPEATB is one block.
@@ -114,7 +114,7 @@ class Structure:
         return first, ends[0] + 1 if ends and (ends[0] < row or first > row) else row
 
 
-def structure_of(lines: Lines, block_delete: bool, faults: Faults) -> Structure:
+def structure_of(lines: Lines, block_delete: bool, faults: LineDiagnostics) -> Structure:
     """The structure of a scanned file.
 
     Args:
@@ -153,11 +153,11 @@ def _find_programs(structure: Structure, headers: list[tuple[int, str, str]]) ->
     starts = [*headers, (end, "", "")]
     parts = [(headers[0] if headers else (end, "", ""))[0]]
     if not headers or structure.lines.kind[: parts[0]].any():
-        structure.main = Program("", 0, parts[0] if headers else end)
+        structure.main = ProgramRows("", 0, parts[0] if headers else end)
         structure.programs[""] = structure.main
     kinds: dict[str, str] = {}
     for (row, name, kind), (following, _, _) in zip(starts, starts[1:], strict=False):
-        structure.programs.setdefault(name, Program(name, row + 1, following))
+        structure.programs.setdefault(name, ProgramRows(name, row + 1, following))
         kinds.setdefault(name, kind)
     if "" not in structure.programs:
         name = next((name for name, kind in kinds.items() if kind == "MPF"), next(iter(kinds)))
@@ -174,7 +174,7 @@ def _find_labels(structure: Structure) -> None:
 
 
 def _find_partners(
-    statements: Mapping[int, Statement], program: Program, partners: dict[int, int], faults: Faults
+    statements: Mapping[int, Statement], program: ProgramRows, partners: dict[int, int], faults: LineDiagnostics
 ) -> None:
     """Match beginnings and ends of one program."""
     open_rows: list[tuple[int, Flow]] = []

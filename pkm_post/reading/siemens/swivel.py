@@ -14,8 +14,8 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.reading.siemens.blocks import Call
-from pkm_post.reading.siemens.faults import BlockFault
-from pkm_post.reading.siemens.frames import Frame, about, turned
+from pkm_post.reading.siemens.diagnostics import BlockFault
+from pkm_post.reading.siemens.frames import ProgrammableFrame, about, turned
 from pkm_post.reading.siemens.state import UPRIGHT, State
 
 _DATA_SET, _STATUS, _MODE, _BEFORE, _ANGLES, _BEHIND, _DIRECTION = 1, 2, 3, 4, 7, 10, 13
@@ -37,7 +37,7 @@ def swivel(state: State, call: Call) -> bool:
         BlockFault: the call is of a kind that is not read.
     """
     if resets(call):
-        return _set(state, Frame(), turns=state.swivelled)
+        return _set(state, ProgrammableFrame(), turns=state.swivelled)
     if not state.programmed.is_plain():
         raise BlockFault("G602", "CYCLE800 while TRANS, ROT, SCALE or MIRROR is in force", call.column)
     status = int(call.number(_STATUS, 0.0))
@@ -55,7 +55,7 @@ def resets(call: Call) -> bool:
     return not any(value is not None for value in given) or str(data_set) in ("0", "0.0")
 
 
-def _plane(state: State, call: Call) -> Frame:
+def _plane(state: State, call: Call) -> ProgrammableFrame:
     mode = int(call.number(_MODE, 57.0))
     kind = mode >> 6
     if kind:
@@ -69,13 +69,13 @@ def _plane(state: State, call: Call) -> Frame:
         if degrees:
             turn = turn @ about(axis - 1, degrees)
     before, behind = (
-        Frame(shift=state.scale * np.array([call.number(first + place, 0.0) for place in range(3)]))
+        ProgrammableFrame(shift=state.scale * np.array([call.number(first + place, 0.0) for place in range(3)]))
         for first in (_BEFORE, _BEHIND)
     )
     return before.then(turned(turn)).then(behind)
 
 
-def _set(state: State, frame: Frame, turns: bool) -> bool:
+def _set(state: State, frame: ProgrammableFrame, turns: bool) -> bool:
     """Put a plane in force; whether the tool turns with it."""
     state.set_frames(state.offset, frame, state.programmed)
     if not turns:

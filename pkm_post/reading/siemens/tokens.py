@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from pkm_post.reading.siemens.faults import BlockFault
+from pkm_post.reading.siemens.diagnostics import BlockFault
 
 _TOKEN = re.compile(
     r"""[ \t\f\v]*(?:

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 from pkm_post.model import Tool
 from pkm_post.reading.gcode.options import ReadOptions
-from pkm_post.reading.siemens.faults import BlockFault
+from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.variables import Value
 
 _NUMBER = re.compile(r"(?<![A-Z0-9_])T\s*(?:=\s*\"?)?\s*(\d+)", re.IGNORECASE)

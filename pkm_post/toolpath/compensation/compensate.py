@@ -10,14 +10,17 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pkm_post.geometry import norm
-from pkm_post.model import Diagnostic, EventKind, Kind, Place, Program, Tool
-from pkm_post.toolpath.compensation.contact import Array, Flags, size_changes, tip_offsets
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
-from pkm_post.toolpath.compensation.cutter import Cutter, known_cutter
+from pkm_post.geometry import Array, norm
+from pkm_post.model import Amount, Diagnostic, EventKind, Kind, Phrase, Place, Program, Tool
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
+
+if TYPE_CHECKING:
+    from pkm_post.toolpath.compensation.contact import Flags
+    from pkm_post.toolpath.compensation.cutter import Cutter
 
 _SAME = 1e-9
 """mm within which two shifts count as equal."""
@@ -51,6 +54,9 @@ def _with_tips(program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]
     Returns:
         The program, or None when a row cannot be compensated; and the diagnostics: N101 to N107, N109 and N117.
     """
+    from pkm_post.toolpath.compensation.contact import tip_offsets
+    from pkm_post.toolpath.compensation.cutter import known_cutter
+
     shift, diagnostics = np.zeros_like(program.position), tuple[Diagnostic, ...]()
     for number, tool in sorted(program.tools.items()):
         in_use = _rows_of(program, number if len(program.tools) > 1 else None)
@@ -63,27 +69,27 @@ def _with_tips(program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]
             return None, diagnostics
         columns = (program.position[rows], program.normal[rows], program.tool_axis[rows])
         sizes = (cutter.corner_radius, cutter.radial_offset, cutter.axial_offset)
-        found, faults = tip_offsets(*columns, sizes, (cutter,), _places(program, rows.tolist()))
+        found, faults = tip_offsets(*columns, sizes, (cutter,), _place_of_row(program, rows.tolist()))
         diagnostics += faults
         if found is None:
             return None, diagnostics
         shift[rows] = found
-    bent = _bent_arcs(program, shift)
+    bent = _distorted_arcs(program, shift)
     if bent:
         return None, (*diagnostics, *bent)
     position, centre = program.position + shift, program.arc_centre + shift
     return replace(program, position=position, arc_centre=centre, contact=np.zeros(len(program), bool)), diagnostics
 
 
-def _places(program: Program, rows: Sequence[int]) -> Callable[[int], Place]:
+def _place_of_row(program: Program, rows: Sequence[int]) -> Callable[[int], Place]:
     """The place of a row by its index among some rows."""
     return lambda index: program.place(rows[index])
 
 
-def _bent_arcs(program: Program, shift: Array) -> tuple[Diagnostic, ...]:
+def _distorted_arcs(program: Program, shift: Array) -> tuple[Diagnostic, ...]:
     """The arcs whose ends would move apart."""
     bent = (program.kind == Kind.ARC) & (norm(np.diff(shift, axis=0, prepend=shift[:1])) > _SAME)
-    return tuple(_bent(program, shift, row) for row in np.flatnonzero(bent).tolist())
+    return tuple(_distorted(program, shift, row) for row in np.flatnonzero(bent).tolist())
 
 
 def _with_contours(program: Program, contours: OffsetOptions) -> tuple[Program | None, tuple[Diagnostic, ...]]:
@@ -93,10 +99,12 @@ def _with_contours(program: Program, contours: OffsetOptions) -> tuple[Program |
 
 
 def _for_cutter(program: Program, number: int, actual: Tool) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    from pkm_post.toolpath.compensation.cutter import known_cutter
+
     place = Place(program.source)
     if number not in program.tools:
         known = ", ".join(f"T{known}" for known in sorted(program.tools))
-        return None, (Diagnostic("N118", place, f"T{number}, the program has {known}"),)
+        return None, (Diagnostic("N118", place, Phrase("T{}, the program has {}", number, known)),)
     tool = program.tools[number]
     ground_tool = replace(actual, number=number, name=tool.name, length=tool.length)
     if program.contact[_rows_of(program, number if len(program.tools) > 1 else None)].any():
@@ -132,27 +140,29 @@ def compensate_tips(
     Raises:
         ValueError: ``tool`` is None in a program with several tools.
     """
+    from pkm_post.toolpath.compensation.contact import size_changes, tip_offsets
+
     in_use = _rows_of(program, tool)
     given = in_use & np.isfinite(program.normal).all(axis=1)
     if not given.any():
-        return None, (Diagnostic("N108", Place(program.source), "no row of the tool has one"),)
+        return None, (Diagnostic("N108", Place(program.source), Phrase("no row of the tool has one")),)
     rows = np.flatnonzero(given)
     columns = (program.position[rows], program.normal[rows], program.tool_axis[rows])
     sizes = size_changes(nominal, actual)
-    found, diagnostics = tip_offsets(*columns, sizes, (nominal, actual), _places(program, rows.tolist()))
+    found, diagnostics = tip_offsets(*columns, sizes, (nominal, actual), _place_of_row(program, rows.tolist()))
     if found is None:
         return None, diagnostics
     shift = np.where(in_use[:, None], found[_neighbours(given, program.kind == Kind.RAPID)], 0.0)
-    bent = _bent_arcs(program, shift)
+    bent = _distorted_arcs(program, shift)
     if bent:
         return None, bent
     moved = dataclasses.replace(program, position=program.position + shift, arc_centre=program.arc_centre + shift)
     return moved, diagnostics
 
 
-def _bent(program: Program, shift: Array, row: int) -> Diagnostic:
+def _distorted(program: Program, shift: Array, row: int) -> Diagnostic:
     apart = float(norm(shift[row] - shift[row - 1]))
-    return Diagnostic("N107", program.place(row), f"its ends would move {apart:.4g} mm apart")
+    return Diagnostic("N107", program.place(row), Phrase("its ends would move {} apart", Amount(apart, "mm")))
 
 
 def _rows_of(program: Program, tool: int | None) -> Flags:

@@ -19,13 +19,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, across, cross, dot, norm
-from pkm_post.toolpath.compensation.contour_elements import Elements, OffsetOptions, Role
+from pkm_post.toolpath.compensation.contour_elements import Elements, Role
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 SAME = 1e-6
 """mm within which two offset lines coincide."""
 NO_TURN = 1e-5
 """Sine of the turn at a corner below which the path continues straight on, or straight back."""
-MOST_BETWEEN = 4
+MAX_CORNER_POINTS = 4
 """Most points that a corner adds."""
 _RIGHT_ANGLE = 1e-9
 """Cosine of a turn that is a right angle up to rounding: it is extended, not cut off."""
@@ -93,7 +94,7 @@ def transitions(elements: Elements, first: Array, second: Array, options: Offset
         ((kind == Transition.LEAD) & lead_in, corner.radius_second + corner.gap),
     )
     begins = _chosen(corner.radius_second, (extended & ~fixed_second, extension), (shortened, meeting - corner.gap))
-    added = _between(kind, corner, extended & fixed_first, extended & fixed_second, extension)
+    added = _corner_points(kind, corner, extended & fixed_first, extended & fixed_second, extension)
     return Transitions(kind, ends, begins, added)
 
 
@@ -132,7 +133,7 @@ def _kinds(
     )
 
 
-def _between(
+def _corner_points(
     kind: Array, corner: CornerGeometry, to_extension: Array, from_extension: Array, extension: Array
 ) -> Array:
     """Points added between the ends of both offsets, from the programmed start of the second, (J, 4, 3)."""
@@ -161,7 +162,7 @@ def _packed(added: tuple[tuple[Array, Array], ...]) -> Array:
     """The points of the conditions that hold, in order, (J, 4, 3): at most four hold at once."""
     conditions = np.stack([condition for condition, _ in added], axis=1)
     points = np.stack([point for _, point in added], axis=1)
-    packed = np.full((len(conditions), MOST_BETWEEN, 3), np.nan)
+    packed = np.full((len(conditions), MAX_CORNER_POINTS, 3), np.nan)
     row, column = np.nonzero(conditions)
     packed[row, (np.cumsum(conditions, axis=1) - 1)[row, column]] = points[row, column]
     return packed

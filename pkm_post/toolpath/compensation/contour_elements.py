@@ -13,7 +13,6 @@ plane.
 from __future__ import annotations
 
 import enum
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,32 +26,6 @@ _LEAST_COSINE = 0.5
 """An axis tilted by more than 60 degrees that does not lie in the plane is ambiguous."""
 _STANDS = 1e-6
 """mm in the plane below which a row counts as standing still: shorter moves have no reliable direction."""
-CHOICES = {"corners": ("chord", "arc"), "leads": ("A", "B"), "swallowed": ("refuse", "remove")}
-
-
-@dataclass(frozen=True)
-class OffsetOptions:
-    """How contours are offset.
-
-    Attributes:
-        corners: how outer corners are rounded. "chord": the offset lines are extended until they meet, and beyond a
-            right angle are cut off by a chord, as in the paper; "arc": an arc around the corner, as in LinuxCNC.
-        leads: "A" leads straight to and from the offset point at the end of the contour; "B" goes around outer corners.
-        swallowed: treatment of rows that the tool is too large for: "refuse" the program, or "remove" them.
-        tolerance: mm by which the tool may come closer to the contour than its radius.
-    """
-
-    corners: str = "chord"
-    leads: str = "A"
-    swallowed: str = "refuse"
-    tolerance: float = 1e-3
-
-    def __post_init__(self) -> None:
-        for name, choices in CHOICES.items():
-            if getattr(self, name) not in choices:
-                raise ValueError(f"OffsetOptions.{name}: expected one of {choices}, got {getattr(self, name)!r}")
-        if not (math.isfinite(self.tolerance) and self.tolerance > 0.0):
-            raise ValueError(f"OffsetOptions.tolerance: expected a length above 0 mm, got {self.tolerance}")
 
 
 class Role(enum.IntEnum):

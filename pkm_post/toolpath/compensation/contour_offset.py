@@ -21,9 +21,10 @@ import numpy as np
 
 from pkm_post.geometry import Array, across, cross, dot
 from pkm_post.model import Diagnostic, Event, Kind, Program, errors
-from pkm_post.toolpath.compensation.contour_corners import MOST_BETWEEN, SAME, Transition, transitions
-from pkm_post.toolpath.compensation.contour_elements import Elements, OffsetOptions, Role, elements_of, moves_in_plane
+from pkm_post.toolpath.compensation.contour_corners import MAX_CORNER_POINTS, SAME, Transition, transitions
+from pkm_post.toolpath.compensation.contour_elements import Elements, Role, elements_of, moves_in_plane
 from pkm_post.toolpath.compensation.contour_gouge import gouges
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 _UNMET = 1e30
 """mm: missing length of elements that do not meet their neighbours; more than any corner takes."""
@@ -152,7 +153,7 @@ def element_offsets(elements: Elements, options: OffsetOptions) -> ElementOffset
         kind=np.full(count, Transition.LEAD),
         start=np.zeros((count, 3)),
         end=radius.copy(),
-        added=np.full((count, MOST_BETWEEN, 3), np.nan),
+        added=np.full((count, MAX_CORNER_POINTS, 3), np.nan),
         length=np.zeros(count),
     )
     # Linked list of the remaining elements; number ``count`` follows the last one.

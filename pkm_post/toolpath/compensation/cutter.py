@@ -15,7 +15,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Diagnostic, Place, Tool, corner_reach, largest_corner_radius, valid_cutter_angles
+from pkm_post.model import (
+    Amount,
+    Diagnostic,
+    Phrase,
+    Place,
+    Tool,
+    corner_reach,
+    largest_corner_radius,
+    valid_cutter_angles,
+)
 
 _TANGENT = 2e-3
 """Tolerance in mm of a given e or f against the arc tangent to bottom and side: files round to three decimals."""
@@ -156,7 +165,11 @@ def known_cutter(tool: Tool, place: Place) -> tuple[Cutter | None, tuple[Diagnos
         return None, (Diagnostic("N109", place, str(impossible)),)
     if not tool.corner_known:
         return None, (
-            Diagnostic("N117", place, f"T{tool.number}, of which the diameter alone is given: {tool.diameter:g} mm"),
+            Diagnostic(
+                "N117",
+                place,
+                Phrase("T{}, of which the diameter alone is given: {}", tool.number, Amount(tool.diameter, "mm", "g")),
+            ),
         )
     return cutter, ()
 

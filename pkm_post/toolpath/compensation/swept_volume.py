@@ -25,8 +25,8 @@ _STEP = 0.25
 """Longest step between two poses, in radii of the cutter."""
 _POINTS_PER_CELL = 100
 """Approximate number of points for which far blocks are skipped together."""
-_POINTS_TOGETHER = 6
-"""Approximate number of points of a cell whose near steps are searched together."""
+_POINTS_TOGETHER = 10
+"""Approximate number of points of a cell that share their near steps."""
 _AT_ONCE = 1 << 16
 """Distances computed at a time: their data stay in the cache."""
 
@@ -137,7 +137,7 @@ class SweptVolume:
         tip: (M + 1, 3) tool tips at the ends of the steps, mm.
         axis: (M + 1, 3) unit tool axes there.
         row: (M,) row of the path that the step belongs to.
-        way: (M,) bound of the distance that any point of the cutter moves in the step, mm.
+        travel: (M,) bound of the distance that any point of the cutter moves in the step, mm.
         bend: (M,) bound of the deviation of a point's path, in the frame of the cutter, from a straight line, mm.
         profile: outline of the cutter.
         within: distance from the cutter up to which points matter, mm.
@@ -146,7 +146,7 @@ class SweptVolume:
     tip: Array
     axis: Array
     row: Array
-    way: Array
+    travel: Array
     bend: Array
     profile: Profile
     within: float
@@ -171,8 +171,8 @@ class SweptVolume:
         count = np.maximum(1, np.ceil(way / (_STEP * cutter.radius)).astype(np.int64))
         before, number = expand_counts(count)
         share = number / count[before]
-        tip = np.vstack([_between(tips[before], tips[before + 1], share), tips[-1:]])
-        axis = unit(np.vstack([_between(axes[before], axes[before + 1], share), axes[-1:]]))
+        tip = np.vstack([_interpolated(tips[before], tips[before + 1], share), tips[-1:]])
+        axis = unit(np.vstack([_interpolated(axes[before], axes[before + 1], share), axes[-1:]]))
         moved, turned = norm(np.diff(tip, axis=0)), angle_between(axis[:-1], axis[1:])
         bend = reach * turned**2 / 8.0 + moved * turned / 4.0
         return cls(tip, axis, np.minimum(before + 1, rows - 1), moved + reach * turned, bend, profile, within)
@@ -202,20 +202,26 @@ class SweptVolume:
     def _in_cell(self, points: Array, tolerance: float) -> tuple[Array, Array]:
         """The distances and rows of points in one cell."""
         best, row = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.int64)
-        near_all = self._near_steps(points)
-        for rows in grid_cells(points, _POINTS_TOGETHER) if len(near_all) else []:
-            near = self._nearer(points[rows], near_all)
-            size = max(1, _AT_ONCE // max(1, len(near)))
-            for part in (rows[start : start + size] for start in range(0, len(rows) if len(near) else 0, size)):
-                best[part], row[part] = self._search(points[part], near, tolerance)
+        near_all = self._candidate_steps(points)
+        if not len(near_all):
+            return best, row
+        groups = grid_cells(points, _POINTS_TOGETHER)
+        near = self._nearer(points, groups, near_all)
+        order, group = np.concatenate(groups), np.repeat(np.arange(len(groups)), [len(rows) for rows in groups])
+        size = max(1, _AT_ONCE // max(1, int(near.sum(axis=1).max())))
+        for start in range(0, len(order), size):
+            part = order[start : start + size]
+            point, column = np.nonzero(near[group[start : start + size]])
+            if len(point):
+                best[part], row[part] = self._search(points[part], point, near_all[column], tolerance)
         return best, row
 
-    def _near_steps(self, points: Array) -> Array:
+    def _candidate_steps(self, points: Array) -> Array:
         """Candidate steps for the nearest to one of the points, (K,): those of blocks that are near enough."""
-        first = np.arange(0, len(self.way), _BLOCK)
-        last = np.minimum(first + _BLOCK, len(self.way))
+        first = np.arange(0, len(self.travel), _BLOCK)
+        last = np.minimum(first + _BLOCK, len(self.travel))
         half = (first + last) // 2
-        way = np.append(0.0, np.cumsum(self.way))
+        way = np.append(0.0, np.cumsum(self.travel))
         span = np.maximum(way[last] - way[half], way[half] - way[first])
         middle = (points.min(axis=0) + points.max(axis=0)) / 2
         radius = float(norm(points - middle).max())
@@ -223,27 +229,32 @@ class SweptVolume:
         limit = min(float(distance.min()) + radius, self.within)
         return np.flatnonzero(np.repeat(distance - radius - span <= limit, last - first))
 
-    def _nearer(self, points: Array, steps: Array) -> Array:
-        """The given steps that may come nearest to one of the points."""
-        middle = (points.min(axis=0) + points.max(axis=0)) / 2
-        radius = float(norm(points - middle).max())
-        distance = self._to_poses(middle[None], steps)[0]
-        limit = min(float(distance.min()) + radius, self.within)
-        near: Array = steps[distance - radius - self.way[steps] <= limit]
+    def _nearer(self, points: Array, groups: list[Array], steps: Array) -> Array:
+        """Which of the steps may come nearest to one of the points of each group, (groups, steps)."""
+        order, starts = np.concatenate(groups), np.cumsum([0, *(len(rows) for rows in groups[:-1])])
+        grouped = points[order]
+        middle = (np.minimum.reduceat(grouped, starts) + np.maximum.reduceat(grouped, starts)) / 2
+        from_middle = norm(grouped - np.repeat(middle, [len(rows) for rows in groups], axis=0))
+        radius = np.maximum.reduceat(from_middle, starts)
+        distance = self._to_poses(middle, steps)
+        limit = np.minimum(distance.min(axis=1) + radius, self.within)
+        near: Array = distance - radius[:, None] - self.travel[steps] <= limit[:, None]
         return near
 
-    def _search(self, points: Array, steps: Array, tolerance: float) -> tuple[Array, Array]:
-        """Smallest distances over some steps, by bisection of those that may contain a smaller one."""
-        poses = np.unique(np.concatenate([steps, steps + 1]))
-        all_found = self._to_poses(points, poses)
-        nearest = np.argmin(all_found, axis=1)
-        best = all_found[np.arange(len(points)), nearest]
-        row = self.row[np.minimum(poses[nearest], len(self.row) - 1)]
-        index = np.searchsorted(poses, steps)
-        a, b = all_found[:, index], all_found[:, index + 1]
-        least = (a + b - self.way[steps]) / 2.0
-        point, column = np.nonzero(least < np.minimum(best, self.within)[:, None] - tolerance)
-        step, a, b = steps[column], a[point, column], b[point, column]
+    def _search(self, points: Array, point: Array, step: Array, tolerance: float) -> tuple[Array, Array]:
+        """Smallest distances of points over steps, by bisection of the steps that may contain a smaller one.
+
+        Args:
+            points: (N, 3) points, mm.
+            point: (K,) indices of points, ascending.
+            step: (K,) the steps for each, ascending for one point.
+            tolerance: largest overestimate of a distance, mm.
+        """
+        a, b = self._to_ends(points, point, step)
+        best, row = self._best_at_ends(len(points), point, step, a, b)
+        least = (a + b - self.travel[step]) / 2.0
+        (chosen,) = np.nonzero(least < np.minimum(best, self.within)[point] - tolerance)
+        point, step, a, b = point[chosen], step[chosen], a[chosen], b[chosen]
         share, width = np.zeros(len(step)), 1.0
         while len(step):
             width /= 2.0
@@ -251,7 +262,7 @@ class SweptVolume:
             np.minimum.at(best, point, m)
             winner = m <= best[point]
             row[point[winner]] = self.row[step[winner]]
-            way, bend = self.way[step] * width, 3.0 * self.bend[step] * (2.0 * width) ** 2
+            way, bend = self.travel[step] * width, 3.0 * self.bend[step] * (2.0 * width) ** 2
             # By the Lipschitz bound and by convexity: a line through one end and the middle stays below the other half.
             left = np.maximum((a + m - way) / 2.0, np.minimum(m, 2.0 * m - b) - bend)
             right = np.maximum((m + b - way) / 2.0, np.minimum(m, 2.0 * m - a) - bend)
@@ -260,6 +271,26 @@ class SweptVolume:
             share = np.concatenate([share[go_left], share[go_right] + width])
             a, b = np.concatenate([a[go_left], m[go_right]]), np.concatenate([m[go_left], b[go_right]])
             point, step = (np.concatenate([column[go_left], column[go_right]]) for column in (point, step))
+        return best, row
+
+    def _to_ends(self, points: Array, point: Array, step: Array) -> tuple[Array, Array]:
+        """Distances of points to the cutter where steps begin and where they end, (K,) each."""
+        begin = self._to_pose(points[point], step, np.zeros(len(step)))
+        end = np.append(begin[1:], 0.0)
+        follows = np.append((point[1:] == point[:-1]) & (step[1:] == step[:-1] + 1), False)
+        alone = np.flatnonzero(~follows)
+        end[alone] = self._to_pose(points[point[alone]], step[alone], np.ones(len(alone)))
+        return begin, end
+
+    def _best_at_ends(self, count: int, point: Array, step: Array, a: Array, b: Array) -> tuple[Array, Array]:
+        """The smallest of the distances at the ends of steps for each point, and the row of the path there."""
+        best, row = np.full(count, np.inf), np.zeros(count, dtype=np.int64)
+        least = np.minimum(a, b)
+        np.minimum.at(best, point, least)
+        (winner,) = np.nonzero(least == best[point])
+        point, first = np.unique(point[winner], return_index=True)
+        winner = winner[first]
+        row[point] = self.row[np.minimum(step[winner] + (b[winner] < a[winner]), len(self.row) - 1)]
         return best, row
 
     def _to_poses(self, points: Array, poses: Array) -> Array:
@@ -273,12 +304,12 @@ class SweptVolume:
 
     def _to_pose(self, points: Array, steps: Array, share: Array) -> Array:
         """Distances of points (N, 3), each to the cutter at a share of its own step, (N,)."""
-        away = points - _between(self.tip[steps], self.tip[steps + 1], share)
-        axis = unit(_between(self.axis[steps], self.axis[steps + 1], share))
+        away = points - _interpolated(self.tip[steps], self.tip[steps + 1], share)
+        axis = unit(_interpolated(self.axis[steps], self.axis[steps + 1], share))
         level = dot(away, axis)
         return self.profile.distance(norm(away - level[:, None] * axis), level)
 
 
-def _between(start: Array, end: Array, share: Array) -> Array:
+def _interpolated(start: Array, end: Array, share: Array) -> Array:
     moved: Array = start + share[:, None] * (end - start)
     return moved

@@ -14,6 +14,7 @@ from math import comb
 import numpy as np
 
 from pkm_post.geometry import Array, length_of
+from pkm_post.model import checkpoint
 from pkm_post.system import columns_in_workers
 from pkm_post.toolpath.compressor.splines import AXIS, SPIN, TIP, Splines
 
@@ -87,5 +88,6 @@ def _over(value: Array, first: Array, last: Array) -> Array:
     """The largest value of the pieces of each row, (M,)."""
     if not len(first):
         return np.empty(0)
+    checkpoint()
     ranges = np.column_stack([first, last + 1]).ravel()
     return np.asarray(np.maximum.reduceat(np.append(value, 0.0), ranges)[::2])

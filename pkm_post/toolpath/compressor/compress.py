@@ -16,12 +16,11 @@ from pkm_post.geometry import Array, expand_counts
 from pkm_post.model import Trajectory, uniform
 from pkm_post.system import in_workers
 from pkm_post.toolpath.compressor.deviation import Allowed
-from pkm_post.toolpath.compressor.fit import fit
 from pkm_post.toolpath.compressor.runs import divided, runs
 from pkm_post.toolpath.compressor.splines import Splines
 from pkm_post.toolpath.segments import Segments
 
-_ROWS_AT_ONCE = 8192
+_ROWS_AT_ONCE = 16384
 """Rows of runs in one pass: the working arrays of one pass stay in the processor's cache."""
 _ATTEMPTS = 3
 """Attempts to fit a run; in each next one without the rows where the one before failed."""
@@ -68,6 +67,8 @@ def _fitted(
     trajectory: Trajectory, segments: Segments, allowed: Allowed, group: tuple[Array, Array], turns: bool
 ) -> Iterator[Splines]:
     """Curves of a group of runs."""
+    from pkm_post.toolpath.compressor.fit import fit  # many programs have no runs of short lines
+
     begin, count = group
     for _ in range(_ATTEMPTS):
         if not len(begin):

@@ -27,7 +27,7 @@ class Allowed:
     tip: Array
     axis: Array
 
-    def __getitem__(self, rows: Array) -> Allowed:
+    def __getitem__(self, rows: Array | slice) -> Allowed:
         return Allowed(self.tip[rows], self.axis[rows])
 
 

@@ -16,7 +16,7 @@ from pkm_post.geometry import Array, length_of
 from pkm_post.model import distinct
 from pkm_post.toolpath.compressor.deviation import Allowed, by_allowed, deviation
 from pkm_post.toolpath.compressor.levels import Curves, fitted_curves
-from pkm_post.toolpath.compressor.polylines import Places, Polylines
+from pkm_post.toolpath.compressor.polylines import PolylinePoints, Polylines
 from pkm_post.toolpath.compressor.splines import Splines, quintic_powers
 from pkm_post.toolpath.compressor.uniform_splines import at_nodes
 
@@ -37,7 +37,7 @@ def fit(point: Array, extent: Array, count: Array, allowed: Allowed) -> tuple[Sp
         allowed: (n,) deviations on each row.
     """
     polyline = Polylines.of(point, extent, count)
-    splines = _placed(polyline, fitted_curves(polyline, allowed))
+    splines = _as_splines(polyline, fitted_curves(polyline, allowed))
     for _ in range(_NEWTON_STEPS):
         splines = _nearer(splines, polyline)
     off = _off(splines, polyline, allowed)
@@ -45,7 +45,7 @@ def fit(point: Array, extent: Array, count: Array, allowed: Allowed) -> tuple[Sp
     return _scaled(splines, polyline), off
 
 
-def _placed(polyline: Polylines, curves: Curves) -> Splines:
+def _as_splines(polyline: Polylines, curves: Curves) -> Splines:
     """The curves as pieces between nodes; each row ends at its path length."""
     grids = curves.grids
     run, number = grids.numbers(distinct(curves.nodes))
@@ -73,7 +73,7 @@ def _placed(polyline: Polylines, curves: Curves) -> Splines:
 def _nearer(splines: Splines, polyline: Polylines) -> Splines:
     """The curves with rows that end nearer to their programmed points: one step of Newton's method."""
     end = polyline.starts + 1
-    value, slope, _ = splines.at(splines.row, splines.extent, splines.powers)
+    value, slope = splines.within(splines.row, splines.extent, splines.powers)
     _, ahead = deviation(polyline.point[:, end], value, slope)
     ahead = np.where(polyline.inner[end], ahead, 0.0)  # the ends of runs are met exactly
     shift = np.concatenate([[0.0], ahead[:-1]])
@@ -83,7 +83,7 @@ def _nearer(splines: Splines, polyline: Polylines) -> Splines:
 def _scaled(splines: Splines, polyline: Polylines) -> Splines:
     """The curves with path lengths that are, from end to end of each run, those of the tip."""
     row, run = splines.row, polyline.run[polyline.starts]
-    _, slope, _ = splines.at(row, splines.extent / 2, splines.tip)
+    _, slope = splines.within(row, splines.extent / 2, splines.tip)
     travel = np.bincount(run, length_of(*slope) * splines.extent)
     scale, start = travel / polyline.length, np.cumsum(polyline.length) - polyline.length
     begin = np.cumsum(travel) - travel
@@ -99,9 +99,9 @@ def _scaled(splines: Splines, polyline: Polylines) -> Splines:
 
 def _off(splines: Splines, polyline: Polylines, allowed: Allowed) -> Array:
     """The largest deviation on each row by what is allowed, (n,)."""
-    places = Places.of(polyline, _CHECKED)
+    places = PolylinePoints.of(polyline, _CHECKED)
     u = (splines.extent[:, None] * _CHECKED).ravel()
-    value, slope, _ = splines.at(places.row, u, splines.powers)
+    value, slope = splines.within(places.row, u, splines.powers)
     off, _ = deviation(places.point, value, slope)
     worst = np.maximum(*by_allowed(off, allowed[places.row]))
     return np.asarray(worst.reshape(-1, len(_CHECKED)).max(axis=1))

@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.toolpath.compressor.deviation import Allowed, by_allowed, deviation
-from pkm_post.toolpath.compressor.polylines import Places, Polylines
+from pkm_post.toolpath.compressor.polylines import PolylinePoints, Polylines
 from pkm_post.toolpath.compressor.uniform_splines import (
     SUPPORT,
     Grids,
@@ -25,6 +25,7 @@ from pkm_post.toolpath.compressor.uniform_splines import (
     refined,
     reflected,
     values,
+    weighted,
 )
 
 _ROWS_IN_CELL = 8
@@ -41,10 +42,12 @@ _LEFT = 0.5
 """Deviation by what is allowed that a correction of a single place leaves."""
 _SHARES = np.array([0.5, 1.0])
 """Shares of each row at which the curve is compared."""
-_NEAR = 4
+_WINDOW_CELLS = 4
 """Cells about a node, half of them on either side."""
 _DENSE = 0.25
 """Share of the places in these cells that are off, from which on the curve follows the polyline there."""
+_MOST = 0.7
+"""Share of the places from which on all are computed, which takes no copies."""
 _CELLS_AT_END = 2
 """Cells over which the curvature at the end of a run is averaged."""
 
@@ -102,7 +105,7 @@ class _Search:
     """The curves of one level, and which places of the polylines are off from them by too much: ``wrong``."""
 
     def __init__(self, polyline: Polylines, allowed: Allowed, grids: Grids) -> None:
-        self._polyline, self._places = polyline, Places.of(polyline, _SHARES)
+        self._polyline, self._places = polyline, PolylinePoints.of(polyline, _SHARES)
         self._allowed = allowed[self._places.row]
         bend = _ends(polyline, grids)
         self.curves = Curves(
@@ -110,14 +113,15 @@ class _Search:
         )
         places = self._places
         self._state = np.stack(values(grids, self.curves.coefficients, places.run, places.s))
-        self._compare(np.arange(len(places.s)))
+        self._compare(slice(None))
 
-    def _compare(self, at: Array) -> None:
+    def _compare(self, at: Array | slice) -> None:
         """Find out which of these places are off by too much, and by what."""
-        off, _ = deviation(np.take(self._places.point, at, axis=1), *np.take(self._state, at, axis=2))
+        off, _ = deviation(_some(self._places.point, at), *_some(self._state, at))
         by = by_allowed(off, self._allowed[at])
         wrong = np.flatnonzero(np.maximum(*by) > _AIM)
-        self.wrong, self._off, self._by = at[wrong], off[:, wrong], [one[wrong] for one in by]
+        self.wrong = wrong if isinstance(at, slice) else at[wrong]
+        self._off, self._by = off[:, wrong], [one[wrong] for one in by]
 
     def give_up(self) -> None:
         """Leave runs as they are of which too much is off."""
@@ -129,7 +133,8 @@ class _Search:
     def refine(self) -> None:
         """Go to the next grid."""
         self.curves = self.curves.refined()
-        self._column, _ = self.curves.grids.locate(self._places.run, self._places.s)
+        self._column, self._share = self.curves.grids.locate(self._places.run, self._places.s)
+        self._weights: Array | None = None
 
     def follow(self) -> None:
         """Average the polyline on this grid where much is off."""
@@ -141,7 +146,10 @@ class _Search:
             ends = where[np.stack([grids.first, grids.first + grids.cells])]
             bend = np.where(ends[:, None], _ends(polyline, grids), curves.bend)
             new = np.where(where, quasi_interpolant(grids, polyline, bend), curves.coefficients)
-            self._replace(reflected(grids, new, bend), where, bend)
+            self.curves = curves.changed(reflected(grids, new, bend), where, bend)
+            at = self._reached_by(where)
+            self._state[:, :, at] = values(grids, self.curves.coefficients, self._places.run[at], self._places.s[at])
+            self._compare(at)
 
     def correct(self) -> None:
         """Take away what is too much at single places."""
@@ -150,17 +158,28 @@ class _Search:
         excess = self._off * 1.0
         for columns, by in zip((slice(0, 3), slice(3, None)), self._by, strict=True):
             excess[columns] *= np.where(by > _AIM, 1 - _LEFT / np.maximum(by, _AIM), 0.0)
-        curves, at = self.curves, self.wrong
-        change = _spread(curves.grids, self._places.run[at], self._places.s[at], excess)
-        self._replace(curves.coefficients + change, (change != 0).any(axis=0), curves.bend)
+        curves = self.curves
+        self._weights = basis(self._share) if self._weights is None else self._weights
+        change = _spread(curves.grids, self._column[self.wrong], self._weights[:, self.wrong], excess)
+        where = (change != 0).any(axis=0)
+        self.curves = curves.changed(curves.coefficients + change, where, curves.bend)
+        at = self._reached_by(where)
+        self._state[0][:, at] += weighted(
+            change, self._column[at], _some(self._weights, at)
+        )  # directions hardly change
+        self._compare(at)
 
-    def _replace(self, coefficients: Array, where: Array, bend: Array) -> None:
-        self.curves = self.curves.changed(coefficients, where, bend)
-        changed = reached(where)[self._column]
-        at = np.flatnonzero(changed)
-        self._state[:, :, at] = values(self.curves.grids, coefficients, self._places.run[at], self._places.s[at])
-        changed[self.wrong] = True
-        self._compare(np.flatnonzero(changed))
+    def _reached_by(self, where: Array) -> Array | slice:
+        """The places at which the curve changes with some coefficients, and those that are off; or all."""
+        again = reached(where)[self._column]
+        again[self.wrong] = True
+        at = np.flatnonzero(again)
+        return slice(None) if len(at) > _MOST * len(again) else at
+
+
+def _some(columns: Array, at: Array | slice) -> Array:
+    """Some of columns, (..., N)."""
+    return columns[..., at] if isinstance(at, slice) else np.take(columns, at, axis=-1)
 
 
 def _ends(polyline: Polylines, grids: Grids) -> Array:
@@ -169,9 +188,11 @@ def _ends(polyline: Polylines, grids: Grids) -> Array:
 
 def _about_nodes(grids: Grids, column: Array) -> Array:
     """The number of places in the cells about each node, from the first of their six columns; (size,)."""
-    in_cell = np.bincount(column + SUPPORT // 2 - 1, minlength=grids.size + _NEAR)
-    until = np.cumsum(np.concatenate([np.zeros(_NEAR // 2, dtype=np.int64), in_cell]))
-    return np.asarray(until[_NEAR // 2 - 1 + _NEAR // 2 :] - until[: len(until) - _NEAR + 1])[: grids.size]
+    in_cell = np.bincount(column + SUPPORT // 2 - 1, minlength=grids.size + _WINDOW_CELLS)
+    until = np.cumsum(np.concatenate([np.zeros(_WINDOW_CELLS // 2, dtype=np.int64), in_cell]))
+    return np.asarray(until[_WINDOW_CELLS // 2 - 1 + _WINDOW_CELLS // 2 :] - until[: len(until) - _WINDOW_CELLS + 1])[
+        : grids.size
+    ]
 
 
 def _with_ends(grids: Grids, where: Array) -> Array:
@@ -187,14 +208,14 @@ def _with_ends(grids: Grids, where: Array) -> Array:
     return found
 
 
-def _spread(grids: Grids, run: Array, s: Array, excess: Array) -> Array:
+def _spread(grids: Grids, column: Array, weights: Array, excess: Array) -> Array:
     """Coefficients of the least curves that pass through excesses at places, (C, size); means where these overlap.
+
+    Places are given by the columns of their first coefficients, (N,), and the weights of the six, (6, N).
 
     A single excess e at weights w_k is met by c_k = w_k e / sum of w^2; where several ask for one coefficient, it is
     their mean, weighted by w_k^2 [Lee1997].
     """
-    column, share = grids.locate(run, s)
-    weights = basis(share)
     at = (column + np.arange(SUPPORT)[:, None]).ravel()
     wanted, weight = weights**3 / np.square(weights).sum(axis=0), np.square(weights)
     total = np.bincount(at, weight.ravel(), grids.size)

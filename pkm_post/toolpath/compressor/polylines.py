@@ -83,7 +83,7 @@ class Polylines:
 
 
 @dataclass(frozen=True)
-class Places:
+class PolylinePoints:
     """N places on polylines: their rows, runs, path lengths, and points (C, N)."""
 
     row: Array
@@ -92,7 +92,7 @@ class Places:
     point: Array
 
     @classmethod
-    def of(cls, polyline: Polylines, shares: Array) -> Places:
+    def of(cls, polyline: Polylines, shares: Array) -> PolylinePoints:
         """Places at the same shares of each row."""
         start, many = polyline.starts, len(shares)
         begin, way = polyline.s[start], polyline.s[start + 1] - polyline.s[start]

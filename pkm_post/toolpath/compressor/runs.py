@@ -26,7 +26,7 @@ _ISOLATED, _SHARPER = np.radians(2.0), 3.0
 """A turn above the first is a corner if it is also so many times larger than those before and after it."""
 _FEED = 0.1
 """Relative change of the feed that ends a run; blocks with inverse time have a feed of their own each."""
-_AXIS_BOW = 2.5
+_AXIS_TURN_CUBED = 2.5
 """Cube of the turn in a row by the tolerance of the axis, at most: then the direction of an even chord of the turn and
 the even turn differ by 0.02 of the tolerance."""
 
@@ -67,7 +67,7 @@ def _short(trajectory: Trajectory, extent: Array, axis: float) -> Array:
         (trajectory.kind == Kind.LINE)
         & (extent == length)
         & (length <= np.minimum(_LONGEST, _LONGER * neighbour))
-        & (trajectory.angle**3 <= _AXIS_BOW * axis)
+        & (trajectory.angle**3 <= _AXIS_TURN_CUBED * axis)
     )
 
 

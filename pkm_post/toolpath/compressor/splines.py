@@ -15,7 +15,6 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from pkm_post.geometry import Array, length_of
-from pkm_post.model import find_rows
 
 TIP, AXIS, SPIN = slice(0, 3), slice(3, 6), slice(6, 7)
 """Columns of a place: tip, vector of the tool axis, spin."""
@@ -120,7 +119,20 @@ class Splines:
 
     def among(self, segment: Array) -> tuple[Array, Array]:
         """Which of the given segments, (N,), have curves, and their rows here, (K,) each."""
-        return find_rows(self.row, segment)
+        row = self.number(segment)
+        found = np.flatnonzero(row >= 0)
+        return found, row[found]
+
+    def number(self, segment: Array) -> Array:
+        """The row here of each of the given segments, (N,); -1 for those without a curve."""
+        return np.take(self._number, segment, mode="clip")
+
+    @functools.cached_property
+    def _number(self) -> Array:
+        """The same of all segments up to the last one with a curve, and of one behind it."""
+        number = np.full(int(self.row[-1]) + 2 if len(self.row) else 1, -1, dtype=np.int32)
+        number[self.row] = np.arange(len(self.row))
+        return number
 
     @functools.cached_property
     def tip(self) -> Array:

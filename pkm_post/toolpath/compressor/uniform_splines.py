@@ -130,13 +130,18 @@ def _polynomials(powers: Array, x: Array) -> Array:
 def values(grids: Grids, coefficients: Array, run: Array, s: Array) -> tuple[Array, Array]:
     """The curve and its derivative by s, (C, N) each."""
     column, share = grids.locate(run, s)
-    value, slope = np.zeros((2, len(coefficients), len(s)))
-    weights, rates = basis(share), basis_rates(share) / grids.width[run]
-    for k in range(SUPPORT):
-        around = np.take(coefficients, column + k, axis=1)
-        value += weights[k] * around
-        slope += rates[k] * around
-    return value, slope
+    rates = basis_rates(share) / grids.width[run]
+    return weighted(coefficients, column, basis(share)), weighted(coefficients, column, rates)
+
+
+def weighted(coefficients: Array, column: Array, weights: Array) -> Array:
+    """The sum of the six coefficients at each place, (C, N), with weights, (6, N), from the column of the first on."""
+    total, part = np.zeros((2, len(coefficients), len(column)))
+    for k, weight in enumerate(weights):
+        np.take(coefficients, column + k, axis=1, out=part, mode="clip")  # unlike "raise" without a copy
+        part *= weight
+        total += part
+    return total
 
 
 def at_nodes(grids: Grids, coefficients: Array, run: Array, number: Array) -> Array:

@@ -2,7 +2,8 @@
 """Moves: a program from the poses along the passes: rapid moves, approach, lead-in, passes, lead-out, retract.
 
 Between two runs the tool retracts along its axis, through the space it came from, up to a plane; there it turns
-upright, crosses, tilts again and descends along its next axis. Units: mm, mm/s.
+upright, crosses, tilts again and descends along its next axis. It retracts beyond the plane where rapid motion ended
+farther from the run than the plane is: so the run can be cut the other way as well. Units: mm, mm/s.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Diagnostic, Kind, Place, Program
+from pkm_post.model import Amount, Diagnostic, Kind, Phrase, Place, Program
 from pkm_post.toolpath.surface.options import LeadMove, SurfaceOptions
 from pkm_post.toolpath.surface.poses import Poses
 from pkm_post.toolpath.surface.tool_axis import clamp_to_cone
@@ -21,6 +22,10 @@ from pkm_post.toolpath.surface.tool_axis import clamp_to_cone
 _UP = np.array([0.0, 0.0, 1.0])
 _FLATTEST = math.sin(math.radians(5.0))
 """Rise of the tool axis below which the path along it up to the plane would be too long."""
+_ONE_AXIS = math.cos(1e-3)
+"""Cosine from which two tool axes count as one; heights are then measured along it."""
+_ONE_HEIGHT = 1e-6
+"""mm within which two heights are equal, with six decimals."""
 _NO_NORMAL = np.full(3, np.nan)
 
 
@@ -84,6 +89,9 @@ def _visit(
     faults += _lift_faults(poses.axis[last], end, leave, place)
     if faults:
         return [], faults
+    approach = _approach(begin, poses.axis[first], come, settings)
+    lift = _least_lift(begin, poses.axis[first], end, poses.axis[last], approach)
+    leave = lift if lift > leave + _ONE_HEIGHT else leave
     return [
         *_descent(begin, poses.axis[first], come, settings, _NO_NORMAL if len(lead_in) else poses.normal[first]),
         _Rows.of(Kind.LINE, lead_in, poses.axis[first], settings.feed),
@@ -91,6 +99,19 @@ def _visit(
         _Rows.of(Kind.LINE, lead_out, poses.axis[last], settings.feed),
         *_ascent(end, poses.axis[last], leave, settings),
     ], []
+
+
+def _approach(begin: Array, axis: Array, height: float, settings: SurfaceOptions) -> float:
+    """Distance from a run, along the axis, at which the rapid motion from a plane ends."""
+    distance: float = min(settings.approach, (height - begin[2]) / axis[2])
+    return distance
+
+
+def _least_lift(begin: Array, axis: Array, end: Array, axis_at_end: Array, approach: float) -> float:
+    """The z at which the lift from a run is as far from it as the approach to it, and from its begin as high."""
+    below = max(float((begin - end) @ axis), 0.0) if axis @ axis_at_end > _ONE_AXIS else 0.0
+    z: float = end[2] + (approach + below) * axis_at_end[2]
+    return z
 
 
 def _runs(poses: Poses) -> list[Array]:
@@ -125,7 +146,7 @@ def _descent(begin: Array, axis: Array, height: float, settings: SurfaceOptions,
     """
     above = _on_plane(begin, axis, height)
     resting = _resting(settings)
-    rapid_end = begin + min(settings.approach, (height - begin[2]) / axis[2]) * axis
+    rapid_end = begin + _approach(begin, axis, height, settings) * axis
     return [
         _Rows.of(Kind.RAPID, above[None], resting, np.nan),
         _Rows.of(Kind.RAPID, np.array([above, rapid_end]), axis, np.nan),
@@ -150,9 +171,23 @@ def _lift_faults(axis: Array, tip: Array, height: float, place: Place) -> list[D
     """Faults that prevent a retract along the tool axis to the plane."""
     if axis[2] < _FLATTEST:
         above, least = (math.degrees(math.asin(each)) for each in (axis[2], _FLATTEST))
-        return [Diagnostic("N304", place, f"{above:.1f} degrees above the horizontal, at least {least:g} are needed")]
+        return [
+            Diagnostic(
+                "N304",
+                place,
+                Phrase("{} degrees above the horizontal, at least {} are needed", f"{above:.1f}", f"{least:g}"),
+            )
+        ]
     if tip[2] > height:
-        return [Diagnostic("N307", place, f"the tip is at z = {tip[2]:.3f} mm, the plane at {height:.3f} mm")]
+        return [
+            Diagnostic(
+                "N307",
+                place,
+                Phrase(
+                    "the tip is at z = {}, the plane at {}", Amount(tip[2], "mm", ".3f"), Amount(height, "mm", ".3f")
+                ),
+            )
+        ]
     return []
 
 

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.geometry import Array, cross, dot, norm, unit
-from pkm_post.model import Diagnostic, Place
+from pkm_post.model import Amount, Diagnostic, Phrase, Place
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.surface.contact_path import ContactPath, PassPattern, thinned, trimmed
 from pkm_post.toolpath.surface.options import CutMode, PassLines, PassOrder, SurfaceOptions
@@ -63,11 +63,13 @@ def surface_poses(
         return None, (Diagnostic("N301", place, text),)
     pattern, widest = _pattern(surface, cutter, settings)
     if math.isnan(widest):
-        return None, (Diagnostic("N303", place, f"radius of the corner {cutter.corner_radius:g} mm"),)
+        return None, (
+            Diagnostic("N303", place, Phrase("radius of the corner {}", Amount(cutter.corner_radius, "mm", "g"))),
+        )
     path = _passes(surface, pattern, cutter, settings)
     path = thinned(trimmed(surface, pattern, path), _EVERY)
     if not len(path):
-        return None, (Diagnostic("N302", place, "no pass lies on it"),)
+        return None, (Diagnostic("N302", place, Phrase("no pass lies on it")),)
     path = _in_order(surface, pattern, path, settings)
     path = link_passes(surface, path, _LINK * widest, settings.order is PassOrder.ZIGZAG)
     stepping = PoseRefinement(surface, pattern, cutter, settings.rule, settings.tolerances, place)
@@ -170,7 +172,7 @@ def link_passes(surface: Surface, path: ContactPath, longest: float, zigzag: boo
         longest: longest link along the surface, mm; otherwise the tool is lifted.
         zigzag: whether passes alternate.
     """
-    path = _seams_passed(surface, path)
+    path = _unwrapped(surface, path)
     last = np.flatnonzero(path.run[:-1] != path.run[1:])
     first = last + 1
     begin = np.concatenate([[0], first])[:-1]
@@ -188,7 +190,7 @@ def link_passes(surface: Surface, path: ContactPath, longest: float, zigzag: boo
     return path.with_runs(np.concatenate([[0], np.cumsum(lifts)]))
 
 
-def _seams_passed(surface: Surface, path: ContactPath) -> ContactPath:
+def _unwrapped(surface: Surface, path: ContactPath) -> ContactPath:
     """The path with each run shifted by whole turns, to begin as close as possible to the end of the one before."""
     jump = np.concatenate([[False], path.run[:-1] != path.run[1:]])
     columns = {}

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from pkm_post.geometry import Array, along, angle_between, dot, norm, towards
-from pkm_post.model import Diagnostic, Place
+from pkm_post.model import Diagnostic, Phrase, Place
 from pkm_post.toolpath.compensation.contact import tip_from_contact
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.surface.contact_path import ContactPath, PassPattern
@@ -116,7 +116,7 @@ class PoseRefinement:
             behind = np.flatnonzero(open_ & self._divisible(poses))
             if not len(behind):
                 break
-            middle, middle_patch, fails = self._looked_at(poses, behind)
+            middle, middle_patch, fails = self._midpoints(poses, behind)
             behind, middle = behind[fails], middle.take(fails)
             rows = Patch(*(np.insert(old, behind + 1, new[fails], axis=0) for old, new in _pairs(patch, middle_patch)))
             path, patch, open_ = path.with_rows(behind, middle), rows, _open_again(open_, behind)
@@ -124,7 +124,9 @@ class PoseRefinement:
             progress(done)
         else:
             return None, (
-                Diagnostic("N305", self.place, f"after {_ROUNDS} halvings, {len(behind)} moves are too long"),
+                Diagnostic(
+                    "N305", self.place, Phrase("after {} halvings, {} moves are too long", _ROUNDS, len(behind))
+                ),
             )
         return poses, (*faults, *self._edges(poses))
 
@@ -132,7 +134,7 @@ class PoseRefinement:
         """Poses at rows of known patch."""
         travel = np.gradient(patch.point, axis=0) if len(path) > 1 else patch.along_u
         frame = feed_frame(self.pattern, path, patch, travel)
-        before, after = _passes_beside(path)
+        before, after = _adjacent_passes(path)
         links = LinkEnds(frame.take(before), frame.take(after), patch.point[after] - patch.point[before])
         frame = frame.with_links(links, patch.normal, path.link)
         axis, clamped = tool_axes(patch.normal, frame.feed, self.rule, frame.side)
@@ -147,12 +149,12 @@ class PoseRefinement:
         moves: Array = (norm(np.diff(poses.point, axis=0)) > _SHORTEST) | (_links(poses.path) & turns)
         return moves
 
-    def _looked_at(self, poses: Poses, behind: Array) -> tuple[ContactPath, Patch, Array]:
+    def _midpoints(self, poses: Poses, behind: Array) -> tuple[ContactPath, Patch, Array]:
         """The rows in the middle of moves, the surface there, and the moves that exceed the tolerances."""
         path = poses.path
         left, right = path.take(behind), path.take(behind + 1)
         is_link = _links(path)[behind]
-        before, after = (rows[at] for rows, at in zip(_passes_beside(path), (behind, behind + 1), strict=True))
+        before, after = (rows[at] for rows, at in zip(_adjacent_passes(path), (behind, behind + 1), strict=True))
         links = LinkEnds(poses.frame.take(before), poses.frame.take(after), poses.point[after] - poses.point[before])
         fails = np.zeros(len(behind), dtype=bool)
         for share in _SHARES:
@@ -226,7 +228,7 @@ def _link_share(before: Array, after: Array, share: float) -> Array:
     return part
 
 
-def _passes_beside(path: ContactPath) -> tuple[Array, Array]:
+def _adjacent_passes(path: ContactPath) -> tuple[Array, Array]:
     """For each row the last pass row not after it, and the first pass row not before it, (N,) each."""
     rows = np.arange(len(path))
     in_pass = np.isnan(path.link)

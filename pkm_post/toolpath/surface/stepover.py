@@ -56,7 +56,7 @@ def passes_along_u(surface: Surface, stepover: Stepover, cutter: Cutter, rule: A
 
     The borders are passes; where a border is a single point, the first pass is half a step away from it.
     """
-    surface = _face_alone(surface)
+    surface = _trimmed_to_face(surface)
     grid = Grid.over(surface, *_GRID)
     allowed = pass_widths(surface, grid, PassPattern(None, np.zeros(0)), stepover, cutter, rule)
     widest = _widest(allowed, grid)
@@ -228,7 +228,7 @@ def _lengths_on_borders(grid: Grid) -> tuple[float, float]:
     return float(length[0]), float(length[-1])
 
 
-def _face_alone(surface: Surface) -> Surface:
+def _trimmed_to_face(surface: Surface) -> Surface:
     """The surface with the range of v that the face fills: up to where the last of many points on a line leaves it."""
     u, v = (
         np.linspace(span.first, span.last, count) for span, count in zip((surface.u, surface.v), _LOOKS, strict=True)

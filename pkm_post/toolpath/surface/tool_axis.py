@@ -117,22 +117,22 @@ class LinkEnds:
     Attributes:
         leaving: frame where a pass ends.
         coming: frame where the next one begins.
-        way: (N, 3) vector from one contact to the other.
+        chord: (N, 3) vector from one contact to the other.
     """
 
     leaving: FeedFrame
     coming: FeedFrame
-    way: Array
+    chord: Array
 
     def take(self, rows: Array) -> LinkEnds:
         """Some of the rows."""
-        return LinkEnds(self.leaving.take(rows), self.coming.take(rows), self.way[rows])
+        return LinkEnds(self.leaving.take(rows), self.coming.take(rows), self.chord[rows])
 
     def at(self, normal: Array, share: Array) -> FeedFrame:
         """The frame at a completed share of the link."""
         first, last = (_across(frame.feed, normal) for frame in (self.leaving, self.coming))
         angle = np.arctan2(dot(cross(first, last), normal), dot(first, last))
-        round_by = np.where(dot(cross(first, self.way), normal) < 0.0, -1.0, 1.0)
+        round_by = np.where(dot(cross(first, self.chord), normal) < 0.0, -1.0, 1.0)
         wrong_way = (np.abs(angle) > _REVERSAL) & (np.sign(angle) != round_by)
         angle = (np.where(wrong_way, angle + round_by * 2.0 * np.pi, angle) * share)[:, None]
         left = (1.0 - share)[:, None]

@@ -14,8 +14,9 @@ import math
 from dataclasses import dataclass
 
 from pkm_post.geometry import Array
-from pkm_post.model import Diagnostic, Event, EventKind, Kind, Program
+from pkm_post.model import Diagnostic, Event, EventKind, Kind, Phrase, Program
 from pkm_post.toolpath.symmetry.transform import concatenate, mirror, mirrors, rotation, transform
+from pkm_post.toolpath.threads import without_threads
 
 MIRRORS = {"xy": (0.0, 0.0, 1.0), "xz": (0.0, 1.0, 0.0), "yz": (1.0, 0.0, 0.0)}
 """Normals of the mirror planes by their names."""
@@ -47,7 +48,11 @@ def with_copies(program: Program, copies: Copies) -> tuple[Program | None, tuple
     if not copies.moves or not len(program):
         return program, ()
     if program.kind[0] != Kind.RAPID:
-        return None, (Diagnostic("K148", program.place(0), "its first move is a feed move"),)
+        return None, (Diagnostic("K148", program.place(0), Phrase("its first move is a feed move")),)
+    if copies.keep_climb or any(isinstance(move, str) for move in copies.moves):
+        faults = without_threads(program, "as mirror images")
+        if faults:
+            return None, faults
     parts, diagnostics = [program], list[Diagnostic]()
     for move in copies.moves:
         copy, faults = _copy(program, _matrix(move), copies.keep_climb)

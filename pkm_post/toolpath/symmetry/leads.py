@@ -39,8 +39,8 @@ class Rows:
     each, are given where they differ from the end of the old row.
     """
 
-    point: Array
-    way: Array
+    end_row: Array
+    path_row: Array
     feed: Array
     back: bool = False
     position: Array | None = None
@@ -49,7 +49,7 @@ class Rows:
     def poses(self, program: Program) -> tuple[Array, Array]:
         """Tips and tool axes at the ends of the rows, (n, 3) each."""
         tip, axis = self.position, self.tool_axis
-        given = program.position[self.point], program.tool_axis[self.point]
+        given = program.position[self.end_row], program.tool_axis[self.end_row]
         return given[0] if tip is None else tip, given[1] if axis is None else axis
 
 
@@ -75,13 +75,13 @@ class LeadPair:
 
     def is_high(self) -> bool:
         """Whether the lift ends at or above the height that rapid moves came down to, or there is no lift."""
-        return not len(self.lift.way) or bool(self.lift.height[-1] >= self.plunge.rapid_to - LEVEL)
+        return not len(self.lift.path_row) or bool(self.lift.height[-1] >= self.plunge.rapid_to - LEVEL)
 
     def ways(self) -> tuple[Rows, Rows, int, int]:
         """The rows to the pass and from it, and the old rows that end where the former begin and the latter end."""
         slow = self.plunge.feed[0] if np.isfinite(self.plunge.feed[:1]).any() else self.feed
         enter, leave = lift_as_plunge(self.lift, self.plunge, slow), plunge_as_lift(self.plunge, self.lift, slow)
-        return enter, leave, int(self.lift.point[-1]), int(self.plunge.point[-1])
+        return enter, leave, int(self.lift.end_row[-1]), int(self.plunge.end_row[-1])
 
 
 def lead_pairs(program: Program, runs: Array, between: list[Link], whole: Array) -> Mapping[int, LeadPair]:
@@ -128,8 +128,8 @@ class Lead:
     Attributes:
         position: (n + 1, 3) stations, the end of the pass first.
         tool_axis: (n + 1, 3) tool axes there.
-        point: (n + 1,) old rows that end there.
-        way: (n,) old rows of the path.
+        end_row: (n + 1,) old rows that end there.
+        path_row: (n,) old rows of the path.
         feed: (n,) feeds, NaN for rapid moves.
         slanted: (n,) feed moves that are not along the tool axis.
         height: (n + 1,) distances of the stations from the pass along the path, or their heights above a plane; never
@@ -138,15 +138,15 @@ class Lead:
 
     position: Array
     tool_axis: Array
-    point: Array
-    way: Array
+    end_row: Array
+    path_row: Array
     feed: Array
     slanted: Array
     height: Array
 
     def row_at(self, height: Array) -> Array:
         """The row that passes through a height, (m,); n above the lead, 0 below it."""
-        row: Array = np.clip(np.searchsorted(self.height, height, side="right") - 1, 0, len(self.way))
+        row: Array = np.clip(np.searchsorted(self.height, height, side="right") - 1, 0, len(self.path_row))
         return row
 
     def feed_at(self, height: Array) -> Array:
@@ -200,7 +200,7 @@ def lift_as_plunge(lead: Lead, plunge: Lead, slow: float) -> Rows:
     deep[:1] = True
     feed = np.where(np.isnan(feed) & deep & rises, slow, feed)
     ends = slice(-2, None, -1) if len(row) else slice(0)
-    return Rows(made.point[ends], made.way[::-1], feed[::-1], True, made.position[ends], made.tool_axis[ends])
+    return Rows(made.end_row[ends], made.path_row[::-1], feed[::-1], True, made.position[ends], made.tool_axis[ends])
 
 
 def plunge_as_lift(lead: Lead, lift: Lead, slow: float) -> Rows:
@@ -218,11 +218,11 @@ def plunge_as_lift(lead: Lead, lift: Lead, slow: float) -> Rows:
     stations = _stations(replace(lift, feed=np.where(kept, np.nan, lift.feed)))
     stations = stations[~np.isin(stations, lift.height[np.append(kept, False) | np.append(False, kept)])]
     lift = replace(lift, feed=np.where(kept, np.nan, lift.feed))
-    ends = lead.height[1:][lead.slanted & ~np.append(lead.slanted[1:], False)[: len(lead.way)]]
+    ends = lead.height[1:][lead.slanted & ~np.append(lead.slanted[1:], False)[: len(lead.path_row)]]
     made, row = _divided(lead, np.append(stations, ends[np.isnan(lift.feed_at(ends - LEVEL))]))
     feed = _feeds(made, lift)
     feed = np.where(lead.slanted[row] & np.isnan(feed), lead.feed[row], feed)
-    return Rows(made.point[1:], made.way, feed, True, made.position[1:], made.tool_axis[1:])
+    return Rows(made.end_row[1:], made.path_row, feed, True, made.position[1:], made.tool_axis[1:])
 
 
 def _feeds(made: Lead, role: Lead) -> Array:
@@ -255,9 +255,9 @@ def _divided(lead: Lead, heights: Array) -> tuple[Lead, Array]:
 
     Its own stations remain where the motion changes direction.
     """
-    rows = len(lead.way)
+    rows = len(lead.path_row)
     if not rows:
-        return lead, lead.way
+        return lead, lead.path_row
     corners = np.flatnonzero(np.concatenate([[True], ~_straight_on(lead), [True]]))
     new = heights[(heights > lead.height[0] + _ON_LINE) & (heights < lead.height[-1] - _ON_LINE)]
     new = np.unique(new[np.abs(new[:, None] - lead.height[corners]).min(axis=1, initial=np.inf) > _ON_LINE])
@@ -266,18 +266,18 @@ def _divided(lead: Lead, heights: Array) -> tuple[Lead, Array]:
     row = np.minimum(place.astype(np.int64), rows - 1)
     share = place - row
     made = Lead(
-        position=_between(lead.position, row, share),
+        position=_interpolated(lead.position, row, share),
         tool_axis=along(lead.tool_axis[row], share[:, None] * towards(lead.tool_axis[row], lead.tool_axis[row + 1])),
-        point=lead.point[np.ceil(place).astype(np.int64)],
-        way=lead.way[on := np.floor((place[:-1] + place[1:]) / 2).astype(np.int64)],
+        end_row=lead.end_row[np.ceil(place).astype(np.int64)],
+        path_row=lead.path_row[on := np.floor((place[:-1] + place[1:]) / 2).astype(np.int64)],
         feed=lead.feed[on],
         slanted=lead.slanted[on],
-        height=_between(lead.height, row, share),
+        height=_interpolated(lead.height, row, share),
     )
     return made, on
 
 
-def _between(values: Array, row: Array, share: Array) -> Array:
+def _interpolated(values: Array, row: Array, share: Array) -> Array:
     """Values interpolated from rows to the next ones; exactly those of the rows at shares 0 and 1."""
     shares = share.reshape(-1, *[1] * (values.ndim - 1))
     between: Array = (1.0 - shares) * values[row] + shares * values[row + 1]

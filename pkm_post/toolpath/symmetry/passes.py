@@ -151,7 +151,7 @@ def links(program: Program, runs: Array) -> list[Link]:
         runs: (P, 2) its passes.
     """
     swings, moves, rapid = _swings(program), moving_rows(program), program.kind == Kind.RAPID
-    up, down = _leading_ways(program, runs, swings)
+    up, down = _lead_rows(program, runs, swings)
     moves[:1] = True
     firsts, lasts = np.append(0, runs[:, 1]), np.append(runs[:, 0], len(program))
     made = []
@@ -185,7 +185,7 @@ def _swings(program: Program) -> Array:
     return flags
 
 
-def _leading_ways(program: Program, runs: Array, swings: Array) -> tuple[Array, Array]:
+def _lead_rows(program: Program, runs: Array, swings: Array) -> tuple[Array, Array]:
     """Rows that may lead up from a pass, and down to one, (N,) each."""
     rise, lift = axial_rise(program), axial_moves(program)
     plunges = cutting_rows(program) & ~_within(runs, len(program))

@@ -20,7 +20,17 @@ from typing import Any
 import numpy as np
 
 from pkm_post.geometry import Array, dot
-from pkm_post.model import MOTION_COLUMNS, OPTIONAL_COLUMNS, Diagnostic, Event, EventKind, Kind, Program, errors
+from pkm_post.model import (
+    MOTION_COLUMNS,
+    OPTIONAL_COLUMNS,
+    Diagnostic,
+    Event,
+    EventKind,
+    Kind,
+    Phrase,
+    Program,
+    errors,
+)
 from pkm_post.toolpath.symmetry.leads import LEVEL, LeadPair, Rows, lead_pairs, unchanged_rows
 from pkm_post.toolpath.symmetry.passes import Link, closed_passes, links, pass_rows, same_pose, without_plunges
 
@@ -50,7 +60,7 @@ def reversed_passes(program: Program) -> tuple[Program | None, tuple[Diagnostic,
     if errors(faults):
         return None, faults
     made = _taken(program, [part.rows for part in parts])
-    sizes = np.cumsum([0, *(len(part.rows.way) for part in parts)]).tolist()
+    sizes = np.cumsum([0, *(len(part.rows.path_row) for part in parts)]).tolist()
     begins = {(part.name, part.number): begin for part, begin in zip(parts, sizes, strict=False)}
     events = moved_events(program, len(made), runs, between, _unchanged(whole), begins)
     return dataclasses.replace(made, events=events), faults
@@ -58,10 +68,10 @@ def reversed_passes(program: Program) -> tuple[Program | None, tuple[Diagnostic,
 
 def _parts(
     program: Program, runs: Array, between: list[Link], whole: Array, leads: Mapping[int, LeadPair]
-) -> list[_Part]:
+) -> list[_RowGroup]:
     """The parts of the new program in order."""
     kept = _unchanged(whole)
-    parts: list[_Part] = []
+    parts: list[_RowGroup] = []
     tip = -1
     for number, (first, behind) in enumerate(runs):
         before, after = between[number], between[number + 1]
@@ -75,16 +85,16 @@ def _parts(
         tip = end
         way = np.arange(behind - 1, first - 1, -1)
         parts += [
-            _Part("travel", number, travel),
-            _Part("enter", number, enter),
-            _Part("pass", number, Rows(way - 1, way, program.feed[way], back=True)),
-            _Part("leave", number + 1, leave),
+            _RowGroup("travel", number, travel),
+            _RowGroup("enter", number, enter),
+            _RowGroup("pass", number, Rows(way - 1, way, program.feed[way], back=True)),
+            _RowGroup("leave", number + 1, leave),
         ]
-    return [*parts, _Part("travel", len(runs), unchanged_rows(program, between[-1].travel))]
+    return [*parts, _RowGroup("travel", len(runs), unchanged_rows(program, between[-1].travel))]
 
 
 @dataclass(frozen=True)
-class _Part:
+class _RowGroup:
     """Rows that stay together in the new program.
 
     Attributes:
@@ -119,12 +129,12 @@ def _to(program: Program, link: Link, tip: int, top: int, at_start: bool) -> Row
 def _faults(
     program: Program,
     runs: Array,
-    parts: list[_Part],
+    parts: list[_RowGroup],
     between: list[Link],
     whole: Array,
     leads: Mapping[int, LeadPair],
 ) -> Iterator[Diagnostic]:
-    sizes = {(part.name, part.number): len(part.rows.way) for part in parts}
+    sizes = {(part.name, part.number): len(part.rows.path_row) for part in parts}
     for number in (np.flatnonzero(~_unchanged(whole)[1:-1]) + 1).tolist():
         lost = _lost(program, between[number], sizes["leave", number], sizes["enter", number])
         if lost:
@@ -132,12 +142,14 @@ def _faults(
     if not sizes["enter", 0] and not whole[0]:
         # Only a path that already starts in the material may start in it at its other end.
         code = "K122" if len(between[0].approach) else "K123"
-        yield Diagnostic(code, program.place(int(runs[0, 1]) - 1), "no lift leads away from the end of this pass")
+        yield Diagnostic(
+            code, program.place(int(runs[0, 1]) - 1), Phrase("no lift leads away from the end of this pass")
+        )
     for number in np.flatnonzero(~whole).tolist():
         first, behind = runs[number].tolist()
         if not leads[number].is_high():
             yield Diagnostic(
-                "K122", program.place(behind - 1), "the lift from this pass ends below where rapid moves went"
+                "K122", program.place(behind - 1), Phrase("the lift from this pass ends below where rapid moves went")
             )
         down = float(dot(program.position[first - 1] - program.position[behind - 1], program.tool_axis[first]))
         if down > LEVEL:
@@ -166,11 +178,13 @@ def _misplaced_events(program: Program, runs: Array) -> Iterator[Diagnostic]:
 
 def _taken(program: Program, parts: list[Rows]) -> Program:
     """The rows of all parts as a program, still with the old events."""
-    point, way, feed = (np.concatenate([getattr(part, name) for part in parts]) for name in ("point", "way", "feed"))
-    back = np.repeat([part.back for part in parts], [len(part.way) for part in parts])
+    end_row = np.concatenate([part.end_row for part in parts])
+    path_row = np.concatenate([part.path_row for part in parts])
+    feed = np.concatenate([part.feed for part in parts])
+    back = np.repeat([part.back for part in parts], [len(part.path_row) for part in parts])
     names = {*MOTION_COLUMNS, *OPTIONAL_COLUMNS} - {*_POINT_COLUMNS}
-    columns: dict[str, Any] = {name: getattr(program, name)[way] for name in names}
-    columns |= {name: getattr(program, name)[point] for name in _POINT_COLUMNS}
+    columns: dict[str, Any] = {name: getattr(program, name)[path_row] for name in names}
+    columns |= {name: getattr(program, name)[end_row] for name in _POINT_COLUMNS}
     columns |= {
         name: np.concatenate([part.poses(program)[number] for part in parts]) for number, name in enumerate(_POSE)
     }

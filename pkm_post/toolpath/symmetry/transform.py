@@ -13,13 +13,15 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from pkm_post.geometry import Array, norm, unit
-from pkm_post.model import MOTION_COLUMNS, OPTIONAL_COLUMNS, Diagnostic, Place, Program, map_rows
+from pkm_post.model import MOTION_COLUMNS, OPTIONAL_COLUMNS, Diagnostic, Phrase, Place, Program, map_rows
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 _RIGID = 1e-6
 """Largest deviation of R^T R from identity, and of the last row from 0 0 0 1: matrices are typed with six decimals."""
@@ -85,7 +87,9 @@ def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, tupl
     hand = np.sign(np.linalg.det(turn))
     plane, side_offset = _compensation(program, turn, hand)
     if plane is None:
-        return None, (Diagnostic("K112", Place(program.source), "the plane is not parallel to two axes any more"),)
+        return None, (
+            Diagnostic("K112", Place(program.source), Phrase("the plane is not parallel to two axes any more")),
+        )
     moved = dataclasses.replace(
         program,
         position=map_rows(lambda points: _turned(points, turn) + shift, program.position),

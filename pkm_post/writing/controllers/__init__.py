@@ -4,6 +4,9 @@
 A folder for each controller, a table of controllers by ``controller.kind``, and tables of the motion for other readers.
 """
 
+from typing import TYPE_CHECKING
+
+from pkm_post import at_first_use
 from pkm_post.writing.controllers.program_files import read_text, read_texts, text_of
 from pkm_post.writing.controllers.registry import (
     CONTROLLERS,
@@ -16,6 +19,11 @@ from pkm_post.writing.controllers.registry import (
     part_siblings,
 )
 
+if TYPE_CHECKING:
+    from pkm_post.writing.controllers import pmac, power_pmac
+else:
+    __getattr__ = at_first_use(__name__, {"": "pmac power_pmac"})
+
 __all__ = [
     "CONTROLLERS",
     "TABLES",
@@ -25,6 +33,8 @@ __all__ = [
     "controller_settings",
     "part_names",
     "part_siblings",
+    "pmac",
+    "power_pmac",
     "read_text",
     "read_texts",
     "text_of",

@@ -41,6 +41,7 @@ from pkm_post.writing.controllers.pvt.writer import Keywords, comment_lines
 __all__ = [
     "SETUP_SUFFIX",
     "PowerPmacSettings",
+    "buffer_opening",
     "faults",
     "program_parts",
     "program_text",
@@ -89,10 +90,15 @@ def program_parts(motion: StrutMotion, settings: PowerPmacSettings, heading: Seq
     return (program_text(motion, settings, heading),)
 
 
+def buffer_opening(settings: PowerPmacSettings) -> str:
+    """The line that opens the program and erases what it was: all that precedes its modes and moves."""
+    return f"open prog {settings.program}\n"
+
+
 def _opening(settings: PowerPmacSettings) -> str:
     speed = plain(settings.approach_speed)
     return (
-        f"open prog {settings.program}\nabs\nfrax({','.join(settings.letters)})\n"
+        f"{buffer_opening(settings)}abs\nfrax({','.join(settings.letters)})\n"
         f"linear\nta{APPROACH_RAMP_MS} ts0 F{speed}\n"
     )
 

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Mapping
+from html import escape
 from pathlib import PurePosixPath
-from xml.sax.saxutils import escape
 
 INCLUDES = "PMAC Script Language/Global Includes"
 KINEMATICS = "PMAC Script Language/Kinematic Routines"
@@ -114,7 +114,7 @@ def _project(name: str, identity: str, scripts: Mapping[str, str]) -> str:
             '<Project DefaultTargets="Build" xmlns="http://schemas.microsoft.com/developer/msbuild/2003">',
             "  <PropertyGroup>",
             "    <Configuration Condition=\" '$(Configuration)' == '' \">Debug</Configuration>",
-            *(f"    <{key}>{escape(value)}</{key}>" for key, value in properties.items()),
+            *(f"    <{key}>{escape(value, quote=False)}</{key}>" for key, value in properties.items()),
             "  </PropertyGroup>",
             *_of_configuration("Debug", "true"),
             *_of_configuration("Release", "false"),
@@ -166,4 +166,4 @@ def _solution(name: str, identity: str) -> str:
 
 
 def _windows(place: str) -> str:
-    return escape(str(PurePosixPath(place)).replace("/", "\\"), {'"': "&quot;"})
+    return escape(str(PurePosixPath(place)).replace("/", "\\"))

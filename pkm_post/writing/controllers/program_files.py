@@ -11,10 +11,11 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 
-from pkm_post.model import Diagnostic, Place
+from pkm_post.model import Diagnostic, Place, checkpoint, pieces
 from pkm_post.writing.controllers.registry import Controller, part_siblings
 
 Findings = tuple[Diagnostic, ...]
@@ -23,6 +24,8 @@ Texts = list[tuple[str, str]]
 
 _FOREIGN = re.compile(rb"[^\n -~]")
 _MOST_FAULTS = 20
+_AT_ONCE = 1 << 22
+"""Characters that are examined at once."""
 _NAMES = {
     0x00: "NUL", 0x09: "tab", 0x0B: "vertical tab", 0x0C: "form feed", 0x0D: "carriage return without line feed",
     0x1A: "Ctrl-Z", 0x1B: "escape", 0x7F: "delete",
@@ -37,8 +40,17 @@ def text_of(content: bytes, file: str) -> tuple[str | None, Findings]:
         file: its name, for the diagnostics.
     """
     content = content.replace(b"\r\n", b"\n")
-    faults = tuple(_fault(content, found.start(), file) for found in islice(_FOREIGN.finditer(content), _MOST_FAULTS))
-    return (None, faults) if faults else (content.decode("ascii"), ())
+    faults = tuple(_fault(content, found.start(), file) for found in islice(_foreign(content), _MOST_FAULTS))
+    if faults:
+        return None, faults
+    checkpoint()
+    return content.decode("ascii"), ()
+
+
+def _foreign(content: bytes) -> Iterator[re.Match[bytes]]:
+    """Characters that no program has, in order."""
+    for part in pieces(len(content), _AT_ONCE):
+        yield from _FOREIGN.finditer(content, part.start, part.stop)
 
 
 def _fault(content: bytes, position: int, file: str) -> Diagnostic:
@@ -56,7 +68,9 @@ def _named(byte: int) -> str:
 def read_text(file: Path) -> tuple[str | None, Findings]:
     """The text of one file of a program."""
     try:
-        return text_of(file.read_bytes(), file.name)
+        content = file.read_bytes()
+        checkpoint()
+        return text_of(content, file.name)
     except OSError as fault:
         return None, (Diagnostic("F103", Place(str(file)), str(fault)),)
 
@@ -75,6 +89,10 @@ def read_texts(program: Path, controller: Controller) -> tuple[Texts | None, Fin
     return texts, ()
 
 
+TIP_AND_AXIS = "X Y Z are the tip in mm, A B C the platform in degrees, in the machine frame; do not edit"
+"""Line of the heading of programs for kinematics in the controller; the others are of strut lengths."""
+_TIP_AND_AXIS = re.compile(r"^(?:;|//) X Y Z are the tip in mm", re.M)
+"""Its beginning: the line may be broken."""
 _DIGITS = 32
 _HEADING = re.compile(r"(?:(?:;|//).*\n)*")
 _MARK = re.compile(r";|//")
@@ -84,7 +102,10 @@ _STATED = {name: re.compile(rf"^(?:;|//) {words} ([0-9a-f]{{{_DIGITS}}})\n", re.
 
 def program_hash(text: str) -> str:
     """SHA-256 of a program, hexadecimal."""
-    return hashlib.sha256(text.encode("ascii")).hexdigest()
+    digest = hashlib.sha256()
+    for part in pieces(len(text), _AT_ONCE):
+        digest.update(text[part].encode("ascii"))
+    return digest.hexdigest()
 
 
 def source_hash_lines(trajectory: str, machine: str) -> list[str]:
@@ -103,6 +124,11 @@ def with_own_hash(text: str) -> str:
         raise ValueError("text: expected a comment in its first line, got none")
     end = _heading_end(text)
     return f"{text[:end]}{mark[0]} {_WORDS['program']} {program_hash(text)[:_DIGITS]}\n{text[end:]}"
+
+
+def is_of_tip_and_axis(text: str) -> bool:
+    """Whether the axes of a program are tip and axis, as its heading says."""
+    return _TIP_AND_AXIS.search(text, 0, _heading_end(text)) is not None
 
 
 def own_hash_matches(text: str) -> bool | None:

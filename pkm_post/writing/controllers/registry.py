@@ -7,13 +7,14 @@ optional output of the certified motion; it is not a program, but it is read bac
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import importlib
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import PurePath
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar, cast
 
 from pkm_post.model import Diagnostic, Machine, Place, StrutMotion
-from pkm_post.writing.controllers import halstreamer, motion_csv, pmac, power_pmac
 
+Module = TypeVar("Module")
 Findings = tuple[Diagnostic, ...]
 
 
@@ -45,13 +46,29 @@ class Controller(Protocol):
         """The set-up that programs rely on, None if there is none; the stroke in mm."""
 
 
-CONTROLLERS: dict[str, Controller] = {"turbo_pmac": pmac, "power_pmac": power_pmac}
+class _Modules(Mapping[str, Module]):
+    """Modules beside this one, by name; each is imported when it is first looked up."""
+
+    def __init__(self, names: Mapping[str, str]) -> None:
+        self._names = names
+
+    def __getitem__(self, key: str) -> Module:
+        return cast(Module, importlib.import_module(f"{__package__}.{self._names[key]}"))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+CONTROLLERS: Mapping[str, Controller] = _Modules({"turbo_pmac": "pmac", "power_pmac": "power_pmac"})
 
 
 def controller_of(machine: Machine) -> tuple[Controller | None, Findings]:
     """The controller of a machine, or None with diagnostics."""
     kind = machine.controller.get("kind")
-    if kind in CONTROLLERS:
+    if isinstance(kind, str) and kind in CONTROLLERS:
         return CONTROLLERS[kind], ()
     found = f"controller.kind: expected one of {', '.join(CONTROLLERS)}, got {kind!r}"
     return None, (Diagnostic("M104", Place(machine.name), found),)
@@ -97,5 +114,5 @@ class Table(Protocol):
         """Read file names and texts back and compare them with the motion: the result in words, and the faults."""
 
 
-TABLES: dict[str, Table] = {"csv": motion_csv, "halstreamer": halstreamer}
+TABLES: Mapping[str, Table] = _Modules({"csv": "motion_csv", "halstreamer": "halstreamer"})
 """Tables by option value."""

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, EventKind, Place, Program
+from pkm_post.model import Array, Diagnostic, EventKind, Phrase, Place, Program, threads
 from pkm_post.toolpath import CHORD_ERROR, with_chords
 from pkm_post.writing.gcode.arcs import WrittenArcs, written_arcs
 from pkm_post.writing.gcode.tool_axes import (
@@ -54,7 +54,7 @@ def heading(program: Program, dialect: GcodeDialect, inch: bool) -> str:
     return "".join(lines) + _MODES.format(unit="G20" if inch else "G21")
 
 
-def between_blocks(program: Program, dialect: GcodeDialect) -> dict[int, str]:
+def lines_between_blocks(program: Program, dialect: GcodeDialect) -> dict[int, str]:
     """Whole lines by the row that follows them; the row count as key places lines after the last row."""
     lines: dict[int, str] = {}
     for row in _first_rows(program):
@@ -190,6 +190,8 @@ def write(
     if fault is not None:
         row, code, found = fault
         return None, (Diagnostic(code, program.place(row), found),)
+    if taps := threads(program.events):
+        return None, (Diagnostic("K157", program.place(taps[0].first), "as G-code"),)
     if program.contact.any():
         return None, (
             Diagnostic("N119", program.place(int(np.argmax(program.contact))), f"{program.contact.sum()} rows"),
@@ -206,7 +208,7 @@ def write(
         program = with_chords(program, arcs.row[~arcs.expressible])
         arcs = written_arcs(program, numbers.unit, axis_may_change)
     diagnostics += _deviation_warnings(program, dialect)
-    between = between_blocks(program, dialect)
+    between = lines_between_blocks(program, dialect)
     codes = codes_of(program, arcs, numbers)
     blocks = block_texts(words_of(program, NOTATIONS[dialect], arcs, numbers), codes, between)
     end = between.get(len(program), "")
@@ -245,4 +247,4 @@ def _deviation_warnings(program: Program, dialect: GcodeDialect) -> tuple[Diagno
 
 def _normal_warnings(program: Program) -> tuple[Diagnostic, ...]:
     count = int(np.isfinite(program.normal).all(axis=1).sum())
-    return (Diagnostic("G504", Place(program.source), f"{count} moves have one"),) if count else ()
+    return (Diagnostic("G504", Place(program.source), Phrase("{} moves have one", count)),) if count else ()

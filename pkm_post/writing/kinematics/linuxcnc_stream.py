@@ -3,15 +3,15 @@
 
 halstreamer puts the first row of a table on the pins at once. Here each strut's command goes through two switches: it
 follows the feedback until ``drives-on``, then stands still, and takes the streamer's pins from the moment at which
-the first row was found within ``NEAR`` of the command of all six struts. With another first row ``stream-refused``
-comes on, no further row is taken, and no strut moves. Lengths are counted lengths in mm.
+the first row was found within ``START_TOLERANCE`` of the command of all six struts. With another first row
+``stream-refused`` comes on, no further row is taken, and no strut moves. Lengths are counted lengths in mm.
 
 Sources: LinuxCNC 2.9, manual pages streamer(9), near(9), logic(9), flipflop(9), mux2(9), and2(9), not(9).
 """
 
 from __future__ import annotations
 
-NEAR = 0.05
+START_TOLERANCE = 0.05
 """mm; posted programs start at a pose to the same length."""
 DEPTH = 4000
 """Rows that the streamer holds: four seconds at a servo period of 1 ms."""
@@ -20,7 +20,7 @@ _STRUTS = range(6)
 
 def stream_hal() -> str:
     """The HAL file, for a thread that is named servo-thread and signals strut-N-fb that the drives write."""
-    return "\n".join([*_components(), *_gate(), *_commands(), *_functions()]) + "\n"
+    return "\n".join([*_components(), *_start_interlock(), *_commands(), *_functions()]) + "\n"
 
 
 def _components() -> list[str]:
@@ -39,7 +39,7 @@ def _components() -> list[str]:
         *(f"loadrt {module} names={','.join(those)}" for module, those in names.items()),
         "# of six inputs, of three and of three: all of them",
         "loadrt logic names=all-near,accept,refuse personality=0x106,0x103,0x103",
-        *(f"setp near-{strut}.difference {NEAR}" for strut in _STRUTS),
+        *(f"setp near-{strut}.difference {START_TOLERANCE}" for strut in _STRUTS),
     ]
 
 
@@ -47,7 +47,7 @@ def _each(name: str) -> list[str]:
     return [f"{name}-{strut}" for strut in _STRUTS]
 
 
-def _gate() -> list[str]:
+def _start_interlock() -> list[str]:
     """The first row decides: accepted or refused. What is decided holds until stream-start or drives-on goes."""
     return [
         "# a row is on the pins when the streamer was enabled and had one; its enable is set at the period's end",

@@ -75,6 +75,10 @@ OPEN_QUESTIONS: Mapping[str, tuple[str, ...]] = {
         "The bit of Ldata.Status that tells a motion program from a query: text and example of the User's Manual"
         " differ ($40 and 40). $40 is written.",
         "Two queries of axis positions at once, from two connections, share the variables of the forward program.",
+        "That Motor[n].CoordSf[0] to [2] and [6] to [8] are 0 once this file is loaded: programs of tip and axis take"
+        " another value for kinematics that are off, and end before their first move with Q66 = 1.",
+        "That PVT moves of tip and axis are divided from the last rest on, in segments of exactly SegMoveTime, and that"
+        " their spline is a uniform cubic B-spline: programs with `cartesian --segment-time` are certified as that.",
         "Velocity queries call the program a second time by `callsub 100`, as the User's Manual recommends.",
         "Whether Coord[].HomeComplete covers all six motors in the firmware at hand.",
         _SEGMENTS,

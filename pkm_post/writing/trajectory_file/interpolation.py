@@ -20,9 +20,9 @@ from pkm_post.geometry import Array, across, cross, dot, norm, towards
 from pkm_post.model import Kind, Trajectory
 from pkm_post.writing.trajectory_file.layout import BLOCK, Records
 
-NEAR = 1e-6
+TOLERANCE = 1e-6
 """mm and rad: tolerance between stored and recomputed values, as processors round differently."""
-_NEAR_SHARE = 1e-9
+_RELATIVE_TOLERANCE = 1e-9
 """The same relative to the value, for arcs of very large radius."""
 _NO_RADIUS = 1e-9
 """mm: an arc that begins on its axis has no radius to grow."""
@@ -132,7 +132,7 @@ def _apart(found: Array, computed: Array, weight: Array | float) -> Array:
     if np.array_equal(found, computed):  # the usual case: written and read on the same processor
         return np.zeros(len(found), dtype=np.bool_)
     size = norm if computed.ndim > 1 else np.abs
-    return ~(size(found - computed) * weight <= NEAR + _NEAR_SHARE * size(computed) * weight)
+    return ~(size(found - computed) * weight <= TOLERANCE + _RELATIVE_TOLERANCE * size(computed) * weight)
 
 
 def blocks(trajectory: Trajectory) -> Records:

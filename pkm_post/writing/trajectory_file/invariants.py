@@ -32,6 +32,7 @@ from pkm_post.model import (
     gauge_lengths,
 )
 from pkm_post.system import in_workers
+from pkm_post.writing.trajectory_file.thread_rules import MIN_LEAD, thread_contradictions
 
 SEGMENTS_PER_CHUNK = 1 << 13
 """Some megabytes of records, which stay in the processor's cache."""
@@ -91,6 +92,7 @@ VALID_EVENT_VALUE: dict[EventKind, Callable[[float], bool]] = {
     EventKind.DWELL: lambda value: value >= 0,
     EventKind.STOP: lambda value: value in (0, 1),
     EventKind.FUNCTION: lambda value: value == int(value) and 0 <= value <= _LARGEST_NUMBER,
+    EventKind.SPINDLE_AXIS: lambda value: value == 0 or MIN_LEAD <= abs(value) <= FARTHEST,
 }
 """Whether a finite value is valid, by kind of event."""
 
@@ -115,7 +117,7 @@ def _first(broken: Iterable[str]) -> Iterator[str]:
 
 
 def _start_violations(trajectory: Trajectory) -> Iterator[str]:
-    if not _is_near(trajectory.start_tip):
+    if not _is_in_range(trajectory.start_tip):
         yield f"the start tip is not finite, or farther than {FARTHEST:g} mm"
     if not _is_unit(trajectory.start_axis):
         yield "the start axis is not of unit length"
@@ -184,12 +186,12 @@ def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
     stands = (length == 0) & (angle == 0) & (trajectory.spin == trajectory.spin_before())
     return {
         "kind is unknown": ~np.isin(trajectory.kind, list(Kind)),
-        f"tip is not finite, or farther than {FARTHEST:g} mm": ~_is_near(trajectory.tip),
+        f"tip is not finite, or farther than {FARTHEST:g} mm": ~_is_in_range(trajectory.tip),
         "axis is not of unit length": ~_is_unit(trajectory.axis),
         f"spin is not finite, or beyond {MAX_SPIN:g} rad": ~(np.abs(trajectory.spin) <= MAX_SPIN),
         "feed is not a finite number above 0": ~(np.isfinite(trajectory.feed) & (trajectory.feed > 0)),
         f"arc centre is not finite, or farther than {FARTHEST:g} mm": _expanded(
-            arc, ~_is_near(trajectory.arc_centre[arc])
+            arc, ~_is_in_range(trajectory.arc_centre[arc])
         ),
         "arc centre is not NaN, although it is no arc": ~arc & _has_number(trajectory.arc_centre),
         "arc axis is not of unit length": _expanded(arc, ~_is_unit(trajectory.arc_axis[arc])),
@@ -238,7 +240,7 @@ def _has_number(vectors: Array) -> Array:
     return ~(np.isnan(x) & np.isnan(y) & np.isnan(z))
 
 
-def _is_near(points: Array) -> Array:
+def _is_in_range(points: Array) -> Array:
     """Whether (..., 3) points are within ``FARTHEST``, (...)."""
     near: Array = norm(points) <= FARTHEST
     return near
@@ -268,7 +270,12 @@ def contradictions(trajectory: Trajectory) -> list[str]:
     """Name the contradictions of a trajectory without violations; none for a consistent one."""
     if not len(trajectory):
         return []
-    return [*_tool_contradictions(trajectory), *_rest_contradictions(trajectory), *_joint_contradictions(trajectory)]
+    return [
+        *_tool_contradictions(trajectory),
+        *_rest_contradictions(trajectory),
+        *_joint_contradictions(trajectory),
+        *thread_contradictions(trajectory),
+    ]
 
 
 def _tool_contradictions(trajectory: Trajectory) -> Iterator[str]:

@@ -21,7 +21,7 @@ from pkm_post.control.simulator import Controller, EthernetPort, SerialPort, Ser
 from pkm_post.writing.controllers.pmac import setup_text
 
 STROKE = (450.0, 550.0)
-LONGEST_JOIN_S = 20.0
+LONGEST_JOIN_S = 120.0
 SETTINGS = settings_for()
 
 

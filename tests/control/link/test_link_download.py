@@ -6,6 +6,7 @@ from collections import Counter
 import pytest
 from link_faults import by_chance, reference_of, refuse, reset_after, small_program, tried
 from rig import Noise, Wire, controller, listed
+from series import cases
 
 from pkm_post.control.link.download import download
 from pkm_post.control.link.errors import CancelledError, DownloadError, RefusedError
@@ -13,7 +14,7 @@ from pkm_post.control.link.program import PmacProgram
 from pkm_post.control.simulator import Controller, SimulatorSettings
 
 KINDS = ("serial", "tcp")
-FIRST_SEED, SEEDS = 0, 150
+FIRST_SEED, SEEDS = 0, cases(75)
 """So many of the faults by chance; ``make soak`` tries thousands."""
 
 
@@ -66,15 +67,16 @@ def test_the_refused_line_is_named(kind, program):
         download(session, program)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(("kind", "first"), [(kind, place) for place, kind in enumerate(KINDS)])
 @pytest.mark.parametrize("mends", [True, False])
-def test_the_link_is_cut_at_every_byte(kind, mends):
+def test_the_link_is_cut_at_any_byte(kind, first, mends):
+    """Over one link at every second byte, over the other one at those between."""
     program = PmacProgram(10, ("ABS", "PVT20", "A500.125000:-0.5000"))
     reference = reference_of(program)
     whole = Wire(controller(), kind)
     assert tried(whole, program, reference).what == "loaded"
     made = Counter()
-    for place in range(whole.passed):
+    for place in range(first, whole.passed, len(KINDS)):
         wire = Wire(controller(), kind, cut_at=place + 1, mends=mends)
         made[tried(wire, program, reference).what] += 1
     assert set(made) == ({"loaded"} if mends else {"unknown", "untouched", "loaded"})

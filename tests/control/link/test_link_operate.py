@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from controller_settings import threading_settings
 from link_faults import FIRST, small_program
 from rig import SETTINGS, STROKE, Wire, controller
 
@@ -14,7 +15,7 @@ from pkm_post.control.link.program import read_job
 from pkm_post.control.link.run import check_setup, check_start
 from pkm_post.control.link.status import read_status
 from pkm_post.model import StrutMotion
-from pkm_post.writing.controllers.pmac import program_text
+from pkm_post.writing.controllers.pmac import program_text, setup_text
 
 MICRON = 1e-3
 SLOW = small_program(100)
@@ -39,6 +40,25 @@ def test_the_set_up_is_as_the_machine_file_says(wire):
     for query in (b"#6->", b"I5190", b"I5150", b"I68", b"I127", b"I613", b"I614"):
         assert query in wire.sent, "what is set up was asked for"
     assert b"=" not in wire.sent, "and nothing was set"
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("&1#7->35999Z", "#7->: expected 36000Z+0, the controller has 35999Z"),
+        ("&1#7->0", "#7->: expected 36000Z+0"),
+        ("I713=1000", "I713: expected 0 (no soft limit of the spindle)"),
+    ],
+)
+def test_another_axis_of_the_spindle_is_refused(line, said):
+    settings, made = threading_settings(), controller()
+    made.load(setup_text(settings, "simulated", STROKE).splitlines())
+    with Wire(made).session() as session:
+        assert check_setup(session, settings, STROKE) is None
+    made.load([line])
+    with Wire(made).session() as session, pytest.raises(NotReadyError) as refused:
+        check_setup(session, settings, STROKE)
+    assert said in str(refused.value)
 
 
 @pytest.mark.parametrize(
@@ -218,7 +238,7 @@ def test_a_start_that_got_lost_is_not_repeated(wire, loaded):
 
 
 def test_the_struts_move_as_the_program_says(wire):
-    """Six struts go out by different lengths and back, in step: what the controller tells lies on that line."""
+    """Six struts go out by different lengths and back, in step: what the controller reports lies on that line."""
     reach = np.array([1.0, 2.0, -3.0, 4.0, -5.0, 6.0])
     time_ms = np.arange(0, 2001, 20)
     turn = 2 * np.pi * time_ms / 2000

@@ -233,7 +233,7 @@ def test_a_client_that_was_killed_locks_nobody_out():
             assert lock_owner(lock_path(name))["process"] == child.pid
         finally:
             child.send_signal(signal.SIGKILL)
-            child.communicate(timeout=20)
+            child.communicate(timeout=120)
         with Session(port_named(name)) as session:
             assert download(session, PROGRAM).lines == len(PROGRAM.lines)
         with try_lock(lock_path(name)) as lock:
@@ -291,7 +291,7 @@ def test_struts_that_turn_round_or_sink_are_seen_to_move():
 
 def test_threads_of_one_process_are_clients_as_well():
     with served(controller()) as name:
-        got, start = [], threading.Barrier(4, timeout=20)
+        got, start = [], threading.Barrier(4, timeout=120)
 
         def client():
             with Session(port_named(name)) as session:

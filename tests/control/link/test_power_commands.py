@@ -139,3 +139,14 @@ def test_a_posted_trajectory_is_played(pmac, posted, capsys, monkeypatch):
     assert "deviation of the tool tip" in said.out and not said.err
     system = pmac.machine.controller.systems[0]
     assert not system.running and not system.runtime_error and system.path.abrupt_stops == 0
+
+
+def test_the_tool_is_jogged_and_moved_by_a_line(pmac, posted, capsys):
+    machine = ["--machine", str(posted[0])]
+    assert pmac("jog", *machine, "--x", "2", "--feed", "600") == 0
+    said = capsys.readouterr().out
+    within = float(re.search(r"it rests within ([\d.]+) s if this computer falls silent", said)[1])
+    assert 0.1 < within < 5.0 and "arrived; no strut is off" in said
+    assert pmac("mdi", *machine, "G91 G1 X-2 Z1 F600") == 0
+    assert "to tip X0.000 Y0.000 Z301.000" in capsys.readouterr().out.replace("-0.000", "0.000")
+    assert pmac("approach", *machine, str(posted[1]), "--check") == 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The digital readout: forward kinematics of what the controller tells, and bits in words."""
+"""The digital readout: forward kinematics of what the controller reports, and bits in words."""
 
 import dataclasses
 

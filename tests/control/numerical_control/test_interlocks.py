@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Which orders make sense in which state."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -25,6 +27,8 @@ STOPS = {OperatorCommand.HOLD, OperatorCommand.ABORT}
 BY_HAND = {OperatorCommand.HOME, OperatorCommand.JOG, OperatorCommand.LINE, OperatorCommand.OVERRIDE, *STOPS}
 TAKEN = {OperatorCommand.LOAD, OperatorCommand.BLOCKS}
 OPENED = PanelState(connected=True, has_job=True)
+PLAYED = PanelState(connected=True, playing=True, waiting=True)
+BEHIND_A_STOP = {OperatorCommand.PLAY_ON, OperatorCommand.RETRACT, OperatorCommand.PLAY_END}
 LOADED = PanelState(connected=True, has_job=True, loaded=True)
 
 
@@ -52,7 +56,6 @@ AT_REST, RUNS, IS_HELD = (
         (ControlState(None, None), AT_HAND, STOPS),
         (AT_REST, AT_HAND, BY_HAND),
         (AT_REST, PanelState(connected=True, busy=True), STOPS),
-        (AT_REST, PanelState(connected=True, watch_only=True), STOPS),
         (AT_REST, OPENED, BY_HAND | TAKEN | {OperatorCommand.APPROACH}),
         (AT_REST, LOADED, BY_HAND | TAKEN | {OperatorCommand.APPROACH, OperatorCommand.START}),
         (
@@ -63,6 +66,8 @@ AT_REST, RUNS, IS_HELD = (
         (ControlState(status(HOMED), None), AT_HAND, STOPS | {OperatorCommand.OVERRIDE}),
         (RUNS, LOADED, STOPS | {OperatorCommand.OVERRIDE}),
         (IS_HELD, LOADED, STOPS | {OperatorCommand.RESUME}),
+        (AT_REST, PLAYED, STOPS | BEHIND_A_STOP),
+        (AT_REST, replace(PLAYED, held_back=True), STOPS | BEHIND_A_STOP | {OperatorCommand.RESUME}),
         (ControlState(status(), None, lost="cut"), LOADED, STOPS),
     ],
 )

@@ -8,7 +8,7 @@ import pytest
 from station import MACHINE, SETTINGS, TOOL
 
 from pkm_post.control.link.errors import LinkLostError
-from pkm_post.control.link.ports import Port, port_named
+from pkm_post.control.link.ports import Port
 from pkm_post.control.numerical_control.connection import (
     SIMULATED_HOMING,
     ConnectionTarget,
@@ -19,8 +19,9 @@ from pkm_post.control.numerical_control.connection import (
 from pkm_post.control.numerical_control.homing import HomingPhase
 from pkm_post.control.numerical_control.manual_moves import CartesianJog
 from pkm_post.machine import find_machine
+from pkm_post.writing import PowerPmacSettings
 
-LONGEST_S = 60.0
+LONGEST_S = 240.0
 FAST = 2.0
 """Simulated seconds in a second; a homing has to be seen by a reading each 0.1 s."""
 
@@ -34,18 +35,26 @@ def until(holds):
 
 def test_names_become_a_target():
     target, reported = connection_target("tcp:127.0.0.1:1025", "example_6tps")
-    assert (target.port, target.watch_only, reported) == (Port("tcp", "127.0.0.1", 1025), False, ())
+    assert (target.port, reported) == (Port("tcp", "127.0.0.1", 1025), ())
     assert (target.machine.fingerprint, target.settings) == (MACHINE.fingerprint, SETTINGS)
 
 
-def test_a_power_pmac_is_watched_alone(tmp_path):
+@pytest.fixture
+def power_file(tmp_path):
+    """The example with a Power PMAC."""
     text = find_machine("example_6tps").read_text(encoding="utf-8")
     file = tmp_path / "power.toml"
     file.write_text(text.replace('kind = "turbo_pmac"', 'kind = "power_pmac"'), encoding="utf-8")
-    target, reported = connection_target("ssh:me@host", str(file))
-    assert target.watch_only and not reported
-    other, reported = connection_target("tcp:host", str(file))
+    return str(file)
+
+
+def test_a_power_pmac_is_at_a_port_with_ssh(power_file):
+    target, reported = connection_target("ssh:me@host", power_file)
+    assert target.port.is_power and isinstance(target.settings, PowerPmacSettings) and not reported
+    other, reported = connection_target("tcp:host", power_file)
     assert other is None and [fault.code for fault in reported] == ["M104"]
+    with pytest.raises(ValueError, match="port: expected"):
+        connection_target("shell:127.0.0.1:1025", power_file)
 
 
 def test_what_is_wrong_with_names():
@@ -62,8 +71,10 @@ def test_nobody_answers():
         connect(ConnectionTarget(Port("tcp", "127.0.0.1", number, timeout=0.2), MACHINE, SETTINGS), TOOL)
 
 
-def test_a_simulated_machine_is_homed_and_jogged():
-    connection = connect(ConnectionTarget(None, MACHINE, SETTINGS), TOOL, FAST)
+@pytest.mark.parametrize("kind", ["turbo", "power"])
+def test_a_simulated_machine_is_homed_and_jogged(kind, power_file):
+    target, _ = connection_target(None, "example_6tps" if kind == "turbo" else power_file)
+    connection = connect(target, TOOL, FAST)
     try:
         worker = connection.worker
         until(lambda: worker.state.status is not None)
@@ -102,7 +113,7 @@ def test_it_goes_home_where_struts_are_counted_from_the_end_of_their_stroke():
 
 def test_a_simulated_machine_ends():
     training = SimulatedMachine(MACHINE, SETTINGS, TOOL)
-    number = port_named(training.port).number
+    number = training.port.number
     training.close()
     with pytest.raises(OSError):
         socket.create_connection(("127.0.0.1", number), timeout=1.0)

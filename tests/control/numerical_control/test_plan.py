@@ -30,7 +30,7 @@ def test_a_plan_is_certified_and_ends_where_it_was_asked_to():
 
 
 def test_the_poses_of_the_lengths_are_looked_at_by_themselves():
-    """The same lengths on a machine whose joints may swing less: nothing but the last look tells it."""
+    """The same lengths on a machine whose joints may swing less: only the last check finds it."""
     trajectory = way()
     plan, _ = planned(trajectory, MACHINE, SETTINGS, TOLERANCES)
     narrow = dataclasses.replace(MACHINE, platform_cone=np.full(6, np.radians(1.0)))

@@ -19,7 +19,7 @@ from pkm_post.posting.post_file import post_file
 from pkm_post.writing.controllers.pmac import program_text
 
 MACHINE = "example_6tps"
-LONGEST_S = 60.0
+LONGEST_S = 240.0
 FAST = 5.0
 """Simulated seconds in a second, as far as this computer keeps up."""
 START = 1007.8869

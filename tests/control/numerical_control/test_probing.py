@@ -14,11 +14,11 @@ from station import MACHINE, SETTINGS, TOOL, set_up
 from pkm_post.cli import main
 from pkm_post.control.link.errors import DiagnosedError, NotReadyError
 from pkm_post.control.link.tool_pose import ToolPoseReadout
-from pkm_post.control.numerical_control import execute
-from pkm_post.control.numerical_control.execute import silence_s
+from pkm_post.control.numerical_control import watchdog
 from pkm_post.control.numerical_control.probed_features import measure_bore, measure_boss, measure_face, origin_for
 from pkm_post.control.numerical_control.probing import Contact, Probe, ProbeInput, ProbeSettings
 from pkm_post.control.numerical_control.simulated_probe import SimulatedProbe, body_of, bore, boss, plane
+from pkm_post.control.numerical_control.watchdog import silence_s
 
 BALL, INPUT = 6.0, 1000
 HOME = np.array([0.0, 0.0, 300.0])
@@ -200,7 +200,7 @@ def test_inputs_by_name(text, expected):
 
 
 def test_a_face_is_measured_over_tcp(capsys, monkeypatch):
-    monkeypatch.setattr(execute, "CREDIT_MS", 60_000)  # this computer may be late, in the fast time of the machine
+    monkeypatch.setattr(watchdog, "CREDIT_MS", 60_000)  # this computer may be late, in the fast time of the machine
     made = copy.deepcopy(set_up())
     SimulatedProbe(made, SETTINGS, ToolPoseReadout(MACHINE, TOOL), BALL, body_of("plane:296.2")).connect(INPUT)
     words = [

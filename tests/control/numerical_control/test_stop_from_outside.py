@@ -68,13 +68,16 @@ def is_moving(made):
     return bool(np.abs(made.motors.speed).max() > 0.0)
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
+JOG, MDI = ("jog", "--x", "20", "--feed", SLOW), ("mdi", f"G91 G1 X20 F{SLOW}")
+
+
 @pytest.mark.parametrize(
-    ("action", "arguments"), [("jog", ("--x", "20", "--feed", SLOW)), ("mdi", (f"G91 G1 X20 F{SLOW}",))]
+    ("action", "number"), [(JOG, signal.SIGTERM), (JOG, signal.SIGINT), (MDI, signal.SIGHUP), (MDI, signal.SIGINT)]
 )
-def test_a_signal_holds_a_move_by_hand(made, action, arguments, number):
+def test_a_signal_holds_a_move_by_hand(made, action, number):
+    name, *arguments = action
     with served(made) as port:
-        process = started(action, port, *arguments)
+        process = started(name, port, *arguments)
         until(lambda: is_moving(made) or process.poll() is not None)
         process.send_signal(number)
         _, said = process.communicate(timeout=LONGEST_S)
@@ -82,8 +85,7 @@ def test_a_signal_holds_a_move_by_hand(made, action, arguments, number):
         assert made.runs_program() and not is_moving(made)
 
 
-@pytest.mark.parametrize("kind", ["tcp", "serial"])
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
+@pytest.mark.parametrize(("kind", "number"), [("tcp", signal.SIGSTOP), ("serial", signal.SIGKILL)])
 def test_a_jog_whose_computer_dies_or_hangs_comes_to_rest_by_itself(made, kind, number):
     """Nothing is sent any more: the controller holds the program within the time that was stated."""
     feed, clock = 5.0, []

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A jog whose computer falls silent: the controller holds it by itself, within the time and way that are stated."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from station import MACHINE, SETTINGS, TOOL, new_station, set_up
 
 from pkm_post.control.link.errors import NotReadyError
 from pkm_post.control.numerical_control.control import NumericalControl
-from pkm_post.control.numerical_control.execute import CREDIT_MS, with_watchdog
 from pkm_post.control.numerical_control.manual_moves import CartesianJog, StrutJog
 from pkm_post.control.numerical_control.plan import LONGEST_MOVE_MS
+from pkm_post.control.numerical_control.watchdog import CREDIT_MS, with_watchdog
 
 LONG = CartesianJog(shift=(100.0, 0.0, 0.0))
 FEED = 5.0
@@ -43,7 +45,7 @@ def silent_until_rest(station):
 def test_the_lines_of_the_program_are_untouched(station):
     plan, _ = station.control.plan_jog(LONG, FEED)
     lines = plan.job.program.lines
-    with_dog = with_watchdog(lines, 77, 2)
+    with_dog = with_watchdog(lines, 77, dataclasses.replace(SETTINGS, coordinate_system=2))
     own = [line for line in with_dog if "P77" in line]
     assert tuple(line for line in with_dog if "P77" not in line) == lines
     assert own[0] == f"P77={CREDIT_MS}" and own[2::2] == ['IF(P77<0)COMMAND"&2H"'] * (len(own) // 2)

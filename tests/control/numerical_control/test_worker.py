@@ -13,7 +13,7 @@ from pkm_post.control.numerical_control.control_state import ControlState
 from pkm_post.control.numerical_control.manual_moves import CartesianJog
 from pkm_post.control.numerical_control.worker import Worker
 
-LONGEST_S = 20.0
+LONGEST_S = 120.0
 
 
 class Stub:

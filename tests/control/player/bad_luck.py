@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Plays with bad luck, drawn by a seed: late answers, noise, a dead link, late plans, and an operator meanwhile.
 
-Whatever happens, the tool stays on the path within the tolerances, the struts keep their limits, and no move ends at
-speed; at the end the machine has arrived, or rests on the path and the player says why. Only the simulator's clock
-passes.
+Whatever happens, the tool stays on the path within the tolerances, the struts keep their limits, in every other round
+of faults those of jerk too, and no move ends at speed; at the end the machine has arrived, or rests on the path and the
+player says why. Only the simulator's clock passes.
 """
 
 import random
 
-from playing import HOOK, Playing, trajectory_of
+from playing import HOOK, JERK, SMOOTH, Playing, trajectory_of
 from rig import Noise, carried
 
 from pkm_post.control.link.errors import PmacError
@@ -36,6 +36,8 @@ def by_chance(seed):
     if fault == "delays" or every:
         playing.wire.delay = lambda: chance.choice([0.0] * 9 + [chance.uniform(0, LATEST_ANSWER_S)])
     late = (lambda: chance.choice([0.0, 0.0, chance.uniform(0, LATEST_PLAN_S)])) if "late" in fault or every else None
+    if is_smooth := seed // len(FAULTS) % 2:
+        playing.machine = SMOOTH
     try:
         done = playing.play(delay=late, patience_s=2.0)
         end = "played to its end" if done.finished else "ended by the operator"
@@ -45,6 +47,7 @@ def by_chance(seed):
         done = None
     playing.rest()
     playing.check()
+    assert not is_smooth or playing.mean_jerk() <= JERK
     if done is not None and done.finished:
         assert playing.arrived() < ARRIVED_MM
     assert not playing.wire.controller.runs_program() or end != "played to its end"

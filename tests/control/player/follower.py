@@ -2,7 +2,7 @@
 """Follows a machine that plays, each ms of its struts, and measures how far the tool is from the program's own lines.
 
 Poses come from forward kinematics; of planning, sections and certificates nothing is asked. What it keeps does not
-grow with the play: it measures a quarter of a second at a time.
+grow with the play: it measures a second at a time.
 """
 
 from dataclasses import dataclass, field
@@ -13,12 +13,14 @@ from pkm_post.control.simulator import Controller
 from pkm_post.geometry import norm
 from pkm_post.machine import forward_along_path, platform_rotation
 
-AT_ONCE = 250
+AT_ONCE = 1000
 """ms that are measured together."""
 BESIDE = 3
 """Rows behind the last one that samples may still belong to: corners are rounded."""
 AHEAD = 256
 """Rows ahead in which samples are looked for; more where they are not found."""
+JERK_MS = 16
+"""Over which third differences are taken: means of the jerk of a strut."""
 NEAREST = 4
 """Rows, by distance of the tip, of which the one counts that fits best."""
 
@@ -31,7 +33,7 @@ class Follower:
         machine, settings, trajectory: what plays.
         tip_tolerance, axis_tolerance: mm and rad, by which the better of two rows is chosen.
         tip, axis: worst deviations, mm and rad.
-        speed, acceleration: worst of a strut, mm/s and mm/s^2, by differences.
+        speed, acceleration, jerk: worst of a strut, mm/s, mm/s^2 and mm/s^3, by differences; of jerk over some ms.
         samples: ms that were measured.
         row: which the last sample belongs to.
     """
@@ -45,6 +47,7 @@ class Follower:
     axis: float = 0.0
     speed: float = 0.0
     acceleration: float = 0.0
+    jerk: float = 0.0
     samples: int = 0
     row: int = 0
     waiting: list = field(default_factory=list)
@@ -89,6 +92,9 @@ class Follower:
         del self.waiting[: count - 2]
         self.speed = max(self.speed, 1e3 * np.abs(np.diff(struts, axis=0)).max())
         self.acceleration = max(self.acceleration, 1e6 * np.abs(np.diff(struts, 2, axis=0)).max())
+        one, two, three = (number * JERK_MS for number in (1, 2, 3))
+        third = struts[three:] - 3 * struts[two:-one] + 3 * struts[one:-two] - struts[:-three]
+        self.jerk = max(self.jerk, np.abs(third).max(initial=0.0) / (JERK_MS / 1000) ** 3)
         still = np.append(False, (np.diff(struts, axis=0) == 0).all(axis=1))
         struts = struts[~still]
         if not len(struts):

@@ -8,7 +8,7 @@ planning or of the certificate is asked.
 import copy
 import sys
 from concurrent.futures import Executor, Future
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 sys.path += [str(Path(__file__).parents[1] / room) for room in ("link", "numerical_control")]
@@ -22,9 +22,11 @@ from pkm_post.control.player.orders import Order, PlayOptions  # noqa: E402
 from pkm_post.control.player.play import Player  # noqa: E402
 from pkm_post.geometry import norm  # noqa: E402
 from pkm_post.machine import forward_along_path, platform_rotation  # noqa: E402
-from pkm_post.model import Tolerances  # noqa: E402
+from pkm_post.model import StrutMotion, Tolerances  # noqa: E402
 from pkm_post.toolpath.place import place  # noqa: E402
 
+JERK = 4e4
+SMOOTH = replace(MACHINE, strut_jerk=JERK, tip_jerk=JERK)
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 TOOL = 120.0
 RECTANGLE = [[0, 0, 60], [30, 0, 60], [30, 20, 60], [0, 20, 60], [0, 0, 60]]
@@ -67,11 +69,13 @@ class Playing:
         wire: the link, with its faults.
         trajectory: what is played.
         at: orders by the number of the state at which they are given.
+        machine: what plays; by default the example.
     """
 
     wire: Wire
     trajectory: object
     at: dict = field(default_factory=dict)
+    machine: object = None
     states: list = field(default_factory=list)
     lengths: list = field(default_factory=list)
 
@@ -82,11 +86,12 @@ class Playing:
         wire.sleep = made._sleep
         return made
 
-    def play(self, delay=None, **choices):
-        planning = AtOnce(self.wire, delay) if delay else AtOnce()
+    def play(self, delay=None, planning=None, **choices):
+        planning = planning or (AtOnce(self.wire, delay) if delay else AtOnce())
         with self.wire.session() as session:
+            machine = self.machine or MACHINE
             self.player = Player(
-                session, MACHINE, SETTINGS, self.trajectory, TOLERANCES, PlayOptions(**choices), self._show, planning
+                session, machine, SETTINGS, self.trajectory, TOLERANCES, PlayOptions(**choices), self._show, planning
             )
             return self.player.play()
 
@@ -95,7 +100,11 @@ class Playing:
         for order in self.at.pop(len(self.states), ()):
             order(self.player) if callable(order) else self.player.order(order)
         if state.phase.startswith("waits") and len(self.states) > 3 and self.states[-3].phase == state.phase:
-            self.player.order(Order("start"))
+            self.answer(self.player)
+
+    def answer(self, player):
+        """What the operator does when the player waits."""
+        player.order(Order("start"))
 
     def _sleep(self, seconds):
         for _ in range(max(1, round(1000 * seconds))):
@@ -131,6 +140,12 @@ class Playing:
         assert np.abs(np.diff(struts, axis=0)).max() * 1e3 <= MACHINE.strut_speed
         assert np.abs(np.diff(struts, 2, axis=0)).max() * 1e6 <= MACHINE.strut_acceleration
 
+    def mean_jerk(self, ms=16):
+        """Third differences of strut lengths over some ms, means of their jerk; the largest, mm/s^3."""
+        struts, one, two, three = self.struts(), ms, 2 * ms, 3 * ms
+        third = struts[three:] - 3 * struts[two:-one] + 3 * struts[one:-two] - struts[:-three]
+        return np.abs(third).max() / (ms / 1000) ** 3
+
     def arrived(self):
         """How far the tip is from the end of the program at last, mm."""
         return float(norm(self.tips()[-1] - self.trajectory.tip[-1]))
@@ -144,3 +159,17 @@ def distance(points, corners):
         share = np.clip((points - begin) @ way / (way @ way), 0, 1)
         nearest = np.minimum(nearest, norm(points - begin - share[:, None] * way))
     return nearest
+
+
+def joined(motions):
+    """One motion of many."""
+    begin = np.cumsum([0, *(motion.struts.time_ms[-1] for motion in motions)])
+    rows = [slice(0 if number == 0 else 1, None) for number in range(len(motions))]
+    time = np.concatenate(
+        [at + motion.struts.time_ms[row] for at, motion, row in zip(begin, motions, rows, strict=False)]
+    )
+    length, speed = (
+        np.concatenate([getattr(motion.struts, name)[row] for motion, row in zip(motions, rows, strict=True)])
+        for name in ("length", "speed")
+    )
+    return StrutMotion(time, length, speed, ())

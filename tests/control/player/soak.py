@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plays for long, and with bad luck: ``make soak`` has the second part.
+"""Plays for long, with bad luck, and over real links: ``make soak`` has the latter two.
 
     PYTHONPATH=. python3 tests/control/player/soak.py luck [HOW_MANY [FIRST_SEED]]
+    PYTHONPATH=. python3 tests/control/player/soak.py links [ROWS [SEED]]
     PYTHONPATH=. python3 tests/control/player/soak.py play out/tapered_column.pkmt tcp|serial|ssh [SEED]
     PYTHONPATH=. python3 tests/control/player/soak.py long [ROWS]
 
-``luck`` draws faults by seeds (``bad_luck``). ``play`` plays a posted trajectory over a real link in real time, with an
-operator who never rests (``operated``). ``long`` plays a spiral of many short lines without a rest, and looks at what
+``luck`` draws faults by seeds (``bad_luck``). ``links`` plays a short spiral over each of the three links, ``play`` a
+posted trajectory over one of them step by step (``behind_links``), with an operator who never rests (``operated``).
+``links`` is in real time. ``long`` plays a spiral of many short lines without a rest, step by step, and looks at what
 the process needs of memory meanwhile.
 """
 
@@ -22,7 +24,7 @@ sys.path[:0] = [str(Path(__file__).parents[level] / room) for level, room in ((2
 import bad_luck  # noqa: E402
 import numpy as np  # noqa: E402
 import operated  # noqa: E402
-from playing import TOLERANCES, trajectory_of  # noqa: E402
+from playing import SMOOTH, TOLERANCES, trajectory_of  # noqa: E402
 from station import MACHINE  # noqa: E402
 
 from pkm_post.control.player.playable import read_playable  # noqa: E402
@@ -54,6 +56,20 @@ def play(file, kind="tcp", seed="1"):
     _report(*operated.play_operated(trajectory, tolerances, kind, int(seed)))
 
 
+def links(rows="600", seed="1"):
+    """A short spiral over TCP, a pseudo terminal and ssh; some things happen on the way, an abort at last.
+
+    And once more with limits of jerk, without an abort, which keeps none.
+    """
+    happens = {"seed": int(seed), "holds": 3, "overrides": 4, "is_in_step": False}
+    for kind in ("tcp", "serial", "ssh"):
+        print(f"over {kind}:", flush=True)
+        _report(*operated.play_operated(spiral(int(rows)), TOLERANCES, kind, **happens))
+    print("with limits of jerk, over tcp:", flush=True)
+    played = operated.play_operated(spiral(int(rows)), TOLERANCES, "tcp", machine=SMOOTH, aborts=0, **happens)
+    _report(*played, machine=SMOOTH)
+
+
 def long(rows="42000"):
     """A spiral without a rest, over TCP; nothing else happens."""
     nothing = {"holds": 0, "overrides": 0, "breaks": 0, "aborts": 0}
@@ -68,23 +84,23 @@ def spiral(rows):
     return trajectory_of(np.column_stack([x, y, 80 + 2 * np.sin(x / 8) + 2 * np.cos(y / 7)]), feed=FEED)
 
 
-def _report(follower, operator, results):
+def _report(follower, operator, results, machine=MACHINE):
     """Print what was measured, and compare it with the certificates."""
+    print(f"{operator.host.clock.now() - operator.began:.0f} s by the clock of player and machine")
     print(f"{follower.samples} ms: tip {follower.tip:.6f} mm, axis {np.degrees(follower.axis):.6f} degrees")
-    print(f"struts: {follower.speed:.1f} mm/s, {follower.acceleration:.0f} mm/s^2")
+    print(f"struts: {follower.speed:.1f} mm/s, {follower.acceleration:.0f} mm/s^2, {follower.jerk:.0f} mm/s^3")
     print(f"the operator: {dict(Counter(operator.done))}")
     for one in results:
         print(f"{one.log.seconds:.1f} s in {one.log.motions} pieces, rests {one.stops}, losses {one.losses}")
     grown = operator.memory[-1] - operator.memory[len(operator.memory) // 10]
     print(f"memory: {operator.memory[-1]:.0f} MiB, {grown:.0f} MiB more than after a tenth")
     assert grown < MOST_GROWTH_MIB
-    operated.check(follower, results, MACHINE)
+    operated.check(follower, results, machine)
 
 
 if __name__ == "__main__":
     logging.disable(logging.CRITICAL)
-    begin = time.monotonic()
-    {"luck": luck, "play": play, "long": long}[sys.argv[1]](*sys.argv[2:])
-    print(
-        f"{time.monotonic() - begin:.0f} s, at most {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MiB"
-    )
+    begin, spent = time.monotonic(), time.process_time()
+    {"luck": luck, "links": links, "play": play, "long": long}[sys.argv[1]](*sys.argv[2:])
+    spent, most = time.process_time() - spent, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(f"{time.monotonic() - begin:.0f} s, {spent:.0f} s of the processor, at most {most:.0f} MiB")

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from playing import HOOK, MACHINE, SETTINGS, TOLERANCES, trajectory_of
+from playing import HOOK, MACHINE, SETTINGS, TOLERANCES, joined, trajectory_of
 from programs import cone
 
 from pkm_post.certificate import certify, reconstruct
@@ -20,7 +20,7 @@ from pkm_post.control.player.pieces import PiecePlanner
 from pkm_post.control.player.sections import parts_of
 from pkm_post.geometry import angle_between, norm
 from pkm_post.machine import forward_along_path, platform_rotation
-from pkm_post.model import Refused, StrutMotion
+from pkm_post.model import Refused
 from pkm_post.planning.motion import tool_path
 from pkm_post.toolpath.place import place
 
@@ -32,20 +32,8 @@ def pieces_of(trajectory, override=lambda: 1.0, piece_ms=250):
     at, found = planner.start(), []
     while not found or not found[-1].is_end:
         found.append(planner.next_piece(at, override(), piece_ms=piece_ms))
-        at = found[-1].leg.end
+        at = found[-1].motion.end
     return found
-
-
-def joined(legs):
-    """One motion of many."""
-    begin = np.cumsum([0, *(leg.struts.time_ms[-1] for leg in legs)])
-    rows = [slice(0 if number == 0 else 1, None) for number in range(len(legs))]
-    time = np.concatenate([at + leg.struts.time_ms[row] for at, leg, row in zip(begin, legs, rows, strict=False)])
-    length, speed = (
-        np.concatenate([getattr(leg.struts, name)[row] for leg, row in zip(legs, rows, strict=True)])
-        for name in ("length", "speed")
-    )
-    return StrutMotion(time, length, speed, ())
 
 
 def wave(rows=200):
@@ -61,10 +49,10 @@ def short_blocks(monkeypatch):
 
 @pytest.mark.parametrize("trajectory", [trajectory_of(HOOK), wave()], ids=["corners", "wave"])
 def test_the_certificates_of_the_pieces_are_that_of_the_whole(trajectory, short_blocks):
-    legs, log = [piece.leg for piece in pieces_of(trajectory)], CertificateLog()
-    for leg in legs:
-        log.add(leg)
-    whole = joined(legs)
+    motions, log = [piece.motion for piece in pieces_of(trajectory)], CertificateLog()
+    for motion in motions:
+        log.add(motion)
+    whole = joined(motions)
     recovered, faults = reconstruct(whole, "whole", trajectory, MACHINE, TOLERANCES)
     assert not faults
     certificate, faults = certify(
@@ -106,14 +94,14 @@ def test_five_axes_at_changing_overrides():
     random = np.random.default_rng(3)
     found = pieces_of(trajectory, lambda: float(random.uniform(0.2, 1.5)), 400)
     for before, after in zip(found[:-1], found[1:], strict=True):
-        for leg in filter(None, (after.leg, before.stop)):
-            np.testing.assert_array_equal(leg.struts.length[0], before.leg.struts.length[-1])
-            np.testing.assert_array_equal(leg.struts.speed[0], before.leg.struts.speed[-1])
-        assert (before.stop or before.leg).certificate.holds
-        assert not (before.stop or before.leg).struts.speed[-1].any()
-    end = found[-1].leg
+        for motion in filter(None, (after.motion, before.stop)):
+            np.testing.assert_array_equal(motion.struts.length[0], before.motion.struts.length[-1])
+            np.testing.assert_array_equal(motion.struts.speed[0], before.motion.struts.speed[-1])
+        assert (before.stop or before.motion).certificate.holds
+        assert not (before.stop or before.motion).struts.speed[-1].any()
+    end = found[-1].motion
     rotation = platform_rotation(MACHINE.home_axis[None], np.array([MACHINE.home_spin]))[0]
-    struts = joined([piece.leg for piece in found]).length
+    struts = joined([piece.motion for piece in found]).length
     reached = forward_along_path(MACHINE, struts, np.full(len(struts), 120.0), MACHINE.home_tip, rotation)
     assert norm(reached.tip[-1] - trajectory.tip[-1]) < 1e-5 and end.share[-1] == 1
     assert angle_between(reached.axis[-1:], trajectory.axis[-1:])[0] < 1e-6
@@ -127,11 +115,11 @@ def test_a_path_out_of_reach_is_refused():
 
 def test_points_as_lines_read_back():
     (piece, *_) = pieces_of(trajectory_of(HOOK))
-    places = list(Layout().points())[: len(piece.leg.struts) - 1]
-    lines = list(assignment_lines(point_assignments(piece.leg.struts, places, SETTINGS)))
+    places = list(Layout().points())[: len(piece.motion.struts) - 1]
+    lines = list(assignment_lines(point_assignments(piece.motion.struts, places, SETTINGS)))
     assert max(map(len, lines)) <= 200
     points = list(read_points(read_assignments(lines), places[0]))
-    motion = piece.leg.struts
+    motion = piece.motion.struts
     assert [ms for ms, _, _ in points] == np.diff(motion.time_ms).tolist()
     np.testing.assert_array_equal([length for _, length, _ in points], motion.length[1:])
     np.testing.assert_array_equal([speed for _, _, speed in points], motion.speed[1:])

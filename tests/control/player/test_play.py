@@ -2,12 +2,13 @@
 """Trajectories played on the simulated controller; whatever happens, the tool stays on the path."""
 
 import itertools
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from bad_luck import by_chance
-from playing import RECTANGLE, SETTINGS, Playing, trajectory_of
+from playing import RECTANGLE, SETTINGS, TOLERANCES, Playing, distance, trajectory_of
 
 from pkm_post.control.link import stopping
 from pkm_post.control.link.errors import LinkLostError, PmacError
@@ -15,6 +16,8 @@ from pkm_post.control.player.knot_list import Layout
 from pkm_post.control.player.operator_input import OperatorInput
 from pkm_post.control.player.orders import Order, PlayOptions
 from pkm_post.control.player.run_to_rest import RunToRest
+from pkm_post.control.simulator import function_programs
+from pkm_post.geometry import norm
 from pkm_post.model import Event, EventKind
 
 
@@ -65,7 +68,9 @@ def test_a_list_too_short_for_a_piece_and_its_stop_is_refused():
     with pytest.raises(ValueError, match="expected room for 32 points"):
         Layout(8000)
     asked = []
-    planner = SimpleNamespace(next_piece=lambda *arguments: asked.append(arguments[-1]) or SimpleNamespace(size=50))
+    motion = SimpleNamespace(struts=SimpleNamespace(time_ms=np.array([0, 250])))
+    piece = SimpleNamespace(size=50, motion=motion)
+    planner = SimpleNamespace(next_piece=lambda *arguments: asked.append(arguments[-1]) or piece)
     feed, session, operator = (
         SimpleNamespace(capacity=41),
         SimpleNamespace(now=lambda: 0.0),
@@ -74,10 +79,32 @@ def test_a_list_too_short_for_a_piece_and_its_stop_is_refused():
     run = RunToRest(session, feed, planner, None, operator, None)
     with pytest.raises(PmacError, match="41 points, a piece and its stop take 50: choose lower --variables"):
         run._next_piece(None, 250)
-    assert asked == [250, 125, 62, 40]
+    assert asked == [250, 90, 40]
 
 
-@pytest.mark.parametrize("seed", range(6))
+def test_an_end_takes_the_stop_of_a_piece_near_by():
+    given = []
+    orders = {20: [lambda _: given.append(len(playing.lengths)), Order("end")]}
+    playing = Playing.of(trajectory_of(RECTANGLE, feed=30.0), at=orders)
+    done = playing.play()
+    playing.check()
+    moves = np.flatnonzero(np.abs(np.diff(playing.struts(), axis=0)).max(axis=1) > 1e-9)
+    assert not done.finished and done.stops == 0 and done.log.holds
+    assert moves[-1] - given[0] < 1000 * playing.states[19].ahead  # the last stop begins there
+
+
+def test_a_stop_that_is_not_wanted_any_more_is_not_taken():
+    seen = []
+    orders = {26: [Order("override", 0.0)], 28: [lambda player: seen.append(player._feed.ends_early)]}
+    orders[28].append(Order("override", 1.0))
+    playing = Playing.of(trajectory_of(RECTANGLE, feed=30.0), at=orders)
+    done = playing.play()
+    playing.check()
+    assert seen == [True] and done.finished and done.stops == 0 and playing.arrived() < 1e-3
+    assert {state.phase for state in playing.states[5:-1]} == {"runs"}
+
+
+@pytest.mark.parametrize("seed", (*range(6), 11))
 def test_bad_luck(seed):
     by_chance(seed)
 
@@ -119,6 +146,39 @@ def test_events_between_moves_and_stops_that_wait():
     assert {state.phase for state in playing.states if "M" in state.phase} == {"waits: M0", "waits: M1"}
 
 
+def test_an_m_code_of_the_machine_is_carried_out(monkeypatch):
+    monkeypatch.setattr("playing.SETTINGS", replace(SETTINGS, codes=SETTINGS.codes | {"M21": "M21"}))
+    playing = Playing.of(trajectory_of(events=(Event(2, EventKind.FUNCTION, 21.0),)))
+    playing.wire.controller.load(function_programs([21]))
+    assert playing.play().finished and playing.arrived() < 1e-3
+    playing.check()
+    assert playing.wire.controller.variables.read("P", 7004) == 21
+
+
+@pytest.mark.parametrize("repeats", (False, True))
+def test_an_m_code_before_the_first_line_is_repeated_where_that_is_wanted(repeats, monkeypatch):
+    monkeypatch.setattr("playing.SETTINGS", replace(SETTINGS, codes=SETTINGS.codes | {"M21": "M21"}))
+    playing = Playing.of(trajectory_of(events=(Event(1, EventKind.FUNCTION, 21.0),)))
+    playing.wire.controller.load(function_programs([21]))
+    assert playing.play(first_row=2, repeat_codes=repeats).finished and playing.arrived() < 1e-3
+    assert playing.wire.controller.variables.read("P", 7004) == (21 if repeats else 0)
+
+
+def test_optional_stops_are_switched_while_it_plays():
+    events = (Event(1, EventKind.STOP, 1), Event(2, EventKind.STOP, 1))
+
+    def switch_off(player):
+        assert playing.states[-1].phase == "waits: M1"
+        player.order(Order("optional", 0.0))
+
+    playing = Playing.of(trajectory_of(events=events), at={5: [Order("optional", 1.0)]})
+    playing.answer = switch_off
+    assert playing.play().finished
+    playing.check()
+    phases = [phase for phase, _ in itertools.groupby(state.phase for state in playing.states)]
+    assert phases.count("waits: M1") == 1 and playing.arrived() < 1e-3
+
+
 def test_after_an_abort_the_program_goes_on_at_a_line():
     playing = Playing.of(at={40: [lambda player: stopping.abort(player._session, SETTINGS, at_once=True)]})
     with pytest.raises(PmacError, match="ended from elsewhere in Finish line"):
@@ -129,3 +189,36 @@ def test_after_an_abort_the_program_goes_on_at_a_line():
     assert playing.arrived() < 1e-3
     assert any(state.phase.startswith("waits: T1") for state in playing.states)
     assert np.all([state.row >= row for state in playing.states[-20:]])
+
+
+def up_then_start(way):
+    """An operator who retracts once at each place where the player waits, and then starts."""
+    places = set()
+
+    def answer(player):
+        place = None if player._point is None else player._point.motion.row[player._point.knot]
+        player.order(Order("start") if place in places else Order("retract", way))
+        places.add(place)
+
+    return answer
+
+
+def test_a_retract_goes_up_along_the_tool_axis_and_back_before_the_play_goes_on():
+    axis = np.array([np.sin(0.1), 0.0, np.cos(0.1)])
+    playing = Playing.of(trajectory_of(axis=np.tile(axis, (3, 1))), at={12: [Order("retract", 5.0)]})  # nothing waits
+    playing.answer = up_then_start(15.0)
+    done = playing.play(single_block=True)
+    assert done.finished and done.log.holds and playing.arrived() < 1e-3
+    made, tips = playing.trajectory, playing.tips()  # it waits before each of the three blocks
+    rests, axes = np.vstack([made.start_tip, made.tip[:-1]]), np.vstack([made.start_axis, axis, axis])
+    way = np.stack([rests, rests + 15 * axes, rests], axis=1).reshape(-1, 3)
+    assert distance(tips, np.vstack([way, made.tip[-1]])).max() < TOLERANCES.tip
+    reached = [norm(tips - rest - 15 * up).min() for rest, up in zip(rests, axes, strict=True)]
+    assert max(reached) < 1e-3, reached
+
+
+def test_a_retract_out_of_reach_is_not_made():
+    playing = Playing.of()
+    playing.answer = up_then_start(400.0)
+    assert playing.play(single_block=True).finished
+    playing.check()

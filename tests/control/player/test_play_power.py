@@ -1,24 +1,18 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Trajectories played on a simulated Power PMAC over gpascii, in its own words."""
 
-import dataclasses
-
 import numpy as np
 from playing import LONGEST_S, RECTANGLE, Playing, trajectory_of
 from power_rig import DRIVES
 from power_rig import Wire as PowerWire
+from power_station import MACHINE, SETTINGS
 
 from pkm_post.control.player.knot_list import Layout, resident_program
 from pkm_post.control.player.orders import Order
 from pkm_post.control.simulator import PowerPmac
 from pkm_post.control.simulator.gpascii_shell import refused_line
-from pkm_post.machine import machine_named
 from pkm_post.model import Event, EventKind
-from pkm_post.writing.controllers.power_pmac import settings_of, setup_text
-
-MACHINE = machine_named("example_6tps")[0]
-MACHINE = dataclasses.replace(MACHINE, controller={**MACHINE.controller, "kind": "power_pmac"})
-SETTINGS, _ = settings_of(MACHINE)
+from pkm_post.writing.controllers.power_pmac import setup_text
 
 
 class Wire(PowerWire):

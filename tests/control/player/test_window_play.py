@@ -15,7 +15,7 @@ from pkm_post.control.player.window_play import WindowPlay
 from pkm_post.model import Event, EventKind
 
 TOOL = 120.0
-LONGEST_S = 60.0
+LONGEST_S = 240.0
 TO_THE_END = [Order("override", 1.5), Order("start")]
 
 

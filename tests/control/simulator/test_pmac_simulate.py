@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import re
+from pathlib import Path
 
 import pytest
 
@@ -36,6 +37,27 @@ def test_a_set_up_file_is_carried_out_first(interrupted, tmp_path):
     file.write_text("; a comment\n&2\n#1->10000A-5000000 ; strut 1\nI5290=1000\n")
     assert main(["pmac", "simulate", "--tcp", "0", "--setup", str(file)]) == 0
     assert interrupted[0]._controller.systems[1].axes.definitions[1].text() == "10000A-5000000"
+
+
+def test_it_has_programs_behind_the_m_codes_of_its_machine(interrupted, tmp_path, capsys):
+    file = machine_file(tmp_path, 'functions = { M21 = "M21", M121 = "M121", M44 = "M60==1 DWELL0" }\n')
+    assert main(["pmac", "simulate", "--tcp", "0", "--machine", str(file)]) == 0
+    made = interrupted[0]._controller
+    for number in (21, 121):
+        made.load(["&1 #1->1000X #1J/", "OPEN PROG 5 CLEAR", f"M{number} DWELL0", "CLOSE", "&1 B5 R"])
+        made.advance(50)
+        assert made.variables.read("P", 7004) == number and not made.runs_program()
+    assert main(["pmac", "simulate", "--tcp", "0", "--machine", "no_such"]) == 1
+    assert "M10" in capsys.readouterr().err
+
+
+def machine_file(folder, codes):
+    """The example machine with more lines in its table of codes."""
+    text = (Path(__file__).parents[3] / "resources/machines/example_6tps.toml").read_text()
+    assert "[controller.codes]\n" in text
+    file = folder / "functions.toml"
+    file.write_text(text.replace("[controller.codes]\n", f"[controller.codes]\n{codes}"))
+    return file
 
 
 def test_a_line_that_is_refused_is_reported_with_its_place(interrupted, tmp_path, capsys):
@@ -80,7 +102,9 @@ def test_arguments_without_sense_are_refused(arguments, reported, capsys):
 
 def test_a_probe_needs_the_machine_that_carries_it(capsys):
     assert main(["pmac", "simulate", "--tcp", "0", "--probed", "plane:3"]) == 1
-    assert "--probed: expected --machine, and a Turbo PMAC" in capsys.readouterr().err
+    assert "--probed: expected --machine\n" in capsys.readouterr().err
+    assert main(["pmac", "simulate", "--ssh", "0", "--probed", "plane:3", "--machine", "example_6tps"]) == 1
+    assert "kind: expected power_pmac, got 'turbo_pmac'" in capsys.readouterr().err
     assert main(["pmac", "simulate", "--tcp", "0", "--probed", "plane:3", "--machine", "none_of_these"]) == 1
     assert "none_of_these" in capsys.readouterr().err
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every error that the simulator tells, how it comes about, by its number in the PMAC Software Reference at I6."""
+"""Every error that the simulator reports, how it comes about, by its number in the PMAC Software Reference at I6."""
 
 import pytest
 from simulated import make

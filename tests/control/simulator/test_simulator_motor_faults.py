@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Limits, switches, following errors and faults, and how the status words tell them.
+"""Limits, switches, following errors and faults, and how the status words show them.
 
 The bits of ``#n?`` are those that the EPICS driver for the Turbo PMAC reads and the Software Reference lists.
 """

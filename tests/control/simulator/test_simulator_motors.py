@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Motors: jogs, home, following error; and how their status words tell it.
+"""Motors: jogs, home, following error; and how their status words show it.
 
 The bits of ``#n?`` are those that the EPICS driver for the Turbo PMAC reads and the Software Reference lists.
 """

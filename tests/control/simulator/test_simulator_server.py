@@ -18,7 +18,7 @@ from pkm_post.cli import main
 from pkm_post.control.simulator import Controller, Server
 from pkm_post.control.simulator import server as serve
 
-DEADLINE_S = 10.0
+DEADLINE_S = 120.0
 
 
 @pytest.fixture
@@ -124,7 +124,7 @@ def test_a_client_that_says_much_and_never_reads_is_not_listened_to_any_more(ser
         talker = threading.Thread(target=talk, args=(deaf,))
         talker.start()
         try:
-            last = time.monotonic() + 6 * DEADLINE_S
+            last = time.monotonic() + DEADLINE_S
             while all(channel.is_heard for channel in list(server._channels.values())) or 0 not in turns:
                 assert ask(other, "I3=2 P2=5") == b"\x06" and time.monotonic() < last
             for _ in range(10):

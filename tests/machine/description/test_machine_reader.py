@@ -8,10 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from machines import spindle_axis_text
 
 from pkm_post.machine.description.presets import find_machine
-from pkm_post.machine.description.reader import read_machine
+from pkm_post.machine.description.reader import machine_of, read_machine
 from pkm_post.machine.kinematics.inverse import strut_lengths
+from pkm_post.model import SpindleAxis
 
 MICRON = 1e-3
 PRINTED_COORDINATE = 1e-4  # mm, joints are printed with 4 decimals
@@ -282,3 +284,28 @@ def test_right_angle_is_a_possible_cone(tmp_path):
 def test_every_joint_may_have_a_cone_of_its_own(tmp_path):
     machine = read_text(tmp_path, preset_with("base_cone = 25.0", "base_cone = [20, 21, 22, 23, 24, 25.0]"))
     assert np.degrees(machine.base_cone) == pytest.approx([20, 21, 22, 23, 24, 25])
+
+
+def test_a_spindle_that_is_an_axis_arrives_in_turns():
+    machine, faults = machine_of(spindle_axis_text().encode(), "machine.toml")
+    assert faults == ()
+    assert machine.spindle_axis == SpindleAxis(7, "Z", 36000.0, 25.0, 200.0, 0.005)
+    assert machine.controller["codes"]["spindle_axis"] == "M29"
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "found"),
+    [
+        ('spindle_axis = "M29"\n', "", [("M103", "controller.codes.spindle_axis")]),
+        ("acceleration = 200.0", "", [("M103", "spindle.axis.acceleration")]),
+        ('letter = "Z"', 'letter = "U"', [("M106", "spindle.axis.letter")]),
+        ("speed = 1500.0", "speed = 30000.0", [("M106", "spindle.axis.speed")]),
+        ('kind = "turbo_pmac"', 'kind = "power_pmac"', [("M106", "spindle.axis.motor")]),
+        ("motor = 7", "motor = 6", [("M104", "spindle.axis.motor")]),
+    ],
+)
+def test_a_spindle_that_is_an_axis_is_stated_as_a_whole(before, after, found):
+    text = spindle_axis_text()
+    assert text.count(before) == 1
+    _, faults = machine_of(text.replace(before, after).encode(), "machine.toml")
+    assert [(fault.code, fault.found.split(": ")[0]) for fault in faults] == found

@@ -10,7 +10,8 @@ from pose_paths import LENGTH, upright
 
 from pkm_post.geometry import unit
 from pkm_post.machine.kinematics.inverse import strut_vectors
-from pkm_post.machine.kinematics.jacobian import jacobian_of_tip, stiffness_along
+from pkm_post.machine.kinematics.jacobian import jacobian_of_tip
+from pkm_post.machine.kinematics.stiffness import principal_stiffness, stiffness_along
 
 PRINTED = 0.06e3
 """N/mm: the golden numbers are in N/micron with one decimal."""
@@ -57,3 +58,22 @@ def test_chunks_do_not_show():
 def test_a_machine_without_stiffness_is_refused():
     with pytest.raises(ValueError, match="states none"):
         stiffness_along(example(), upright([[0.0, 0, 200]]), np.array([[0.0, 0, 1]]))
+
+
+def test_principal_directions_are_those_of_the_whole_matrix():
+    machine = stiff(strut_rigidity=5e7)
+    pose = random_poses(np.random.default_rng(2), 200)
+    jacobian = jacobian_of_tip(machine, *pose)
+    each = 1 / (1 / 1e5 + np.linalg.norm(strut_vectors(machine, *pose), axis=2) / 5e7)
+    compliance = np.linalg.inv(jacobian.transpose(0, 2, 1) @ (each[..., None] * jacobian))[:, :3, :3]
+    values, softest = principal_stiffness(machine, pose)
+    np.testing.assert_allclose(values, 1 / np.linalg.eigvalsh(compliance)[:, ::-1], rtol=1e-9)
+    np.testing.assert_allclose(stiffness_along(machine, pose, softest), values[:, 0], rtol=1e-9)
+    some = unit(np.random.default_rng(3).normal(size=(200, 3)))
+    assert (stiffness_along(machine, pose, some) >= values[:, 0] * (1 - 1e-9)).all()
+
+
+def test_a_singular_pose_has_no_stiffness_in_any_direction():
+    values, softest = principal_stiffness(stiff(), upright([[0.0, 0, 1400.0 - 80 - LENGTH], [0.0, 0, 200]]))
+    assert values[0].tolist() == softest[0].tolist() == [0.0, 0.0, 0.0]
+    assert values[1] / 1e3 == pytest.approx([48.7, 48.7, 497.6], abs=PRINTED / 1e3)  # as above, on its own axes

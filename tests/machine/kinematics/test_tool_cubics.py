@@ -51,7 +51,7 @@ def cubics_between(start, end, duration, columns=7):
 
     first, rate = stacked(start.tip, start.axis, start.spin), stacked(start.tip_1, start.axis_1, start.spin_1)
     last, last_rate = stacked(end.tip, end.axis, end.spin), stacked(end.tip_1, end.axis_1, end.spin_1)
-    return ToolCubics.between(first, rate, last, last_rate, duration)
+    return ToolCubics.from_ends(first, rate, last, last_rate, duration)
 
 
 def everywhere(cubics):

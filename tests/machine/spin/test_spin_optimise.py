@@ -11,9 +11,9 @@ from programs import program
 from pkm_post.geometry import norm
 from pkm_post.machine.description.presets import machine_named
 from pkm_post.machine.kinematics.inverse import strut_lengths
-from pkm_post.machine.spin.normalised_margins import JOINTS, SINGULAR, STROKE, normalised_margins
+from pkm_post.machine.spin.normalised_margins import normalised_margins
 from pkm_post.machine.spin.optimise import least_normalised_margins, optimise_spin
-from pkm_post.machine.spin.policy import SpinPolicy, SpinRule
+from pkm_post.machine.spin.policy import JOINTS, SINGULAR, STROKE, SpinPolicy, SpinRule
 from pkm_post.toolpath.place import place
 
 DEGREE = np.pi / 180

@@ -153,9 +153,9 @@ def test_a_copied_path_is_copied_with_its_copies(inner, outer, places):
 
 
 def test_a_file_without_copies_keeps_its_table():
-    from pkm_post.reading.cldata.faults import Faults
+    from pkm_post.reading.cldata.diagnostics import StatementDiagnostics
     from pkm_post.reading.cldata.logical_lines import logical_lines
     from pkm_post.reading.cldata.statements import scan
 
-    statements = scan(logical_lines(HEAD), Faults("part.cl"))
-    assert copies.with_copies(statements, Faults("part.cl")) is statements
+    statements = scan(logical_lines(HEAD), StatementDiagnostics("part.cl"))
+    assert copies.with_copies(statements, StatementDiagnostics("part.cl")) is statements

@@ -15,7 +15,7 @@ from pkm_post.model import Kind
 from pkm_post.model.diagnostics import errors
 from pkm_post.reading.cldata import CONTOUR_DATA, DIALECTS, ReadOptions, read
 from pkm_post.toolpath.compensation.compensate import compensate
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 MICRON = 1e-3
 RADIUS = 5.0

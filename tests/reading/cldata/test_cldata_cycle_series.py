@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 from cycles_by_hand import BACK_ABOVE_BOTTOM, ByHand, without_standing_still
+from series import cases
 
 from pkm_post.model import Kind
 from pkm_post.model.diagnostics import errors
@@ -11,7 +12,7 @@ from pkm_post.reading import gcode
 from pkm_post.reading.cldata import ReadOptions, read
 
 NANOMETRE = 1e-6
-PROGRAMS = 120
+PROGRAMS = cases(60)
 MAKERS = {"nx": "nx", "creo": "creo", "solidworks": "solidworks", "apt": "nccs"}
 
 

@@ -104,11 +104,11 @@ def test_calls_without_end_are_bounded(monkeypatch):
 
 
 def test_a_file_without_names_keeps_its_lines():
-    from pkm_post.reading.cldata.faults import Faults
+    from pkm_post.reading.cldata.diagnostics import StatementDiagnostics
     from pkm_post.reading.cldata.logical_lines import logical_lines
 
     lines = logical_lines(f"{HEAD}N5=GOTO/1,2,3\nPPRINT A=5\n")
-    assert language.expanded(lines, Faults("part.apt")) is lines
+    assert language.expanded(lines, StatementDiagnostics("part.apt")) is lines
 
 
 FUNCTIONS = {"SINF": lambda a: math.sin(math.radians(a)), "COSF": lambda a: math.cos(math.radians(a)), "ABSF": abs}

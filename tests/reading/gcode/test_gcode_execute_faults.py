@@ -4,8 +4,9 @@
 import random
 
 import pytest
+from series import cases
 
-from pkm_post.model.diagnostics import RULES
+from pkm_post.model.rules import RULES
 from pkm_post.reading.gcode.execute import execute
 from pkm_post.reading.gcode.o_words import link_o_words
 from pkm_post.reading.gcode.options import ExecutionLimits
@@ -186,7 +187,7 @@ def program_by_chance(chance, depth=3):
 def test_programs_put_together_by_chance_end_in_blocks_or_faults():
     chance = random.Random(274)
     outcomes = set()
-    for _ in range(500):
+    for _ in range(cases(200)):
         parts = [program_by_chance(chance) for _ in range(3)]
         text = "{}o7 sub\n{}o7 endsub\nM2\nO5\n{}M99\n".format(*parts).replace("{0}", "9")
         plain, faults = execute(scan_by_block(text, "part.ngc")[0], ExecutionLimits(blocks=100))

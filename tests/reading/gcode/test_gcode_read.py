@@ -6,6 +6,7 @@ import tracemalloc
 
 import numpy as np
 import pytest
+from series import cases
 
 from pkm_post.model import Kind, Tool
 from pkm_post.reading.gcode import ExecutionLimits, ReadOptions, read
@@ -76,7 +77,7 @@ def test_any_text_gives_a_program_or_errors():
         "\n",
         "\n",
     ]
-    for _ in range(400):
+    for _ in range(cases(150)):
         text = " ".join(chance.choices(words, k=chance.randint(0, 30)))
         program, diagnostics = read(text, "noise.ngc", OPTIONS, ExecutionLimits(blocks=1000))
         assert program is not None or diagnostics, text

@@ -38,7 +38,7 @@ def table(rows):
 
 @pytest.mark.parametrize("axis_words", AXIS_WORDS)
 @seed(7)
-@settings(max_examples=120, deadline=None, database=None)
+@settings(deadline=None, database=None)
 @given(blocks, st.booleans(), st.booleans())
 def test_a_program_or_faults(axis_words, rows, started, known):
     options = ReadOptions(

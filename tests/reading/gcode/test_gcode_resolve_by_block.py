@@ -99,14 +99,14 @@ def same(text, axis_words="none"):
 
 
 @seed(20240611)
-@settings(max_examples=300, deadline=None, derandomize=False, database=None)
+@settings(deadline=None, derandomize=False, database=None)
 @given(programs)
 def test_same_program(text):
     same(text)
 
 
 @seed(20240612)
-@settings(max_examples=100, deadline=None, database=None)
+@settings(deadline=None, database=None)
 @given(st.lists(st.one_of(
     st.tuples(number, size, number, words()).map(lambda w: f"G1 {w[3]} I{w[0]} J{w[1]} K{w[2]}"),
     words().map(lambda text: f"G1 {text}"),

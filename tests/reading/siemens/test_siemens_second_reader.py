@@ -5,12 +5,13 @@ import random
 
 import numpy as np
 from second_reader import Second
+from series import cases
 
 from pkm_post.model import Kind, Tool
 from pkm_post.reading.gcode.options import ReadOptions
 from pkm_post.reading.siemens import read
 
-PROGRAMS = 300
+PROGRAMS = cases(120)
 TOOL = Tool(0, "", 10.0, 0.0, 100.0)
 
 

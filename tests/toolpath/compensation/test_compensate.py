@@ -15,8 +15,8 @@ from pkm_post.model import Tool
 from pkm_post.options import add_options, options_from
 from pkm_post.posting.post_file import prepared_file
 from pkm_post.toolpath.compensation.compensate import compensate
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
 from pkm_post.toolpath.compensation.cutter import Cutter
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 from pkm_post.writing import trajectory_file
 
 CONTOURS = OffsetOptions()

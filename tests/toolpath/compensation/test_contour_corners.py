@@ -10,7 +10,8 @@ import pytest
 from contour_programs import contour
 
 from pkm_post.toolpath.compensation.contour_corners import OffsetCurves, Transition, intersections, transitions
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions, elements_of
+from pkm_post.toolpath.compensation.contour_elements import elements_of
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 PRINTED = 5.1e-5
 ROUNDING = 1e-9

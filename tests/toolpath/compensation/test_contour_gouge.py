@@ -9,8 +9,8 @@ from contour_programs import contour, random_contour
 
 from pkm_post.model import Kind
 from pkm_post.model.program import OPTIONAL_COLUMNS
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
 from pkm_post.toolpath.compensation.contour_offset import offset_contours
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 
 def bottle(neck):

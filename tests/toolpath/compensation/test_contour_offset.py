@@ -6,11 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from contour_programs import beside, clearance, contour, cutting_rows, distance, in_plane, random_contour, samples
+from series import cases
 
 from pkm_post.model import Event, EventKind, Kind
 from pkm_post.model.diagnostics import errors
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions, elements_of
+from pkm_post.toolpath.compensation.contour_elements import elements_of
 from pkm_post.toolpath.compensation.contour_offset import _with_offsets, element_offsets, offset_contours
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 from pkm_post.toolpath.symmetry.transform import mirror, transform
 
 MICRON = 1e-3
@@ -77,7 +79,7 @@ def test_the_tool_keeps_its_radius_from_contours_of_chance(options):
 def test_what_is_refused_would_cut_into_the_part(options):
     """A path that is refused for a gouge, measured by closed forms, is too near to the contour; no other is refused."""
     refused = 0
-    for seed in range(100):
+    for seed in range(cases(50)):
         rng, offset, plane = chance(seed)
         given = random_contour(rng, offset, plane)
         reported = {fault.code for fault in errors(offset_contours(given, options)[1])}

@@ -14,8 +14,8 @@ from contour_programs import clearance, cutting_rows, samples
 
 from pkm_post.model import Kind, Tool
 from pkm_post.reading.gcode import ReadOptions, read
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
 from pkm_post.toolpath.compensation.contour_offset import offset_contours
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 MICRON = 1e-3
 CASES = json.loads((Path(__file__).parents[2] / "data" / "side_rs274.json").read_text(encoding="utf-8"))

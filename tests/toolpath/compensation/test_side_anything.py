@@ -6,11 +6,12 @@ import itertools
 import numpy as np
 import pytest
 from programs import program
+from series import cases
 
 from pkm_post.model import Event, EventKind, Kind, Program
 from pkm_post.model.diagnostics import errors
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
 from pkm_post.toolpath.compensation.contour_offset import offset_contours
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 MICRON = 1e-3
 
@@ -44,7 +45,7 @@ def radii(moved, row):
 @pytest.mark.parametrize(("corners", "swallowed"), list(itertools.product(("chord", "arc"), ("refuse", "remove"))))
 def test_an_answer_or_diagnostics(corners, swallowed):
     answered = 0
-    for seed in range(150):
+    for seed in range(cases(60)):
         given = anything(np.random.default_rng(seed))
         moved, faults = offset_contours(given, OffsetOptions(corners, "B", swallowed))
         assert (moved is None) == bool(errors(faults))

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from contour_programs import contour
 
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
 from pkm_post.toolpath.compensation.contour_offset import offset_contours
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 ROUNDING = 1e-9
 PRINTED = 5.1e-5

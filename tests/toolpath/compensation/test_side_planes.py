@@ -9,8 +9,8 @@ from contour_programs import contour, in_plane, random_contour
 from programs import program
 
 from pkm_post.model import Kind
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
 from pkm_post.toolpath.compensation.contour_offset import offset_contours
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 MICRON = 1e-3
 ROUNDING = 1e-9

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from contour_programs import clearance, contour, cutting_rows, samples
 
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
 from pkm_post.toolpath.compensation.contour_offset import offset_contours
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 MICRON = 1e-3
 ROUNDING = 1e-9

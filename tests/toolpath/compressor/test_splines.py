@@ -91,3 +91,13 @@ def test_curves_of_parts_are_those_of_the_whole():
         found = both.at(np.arange(140)[rows], u, both.powers)
         for left, right in zip(found, part.at(part.row, u, part.powers), strict=True):
             np.testing.assert_allclose(left, right, atol=1e-10)
+
+
+def test_rows_of_segments_are_found():
+    one, _ = fitted_rows(wavy(60), tip=0.006)
+    curve = one.of(one.row, 2 * one.row + 5)
+    segment = np.random.default_rng(6).permutation(200)
+    found, row = curve.among(segment)
+    assert set(segment[found]) == set(curve.row)
+    np.testing.assert_array_equal(curve.row[row], segment[found])
+    assert not len(Splines.none().among(segment)[0])

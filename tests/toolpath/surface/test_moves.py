@@ -5,12 +5,15 @@ import math
 
 import numpy as np
 import pytest
-from shapes import BALL, PLACE, covered, cylinder, plate, settings
+from shapes import BALL, PLACE, covered, cylinder, plate, settings, sphere, torus
 
 from pkm_post.model import Kind
 from pkm_post.toolpath.surface.moves import program_from_poses
 from pkm_post.toolpath.surface.options import LeadMove, PassOrder
 from pkm_post.toolpath.surface.tool_axis import AxisRule, clamp_to_cone
+from pkm_post.toolpath.symmetry.cut_direction import material_side
+from pkm_post.toolpath.symmetry.reverse import reversed_passes
+from pkm_post.toolpath.symmetry.transform import mirror, transform
 
 LEAN = AxisRule(lead=math.radians(10.0), tilt=math.radians(15.0))
 UP = np.array([0.0, 0.0, 1.0])
@@ -115,3 +118,20 @@ def refused(surface, rule=AxisRule(), **chosen):  # noqa: B008 - frozen
 def test_tool_that_cannot_be_lifted_is_reported():
     assert refused(cylinder()) == {"N304"}
     assert refused(plate(), safe_height=-1.0, clearance_height=-1.0) == {"N307"}
+
+
+@pytest.mark.parametrize("lean", [AxisRule(), LEAN], ids=["upright", "leaning"])
+@pytest.mark.parametrize("order", [PassOrder.ONE_WAY, PassOrder.ZIGZAG])
+@pytest.mark.parametrize(
+    "surface", [plate(), sphere(), torus(lowest=0.6, highest=2.5)], ids=["plate", "sphere", "torus"]
+)
+def test_passes_can_be_reversed_with_a_plane_below_the_approach(surface, order, lean):
+    """Rapid moves come down to 9 mm; the plane between the passes is nearer."""
+    top = covered(surface, BALL, order=order, rule=lean).tip[:, 2].max()
+    program, _ = made(surface, rule=lean, order=order, approach=9.0, safe_height=top + 1.0)
+    image, _ = transform(program, mirror((0.0, 0.0, 0.0), (1.0, 0.0, 0.0)))
+    back, faults = reversed_passes(image)
+    assert back is not None, faults
+    # the mirror image alone has the material on the other side of the cutter, the reversed passes where it was
+    sides = [[int((material_side(each) == side).sum()) for side in (-1, 1)] for each in (program, back, image)]
+    assert sides[0] == sides[1] == sides[2][::-1]

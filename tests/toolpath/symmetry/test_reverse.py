@@ -10,7 +10,7 @@ from programs import cone, program, square_with_arc
 from pkm_post.geometry import norm
 from pkm_post.model import Event, EventKind, Kind
 from pkm_post.toolpath.compensation.compensate import compensate
-from pkm_post.toolpath.compensation.contour_elements import OffsetOptions
+from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 from pkm_post.toolpath.symmetry.passes import axial_moves, displacements, pass_rows
 from pkm_post.toolpath.symmetry.reverse import reversed_passes
 from pkm_post.toolpath.symmetry.transform import mirror, transform

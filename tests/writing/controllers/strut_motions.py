@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from pkm_post.model import StrutMotion
+from pkm_post.model import Event, EventKind, SpindleTurns, StrutMotion
 from pkm_post.writing.controllers.pmac import read_parts
 
 
@@ -15,6 +15,13 @@ def with_rests(every, knots, events=()):
     speed[-1] = 0.0
     time_ms = np.concatenate([[0], np.cumsum(rng.integers(5, 8, knots - 1))])
     return StrutMotion(time_ms, rng.uniform(300, 1500, (knots, 6)), speed, tuple(events))
+
+
+def threaded(job):
+    """The motion of a job to its third knot, as a thread that goes down and up."""
+    events = (Event(0, EventKind.SPINDLE_AXIS, 1.0), Event(2, EventKind.SPINDLE_AXIS, 0.0))
+    turns = SpindleTurns(np.array([1, 2]), np.array([4.25, 0.0]), np.array([-3.5, 0.0]))
+    return StrutMotion(job.time_ms[:3], job.length[:3], job.speed[:3], events, turns)
 
 
 def read_back(texts, settings):

@@ -45,7 +45,7 @@ def _same(first, second):
     return same_columns and first.events == second.events
 
 
-@hypothesis_settings(derandomize=True, max_examples=200, deadline=None)
+@hypothesis_settings(derandomize=True, deadline=None)
 @given(motions())
 def test_what_was_written_reads_back_to_the_printed_decimals(motion):
     text = program_text(motion, SETTINGS, ["any heading"])

@@ -73,7 +73,7 @@ def mutated(text, rng):
 
 
 @pytest.mark.parametrize("name", GRAMMARS)
-@hypothesis_settings(derandomize=True, max_examples=300, deadline=None)
+@hypothesis_settings(derandomize=True, deadline=None)
 @given(strategies.integers(0, 2**32 - 1), strategies.integers(0, 30))
 def test_lines_are_judged_as_their_forms_judge_them(name, seed, mutations):
     rng = np.random.default_rng(seed)

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Writer and reader each have a statement of what codes do: a fault in one of them is not read as if it were none."""
 
+from dataclasses import replace
 from itertools import combinations
 
 import pytest
-from controller_settings import settings_for
+from controller_settings import settings_for, threading_settings
+from strut_motions import threaded
 
+from pkm_post.control.numerical_control.execute import same
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.writing.controllers import CONTROLLERS
 from pkm_post.writing.controllers.pvt import codes, syntax
 
-PAIRS = list(combinations(codes.EVENT_CODES, 2))
+PAIRS = list(combinations([name for name in codes.EVENT_CODES if name not in codes.OF_THREADS], 2))
 VALUES = {
     EventKind.TOOL_CHANGE: (7.0,),
     EventKind.SPINDLE: (0.0, 900.0, -900.0),
@@ -39,3 +42,19 @@ def test_two_meanings_swapped_in_the_writer_are_found(monkeypatch, job, kind, pa
         if read is None or read.events != alone.events:
             return
     pytest.fail("every event is read as it was meant")
+
+
+def test_the_begin_and_the_end_of_threads_swapped_in_the_writer_are_found(monkeypatch, job):
+    settings, controller = threading_settings(), CONTROLLERS["turbo_pmac"]
+    motion = threaded(job)
+    (text,) = controller.program_parts(motion, settings, [])
+    read, faults = controller.read_parts([("job.pmc", text)], settings)
+    assert faults == ()
+    assert same(read, replace(motion, length=read.length, speed=read.speed))
+    first, second = codes.OF_THREADS
+    swapped = codes.EVENT_CODES | {first: codes.EVENT_CODES[second], second: codes.EVENT_CODES[first]}
+    monkeypatch.setattr(codes, "EVENT_CODES", swapped)
+    (text,) = controller.program_parts(motion, settings, [])
+    read, faults = controller.read_parts([("job.pmc", text)], settings)
+    assert read is None
+    assert {fault.code for fault in faults} == {"C101"}

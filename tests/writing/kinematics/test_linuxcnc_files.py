@@ -11,7 +11,7 @@ import pytest
 from pkm_post.machine import strut_lengths
 from pkm_post.posting.machine_export import export_machine
 from pkm_post.writing.kinematics import Export
-from pkm_post.writing.kinematics.linuxcnc_stream import DEPTH, NEAR, stream_hal
+from pkm_post.writing.kinematics.linuxcnc_stream import DEPTH, START_TOLERANCE, stream_hal
 
 
 @pytest.fixture(scope="module")
@@ -158,7 +158,7 @@ def streamed(feedback, rows=ROWS, periods=60):
     return hal, np.array([hal.period() for _ in range(periods)])
 
 
-@pytest.mark.parametrize("beside", [0.0, 0.9 * NEAR, -0.9 * NEAR])
+@pytest.mark.parametrize("beside", [0.0, 0.9 * START_TOLERANCE, -0.9 * START_TOLERANCE])
 def test_a_table_that_begins_where_the_struts_are_is_followed_row_by_row(beside):
     hal, commands = streamed(START + beside)
     assert hal.values["stream-accepted"] and not hal.values["stream-refused"]
@@ -169,7 +169,7 @@ def test_a_table_that_begins_where_the_struts_are_is_followed_row_by_row(beside)
 
 
 @pytest.mark.parametrize("strut", range(6))
-@pytest.mark.parametrize("beside", [1.1 * NEAR, -1.1 * NEAR, 100.0])
+@pytest.mark.parametrize("beside", [1.1 * START_TOLERANCE, -1.1 * START_TOLERANCE, 100.0])
 def test_a_table_that_begins_elsewhere_moves_no_strut(strut, beside):
     feedback = START + beside * np.eye(6)[strut]
     hal, commands = streamed(feedback)

@@ -76,7 +76,7 @@ def check(modules, folder):
 
 
 def main():
-    """Check and tell."""
+    """Check and report."""
     with tempfile.TemporaryDirectory() as folder:
         fault, lines = check(Path(sys.argv[1], "node_modules").resolve(), Path(folder))
     if fault:

@@ -33,13 +33,13 @@ def program(compiler, tmp_path_factory):
     made = tmp_path_factory.mktemp("made") / "read_trajectory"
     source = HERE / "read_trajectory.c"
     command = [compiler, "-std=c11", "-O1", *STRICT, "-I", INCLUDE, source, "-o", made, "-lm"]
-    subprocess.run(command, check=True, timeout=60)
+    subprocess.run(command, check=True, timeout=300)
     return made
 
 
 def reported(program, *arguments):
     """What the program prints, by line."""
-    run = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=True, timeout=60)
+    run = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=True, timeout=300)
     assert run.stderr == ""
     return run.stdout.splitlines()
 
@@ -91,7 +91,7 @@ def test_a_newer_minor_version_is_read_without_what_it_adds(program, tmp_path):
 
 def refused(program, path, content):
     path.write_bytes(content)
-    run = subprocess.run([program, str(path)], capture_output=True, text=True, timeout=60, check=False)
+    run = subprocess.run([program, str(path)], capture_output=True, text=True, timeout=300, check=False)
     return run.returncode == 1 and run.stderr.startswith("not read: ") and run.stdout == ""
 
 
@@ -114,7 +114,7 @@ def compiles(compiler, folder, header):
     (folder / "own.h").write_text(header)
     (folder / "alone.c").write_text('#include "own.h"\nint main(void) { return 0; }\n')
     command = [compiler, "-std=c11", *STRICT, "-fsyntax-only", folder / "alone.c"]
-    run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
     assert run.returncode == 0 or "static assertion failed" in run.stderr
     return run.returncode == 0
 

@@ -15,7 +15,7 @@ from pkm_post.model.trajectory import TRAJECTORY_COLUMNS
 from pkm_post.toolpath.place import place
 
 NAMES = ("", "Finish", "Schlichten – Kegel ⌀12", "精加工", "🛠 rough\nsecond line\0end", "x" * 300)
-VALUES = {
+VALUES = {  # threads, which have to fit the segments between their events, are in tests/posting/test_threads.py
     EventKind.TOOL_CHANGE: (0.0, 1.0, 7.0),
     EventKind.SPINDLE: (-12000.0, -0.0, 0.0, 18000.5),
     EventKind.COOLANT: (0.0, 1.0, 2.0),
@@ -38,7 +38,7 @@ def rotation(rng):
 
 def random_events(rng, segments, count):
     rows = np.sort(rng.integers(0, segments + 1, count)).tolist()
-    kinds = [EventKind(int(kind)) for kind in rng.choice([int(kind) for kind in EventKind], count)]
+    kinds = [EventKind(int(kind)) for kind in rng.choice([int(kind) for kind in VALUES], count)]
     return tuple(Event(row, kind, float(rng.choice(VALUES[kind]))) for row, kind in zip(rows, kinds, strict=True))
 
 

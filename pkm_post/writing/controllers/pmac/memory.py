@@ -17,6 +17,9 @@ from pkm_post.writing.controllers.pvt.writer import rest_knots
 WORDS_PER_KNOT = 12
 """Six lengths and six speeds."""
 
+WORDS_OF_TURNS = 2
+"""Angle and speed of the spindle, at the knots of threads."""
+
 WORDS_PER_EVENT = 6
 """DWELL0, the code, which may assign and dwell, and the PVT that resumes the motion."""
 
@@ -31,6 +34,7 @@ def _words_by_knot(motion: StrutMotion) -> Array:
     """Words of each knot and its events, (M,)."""
     words = np.full(len(motion), WORDS_PER_KNOT)
     words[1:] += np.diff(np.diff(motion.time_ms), prepend=0) != 0
+    words[motion.turns.knot] += WORDS_OF_TURNS
     np.add.at(words, [event.row for event in motion.events], WORDS_PER_EVENT)
     return words
 
@@ -60,7 +64,7 @@ def memory_faults(motion: StrutMotion, settings: PmacSettings, file: str) -> tup
     _, stuck = _cuts(motion, settings)
     if stuck is None:
         return ()
-    resting = rest_knots(motion, settings)
+    resting = _cut_candidates(motion, settings)
     end = int(resting[resting > stuck].min(initial=len(motion) - 1))
     words = WORDS_OF_FRAME + int(_words_by_knot(motion)[stuck : end + 1].sum())
     found = (
@@ -76,7 +80,7 @@ def _cuts(motion: StrutMotion, settings: PmacSettings) -> tuple[tuple[int, ...],
     if own.sum() <= _room(settings, 0):
         return (), None
     behind = np.cumsum(own)
-    resting, merit = rest_knots(motion, settings), _merit(motion)
+    resting, merit = _cut_candidates(motion, settings), _merit(motion)
     cuts: list[int] = []
     first, last = 0, len(motion) - 1
     while behind[last] - behind[first] + own[first] > (room := _room(settings, first)):
@@ -87,6 +91,11 @@ def _cuts(motion: StrutMotion, settings: PmacSettings) -> tuple[tuple[int, ...],
         first = int(near[merit[near] == merit[near].max()][-1])
         cuts.append(first)
     return tuple(cuts), None
+
+
+def _cut_candidates(motion: StrutMotion, settings: PmacSettings) -> Array:
+    """Knots at which the motion rests, but in a thread: the next part would begin with a spindle that is an axis."""
+    return np.setdiff1d(rest_knots(motion, settings), motion.turns.knot)
 
 
 def _room(settings: PmacSettings, first: int) -> int:

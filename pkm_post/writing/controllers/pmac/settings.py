@@ -16,6 +16,7 @@ from decimal import Decimal
 
 from pkm_post.model import Diagnostic, Machine
 from pkm_post.writing.controllers.pvt import settings as pvt
+from pkm_post.writing.controllers.pvt.decimals import plain
 from pkm_post.writing.controllers.pvt.settings import ROTARY_LETTERS, axis_definitions, check_stroke, stroke_counts
 from pkm_post.writing.controllers.pvt.writer import comment_lines
 
@@ -61,6 +62,7 @@ def setup_text(settings: PmacSettings, machine_name: str, stroke: tuple[float, f
         *_axis_lines(settings),
         *_coordinate_system_lines(settings),
         *soft_limit_lines(settings, stroke),
+        *_spindle_limits(settings),
         *_rollover_lines(settings),
     ]
     return "\n".join(lines) + "\n"
@@ -71,6 +73,18 @@ def _axis_lines(settings: PmacSettings) -> list[str]:
         f"&{settings.coordinate_system} ; the coordinate system that runs the program",
         "; #motor->SCALE LETTER OFFSET: counts = SCALE * strut length + OFFSET; the offset is counts at length zero",
         *axis_definitions(settings),
+        *_spindle_definition(settings),
+    ]
+
+
+def _spindle_definition(settings: PmacSettings) -> list[str]:
+    """The axis of the spindle, in turns; it has no offset, as the code that makes it an axis sets it to 0."""
+    axis = settings.spindle_axis
+    if axis is None:
+        return []
+    return [
+        "; The spindle, in turns: positive clockwise, seen from the spindle",
+        f"#{axis.motor}->{plain(axis.counts_per_turn)}{axis.letter}",
     ]
 
 
@@ -93,10 +107,19 @@ def soft_limit_lines(settings: PmacSettings, stroke: tuple[float, float]) -> lis
     return lines
 
 
+def _spindle_limits(settings: PmacSettings) -> list[str]:
+    axis = settings.spindle_axis
+    return [] if axis is None else [f"I{axis.motor}{end}=0 ; the spindle turns without end" for end in (13, 14)]
+
+
 def _rollover_lines(settings: PmacSettings) -> list[str]:
+    axis = settings.spindle_axis
+    motors = [*enumerate(settings.letters, start=1), *([] if axis is None else [(axis.motor, axis.letter)])]
     return [
         f"I{motor}27=0 ; {letter} would be a rotary axis: no rollover, it is a length here"
-        for motor, letter in enumerate(settings.letters, start=1)
+        if motor <= len(settings.letters)
+        else f"I{motor}27=0 ; {letter} would be a rotary axis: no rollover, it counts turns here"
+        for motor, letter in motors
         if letter in ROTARY_LETTERS
     ]
 

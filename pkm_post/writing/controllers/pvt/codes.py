@@ -48,9 +48,14 @@ EVENT_CODES: dict[str, EventCode] = {
     "coolant_mist": EventCode(EventKind.COOLANT, 2.0),
     "stop": EventCode(EventKind.STOP, 0.0),
     "optional_stop": EventCode(EventKind.STOP, 1.0),
+    "spindle_axis": EventCode(EventKind.SPINDLE_AXIS, 1.0),
+    "spindle_speed": EventCode(EventKind.SPINDLE_AXIS, 0.0),
 }
 """The first entry that covers an event is its code: spindle stop comes before the two directions. The reader has
 its own definition of what each code does (``syntax.effect``)."""
+
+OF_THREADS = frozenset({"spindle_axis", "spindle_speed"})
+"""Codes of machines whose spindle is an axis, where programs have threads; others need none."""
 
 FUNCTION_NAME = re.compile(r"M[0-9]+")
 """Name of the code of a function of the machine: the M code of part programs."""
@@ -93,8 +98,10 @@ def check_codes(codes: Mapping[str, str], letters: Sequence[str]) -> None:
         ValueError: a name is missing or unknown, a text is malformed, changes modes or moves an axis, or some text
             would stand for two events.
     """
-    if {name for name in codes if not FUNCTION_NAME.fullmatch(name)} != set(EVENT_CODES):
-        raise ValueError(f"codes: expected the names {', '.join(EVENT_CODES)}, got {', '.join(codes)}")
+    names = {name for name in codes if not FUNCTION_NAME.fullmatch(name)}
+    if names not in (set(EVENT_CODES), set(EVENT_CODES) - OF_THREADS):
+        expected = ", ".join(name for name in EVENT_CODES if name not in OF_THREADS or names & OF_THREADS)
+        raise ValueError(f"codes: expected the names {expected}, got {', '.join(codes)}")
     for name, template in codes.items():
         form, expected = (
             (_VALUE_CODE, "text with one {value}, {value:d} or {value:.3f}, apart from other digits")

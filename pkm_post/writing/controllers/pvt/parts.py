@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.model import Diagnostic, Event, Place, StrutMotion
+from pkm_post.model import Array, Diagnostic, Event, Place, SpindleTurns, StrutMotion
 
 _STATED = re.compile(r"(?:(?:;|//).*\n)*?(?:;|//) part ([1-9][0-9]{0,3}) of ([1-9][0-9]{0,3}):")
 """Matches in the comment on top only, as a program may be long; four digits limit the number of stated parts."""
@@ -29,17 +29,18 @@ def split_motion(motion: StrutMotion, cuts: Sequence[int]) -> tuple[StrutMotion,
     """
     edges = [0, *cuts, len(motion) - 1]
     return tuple(
-        _between(motion, first, last, last == edges[-1]) for first, last in zip(edges[:-1], edges[1:], strict=True)
+        _slice(motion, first, last, last == edges[-1]) for first, last in zip(edges[:-1], edges[1:], strict=True)
     )
 
 
-def _between(motion: StrutMotion, first: int, last: int, ends: bool) -> StrutMotion:
+def _slice(motion: StrutMotion, first: int, last: int, ends: bool) -> StrutMotion:
     events = (event for event in motion.events if first <= event.row < last + ends)
     return StrutMotion(
         motion.time_ms[first : last + 1] - motion.time_ms[first],
         motion.length[first : last + 1],
         motion.speed[first : last + 1],
         tuple(replace(event, row=event.row - first) for event in events),
+        motion.turns.slice(first, last),
     )
 
 
@@ -96,7 +97,18 @@ def join_motions(
         np.concatenate([part.length[knots] for part, knots, _, _ in rows]),
         np.concatenate([part.speed[knots] for part, knots, _, _ in rows]),
         tuple(events),
+        _joined_turns([part.turns for part in motions], shift[:-1]),
     ), ()
+
+
+def _joined_turns(parts: Sequence[SpindleTurns], shift: Array) -> SpindleTurns:
+    """The turns of all parts, whose knots are counted from those given, (P,)."""
+    knots = [part.knot + first for part, first in zip(parts, shift, strict=True)]
+    return SpindleTurns(
+        np.concatenate(knots),
+        np.concatenate([part.angle for part in parts]),
+        np.concatenate([part.speed for part in parts]),
+    )
 
 
 def _joint_faults(motions: Sequence[StrutMotion], files: Sequence[str]) -> Iterator[Diagnostic]:

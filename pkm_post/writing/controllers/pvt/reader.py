@@ -13,11 +13,22 @@ from decimal import Decimal
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Event, EventKind, Place, StrutMotion, checkpoint, read_only
+from pkm_post.model import (
+    NO_TURNS,
+    Array,
+    Diagnostic,
+    Event,
+    EventKind,
+    Place,
+    SpindleTurns,
+    StrutMotion,
+    checkpoint,
+    read_only,
+)
 from pkm_post.writing.controllers.pvt.moves import Lines, lines_of
 from pkm_post.writing.controllers.pvt.parts import join_motions, part_faults
 from pkm_post.writing.controllers.pvt.settings import PvtSettings
-from pkm_post.writing.controllers.pvt.syntax import FINISHED, START, Grammar, effect, is_code, state_after
+from pkm_post.writing.controllers.pvt.syntax import FINISHED, IN_THREAD, START, Grammar, effect, is_code, state_after
 
 MOST_FAULTS = 20
 _INTERVAL_MS = 4095
@@ -25,7 +36,7 @@ _DWELL_MS = 8_388_607
 _SHOWN = 40
 
 
-class Reading:
+class LineReader:
     """The state of the reader, line by line.
 
     Attributes:
@@ -48,7 +59,9 @@ class Reading:
         self._halts: list[tuple[int, int]] = []
         self._events: list[Event] = []
         self._acts = {"feed": self._feed, "approach": self._approach, "halt": self._halt, "dwell": self._dwell}
-        self._acts |= {"interval": self._new_interval, "move": self._move}
+        self._acts |= {"interval": self._new_interval, "move": self._move, IN_THREAD: self._move_in_thread}
+        self._in_thread = False
+        self._turns: list[tuple[int, float, float]] = []
 
     def lines_of(self, text: str) -> Lines:
         """The lines of a text, with moves and intervals already found."""
@@ -79,6 +92,8 @@ class Reading:
         """The motion of a text that ended before line ``number``; None if there were faults."""
         if self._state != FINISHED:
             self._fault(number, 0, "", self._expected())
+        elif self._in_thread:
+            self._fault(number, 0, "", "the end of the thread")
         if self.faults:
             return None
         motion = self._motion()
@@ -87,11 +102,18 @@ class Reading:
 
     def _motion(self) -> StrutMotion:
         time_ms = np.cumsum(np.concatenate([[0], *self._intervals]))
-        return StrutMotion(read_only(time_ms), _joined(self._lengths), _joined(self._speeds), tuple(self._events))
+        turns = SpindleTurns(*map(np.array, zip(*self._turns, strict=True))) if self._turns else NO_TURNS
+        return StrutMotion(
+            read_only(time_ms), _joined(self._lengths), _joined(self._speeds), tuple(self._events), turns
+        )
 
     def _check_rest(self, motion: StrutMotion) -> None:
         """Check that the struts rest at every interruption; the end is checked with the whole motion."""
         eventful = {event.row for event in motion.events}
+        halts = {knot for knot, _ in self._halts}
+        turning = [knot for knot, _, speed in self._turns if speed and knot in halts]
+        if turning:
+            self._fault(dict(self._halts)[turning[0]], 0, self.forms["halt"].name, "the spindle at rest")
         for knot, number in self._halts:
             if motion.speed[knot].any() and (knot < len(motion) - 1 or knot in eventful):
                 self._fault(number, 0, self.forms["halt"].name, "struts at rest")
@@ -106,9 +128,17 @@ class Reading:
 
     def _act(self, name: str, number: int, line: str, numbers: Sequence[str]) -> None:
         if is_code(name):
-            self._events.append(Event(self._knots - 1, *effect(name, numbers)))
+            self._code(number, line, Event(self._knots - 1, *effect(name, numbers)))
         elif name in self._acts:
             self._acts[name](number, line, numbers)
+
+    def _code(self, number: int, line: str, event: Event) -> None:
+        if event.kind is EventKind.SPINDLE_AXIS:
+            begins = event.value != 0
+            if begins == self._in_thread:
+                self._fault(number, 0, line, "the end of the thread" if begins else "a thread to end")
+            self._in_thread = begins
+        self._events.append(event)
 
     def _feed(self, number: int, line: str, numbers: Sequence[str]) -> None:
         if tuple(map(float, numbers)) != self._grammar.feed:
@@ -120,7 +150,17 @@ class Reading:
         self._speeds.append(np.zeros((1, 6)))
         self._knots += 1
 
+    def _move_in_thread(self, number: int, line: str, numbers: Sequence[str]) -> None:
+        if not self._in_thread:
+            self._fault(number, 0, line, self.forms["move"].name)
+        *struts, angle, speed = map(float, numbers)
+        self._turns.append((self._knots, angle, speed))
+        self._moves(np.array(struts).reshape(1, 6, 2), np.array([self._interval]))
+
     def _move(self, number: int, line: str, numbers: Sequence[str]) -> None:
+        # every change between the two kinds of move is read here: a run of moves begins with a line of its own
+        if self._in_thread:
+            self._fault(number, 0, line, self.forms[IN_THREAD].name)
         self._moves(np.array([[float(number) for number in numbers]]).reshape(1, 6, 2), np.array([self._interval]))
 
     def _moves(self, values: Array, intervals: Array) -> None:
@@ -168,13 +208,15 @@ class Reading:
 
 def _joined(pieces: list[Array]) -> Array:
     """Join pieces into one column and release them: a long program does not fit into memory twice."""
+    checkpoint()
     column = np.concatenate(pieces)
     pieces.clear()
+    checkpoint()
     return read_only(column)
 
 
 def _kind(name: str) -> str:
-    return "code" if is_code(name) else name
+    return "code" if is_code(name) else "move" if name == IN_THREAD else name
 
 
 _CHUNK = 1 << 20
@@ -216,7 +258,7 @@ def read_program(
     Returns:
         The motion, or None if there are faults; and the first 20 faults in line order.
     """
-    reading = Reading(grammar, file)
+    reading = LineReader(grammar, file)
     number = 1
     too_long: list[Diagnostic] = []
     for chunk in _chunks(text):

@@ -15,11 +15,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from decimal import Decimal
 from typing import Any, ClassVar, Self, TypeVar
 
-from pkm_post.model import Diagnostic, Machine, Place
+from pkm_post.model import Diagnostic, Machine, Place, SpindleAxis
 from pkm_post.writing.controllers.pvt.codes import check_codes
 from pkm_post.writing.controllers.pvt.decimals import exact, plain
 
@@ -43,7 +43,8 @@ class PvtSettings:
         length_decimals: digits after the point of a length in mm.
         speed_decimals: digits after the point of a speed in mm/s.
         line_limit: longest line that the controller accepts, in characters.
-        codes: text of each event, by the names of ``codes.MEANINGS``.
+        codes: text of each event, by the names of ``codes.EVENT_CODES``.
+        spindle_axis: the spindle where it is an axis; None where it is none.
 
     Raises:
         ValueError: the codes are not distinguishable, or the program number is not valid.
@@ -62,12 +63,18 @@ class PvtSettings:
     speed_decimals: int
     line_limit: int
     codes: Mapping[str, str]
+    spindle_axis: SpindleAxis | None = None
 
     def __post_init__(self) -> None:
         # manual moves and single blocks run under a program number chosen at run time
         if not 1 <= self.program <= _LAST_PROGRAM:
             raise ValueError(f"program: expected a whole number from 1 to {_LAST_PROGRAM}, got {self.program}")
-        check_codes(self.codes, self.letters)
+        check_codes(self.codes, self.all_letters)
+
+    @property
+    def all_letters(self) -> tuple[str, ...]:
+        """Letters of all axes that a program moves: the struts, and the spindle where it is an axis."""
+        return self.letters if self.spindle_axis is None else (*self.letters, self.spindle_axis.letter)
 
     @classmethod
     def of(cls, controller: Mapping[str, Any]) -> Self:
@@ -79,7 +86,8 @@ class PvtSettings:
         kind = controller.get("kind")
         if kind != cls.KIND:
             raise ValueError(f"kind: expected {cls.KIND}, got {kind!r}")
-        return cls(**{item.name: controller[item.name] for item in fields(cls)})
+        needed = [item.name for item in fields(cls) if item.default is MISSING or item.name in controller]
+        return cls(**{name: controller[name] for name in needed})
 
 
 AnySettings = TypeVar("AnySettings", bound=PvtSettings)

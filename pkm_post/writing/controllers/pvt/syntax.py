@@ -29,6 +29,9 @@ class Piece:
 
 Parts = tuple[str | Piece, ...]
 
+IN_THREAD = "move in a thread"
+"""Kind of a line of moves in which the spindle is an axis. Where it may stand is that of any move."""
+
 WHOLE = Piece(r"(0|[1-9][0-9]{0,14})", "a whole number")
 POSITIVE = Piece(r"([1-9][0-9]{0,14})", "a whole number above zero")
 DECIMAL = Piece(r"((?:0|[1-9][0-9]{0,14})(?:\.[0-9]+)?)", "a plain decimal")
@@ -85,6 +88,7 @@ def body_forms(settings: PvtSettings, spelt: Callable[[str], str]) -> dict[str, 
     """
     lengths: list[Parts] = [(letter, SIGNED, " ") for letter in settings.letters]
     lengths_and_speeds: list[Parts] = [(letter, SIGNED, ":", SIGNED, " ") for letter in settings.letters]
+    axis = settings.spindle_axis
     forms = {
         "close": _word(spelt("CLOSE")),
         "absolute": _word(spelt("ABS")),
@@ -99,6 +103,15 @@ def body_forms(settings: PvtSettings, spelt: Callable[[str], str]) -> dict[str, 
         "move": line_form("six lengths with speeds", *list(chain.from_iterable(lengths_and_speeds))[:-1]),
         "dwell": line_form(spelt("DWELL"), spelt("DWELL"), DECIMAL),
     }
+    if axis is not None:
+        forms[IN_THREAD] = line_form(
+            "six lengths and the turns of the spindle, with speeds",
+            *list(chain.from_iterable(lengths_and_speeds))[:-1],
+            f" {axis.letter}",
+            SIGNED,
+            ":",
+            SIGNED,
+        )
     return forms | {name: _code_form(name, template) for name, template in settings.codes.items()}
 
 
@@ -126,6 +139,8 @@ EFFECTS: Mapping[str, _Effect] = {
     "coolant_mist": (EventKind.COOLANT, 2.0),
     "coolant_flood": (EventKind.COOLANT, 1.0),
     "coolant_off": (EventKind.COOLANT, 0.0),
+    "spindle_axis": (EventKind.SPINDLE_AXIS, 1.0),
+    "spindle_speed": (EventKind.SPINDLE_AXIS, 0.0),
 }
 """Effect of the code of each name: the kind of event, and its value, or the value by the number in the code. The names
 are those of ``[controller.codes]`` in machine files, which describe the action of the machine; those of ``functions``

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faults: what is wrong with a block, and the collector of a program.
+"""Diagnostics of Siemens programs: collected by row, and located in their lines.
 
 Enters: codes and what was found, by row. Leaves: diagnostics in line order.
 """
@@ -52,7 +52,7 @@ class BlockFault(Exception):  # noqa: N818 - a fault of the input
         self.code, self.found, self.column = code, found, column
 
 
-class Faults:
+class LineDiagnostics:
     """Collects the diagnostics of a program.
 
     Args:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whereabouts: where the blocks executed so far have brought the tool, and which codes are in force there.
+"""System variables: the tool position and the modal codes that the blocks executed so far lead to.
 
-Enters: the executed blocks. Leaves: coordinates and codes for the parameters that a program reads, in its own units:
-#5420 to #5422 of LinuxCNC, #5001 to #5043 and #4001 to #4130 of Fanuc's controls. The blocks are resolved as at the
-end, so that both agree; what they leave unknown, or have a fault before, cannot be read.
+Enters: the executed blocks. Leaves: values of the variables that a program can read, in the program's units: #5420 to
+#5422 of LinuxCNC, #5001 to #5043 and #4001 to #4130 of Fanuc controls. The blocks are resolved by the same functions as
+after execution. A value that is unknown, or follows a faulty block, cannot be read.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pkm_post.reading.gcode.checks import check
 from pkm_post.reading.gcode.codes import FURTHER_OFFSET, Group
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.events import dwell_words
-from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, with_functions
+from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, with_functions, with_threads
 from pkm_post.reading.gcode.modal import Modal, modal_state
 from pkm_post.reading.gcode.options import UNITS, ReadOptions, axis_names
 from pkm_post.reading.gcode.parameters import ExecutionFault
@@ -109,6 +109,7 @@ class ExecutedBlocks:
         """Coordinates of the tool, which are known, the codes, and the place in {C}."""
         options = self.options
         flavour = with_functions(FLAVOURS[options.flavour or RS274.name], options.functions)
+        flavour = with_threads(flavour, options.spindle_axis)
         blocks, _ = adapted(self.blocks, flavour, options.left_out)
         faults = BlockDiagnostics(blocks)
         modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), flavour)

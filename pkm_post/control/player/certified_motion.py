@@ -1,24 +1,23 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Legs: motions between two points, in the numbers that the controller gets, each with a certificate of its own.
+"""Certified motions: between two points, rounded as the controller gets them, each with its own certificate.
 
-It holds against the trajectory as programmed between the ends of the leg, and against the limits of the machine.
+The certificate compares with the programmed trajectory between the two points, and with the limits of the machine.
 
 Enters: a schedule along a section, and where the motion before it ends. Leaves: points with a certificate.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from pkm_post.certificate import certify
+from pkm_post.certificate import AdjacentMotion, certify
 from pkm_post.control.link.status import AnySettings
-from pkm_post.control.player.sections import Section
-from pkm_post.control.player.subpath import PathPoint, subpath
+from pkm_post.control.player.sections import PathPoint, Section, subpath
 from pkm_post.geometry import Array
 from pkm_post.model import Certificate, Kind, Machine, Motion, Refused, StrutMotion, Tolerances, errors
-from pkm_post.planning import Course, PathState, Schedule, strut_motion
+from pkm_post.planning import PathState, Schedule, WindowPlanner, strut_motion
 
 LONGEST_MS = 128
 """Longest interval: the controller computes two moves ahead, and a new way on has to come before."""
@@ -27,24 +26,26 @@ _SAME_MM = 1e-6
 
 
 @dataclass(frozen=True)
-class At:
-    """Where a motion is.
+class MotionState:
+    """The state of a motion at one of its points.
 
     Attributes:
         section: number of the section of the part.
         state: place, speed and override on its path.
         length: (6,) strut lengths, as sent, mm.
         speed: (6,) strut speeds, as sent, mm/s.
+        beside: the last interval of the motion that ends there, and that it goes on.
     """
 
     section: int
     state: PathState
     length: Array
     speed: Array
+    adjacent: AdjacentMotion = field(default_factory=AdjacentMotion)
 
 
 @dataclass(frozen=True)
-class Leg:
+class CertifiedMotion:
     """A motion between two points, as the controller gets it.
 
     Attributes:
@@ -59,12 +60,12 @@ class Leg:
     row: Array
     share: Array
     certificate: Certificate
-    end: At
+    end: MotionState
 
 
 @dataclass(frozen=True)
-class LegMaker:
-    """Makes the legs of a machine.
+class MotionCertifier:
+    """Makes and certifies the motions of a machine.
 
     Attributes:
         machine: geometry and limits.
@@ -76,12 +77,20 @@ class LegMaker:
     settings: AnySettings
     tolerances: Tolerances
 
-    def leg(self, section: Section, along: Course, at: At, schedule: Schedule, until_ms: int, override: float) -> Leg:
+    def motion(
+        self,
+        section: Section,
+        windows: WindowPlanner,
+        at: MotionState,
+        schedule: Schedule,
+        until_ms: int,
+        override: float,
+    ) -> CertifiedMotion:
         """The motion of a schedule up to a time, certified.
 
         Args:
             section: of the trajectory.
-            along: its path.
+            windows: plans along its path.
             at: where the motion before it ends.
             schedule: from there to a rest.
             until_ms: whole ms that are sent of it.
@@ -90,19 +99,26 @@ class LegMaker:
         Raises:
             Refused: the certificate does not hold.
         """
-        motion = along.motion(schedule, until_ms, override, LONGEST_MS)
+        motion = windows.motion(schedule, until_ms, override, LONGEST_MS)
         struts = self._as_sent(strut_motion(motion, self.machine), at)
-        s, speed, _ = schedule.at(motion.time_ms / 1000)
+        s, _, _ = schedule.at(motion.time_ms / 1000)
         rests = not at.speed.any(), until_ms == int(schedule.rests_ms[-1])
-        certificate = self._certified(section, along, struts, motion, s[[0, -1]], override, rests)
-        starts = along.path.starts
-        row = np.clip(np.searchsorted(starts, s + _SAME_MM, side="right") - 1, 0, len(along.programmed) - 1)
+        adjacent = replace(at.adjacent, goes_on=not rests[1])
+        certificate = self._certified(section, windows, struts, motion, s[[0, -1]], override, rests, adjacent)
+        starts = windows.path.starts
+        row = np.clip(np.searchsorted(starts, s + _SAME_MM, side="right") - 1, 0, len(windows.programmed) - 1)
         share = np.clip((s - starts[row]) / np.diff(starts)[row], 0.0, 1.0)
-        state = PathState(float(s[-1]), 0.0 if rests[1] else float(speed[-1]), override)
-        end = At(at.section, state, struts.length[-1], struts.speed[-1])
-        return Leg(struts, section.first + row, share, certificate, end)
+        state = windows.reached(schedule, until_ms, override)
+        end = MotionState(
+            at.section,
+            state,
+            struts.length[-1],
+            struts.speed[-1],
+            AdjacentMotion() if rests[1] else _last(struts, motion),
+        )
+        return CertifiedMotion(struts, section.first + row, share, certificate, end)
 
-    def _as_sent(self, struts: StrutMotion, at: At) -> StrutMotion:
+    def _as_sent(self, struts: StrutMotion, at: MotionState) -> StrutMotion:
         """The motion with the decimals that are sent, from the point that was sent before."""
         length = np.round(struts.length, self.settings.length_decimals)
         speed = np.round(struts.speed, self.settings.speed_decimals) + 0.0
@@ -112,14 +128,15 @@ class LegMaker:
     def _certified(
         self,
         section: Section,
-        along: Course,
+        windows: WindowPlanner,
         struts: StrutMotion,
         motion: Motion,
         s: Array,
         override: float,
         rests: tuple[bool, bool],
+        adjacent: AdjacentMotion,
     ) -> Certificate:
-        starts, rows = along.path.starts, section.trajectory
+        starts, rows = windows.path.starts, section.trajectory
         first = int(np.searchsorted(starts, s[0], side="right")) - 1
         last = int(np.searchsorted(starts, s[1])) - 1
         share = [(at - starts[row]) / (starts[row + 1] - starts[row]) for at, row in zip(s, (first, last), strict=True)]
@@ -129,7 +146,16 @@ class LegMaker:
         joints = np.append(motion.joint_time[first:last], motion.time_ms[-1] / 1000)
         segment = np.clip(motion.segment - first, 0, last - first)
         local = replace(motion, segment=segment, joint_time=joints)
-        found, diagnostics = certify(struts, rows.source, programmed, self.machine, local, self.tolerances, rests=rests)
+        found, diagnostics = certify(
+            struts, rows.source, programmed, self.machine, local, self.tolerances, rests=rests, adjacent=adjacent
+        )
         if found is None or errors(diagnostics):
             raise Refused(diagnostics)
         return found
+
+
+def _last(struts: StrutMotion, motion: Motion) -> AdjacentMotion:
+    """The last interval of a motion; speeds of struts are those that are sent, those of the tip the planned ones."""
+    seconds = float(struts.time_ms[-1] - struts.time_ms[-2]) / 1000
+    speed, tip = struts.speed[-1] - struts.speed[-2], motion.tip_rate[-1] - motion.tip_rate[-2]
+    return AdjacentMotion(seconds, speed / seconds, tip / seconds)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faults of CL data: line and column, what was found and what was expected, in words.
+"""Diagnostics of CL data: line and column, what was found and what was expected, in words.
 
 Enters: lark errors, or invalid statements. Leaves: diagnostics in file order. Equal faults are one with their number
 and the first of their lines. At most a hundred errors are reported; the last one states the number of the others.
@@ -64,7 +64,7 @@ class _Equal:
         return [replace(self.kept[0], found=f"{self.kept[0].found} ({self.count} times, in {lines})")]
 
 
-class Faults:
+class StatementDiagnostics:
     """Collects the faults of a file. Many equal ones become one."""
 
     def __init__(self, file: str) -> None:

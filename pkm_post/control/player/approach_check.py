@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Approach check: whether the way to a row is clear of part, stock and fixtures, where these are known.
+
+The stock is what the rows before have left of it, so the way is checked as the end of a trajectory with these rows.
+From their end it goes on above everything to where the way begins, with a tool that has no cutter: there it cuts and
+touches nothing.
+
+Enters: a program, a way to one of its rows. Leaves: what the way would touch. Units: mm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from pkm_post.control.link.errors import NotReadyError
+from pkm_post.control.player.sections import rows_of
+from pkm_post.control.player.stop_events import TOLERANCES, PlayContext
+from pkm_post.geometry import Array, angle_between, norm
+from pkm_post.machine import find_collisions, strut_lengths
+from pkm_post.model import TRAJECTORY_COLUMNS, Diagnostic, Kind, Mesh, Setup, Tool, Trajectory
+from pkm_post.options import START_TOLERANCE_MM
+from pkm_post.toolpath import ToolPose, clearance_path, pose_columns
+
+_WAY, _BETWEEN = "approach", "between"
+
+
+def approach_faults(task: PlayContext, row: int, way: Trajectory) -> tuple[Diagnostic, ...]:
+    """What the way to a row would touch, errors and warnings; nothing where no set-up is known.
+
+    Args:
+        task: the program, with its set-up.
+        row: where the way ends.
+        way: straight moves, with the tool of the row.
+    """
+    if task.setup.is_empty:
+        return ()
+    found = find_collisions(_with_rows_before(task, row, way), task.machine, task.setup, TOLERANCES)
+    return tuple(each for each in found.faults if each.place.operation == _WAY)
+
+
+def check_start(task: PlayContext, first: Array, tool_length: float | None) -> None:
+    """Check that a trajectory is that of a program in the controller, as far as its start tells.
+
+    Args:
+        task: the trajectory.
+        first: (6,) strut lengths with which the program begins, mm.
+        tool_length: gauge length of the tool in the spindle, mm; None for that of the trajectory.
+
+    Raises:
+        NotReadyError: the trajectory begins elsewhere, or with a tool of another length.
+    """
+    made = task.trajectory
+    length = float(made.tool_length()[0])
+    if tool_length not in (None, length):
+        raise NotReadyError([f"the trajectory begins with a tool of {length:g} mm, not of {tool_length:g} mm"])
+    pose = made.start_tip[None], made.start_axis[None], np.array([made.start_spin]), np.array([length])
+    off = float(np.abs(strut_lengths(task.machine, *pose)[0] - first).max())
+    if off > START_TOLERANCE_MM:
+        raise NotReadyError([f"the trajectory begins elsewhere than the program: a strut is {off:.3f} mm off there"])
+
+
+def _with_rows_before(task: PlayContext, row: int, way: Trajectory) -> Trajectory:
+    """The rows before a row, and the way to it; up and down along the axis it may cut as the row does."""
+    program = task.trajectory
+    cuts = Kind.RAPID if program.kind[row] == Kind.RAPID else Kind.LINE
+    number = np.arange(len(way))
+    kinds = np.where(number == 0, Kind.LINE, np.where(number == len(way) - 1, cuts, Kind.RAPID))
+    start = ToolPose(way.start_tip, way.start_axis, way.start_spin)
+    without = max(program.tools) + 1
+    parts = [_moves(program, row, way, kinds, len(program.operations))]
+    if row:
+        before = rows_of(program, 0, row)
+        end = ToolPose(before.tip[-1], before.axis[-1], float(before.spin[-1]))
+        over = [pose for pose in clearance_path(end, start, _height(task, way)) if not pose.is_at(end)]
+        between = _moves(program, row, _through(way, over), np.full(len(over), Kind.RAPID), len(program.operations) + 1)
+        parts = [before, replace(between, tool=np.full(len(over), without)), *parts]
+        start = ToolPose(before.start_tip, before.start_axis, before.start_spin)
+    columns: dict[str, Any] = {
+        name: np.concatenate([getattr(part, name) for part in parts]) for name in TRAJECTORY_COLUMNS
+    }
+    joined = replace(
+        program,
+        **columns,
+        events=(),
+        operations=(*program.operations, _WAY, _BETWEEN),
+        tools=program.tools | {without: Tool(without, "none", 0.0, 0.0, program.tools[int(program.tool[row])].length)},
+        start_tip=start.tip,
+        start_axis=start.axis,
+        start_spin=start.spin,
+    )
+    return replace(joined, **_extents(joined))
+
+
+def _through(way: Trajectory, poses: list[ToolPose]) -> Trajectory:
+    """Moves to some poses; all other columns are those of the first row of a way."""
+    columns: dict[str, Any] = {
+        name: np.repeat(getattr(way, name)[:1], len(poses), axis=0) for name in TRAJECTORY_COLUMNS
+    }
+    tip, axis, spin = pose_columns(poses)
+    columns |= {"tip": tip, "axis": axis, "spin": spin}
+    return replace(way, **columns)
+
+
+def _moves(program: Trajectory, row: int, way: Trajectory, kinds: Array, operation: int) -> Trajectory:
+    """Moves with the tool and line of a row of the program, in an operation of their own."""
+    count = len(way)
+    return replace(
+        way,
+        kind=kinds,
+        tool=np.full(count, program.tool[row]),
+        line=np.full(count, program.line[row]),
+        operation=np.full(count, operation),
+    )
+
+
+def _extents(made: Trajectory) -> dict[str, Any]:
+    """Length and angle of all straight moves; arcs keep theirs."""
+    straight = made.kind != Kind.ARC
+    length = np.where(straight, norm(made.tip - made.tip_before()), made.length)
+    return {"length": length, "angle": np.where(straight, angle_between(made.axis_before(), made.axis), made.angle)}
+
+
+def _height(task: PlayContext, way: Trajectory) -> float:
+    """Z in {M} above everything that is known."""
+    tops = [_top(mesh, task.trajectory) for mesh in _meshes(task.setup)]
+    return max(float(way.tip[:, 2].max()), float(task.trajectory.tip[:, 2].max()), *tops)
+
+
+def _meshes(setup: Setup) -> list[Mesh]:
+    return [mesh for mesh in (setup.part, setup.stock, *setup.fixtures) if mesh is not None]
+
+
+def _top(mesh: Mesh, trajectory: Trajectory) -> float:
+    points = (
+        mesh.triangles.reshape(-1, 3) @ trajectory.machine_from_work[:3, :3].T + trajectory.machine_from_work[:3, 3]
+    )
+    return float(points[:, 2].max())

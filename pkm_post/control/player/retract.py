@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Retract: while a play rests, the tool goes up along its axis, and comes back before the play goes on.
+
+Both are moves by hand, planned, certified and checked for reach. The way back is straight down the axis; where somebody
+has moved the tool meanwhile, it is that of an approach.
+
+Enters: a machine at rest, mm. Leaves: the machine at rest above its path, and later on it again.
+"""
+
+from __future__ import annotations
+
+import logging
+
+from pkm_post.control.link.errors import NotReadyError, PmacError
+from pkm_post.control.link.status import settled_status
+from pkm_post.control.link.tool_pose import pose_from_home
+from pkm_post.control.numerical_control.execute import execute, wait_for_rest
+from pkm_post.control.numerical_control.manual_moves import (
+    CartesianJog,
+    approach_trajectory,
+    jog_trajectory,
+    straight_trajectory,
+)
+from pkm_post.control.numerical_control.plan import planned
+from pkm_post.control.player.stop_events import TOLERANCES, PlayContext
+from pkm_post.geometry import norm
+from pkm_post.model import Amount, Diagnostic, Phrase, Refused, Trajectory, errors
+from pkm_post.options import APPROACH_MM_S, START_TOLERANCE_MM
+from pkm_post.toolpath import ToolPose
+
+_SLOWEST, _MORE_S = 0.05, 30.0
+"""A move may take as long as at this override, and so much longer."""
+
+_UNKNOWN = Phrase("no pose of the platform reachable in small steps from home has these strut lengths")
+Findings = tuple[Diagnostic, ...]
+
+_log = logging.getLogger(__name__)
+
+
+class Retract:
+    """The way off the path and back."""
+
+    def __init__(self, task: PlayContext) -> None:
+        self._task = task
+        self._from: ToolPose | None = None
+
+    def up(self, way: float, tool_length: float) -> None:
+        """Go up along the tool axis; what cannot be is logged, and nothing moves.
+
+        Args:
+            way: mm.
+            tool_length: gauge length of the tool in the spindle, mm.
+
+        Raises:
+            PmacError: machine or link are not ready, or the move did not end.
+        """
+        here = self._here(tool_length)
+        if here is None:
+            _log.warning("%s", Phrase("no retract: {}", _UNKNOWN))
+            return
+        x, y, z = (way * here.axis).tolist()
+        made = jog_trajectory(CartesianJog((x, y, z)), self._task.machine, here, tool_length, APPROACH_MM_S)
+        found = self._done(*made)
+        for each in found:
+            _log.warning("%s", Phrase("no retract: {}", each))
+        if not found:
+            self._from = self._from or here
+            above = Phrase("the tool is {} above its path; it goes back before the play goes on", Amount(way, "mm"))
+            _log.info("%s", above)
+
+    def back(self, tool_length: float) -> None:
+        """Go back to the path, where the tool is above it.
+
+        Raises:
+            Refused: the way cannot be planned; the tool stays where it is.
+            PmacError: as ``up``.
+        """
+        if self._from is None:
+            return
+        here = self._here(tool_length)
+        if here is None:
+            raise NotReadyError([_UNKNOWN])
+        way = here.tip - self._from.tip
+        beside = norm(way - (way @ self._from.axis) * self._from.axis)
+        leads = straight_trajectory if beside < START_TOLERANCE_MM else approach_trajectory
+        found = self._done(*leads(self._task.machine, here, self._from, tool_length, APPROACH_MM_S))
+        if found:
+            raise Refused(found)
+        self._from = None
+
+    def _here(self, tool_length: float) -> ToolPose | None:
+        task = self._task
+        return pose_from_home(task.machine, settled_status(task.session, task.settings).commanded, tool_length)
+
+    def _done(self, way: Trajectory | None, diagnostics: Findings) -> Findings:
+        """Plan and carry out a move; what is against it."""
+        task, plan = self._task, None
+        if way is not None:
+            plan, found = planned(way, task.machine, task.settings, TOLERANCES)
+            diagnostics += found
+        if plan is None:
+            return errors(diagnostics)
+        execute(task.session, task.machine, task.settings, plan.job)
+        status = wait_for_rest(task.session, task.settings, _MORE_S + plan.seconds / _SLOWEST)
+        if status.running or status.fault_texts():
+            raise PmacError("the retract did not end: " + "; ".join(status.fault_texts() or ("it is held",)))
+        return ()

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Core texts: causes, cures and phrases of the core in the language and the units of the user.
+
+The core is English and knows no Qt. What it says comes as ``Phrase``, or stands in its tables; here FreeCAD looks it up
+in the context ``Core``, and amounts get the units that the user chose. Without a translation, as in FreeCAD's
+console, all is English; files that are written are English always.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+
+import FreeCAD as App
+
+from pkm_post.freecad_app.user_units import amount_text
+from pkm_post.model import RULES, Amount, Diagnostic, Extent, Phrase, Place, Refused, Severity
+
+translate = App.Qt.translate
+QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
+
+_SEVERITIES = {
+    Severity.ERROR: QT_TRANSLATE_NOOP("CoreTexts", "error"),
+    Severity.WARNING: QT_TRANSLATE_NOOP("CoreTexts", "warning"),
+}
+_STORED = re.compile(r"(?:(?P<place>.*?): )?(?:error|warning) (?P<code>[A-Z]\d{3}): (?P<rest>.*)", re.DOTALL)
+
+
+def shown(text: str) -> str:
+    """A text of the core: a phrase by its pattern and its values, any other text as a whole."""
+    if not isinstance(text, Phrase):
+        return str(translate("Core", text))
+    named = {name: _shown_value(value) for name, value in text.named.items()}
+    return str(translate("Core", text.pattern)).format(*map(_shown_value, text.values), **named)
+
+
+def _shown_value(value: object) -> object:
+    if isinstance(value, Phrase):
+        return shown(value)
+    if isinstance(value, Diagnostic):
+        return fault_text(value)
+    return amount_text(value.value, value.unit) if isinstance(value, Amount) else value
+
+
+def cause_text(code: str) -> str:
+    """The cause of a fault."""
+    return shown(RULES[code].cause)
+
+
+def cure_text(code: str) -> str:
+    """The cure of a fault."""
+    return shown(RULES[code].cure)
+
+
+def place_text(place: Place) -> str:
+    """File, operation and line; empty for none."""
+    position = ":".join(str(number) for number in (place.line, place.column) if number)
+    line = translate("CoreTexts", "line {}").format(position) if position else ""
+    return ": ".join(filter(None, (place.file, place.operation, line)))
+
+
+def finding_text(fault: Diagnostic) -> str:
+    """Code, cause, what was found, and the cure, without the place."""
+    pattern = translate("CoreTexts", "{code} {cause}: {found}; {cure}")
+    cause, cure = cause_text(fault.code), cure_text(fault.code)
+    return str(pattern.format(code=fault.code, cause=cause, found=_found_text(fault.found), cure=cure))
+
+
+def fault_text(fault: Diagnostic) -> str:
+    """All of a diagnostic in one line: as ``str`` of it, in the language of the user."""
+    severity = translate("CoreTexts", _SEVERITIES[fault.severity])
+    pattern = translate("CoreTexts", "{place}: {severity} {code}: {cause}: {found}; {cure}")
+    return str(
+        pattern.format(
+            place=place_text(fault.place),
+            severity=severity,
+            code=fault.code,
+            cause=cause_text(fault.code),
+            found=_found_text(fault.found),
+            cure=cure_text(fault.code),
+        )
+    )
+
+
+def _found_text(found: str) -> str:
+    """What was found; only phrases are translated, since other text may be words of the input."""
+    return shown(found) if isinstance(found, Phrase) else found
+
+
+def faults_text(faults: Iterable[Diagnostic]) -> str:
+    """Diagnostics, a line each."""
+    return "\n".join(map(fault_text, faults))
+
+
+def exception_text(fault: BaseException) -> str:
+    """The message of an exception; that of one with diagnostics in the language of the user."""
+    if isinstance(fault, Refused):
+        return faults_text(fault.diagnostics)
+    diagnostic = getattr(fault, "diagnostic", None)  # of a DiagnosedError of the link to the controller
+    return str(fault) if diagnostic is None else fault_text(diagnostic)
+
+
+def meaning_lines(coverage: Iterable[Mapping[str, str]]) -> list[str]:
+    """What certified means, from the coverage of a report: a line for each topic, its hazards by extent."""
+    rows, lines = list(coverage), []
+    for topic in dict.fromkeys(row["topic"] for row in rows):
+        by_extent: dict[str, list[str]] = {extent.value: [] for extent in Extent}
+        for row in rows:
+            if row["topic"] == topic:
+                by_extent[row["extent"]].append(shown(row["what"]))
+        parts = (f"{shown(extent)}: {', '.join(hazards)}" for extent, hazards in by_extent.items() if hazards)
+        lines.append(f"{shown(topic)}: {'; '.join(parts)}")
+    return lines
+
+
+def stored_fault(text: str) -> Diagnostic | None:
+    """The diagnostic whose English line a document stores; None for a line with another cause or cure than today's."""
+    match = _STORED.fullmatch(text)
+    rule = RULES.get(match["code"]) if match else None
+    if match is None or rule is None:
+        return None
+    head, tail, rest = f"{rule.cause}: ", f"; {rule.cure}", match["rest"]
+    if not (rest.startswith(head) and rest.endswith(tail)):
+        return None
+    return Diagnostic(match["code"], Place(match["place"] or ""), rest[len(head) : -len(tail)])
+
+
+class ShownRefused(Refused):
+    """A refusal whose message is in the language of the user: FreeCAD shows it as the state of an object."""
+
+    def __str__(self) -> str:
+        return faults_text(self.diagnostics)

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Finding view: shows where a finding of a job is: operation, command, the point in the 3D view, and the machine there.
+
+Takes the place and the code of a finding; selects, marks, turns the camera, and draws the machine of the document in
+its pose, all from the one study of the job. Nothing in the document is changed.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCADGui
+import numpy as np
+from PySide import QtCore, QtWidgets
+
+from pkm_post.freecad_app.document import document_name
+from pkm_post.freecad_app.frames import apply
+from pkm_post.freecad_app.job_setup import placed_job
+from pkm_post.freecad_app.job_study import JobStudy
+from pkm_post.freecad_app.reach_object import machine_for
+from pkm_post.freecad_gui.job_choices import show_place
+from pkm_post.freecad_gui.shapes import OUT, points_through
+from pkm_post.freecad_gui.shown_pose import ShownPose, is_shown, look_at
+from pkm_post.model import Place, Refused
+
+_MARK_SIZE = 11.0
+
+
+class FindingView:
+    """What is shown of a job while a panel is open.
+
+    Args:
+        job: the CAM job.
+    """
+
+    def __init__(self, job: Any) -> None:
+        self._job, self._document = job, job.Document.Name
+        self._pose = ShownPose(machine_for(job))
+        self._study: JobStudy | None = None
+        self._mark: Any = None
+        self._graph: Any = None
+
+    def show(self, operation: str, line: int, code: str = "") -> None:
+        """Show a finding.
+
+        Args:
+            operation: name of the operation in the program.
+            line: number of the command in it.
+            code: of the finding; empty for the end of the command.
+        """
+        show_place(self._job, operation, line)
+        study = self._checked()
+        row = None if study is None else study.row_at(Place(document_name(self._job.Document), operation, line), code)
+        if study is None or row is None:
+            return
+        point = apply(np.linalg.inv(study.reach.trajectory.machine_from_work), study.reach.tip[row][None])[0]
+        self._strike()
+        self._mark = points_through([tuple(point.tolist())], OUT, _MARK_SIZE)
+        view = FreeCADGui.getDocument(self._document).activeView()
+        if hasattr(view, "getSceneGraph"):
+            self._graph = view.getSceneGraph()
+            self._graph.addChild(self._mark)
+        look_at(FreeCADGui.getDocument(self._document), point.tolist())
+        self._pose.show(study, row)
+
+    def end(self) -> None:
+        """Take the mark away, and draw the machine at its own pose again."""
+        self._strike()
+        if is_shown(self._document):
+            self._pose.end()
+        self._study = None
+
+    def _checked(self) -> JobStudy | None:
+        """The study of the job; None where the job cannot be placed on its machine, and has no poses."""
+        QtWidgets.QApplication.setOverrideCursor(QtCore.Qt.CursorShape.WaitCursor)
+        try:
+            self._study = placed_job(self._job, machine_for(self._job)).study()
+        except Refused:
+            self._study = None
+        finally:
+            QtWidgets.QApplication.restoreOverrideCursor()
+        return self._study
+
+    def _strike(self) -> None:
+        if self._graph is not None:
+            self._graph.removeChild(self._mark)
+        self._graph = self._mark = None

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Jog panel: moves the machine of a document by hand, and says at once whether it can stand there.
+
+Takes a machine object; changes its tip, tool axis and spin, by typed values or by steps. The pose is in the work frame.
+Accepting keeps it in one step of undo, cancelling takes it back.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Any
+
+import FreeCAD
+import FreeCADGui
+import numpy as np
+from PySide import QtGui, QtWidgets
+
+from pkm_post.freecad_app.core_texts import shown
+from pkm_post.freecad_app.machine_object import go_home, machine_of, pose_of, violated_limits
+from pkm_post.freecad_app.user_units import amount_text
+from pkm_post.freecad_gui.icons import ICONS
+from pkm_post.freecad_gui.post_fields import quantity_field, show_quantity, tab_through
+from pkm_post.freecad_gui.verdict import Verdict
+from pkm_post.geometry import Array
+
+translate = FreeCAD.Qt.translate
+QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
+
+AXES = (
+    (QT_TRANSLATE_NOOP("JogPanel", "X"), "mm"),
+    (QT_TRANSLATE_NOOP("JogPanel", "Y"), "mm"),
+    (QT_TRANSLATE_NOOP("JogPanel", "Z"), "mm"),
+    (QT_TRANSLATE_NOOP("JogPanel", "Tilt about X"), "deg"),
+    (QT_TRANSLATE_NOOP("JogPanel", "Tilt about Y"), "deg"),
+    (QT_TRANSLATE_NOOP("JogPanel", "Spin"), "deg"),
+)
+"""Label and unit of each way in which the tool moves: of the tip, of the tool axis with the tip at rest, about it."""
+_STEPS = {"mm": 10.0, "deg": 5.0}
+"""The steps at first."""
+_MOST_TILT = 89.0
+NAME = "PkmJogPanel"
+
+
+class JogPanel:
+    """The task panel.
+
+    Attributes:
+        verdict: whether the machine can stand at the pose.
+        fields: value of each of ``AXES``.
+        buttons: the two for each: back and forth.
+        steps: fields of the steps, by unit.
+        home: moves to the home pose.
+    """
+
+    def __init__(self, obj: Any) -> None:
+        self.obj = obj
+        obj.Document.openTransaction(translate("JogPanel", "Jog the machine"))
+        self.form = QtWidgets.QWidget()
+        self.form.setObjectName(NAME)
+        self.form.setWindowTitle(obj.Label)
+        self.form.setWindowIcon(QtGui.QIcon(str(ICONS / "machine.svg")))
+        self.verdict, self.margins = Verdict(), QtWidgets.QLabel()
+        self.margins.setWordWrap(True)
+        self.fields = [quantity_field(unit) for _, unit in AXES]
+        self.steps = {unit: quantity_field(unit) for unit in _STEPS}
+        self.buttons = [tuple(_button(sign, partial(self.step, row, way)) for sign, way in _WAYS) for row in range(6)]
+        self.home = _button(translate("JogPanel", "Home"), self.go_home)
+        self._lay_out()
+        for unit, step in _STEPS.items():
+            show_quantity(self.steps[unit], step, unit)
+        for field in self.fields:
+            field.editingFinished.connect(self.take)
+        self.show()
+
+    def _lay_out(self) -> None:
+        layout, grid = QtWidgets.QVBoxLayout(self.form), QtWidgets.QGridLayout()
+        for row, ((label, _), field, (back, forth)) in enumerate(zip(AXES, self.fields, self.buttons, strict=True)):
+            for column, part in enumerate((QtWidgets.QLabel(translate("JogPanel", label)), back, field, forth)):
+                grid.addWidget(part, row, column)
+        grid.setColumnStretch(2, 1)
+        texts = {"mm": translate("JogPanel", "Step"), "deg": translate("JogPanel", "Turn by")}
+        form = QtWidgets.QFormLayout()
+        for unit, field in self.steps.items():
+            form.addRow(texts[unit], field)
+        layout.addWidget(self.verdict)
+        layout.addLayout(grid)
+        layout.addLayout(form)
+        layout.addWidget(self.home)
+        layout.addWidget(self.margins)
+        layout.addStretch()
+        tab_through([*self.fields, *self.steps.values()])
+
+    def values(self) -> Array:
+        """The pose in the order of ``AXES``, in mm and degrees."""
+        return np.array([*self.obj.Tip, *tilts_of(np.array(self.obj.ToolAxis)), self.obj.Spin.Value])
+
+    def move_to(self, values: Array) -> None:
+        """Move to a pose in the order of ``AXES``; only the machine is computed, its job when the panel is accepted."""
+        obj = self.obj
+        obj.Tip = FreeCAD.Vector(*values[:3].tolist())
+        obj.ToolAxis = FreeCAD.Vector(*axis_of_tilts(*np.clip(values[3:5], -_MOST_TILT, _MOST_TILT)).tolist())
+        obj.Spin = float(values[5])
+        obj.recompute()
+        self.show()
+
+    def step(self, row: int, way: float) -> None:
+        """Move along one of ``AXES`` by its step, forth or back."""
+        values = self.values()
+        values[row] += way * float(self.steps[AXES[row][1]].property("rawValue"))
+        self.move_to(values)
+
+    def take(self) -> None:
+        """Move to what is typed; a value that was not changed keeps the digits that its field does not show."""
+        typed = np.array([float(field.property("rawValue")) for field in self.fields])
+        before = self.values()
+        changed = np.abs(typed - self._shown) > 0.0
+        if changed.any():
+            self.move_to(np.where(changed, typed, before))
+
+    def go_home(self) -> None:
+        """Move to the home pose of the machine."""
+        go_home(self.obj, machine_of(self.obj))
+        self.obj.recompute()
+        self.show()
+
+    def show(self) -> None:
+        """Show the pose, and what the machine says of it."""
+        for field, (_, unit), value in zip(self.fields, AXES, self.values(), strict=True):
+            field.blockSignals(True)
+            show_quantity(field, round(float(value), 6) + 0.0, unit)
+            field.blockSignals(False)
+        self._shown = np.array([float(field.property("rawValue")) for field in self.fields])
+        obj = self.obj
+        if not obj.isValid():
+            self.verdict.say(obj.getStatusString(), False)
+        elif obj.OutOfLimits:
+            limits = [shown(each) for each in violated_limits(machine_of(obj), pose_of(obj))]
+            self.verdict.say("\n".join([translate("JogPanel", "The machine cannot stand here"), *limits]), False)
+        else:
+            self.verdict.say(translate("JogPanel", "The machine can stand here"), True)
+        left = translate("JogPanel", "Left: {} of a stroke, {} of a joint. Struts: {}")
+        struts = ", ".join(amount_text(getattr(obj, f"Strut{number}").Value, "mm") for number in range(1, 7))
+        stroke, joint = amount_text(obj.StrokeMargin.Value, "mm"), amount_text(obj.JointMargin.Value, "deg")
+        self.margins.setText(left.format(stroke, joint, struts))
+
+    def accept(self) -> bool:
+        """Keep the pose; what stands on the machine is computed."""
+        self.obj.Document.commitTransaction()
+        self.obj.Document.recompute()
+        self._close()
+        return True
+
+    def reject(self) -> bool:
+        """Go back to the pose before."""
+        self.obj.Document.abortTransaction()
+        self.obj.Document.recompute()
+        self._close()
+        return True
+
+    def _close(self) -> None:
+        FreeCADGui.getDocument(self.obj.Document.Name).resetEdit()
+
+
+_WAYS = (("−", -1.0), ("+", 1.0))
+
+
+def axis_of_tilts(about_x: float, about_y: float) -> Array:
+    """The tool axis, (3,), of an upright tool that is turned about x, then about y; degrees."""
+    x, y = math.radians(about_x), math.radians(about_y)
+    return np.array([math.cos(x) * math.sin(y), -math.sin(x), math.cos(x) * math.cos(y)])
+
+
+def tilts_of(axis: Array) -> tuple[float, float]:
+    """The turns about x, then about y, in degrees, that bring an upright tool to an axis of any length, (3,)."""
+    x, y, z = axis / np.linalg.norm(axis)
+    return math.degrees(math.asin(max(-1.0, min(1.0, -y)))), math.degrees(math.atan2(x, z))
+
+
+def _button(text: str, action: Any) -> QtWidgets.QPushButton:
+    button = QtWidgets.QPushButton(text)
+    button.setAutoDefault(False)
+    button.clicked.connect(lambda: action())
+    return button

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Surface Finish outcome: what came of the operation, at the top of its page, and as a coloured map on the part.
+
+Takes the operation; shows in green or red whether it gouges, then what the study of the whole job finds of it. The
+study runs in the background, and is that of Reach and Simulation. Documents keep the worst values, not the map: of an
+operation that was computed in another session a button computes it again.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import FreeCAD
+import FreeCADGui
+
+from pkm_post.freecad_app.arguments import POST_PROCESSORS
+from pkm_post.freecad_app.core_texts import cure_text, fault_text
+from pkm_post.freecad_app.document import job_of
+from pkm_post.freecad_app.fixtures import operation_named
+from pkm_post.freecad_app.job_setup import placed_job
+from pkm_post.freecad_app.job_study import JobStudy
+from pkm_post.freecad_app.reach_object import machine_for, violations_of
+from pkm_post.freecad_app.user_units import amount_text
+from pkm_post.freecad_gui.background import BackgroundCall
+from pkm_post.freecad_gui.deviation_map import measured_map
+from pkm_post.freecad_gui.finding_view import FindingView
+from pkm_post.freecad_gui.observers import RecomputeWatch
+from pkm_post.freecad_gui.verdict import FindingRows, Verdict
+from pkm_post.model import Diagnostic, Refused, Severity, errors
+
+translate = FreeCAD.Qt.translate
+
+
+class SurfaceFinishOutcome:
+    """What is shown of an operation while its page is open.
+
+    Args:
+        obj: the operation.
+        verdict: the line for it.
+        findings: the rows for what the job has of it.
+        again: the button that measures again where there is no map.
+    """
+
+    def __init__(self, obj: Any, verdict: Verdict, findings: FindingRows, again: Any) -> None:
+        self._obj, self._verdict, self._rows, self._again = obj, verdict, findings, again
+        self._document, self._map, self._task = obj.Document.Name, None, None
+        self._study: JobStudy | None = None
+        self._graph: Any = None
+        self._found: list[Diagnostic] = []
+        self._view = FindingView(job_of(obj))
+        self._watch = RecomputeWatch(self.show, self._document)
+        findings.picked.connect(self._show_finding)
+        again.clicked.connect(lambda: self._measure_again())
+
+    def show(self) -> None:
+        """Show what the last computation gave, and begin to check the job."""
+        self._strike()
+        self._stop()
+        self._rows.take(())
+        obj, measured = self._obj, self._obj.Proxy.measured
+        if measured is not None:
+            self._map = measured_map(measured, obj.ChordTolerance.Value)
+            view = FreeCADGui.getDocument(self._document).activeView()
+            if hasattr(view, "getSceneGraph"):
+                self._graph = view.getSceneGraph()
+                self._graph.addChild(self._map)
+        self._verdict.say(*_verdict(obj))
+        self._again.setVisible(measured is None and obj.CheckSpacing.Value > 0.0 and "Touched" not in obj.State)
+        if obj.isValid() and obj.Path.Size and job_of(obj).PostProcessor in POST_PROCESSORS:
+            self._check()
+
+    def end(self) -> None:
+        """Take the map away, and stop checking."""
+        self._watch.end()
+        self._stop()
+        self._view.end()
+        self._strike()
+
+    def _measure_again(self) -> None:
+        """Compute the operation once more: the watch of recomputes shows the result."""
+        self._obj.touch()
+        self._obj.Document.recompute()
+
+    def _check(self) -> None:
+        job = job_of(self._obj)
+        try:
+            placed = placed_job(job, machine_for(job))
+        except Refused as refused:
+            self._take(refused.diagnostics)
+            return
+        self._task = BackgroundCall(placed.study, FreeCADGui.getMainWindow())
+        self._task.finished.connect(self._task.deleteLater)
+        self._task.finished.connect(self._checked)
+        self._task.start()
+
+    def _checked(self) -> None:
+        task, self._task = self._task, None
+        if task is not None:
+            self._study = task.value()
+            self._take(violations_of(self._study))
+
+    def _take(self, found: Any) -> None:
+        """Show what concerns this operation, and whether the machine can follow it."""
+        job = job_of(self._obj)
+        self._found = [each for each in found if operation_named(job, each.place.operation) in (None, self._obj)]
+        self._rows.take([
+            (fault_text(each), each.severity is Severity.ERROR, cure_text(each.code)) for each in self._found
+        ])  # fmt: skip
+        text, holds = _verdict(self._obj)
+        if holds is not False:
+            follows = not errors(self._found)
+            said = _follows() if follows else translate("SurfaceFinish", "The machine cannot follow")
+            self._verdict.say(f"{text}\n{said}", follows)
+
+    def _show_finding(self, row: int) -> None:
+        found = self._found[row]
+        self._view.show(found.place.operation, found.place.line, found.code)
+
+    def _stop(self) -> None:
+        """Let a check that is running end by itself, unseen: the window does not wait for it."""
+        if self._task is not None:
+            self._task.finished.disconnect(self._checked)
+            self._task = None
+
+    def _strike(self) -> None:
+        if self._graph is not None:
+            self._graph.removeChild(self._map)
+        self._graph = self._map = None
+
+
+def _follows() -> str:
+    return translate("SurfaceFinish", "The machine can follow")
+
+
+def _verdict(obj: Any) -> tuple[str, bool | None]:
+    """What the operation says of itself."""
+    if not obj.isValid():
+        return obj.getStatusString(), False
+    if not obj.Path.Size or "Touched" in obj.State:
+        return translate("SurfaceFinish", "Not computed yet: Apply computes it"), None
+    if obj.MaximumGouge < 0.0:
+        return translate("SurfaceFinish", "Gouges are not looked for: set a distance of check points"), None
+    text = translate(
+        "SurfaceFinish",
+        "No gouge: {} at the deepest, between the points at most {} deeper; {} left at most, at points {} apart",
+    )
+    values = (obj.MaximumGouge, obj.UnseenGouge, obj.MaximumExcess, obj.CheckSpacing.Value)
+    return text.format(*(amount_text(float(value), "mm") for value in values)), True

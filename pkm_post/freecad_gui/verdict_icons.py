@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Verdict icons: job and operations in the tree carry what Reach, Simulation or a post found, in green or red.
+
+Takes the reach and simulation objects of a document; gives icons with a sign in a corner. CAM's view providers for jobs
+and operations are extended before their first object exists, since FreeCAD keeps what their ``getIcon`` was then.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import FreeCAD
+from PySide import QtCore, QtGui
+
+from pkm_post.freecad_app.document import is_job, is_operation, job_of
+from pkm_post.freecad_app.startup import when_imported
+
+if TYPE_CHECKING:
+    from pkm_post.model import Diagnostic
+
+_SIZE, _SIGN = 64, 34
+"""Pixels of an icon, and of the sign in its lower right corner."""
+_COLOURS = {True: "#1b7f3b", False: "#b3261e"}
+_STROKES = {
+    True: ((0.25, 0.55), (0.43, 0.72), (0.76, 0.30)),
+    False: ((0.30, 0.30), (0.70, 0.70), (0.50, 0.50), (0.30, 0.70), (0.70, 0.30)),
+}
+"""Lines of the tick and the cross, as shares of the sign: not everybody can distinguish the colours."""
+_OWNERS = {"Path.Op.Gui.Base": "Object", "Path.Main.Gui.Job": "obj"}
+"""CAM's modules with a class ViewProvider, and its attribute with the displayed object."""
+_ERROR = re.compile(r" error [A-Z]\d+: ")
+"""In the stored text of a finding that forbids posting."""
+_SAYS = {"Violations": ("Reachable", "Checks"), "ProblemTimes": ("Followable", "Blocks")}
+"""Properties of Reach and of Simulation by one that none but them has: the verdict, and what is there once computed."""
+_ON_THE_MACHINE = ("K", "V")
+"""Families of errors that say something of the job; others are of files, arguments and operations without a path."""
+_HARMLESS = ("Visibility", "LastPostProcessDate", "LastPostProcessOutput")
+"""Properties of job, operations, tools and models that change nothing of what was posted."""
+
+
+@dataclass(frozen=True)
+class _Post:
+    """The last post of a job; it is forgotten when something of the job changes.
+
+    Attributes:
+        of: names of the job and all that it depends on.
+        holds: whether it was certified; None while it goes on.
+        faulty: names of operations with an error.
+    """
+
+    of: frozenset[str]
+    holds: bool | None = None
+    faulty: frozenset[str] = frozenset()
+
+
+_POSTS: dict[tuple[str, str], _Post] = {}
+"""By names of document and job."""
+_WATCHES: list[_Watch] = []
+
+
+def install() -> None:
+    """Extend CAM's view providers, now or when they are imported, and follow documents."""
+    for module, attribute in _OWNERS.items():
+        when_imported(module, _extension(attribute))
+    if not _WATCHES:
+        _WATCHES.append(_Watch())
+        FreeCAD.addDocumentObserver(_WATCHES[0])
+
+
+def keep_verdict(job: Any, findings: Iterable[Diagnostic] | None) -> None:
+    """Keep what a post found of a job, until something of the job changes.
+
+    Args:
+        job: the job.
+        findings: of the post; None when it begins: if the job changes before its end, they are not of this job.
+    """
+    key = job.Document.Name, job.Name
+    if findings is None:
+        _POSTS[key] = _Post(frozenset({job.Name, *(each.Name for each in job.OutListRecursive)}))
+    elif key in _POSTS:
+        found = [each for each in findings if each.severity.value == "error"]
+        if found and not any(each.code.startswith(_ON_THE_MACHINE) for each in found):
+            del _POSTS[key]
+        else:
+            faulty = frozenset(each.place.operation for each in found)
+            _POSTS[key] = replace(_POSTS[key], holds=not found, faulty=faulty)
+    for watch in _WATCHES:
+        watch.refresh_later(job.Document.Name)
+
+
+def verdict_of(item: Any) -> bool | None:
+    """What Reach, Simulation or a post says of a job, an operation or itself: whether the machine can follow, or None.
+
+    It is unknown without any of them, and while one of them, the job, the operation or its base waits to be recomputed.
+    """
+    if item is None or not hasattr(item, "State") or _waits(item):
+        return None
+    if _knows(item):
+        holds, computed = _SAYS[next(name for name in _SAYS if hasattr(item, name))]
+        return bool(getattr(item, holds)) if getattr(item, computed) and item.isValid() else None
+    job = job_of(item) if is_job(item) or is_operation(item) else None
+    known = [] if job is None else [each for each in job.InList if _knows(each) and each.Job == job]
+    post = None if job is None else _POSTS.get((job.Document.Name, job.Name))
+    said = [verdict_of(each) for each in known] + ([] if post is None or post.holds is None else [post.holds])
+    if None in said or not said:
+        return None
+    if is_job(item):
+        return all(said)
+    if getattr(item, "Active", True) is False or item not in job.Operations.Group:
+        return None
+    named = post.faulty if post is not None else ()
+    return not (any(_is_faulty(item, job, each) for each in known) or _is_named(item, job, named))
+
+
+def _waits(item: Any) -> bool:
+    """Whether an object, or the operation that it is made from, waits to be recomputed."""
+    while hasattr(item, "State"):
+        if "Touched" in item.State:
+            return True
+        item = getattr(item, "Base", None)  # of a dress-up or a copy; faces of other operations have no state
+    return False
+
+
+def _knows(item: Any) -> bool:
+    """Whether an object is a Reach or a Simulation."""
+    return any(hasattr(item, name) for name in _SAYS)
+
+
+def _is_faulty(operation: Any, job: Any, known: Any) -> bool:
+    """Whether an error that Reach or Simulation found is in an operation."""
+    if hasattr(known, "Violations"):
+        found = zip(known.ViolationOperations, known.Violations, strict=False)
+        names = {name for name, text in found if _ERROR.search(text)}
+    else:
+        names = set(known.WorstOperations)
+    return _is_named(operation, job, names)
+
+
+def _is_named(operation: Any, job: Any, names: Iterable[str]) -> bool:
+    """Whether one of the names that operations have in programs is that of an operation."""
+    from pkm_post.freecad_app.fixtures import operation_named  # CAM is loaded by then, and not when FreeCAD starts
+
+    return any(operation_named(job, name) == operation for name in names)
+
+
+def with_verdict(icon: Any, item: Any) -> Any:
+    """An icon, with a sign if the verdict of its object is known.
+
+    Args:
+        icon: the name of a file or a resource; what is none stays as it is.
+        item: the object.
+    """
+    verdict = verdict_of(item)
+    return icon if verdict is None or not isinstance(icon, str) else _signed(icon, verdict)
+
+
+@lru_cache(maxsize=64)
+def _signed(icon: str, verdict: bool) -> QtGui.QIcon:
+    picture = QtGui.QPixmap(_SIZE, _SIZE)
+    picture.fill(QtCore.Qt.GlobalColor.transparent)
+    painter = QtGui.QPainter(picture)
+    painter.setRenderHint(QtGui.QPainter.RenderHint.Antialiasing)
+    QtGui.QIcon(icon).paint(painter, 0, 0, _SIZE, _SIZE)
+    corner = _SIZE - _SIGN
+    painter.setPen(QtCore.Qt.PenStyle.NoPen)
+    painter.setBrush(QtGui.QColor(_COLOURS[verdict]))
+    painter.drawEllipse(corner, corner, _SIGN, _SIGN)
+    pen = QtGui.QPen(QtGui.QColor("white"))
+    pen.setWidth(_SIGN // 7)
+    painter.setPen(pen)
+    painter.setBrush(QtCore.Qt.BrushStyle.NoBrush)
+    points = [QtCore.QPointF(corner + x * _SIGN, corner + y * _SIGN) for x, y in _STROKES[verdict]]
+    painter.drawPolyline(QtGui.QPolygonF(points))
+    painter.end()
+    return QtGui.QIcon(picture)
+
+
+def _extension(attribute: str) -> Callable[[ModuleType], None]:
+    def extend(module: ModuleType) -> None:
+        provider = module.ViewProvider
+        own = provider.getIcon
+        if getattr(own, "has_verdict", False):
+            return
+
+        def getIcon(view: Any) -> Any:
+            return with_verdict(own(view), getattr(view, attribute, None))
+
+        getIcon.has_verdict = True  # type: ignore[attr-defined]
+        provider.getIcon = getIcon
+
+    return extend
+
+
+class _Watch:
+    """A document observer; FreeCAD calls its slots. It refreshes the icons of documents with verdicts."""
+
+    def __init__(self) -> None:
+        self._documents: set[str] = set()
+        self._later = QtCore.QTimer()
+        self._later.setSingleShot(True)
+        self._later.timeout.connect(self._refresh)
+
+    def refresh_later(self, document: str) -> None:
+        """Refresh the icons of a document when FreeCAD comes to it."""
+        self._documents.add(document)
+        self._later.start(0)
+
+    def slotRecomputedDocument(self, document: Any) -> None:
+        """What Reach says may be another thing."""
+        if any(_knows(each) for each in document.Objects):
+            self.refresh_later(document.Name)
+
+    def slotDeletedDocument(self, document: Any) -> None:
+        """Another document may get the name."""
+        for key in [key for key in _POSTS if key[0] == document.Name]:
+            del _POSTS[key]
+
+    def slotChangedObject(self, item: Any, name: str) -> None:
+        """What Reach said is old, if the object waits to be recomputed; so is a post's verdict, if its job has it."""
+        if name not in _HARMLESS:
+            here = item.Document.Name
+            for key in [key for key, post in _POSTS.items() if key[0] == here and item.Name in post.of]:
+                del _POSTS[key]
+        if item.Document.Name in self._documents and not self._later.isActive():
+            self._later.start(0)
+
+    def slotDeletedObject(self, item: Any) -> None:
+        """A reach object goes, and with it what it says."""
+        self.slotChangedObject(item, "")
+
+    def _refresh(self) -> None:
+        self._documents &= set(FreeCAD.listDocuments())
+        for name in self._documents:
+            for job in filter(is_job, FreeCAD.getDocument(name).Objects):
+                for item in (job, *job.Operations.Group, *filter(_knows, job.InList)):
+                    item.ViewObject.signalChangeIcon()

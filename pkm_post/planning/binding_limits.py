@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Binding limits: which limits of a motion can bind at all, known before the motion is.
+
+The limits themselves bound what it can do: the speed squared x is at most its ceiling, and at most that at which the
+curvature of a vector takes all of its acceleration; then each acceleration |y' a + y'' x| <= A bounds a, and each jerk
+|y' k + 3 y'' a + y''' x| sqrt(x) <= J bounds k sqrt(x). A limit that stays below its bound with all of these can be
+left out: the ones that are left imply it. Of six struts and a tip few remain. Enters: weights of ``motion_limits``.
+Leaves: ``Limits`` without the others. Units: mm, s.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pkm_post.geometry import Array
+from pkm_post.planning.motion_limits import Limits
+from pkm_post.planning.speed_limits import NO_LIMIT
+from pkm_post.planning.speed_spline import CellEnds
+
+_BINDS = 0.95
+"""Use of a limit from which on it counts as one that can bind."""
+
+
+@dataclass(frozen=True)
+class Weights:
+    """Weights of one quantity, divided by its bound, as those of ``Limits``.
+
+    Attributes:
+        table: (3, R, E) of the change of acceleration, of acceleration and of speed squared, for R numbers.
+        each: whether each number has the bound for itself; else they are one vector.
+    """
+
+    table: Array
+    each: bool
+
+    def sizes(self) -> Array:
+        """Their magnitudes by group, (3, G, E)."""
+        return np.abs(self.table) if self.each else np.sqrt((self.table**2).sum(axis=1, keepdims=True))
+
+    def across(self) -> Array:
+        """Of a vector, how much of the weight of the speed squared is across that of the acceleration, (E,)."""
+        along, square = self.table[1], self.table[2]
+        length = (along**2).sum(axis=0)
+        share = np.divide((along * square).sum(axis=0), length, out=np.zeros_like(length), where=length > 0)
+        return np.sqrt(((square - share * along) ** 2).sum(axis=0))
+
+
+@dataclass(frozen=True)
+class Highest:
+    """The most that a motion can have at E ends of cells.
+
+    Attributes:
+        square: (E,) speed squared.
+        along: (E,) acceleration along the path.
+        change: (E,) its change by path length times the speed: the jerk along the path.
+    """
+
+    square: Array
+    along: Array
+    change: Array
+
+    @classmethod
+    def of(cls, ceiling: Array, accelerations: tuple[Weights, ...], jerks: tuple[Weights, ...]) -> Highest:
+        """The most by ceilings of the speed squared, (E,), and all limits."""
+        square, along, change = ceiling, np.full(len(ceiling), NO_LIMIT), np.full(len(ceiling), NO_LIMIT)
+        with np.errstate(divide="ignore"):
+            for one in accelerations:
+                square = square if one.each else np.minimum(square, 1 / one.across())
+        for one in accelerations:
+            _, slope, level = one.sizes()
+            along = _lowered(along, 1 + level * square, slope)
+        for one in jerks:
+            first, slope, level = one.sizes()
+            change = _lowered(change, 1 + (slope * along + level * square) * np.sqrt(square), first)
+        return cls(square, along, change)
+
+    def binding(self, one: Weights, jerk: bool) -> Array:
+        """Whether limits of acceleration, or of jerk, can bind, (G, E)."""
+        first, slope, level = one.sizes()
+        use = slope * self.along + level * self.square
+        return np.asarray((first * self.change + use * np.sqrt(self.square) if jerk else use) > _BINDS)
+
+    def limits(self, ends: CellEnds, weights: tuple[Weights, ...], factor: Array, jerk: bool) -> list[Limits]:
+        """The limits that can bind, with weights that are larger by a factor, (E,); those of numbers are one set."""
+        found, ends_of_numbers, numbers = [], [], []
+        for one in weights:
+            group, end = np.nonzero(self.binding(one, jerk))
+            if one.each:
+                ends_of_numbers.append(end)
+                numbers.append(one.table[:, group, end][:, None] * factor[end])
+            elif len(end):
+                found.append(Limits(ends.taken(end), one.table[..., end] * factor[end], jerk))
+        if sum(map(len, ends_of_numbers)):
+            found.append(Limits(ends.taken(np.concatenate(ends_of_numbers)), np.concatenate(numbers, axis=2), jerk))
+        return found
+
+
+def _lowered(values: Array, bound: Array, size: Array) -> Array:
+    """Values, (E,), or less where a bound divided by one of the sizes is less, (G, E) both."""
+    quotient = np.divide(bound, size, out=np.full_like(size, NO_LIMIT), where=size * NO_LIMIT > bound)
+    return np.minimum(values, quotient.min(axis=0))

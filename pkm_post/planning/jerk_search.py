@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Jerk search: the iterates of the search for the fastest motion with jerk limits, in one window.
+
+Its places are at first those of the window. The fastest motion with them is found (``interior_point``). A cell that
+uses no limit to the full at one of its ends is too wide: it is to be halved, and the motion found once more. In the
+middle of cells the limits are looked at as well: where they are broken there, the ends are to be slower. Units: mm, s.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from pkm_post.geometry import Array
+from pkm_post.model import Machine
+from pkm_post.planning.interior_point import Solution, State, fastest
+from pkm_post.planning.jerk_demands import Demands
+from pkm_post.planning.jerk_start import long_held, unknowns, with_middles
+from pkm_post.planning.jerk_windows import Places
+from pkm_post.planning.motion_limits import Limits
+from pkm_post.planning.speed_profile import Stations
+from pkm_post.planning.speed_spline import SpeedSpline, durations, within_cells
+from pkm_post.planning.tool_path import ToolPath
+
+TOO_FAST = 5e-3
+"""Share of its speed by which a motion may be too fast."""
+TOO_SLOW = 5e-4
+"""Share of the time from rest to rest that may be lost by limits that were lowered in vain."""
+_WASTE = 0.04
+"""Share of the time from rest to rest that may pass without the full use of a limit."""
+_WORTH = 3.0
+"""A cell is halved that takes so many times its part of that."""
+_LEAST = 1e-3
+"""An unknown is at least this share of the speed squared about it."""
+_BESIDE = 8
+"""Cells on either side of one that is too fast that are on no plateau any more."""
+_BESIDE_FIXED = 2
+"""Cells on either side of what cannot be given up whose limits are not lowered."""
+
+
+class NotFoundError(Exception):
+    """There is no motion between borders."""
+
+
+@dataclass(frozen=True)
+class Iterate:
+    """A motion under search.
+
+    Attributes:
+        spline: its M places.
+        demands: what the path demands at them.
+        slower: (M - 1,) factor by which each cell is to be slower than its limits allow.
+        held: (M - 1,) speed squared of cells that are held, NaN of others.
+        room: (M - 1,) factor by which a cell could be slower whose speed cannot be given up, infinite for others.
+        unknowns: (N,) of the spline.
+        states: what the last search knows of the limits, if it had the same unknowns.
+    """
+
+    spline: SpeedSpline
+    demands: Demands
+    slower: Array
+    held: Array
+    room: Array
+    unknowns: Array
+    states: tuple[State, ...] = ()
+
+    @classmethod
+    def of(cls, path: ToolPath, marks: Stations, machine: Machine, places: Places) -> Iterate:
+        """The motion to begin with."""
+        demands = Demands.at(path, machine, marks, with_middles(places.s))
+        spline, slower = SpeedSpline.of(places.s, places.rest), np.ones(len(places.held))
+        first = unknowns(spline, places.fastest, places.held)
+        return cls(spline, demands, slower, places.held, places.room, first)
+
+    @functools.cached_property
+    def limits(self) -> tuple[Limits, ...]:
+        """The limits at ends of cells where an unknown counts that is not held."""
+        return self.demands.limits(self.spline, self.slower, self.held[self.spline.left])
+
+    def searched(self, enough: float) -> Iterate:
+        """The fastest motion with these places; without plateaus if it cannot be found between them.
+
+        Raises:
+            NotFoundError: it cannot be found between borders.
+        """
+        free = np.isnan(self.held[self.spline.left])
+        found = fastest(self.spline.weight[free], self.limits, Solution(self.unknowns[free], self.states), enough)
+        if not found.reached and not free.all():
+            held = np.where(np.isfinite(self.room), self.held, np.nan)
+            if np.array_equal(held, self.held, equal_nan=True):
+                raise NotFoundError
+            return replace(self, held=held, states=()).searched(enough)
+        unknowns = self.unknowns.copy()
+        unknowns[free] = found.unknowns
+        iterate = replace(self, unknowns=unknowns, states=found.states)
+        vars(iterate)["limits"] = self.limits  # as they were computed
+        return iterate
+
+    def at_places(self) -> tuple[Array, Array]:
+        """Speed squared and acceleration, (M,) each."""
+        return self.spline.at_places(self.unknowns)
+
+    def pace(self) -> Array:
+        """The speed on each cell relative to the highest that its limits allow, (M - 1,); 1 where it is held."""
+        faster = self.demands.in_middle(*self.at_places())
+        for one in self.limits:
+            use = one.use(one.ends.values(self._free()))
+            factor = (np.cbrt(use) if one.jerk else np.sqrt(use)) / self.slower[one.ends.cell]
+            np.maximum.at(faster, one.ends.cell, factor)
+        searched = np.zeros(len(faster), dtype=np.bool_)  # the limits allow what is held
+        searched[self.spline.ends.where_free(self.held[self.spline.left]).cell] = True
+        return np.where(searched, faster, 1.0)
+
+    def needlessly_slow(self, pace: Array) -> bool:
+        """Whether much time from rest to rest passes below limits on cells whose limits were lowered."""
+        duration = durations(np.diff(self.spline.s), *self.at_places())
+        lost = np.where(self.slower > 1, duration * (1 - np.minimum(pace, 1.0)), 0.0)
+        run = np.cumsum(self.spline.rest)[:-1] - 1
+        return bool((np.bincount(run, lost) > TOO_SLOW * np.bincount(run, duration)).any())
+
+    def too_wide(self) -> Array:
+        """Cells on which too much time passes without the full use of a limit, (M - 1,)."""
+        at_place, at_end = np.zeros(len(self.spline.s)), np.zeros((2, len(self.held)))
+        for one in self.limits:
+            use = one.use(one.ends.values(self._free()))
+            cell, place = one.ends.cell, one.ends.place
+            if one.jerk:
+                np.maximum.at(at_end, (place - cell, cell), use)
+            else:
+                np.maximum.at(at_place, place, use)
+        ends, least = self.spline.ends.where_free(self.held[self.spline.left]), np.ones(len(self.held))
+        used = np.maximum(at_end[ends.place - ends.cell, ends.cell], at_place[ends.place])
+        np.minimum.at(least, ends.cell, used)
+        duration = durations(np.diff(self.spline.s), *self.at_places())
+        run, waste = np.cumsum(self.spline.rest)[:-1] - 1, duration * (1 - least)
+        allowed = _WASTE * np.bincount(run, duration)
+        share = np.where(np.bincount(run, waste) > allowed, _WORTH * allowed / np.bincount(run), np.inf)
+        return np.asarray(waste > share[run])
+
+    def _free(self) -> Array:
+        return self.unknowns[np.isnan(self.held[self.spline.left])]
+
+    def at_pace(self, pace: Array) -> Iterate:
+        """The same motion, with lower limits and no plateaus where it is too fast.
+
+        Where limits were lowered before, and it is slower than it may be, they are raised again: cells beside wide ones
+        were too fast only as long as these were wide.
+        """
+        fixed = np.isfinite(self.room)
+        held = long_held(np.where(_widened(pace > 1 + TOO_FAST, _BESIDE) & ~fixed, np.nan, self.held))
+        pace = np.where(_widened(~np.isnan(held) & ~fixed, _BESIDE), np.minimum(pace, 1.0), pace)
+        most = sliding_window_view(np.pad(self.room, _BESIDE_FIXED, mode="edge"), 2 * _BESIDE_FIXED + 1).min(axis=1)
+        slower = np.clip(self.slower * pace, 1.0, most)  # no lower limit beside what cannot change
+        same = np.array_equal(held, self.held, equal_nan=True)
+        return replace(self, slower=slower, held=held, states=self.states if same else ())
+
+    def halved(self, cut: Array, path: ToolPath, marks: Stations, machine: Machine) -> Iterate:
+        """The same motion with some cells cut into halves."""
+        spline = SpeedSpline.of(*_inserted(self.spline, self.demands.s[1::2][cut], cut))
+        demands = self.demands.joined(Demands.at(path, machine, marks, _new_middles(spline.s, cut)))
+        slower, held, room = (np.repeat(one, 1 + cut) for one in (self.slower, self.held, self.room))
+        found, known = _carried_over(self.spline, *self.at_places(), spline), held[spline.left]
+        return Iterate(spline, demands, slower, held, room, np.where(np.isnan(known), found, known))
+
+
+def _widened(cells: Array, by: int) -> Array:
+    """Cells that are marked, or have one near them that is."""
+    return np.asarray(np.convolve(cells, np.ones(2 * by + 1))[by:-by] > 0)
+
+
+def _inserted(spline: SpeedSpline, middles: Array, cut: Array) -> tuple[Array, Array]:
+    row = np.flatnonzero(cut) + 1
+    return np.insert(spline.s, row, middles), np.insert(spline.rest, row, False)
+
+
+def _new_middles(s: Array, cut: Array) -> Array:
+    """Middles of the halves of the cells that were cut."""
+    return np.asarray(((s[1:] + s[:-1]) / 2)[np.repeat(cut, 1 + cut)])
+
+
+def _carried_over(spline: SpeedSpline, square: Array, acceleration: Array, new: SpeedSpline) -> Array:
+    """The unknowns at the places of another spline, of the same motion."""
+    cell = np.clip(np.searchsorted(spline.s, new.s, side="right") - 1, 0, len(spline.s) - 2)
+    x, a = within_cells(spline.s, square, acceleration, cell, new.s)
+    least = _LEAST * np.minimum(x[new.left], x[new.left + 1])
+    return np.maximum(new.unknowns(x, a), least)

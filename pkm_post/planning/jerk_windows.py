@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Jerk windows: the parts of a path whose motions with jerk limits are found one by one, and put together again.
+
+A search pays for each of its cells, and goes on until the last of them has settled. So a path is cut into windows of
+some thousand cells: at rests, on plateaus, and where there is neither within a window's length, where holding an even
+speed over a few cells costs the least time. Cells at both ends of a window are held at the speed squared of the border,
+which the limits allow for sure, so neighbours do not depend on one another. Within plateaus places are left out: the
+motion is known there. Units: mm, s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from pkm_post.geometry import Array
+
+_FREE_CELLS = 8192
+"""Cells of a window that are searched: half as many again at most, where a border or a rest is within reach."""
+_BORDER = 6
+"""Cells of a border, which both of its windows have."""
+_JOIN = 3
+"""Cells of a border in the first of its windows."""
+_ABOUT = 4
+"""Cells on either side of a border that allow its speed as well."""
+_LOWER = 0.95
+"""Factor of the speed squared of a border that is not on a plateau, so that limits beside it may be lowered."""
+_INSIDE = 16
+"""Cells at the ends of a plateau that stay: as many may be given up when a limit is exceeded beside it."""
+_KEPT = 3
+"""Cells beside the inner of a plateau that are not given up."""
+
+
+@dataclass(frozen=True)
+class Places:
+    """Places of a spline, and what is known of the motion before it is searched.
+
+    Attributes:
+        s: (M,) path length, increasing.
+        rest: (M,) whether the motion stops there.
+        fastest: (M,) speed squared to begin with.
+        held: (M - 1,) speed squared of cells on plateaus, NaN of others.
+        steady: (M - 1,) even speed squared that the limits allow in each cell.
+        room: (M - 1,) factor by which a cell could be slower whose speed cannot be given up, infinite for others.
+    """
+
+    s: Array
+    rest: Array
+    fastest: Array
+    held: Array
+    steady: Array
+    room: Array
+
+    def thinned(self) -> Places:
+        """Without the places inside plateaus."""
+        known = ~np.isnan(self.held)
+        begin = np.flatnonzero(np.append(True, known[1:] != known[:-1]))
+        length = np.diff(np.append(begin, len(known)))
+        number = np.arange(len(known)) - np.repeat(begin, length)
+        inside = known & (number >= _INSIDE) & (np.repeat(length, length) - 1 - number >= _INSIDE)
+        kept = np.flatnonzero(np.concatenate([[True], ~(inside[1:] & inside[:-1]), [True]]))
+        wide = np.diff(kept) > 1
+        cell = kept[:-1]
+        fixed = (np.convolve(wide, np.ones(2 * _KEPT + 1))[_KEPT:-_KEPT] > 0) & known[cell]
+        return Places(
+            s=self.s[kept],
+            rest=self.rest[kept],
+            fastest=self.fastest[kept],
+            held=self.held[cell],
+            steady=np.minimum.reduceat(self.steady, cell),
+            room=np.where(fixed, 1.0, np.inf),
+        )
+
+    def with_nothing_held(self) -> Places:
+        """The same places, all of which are to be searched."""
+        return replace(self, held=np.full(len(self.held), np.nan), room=np.full(len(self.held), np.inf))
+
+    def part(self, first: int, last: int) -> Places:
+        """From one place to another; both count as rests."""
+        rest = self.rest[first : last + 1].copy()
+        rest[[0, -1]] = True
+        cells = slice(first, last)
+        columns = self.held[cells], self.steady[cells], self.room[cells]
+        return Places(self.s[first : last + 1], rest, self.fastest[first : last + 1], *columns)
+
+
+@dataclass(frozen=True)
+class Window:
+    """A part of the places, and from where to where its motion counts."""
+
+    places: Places
+    begin: float
+    end: float
+
+
+@dataclass(frozen=True)
+class _Borders:
+    """Borders that begin in each of K cells: their speeds squared, and the seconds that they cost."""
+
+    level: Array
+    loss: Array
+
+    @classmethod
+    def of(cls, places: Places) -> _Borders:
+        lowest = np.minimum(places.steady, np.minimum(places.fastest[1:], places.fastest[:-1]))
+        level = _LOWER * _windows(_lowest_about(lowest)).min(axis=1)
+        on_plateau = ~np.isnan(places.held)
+        even = _windows(on_plateau).all(axis=1)
+        level = np.where(even, places.held[: len(level)], level)
+        width, mean = np.diff(places.s), (places.fastest[1:] + places.fastest[:-1]) / 2
+        way, time = (_windows(one).sum(axis=1) for one in (width, width / np.sqrt(mean)))
+        possible = ~sliding_window_view(places.rest, _BORDER + 1).any(axis=1) & (level > 0)
+        with np.errstate(divide="ignore"):
+            loss = np.where(even, 0.0, way / np.sqrt(level) - time)
+        return cls(level, np.where(possible, loss, np.inf))
+
+
+def windows(places: Places, free_cells: int = _FREE_CELLS) -> Iterator[Window]:
+    """The windows of some places, in order."""
+    searched = np.append(0, np.cumsum(np.isnan(places.held)))
+    if searched[-1] <= 1.5 * free_cells:
+        yield Window(places, places.s[0], places.s[-1])
+        return
+    borders, held, room = _Borders.of(places), places.held.copy(), places.room.copy()
+    rests, last = np.flatnonzero(places.rest), len(places.s) - 1
+    first, begin = 0, 0
+    while searched[last] - searched[first] > 1.5 * free_cells:
+        low, high = np.searchsorted(searched, searched[first] + free_cells * np.array([0.5, 1.5]))
+        found = rests[np.searchsorted(rests, low) : np.searchsorted(rests, high)]
+        if len(found):
+            next_first, join, end = found[-1], found[-1], found[-1]
+        else:
+            cell = low + int(np.argmin(borders.loss[low:high])) if low < len(borders.loss) else low
+            if cell >= len(borders.loss) or not np.isfinite(borders.loss[cell]):
+                break
+            border = slice(cell, cell + _BORDER)
+            held[border] = borders.level[cell]
+            room[border] = np.sqrt(np.maximum(places.steady[border] / held[border], 1.0))
+            next_first, join, end = cell, cell + _JOIN, cell + _BORDER
+        yield _window(places, held, room, first, end, begin, join)
+        first, begin = next_first, join
+    yield _window(places, held, room, first, last, begin, last)
+
+
+def _window(places: Places, held: Array, room: Array, first: int, last: int, begin: int, end: int) -> Window:
+    whole = Places(places.s, places.rest, places.fastest, held, places.steady, room)
+    return Window(whole.part(first, last), places.s[begin], places.s[end])
+
+
+def _lowest_about(values: Array) -> Array:
+    """The least of the values of each cell and its neighbours."""
+    return np.asarray(sliding_window_view(np.pad(values, _ABOUT, mode="edge"), 2 * _ABOUT + 1).min(axis=1))
+
+
+def _windows(values: Array) -> Array:
+    return sliding_window_view(values, _BORDER)

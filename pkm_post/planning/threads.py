@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Threads: the turns of a spindle that is an axis, and what it limits.
+
+Enters: a trajectory with threads, its machine, and the motion at the knots. Leaves: the share of the acceleration that
+the spindle allows on the segments of threads; and its turns at their knots. In a thread of the lead p the tool, at the
+depth d below the start of the thread, has turned by d / p against the work; the platform's own turn about the tool
+axis, the spin, counts as well, counterclockwise as seen from the spindle:
+
+    turns = d / p + (spin - spin at the start) / 2 pi
+
+Units: mm, s, rad, turns.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pkm_post.geometry import Array, dot
+from pkm_post.model import NO_TURNS, Machine, Motion, SpindleTurns, Trajectory, threads
+from pkm_post.planning.slower import limits_jerk
+from pkm_post.planning.speed_limits import SAFE_SHARE
+
+
+def share_in_threads(trajectory: Trajectory, machine: Machine, share: Array) -> Array:
+    """Shares of the limits of acceleration by segment, (N,), no more than the spindle can follow in threads.
+
+    The shares are of the tip acceleration, of which the cubics of a controller play at most 1 / ``SAFE_SHARE``.
+    """
+    axis, lower = machine.spindle_axis, share.copy()
+    for thread in threads(trajectory.events):
+        if axis is not None:
+            followed = SAFE_SHARE * axis.acceleration * abs(thread.lead) / machine.tip_acceleration
+            rows = slice(thread.first, thread.end)
+            lower[rows] = np.minimum(share[rows], followed)
+    return lower
+
+
+def with_slow_threads(trajectory: Trajectory, machine: Machine) -> Machine:
+    """The machine to plan with: where jerk is limited there are no shares, and all of the path goes as slowly."""
+    if not limits_jerk(machine) or not threads(trajectory.events):
+        return machine
+    share = share_in_threads(trajectory, machine, np.ones(len(trajectory))).min()
+    return replace(machine, tip_acceleration=share * machine.tip_acceleration)
+
+
+def spindle_turns(motion: Motion, trajectory: Trajectory) -> SpindleTurns:
+    """The turns of the spindle at the knots of threads."""
+    rows, knots = threads(trajectory.events), threads(motion.events)
+    if not rows:
+        return NO_TURNS
+    first, lead = np.array([thread.first for thread in rows]), np.array([thread.lead for thread in rows])
+    start = trajectory.tip_before()[first], trajectory.axis_before()[first], trajectory.spin_before()[first]
+    counts = [thread.end - thread.first for thread in knots]
+    thread = np.repeat(np.arange(len(rows)), counts)
+    knot = np.concatenate([np.arange(each.first + 1, each.end + 1) for each in knots])
+    tip, axis, spin = (one[thread] for one in start)
+    depth, rate = dot(tip - motion.tip[knot], axis), -dot(motion.tip_rate[knot], axis)
+    angle = depth / lead[thread] + (motion.spin[knot] - spin) / (2 * np.pi)
+    return SpindleTurns(knot, angle, rate / lead[thread] + motion.spin_rate[knot] / (2 * np.pi))

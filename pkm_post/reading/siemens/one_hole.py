@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""One hole: what the cycles have in common, its heights and the moves along the normal of the plane."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from pkm_post.reading.gcode.frames import PLANES
+from pkm_post.reading.siemens.blocks import Call
+from pkm_post.reading.siemens.machine import Machine
+
+NAMES = ("X", "Y", "Z")
+
+
+@dataclass(frozen=True)
+class Hole:
+    """Heights of a cycle, in the unit in force: retraction plane, reference plane, start of the feed, bottom."""
+
+    retract: float
+    reference: float
+    start: float
+    bottom: float
+
+
+class Drill:
+    """One hole at the place of the tool."""
+
+    def __init__(self, machine: Machine, row: int, call: Call) -> None:
+        self.machine, self.row, self.call = machine, row, call
+        self._normal = NAMES[PLANES[machine.state.plane][2]]
+
+    def to(self, motion: int, height: float, feed: float = math.nan) -> None:
+        """Move along the normal of the plane."""
+        words = {self._normal: height} | ({} if math.isnan(feed) else {"F": feed})
+        self.machine.move(self.row, motion, words)
+
+    def dwell(self, value: float, in_turns: bool = False) -> None:
+        """Wait some seconds, or turns of the spindle by a value below zero [SiemensCycles, DTB]."""
+        if value < 0 or (in_turns and value):
+            self.machine.dwell(self.row, self.machine.seconds_of_turns(abs(value)))
+        elif value:
+            self.machine.dwell(self.row, value)

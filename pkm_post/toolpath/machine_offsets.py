@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Machine offsets: a work offset and tool lengths that were changed at the machine after the posting.
+
+The path moves with the part, and each tool keeps its tip on it: the trajectory is that of another posting with these
+offsets. So what belongs to the machine stays: the start; the tool-change pose, with the spindle nose in its place; and
+the safe height, at which the way there comes to a line along the tool axis of the moved path.
+
+Enters: a trajectory of a posting. Leaves: the trajectory for the machine as it is. Units: mm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from pkm_post.geometry import Array, norm
+from pkm_post.model import Diagnostic, Kind, Machine, Place, Trajectory
+from pkm_post.toolpath.tool_change import is_detour
+
+_SAME_MM = 1e-6
+Findings = tuple[Diagnostic, ...]
+
+
+@dataclass(frozen=True)
+class MachineOffsets:
+    """What was changed.
+
+    Attributes:
+        shift: how far the work offset has moved in {M}, mm.
+        lengths: gauge lengths by tool number, mm; the others are those of the posting.
+    """
+
+    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    lengths: dict[int, float] = field(default_factory=dict)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing was changed."""
+        return not (any(self.shift) or self.lengths)
+
+
+def with_machine_offsets(
+    trajectory: Trajectory, machine: Machine, offsets: MachineOffsets
+) -> tuple[Trajectory | None, Findings]:
+    """The trajectory with these offsets, or what is against it (C209).
+
+    Args:
+        trajectory: as posted.
+        machine: its tool-change pose.
+        offsets: what was changed.
+    """
+    if offsets.is_empty:
+        return trajectory, ()
+    unknown = sorted(set(offsets.lengths) - {tool.number for tool in trajectory.tools.values()})
+    if unknown:
+        found = f"tool {', '.join(map(str, unknown))}"
+        return None, (Diagnostic("C209", Place(trajectory.source), found),)
+    moved = _moved(trajectory, machine, offsets)
+    before, shift = moved.tip_before() - trajectory.tip_before(), moved.tip - trajectory.tip
+    apart = norm(shift - before)
+    torn = np.flatnonzero((moved.kind == Kind.ARC) & (apart > _SAME_MM))
+    if len(torn):
+        found = f"an arc begins {apart[torn[0]]:.3f} mm from where it did"
+        return None, (Diagnostic("C209", trajectory.place(int(torn[0])), found),)
+    bent = apart > _SAME_MM  # these rows have another direction
+    length = np.where(bent, norm(moved.tip - moved.tip_before()), moved.length)
+    return replace(moved, length=length, smooth=moved.smooth & ~bent & ~np.append(bent[1:], False)), ()
+
+
+def _moved(trajectory: Trajectory, machine: Machine, offsets: MachineOffsets) -> Trajectory:
+    """With tips, centres and tools moved; lengths of rows are those of the posting."""
+    tools = {
+        key: replace(tool, length=offsets.lengths.get(tool.number, tool.length))
+        for key, tool in trajectory.tools.items()
+    }
+    lengthened = replace(trajectory, tools=tools)
+    frame: Array = np.array(trajectory.machine_from_work)
+    frame[:3, 3] += offsets.shift
+    return replace(
+        lengthened,
+        tip=trajectory.tip + _ways(trajectory, machine, lengthened.tool_length(), np.array(offsets.shift)),
+        arc_centre=trajectory.arc_centre + np.array(offsets.shift),
+        machine_from_work=frame,
+    )
+
+
+def _ways(trajectory: Trajectory, machine: Machine, length: Array, shift: Array) -> Array:
+    """How far the end of each row goes, (N, 3): that of the part, but on the ways of tool changes and approaches."""
+    ways, pose = np.tile(shift, (len(trajectory), 1)), machine.tool_change
+    if pose is None:
+        return ways
+    tip, axis, before = trajectory.tip, trajectory.axis, trajectory.tool_length()
+    detours = np.array([is_detour(name) for name in trajectory.operations])[trajectory.operation]
+    high = detours & (np.abs(tip[:, 2] - pose.safe_height) < _SAME_MM)
+    ways[high] -= (shift[2] / axis[high, 2])[:, None] * axis[high]
+    from_start, up = tip - trajectory.start_tip, trajectory.start_axis
+    beside = norm(from_start - (from_start @ up)[:, None] * up)
+    ways[detours & (beside < _SAME_MM) & (norm(axis - up) < _SAME_MM)] = 0.0
+    changes = detours & (norm(tip + before[:, None] * axis - pose.nose) < _SAME_MM)
+    ways[changes] = -(length - before)[changes, None] * axis[changes]
+    return ways

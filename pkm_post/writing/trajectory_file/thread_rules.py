@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Thread rules: what a trajectory has to keep where the spindle is an axis.
+
+Enters: a ``model.Trajectory`` whose single values are valid. Leaves: in words, what contradicts its threads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from pkm_post.geometry import Array, dot, norm
+from pkm_post.model import EventKind, Kind, Trajectory, threads
+
+MIN_LEAD = 1e-3
+"""mm: no thread has a smaller lead."""
+_ASIDE = 1e-5
+"""mm, and rad: how far a move of a thread may leave the tool axis."""
+
+
+def thread_contradictions(trajectory: Trajectory) -> Iterator[str]:
+    """Threads end one by one; they are straight along the tool axis, and at rest where the tool turns round."""
+    try:
+        found = threads(trajectory.events)
+    except ValueError:
+        yield "threads do not begin and end in turn"
+        return
+    changes = [event.row for event in trajectory.events if event.kind is EventKind.TOOL_CHANGE]
+    for thread in found:
+        changed = any(thread.first < row <= thread.end - 1 for row in changes)
+        if thread.first == thread.end or changed or _leaves_the_axis(trajectory, thread.first, thread.end).any():
+            yield f"the thread of segment {thread.first} is not made of feed moves along the tool axis, with rests"
+            return
+
+
+def _leaves_the_axis(trajectory: Trajectory, first: int, end: int) -> Array:
+    """Segments that are no feed moves along the tool axis, or do not end at rest, (end - first,)."""
+    rows = slice(first, end)
+    way, axis = trajectory.tip[rows] - trajectory.tip_before()[rows], trajectory.axis[rows]
+    aside = norm(way - dot(way, axis)[:, None] * axis)
+    moves = (trajectory.kind[rows] == Kind.LINE) & (aside <= _ASIDE) & (trajectory.angle[rows] <= _ASIDE)
+    return np.asarray(~(moves & trajectory.exact_stop[rows]))

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The way to a row against a stock that the rows before have cut, and against clamps."""
+
+import numpy as np
+import pytest
+from meshes import box
+from playing import HOOK, MACHINE, Playing, trajectory_of
+
+from pkm_post.control.numerical_control.manual_moves import approach_trajectory
+from pkm_post.control.player.approach_check import approach_faults
+from pkm_post.control.player.orders import Order
+from pkm_post.control.player.stop_events import PlayContext, pose_before
+from pkm_post.model import Kind, Mesh, Refused, Setup
+from pkm_post.toolpath import ToolPose
+
+STOCK = Mesh("stock.stl", box([-10, -10, 60], [40, 30, 95]))
+"""The hook of the tests is cut 5 mm deep into it, by a ball of 12 mm."""
+CUT = [Kind.RAPID, Kind.LINE, Kind.RAPID]
+ABOVE_MM = 25.0
+
+
+def codes(trajectory, row, setup, shift=(0.0, 0.0, 0.0)):
+    """Codes of the way to a row from a place beside the end of the row before it."""
+    start, length = pose_before(trajectory, row)
+    here = ToolPose(start.tip + shift, start.axis, start.spin)
+    free = float(trajectory.tip[:, 2].max()) + ABOVE_MM
+    way, faults = approach_trajectory(MACHINE, here, start, length, 10.0, free)
+    assert not faults
+    return {each.code for each in approach_faults(PlayContext(None, MACHINE, None, trajectory, setup), row, way)}
+
+
+def test_nothing_is_known():
+    assert codes(trajectory_of(), 2, Setup(), (-5, 0, 0)) == set()
+
+
+def test_what_the_rows_before_have_cut_is_free():
+    assert codes(trajectory_of(kind=CUT), 2, Setup(stock=STOCK), (-5, 0, 0)) == set()
+    assert codes(trajectory_of(), 1, Setup(stock=STOCK), (0, 0, 40)) == set()  # it cuts on its way down, as row 1 does
+
+
+@pytest.mark.parametrize("top, found", [(100.0, set()), (130.0, {"K136"})])
+def test_stock_that_is_left_on_the_way_across(top, found):
+    wall = Mesh("stock.stl", np.concatenate([STOCK.triangles, box([-10, 50, 60], [40, 60, top])]))
+    assert codes(trajectory_of(), 2, Setup(stock=wall), (-12.0, 90.0, 0.0)) >= found
+    assert bool(codes(trajectory_of(), 2, Setup(stock=wall), (-12.0, 90.0, 0.0))) == bool(found)
+
+
+@pytest.mark.parametrize("top, found", [(100.0, set()), (125.0, {"K133"})])
+def test_a_clamp_on_the_way_across(top, found):
+    clamp = Mesh("clamp.stl", box([5, 40, 0], [20, 60, top]))
+    assert codes(trajectory_of(), 2, Setup(fixtures=(clamp,)), (-12.0, 90.0, 0.0)) >= found
+    assert bool(codes(trajectory_of(), 2, Setup(fixtures=(clamp,)), (-12.0, 90.0, 0.0))) == bool(found)
+
+
+def test_a_play_whose_way_is_not_free_does_not_begin():
+    clamp = Mesh("clamp.stl", box([20, -5, 60], [30, 5, 200]))
+    playing = Playing.of(trajectory_of(HOOK), at={})
+    with pytest.raises(Refused, match="K133"):
+        playing.play(first_row=2, setup=Setup(fixtures=(clamp,)))
+    assert np.ptp(playing.struts(), axis=0).max() < 1e-6
+    playing = Playing.of(trajectory_of(HOOK), at={1: [Order("start")]})
+    assert playing.play(first_row=2, setup=Setup(stock=STOCK)).finished and playing.arrived() < 1e-3

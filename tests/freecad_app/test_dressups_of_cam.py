@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What CAM's own dress-ups, arrays and copies make of an operation is read as it is."""
+
+import importlib
+
+import FreeCAD as App
+import numpy as np
+import Part
+import pytest
+from cam_jobs import moves
+from part_jobs import job_on
+
+from pkm_post.freecad_app.job import read_job
+from pkm_post.freecad_app.tools import preselected
+from pkm_post.model import Kind
+
+
+@pytest.fixture
+def job(document):
+    block = Part.makeBox(40, 30, 20).cut(Part.makeBox(20, 14, 10, App.Vector(10, 8, 10)))
+    return job_on(document, block, "endmill.fcstd", Diameter=6)
+
+
+def operation_on(job, name, chosen):
+    """A stock operation of CAM on faces of the model."""
+    made = importlib.import_module(f"Path.Op.{name}")
+    with preselected(job.Tools.Group[0]):
+        operation = made.Create(name, parentJob=job)
+    model = job.Model.Group[0]
+    faces = [f"Face{number}" for number, face in enumerate(model.Shape.Faces, start=1) if chosen(face.BoundBox)]
+    operation.ToolController, operation.Base = job.Tools.Group[0], [(model, faces)]
+    job.Document.recompute()
+    return operation
+
+
+def profile(job):
+    return operation_on(job, "Profile", lambda box: box.ZMax < 0.01)
+
+
+def pocket(job):
+    return operation_on(job, "PocketShape", lambda box: box.ZLength < 0.01 and abs(box.ZMax - 10) < 0.01)
+
+
+def dressed(module):
+    """A maker of a dress-up in place of its base, as its button makes it; the button's own function needs a window."""
+
+    def make(base, job):
+        made = job.Document.addObject("Path::FeaturePython", "Dressup")
+        made.Proxy = importlib.import_module(module).ObjectDressup(made)
+        made.Base = base
+        job.Proxy.addOperation(made, base, True)
+        made.Proxy.setup(made)
+        return made
+
+    return make
+
+
+def created(module):
+    """The same by the function that works without a window."""
+
+    def make(base, job):
+        made = importlib.import_module(module).Create(base)
+        if base in job.Operations.Group:
+            job.Proxy.addOperation(made, base, True)
+        return made
+
+    return make
+
+
+def array_of(base, job):
+    made = job.Document.addObject("Path::FeaturePython", "Array")
+    importlib.import_module("Path.Op.Gui.Array").ObjectArray(made)
+    made.Base, made.Offset, made.Copies = [base], App.Vector(60, 0, 0), 2
+    job.Proxy.addOperation(made)
+    return made
+
+
+def copied(base, job):
+    with preselected(base.ToolController):
+        made = importlib.import_module("Path.Op.Custom").Create("Copy", parentJob=job)
+    made.ToolController, made.Gcode = base.ToolController, [each.toGCode() for each in base.Path.Commands]
+    return made
+
+
+@pytest.mark.parametrize(
+    ("below", "make"),
+    [
+        (pocket, created("Path.Dressup.Boundary")),
+        (profile, created("Path.Dressup.Tags")),
+        (profile, created("Path.Dressup.DogboneII")),
+        (profile, dressed("Path.Dressup.Gui.LeadInOut")),
+        (profile, dressed("Path.Dressup.Gui.RampEntry")),
+        (profile, array_of),
+        (profile, copied),
+    ],
+    ids=["boundary", "tags", "dogbone", "lead", "ramp", "array", "copy"],
+)
+def test_what_stands_on_an_operation_is_read_command_by_command(job, below, make):
+    made = make(below(job), job)
+    job.Document.recompute()
+    assert made.isValid(), made.getStatusString()
+    program, faults = read_job(job)
+    assert program is not None, [str(each) for each in faults]
+    rows = program.operation == program.operations.index(made.Label)
+    last, ends = dict.fromkeys("XYZ", np.nan), []
+    for name, words in moves(made):
+        if name in ("G0", "G1", "G2", "G3"):
+            last |= {letter: words[letter] for letter in "XYZ" if letter in words}
+            ends.append([last[letter] for letter in "XYZ"])
+    ends = np.array(ends)
+    known = np.isfinite(ends).all(axis=1)
+    assert len(ends) > 10 and (program.kind[rows] != Kind.RAPID).any()
+    np.testing.assert_allclose(program.position[rows][-known.sum() :], ends[known], atol=1e-6)

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Windows of a path: what they cover, and that the motion found in them is that of the whole path."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from machines import example
+from programs import ON_PALLET, cone, program
+
+from pkm_post.model.certificate import Tolerances
+from pkm_post.planning import binding_limits, jerk_limits, jerk_search
+from pkm_post.planning.jerk_windows import Places, windows
+from pkm_post.planning.motion import tool_path
+from pkm_post.planning.speed_profile import stations
+from pkm_post.planning.speed_spline import durations
+from pkm_post.toolpath.place import place
+
+FEW = 40
+"""Cells of a window, so that short paths have many of them."""
+COST = 0.01
+"""s that a border may cost: it is held at 0.95 of the speed squared about it, where that is best of forty cells."""
+
+
+def scan():
+    """A wave in chords with kinks that slow the tool, and a dwell."""
+    x = np.linspace(-40, 40, 161)
+    return program(np.column_stack([x, 0 * x, 60 + 2 * np.sin(x / 4)]), feed=60.0)
+
+
+JOBS = pytest.mark.parametrize("made", [cone(120, turns=0.5), scan()], ids=["cone", "scan"])
+
+
+def searched(made, tolerance=1e-3):
+    machine = dataclasses.replace(example(), strut_jerk=1e6, tip_jerk=4e5)
+    trajectory, _ = place(made, machine, ON_PALLET)
+    path = tool_path(trajectory, Tolerances(tolerance, np.radians(tolerance)))
+    return jerk_limits.jerk_limited(path, stations(path), machine)
+
+
+def in_windows_of(cells, monkeypatch):
+    found = []
+
+    def recorded(places):
+        found.extend(windows(places, cells))
+        return iter(found)
+
+    monkeypatch.setattr(jerk_limits, "windows", recorded)
+    return found
+
+
+def time_of(motion):
+    return durations(np.diff(motion.s), motion.square, motion.acceleration).sum()
+
+
+@JOBS
+def test_the_motion_in_many_windows_is_little_slower_than_in_one(made, monkeypatch):
+    whole = searched(made)
+    used = in_windows_of(FEW, monkeypatch)
+    motion = searched(made)
+    assert len(used) >= 3
+    assert (1 - 5e-3) * time_of(whole) <= time_of(motion)
+    assert time_of(motion) <= (1 + 5e-3) * time_of(whole) + COST * len(used)
+    assert np.isin(motion.s[motion.rest], whole.s).all()
+    assert (motion.square[~motion.rest] > 0).all()
+
+
+@JOBS
+def test_windows_follow_one_another_and_their_motions_meet(made, monkeypatch):
+    used = in_windows_of(FEW, monkeypatch)
+    motion = searched(made)
+    for one, two in zip(used[:-1], used[1:], strict=True):
+        assert one.end == two.begin
+    assert (used[0].begin, used[-1].end) == (motion.s[0], motion.s[-1])
+    assert (np.diff(motion.s) > 0).all()
+    # Between places the acceleration is linear: at the end of each cell both place values follow from its start.
+    inner = np.flatnonzero((motion.square[:-1] > 0) & (motion.square[1:] > 0))
+    width = np.diff(motion.s)[inner]
+    end = motion.square[inner] + width * (motion.acceleration[inner] + motion.acceleration[inner + 1])
+    np.testing.assert_allclose(end, motion.square[inner + 1], rtol=1e-6)
+
+
+def test_a_path_without_borders_is_one_window_when_none_holds(monkeypatch):
+    whole = searched(scan())
+    in_windows_of(FEW, monkeypatch)
+    plain = jerk_search.fastest
+
+    def not_between_borders(weight, limits, begin, enough):
+        found = plain(weight, limits, begin, enough)
+        return dataclasses.replace(found, reached=found.reached and len(weight) > 3 * FEW)
+
+    monkeypatch.setattr(jerk_search, "fastest", not_between_borders)
+    np.testing.assert_allclose(time_of(searched(scan())), time_of(whole), rtol=5e-3)
+
+
+@JOBS
+def test_limits_that_were_left_out_are_kept_and_cost_nothing(made, monkeypatch):
+    some = searched(made)
+    monkeypatch.setattr(binding_limits, "_BINDS", -1.0)
+    every = searched(made)
+    np.testing.assert_allclose(time_of(some), time_of(every), rtol=5e-3)
+
+
+def test_places_inside_plateaus_are_left_out_and_what_is_beside_them_stays():
+    cells = 100
+    held = np.full(cells, np.nan)
+    held[20:80] = 9.0
+    s, rest = np.arange(cells + 1.0), np.zeros(cells + 1, dtype=bool)
+    rest[[0, -1]] = True
+    places = Places(s, rest, np.full(cells + 1, 9.0), held, np.full(cells, 9.0), np.full(cells, np.inf)).thinned()
+    np.testing.assert_array_equal(np.setdiff1d(s, places.s), np.arange(37.0, 64.0))  # 20 + 16 to 80 - 16
+    fixed = np.isfinite(places.room)
+    assert (places.held[fixed] == 9.0).all()
+    np.testing.assert_array_equal(places.s[:-1][fixed], [33.0, 34.0, 35.0, 36.0, 64.0, 65.0, 66.0])

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Checkpoints in long programs: between two of them a step makes few columns, whatever the length of the program.
+
+Work is counted, not timed: the bytes of all arrays that come into being in the thread that posts, found among the
+variables of the functions of PKM Post line by line. Pieces are small here, so that what is left are whole columns.
+"""
+
+import sys
+import weakref
+from pathlib import Path
+
+import numpy as np
+import pytest
+from long_programs import PIECES, scan
+
+import pkm_post
+from pkm_post.certificate import dynamics, playback
+from pkm_post.machine.reach import path_bounds
+from pkm_post.model import columns
+from pkm_post.options.choices import Options
+from pkm_post.planning import interpolation, rough_limits, tool_path
+from pkm_post.posting import post_file, run
+from pkm_post.reading.gcode import scan as scanner
+from pkm_post.reading.part_program import ReadingOptions
+from pkm_post.toolpath.compressor import bounds, compress
+from pkm_post.writing import manifest
+from pkm_post.writing.controllers import program_files
+
+LINES = 1000, 2000
+PIECE = 64
+"""Rows of a piece."""
+COLUMNS = 50.0
+"""Columns of 8 bytes a line that may be made between two checkpoints: a fifth of a second of a million lines."""
+OTHERS = (
+    (compress, "_ROWS_AT_ONCE"),
+    (bounds, "_PIECES_AT_ONCE"),
+    (path_bounds, "_AT_ONCE"),
+    (tool_path, "_JOINTS_AT_ONCE"),
+    (interpolation, "_POINTS_AT_ONCE"),
+    (playback, "_TO_FIND_THE_WORST"),
+    (sys.modules["pkm_post.toolpath.place"], "_AT_ONCE"),
+    (rough_limits, "_AT_ONCE"),
+)
+"""Sizes of pieces that workers compute."""
+PACKAGE = str(Path(pkm_post.__file__).parent)
+OF_ALL = (__file__, columns.__file__, sys.modules["pkm_post.model.checkpoint"].__file__)
+"""Files in which all checkpoints are, and not the place of any."""
+ON_PALLET = np.eye(4)
+ON_PALLET[2, 3] = 200.0
+
+
+class Work:
+    """Counts the bytes of new arrays and texts between checkpoints, by the places of these."""
+
+    def __init__(self):
+        self.known, self.bytes, self.since = {}, 0, ""
+        self.most = {}
+
+    def visit(self):
+        frame = sys._getframe(1)
+        while frame.f_code.co_filename in OF_ALL:
+            frame = frame.f_back
+        here = f"{frame.f_code.co_filename.removeprefix(PACKAGE)}:{frame.f_lineno}"
+        between = self.since, here
+        self.most[between] = max(self.bytes, self.most.get(between, 0))
+        self.bytes, self.since = 0, here
+
+    def trace(self, frame, event, _):
+        return self.line if frame.f_code.co_filename.startswith(PACKAGE) else None
+
+    def line(self, frame, event, _):
+        for value in frame.f_locals.values():
+            for each in value if type(value) is tuple else (value,):
+                if type(each) is np.ndarray and each.dtype.names is None:  # records are those of a file
+                    self.add_array(each)
+                elif type(each) in (bytes, str):
+                    self.add(each, lambda each=each: each, len(each))
+        return self.line
+
+    def add_array(self, array):
+        owner = array
+        while type(owner.base) is np.ndarray:
+            owner = owner.base
+        self.add(owner, weakref.ref(owner), array.nbytes if all(array.strides) else 0)
+
+    def add(self, value, reference, size):
+        known = self.known.get(id(value))
+        if known is None or known() is not value:
+            self.known[id(value)] = reference
+            self.bytes += size
+
+
+@pytest.fixture
+def count(monkeypatch, tmp_path):
+    """A function that posts so many lines, in one thread and small pieces; the most bytes between two checkpoints."""
+    for module, name in (*PIECES, *OTHERS):
+        monkeypatch.setattr(module, name, PIECE)
+    for module, name in ((scanner, "PIECE"), (manifest, "_AT_ONCE"), (program_files, "_AT_ONCE")):
+        monkeypatch.setattr(module, name, 16 * PIECE)
+    for module, name in ((dynamics, "_INSTANTS_AT_ONCE"), (playback, "_AT_ONCE")):
+        monkeypatch.setattr(module, name, 1025)  # all instants of an interval, at most
+    monkeypatch.setenv("PKM_THREADS", "1")
+    beat = run.beat
+
+    def counted(lines, leans):
+        work = Work()
+
+        def counting(progress):
+            visit = beat(progress)
+            return lambda: (work.visit(), visit())
+
+        for module in (run, sys.modules["pkm_post.posting.post_file"]):
+            monkeypatch.setattr(module, "beat", counting)
+        file = tmp_path / "scan.ngc"
+        file.write_text(scan(lines, leans))
+        reading = ReadingOptions(axis_words="vector" if leans else "none")
+        options = Options(work_offset=ON_PALLET)
+        before = sys.gettrace()
+        sys.settrace(work.trace)
+        try:
+            post_file(file, "example_6tps", tmp_path / "out", options, {1: 120.0, 2: 100.0}, reading)
+        finally:
+            sys.settrace(before)
+        return work.most
+
+    return counted
+
+
+@pytest.mark.parametrize("leans", [False, True])
+def test_few_columns_are_made_between_checkpoints(count, leans):
+    """By the difference of two lengths: what does not depend on the length, as the pieces themselves, is in both."""
+    few, many = (count(lines, leans) for lines in LINES)
+    assert len(many) > 100  # the places of checkpoints; it counts at all
+    made = {between: (most - few.get(between, 0)) / 8 / (LINES[1] - LINES[0]) for between, most in many.items()}
+    assert {between: number for between, number in made.items() if number > COLUMNS} == {}

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""List the texts of the core that windows translate, as calls that lupdate reads.
+
+    python3 tools/core_texts.py FILE
+
+The core knows no Qt, so its texts are not marked: causes and cures of the tables of faults, topics and extents of the
+certificate, and the patterns of phrases, which are literals in the sources. Needs a Python with numpy.
+"""
+
+import ast
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+CONTEXT = "Core"
+"""The context in which ``freecad_app.core_texts`` looks them up."""
+PHRASES = ("Phrase", "Pattern")
+
+
+def phrases():
+    """Patterns of phrases in the sources, in the order of files and lines."""
+    for file in sorted((ROOT / "pkm_post").rglob("*.py")):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", "") in PHRASES and node.args:
+                first = node.args[0]
+                if isinstance(first, ast.Constant) and isinstance(first.value, str):
+                    yield first.value
+                elif isinstance(first, ast.JoinedStr):
+                    raise ValueError(f"{file}:{node.lineno}: expected a literal pattern, got an f-string")
+
+
+def core_texts():
+    """All texts, each once, in a fixed order."""
+    from pkm_post.model import RULES, Extent, Topic
+
+    rules = (text for code in sorted(RULES) for text in (RULES[code].cause, RULES[code].cure))
+    words = (word.value for table in (Topic, Extent) for word in table)
+    return list(dict.fromkeys([*rules, *words, *phrases()]))
+
+
+def main():
+    """Write the file."""
+    sys.path.insert(0, str(ROOT))
+    lines = [f"QT_TRANSLATE_NOOP({CONTEXT!r}, {text!r})\n" for text in core_texts()]
+    Path(sys.argv[1]).write_text("".join(lines), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
