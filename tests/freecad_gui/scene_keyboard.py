@@ -21,9 +21,7 @@ def fields_of(window):
     kinds = (QtWidgets.QAbstractSpinBox, QtWidgets.QComboBox, QtWidgets.QLineEdit)
     found = [each for each in window.findChildren(QtWidgets.QWidget) if isinstance(each, kinds)]
     whole = [each for each in found if not isinstance(each.parentWidget(), kinds[:2])]
-    return [
-        each for each in whole if each.isVisibleTo(window) and each.isEnabled() and not each.visibleRegion().isEmpty()
-    ]
+    return [each for each in whole if each.isVisibleTo(window) and each.isEnabled()]
 
 
 def tab(modifier=QtCore.Qt.KeyboardModifier.NoModifier):
@@ -61,8 +59,7 @@ def said(field):
 def tabbed(window):
     """What Tab comes to, from the first field of a window on, until it is there again."""
     in_front(window)
-    until(lambda: fields_of(window), 60)  # a dock may be laid out later
-    fields = fields_of(window)
+    fields = fields_of(window)  # those that a low dock has to scroll to as well
     places = [field.mapTo(window, QtCore.QPoint(0, field.height() // 2)) for field in fields]
     order = sorted(range(len(fields)), key=lambda row: (round(places[row].y() / NEAR_PX), places[row].x()))
     fields = [fields[row] for row in order]
@@ -176,7 +173,7 @@ def operation_panels():
         found[command] = tabbed(SymmetryPanel.opened.form)
         SymmetryPanel.opened.accept()
         settle()
-    _, job = job_on("finish", Part.makeBox(20, 20, 20))
+    _, job = job_on("finish", Part.makeBox(20, 20, 20), "600 mm/min")
     select(job.Model.Group[0], "Face6")
     press("PKM_SurfaceFinish")
     view = job.Operations.Group[-1].ViewObject.Proxy
@@ -225,6 +222,7 @@ def player_and_preferences():
 
 @step
 def control_panel():
+    FreeCADGui.getMainWindow().findChild(QtWidgets.QDockWidget, "Report view").show()  # as after an error: less room
     press("PKM_Control")
     face, found = the_panel().panel, {}
     face.pages.setCurrentWidget(face.connecting)
