@@ -90,10 +90,10 @@ def states_by_kinematics(task: PlaybackTask, rows: Array, shares: Array) -> Tool
     tip, axis = np.array(pose.tip.T, order="C"), np.array(pose.axis.T, order="C")
     velocity = np.array(map_to_tool(inverses[0][:, :3], inverses[1][:, :3], speed, shares), order="C").reshape(3, -1)
     speed = speed.reshape(-1, 6)
-    bent = np.flatnonzero(found & ~np.repeat(task.knots.alike[rows], len(shares)))
-    if len(bent):
-        there = ToolPoses(tip[:, bent].T, axis[:, bent].T, pose.spin[bent], tool_length[bent])
-        velocity[:, bent] = _velocity(jacobian_of_tip(machine, *there), speed[bent])
+    varying = np.flatnonzero(found & ~np.repeat(task.knots.alike[rows], len(shares)))
+    if len(varying):
+        there = ToolPoses(tip[:, varying].T, axis[:, varying].T, pose.spin[varying], tool_length[varying])
+        velocity[:, varying] = _velocity(jacobian_of_tip(machine, *there), speed[varying])
     odd = np.flatnonzero(~found)
     if len(odd):
         knot, lengths = rows[odd // len(shares)], length.reshape(-1, 6)[odd]

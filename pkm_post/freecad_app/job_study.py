@@ -120,8 +120,8 @@ def collisions_of(trajectory: Trajectory, machine: Machine, setup: Setup, tolera
     found = _COLLISIONS.get(key)
     if found is None:
         found = find_collisions(trajectory, machine, setup, tolerances)
+    _COLLISIONS.pop(key, None)  # it becomes the newest
     _COLLISIONS[key] = found
-    _COLLISIONS.move_to_end(key)
     while len(_COLLISIONS) > _MOST_COLLISIONS:
         _COLLISIONS.popitem(last=False)
     return found

@@ -14,7 +14,6 @@ gouge of depth d in a flat face is seen within sqrt(2 r d) of its deepest place.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -27,6 +26,8 @@ from pkm_post.geometry import Array, norm
 from pkm_post.model import Program
 from pkm_post.toolpath import Cutter, Surface, SweptVolume, stock_left
 
+_ACCURACY = 10.0
+"""Share of the tolerance to which depths are measured."""
 _FEWEST = 3
 _SPREAD = (0.7548776662466927, 0.5698402909980532)
 """Shares of a cell from one point to the next, whose multiples fill a square evenly [Roberts2018]."""
@@ -98,27 +99,25 @@ def check_faces(
     grids = [_Grid.of(face, flipped, spacing) for face in covered] + [_Grid.of(face, False, spacing) for face in others]
     accuracy = tolerance / _ACCURACY
     near = max(_CUTOFF, *(grid.half_diagonal() for grid in grids))
-    every = np.vstack([grid.point for grid in grids])
-    extent = float(norm(np.ptp(np.vstack([program.position, every]), axis=0)))
+    points = [grid.point for grid in grids]
+    extent = float(norm(np.ptp(np.vstack([program.position, *points]), axis=0)))
     sweep = SweptVolume.of(program.position, program.tool_axis, cutter, near, extent)
-    away = sweep.distances(every, accuracy, lambda share: progress(share / 3))[0]
-    firsts = np.cumsum([0, *(len(grid.point) for grid in grids)])
-    by_grid = [away[first:last] for first, last in itertools.pairwise(firsts.tolist())]
-    close, unseen = _close_points(grids, by_grid, cutter, tolerance)
+    away = _distances(sweep, points, accuracy, lambda share: progress(share / 3))
+    close, unseen = _close_points(grids, away, cutter, tolerance)
     inside = replace(sweep, within=accuracy)  # no distance matters but that of a gouge
-    closer = inside.distances(close, accuracy, lambda share: progress((1 + 2 * share) / 3))[0]
+    (closer,) = _distances(inside, [close], accuracy, lambda share: progress((1 + 2 * share) / 3))
     point, normal = (np.vstack([getattr(grid, name)[grid.held] for grid in grids]) for name in ("point", "normal"))
-    depth = -np.round(np.concatenate([one[grid.held] for grid, one in zip(grids, by_grid, strict=True)]), _DECIMALS)
+    depth = -np.concatenate([one[grid.held] for grid, one in zip(grids, away, strict=True)])
     ours = sum(int(grid.held.sum()) for grid in grids[: len(covered)])
     left = stock_left(
         program.position, program.tool_axis, cutter, point[:ours], normal[:ours], tolerance=accuracy, reach=reach
     ).left
-    all_points, all_depths = np.vstack([point, close]), np.append(depth, -np.round(closer, _DECIMALS))
-    deepest, highest = int(np.argmax(all_depths)), int(np.argmax(left))
-    gouge = max(0.0, float(all_depths[deepest]))
+    every, depths = np.vstack([point, close]), np.append(depth, -closer)
+    deepest, highest = int(np.argmax(depths)), int(np.argmax(left))
+    gouge = max(0.0, float(depths[deepest]))
     return Checked(
         gouge=gouge,
-        gouge_point=all_points[deepest],
+        gouge_point=every[deepest],
         unseen=unseen(gouge) + accuracy,
         excess=min(reach, float(left[highest])),
         excess_point=point[highest],
@@ -129,8 +128,12 @@ def check_faces(
     )
 
 
-_ACCURACY = 10.0
-"""Share of the tolerance to which depths are measured."""
+def _distances(
+    sweep: SweptVolume, points: Sequence[Array], accuracy: float, progress: Callable[[float], None]
+) -> list[Array]:
+    """The cutter's distances from points in groups, (N,) mm each, rounded to what a touch may be off by."""
+    away = np.round(sweep.distances(np.vstack(points), accuracy, progress)[0], _DECIMALS)
+    return np.split(away, np.cumsum([len(each) for each in points[:-1]]))
 
 
 @dataclass(frozen=True)

@@ -51,7 +51,7 @@ _MOST_PIECES = 4
 """Most pieces that an interval without edges is cut into at once."""
 
 
-class Error(Protocol):
+class IntervalError(Protocol):
     """How far intervals are from what is allowed."""
 
     def __call__(self, start: Array, end: Array, group: Array | None = None) -> Array:
@@ -105,7 +105,7 @@ def even_marks(rests_ms: Array, longest_ms: int = LONGEST_MS) -> Array:
     return np.append(rests_ms[run] + number * span[run] // pieces[run], rests_ms[-1])
 
 
-def knots(marks_ms: Array, edges_ms: Array, error: Error, shortest: int = 1) -> Array:
+def knots(marks_ms: Array, edges_ms: Array, error: IntervalError, shortest: int = 1) -> Array:
     """Times of the knots, (K,) whole ms, from the first mark to the last; every mark is a knot.
 
     Knots of one piece do not depend on other pieces: a long motion may be cut at its marks and each piece processed
@@ -133,7 +133,7 @@ def knots(marks_ms: Array, edges_ms: Array, error: Error, shortest: int = 1) -> 
     return found.time
 
 
-def _cut_until_they_hold(marks_ms: Array, edges_ms: Array, error: Error, shortest: int) -> _Intervals:
+def _cut_until_they_hold(marks_ms: Array, edges_ms: Array, error: IntervalError, shortest: int) -> _Intervals:
     """Intervals that hold or cannot be cut."""
     start, end = marks_ms[:-1], marks_ms[1:]
     times, costs = [marks_ms[-1:]], []
@@ -219,7 +219,7 @@ def _met(begin: Array, step: Array) -> Array:
         met, jump = more, jump[jump]
 
 
-def _deviation(fewer: _Fewer, error: Error, shortest: int) -> Array:
+def _deviation(fewer: _Fewer, error: IntervalError, shortest: int) -> Array:
     """Deviations of the new intervals, (M,), infinite in groups with one that is too short."""
     short = np.zeros(len(fewer.first), dtype=np.bool_)
     short[fewer.group[fewer.end - fewer.start < shortest]] = True

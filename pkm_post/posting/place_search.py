@@ -174,13 +174,13 @@ def place_options(found: FoundPlace, places: Mapping[str, Array] = _ONE_PLACE) -
         places: poses in {C} of the fixtures of a job, (4, 4) by name; the first is the work offset, the others keep
             their place beside it.
 
-    Raises:
-        ValueError: an offset turns about other axes than z, which no option states.
+    Returns:
+        Nothing if an offset turns about other axes than z, which no option states.
     """
     offset = work_offset_text(found.reach.trajectory.machine_from_work)
     origins = [work_offset_text(pose, f"{flag_of('origin')}={name}") for name, pose in list(places.items())[1:]]
     if not all(text.startswith("--") for text in (offset, *origins)):
-        raise ValueError(f"expected work offsets that are rotated only about z, got {offset}")
+        return []
     spin = [f"{flag_of('spin')}={found.options.spin.rule.value}"] if found.spins else []
     return [offset, *spin, *origins]
 
@@ -205,10 +205,10 @@ def place_found(
         raise Refused(faults)
     if not found.holds:
         return f"no place was found; the last that was tried: {found.text()}"
-    try:
-        return f"{found.text()}; with the same options and {' '.join(place_options(found, places))}"
-    except ValueError:  # no option states such an offset: the machine file can
-        return f"{found.text()}; with this work offset in the machine file:\n{found.reach.trajectory.machine_from_work}"
+    stated = " ".join(place_options(found, places))
+    if stated:
+        return f"{found.text()}; with the same options and {stated}"
+    return f"{found.text()}; with this work offset in the machine file:\n{found.reach.trajectory.machine_from_work}"
 
 
 def _candidates(

@@ -31,7 +31,7 @@ SAME = 1e-9
 
 
 def another_tool():
-    made = program([[0, 0, 60], [10, 0, 60], [10, 20, 60], [30, 20, 60]])
+    made = program([[0, 0, 60], [10, 0, 60], [10, 20, 60], [30, 20, 60], [30, 40, 60], [10, 40, 60]])
     tools = {1: BALL, 2: dataclasses.replace(BALL, number=2, length=BALL.length + 30)}
     change = (Event(0, EventKind.TOOL_CHANGE, 1.0), Event(2, EventKind.TOOL_CHANGE, 2.0))
     return dataclasses.replace(made, tools=tools, events=change)
@@ -93,7 +93,7 @@ def assert_alike(one, other):
 @pytest.mark.parametrize("job", JOBS)
 def test_linear_steps_and_newtons_method_agree(job):
     one, other = task_of(job), task_of(job)
-    assert one.knots.alike.mean() > 0.85
+    assert one.knots.alike.mean() > 0.9
     other.spline.missed[:] = np.inf
     by_steps, at_joints = seen(one), passed(one, job)
     with newton_alone():

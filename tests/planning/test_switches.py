@@ -24,7 +24,7 @@ from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 MS = 1e-3
-PHASES = np.arange(0.0, 1.0, 1 / 8)
+PHASES = np.arange(0.0, 1.0, 1 / 16)
 HIDDEN = 1.0
 """Of a limit: windows about stations take 98 %, and leave a little between them."""
 
@@ -92,14 +92,14 @@ def test_no_cubic_exceeds_the_limits_wherever_it_begins(name):
     assert struts < HIDDEN and 0.9 < tip < HIDDEN
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", range(4))
 def test_no_cubic_exceeds_the_limits_of_struts(seed):
     weak = dataclasses.replace(example(), strut_acceleration=800.0)
     struts, tip = played(planned(random_job(np.random.default_rng(seed)), weak))
     assert struts < HIDDEN and tip < HIDDEN
 
 
-@pytest.mark.parametrize("seed", [3, 10])
+@pytest.mark.parametrize("seed", [3, 9, 10])
 def test_no_cubic_exceeds_the_limits_where_struts_bend_within_blends(seed):
     calibrated = preset("nategh_agheli_nominal")
     struts, tip = played(planned(random_job(np.random.default_rng(seed)), calibrated, offset(calibrated)))

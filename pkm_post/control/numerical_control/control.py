@@ -43,7 +43,6 @@ from pkm_post.options import APPROACH_MM_S, MANUAL_MOVE_PROGRAM, START_TOLERANCE
 from pkm_post.toolpath import ToolPose
 
 Findings = tuple[Diagnostic, ...]
-
 Done = TypeVar("Done")
 _log = logging.getLogger(__name__)
 
@@ -116,9 +115,7 @@ class NumericalControl:
                 self._session.keeper.release()
             return self._last
         except PmacError as fault:
-            self._last = ControlState(
-                self._last.status, self._last.pose, str(fault), self._emergency(), self._last.homing, self._block
-            )
+            self._last = replace(self._last, lost=str(fault), emergency=self._emergency(), block=self._block)
             return self._last
         self._may_move = False
         self._release_at_rest(status)
@@ -151,9 +148,8 @@ class NumericalControl:
         Raises:
             NotReadyError: the tool pose is unknown, or the machine moves.
         """
-        return self._plan(
-            *manual_moves.mdi_trajectory(line, self._machine, self.standing_pose(), self.tool_length, reading)
-        )
+        here = self.standing_pose()
+        return self._plan(*manual_moves.mdi_trajectory(line, self._machine, here, self.tool_length, reading))
 
     def plan_approach(
         self,
@@ -233,10 +229,8 @@ class NumericalControl:
 
     def continue_after_stop(self, job: Job, stop: int, near: float = START_TOLERANCE_MM) -> Status:
         """Continue a program after its stop (M0, M1), from 1, where it stands; as ``execute.continue_after_stop``."""
-        return self._with_ownership(
-            "run",
-            lambda: execute.continue_after_stop(self._session, self._machine, self._settings, job, stop, near),
-        )
+        order = self._session, self._machine, self._settings, job, stop, near
+        return self._with_ownership("run", lambda: execute.continue_after_stop(*order))
 
     def open_blocks(self, blocks: ProgramBlocks, at: int = 1) -> int:
         """Open a program in single block mode; return its number of blocks.

@@ -213,7 +213,8 @@ class Player:
         while True:
             status = self._look(run.is_started)
             if run.is_started and status is not None and not status.running and status.standing:
-                self._stops += run.was_late(self._timing)
+                run.time_late_piece(self._timing)
+                self._stops += run.was_late()
                 return run.rest(lambda: self._way.text(self._feed.current))
             if run.is_void():
                 return run.begin, False

@@ -237,10 +237,13 @@ class RunToRest:
             raise self._fault
         return point.motion.end, self._planner.is_end(point.motion.end)  # a stop may lead there as well
 
-    def was_late(self, timing: Timing) -> bool:
-        """Whether it has come to rest although more motion was wanted; the lead is longer then from now on."""
+    def time_late_piece(self, timing: Timing) -> None:
+        """Count the time of a piece that is still planned, now that the list has run out: the lead becomes longer."""
         if self._pending is not None:
             self._time(timing.planning, self._asked)
+
+    def was_late(self) -> bool:
+        """Whether it has come to rest although more motion was wanted."""
         was_stopped = self._feed.stopped_at is not None and not self._feed.ends_early
         return was_stopped and self._operator.override > 0 and not self._operator.is_over
 
