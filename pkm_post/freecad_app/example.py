@@ -53,9 +53,9 @@ def _blade(document: FreeCAD.Document) -> Any:
 def _job(blade: Any) -> Any:
     """A job with its tool; in a window with the views of CAM."""
     if FreeCAD.GuiUp:
-        import Path.Main.Gui.Job
+        from Path.Main.Gui.Job import Create
 
-        Path.Main.Gui.Job.Create([blade.Name], None, openTaskPanel=False)
+        Create([blade.Name], None, openTaskPanel=False)
         job = blade.Document.getObject("Job")
     else:
         job = Path.Main.Job.Create("Job", [blade], None)

@@ -221,20 +221,19 @@ class Profile:
             radius: distances from the tool axis, not negative.
             level: heights above the tip.
         """
-        bottom, to_bottom = _line(radius, level - self.foot, self.start, 0.0, self._bottom_length)
-        from_end = radius - self.corner(self.end)[0], level - self.corner(self.end)[1]
-        side, to_side = _line(*from_end, self.end, 0.0, self._side_length)
-        above = level - self.top
-        to_top = np.hypot(np.maximum(radius - self._top_radius, 0.0), above)
+        bottom, to_bottom = _line(radius, level - self.foot, self.start, self._bottom_length)
+        end_radius, end_level = self.corner(self.end)
+        side, to_side = _line(radius - end_radius, level - end_level, self.end, self._side_length)
+        above, beyond = level - self.top, np.maximum(radius - self._top_radius, 0.0)
         x, z = radius - self.centre[0], level - self.centre[1]
-        from_centre = np.hypot(x, z)
+        from_arc = np.sqrt(x * x + z * z) - self.radius
         at_corner = (x * math.cos(self.start) + z * math.sin(self.start) >= 0.0) & (
             x * math.cos(self.end) + z * math.sin(self.end) <= 0.0
         )
-        to_corner = np.where(at_corner, np.abs(from_centre - self.radius), np.inf)
-        nearest = np.minimum(np.minimum(to_bottom, to_side), np.minimum(to_top, to_corner))
-        inside = (bottom < 0.0) & (side < 0.0) & (above < 0.0) & (~at_corner | (from_centre < self.radius))
-        signed: Array = np.where(inside, -nearest, nearest)
+        to_corner = np.where(at_corner, from_arc * from_arc, np.inf)
+        nearest = np.minimum(np.minimum(to_bottom, to_side), np.minimum(beyond * beyond + above * above, to_corner))
+        outside = np.maximum(np.maximum(bottom, side), np.maximum(above, np.where(at_corner, from_arc, -np.inf)))
+        signed: Array = np.copysign(np.sqrt(nearest), outside)
         return signed
 
     @property
@@ -255,11 +254,12 @@ class Profile:
         return self.corner(self.end)[0] + self._side_length * math.cos(self.end)
 
 
-def _line(x: Array, z: Array, angle: float, first: float, last: float) -> tuple[Array, Array]:
-    """Signed distances of points from a line through the origin, and from its segment between two lengths.
+def _line(x: Array, z: Array, angle: float, length: float) -> tuple[Array, Array]:
+    """Signed distances of points from a line through the origin, and squares of those from its segment of a length.
 
     The normal of the line is at the angle to the axis, down and out; the line runs out and up.
     """
     along = x * math.cos(angle) + z * math.sin(angle)
     outside = x * math.sin(angle) - z * math.cos(angle)
-    return outside, np.hypot(outside, along - np.clip(along, first, last))
+    beyond = along - np.minimum(np.maximum(along, 0.0), length)
+    return outside, outside * outside + beyond * beyond

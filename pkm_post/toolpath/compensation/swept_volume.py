@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pkm_post.geometry import Array, angle_between, dot, expand_counts, grid_cells, norm, unit
+from pkm_post.geometry import Array, angle_between, dot, expand_counts, grid_cells, length_of, norm, take_rows, unit
 from pkm_post.toolpath.compensation.cutter import Cutter, Profile
 
 _BLOCK = 16
@@ -27,6 +27,8 @@ _POINTS_PER_CELL = 100
 """Approximate number of points for which far blocks are skipped together."""
 _POINTS_TOGETHER = 10
 """Approximate number of points of a cell that share their near steps."""
+_ROUNDING = 1e-6
+"""mm: error of distances to many poses at once."""
 _AT_ONCE = 1 << 16
 """Distances computed at a time: their data stay in the cache."""
 
@@ -171,8 +173,8 @@ class SweptVolume:
         count = np.maximum(1, np.ceil(way / (_STEP * cutter.radius)).astype(np.int64))
         before, number = expand_counts(count)
         share = number / count[before]
-        tip = np.vstack([_interpolated(tips[before], tips[before + 1], share), tips[-1:]])
-        axis = unit(np.vstack([_interpolated(axes[before], axes[before + 1], share), axes[-1:]]))
+        tip = np.vstack([_interpolated(tips, before, share).T, tips[-1:]])
+        axis = unit(np.vstack([_interpolated(axes, before, share).T, axes[-1:]]))
         moved, turned = norm(np.diff(tip, axis=0)), angle_between(axis[:-1], axis[1:])
         bend = reach * turned**2 / 8.0 + moved * turned / 4.0
         return cls(tip, axis, np.minimum(before + 1, rows - 1), moved + reach * turned, bend, profile, within)
@@ -205,15 +207,21 @@ class SweptVolume:
         near_all = self._candidate_steps(points)
         if not len(near_all):
             return best, row
-        groups = grid_cells(points, _POINTS_TOGETHER)
-        near = self._nearer(points, groups, near_all)
-        order, group = np.concatenate(groups), np.repeat(np.arange(len(groups)), [len(rows) for rows in groups])
+        order, group, middle = _grouped(points)
+        begin, least = self._from_steps(middle, near_all)
+        nearest = near_all[begin.argmin(axis=1)]
+        known = self._to_pose(points[order], nearest[group], np.zeros(len(order)))
+        limit = np.minimum(known, self.within) + norm(points[order] - middle[group]) + _ROUNDING
+        near = least <= np.maximum.reduceat(limit, np.flatnonzero(np.diff(group, prepend=-1)))[:, None]
         size = max(1, _AT_ONCE // max(1, int(near.sum(axis=1).max())))
         for start in range(0, len(order), size):
-            part = order[start : start + size]
-            point, column = np.nonzero(near[group[start : start + size]])
+            part = slice(start, start + size)
+            point, column = np.nonzero(near[group[part]])
+            held = least[group[part][point], column] <= limit[part][point]
+            point, column = point[held], column[held]
             if len(point):
-                best[part], row[part] = self._search(points[part], point, near_all[column], tolerance)
+                rows = order[part]
+                best[rows], row[rows] = self._search(points[rows], point, near_all[column], tolerance)
         return best, row
 
     def _candidate_steps(self, points: Array) -> Array:
@@ -229,17 +237,14 @@ class SweptVolume:
         limit = min(float(distance.min()) + radius, self.within)
         return np.flatnonzero(np.repeat(distance - radius - span <= limit, last - first))
 
-    def _nearer(self, points: Array, groups: list[Array], steps: Array) -> Array:
-        """Which of the steps may come nearest to one of the points of each group, (groups, steps)."""
-        order, starts = np.concatenate(groups), np.cumsum([0, *(len(rows) for rows in groups[:-1])])
-        grouped = points[order]
-        middle = (np.minimum.reduceat(grouped, starts) + np.maximum.reduceat(grouped, starts)) / 2
-        from_middle = norm(grouped - np.repeat(middle, [len(rows) for rows in groups], axis=0))
-        radius = np.maximum.reduceat(from_middle, starts)
-        distance = self._to_poses(middle, steps)
-        limit = np.minimum(distance.min(axis=1) + radius, self.within)
-        near: Array = distance - radius[:, None] - self.travel[steps] <= limit[:, None]
-        return near
+    def _from_steps(self, points: Array, steps: Array) -> tuple[Array, Array]:
+        """Distances of points where steps begin, and the least that they can be within the steps, (N, K) each."""
+        last = np.append(np.diff(steps) > 1, True)
+        begin = self._to_poses(points, steps)
+        end = np.empty_like(begin)
+        end[:, :-1] = begin[:, 1:]
+        end[:, last] = self._to_poses(points, steps[last] + 1)
+        return begin, (begin + end - self.travel[steps]) / 2.0
 
     def _search(self, points: Array, point: Array, step: Array, tolerance: float) -> tuple[Array, Array]:
         """Smallest distances of points over steps, by bisection of the steps that may contain a smaller one.
@@ -258,7 +263,7 @@ class SweptVolume:
         share, width = np.zeros(len(step)), 1.0
         while len(step):
             width /= 2.0
-            m = self._to_pose(points[point], step, share + width)
+            m = self._to_pose(take_rows(points, point), step, share + width)
             np.minimum.at(best, point, m)
             winner = m <= best[point]
             row[point[winner]] = self.row[step[winner]]
@@ -275,18 +280,19 @@ class SweptVolume:
 
     def _to_ends(self, points: Array, point: Array, step: Array) -> tuple[Array, Array]:
         """Distances of points to the cutter where steps begin and where they end, (K,) each."""
-        begin = self._to_pose(points[point], step, np.zeros(len(step)))
+        begin = self._to_pose(take_rows(points, point), step, np.zeros(len(step)))
         end = np.append(begin[1:], 0.0)
         follows = np.append((point[1:] == point[:-1]) & (step[1:] == step[:-1] + 1), False)
         alone = np.flatnonzero(~follows)
-        end[alone] = self._to_pose(points[point[alone]], step[alone], np.ones(len(alone)))
+        end[alone] = self._to_pose(take_rows(points, point[alone]), step[alone], np.ones(len(alone)))
         return begin, end
 
     def _best_at_ends(self, count: int, point: Array, step: Array, a: Array, b: Array) -> tuple[Array, Array]:
         """The smallest of the distances at the ends of steps for each point, and the row of the path there."""
         best, row = np.full(count, np.inf), np.zeros(count, dtype=np.int64)
         least = np.minimum(a, b)
-        np.minimum.at(best, point, least)
+        starts = np.flatnonzero(np.diff(point, prepend=-1))
+        best[point[starts]] = np.minimum.reduceat(least, starts)
         (winner,) = np.nonzero(least == best[point])
         point, first = np.unique(point[winner], return_index=True)
         winner = winner[first]
@@ -304,12 +310,26 @@ class SweptVolume:
 
     def _to_pose(self, points: Array, steps: Array, share: Array) -> Array:
         """Distances of points (N, 3), each to the cutter at a share of its own step, (N,)."""
-        away = points - _interpolated(self.tip[steps], self.tip[steps + 1], share)
-        axis = unit(_interpolated(self.axis[steps], self.axis[steps + 1], share))
-        level = dot(away, axis)
-        return self.profile.distance(norm(away - level[:, None] * axis), level)
+        x, y, z = points.T - _interpolated(self.tip, steps, share)
+        u, v, w = _interpolated(self.axis, steps, share)
+        length = length_of(u, v, w)
+        level = (x * u + y * v + z * w) / length
+        along = level / length
+        return self.profile.distance(length_of(x - along * u, y - along * v, z - along * w), level)
 
 
-def _interpolated(start: Array, end: Array, share: Array) -> Array:
-    moved: Array = start + share[:, None] * (end - start)
+def _grouped(points: Array) -> tuple[Array, Array, Array]:
+    """Points in groups that are close together: their order, the group of each, and the middle of each group."""
+    groups = grid_cells(points, _POINTS_TOGETHER)
+    sizes = [len(rows) for rows in groups]
+    order = np.concatenate(groups)
+    starts = np.cumsum([0, *sizes[:-1]])
+    low, high = (of.reduceat(points[order], starts) for of in (np.minimum, np.maximum))
+    return order, np.repeat(np.arange(len(groups)), sizes), (low + high) / 2.0
+
+
+def _interpolated(vectors: Array, rows: Array, share: Array) -> Array:
+    """Vectors between those of rows and of the rows behind them, (3, N), from (M, 3)."""
+    start, end = take_rows(vectors, rows).T, take_rows(vectors, rows + 1).T
+    moved: Array = start + share * (end - start)
     return moved
