@@ -61,7 +61,7 @@ STATEMENT = Grammar(_FOLDER / "cldata" / "statement.lark", start="statement", re
 
 
 @dataclass(frozen=True)
-class Fault:
+class LineFault:
     """The fault of a line.
 
     Attributes:

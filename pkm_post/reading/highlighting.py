@@ -36,7 +36,7 @@ class Colour(enum.Enum):
 
 
 @dataclass(frozen=True)
-class Span:
+class ColouredSpan:
     """A part of a line.
 
     Attributes:
@@ -165,7 +165,7 @@ def shown_language(file: str, content: bytes, flavour: str | None) -> Language:
     return Language.SIEMENS if flavour or siemens_evidence(content, file) else language
 
 
-def coloured_spans(line: str, language: Language) -> Iterator[Span]:
+def coloured_spans(line: str, language: Language) -> Iterator[ColouredSpan]:
     """The coloured parts of a line, left to right, without overlap.
 
     Args:
@@ -175,9 +175,9 @@ def coloured_spans(line: str, language: Language) -> Iterator[Span]:
     rows, shown = TABLES[language], line[:LONGEST]
     for match in _COMPILED[language].finditer(shown):
         row = rows[int((match.lastgroup or "r0")[1:])]
-        yield Span(match.start(), match.end(), row.colour)
+        yield ColouredSpan(match.start(), match.end(), row.colour)
         if row.rest is not None:
-            yield Span(match.end(), len(shown), row.rest)
+            yield ColouredSpan(match.end(), len(shown), row.rest)
             return
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from pkm_post.model import RULES, Diagnostic, Place, Severity
 from pkm_post.reading.cldata.logical_lines import JOINT, LogicalLines
-from pkm_post.reading.grammar import Fault, in_words
+from pkm_post.reading.grammar import LineFault, in_words
 
 if TYPE_CHECKING:
     from lark import UnexpectedInput, UnexpectedToken
@@ -81,7 +81,7 @@ class StatementDiagnostics:
         if RULES[code].severity is Severity.ERROR:
             self._lines.add(place[0])
 
-    def add_lines(self, lines: LogicalLines, indices: Sequence[int], explain: Callable[[str], Fault]) -> None:
+    def add_lines(self, lines: LogicalLines, indices: Sequence[int], explain: Callable[[str], LineFault]) -> None:
         """Add the fault of lines that differ in their numbers alone; few of them are explained each."""
         for index in indices[: 1 if len(indices) > _MOST_EQUAL else None]:
             fault = explain(lines.text[index])
@@ -119,7 +119,7 @@ class StatementDiagnostics:
         return (*reported, *rest)
 
 
-def fault_of(text: str, unexpected: UnexpectedInput) -> Fault:
+def fault_of(text: str, unexpected: UnexpectedInput) -> LineFault:
     """The fault that stopped lark.
 
     Args:
@@ -136,16 +136,16 @@ def fault_of(text: str, unexpected: UnexpectedInput) -> Fault:
     return _character_fault(text, unexpected.pos_in_stream or 0)
 
 
-def _character_fault(text: str, offset: int) -> Fault:
+def _character_fault(text: str, offset: int) -> LineFault:
     """The fault of a character that starts no terminal."""
     run = _RUN.match(text, offset)
     if run and (text[offset].isdigit() or text[offset] in "+-.") and text[offset].isascii():
-        return Fault("L102", offset, f"'{run[0][:40]}'")
+        return LineFault("L102", offset, f"'{run[0][:40]}'")
     if text[offset] in "'\"":
-        return Fault("L105", offset, text[offset])
+        return LineFault("L105", offset, text[offset])
     if text[offset] == "$":
-        return Fault("L106", offset, "'$'")
-    return Fault("L101", offset, _shown(text[offset]))
+        return LineFault("L106", offset, "'$'")
+    return LineFault("L101", offset, _shown(text[offset]))
 
 
 def _shown(character: str) -> str:
@@ -153,7 +153,7 @@ def _shown(character: str) -> str:
     return f"'{character}'" if character.isprintable() else f"character {ord(character):#04x}"
 
 
-def _token_fault(text: str, unexpected: UnexpectedToken) -> Fault:
+def _token_fault(text: str, unexpected: UnexpectedToken) -> LineFault:
     """The fault of a terminal that cannot continue the statement."""
     at_end = unexpected.token.type == "$END"
     offset = len(text.rstrip(f" \t{JOINT}")) if at_end else unexpected.token.start_pos or 0
@@ -166,4 +166,4 @@ def _token_fault(text: str, unexpected: UnexpectedToken) -> Fault:
         code, offset = "L203", text.rindex("(")
     elif not text[:offset].strip(f" \t{JOINT}"):
         code = "L201"
-    return Fault(code, offset, f"{found}, expected {expected}" if expected else found)
+    return LineFault(code, offset, f"{found}, expected {expected}" if expected else found)

@@ -22,7 +22,7 @@ import numpy as np
 from pkm_post.model import Array
 from pkm_post.reading.cldata.diagnostics import StatementDiagnostics, fault_of
 from pkm_post.reading.cldata.logical_lines import JOINT, LONGEST_LINE, MARK, LogicalLines
-from pkm_post.reading.grammar import STATEMENT, Fault
+from pkm_post.reading.grammar import STATEMENT, LineFault
 
 if TYPE_CHECKING:
     from lark import Token, Tree, UnexpectedInput
@@ -187,22 +187,22 @@ def _without_long_statements(lines: LogicalLines, faults: StatementDiagnostics) 
     return replace(lines, text=kept)
 
 
-def _parse_line(shape: str, text: str) -> Template | Fault | UnexpectedInput | None:
+def _parse_line(shape: str, text: str) -> Template | LineFault | UnexpectedInput | None:
     """The template of a line, its fault, or None if it is empty."""
     if not shape.strip(_BLANKS):
         return None
     if len(shape) > LONGEST_STATEMENT:
-        return Fault("L104", 0, f"{len(text)} characters")
+        return LineFault("L104", 0, f"{len(text)} characters")
     if shape.count("(") > DEEPEST_NESTING:
-        return Fault("L205", text.index("("), f"{shape.count('(')} parentheses, at most {DEEPEST_NESTING}")
+        return LineFault("L205", text.index("("), f"{shape.count('(')} parentheses, at most {DEEPEST_NESTING}")
     tree = STATEMENT.parse(text)
     return tree if isinstance(tree, Exception) else template_of(tree)
 
 
-def _fault_of_line(text: str) -> Fault:
+def _fault_of_line(text: str) -> LineFault:
     """The fault of one line of an invalid shape."""
     result = _parse_line(_NUMBER.sub(MARK, _without_quoted_numbers(text)), text)
-    if isinstance(result, Fault):
+    if isinstance(result, LineFault):
         return result
     if result is None or isinstance(result, Template):
         raise ValueError(f"expected a faulty statement, got {text!r}")

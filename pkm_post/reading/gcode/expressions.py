@@ -130,7 +130,7 @@ class Expression:
 
 
 @dataclass(frozen=True)
-class Target:
+class AssignmentTarget:
     """A parameter as an assignment target: by name, or by a number that may have to be computed.
 
     Attributes:
@@ -170,7 +170,7 @@ def expression_of(node: Node) -> Expression:
     return Expression(tuple(reversed(steps)), column_of_node(node))
 
 
-def target_of(parameter: Node) -> Target:
+def target_of(parameter: Node) -> AssignmentTarget:
     """Compile a parameter as an assignment target.
 
     Args:
@@ -180,8 +180,8 @@ def target_of(parameter: Node) -> Target:
     (name_or_number,) = parameter.children
     column = _column_of_sign(name_or_number)
     if isinstance(name_or_number, str) and name_or_number.type == "NAME":
-        return Target(plain_name(name_or_number), None, column)
-    return Target("", expression_of(name_or_number), column)
+        return AssignmentTarget(plain_name(name_or_number), None, column)
+    return AssignmentTarget("", expression_of(name_or_number), column)
 
 
 def plain_name(token: str) -> str:
@@ -247,7 +247,7 @@ def _numbered(column: int) -> Step:
     return read
 
 
-def _exists(target: Target) -> Step:
+def _exists(target: AssignmentTarget) -> Step:
     def exists(stack: list[float], parameters: Parameters) -> None:
         name = target.resolved(parameters)
         stack.append(float(_located(target.column, parameters.exists, name)))

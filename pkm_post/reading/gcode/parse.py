@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from pkm_post.reading.gcode.blocks import LARGEST_CODE, LONGEST_LINE, MACRO_CALLS, Block
-from pkm_post.reading.grammar import BLOCK, Fault
+from pkm_post.reading.grammar import BLOCK, LineFault
 
 if TYPE_CHECKING:
     from lark import Token, Tree, UnexpectedInput
@@ -31,10 +31,10 @@ class _InvalidBlock(Exception):  # noqa: N818 - it stays within this file
     """A fault that the grammar does not detect."""
 
     def __init__(self, code: str, token: Token, found: str = "") -> None:
-        self.fault = Fault(code, token.start_pos or 0, found or f"'{token}'"[:40])
+        self.fault = LineFault(code, token.start_pos or 0, found or f"'{token}'"[:40])
 
 
-def parse_line(line: bytes) -> Block | UnexpectedInput | Fault:
+def parse_line(line: bytes) -> Block | UnexpectedInput | LineFault:
     """Parse one line.
 
     Args:
@@ -44,7 +44,7 @@ def parse_line(line: bytes) -> Block | UnexpectedInput | Fault:
         ImportError: lark is not installed.
     """
     if len(line) > LONGEST_LINE:
-        return Fault("G104", 0, f"{len(line)} characters")
+        return LineFault("G104", 0, f"{len(line)} characters")
     tree = BLOCK.parse(line.decode("latin-1"))
     if isinstance(tree, Exception):
         return tree

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 from pkm_post.reading.gcode.blocks import LARGEST_CODE, Block
 from pkm_post.reading.gcode.expressions import (
+    AssignmentTarget,
     Expression,
-    Target,
     column_of_node,
     expression_of,
     plain_name,
@@ -48,7 +48,7 @@ class WordBlock:
     g: list[Expression] = field(default_factory=list)
     m: list[Expression] = field(default_factory=list)
     codes: tuple[int, ...] = ()
-    assignments: list[tuple[Target, Expression]] = field(default_factory=list)
+    assignments: list[tuple[AssignmentTarget, Expression]] = field(default_factory=list)
 
     @property
     def cost(self) -> int:
@@ -93,7 +93,7 @@ class OWord:
     keyword: str
     label: str | Expression
     values: tuple[Expression, ...]
-    target: Target | None = None
+    target: AssignmentTarget | None = None
 
     @property
     def cost(self) -> int:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from pkm_post.model import Diagnostic, DiagnosticLog, Place
 from pkm_post.reading.gcode.blocks import LONGEST_LINE
-from pkm_post.reading.grammar import Fault, in_words
+from pkm_post.reading.grammar import LineFault, in_words
 
 if TYPE_CHECKING:
     from lark import UnexpectedInput, UnexpectedToken
@@ -62,7 +62,7 @@ class SyntaxFaults:
         self._others = 0
         self._log = DiagnosticLog(MOST_OF_A_SHAPE)
 
-    def add(self, number: int, line: bytes, unexpected: UnexpectedInput | Fault) -> None:
+    def add(self, number: int, line: bytes, unexpected: UnexpectedInput | LineFault) -> None:
         """Add the fault of a line.
 
         Args:
@@ -78,7 +78,9 @@ class SyntaxFaults:
         if not self._log.keeps(shape):
             self._log.count(1, shape)
             return
-        fault = unexpected if isinstance(unexpected, Fault) else fault_of_unexpected(line.decode("latin-1"), unexpected)
+        fault = (
+            unexpected if isinstance(unexpected, LineFault) else fault_of_unexpected(line.decode("latin-1"), unexpected)
+        )
         place = Place(self._file, line=number, column=_column(line, fault))
         self._log.add(Diagnostic(fault.code, place, fault.found), shape)
 
@@ -96,7 +98,7 @@ def readable(text: bytes) -> str:
         return text.decode("latin-1")
 
 
-def _column(line: bytes, fault: Fault) -> int:
+def _column(line: bytes, fault: LineFault) -> int:
     """Column of a fault as counted by an editor."""
     try:
         line.decode("utf-8")
@@ -105,7 +107,7 @@ def _column(line: bytes, fault: Fault) -> int:
     return len(line[: fault.offset].decode("utf-8", "ignore")) + 1
 
 
-def fault_of_unexpected(text: str, unexpected: UnexpectedInput) -> Fault:
+def fault_of_unexpected(text: str, unexpected: UnexpectedInput) -> LineFault:
     """The fault that stopped lark.
 
     Args:
@@ -119,14 +121,14 @@ def fault_of_unexpected(text: str, unexpected: UnexpectedInput) -> Fault:
     return _character_fault(text, unexpected.pos_in_stream or 0)
 
 
-def _character_fault(text: str, offset: int) -> Fault:
+def _character_fault(text: str, offset: int) -> LineFault:
     """The fault of a character that starts no terminal."""
     character = text[offset]
     if character == "(":
         inner = re.search(r"[()]", text[offset + 1 :])
-        return Fault("G203", offset + 1 + inner.start(), "'('") if inner else Fault("G204", offset, "'('")
+        return LineFault("G203", offset + 1 + inner.start(), "'('") if inner else LineFault("G204", offset, "'('")
     code = {")": "G207", "<": "G208", ".": "G102"}.get(character, "G101")
-    return Fault(code, offset, _shown(text, offset))
+    return LineFault(code, offset, _shown(text, offset))
 
 
 def _shown(text: str, offset: int) -> str:
@@ -136,7 +138,7 @@ def _shown(text: str, offset: int) -> str:
     return f"'{character}'" if character.isprintable() else f"character {ord(character):#04x}"
 
 
-def _token_fault(text: str, unexpected: UnexpectedToken) -> Fault:
+def _token_fault(text: str, unexpected: UnexpectedToken) -> LineFault:
     """The fault of a terminal that cannot continue the block."""
     at_end = unexpected.token.type == "$END"
     offset = len(text.rstrip()) if at_end else unexpected.token.start_pos or 0
@@ -144,13 +146,13 @@ def _token_fault(text: str, unexpected: UnexpectedToken) -> Fault:
     if malformed is not None:
         return malformed
     if text.count("[") > text.count("]") and _open_brackets(text[:offset]):
-        return Fault("G205", _open_brackets(text[:offset])[-1], "'['")
+        return LineFault("G205", _open_brackets(text[:offset])[-1], "'['")
     accepted = _accepted(text, unexpected)
     if "PRODUCT" in accepted:
         accepted.discard("DELETE")  # division, an operator like the others
     code, place = _code_and_place(text, offset, unexpected, accepted)
     found = "the end of the block" if place == offset and at_end else f"'{text[place : place + 1]}'"
-    return Fault(code, place, f"{found}, expected {in_words(accepted, EXPECTED)}")
+    return LineFault(code, place, f"{found}, expected {in_words(accepted, EXPECTED)}")
 
 
 def _accepted(text: str, unexpected: UnexpectedToken) -> set[str]:
@@ -179,7 +181,7 @@ def _code_and_place(text: str, offset: int, unexpected: UnexpectedToken, accepte
     return "G206", offset
 
 
-def _malformed_number(text: str, offset: int) -> Fault | None:
+def _malformed_number(text: str, offset: int) -> LineFault | None:
     """The fault of a run of digits, points and signs at or just before an offset that is not a number."""
     in_expression = bool(_open_brackets(text[:offset]))
     for before in (text[:offset], text[:offset].rstrip()):
@@ -187,7 +189,7 @@ def _malformed_number(text: str, offset: int) -> Fault | None:
         run = text[start:offset].rstrip() + (_leading_run(text[offset:]) if len(before) == offset else "")
         operator = in_expression and not re.fullmatch(r"[.\d]{2}", text[offset - 1 : offset + 1])
         if run and not operator and not _NUMBER.fullmatch(run):
-            return Fault("G102", start, f"'{run[:40]}'")
+            return LineFault("G102", start, f"'{run[:40]}'")
     return None
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pkm_post.model import Array
-from pkm_post.reading.siemens.scan import PLAIN, Lines
+from pkm_post.reading.siemens.scan import PLAIN, ScannedLines
 from pkm_post.reading.siemens.state import NO_MOTION
 
 ABSOLUTE, RELATIVE = 0.0, 1.0
@@ -79,7 +79,7 @@ class Buffer:
         lines: of the program.
     """
 
-    def __init__(self, lines: Lines) -> None:
+    def __init__(self, lines: ScannedLines) -> None:
         self._lines = lines
         self._parts: list[Columns | _Computed] = []
 

@@ -18,7 +18,7 @@ from pkm_post.reading.gcode.cycles import MOST_STROKES
 from pkm_post.reading.gcode.frames import PLANES
 from pkm_post.reading.siemens.blocks import Call
 from pkm_post.reading.siemens.diagnostics import BlockFault
-from pkm_post.reading.siemens.machine import Machine
+from pkm_post.reading.siemens.machine import SiemensMachine
 from pkm_post.reading.siemens.one_hole import NAMES, Drill, Hole
 from pkm_post.reading.siemens.state import LINE, RAPID
 from pkm_post.reading.siemens.tapping import CYCLE as TAPPING
@@ -32,7 +32,7 @@ _LEAST_GAP, _MOST_GAP, _GAP_PER_DEPTH, _SHALLOW = 0.6, 7.0, 50.0, 30.0
 _INVERSE_TIME = 93
 
 
-def drill(machine: Machine, row: int, call: Call) -> None:
+def drill(machine: SiemensMachine, row: int, call: Call) -> None:
     """Carry out a drilling cycle at the place of the tool.
 
     Raises:
@@ -62,7 +62,7 @@ def drill(machine: Machine, row: int, call: Call) -> None:
     machine.restore(before)
 
 
-def _checked_modes(machine: Machine, call: Call, first: int) -> bool:
+def _checked_modes(machine: SiemensMachine, call: Call, first: int) -> bool:
     """Check _GMODE, _DMODE and _AMODE behind the arguments of a cycle; whether dwells are in turns."""
     if call.arguments is not None and len(call.arguments) > first + 3:
         raise BlockFault("G418", f"{call.name} with {len(call.arguments)} arguments", call.column)
@@ -177,7 +177,7 @@ CYCLES: dict[str, tuple[Callable[[Drill, Hole, bool], None], int]] = {
 PATTERNS = ("HOLES1", "HOLES2")
 
 
-def holes(machine: Machine, row: int, call: Call) -> None:
+def holes(machine: SiemensMachine, row: int, call: Call) -> None:
     """Carry out the modal cycle at the holes of a pattern.
 
     Raises:

@@ -18,7 +18,7 @@ from pkm_post.reading.siemens.buffer import ABSOLUTE, RELATIVE
 from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.drilling import CYCLES, PATTERNS, drill, holes
 from pkm_post.reading.siemens.frames import FRAMES, LENGTHS, frame_of
-from pkm_post.reading.siemens.machine import Machine
+from pkm_post.reading.siemens.machine import SiemensMachine
 from pkm_post.reading.siemens.modal_codes import (
     BUFFERED,
     DWELL_G,
@@ -42,7 +42,7 @@ _MOTION_G = range(4)
 _SUPA = "SUPA"
 
 
-def run_lines(machine: Machine, first: int, stop: int) -> None:
+def run_lines(machine: SiemensMachine, first: int, stop: int) -> None:
     """Carry out the plain lines of a range of rows."""
     if machine.modal_call is None:
         machine.path.buffer.add_lines(first, stop)
@@ -53,7 +53,7 @@ def run_lines(machine: Machine, first: int, stop: int) -> None:
         _call_modal(machine, row, any(name in words and not np.isnan(words[name][row]) for name in PLACES))
 
 
-def carry_out(machine: Machine, block: Block) -> None:
+def carry_out(machine: SiemensMachine, block: Block) -> None:
     """Carry out a block.
 
     Raises:
@@ -82,7 +82,7 @@ def _refuse_others(block: Block, statement: Call) -> None:
         raise BlockFault("G601", f"{statement.name} beside other words", statement.column)
 
 
-def _is_plain(machine: Machine, block: Block) -> bool:
+def _is_plain(machine: SiemensMachine, block: Block) -> bool:
     """Whether a block has only words of a move, which wait in the buffer."""
     return (
         not block.m
@@ -92,7 +92,7 @@ def _is_plain(machine: Machine, block: Block) -> bool:
     )
 
 
-def _add_motion(machine: Machine, block: Block) -> None:
+def _add_motion(machine: SiemensMachine, block: Block) -> None:
     motions = [code for code in block.g if code in _MOTION_G]
     motions += [_MOTION_NAMES[call.name] for call in block.names if call.name in _MOTION_NAMES]
     if len(motions) > 1:
@@ -102,14 +102,14 @@ def _add_motion(machine: Machine, block: Block) -> None:
     machine.path.buffer.add_block(block.row, motions[0] if motions else NO_MOTION, words, modes)
 
 
-def _call_modal(machine: Machine, row: int, has_place: bool) -> None:
+def _call_modal(machine: SiemensMachine, row: int, has_place: bool) -> None:
     """Carry out the cycle of MCALL behind a block that moves."""
     if machine.modal_call is not None and has_place:
         machine.path.flush()
         drill(machine, row, machine.modal_call)
 
 
-def _general(machine: Machine, block: Block) -> None:
+def _general(machine: SiemensMachine, block: Block) -> None:
     once = {_SUPA for code in block.g if code in codes.SUPPRESSED}
     for call in block.names:
         if call.name == _SUPA:
@@ -135,7 +135,7 @@ def _general(machine: Machine, block: Block) -> None:
             machine.path.add_event(EventKind.STOP, STOPS[code])
 
 
-def _motion(machine: Machine, block: Block) -> None:
+def _motion(machine: SiemensMachine, block: Block) -> None:
     moves = block.words.keys() & BUFFERED
     if not (moves or any(code in _MOTION_G for code in block.g) or any(c.name in _MOTION_NAMES for c in block.names)):
         return
@@ -149,7 +149,7 @@ def _motion(machine: Machine, block: Block) -> None:
         machine.state.feed = feed
 
 
-def _dwell_block(machine: Machine, block: Block) -> None:
+def _dwell_block(machine: SiemensMachine, block: Block) -> None:
     """G4 F in seconds, or G4 S in turns of the spindle [SiemensNC, G4]."""
     if "F" in block.words:
         machine.dwell(block.row, block.number("F"))
@@ -159,7 +159,7 @@ def _dwell_block(machine: Machine, block: Block) -> None:
         raise BlockFault("G405", "G4 without F or S")
 
 
-def _in_machine(machine: Machine, block: Block) -> None:
+def _in_machine(machine: SiemensMachine, block: Block) -> None:
     """SUPA, G53 and G153: words are coordinates of the machine, in this block alone."""
     words = {name: block.number(name) for name in block.words if name in PLACES}
     zero, state = machine.options.machine_zero, machine.state
@@ -187,7 +187,7 @@ def _in_machine(machine: Machine, block: Block) -> None:
     state.position, state.known = state.frame.to_program(target), known
 
 
-def _frame(machine: Machine, block: Block, call: Call) -> None:
+def _frame(machine: SiemensMachine, block: Block, call: Call) -> None:
     state = machine.state
     if state.side:
         raise BlockFault("G419", call.name, call.column)
@@ -198,15 +198,15 @@ def _frame(machine: Machine, block: Block, call: Call) -> None:
         machine.notes.add("ROT about several axes: Z first, then the new Y, then the new X", block.row)
 
 
-def _drill(machine: Machine, block: Block, call: Call) -> None:
+def _drill(machine: SiemensMachine, block: Block, call: Call) -> None:
     drill(machine, block.row, call)
 
 
-def _holes(machine: Machine, block: Block, call: Call) -> None:
+def _holes(machine: SiemensMachine, block: Block, call: Call) -> None:
     holes(machine, block.row, call)
 
 
-def _modal(machine: Machine, block: Block, call: Call) -> None:
+def _modal(machine: SiemensMachine, block: Block, call: Call) -> None:
     """MCALL alone ends the modal call."""
     others = [other for other in block.names if other is not call]
     for other in others:
@@ -218,7 +218,7 @@ def _modal(machine: Machine, block: Block, call: Call) -> None:
     machine.modal_call = others[0] if others else None
 
 
-def _swivel(machine: Machine, block: Block, call: Call) -> None:
+def _swivel(machine: SiemensMachine, block: Block, call: Call) -> None:
     if machine.state.side:
         raise BlockFault("G419", call.name, call.column)
     if machine.state.traori and not (resets(call) and not machine.state.swivelled):
@@ -227,7 +227,7 @@ def _swivel(machine: Machine, block: Block, call: Call) -> None:
         machine.faults.add(block.row, "G610", call.name, call.column)
 
 
-def _high_speed(machine: Machine, block: Block, call: Call) -> None:
+def _high_speed(machine: SiemensMachine, block: Block, call: Call) -> None:
     """CYCLE832(tolerance, machining, tolerance of the axis); machining 0 ends it [SiemensNC, CYCLE832]."""
     on = call.number(1, 0.0) % 10 != 0 and call.gives(0)
     machine.state.high_speed = on
@@ -236,7 +236,7 @@ def _high_speed(machine: Machine, block: Block, call: Call) -> None:
         raise BlockFault("G606", f"CYCLE832 with a tolerance of {call.number(0):g}", call.column)
 
 
-_STATEMENTS: dict[str, Callable[[Machine, Block, Call], None]] = {
+_STATEMENTS: dict[str, Callable[[SiemensMachine, Block, Call], None]] = {
     "MCALL": _modal,
     **dict.fromkeys(FRAMES, _frame),
     **dict.fromkeys(CYCLES, _drill),

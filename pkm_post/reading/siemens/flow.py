@@ -18,7 +18,7 @@ from pkm_post.reading.siemens.variables import TYPES
 
 
 @dataclass(frozen=True)
-class Variable:
+class VariableDefinition:
     """A variable of DEF or a parameter of PROC."""
 
     name: str
@@ -43,7 +43,7 @@ class Flow:
     column: int
     values: tuple[Expression, ...] = ()
     targets: tuple[str, ...] = ()
-    names: tuple[Variable, ...] = ()
+    names: tuple[VariableDefinition, ...] = ()
 
 
 JUMPS = ("GOTO", "GOTOF", "GOTOB", "GOTOC", "GOTOS")
@@ -93,7 +93,7 @@ def _for(cursor: Cursor, first: Token) -> Flow:
         raise BlockFault("G601", "FOR without a variable and its first value", first.column)
     cursor.expect("TO")
     last = expression(cursor)
-    name = Variable(counter.name, "", counter.index, None)
+    name = VariableDefinition(counter.name, "", counter.index, None)
     return Flow("FOR", first.column, (counter.value, last), (), (name,))
 
 
@@ -140,7 +140,7 @@ def _kind(cursor: Cursor) -> str:
     return token.text
 
 
-def _defined(cursor: Cursor, kind: str) -> Variable:
+def _defined(cursor: Cursor, kind: str) -> VariableDefinition:
     token = cursor.next()
     name, size = token.text, []
     if token.kind == "letter" and cursor.peek().kind == "number":
@@ -150,13 +150,13 @@ def _defined(cursor: Cursor, kind: str) -> Variable:
         while cursor.takes(","):
             size.append(expression(cursor))
         cursor.expect("]")
-    return Variable(name, kind, tuple(size), expression(cursor) if cursor.takes("=") else None)
+    return VariableDefinition(name, kind, tuple(size), expression(cursor) if cursor.takes("=") else None)
 
 
 def _procedure(cursor: Cursor, first: Token) -> Flow:
     """PROC NAME(REAL A, VAR INT B=1) with attributes behind it, or EXTERN NAME(REAL)."""
     name = cursor.next().text
-    names: list[Variable] = []
+    names: list[VariableDefinition] = []
     if cursor.takes("(") and not cursor.takes(")"):
         while True:
             if cursor.takes("VAR") and first.text == "PROC":

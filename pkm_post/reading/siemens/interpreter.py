@@ -19,7 +19,7 @@ from pkm_post.reading.siemens.execution import BUILT_IN, carry_out, run_lines
 from pkm_post.reading.siemens.expressions import Expression, index_of
 from pkm_post.reading.siemens.flow import Flow
 from pkm_post.reading.siemens.items import Assignment, Name, Word
-from pkm_post.reading.siemens.machine import Machine
+from pkm_post.reading.siemens.machine import SiemensMachine
 from pkm_post.reading.siemens.modal_codes import ENDS, RETURNS
 from pkm_post.reading.siemens.statements import Statement
 from pkm_post.reading.siemens.structure import ProgramRows, Structure
@@ -65,7 +65,7 @@ class Interpreter:
     def __init__(
         self,
         structure: Structure,
-        machine: Machine,
+        machine: SiemensMachine,
         limits: ExecutionLimits,
         faults: LineDiagnostics,
         elsewhere: frozenset[str] = frozenset(),

@@ -13,11 +13,11 @@ from pkm_post.reading.siemens.blocks import Call, Notes
 from pkm_post.reading.siemens.buffer import ABSOLUTE
 from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
 from pkm_post.reading.siemens.path import Path
-from pkm_post.reading.siemens.scan import Lines
+from pkm_post.reading.siemens.scan import ScannedLines
 from pkm_post.reading.siemens.tools import Tools
 
 
-class Machine:
+class SiemensMachine:
     """The machine that carries out a program.
 
     Args:
@@ -27,7 +27,7 @@ class Machine:
         faults: collects the faults.
     """
 
-    def __init__(self, lines: Lines, options: ReadOptions, tools: Tools, faults: LineDiagnostics) -> None:
+    def __init__(self, lines: ScannedLines, options: ReadOptions, tools: Tools, faults: LineDiagnostics) -> None:
         self.options, self.tools, self.notes = options, tools, Notes()
         self.path = Path(lines, options.axis_words, faults)
         self.state = self.path.state

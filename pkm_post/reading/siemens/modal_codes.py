@@ -15,7 +15,7 @@ from pkm_post.reading.siemens import codes
 from pkm_post.reading.siemens.blocks import Block, Call
 from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.frames import ProgrammableFrame, about
-from pkm_post.reading.siemens.machine import Machine
+from pkm_post.reading.siemens.machine import SiemensMachine
 from pkm_post.reading.siemens.scan import PLAIN_WORDS
 
 BUFFERED = frozenset({*PLAIN_WORDS, "A2", "B2", "C2", "I1", "J1", "K1", "AR", "TURN"})
@@ -31,7 +31,7 @@ ORIENTED_STOP = 19
 _METRIC_ISO = 21
 
 
-def words(machine: Machine, block: Block) -> None:
+def words(machine: SiemensMachine, block: Block) -> None:
     """Carry out the words of a block that are not those of a move, and refuse those without a meaning.
 
     Raises:
@@ -50,12 +50,12 @@ def words(machine: Machine, block: Block) -> None:
             raise BlockFault("G404", name, block.columns[name])
 
 
-def _contour_tolerance(machine: Machine, block: Block) -> None:
+def _contour_tolerance(machine: SiemensMachine, block: Block) -> None:
     """CTOL= in the unit in force; below zero it is the one of the machine again [SiemensNC, CTOL]."""
     machine.state.contour_tolerance = max(block.number("CTOL"), 0.0) * machine.state.scale
 
 
-def _speed(machine: Machine, block: Block) -> None:
+def _speed(machine: SiemensMachine, block: Block) -> None:
     if DWELL_G in block.g:
         return
     if block.number("S") < 0:
@@ -66,13 +66,13 @@ def _speed(machine: Machine, block: Block) -> None:
         machine.path.add_event(EventKind.SPINDLE, machine.state.spindle())
 
 
-def _tool(machine: Machine, block: Block) -> None:
+def _tool(machine: SiemensMachine, block: Block) -> None:
     machine.state.selected = machine.tools.number(block.words["T"])
     if not machine.tools.has_change:
         _change_tool(machine)
 
 
-def tool_offset(machine: Machine, block: Block) -> None:
+def tool_offset(machine: SiemensMachine, block: Block) -> None:
     """D0 takes the offset of the tool away, any other D brings it.
 
     Raises:
@@ -86,7 +86,7 @@ def tool_offset(machine: Machine, block: Block) -> None:
     machine.state.has_offset = value > 0
 
 
-def _change_tool(machine: Machine) -> None:
+def _change_tool(machine: SiemensMachine) -> None:
     number = machine.state.selected
     if number is None:
         raise BlockFault("G405", "M6 without T")
@@ -97,7 +97,7 @@ def _change_tool(machine: Machine) -> None:
     machine.path.add_event(EventKind.TOOL_CHANGE, float(number))
 
 
-def m_code(machine: Machine, block: Block, code: int) -> None:
+def m_code(machine: SiemensMachine, block: Block, code: int) -> None:
     """Carry out an M code.
 
     Raises:
@@ -124,7 +124,7 @@ def m_code(machine: Machine, block: Block, code: int) -> None:
         _leave_out(machine, block, f"M{code}", codes.REFUSED.get(f"M{code}"))
 
 
-def _leave_out(machine: Machine, block: Block, word: str, why: str | None) -> None:
+def _leave_out(machine: SiemensMachine, block: Block, word: str, why: str | None) -> None:
     """Leave a code out where the user has named it, or refuse it."""
     column = block.columns.get(word, 0)
     if why is not None:
@@ -134,7 +134,7 @@ def _leave_out(machine: Machine, block: Block, word: str, why: str | None) -> No
     machine.notes.add(f"{word}, left out as chosen", block.row)
 
 
-def g_code(machine: Machine, block: Block, code: int) -> None:
+def g_code(machine: SiemensMachine, block: Block, code: int) -> None:
     """Put a G code in force.
 
     Raises:
@@ -171,12 +171,12 @@ def g_code(machine: Machine, block: Block, code: int) -> None:
         _leave_out(machine, block, f"G{code}", codes.REFUSED_G.get(code))
 
 
-def _refuse_with_compensation(machine: Machine, block: Block, code: int) -> None:
+def _refuse_with_compensation(machine: SiemensMachine, block: Block, code: int) -> None:
     if machine.state.side:
         raise BlockFault("G419", f"G{code}", block.columns[f"G{code}"])
 
 
-def _compensate(machine: Machine, block: Block, code: int) -> None:
+def _compensate(machine: SiemensMachine, block: Block, code: int) -> None:
     state = machine.state
     state.side = codes.SIDES[code]
     if not state.side:
@@ -188,7 +188,7 @@ def _compensate(machine: Machine, block: Block, code: int) -> None:
     machine.path.radius = tool.diameter / 2
 
 
-def _work_offset(machine: Machine, _: Block, code: int) -> None:
+def _work_offset(machine: SiemensMachine, _: Block, code: int) -> None:
     """Without places of settable offsets, the only one in which a program moves is {C} itself.
 
     One whose place is not known is a fault where the program moves in it: many programs end with G500.
@@ -206,7 +206,7 @@ def _work_offset(machine: Machine, _: Block, code: int) -> None:
     state.unplaced = "" if places or code == state.system else f"G{code} after G{state.system}"
 
 
-def name_alone(machine: Machine, block: Block, call: Call) -> None:
+def name_alone(machine: SiemensMachine, block: Block, call: Call) -> None:
     """Put a name in force, or note that it has no effect.
 
     Raises:
@@ -228,7 +228,7 @@ def name_alone(machine: Machine, block: Block, call: Call) -> None:
         raise BlockFault("G603", name, call.column)
 
 
-def _traori(machine: Machine, block: Block, call: Call) -> None:
+def _traori(machine: SiemensMachine, block: Block, call: Call) -> None:
     """The first transformation; with a tilted tool the place of its tip is known after X, Y and Z."""
     if machine.state.swivelled:
         raise BlockFault("G602", "TRAORI after CYCLE800: write CYCLE800() first", call.column)
@@ -237,26 +237,26 @@ def _traori(machine: Machine, block: Block, call: Call) -> None:
     machine.state.traori = True
 
 
-def _trafoof(machine: Machine, block: Block, call: Call) -> None:
+def _trafoof(machine: SiemensMachine, block: Block, call: Call) -> None:
     machine.state.traori = False
 
 
-def _angles(machine: Machine, block: Block, call: Call) -> None:
+def _angles(machine: SiemensMachine, block: Block, call: Call) -> None:
     machine.state.angles = call.name
 
 
-def _reference(machine: Machine, block: Block, call: Call) -> None:
+def _reference(machine: SiemensMachine, block: Block, call: Call) -> None:
     """ORIWKS and ORIMKS: the frame of the tool axis and of its way."""
     machine.state.in_machine_frame = call.name == "ORIMKS"
     machine.notes.add(f"{call.name}: {codes.NOTED[call.name]}", block.row)
 
 
-_WORDS: dict[str, Callable[[Machine, Block], None]] = {
+_WORDS: dict[str, Callable[[SiemensMachine, Block], None]] = {
     "CTOL": _contour_tolerance,
     "S": _speed,
     "T": _tool,
 }
-NAMES: dict[str, Callable[[Machine, Block, Call], None]] = {
+NAMES: dict[str, Callable[[SiemensMachine, Block, Call], None]] = {
     "TRAORI": _traori,
     "TRAFOOF": _trafoof,
     "ORIEULER": _angles,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pkm_post.reading.gcode.frames import PLANES
 from pkm_post.reading.siemens.blocks import Call
-from pkm_post.reading.siemens.machine import Machine
+from pkm_post.reading.siemens.machine import SiemensMachine
 
 NAMES = ("X", "Y", "Z")
 
@@ -26,7 +26,7 @@ class Hole:
 class Drill:
     """One hole at the place of the tool."""
 
-    def __init__(self, machine: Machine, row: int, call: Call) -> None:
+    def __init__(self, machine: SiemensMachine, row: int, call: Call) -> None:
         self.machine, self.row, self.call = machine, row, call
         self._normal = NAMES[PLANES[machine.state.plane][2]]
 

@@ -20,7 +20,7 @@ from pkm_post.reading.siemens import orientation
 from pkm_post.reading.siemens.buffer import ABSOLUTE, Buffer, Columns, motion_given
 from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
 from pkm_post.reading.siemens.motions import AXES, LENGTHS, Motions, motions_of
-from pkm_post.reading.siemens.scan import Lines
+from pkm_post.reading.siemens.scan import ScannedLines
 from pkm_post.reading.siemens.sections import Section, Sections
 from pkm_post.reading.siemens.state import CLOCKWISE, NO_MOTION, RAPID, State
 
@@ -58,7 +58,7 @@ class Path:
         faults: collects the faults.
     """
 
-    def __init__(self, lines: Lines, notation: str, faults: LineDiagnostics) -> None:
+    def __init__(self, lines: ScannedLines, notation: str, faults: LineDiagnostics) -> None:
         self.state = State()
         self.buffer = Buffer(lines)
         self.sections = Sections()

@@ -20,9 +20,9 @@ from pkm_post.reading.gcode.scan import with_line_feeds
 from pkm_post.reading.gcode.subprograms import with_operations, with_places
 from pkm_post.reading.siemens.diagnostics import LineDiagnostics, with_column
 from pkm_post.reading.siemens.interpreter import Interpreter
-from pkm_post.reading.siemens.machine import Machine
+from pkm_post.reading.siemens.machine import SiemensMachine
 from pkm_post.reading.siemens.path import Path
-from pkm_post.reading.siemens.scan import Lines, scan
+from pkm_post.reading.siemens.scan import ScannedLines, scan
 from pkm_post.reading.siemens.structure import structure_of
 from pkm_post.reading.siemens.subprograms import MissingProgram, Source, files_by_name
 from pkm_post.reading.siemens.tools import Tools
@@ -61,7 +61,7 @@ def _read(
     lines = scan(source.text)
     structure = structure_of(lines, options.block_delete, faults)
     tools = Tools([lines.line(row) for row in structure.statements], options)
-    machine = Machine(lines, options, tools, faults)
+    machine = SiemensMachine(lines, options, tools, faults)
     interpreter = Interpreter(structure, machine, limits, faults, elsewhere)
     if not any(fault.code == "G605" for fault in faults.in_order()):
         interpreter.run()
@@ -87,7 +87,7 @@ def _report_no_motion(path: Path, lines: int, faults: LineDiagnostics) -> None:
         faults.add(-1, "G420", f"{lines} lines")
 
 
-def _text_of(lines: Lines, fault: Diagnostic) -> str:
+def _text_of(lines: ScannedLines, fault: Diagnostic) -> str:
     return lines.line(fault.place.line - 1) if fault.place.line else ""
 
 
@@ -100,7 +100,7 @@ def _own(found: tuple[Diagnostic, ...]) -> list[Diagnostic]:
     return [fault for fault in found if fault.place.line <= first.place.line or fault.code not in caused]
 
 
-def _program(machine: Machine, file: str, files: tuple[str, ...]) -> Program:
+def _program(machine: SiemensMachine, file: str, files: tuple[str, ...]) -> Program:
     numbers = {round(event.value) for event in machine.path.sections.events if event.kind.name == "TOOL_CHANGE"}
     tools = {number: tool for number in sorted(numbers) if (tool := machine.tools.named_tool(number)) is not None}
     initial = machine.tools.tool(0)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Scan: the text of a Siemens program to columns, one row for each line.
 
-Enters: the bytes of a file, lines ended by line feeds. Leaves: ``Lines``: the numbers of plain lines in columns, and
-which lines are statements. A plain line has G0 to G3 and words of a move with numbers; CAM systems write little else.
-One line of each pattern is looked at, and the numbers of all lines of that pattern are read at once.
+Enters: the bytes of a file, lines ended by line feeds. Leaves: ``ScannedLines``: the numbers of plain lines in columns,
+and which lines are statements. A plain line has G0 to G3 and words of a move with numbers; CAM systems write little
+else. One line of each pattern is looked at, and the numbers of all lines of that pattern are read at once.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _WORD = re.compile(rb"G0*([0-3])|([A-Z][A-Z0-9]*)=?\x01")
 
 
 @dataclass(frozen=True)
-class Lines:
+class ScannedLines:
     """Columns of L lines.
 
     Attributes:
@@ -101,7 +101,7 @@ class _Layouts(dict[bytes, int]):
         return len(self.of) - 1
 
 
-def scan(text: bytes) -> Lines:
+def scan(text: bytes) -> ScannedLines:
     """Scan a program.
 
     Args:
@@ -120,7 +120,7 @@ def scan(text: bytes) -> Lines:
             piece = _ABSOLUTE.sub(lambda found: (b"=" + found[1]).ljust(len(found[0])), piece)
         first += _scan_piece(piece, first, layouts, kind, motion, words)
         start = end
-    return Lines(text, kind, motion, words)
+    return ScannedLines(text, kind, motion, words)
 
 
 def _scan_piece(

@@ -16,7 +16,7 @@ import numpy as np
 from pkm_post.reading.gcode.call_levels import rows_of_sequence_numbers
 from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
 from pkm_post.reading.siemens.flow import Flow
-from pkm_post.reading.siemens.scan import STATEMENT, Lines
+from pkm_post.reading.siemens.scan import STATEMENT, ScannedLines
 from pkm_post.reading.siemens.statements import Statement, statement_of
 
 _HEADER = re.compile(r"\s*%\s*(?:_N_)?(\w*?)(?:_(MPF|SPF))?\s*", re.IGNORECASE)
@@ -45,7 +45,7 @@ class Structure:
         labels: rows of a label, in order.
     """
 
-    lines: Lines
+    lines: ScannedLines
     statements: dict[int, Statement] = field(default_factory=dict)
     programs: dict[str, ProgramRows] = field(default_factory=dict)
     main: ProgramRows = field(default_factory=lambda: ProgramRows("", 0, 0))
@@ -114,7 +114,7 @@ class Structure:
         return first, ends[0] + 1 if ends and (ends[0] < row or first > row) else row
 
 
-def structure_of(lines: Lines, block_delete: bool, faults: LineDiagnostics) -> Structure:
+def structure_of(lines: ScannedLines, block_delete: bool, faults: LineDiagnostics) -> Structure:
     """The structure of a scanned file.
 
     Args:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from pkm_post.model import EventKind
 from pkm_post.reading.siemens.blocks import Call
 from pkm_post.reading.siemens.diagnostics import BlockFault
-from pkm_post.reading.siemens.machine import Machine
+from pkm_post.reading.siemens.machine import SiemensMachine
 from pkm_post.reading.siemens.one_hole import Drill, Hole
 from pkm_post.reading.siemens.state import LINE
 
@@ -32,7 +32,7 @@ _SAME = 1e-6
 _DECIMALS = 9
 
 
-def check_tapping(machine: Machine, call: Call) -> None:
+def check_tapping(machine: SiemensMachine, call: Call) -> None:
     """Refuse the cycle on a machine whose spindle is no axis.
 
     Raises:
@@ -85,7 +85,7 @@ def _lead(call: Call, scale: float) -> float:
     return by_value or by_size
 
 
-def _turn_on(machine: Machine, call: Call) -> None:
+def _turn_on(machine: SiemensMachine, call: Call) -> None:
     """The spindle turns as before, or as SDAC says: 3 for M3, 4 for M4, 5 for M5."""
     state, sense = machine.state, call.number(_SDAC, 0.0)
     if sense and sense not in _SENSES:
