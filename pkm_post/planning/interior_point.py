@@ -39,15 +39,15 @@ _PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 
 
 @dataclass(frozen=True)
-class State:
+class SlacksAndMultipliers:
     """Slacks and multipliers of one set of limits, (E,) each."""
 
     slack: Array
     multiplier: Array
 
-    def lifted(self) -> State:
+    def lifted(self) -> SlacksAndMultipliers:
         """The same without slacks that would hold a search with other limits where it begins."""
-        return State(np.maximum(self.slack, _LIFT), self.multiplier)
+        return SlacksAndMultipliers(np.maximum(self.slack, _LIFT), self.multiplier)
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Solution:
     """
 
     unknowns: Array
-    states: tuple[State, ...] = ()
+    states: tuple[SlacksAndMultipliers, ...] = ()
     reached: bool = False
 
 
@@ -116,13 +116,13 @@ class _Linear:
     """
 
     rows: _Rows
-    state: State
+    state: SlacksAndMultipliers
     room: Array
     slope: Array
     factor: Array | float
 
     @classmethod
-    def of(cls, rows: _Rows, state: State | None, padded: Array, barrier: float) -> _Linear:
+    def of(cls, rows: _Rows, state: SlacksAndMultipliers | None, padded: Array, barrier: float) -> _Linear:
         near = rows.near(padded)
         numbers = rows.settled + _combined(rows.weights, near)
         factor: Array | float = 1.0
@@ -134,7 +134,7 @@ class _Linear:
             slope -= 0.5 / factor * rows.square
         if state is None:
             slack = np.maximum(room, _LEAST_SLACK)
-            state = State(slack, barrier / slack)
+            state = SlacksAndMultipliers(slack, barrier / slack)
         return cls(rows, state, room, slope, factor)
 
     def curvature(self) -> list[Array]:
@@ -236,7 +236,7 @@ def _stepped(weight: Array, linear: list[_Linear], unknowns: Array, mean_gap: fl
     primal, dual = (_TO_BOUNDARY * share for share in _shares(linear, slacks, multipliers))
     primal = min(primal, _TO_BOUNDARY * _reach(unknowns, change))
     states = (
-        State(one.state.slack + primal * a, one.state.multiplier + dual * b)
+        SlacksAndMultipliers(one.state.slack + primal * a, one.state.multiplier + dual * b)
         for one, a, b in zip(linear, slacks, multipliers, strict=True)
     )
     return Solution(unknowns + primal * change, tuple(states))

@@ -33,7 +33,7 @@ _PLACES_AT_ONCE = 4096
 
 
 @dataclass(frozen=True)
-class Motion:
+class JerkLimitedProfile:
     """Columns of M places; between them the acceleration is linear in path length.
 
     Attributes:
@@ -49,7 +49,7 @@ class Motion:
     acceleration: Array
 
 
-def jerk_limited(path: ToolPath, marks: Stations, machine: Machine) -> Motion:
+def jerk_limited(path: ToolPath, marks: Stations, machine: Machine) -> JerkLimitedProfile:
     """The fastest motion along a path; all of its joints and rests are among the places."""
     places = _places(path, marks, machine)
 
@@ -84,7 +84,7 @@ def _places(path: ToolPath, marks: Stations, machine: Machine) -> Places:
 class _Found:
     """What was found in a window: its motion, and by what factor it is too fast on each cell."""
 
-    motion: Motion
+    profile: JerkLimitedProfile
     too_fast: Array
 
 
@@ -97,8 +97,8 @@ def _searched(path: ToolPath, marks: Stations, machine: Machine, window: Window)
     places = window.places
     if not np.isnan(places.held).any():
         square = np.append(places.held, places.held[-1])
-        motion = Motion(places.s, places.rest, square, np.zeros(len(square)))
-        return _counted(motion, np.ones(len(places.held)), window)
+        profile = JerkLimitedProfile(places.s, places.rest, square, np.zeros(len(square)))
+        return _counted(profile, np.ones(len(places.held)), window)
     iterate = Iterate.of(path, marks, machine, places)
     for _ in range(_ROUNDS):
         iterate = iterate.searched(_COARSE)
@@ -112,43 +112,43 @@ def _searched(path: ToolPath, marks: Stations, machine: Machine, window: Window)
         if pace.max() <= 1 + TOO_FAST and not iterate.needlessly_slow(pace):
             break
         iterate = iterate.at_pace(pace)
-    motion = Motion(iterate.spline.s, iterate.spline.rest, *iterate.at_places())
-    return _counted(motion, np.maximum(pace, 1.0), window)
+    profile = JerkLimitedProfile(iterate.spline.s, iterate.spline.rest, *iterate.at_places())
+    return _counted(profile, np.maximum(pace, 1.0), window)
 
 
-def _counted(motion: Motion, too_fast: Array, window: Window) -> _Found:
+def _counted(profile: JerkLimitedProfile, too_fast: Array, window: Window) -> _Found:
     """What counts of a motion."""
-    first, last = np.searchsorted(motion.s, [window.begin, window.end])
+    first, last = np.searchsorted(profile.s, [window.begin, window.end])
     rows = slice(first, last + 1)
-    columns = motion.s[rows], motion.rest[rows], motion.square[rows], motion.acceleration[rows]
-    return _Found(Motion(*columns), too_fast[first:last])
+    columns = profile.s[rows], profile.rest[rows], profile.square[rows], profile.acceleration[rows]
+    return _Found(JerkLimitedProfile(*columns), too_fast[first:last])
 
 
 def _joined(parts: list[_Found], places: Places) -> _Found:
     """Motions of windows as one, and with the places inside plateaus."""
     columns = [
-        np.concatenate([*(getattr(one.motion, field.name)[:-1] for one in parts), getattr(last, field.name)[-1:]])
-        for last in [parts[-1].motion]
-        for field in fields(Motion)
+        np.concatenate([*(getattr(one.profile, field.name)[:-1] for one in parts), getattr(last, field.name)[-1:]])
+        for last in [parts[-1].profile]
+        for field in fields(JerkLimitedProfile)
     ]
     s, rest, square, acceleration = columns
     too_fast = np.concatenate([one.too_fast for one in parts])
     missing = np.flatnonzero(~np.isin(places.s, s))
     row = np.searchsorted(s, places.s[missing])
-    motion = Motion(
+    profile = JerkLimitedProfile(
         np.insert(s, row, places.s[missing]),
         np.insert(rest, row, False),
         np.insert(square, row, places.held[missing]),
         np.insert(acceleration, row, 0.0),
     )
-    return _Found(motion, np.insert(too_fast, row, 1.0))
+    return _Found(profile, np.insert(too_fast, row, 1.0))
 
 
-def _from_rest_to_rest(found: _Found) -> Motion:
+def _from_rest_to_rest(found: _Found) -> JerkLimitedProfile:
     """The motion, slower from rest to rest by as much as it is too fast anywhere on the way."""
-    motion = found.motion
-    begin = np.flatnonzero(motion.rest)[:-1]
+    profile = found.profile
+    begin = np.flatnonzero(profile.rest)[:-1]
     factor = np.maximum.reduceat(found.too_fast, begin) ** -2.0
-    run = np.minimum(np.cumsum(motion.rest) - 1, len(begin) - 1)
-    columns = motion.square * factor[run], motion.acceleration * factor[run]
-    return Motion(motion.s, motion.rest, *columns)
+    run = np.minimum(np.cumsum(profile.rest) - 1, len(begin) - 1)
+    columns = profile.square * factor[run], profile.acceleration * factor[run]
+    return JerkLimitedProfile(profile.s, profile.rest, *columns)

@@ -16,7 +16,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from pkm_post.geometry import Array
 from pkm_post.model import Machine
-from pkm_post.planning.interior_point import Solution, State, fastest
+from pkm_post.planning.interior_point import SlacksAndMultipliers, Solution, fastest
 from pkm_post.planning.jerk_demands import Demands
 from pkm_post.planning.jerk_start import long_held, unknowns, with_middles
 from pkm_post.planning.jerk_windows import Places
@@ -65,7 +65,7 @@ class Iterate:
     held: Array
     room: Array
     unknowns: Array
-    states: tuple[State, ...] = ()
+    states: tuple[SlacksAndMultipliers, ...] = ()
 
     @classmethod
     def of(cls, path: ToolPath, marks: Stations, machine: Machine, places: Places) -> Iterate:

@@ -231,10 +231,10 @@ def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
     from pkm_post.planning.jerk_limits import jerk_limited
 
     marks = stations(path)
-    motion = jerk_limited(path, marks, machine)
-    _check_duration(motion.s, motion.square, marks)
+    profile = jerk_limited(path, marks, machine)
+    _check_duration(profile.s, profile.square, marks)
     return Schedule.of(
-        marks, motion.s, motion.rest, motion.square, motion.acceleration, shortest_ms=machine.shortest_interval
+        marks, profile.s, profile.rest, profile.square, profile.acceleration, shortest_ms=machine.shortest_interval
     )
 
 

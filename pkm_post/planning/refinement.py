@@ -48,7 +48,7 @@ _STEEPEST = 1e12
 
 
 @dataclass(frozen=True)
-class Profile:
+class StationProfile:
     """Stations with speeds.
 
     Attributes:
@@ -79,7 +79,7 @@ class Profile:
         checkpoint()
         return self.marks.inserted(row, self.others), inserted(self.square, row, self.other_square)
 
-    def cut(self, path: ToolPath, machine: Machine, cell: Array, part: Array) -> Profile:
+    def cut(self, path: ToolPath, machine: Machine, cell: Array, part: Array) -> StationProfile:
         """The same motion with new stations.
 
         Args:
@@ -111,7 +111,7 @@ class Profile:
 
 
 @dataclass(frozen=True)
-class Span:
+class SpanToRest:
     """A part of a path, from a place that is passed at a speed to a rest.
 
     Attributes:
@@ -138,15 +138,15 @@ class Span:
 
 
 def refined_profile(
-    path: ToolPath, machine: Machine, close: Array, rough: Pair, share: Array, span: Span | None = None
+    path: ToolPath, machine: Machine, close: Array, rough: Pair, share: Array, span: SpanToRest | None = None
 ) -> tuple[Stations, Array]:
     """Stations, and the fastest speed squared at them, (M,); arguments as of ``refined``."""
     return refined(path, machine, close, rough, share, span).complete()
 
 
 def refined(
-    path: ToolPath, machine: Machine, close: Array, rough: Pair, share: Array, span: Span | None = None
-) -> Profile:
+    path: ToolPath, machine: Machine, close: Array, rough: Pair, share: Array, span: SpanToRest | None = None
+) -> StationProfile:
     """The fastest profile, with its stations.
 
     The motion comes to rest at the end of a span in time. If it is too fast for that at its start, the first speed is
@@ -181,7 +181,7 @@ def refined(
 
 def _coarse(
     marks: Stations, limits: StationLimits, share: Array, close: Array, others: Stations, other_square: Array
-) -> Profile:
+) -> StationProfile:
     """The profile at the first stations, with the share of each cell, (M - 1,); and the other stations."""
     limits.table[marks.rest] = 0.0  # derivatives there are those of one of two segments
     checkpoint()
@@ -193,10 +193,10 @@ def _coarse(
     checkpoint()
     square = steps.fastest_profile()
     every = np.ones(len(cells), dtype=np.bool_)
-    return Profile(marks, steps, square, every, every, struts, close, others, other_square)
+    return StationProfile(marks, steps, square, every, every, struts, close, others, other_square)
 
 
-def _places(profile: Profile) -> tuple[Array, Array, Array]:
+def _places(profile: StationProfile) -> tuple[Array, Array, Array]:
     """Places of new stations: their cells, not decreasing, and the parts of the cells before them, (K,) each.
 
     And cells that still wait for a station in their middle, (M - 1,): they are too brief for one.
@@ -224,7 +224,7 @@ def _places(profile: Profile) -> tuple[Array, Array, Array]:
     return cell[other], part[other], profile.look & ~middle
 
 
-def _bends(profile: Profile, cell: Array, time: Array) -> tuple[Array, Array, Array]:
+def _bends(profile: StationProfile, cell: Array, time: Array) -> tuple[Array, Array, Array]:
     """Where in cells the ramps from both ends meet the ceiling or each other, and the time that this saves, (K,) each.
 
     Args:
@@ -258,7 +258,7 @@ def _meeting(gap: Array, slope: Array) -> Array:
     return np.asarray(np.divide(gap, slope, out=np.ones_like(gap), where=slope > gap))
 
 
-def _refined(path: ToolPath, machine: Machine, profile: Profile, cell: Array, part: Array) -> Profile:
+def _refined(path: ToolPath, machine: Machine, profile: StationProfile, cell: Array, part: Array) -> StationProfile:
     """The profile with new stations at parts of cells."""
     cut = profile.cut(path, machine, cell, part)
     checkpoint()
@@ -282,7 +282,9 @@ def _refined(path: ToolPath, machine: Machine, profile: Profile, cell: Array, pa
     return replace(cut, square=square, look=look, fresh=fresh)
 
 
-def _bent(profile: Profile, cell: Array, part: Array, added: StationLimits, along: Array, square: Array) -> Array:
+def _bent(
+    profile: StationProfile, cell: Array, part: Array, added: StationLimits, along: Array, square: Array
+) -> Array:
     """Demand that limits at new stations add to what they would be if straight between the ends of cells, (K,)."""
     limits, rest = profile.steps.limits, profile.marks.rest
     near, far = np.where(rest[cell], cell + 1, cell), np.where(rest[cell + 1], cell, cell + 1)

@@ -23,7 +23,7 @@ from pkm_post.geometry import Array, norm
 from pkm_post.model import Machine, pieces
 from pkm_post.planning import jerk_limits
 from pkm_post.planning.motion_law import MotionLaw
-from pkm_post.planning.refinement import Span
+from pkm_post.planning.refinement import SpanToRest
 from pkm_post.planning.speed_limits import limited_quantities
 from pkm_post.planning.speed_profile import stations
 from pkm_post.planning.speed_spline import durations, within_cells
@@ -114,7 +114,7 @@ def fastest_motion(path: ToolPath, machine: Machine, begin: float, end: float, s
         tip_jerk=share.jerk * machine.tip_jerk,
     )
     near = np.ones(len(path.feed), dtype=np.bool_)
-    marks = Span(begin, end, 0.0).of(stations(path, near), path)
+    marks = SpanToRest(begin, end, 0.0).of(stations(path, near), path)
     found = jerk_limits.jerk_limited(path, marks, limits)
     return SpeedLaw(found.s, found.square, found.acceleration)
 

@@ -20,7 +20,7 @@ from pkm_post.model import Machine, checkpoint, distinct
 from pkm_post.planning.cell_limits import acceleration_demand
 from pkm_post.planning.fastest_profile import Steps, ceilings
 from pkm_post.planning.played_acceleration import StationMotion, Windows, cells_in_windows, covered
-from pkm_post.planning.refinement import Profile
+from pkm_post.planning.refinement import StationProfile
 from pkm_post.planning.speed_limits import PLANNED_SHARE, SAFE_SHARE
 from pkm_post.planning.speed_profile import cell_times
 from pkm_post.planning.tool_path import ToolPath
@@ -57,7 +57,7 @@ def planned_share(machine: Machine) -> float:
     return PLANNED_SHARE if machine.shortest_interval == 1 else SAFE_SHARE
 
 
-def with_lower_switches(path: ToolPath, machine: Machine, profile: Profile, planned: Array) -> Profile:
+def with_lower_switches(path: ToolPath, machine: Machine, profile: StationProfile, planned: Array) -> StationProfile:
     """A profile of which cubics keep the limits of acceleration.
 
     Args:
@@ -85,7 +85,7 @@ def with_lower_switches(path: ToolPath, machine: Machine, profile: Profile, plan
     return _with_edges(profile, planned)
 
 
-def _with_edges(profile: Profile, planned: Array) -> Profile:
+def _with_edges(profile: StationProfile, planned: Array) -> StationProfile:
     """The profile with its switches among the edges: cubics reach far on either side of a switch, not across it."""
     checkpoint()
     marks, lower = profile.marks, profile.steps.share < planned[profile.marks.segment[1:]]
@@ -98,7 +98,7 @@ def _with_edges(profile: Profile, planned: Array) -> Profile:
     return replace(profile, marks=replace(marks, edges=edges))
 
 
-def _demanding(profile: Profile) -> Array:
+def _demanding(profile: StationProfile) -> Array:
     """Cells that use more of their limits than no plan has to fear, (M - 1,)."""
     steps, square, s = profile.steps, profile.square, profile.marks.s
 
@@ -120,7 +120,9 @@ def _affected(time: Array, cells: Array) -> Array:
     return covered(first, last, len(time))
 
 
-def _cut(path: ToolPath, machine: Machine, profile: Profile, time: Array, found: Windows) -> tuple[Profile, Array]:
+def _cut(
+    path: ToolPath, machine: Machine, profile: StationProfile, time: Array, found: Windows
+) -> tuple[StationProfile, Array]:
     """The same motion with stations about switches, and its times.
 
     Args:
@@ -193,7 +195,7 @@ def _least_of_ranges(first: Array, last: Array, value: Array, count: int) -> Arr
     return least[:count]
 
 
-def _with_shares(profile: Profile, share: Array) -> tuple[Profile, Array]:
+def _with_shares(profile: StationProfile, share: Array) -> tuple[StationProfile, Array]:
     """The profile with lower shares, (M - 1,), and the cells in which it changed."""
     steps = profile.steps
     changed = share < steps.share

@@ -22,7 +22,7 @@ from pkm_post.model import Kind, Motion
 from pkm_post.planning.knots import LONGEST_MS, even_marks
 from pkm_post.planning.motion import FeedPlan, interpolated_between
 from pkm_post.planning.motion_law import MotionLaw
-from pkm_post.planning.refinement import Span, refined_profile
+from pkm_post.planning.refinement import SpanToRest, refined_profile
 from pkm_post.planning.rough_limits import DerivativeBounds, rough_limits
 from pkm_post.planning.schedule import Law, Schedule
 from pkm_post.planning.speed_limits import SAFE_SHARE
@@ -154,7 +154,7 @@ class WindowPlanner:
         close = np.zeros(len(path.feed), dtype=np.bool_)
         close[max(first - 2, 0) : last + 1] = True
         rough = rough_limits(path, machine, self.bounds, SAFE_SHARE)
-        span = Span(start.s, end, square)
+        span = SpanToRest(start.s, end, square)
         marks, squares = refined_profile(path, machine, close, rough, share, span)
         if squares[0] < square * (1 - _SAME_SPEED):
             return None

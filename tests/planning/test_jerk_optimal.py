@@ -23,6 +23,6 @@ OPTIMUM_DIGITS = 5e-3
 def test_the_plan_is_no_faster_and_little_slower_than_the_optimum(case):
     name, limits, jerk = case.split(", ")
     machine, path, marks = stations_of(name, limits)
-    motion = jerk_limited(path, marks, dataclasses.replace(machine, strut_jerk=float(jerk)))
-    time = durations(np.diff(motion.s), motion.square, motion.acceleration).sum()
+    profile = jerk_limited(path, marks, dataclasses.replace(machine, strut_jerk=float(jerk)))
+    time = durations(np.diff(profile.s), profile.square, profile.acceleration).sum()
     assert SHORTEST[case] * (1 - OPTIMUM_DIGITS) <= time <= FACTOR * SHORTEST[case]

@@ -61,8 +61,8 @@ def test_the_motion_is_the_same_without_plateaus(monkeypatch):
     found = []
     for held in (start, lambda *given: (start(*given)[0], np.full(len(given[0]) - 1, np.nan))):
         monkeypatch.setattr(jerk_limits, "start", held)
-        motion = jerk_limits.jerk_limited(path, marks, machine)
-        found.append(durations(np.diff(motion.s), motion.square, motion.acceleration).sum())
+        profile = jerk_limits.jerk_limited(path, marks, machine)
+        found.append(durations(np.diff(profile.s), profile.square, profile.acceleration).sum())
     np.testing.assert_allclose(*found, rtol=5e-3)
 
 

@@ -49,35 +49,35 @@ def in_windows_of(cells, monkeypatch):
     return found
 
 
-def time_of(motion):
-    return durations(np.diff(motion.s), motion.square, motion.acceleration).sum()
+def time_of(profile):
+    return durations(np.diff(profile.s), profile.square, profile.acceleration).sum()
 
 
 @JOBS
 def test_the_motion_in_many_windows_is_little_slower_than_in_one(made, monkeypatch):
     whole = searched(made)
     used = in_windows_of(FEW, monkeypatch)
-    motion = searched(made)
+    profile = searched(made)
     assert len(used) >= 3
-    assert (1 - 5e-3) * time_of(whole) <= time_of(motion)
-    assert time_of(motion) <= (1 + 5e-3) * time_of(whole) + COST * len(used)
-    assert np.isin(motion.s[motion.rest], whole.s).all()
-    assert (motion.square[~motion.rest] > 0).all()
+    assert (1 - 5e-3) * time_of(whole) <= time_of(profile)
+    assert time_of(profile) <= (1 + 5e-3) * time_of(whole) + COST * len(used)
+    assert np.isin(profile.s[profile.rest], whole.s).all()
+    assert (profile.square[~profile.rest] > 0).all()
 
 
 @JOBS
 def test_windows_follow_one_another_and_their_motions_meet(made, monkeypatch):
     used = in_windows_of(FEW, monkeypatch)
-    motion = searched(made)
+    profile = searched(made)
     for one, two in zip(used[:-1], used[1:], strict=True):
         assert one.end == two.begin
-    assert (used[0].begin, used[-1].end) == (motion.s[0], motion.s[-1])
-    assert (np.diff(motion.s) > 0).all()
+    assert (used[0].begin, used[-1].end) == (profile.s[0], profile.s[-1])
+    assert (np.diff(profile.s) > 0).all()
     # Between places the acceleration is linear: at the end of each cell both place values follow from its start.
-    inner = np.flatnonzero((motion.square[:-1] > 0) & (motion.square[1:] > 0))
-    width = np.diff(motion.s)[inner]
-    end = motion.square[inner] + width * (motion.acceleration[inner] + motion.acceleration[inner + 1])
-    np.testing.assert_allclose(end, motion.square[inner + 1], rtol=1e-6)
+    inner = np.flatnonzero((profile.square[:-1] > 0) & (profile.square[1:] > 0))
+    width = np.diff(profile.s)[inner]
+    end = profile.square[inner] + width * (profile.acceleration[inner] + profile.acceleration[inner + 1])
+    np.testing.assert_allclose(end, profile.square[inner + 1], rtol=1e-6)
 
 
 def test_a_path_without_borders_is_one_window_when_none_holds(monkeypatch):

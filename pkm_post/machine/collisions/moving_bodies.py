@@ -136,7 +136,7 @@ _STEPS = 6
 
 
 @dataclass(frozen=True)
-class Profile:
+class RevolvedProfile:
     """Radii of a solid of revolution about the tool axis, by height above the tip.
 
     Attributes:
@@ -176,12 +176,12 @@ class Profile:
         return np.interp(high, self.height, self.radius)
 
 
-def cylinder(start: float, end: float, radius: float) -> Profile:
+def cylinder(start: float, end: float, radius: float) -> RevolvedProfile:
     """The profile of a cylinder."""
-    return Profile(np.array([start, end]), np.array([radius, radius]))
+    return RevolvedProfile(np.array([start, end]), np.array([radius, radius]))
 
 
-def cutter_profile(tool: Tool, length: float) -> Profile:
+def cutter_profile(tool: Tool, length: float) -> RevolvedProfile:
     """The cutting part of a tool of known diameter, up to a height; chords of the corner arc are inside it."""
     cutter = Cutter.of(tool)
     angle = np.linspace(cutter.corner_start, cutter.corner_end, _ARC_CHORDS + 1)
@@ -190,9 +190,9 @@ def cutter_profile(tool: Tool, length: float) -> Profile:
     height, radius = np.append(0.0, height), np.append(0.0, np.maximum(radius, 0.0))
     if length > height[-1]:
         side = radius[-1] + (length - height[-1]) * math.tan(tool.side_angle)
-        return Profile(np.append(height, length), np.append(radius, max(side, 0.0)))
+        return RevolvedProfile(np.append(height, length), np.append(radius, max(side, 0.0)))
     kept = height < length
-    return Profile(np.append(height[kept], length), np.append(radius[kept], np.interp(length, height, radius)))
+    return RevolvedProfile(np.append(height[kept], length), np.append(radius[kept], np.interp(length, height, radius)))
 
 
 def cutter_pieces(tool: Tool, length: float, allowance: float) -> tuple[ToolCylinder, ...]:
@@ -215,7 +215,7 @@ def cutter_pieces(tool: Tool, length: float, allowance: float) -> tuple[ToolCyli
     )
 
 
-def _sections(profile: Profile) -> list[tuple[float, float]]:
+def _sections(profile: RevolvedProfile) -> list[tuple[float, float]]:
     """Heights between which the radius changes along one line or the corner arc."""
     corner = [
         profile.height[0],

@@ -14,7 +14,7 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.machine.collisions.contacts import TrajectoryPath
-from pkm_post.machine.collisions.moving_bodies import Profile, cylinder
+from pkm_post.machine.collisions.moving_bodies import RevolvedProfile, cylinder
 from pkm_post.machine.collisions.stock_grid import StockGrid, SweptPoses, first_met, when_cut
 from pkm_post.machine.collisions.tools_in_use import ToolUse
 from pkm_post.model import Body, Diagnostic, Machine, Mesh, Phrase
@@ -38,7 +38,7 @@ class Intruder:
 
     name: str
     codes: tuple[str, str]
-    shapes: tuple[tuple[Profile, Array], ...]
+    shapes: tuple[tuple[RevolvedProfile, Array], ...]
 
 
 def rapid_cutter(used: ToolUse) -> Intruder:
@@ -123,7 +123,12 @@ def _first_met(
 
 
 def _swept(
-    driven: TrajectoryPath, cells: Array, profile: Profile, grid: StockGrid, work_from_machine: Array, step: float
+    driven: TrajectoryPath,
+    cells: Array,
+    profile: RevolvedProfile,
+    grid: StockGrid,
+    work_from_machine: Array,
+    step: float,
 ) -> SweptPoses:
     box = [len(axis) * grid.step for axis in grid.axes]
     wide = 2 * float(profile.radius.max())

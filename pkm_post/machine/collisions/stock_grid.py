@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, dot, expand_counts, grid_points_inside
-from pkm_post.machine.collisions.moving_bodies import Profile
+from pkm_post.machine.collisions.moving_bodies import RevolvedProfile
 from pkm_post.machine.reach.pose_path import PosePath
 
 _POINTS = 60_000
@@ -116,7 +116,7 @@ class SweptPoses:
         )
 
 
-def first_met(grid: StockGrid, swept: SweptPoses, profile: Profile, more: float) -> Array:
+def first_met(grid: StockGrid, swept: SweptPoses, profile: RevolvedProfile, more: float) -> Array:
     """First positions at which stock points are inside the swept solid, (points,); infinite if never.
 
     Args:
@@ -136,7 +136,7 @@ def first_met(grid: StockGrid, swept: SweptPoses, profile: Profile, more: float)
 
 
 def when_cut(
-    points: Array, met: Array, swept: SweptPoses, smallest: Profile, largest: Profile, tolerance: float
+    points: Array, met: Array, swept: SweptPoses, smallest: RevolvedProfile, largest: RevolvedProfile, tolerance: float
 ) -> tuple[Array, Array]:
     """Positions at which points may have been cut and certainly have been cut, (K,) each.
 
@@ -177,8 +177,8 @@ def _cut(
     point: Array,
     pose: Array,
     swept: SweptPoses,
-    smallest: Profile,
-    largest: Profile,
+    smallest: RevolvedProfile,
+    largest: RevolvedProfile,
     grown: float,
 ) -> None:
     """Record the positions of possible and certain cuts of points, by pairs of a point and a pose."""
@@ -195,7 +195,9 @@ def _chunks(count: int, size: int) -> Iterator[Array]:
     return (np.arange(first, min(first + size, count)) for first in range(0, count, size))
 
 
-def _candidates(grid: StockGrid, swept: SweptPoses, profile: Profile, more: float) -> Iterator[tuple[Array, Array]]:
+def _candidates(
+    grid: StockGrid, swept: SweptPoses, profile: RevolvedProfile, more: float
+) -> Iterator[tuple[Array, Array]]:
     """Poses and nearby stock points, in batches: those in boxes around short pieces of the shape."""
     radius = float(profile.radius.max()) + max(more, 0.0)
     low, top = float(profile.height[0]) - max(more, 0.0), float(profile.height[-1]) + max(more, 0.0)

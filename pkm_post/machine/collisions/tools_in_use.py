@@ -10,7 +10,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, dot, expand_counts
 from pkm_post.machine.collisions.contacts import Contacts, TrajectoryPath
-from pkm_post.machine.collisions.moving_bodies import Profile, cutter_profile
+from pkm_post.machine.collisions.moving_bodies import RevolvedProfile, cutter_profile
 from pkm_post.model import Kind, Setup, Shank, Tool, largest_corner_radius
 
 _STEP = 0.2
@@ -54,11 +54,11 @@ class ToolUse:
         """All cells in which it is used, (K,) ascending."""
         return np.sort(np.concatenate([self.cutting, self.rapid]))
 
-    def profile(self) -> Profile:
+    def profile(self) -> RevolvedProfile:
         """Inner bound of its cutting part."""
         return cutter_profile(self.tool, self.edge_length)
 
-    def largest_profile(self) -> Profile:
+    def largest_profile(self) -> RevolvedProfile:
         """Outer bound of its cutting part, except for the chords of its corner."""
         return cutter_profile(self.largest, self.edge_length)
 

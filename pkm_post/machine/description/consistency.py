@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.machine.description.faults import Fault
+from pkm_post.machine.description.faults import EntryFault
 from pkm_post.machine.description.spindle_axis import AXIS_CHECKS
 from pkm_post.machine.description.value_types import Array
 from pkm_post.model import ToolChange
@@ -280,10 +280,10 @@ _TOOL_CHANGE_CHECKS: tuple[tuple[tuple[str, ...], Check], ...] = (
 _CHECKS = AXIS_CHECKS + _REST_CHECKS + _STRUT_CHECKS + _LIMIT_CHECKS + _TOOL_CHANGE_CHECKS
 
 
-def contradictions(values: Values) -> list[Fault]:
+def contradictions(values: Values) -> list[EntryFault]:
     """Faults from all cross-checks of the readable entries."""
     return [
-        Fault("M103" if values[entry] is None else "M106", tuple(entry.split(".")), found)
+        EntryFault("M103" if values[entry] is None else "M106", tuple(entry.split(".")), found)
         for needs, check in _CHECKS
         if all(values.get(need) is not None for need in needs)
         for entry, found in check(values)

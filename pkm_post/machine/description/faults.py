@@ -27,7 +27,7 @@ MOST_SHOWN = 100
 
 
 @dataclass(frozen=True)
-class Fault:
+class EntryFault:
     """One fault: rule code, entry name, and what was found there; for M105 that is the suggested name."""
 
     code: str
@@ -69,7 +69,7 @@ def _line(name: Name, lines: dict[Name, int]) -> int:
 
 
 def fault_diagnostics(
-    faults: Iterable[Fault], file: str, text: str, document: dict[str, Any]
+    faults: Iterable[EntryFault], file: str, text: str, document: dict[str, Any]
 ) -> tuple[Diagnostic, ...]:
     """Convert faults to diagnostics in line order; beyond the limit, report only how many more."""
     lines = entry_lines(text, document)

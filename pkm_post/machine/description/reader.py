@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from pkm_post.machine.description.consistency import contradictions, rest_axes, tool_change
-from pkm_post.machine.description.faults import MOST_BYTES, Fault, fault_diagnostics, not_toml, too_deep, too_large
+from pkm_post.machine.description.faults import MOST_BYTES, EntryFault, fault_diagnostics, not_toml, too_deep, too_large
 from pkm_post.machine.description.fields import ANY, FIELDS, REQUIRED, Field, Name, section_tree
 from pkm_post.machine.description.spindle_axis import spindle_axis
 from pkm_post.machine.description.units import Scale, stated_units
@@ -34,15 +34,15 @@ def offset_names(document: dict[str, Any]) -> list[str]:
     return [name for name, offset in section.items() if isinstance(offset, dict)] if isinstance(section, dict) else []
 
 
-def stated_poses(names: list[str], document: dict[str, Any]) -> list[Fault]:
+def stated_poses(names: list[str], document: dict[str, Any]) -> list[EntryFault]:
     """Faults of offsets without exactly one of origin and matrix."""
     faults = []
     for name in names:
         stated = document[SECTION][name]
         if "origin" not in stated and "matrix" not in stated:
-            faults.append(Fault("M103", (SECTION, name, "origin"), "needed, unless there is a matrix"))
+            faults.append(EntryFault("M103", (SECTION, name, "origin"), "needed, unless there is a matrix"))
         faults += [
-            Fault("M104", (SECTION, name, key), "expected either a matrix or an origin, got both")
+            EntryFault("M104", (SECTION, name, key), "expected either a matrix or an origin, got both")
             for key in ("origin", "rotation_z")
             if "matrix" in stated and key in stated
         ]
@@ -123,28 +123,28 @@ def machine_of(content: bytes, file: str) -> tuple[Machine | None, tuple[Diagnos
     return _machine(values, offsets, hashlib.sha256(content).hexdigest()), ()
 
 
-def _read_entries(document: dict[str, Any], offsets: list[str]) -> tuple[dict[str, Any], list[Fault]]:
+def _read_entries(document: dict[str, Any], offsets: list[str]) -> tuple[dict[str, Any], list[EntryFault]]:
     """Convert every entry, by dotted name, with defaults for omitted ones; and collect the entry faults."""
     units = stated_units(document)
     optional = [field for field in FIELDS if field.default is not REQUIRED]
     values = {entry: field.default for field in optional for entry in field.entries(offsets)}
-    faults: list[Fault] = []
+    faults: list[EntryFault] = []
     present: set[Name] = set()
     for name, known, value in _walk(document, section_tree(), ()):
         present.add(name)
         try:
             if known is None:
-                faults.append(Fault("M105", name))
+                faults.append(EntryFault("M105", name))
             elif isinstance(known, Field) and known.form not in _FREE_TEXTS and contains_unknown(value):
                 values.pop(".".join(name), None)
-                faults.append(Fault("M107", name, f"expected {known.form.words}"))
+                faults.append(EntryFault("M107", name, f"expected {known.form.words}"))
             elif isinstance(known, Field):
                 values[".".join(name)] = known.form.read(value, Scale.of(known.dimension, units))
             else:
-                faults.append(Fault("M104", name, f"expected a table, got {quoted(value)}"))
+                faults.append(EntryFault("M104", name, f"expected a table, got {quoted(value)}"))
         except WrongValueError as wrong:
             values.pop(".".join(name), None)
-            faults.append(Fault("M104", name, f"expected {known.form.words}, got {wrong}"))
+            faults.append(EntryFault("M104", name, f"expected {known.form.words}, got {wrong}"))
     return values, faults + _missing(present)
 
 
@@ -158,10 +158,10 @@ def _walk(table: dict[str, Any], tree: dict[str, Any], above: Name) -> Iterator[
             yield (*above, key), known, value
 
 
-def _missing(present: set[Name]) -> list[Fault]:
+def _missing(present: set[Name]) -> list[EntryFault]:
     """Required entries that are absent; those in a malformed section are reported with it."""
     return [
-        Fault("M103", field.name, f"expected {field.form.words}")
+        EntryFault("M103", field.name, f"expected {field.form.words}")
         for field in FIELDS
         if field.default is REQUIRED
         and not any(field.name[:length] in present for length in range(1, len(field.name) + 1))
