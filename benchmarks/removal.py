@@ -23,7 +23,7 @@ from build import build  # noqa: E402
 
 from pkm_post.freecad_app.material import RESOLUTIONS, material_of, step_of  # noqa: E402
 from pkm_post.freecad_app.simulation import simulate_job  # noqa: E402
-from pkm_post.removal import patches  # noqa: E402
+from pkm_post.removal import brick_surfaces  # noqa: E402
 
 FRAME = 0.05
 """s."""
@@ -56,7 +56,7 @@ def played(plan, name, frames) -> None:
         begin = time.process_time()
         bricks = replay.go_to(seconds)
         middle = time.process_time()
-        sum(len(patch.faces) for patch in patches(replay.stock, bricks))
+        sum(len(surface.faces) for surface in brick_surfaces(replay.stock, bricks))
         cut.append(middle - begin)
         meshed.append(time.process_time() - middle)
     both = 1000 * (np.array(cut) + meshed)

@@ -29,7 +29,7 @@ from pkm_post.freecad_app.surface_finish_settings import CHECK_SPACING, add_miss
 from pkm_post.freecad_app.tools import has_upright_side, preselected
 from pkm_post.freecad_app.window import add_view
 from pkm_post.model import Amount, Diagnostic, Phrase, Place, Program, Refused
-from pkm_post.toolpath import Cutter, Poses, SurfaceOptions, program_from_poses, surface_poses
+from pkm_post.toolpath import Cutter, SurfaceOptions, SurfacePoses, program_from_poses, surface_poses
 
 _STEPS = 50
 """Steps of the progress bar per face."""
@@ -125,7 +125,7 @@ def _place(obj: Any) -> Place:
     return Place(document_name(obj.Document), obj.Label)
 
 
-def _set_results(obj: Any, covered: Sequence[Poses], settings: SurfaceOptions) -> None:
+def _set_results(obj: Any, covered: Sequence[SurfacePoses], settings: SurfaceOptions) -> None:
     """Fill in the results that need no further computation."""
     obj.PassCount = sum(int(poses.path.number.max()) + 1 for poses in covered)
     obj.ClampedAxes = sum(int(poses.clamped.sum()) for poses in covered)
@@ -163,9 +163,9 @@ def _judge(obj: Any, checked: Checked | None) -> None:
 
 def _poses_over(
     faces: Sequence[NamedFace], cutter: Cutter, settings: SurfaceOptions, flipped: bool, place: Place
-) -> list[Poses]:
+) -> list[SurfacePoses]:
     """The poses over all faces, in sequence."""
-    covered: list[Poses] = []
+    covered: list[SurfacePoses] = []
     with Progress(place.operation, _STEPS * len(faces)) as bar:
         for named in faces:
             result = surface_poses(face_surface(named.face, flipped), cutter, settings, place, _steps(bar))

@@ -58,9 +58,9 @@ def _samples(face: Any, flipped: bool) -> tuple[Array, Array]:
     spans = (np.linspace(span.first, span.last, _SAMPLES) for span in (surface.u, surface.v))
     u, v = (each.ravel() for each in np.meshgrid(*spans, indexing="ij"))
     held = surface.contains(u, v)
-    patch = surface.at(u[held], v[held]) if held.any() else surface.at(u, v)
-    regular = np.isfinite(patch.normal).all(axis=1)
-    return patch.point[regular], patch.normal[regular]
+    samples = surface.at(u[held], v[held]) if held.any() else surface.at(u, v)
+    regular = np.isfinite(samples.normal).all(axis=1)
+    return samples.point[regular], samples.normal[regular]
 
 
 def _lead(point: Array, normal: Array, flat: float) -> float:

@@ -37,7 +37,7 @@ from pkm_post.toolpath import (
     PassOrder,
     Stepover,
     SurfaceOptions,
-    Tolerances,
+    SurfaceTolerances,
 )
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
@@ -265,7 +265,7 @@ def _settings(obj: Any, cone: float, feed: float, plunge: float) -> SurfaceOptio
         plane=tuple(obj.PlaneNormal),
         reversed=bool(obj.Reversed),
         stepover=Stepover(obj.Stepover.Value, None) if by_distance else Stepover(None, obj.ScallopHeight.Value),
-        tolerances=Tolerances(obj.ChordTolerance.Value, math.radians(obj.AxisTolerance.Value)),
+        tolerances=SurfaceTolerances(obj.ChordTolerance.Value, math.radians(obj.AxisTolerance.Value)),
         rule=AxisRule(lead, tilt, tuple(obj.ConeAxis), cone),
         cut_mode=CutMode(obj.CutMode),
         clockwise=obj.ToolController.SpindleDir != "Reverse",

@@ -25,7 +25,7 @@ from pkm_post.freecad_app.tools import SPINDLE_SENSES
 from pkm_post.geometry import Array
 from pkm_post.model import Kind, Program
 from pkm_post.toolpath import (
-    Coverage,
+    AngularCoverage,
     Seam,
     coverage,
     cut_lengths,
@@ -99,7 +99,7 @@ class Family:
 
     label: str
     members: int
-    coverage: Coverage | None
+    coverage: AngularCoverage | None
     joints: tuple[Seam, ...]
 
 
@@ -147,7 +147,7 @@ def _report_rotation(obj: Any, programs: list[Program]) -> tuple[Seam, ...]:
     return joints
 
 
-def _coverage(programs: list[Program], point: Array, axis: Array) -> tuple[Coverage | None, tuple[Seam, ...]]:
+def _coverage(programs: list[Program], point: Array, axis: Array) -> tuple[AngularCoverage | None, tuple[Seam, ...]]:
     """Coverage of programs about an axis, and their joints; nothing if one of them has no cut."""
     sectors = [found for program in programs if (found := sector(program, point, axis))]
     if not programs or len(sectors) < len(programs):

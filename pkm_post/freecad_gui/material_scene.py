@@ -14,7 +14,7 @@ from pkm_post.freecad_app.material import Material
 from pkm_post.freecad_gui.deviation_map import deviation_colours, deviation_legend
 from pkm_post.freecad_gui.shapes import group
 from pkm_post.geometry import Array
-from pkm_post.removal import Patch, patches
+from pkm_post.removal import BrickSurface, brick_surfaces
 
 _BLANK = (0.72, 0.60, 0.42)
 _CREASE = 0.5
@@ -55,17 +55,17 @@ class MaterialScene:
     def show(self, bricks: Array) -> None:
         """Draw some bricks, whose values have changed."""
         compared = self.material.part_distances if self.scale > 0.0 else None
-        for patch in patches(self.material.replay.stock, bricks, compared):
-            self._draw(patch)
+        for surface in brick_surfaces(self.material.replay.stock, bricks, compared):
+            self._draw(surface)
 
-    def _draw(self, patch: Patch) -> None:
-        drawn = self._bricks.get(patch.brick)
+    def _draw(self, surface: BrickSurface) -> None:
+        drawn = self._bricks.get(surface.brick)
         if drawn is None:
-            if not len(patch.faces):
+            if not len(surface.faces):
                 return
-            drawn = self._bricks[patch.brick] = _Brick()
+            drawn = self._bricks[surface.brick] = _Brick()
             self._all.addChild(drawn.shape)
-        drawn.take(patch, self.scale)
+        drawn.take(surface, self.scale)
 
 
 class _Brick:
@@ -76,18 +76,18 @@ class _Brick:
         self._vertices.normalBinding = coin.SoVertexProperty.PER_VERTEX_INDEXED
         self.shape.vertexProperty = self._vertices
 
-    def take(self, patch: Patch, scale: float) -> None:
+    def take(self, surface: BrickSurface, scale: float) -> None:
         """Show another surface."""
         vertices = self._vertices
-        corners = np.column_stack([patch.faces, np.full(len(patch.faces), -1)]).ravel()
+        corners = np.column_stack([surface.faces, np.full(len(surface.faces), -1)]).ravel()
         self.shape.coordIndex.setNum(0)
-        for field, values in ((vertices.vertex, patch.points), (vertices.normal, patch.normals)):
+        for field, values in ((vertices.vertex, surface.points), (vertices.normal, surface.normals)):
             field.setNum(len(values))
             if len(values):
                 field.setValues(0, len(values), values.tolist())
         if len(corners):
             self.shape.coordIndex.setValues(0, len(corners), corners.tolist())
-        self._colour(patch.values, scale)
+        self._colour(surface.values, scale)
 
     def _colour(self, values: Array, scale: float) -> None:
         vertices = self._vertices

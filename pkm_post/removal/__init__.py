@@ -5,17 +5,17 @@ from pkm_post.removal.comparison import Comparison, compare, part_distances
 from pkm_post.removal.replay import CutterPath, Replay, cutting_times
 from pkm_post.removal.rotating_shape import RotatingShape
 from pkm_post.removal.stock import Stock
-from pkm_post.removal.surface import Patch, patches
+from pkm_post.removal.surface import BrickSurface, brick_surfaces
 
 __all__ = [
+    "BrickSurface",
     "Comparison",
     "CutterPath",
-    "Patch",
     "Replay",
     "RotatingShape",
     "Stock",
+    "brick_surfaces",
     "compare",
     "cutting_times",
     "part_distances",
-    "patches",
 ]

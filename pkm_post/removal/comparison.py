@@ -10,7 +10,7 @@ import numpy as np
 from pkm_post.geometry import Array
 from pkm_post.removal.mesh_distance import mesh_distances
 from pkm_post.removal.stock import Stock, shares
-from pkm_post.removal.surface import patches
+from pkm_post.removal.surface import brick_surfaces
 
 REACH = 6.0
 """Steps up to which distances from the part are measured."""
@@ -59,9 +59,9 @@ def compare(stock: Stock, part: Array) -> Comparison:
     cell, limit = stock.grid.step**3, REACH * stock.grid.step
     more = shares(stock.field, stock.grid.step) - shares(part, stock.grid.step)
     passed = np.flatnonzero((stock.field.min(axis=1) < stock.band) & (stock.field.max(axis=1) > -stock.band))
-    found = list(patches(stock, passed, part))
-    values = np.concatenate([patch.values for patch in found] or [np.zeros(0)])
-    points = np.concatenate([patch.points for patch in found] or [np.zeros((0, 3))])
+    found = list(brick_surfaces(stock, passed, part))
+    values = np.concatenate([surface.values for surface in found] or [np.zeros(0)])
+    points = np.concatenate([surface.points for surface in found] or [np.zeros((0, 3))])
     if not len(values):
         values, points = np.zeros(1), np.full((1, 3), np.nan)
     high, low = int(np.argmax(values)), int(np.argmin(values))

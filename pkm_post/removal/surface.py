@@ -26,7 +26,7 @@ _EDGE_CELLS = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
 
 
 @dataclass(frozen=True)
-class Patch:
+class BrickSurface:
     """The surface in a brick, with V vertices and F faces.
 
     Attributes:
@@ -44,8 +44,8 @@ class Patch:
     faces: Array
 
 
-def patches(stock: Stock, brick: Array, part: Array | None = None) -> Iterator[Patch]:
-    """The surface in some bricks; one without any surface has a patch without vertices.
+def brick_surfaces(stock: Stock, brick: Array, part: Array | None = None) -> Iterator[BrickSurface]:
+    """The surface in some bricks; one without any surface has one without vertices.
 
     Args:
         stock: the material.
@@ -63,7 +63,7 @@ def patches(stock: Stock, brick: Array, part: Array | None = None) -> Iterator[P
         for row, number in enumerate(some.tolist()):
             of_points = slice(begin_point[row], begin_point[row + 1])
             own = faces[begin_face[row] : begin_face[row + 1]] - begin_point[row]
-            yield Patch(number, points[of_points], normals[of_points], values[of_points], own)
+            yield BrickSurface(number, points[of_points], normals[of_points], values[of_points], own)
 
 
 def _first_nodes(grid: Grid, brick: Array) -> Array:

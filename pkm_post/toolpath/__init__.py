@@ -25,13 +25,13 @@ if TYPE_CHECKING:
     from pkm_post.toolpath.surface.moves import program_from_poses
     from pkm_post.toolpath.surface.options import CutMode, LeadMove, PassLines, PassOrder, SurfaceOptions
     from pkm_post.toolpath.surface.passes import surface_poses
-    from pkm_post.toolpath.surface.poses import Poses, Tolerances
+    from pkm_post.toolpath.surface.poses import SurfacePoses, SurfaceTolerances
     from pkm_post.toolpath.surface.stepover import Stepover
     from pkm_post.toolpath.surface.surface import ParameterRange, Surface
     from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
     from pkm_post.toolpath.surface_speed import SurfaceSpeed, with_surface_speed
     from pkm_post.toolpath.symmetry.copies import MIRRORS, Copies, with_copies
-    from pkm_post.toolpath.symmetry.coverage import Coverage, Seam, coverage, mirror_gap, seam, seams, sector
+    from pkm_post.toolpath.symmetry.coverage import AngularCoverage, Seam, coverage, mirror_gap, seam, seams, sector
     from pkm_post.toolpath.symmetry.cut_direction import cut_lengths
     from pkm_post.toolpath.symmetry.passes import pass_rows
     from pkm_post.toolpath.symmetry.reverse import reversed_passes
@@ -54,13 +54,13 @@ else:
             "surface.moves": "program_from_poses",
             "surface.options": "CutMode LeadMove PassLines PassOrder SurfaceOptions",
             "surface.passes": "surface_poses",
-            "surface.poses": "Poses Tolerances",
+            "surface.poses": "SurfacePoses SurfaceTolerances",
             "surface.stepover": "Stepover",
             "surface.surface": "ParameterRange Surface",
             "surface.tool_axis": "AxisRule tool_axes",
             "surface_speed": "SurfaceSpeed with_surface_speed",
             "symmetry.copies": "MIRRORS Copies with_copies",
-            "symmetry.coverage": "Coverage Seam coverage mirror_gap seam seams sector",
+            "symmetry.coverage": "AngularCoverage Seam coverage mirror_gap seam seams sector",
             "symmetry.cut_direction": "cut_lengths",
             "symmetry.passes": "pass_rows",
             "symmetry.reverse": "reversed_passes",
@@ -79,7 +79,7 @@ __all__ = [
     "with_copies",
     "AxisRule",
     "Copies",
-    "Coverage",
+    "AngularCoverage",
     "CutMode",
     "Cutter",
     "Seam",
@@ -88,7 +88,7 @@ __all__ = [
     "PassLines",
     "OffsetOptions",
     "PassOrder",
-    "Poses",
+    "SurfacePoses",
     "Segments",
     "SurfaceOptions",
     "ParameterRange",
@@ -96,7 +96,7 @@ __all__ = [
     "Surface",
     "SurfaceSpeed",
     "SweptVolume",
-    "Tolerances",
+    "SurfaceTolerances",
     "ToolPose",
     "mirror_gap",
     "pose_columns",

@@ -21,7 +21,7 @@ _TURNING_IN_PLACE = 0.01
 
 
 @dataclass(frozen=True)
-class Arcs:
+class ArcSegments:
     """Columns of A segments whose tip moves on an arc.
 
     Attributes:
@@ -39,7 +39,7 @@ class Arcs:
     growth: Array
 
     @classmethod
-    def of(cls, trajectory: Trajectory, start: Array, extent: Array) -> Arcs:
+    def of(cls, trajectory: Trajectory, start: Array, extent: Array) -> ArcSegments:
         """The arcs of a trajectory, given the starts and path lengths of all its segments."""
         row = np.flatnonzero(trajectory.kind == Kind.ARC)
         centre, turn_axis = trajectory.arc_centre[row], trajectory.arc_axis[row]
@@ -77,7 +77,7 @@ class Segments:
     extent: Array
     start: Array
     tangent: Array
-    arcs: Arcs
+    arcs: ArcSegments
     axis: Array
     axis_rate: Array
     spin: Array
@@ -90,7 +90,7 @@ class Segments:
         start, axis, spin = trajectory.tip_before(), trajectory.axis_before(), trajectory.spin_before()
         degrees = np.degrees(np.maximum(trajectory.angle, np.abs(trajectory.spin - spin)))
         extent = np.where(trajectory.length > _TURNING_IN_PLACE * degrees, trajectory.length, degrees)
-        arcs = Arcs.of(trajectory, start, extent)
+        arcs = ArcSegments.of(trajectory, start, extent)
         way = trajectory.tip - start
         turn_axis = trajectory.arc_axis[arcs.row]
         way[arcs.row] = dot(way[arcs.row], turn_axis)[:, None] * turn_axis

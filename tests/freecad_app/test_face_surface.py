@@ -43,11 +43,11 @@ def test_poles_give_what_opencascade_gives(number):
     surface = face_surface(face)
     u, v = (np.linspace(span.first, span.last, 9) for span in (surface.u, surface.v))
     u, v = (each.ravel() for each in np.meshgrid(u, v))
-    patch = surface.at(u, v)
+    samples = surface.at(u, v)
     pairs = [(surface.u.normalise(a[None])[0], surface.v.normalise(b[None])[0]) for a, b in zip(u, v, strict=True)]
     vectors = [[face.valueAt(*pair), face.normalAt(*pair), *face.derivative1At(*pair)] for pair in pairs]
     expected = np.array([[tuple(vector) for vector in row] for row in vectors])
-    for column, found in enumerate((patch.point, patch.normal, patch.along_u, patch.along_v)):
+    for column, found in enumerate((samples.point, samples.normal, samples.along_u, samples.along_v)):
         assert found == pytest.approx(expected[:, column], abs=1e-9)
 
 

@@ -11,7 +11,7 @@ from cam_jobs import add_operation
 
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.tools import read_tools, set_gauge_length
-from pkm_post.toolpath.compensation.cutter import Cutter, Profile
+from pkm_post.toolpath.compensation.cutter import Cutter, CutterProfile
 
 
 def stock_bit(document, shape, **sizes):
@@ -52,7 +52,7 @@ def assert_shape(bit, diameter, corner_radius):
 
 def assert_profile(bit, tool, levels):
     """The solid of the bit ends where the profile of the tool's cutter does, at some levels above the tip."""
-    outline = Profile.of(Cutter.of(tool), 100.0)
+    outline = CutterProfile.of(Cutter.of(tool), 100.0)
     for z in levels:
         low, high = 0.0, 50.0
         for _ in range(40):

@@ -8,11 +8,11 @@ import pytest
 from meshes import ball, box
 
 from pkm_post.geometry.polygons import is_closed, volume
-from pkm_post.removal import RotatingShape, Stock, patches
+from pkm_post.removal import RotatingShape, Stock, brick_surfaces
 from pkm_post.removal.grid import Grid
 from pkm_post.removal.mesh_distance import mesh_distances
 from pkm_post.toolpath import Cutter
-from pkm_post.toolpath.compensation.cutter import Profile
+from pkm_post.toolpath.compensation.cutter import CutterProfile
 
 BLOCK = (-20.0, -15.0, -20.0), (20.0, 15.0, 0.0)
 RADIUS, TOP = 5.0, 60.0
@@ -118,7 +118,7 @@ def test_a_tool_above_the_stock_and_one_beside_it_take_nothing():
 @pytest.mark.parametrize("name", CUTTERS)
 def test_a_shape_is_negative_inside_the_cutter_alone_and_a_distance_below_it(name):
     cutter = CUTTERS[name]
-    shape, true = RotatingShape.of(cutter, 25.0), Profile.of(cutter, 25.0)
+    shape, true = RotatingShape.of(cutter, 25.0), CutterProfile.of(cutter, 25.0)
     top = min(25.0, cutter.height, true.top)
     rng = np.random.default_rng(5)
     radius, height = rng.uniform(0, 15, 20_000), rng.uniform(-5, top, 20_000)
@@ -154,7 +154,9 @@ def test_distances_of_a_box_and_of_a_ball_are_theirs():
 
 def test_the_surface_is_closed_faces_outwards_and_holds_the_volume():
     stock = after(0.8, line([-40, 3, -8], [40, -2, -5]), tilted(25)[0], BALL)
-    quads = np.concatenate([patch.points[patch.faces] for patch in patches(stock, np.arange(stock.grid.count))])
+    quads = np.concatenate(
+        [surface.points[surface.faces] for surface in brick_surfaces(stock, np.arange(stock.grid.count))]
+    )
     triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
     assert is_closed(triangles)
     assert volume(triangles) == pytest.approx(stock.volume, rel=0.01)
@@ -162,8 +164,8 @@ def test_the_surface_is_closed_faces_outwards_and_holds_the_volume():
 
 def test_points_and_normals_of_the_surface_are_those_of_the_ball_that_dipped_in():
     stock, centre = after(0.5, [0.3, 0.2, -8.0], Z, BALL), np.array([0.3, 0.2, -3.0])
-    found = list(patches(stock, np.arange(stock.grid.count)))
-    points, normals = (np.concatenate([getattr(patch, name) for patch in found]) for name in ("points", "normals"))
+    found = list(brick_surfaces(stock, np.arange(stock.grid.count)))
+    points, normals = (np.concatenate([getattr(surface, name) for surface in found]) for name in ("points", "normals"))
     away = points - centre
     on_ball = (points[:, 2] < -3.5) & (np.linalg.norm(away, axis=1) < 6)
     assert on_ball.sum() > 300

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, across, cross, dot, norm
-from pkm_post.toolpath.compensation.contour_elements import Elements, Role
+from pkm_post.toolpath.compensation.contour_elements import ContourElements, Role
 from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 SAME = 1e-6
@@ -66,7 +66,9 @@ class Transitions:
     added: Array
 
 
-def transitions(elements: Elements, first: Array, second: Array, options: OffsetOptions, rounded: Array) -> Transitions:
+def transitions(
+    elements: ContourElements, first: Array, second: Array, options: OffsetOptions, rounded: Array
+) -> Transitions:
     """Joints of pairs of elements; NaN where their offsets do not meet.
 
     Args:
@@ -99,7 +101,12 @@ def transitions(elements: Elements, first: Array, second: Array, options: Offset
 
 
 def _kinds(
-    elements: Elements, first: Array, second: Array, corner: CornerGeometry, options: OffsetOptions, rounded: Array
+    elements: ContourElements,
+    first: Array,
+    second: Array,
+    corner: CornerGeometry,
+    options: OffsetOptions,
+    rounded: Array,
 ) -> Array:
     """Kinds of the corners, (J,): the first rule that holds decides."""
     offset = elements.offset[second]
@@ -202,7 +209,7 @@ class CornerGeometry:
         return CornerGeometry(**{name: column[chosen] for name, column in vars(self).items()})
 
 
-def corner_geometry(elements: Elements, first: Array, second: Array) -> CornerGeometry:
+def corner_geometry(elements: ContourElements, first: Array, second: Array) -> CornerGeometry:
     """The corners between pairs of elements.
 
     Args:
@@ -229,7 +236,7 @@ def corner_geometry(elements: Elements, first: Array, second: Array) -> CornerGe
     )
 
 
-def _shortened_ends(elements: Elements, first: Array, second: Array, corner: CornerGeometry) -> Array:
+def _shortened_ends(elements: ContourElements, first: Array, second: Array, corner: CornerGeometry) -> Array:
     """Meeting points of shortened offsets, from the programmed end of the first element, (J, 3)."""
     radius = elements.offset_radius
     arc = elements.turn != 0

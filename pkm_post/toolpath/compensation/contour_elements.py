@@ -37,7 +37,7 @@ class Role(enum.IntEnum):
 
 
 @dataclass(frozen=True)
-class Elements:
+class ContourElements:
     """Columns of M elements, contour after contour.
 
     Attributes:
@@ -79,7 +79,7 @@ class Elements:
         return norm(self.from_centre) - (self.turn * self.offset)[:, None]
 
 
-def elements_of(program: Program) -> tuple[Elements, tuple[Diagnostic, ...]]:
+def elements_of(program: Program) -> tuple[ContourElements, tuple[Diagnostic, ...]]:
     """The elements of all contours of a program, and their diagnostics."""
     rows, roles = _rows(program)
     contour = np.cumsum(roles == Role.START) - 1
@@ -96,7 +96,7 @@ def elements_of(program: Program) -> tuple[Elements, tuple[Diagnostic, ...]]:
     way = np.stack([across(end - start, normal[:, i]) for i in (0, 1)], axis=1)
     way = np.where(arc[:, None, None], turn[:, None, None] * cross(normal, from_centre), way)
     distance = norm(way)
-    elements = Elements(
+    elements = ContourElements(
         row=rows,
         contour=contour,
         role=roles,
@@ -158,7 +158,7 @@ def _normals(program: Program, rows: Array, plane: Array) -> Array:
     return np.stack(ends, axis=1)
 
 
-def _faults(program: Program, elements: Elements, on_row: Array) -> tuple[Diagnostic, ...]:
+def _faults(program: Program, elements: ContourElements, on_row: Array) -> tuple[Diagnostic, ...]:
     """Faults of elements that keep them out of a contour, by row."""
     arc = program.kind[elements.row] == Kind.ARC
     lead = elements.role != Role.CUT

@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, across, arc_points, arc_sweep, cross, dot, expand_counts, norm
 from pkm_post.model import Diagnostic, Kind, Program
-from pkm_post.toolpath.compensation.contour_elements import PARALLEL, Elements, Role
+from pkm_post.toolpath.compensation.contour_elements import PARALLEL, ContourElements, Role
 from pkm_post.toolpath.compensation.proximity import Chords, close_pairs
 
 _ON = 2e-3
@@ -27,7 +27,7 @@ _CHORD_SHARE = 0.2
 
 
 def gouges(
-    program: Program, elements: Elements, moved: Program, source: Array, leads: Array, tolerance: float
+    program: Program, elements: ContourElements, moved: Program, source: Array, leads: Array, tolerance: float
 ) -> tuple[Diagnostic, ...]:
     """Where the compensated path cuts into the programmed contour.
 
@@ -87,7 +87,7 @@ class _View:
     upward: Array
 
 
-def _view(program: Program, elements: Elements) -> _View:
+def _view(program: Program, elements: ContourElements) -> _View:
     first = np.flatnonzero(elements.role == Role.START)
     count = len(first)
     normal = elements.normal[first, 1]
@@ -100,7 +100,7 @@ def _view(program: Program, elements: Elements) -> _View:
     return _View(np.where(turning[:, None], 0.0, normal), upward)
 
 
-def _by_row(program: Program, elements: Elements) -> tuple[Array, Array]:
+def _by_row(program: Program, elements: ContourElements) -> tuple[Array, Array]:
     """Contour number of each row, -1 outside, and the radius of its tool, (N,) each."""
     contour = np.full(len(program), -1)
     radius = np.zeros(len(program))
@@ -164,7 +164,7 @@ def _chords(program: Program, rows: Array, error: float) -> tuple[Array, Array, 
     return points[0], points[1], rows[of]
 
 
-def bounding_elements(elements: Elements, segments: Chords, owner: Array, contours: Array) -> Array:
+def bounding_elements(elements: ContourElements, segments: Chords, owner: Array, contours: Array) -> Array:
     """Flags of the elements of some contours that bound the workpiece, (M,).
 
     A closed part begins at a point to which the path later returns, in a corner or along an element. Of the closed
@@ -197,12 +197,12 @@ def bounding_elements(elements: Elements, segments: Chords, owner: Array, contou
     return walls
 
 
-def _cutting_elements(elements: Elements) -> Array:
+def _cutting_elements(elements: ContourElements) -> Array:
     """Numbers of the elements that may bound the workpiece, (W,)."""
     return np.flatnonzero((elements.role == Role.CUT) & ~elements.rapid)
 
 
-def _returns(elements: Elements, segments: Chords, owner: Array, first: Array) -> tuple[Array, Array]:
+def _returns(elements: ContourElements, segments: Chords, owner: Array, first: Array) -> tuple[Array, Array]:
     """Pairs of elements, (P,) each: the second passes over the start point of the first, seen in the plane."""
     begins = segments.rows(np.searchsorted(owner, first))
     count = len(first)

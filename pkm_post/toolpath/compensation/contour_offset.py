@@ -22,7 +22,7 @@ import numpy as np
 from pkm_post.geometry import Array, across, cross, dot
 from pkm_post.model import Diagnostic, Event, Kind, Program, errors
 from pkm_post.toolpath.compensation.contour_corners import MAX_CORNER_POINTS, SAME, Transition, transitions
-from pkm_post.toolpath.compensation.contour_elements import Elements, Role, elements_of, moves_in_plane
+from pkm_post.toolpath.compensation.contour_elements import ContourElements, Role, elements_of, moves_in_plane
 from pkm_post.toolpath.compensation.contour_gouge import gouges
 from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
@@ -81,7 +81,7 @@ def offset_contours(
 
 
 def _removals(
-    program: Program, elements: Elements, offsets: ElementOffsets, options: OffsetOptions
+    program: Program, elements: ContourElements, offsets: ElementOffsets, options: OffsetOptions
 ) -> tuple[Diagnostic, ...]:
     """A diagnostic for every run of removed rows; an error where removal is not allowed, or nothing is left."""
     left = np.zeros(len(elements), dtype=np.int64)
@@ -100,7 +100,7 @@ def _removals(
     )
 
 
-def _removed_text(program: Program, elements: Elements, first: int, last: int) -> str:
+def _removed_text(program: Program, elements: ContourElements, first: int, last: int) -> str:
     """Description of a run of elements that the tool is too large for."""
     tool = f"tool radius {abs(elements.offset[first]):g} mm"
     if last > first:
@@ -110,7 +110,7 @@ def _removed_text(program: Program, elements: Elements, first: int, last: int) -
     return f"{tool}, line of {elements.length[first]:.6g} mm"
 
 
-def _leads(program: Program, elements: Elements, offsets: ElementOffsets, source: Array, extra: Array) -> Array:
+def _leads(program: Program, elements: ContourElements, offsets: ElementOffsets, source: Array, extra: Array) -> Array:
     """Rows of the new program before a contour is cut, after it, or where it changes its side, (K,)."""
     role = np.full(len(program), Role.CUT)
     role[elements.row] = elements.role
@@ -144,7 +144,7 @@ class ElementOffsets:
     length: Array
 
 
-def element_offsets(elements: Elements, options: OffsetOptions) -> ElementOffsets:
+def element_offsets(elements: ContourElements, options: OffsetOptions) -> ElementOffsets:
     """Offsets of the elements, without those that vanish."""
     count = len(elements)
     radius = elements.offset[:, None] * cross(elements.normal[:, 1], elements.tangent[:, 1])
@@ -187,7 +187,12 @@ def _arcs_to_sharpen(offsets: ElementOffsets, after: Array, vanishing: Array, op
 
 
 def _join(
-    elements: Elements, offsets: ElementOffsets, first: Array, second: Array, options: OffsetOptions, rounded: Array
+    elements: ContourElements,
+    offsets: ElementOffsets,
+    first: Array,
+    second: Array,
+    options: OffsetOptions,
+    rounded: Array,
 ) -> None:
     """Write the transitions of pairs of elements into the offsets."""
     joined = transitions(elements, first, second, options, rounded)
@@ -195,13 +200,13 @@ def _join(
     offsets.end[first], offsets.start[second] = joined.first, joined.last
 
 
-def _measure(elements: Elements, offsets: ElementOffsets, rows: Array) -> None:
+def _measure(elements: ContourElements, offsets: ElementOffsets, rows: Array) -> None:
     """Write the remaining lengths of elements into the offsets."""
     rows = rows[elements.role[rows] == Role.CUT]
     offsets.length[rows] = _lengths(elements, offsets, rows)
 
 
-def _lengths(elements: Elements, offsets: ElementOffsets, rows: Array) -> Array:
+def _lengths(elements: ContourElements, offsets: ElementOffsets, rows: Array) -> Array:
     """Remaining length of elements, mm, (n,): negative where reversed, NaN where they meet no neighbour."""
     start, end = offsets.start[rows], offsets.end[rows]
     straight = dot(elements.end[rows] + end - elements.start[rows] - start, elements.tangent[rows, 1])
@@ -221,7 +226,7 @@ def _angle(before: Array, after: Array, normal: Array) -> Array:
 
 
 def _first_to_vanish(
-    elements: Elements, offsets: ElementOffsets, before: Array, after: Array, vanishing: Array
+    elements: ContourElements, offsets: ElementOffsets, before: Array, after: Array, vanishing: Array
 ) -> Array:
     """Vanishing elements that shrink to nothing before their neighbours do."""
     if not len(vanishing):
@@ -237,7 +242,7 @@ def _first_to_vanish(
     return vanishing[(share[1] < share[0]) & (share[1] <= share[2])]
 
 
-def _with_offsets(program: Program, elements: Elements, offsets: ElementOffsets) -> tuple[Program, Array, Array]:
+def _with_offsets(program: Program, elements: ContourElements, offsets: ElementOffsets) -> tuple[Program, Array, Array]:
     """The program with its contours offset.
 
     Returns:
@@ -274,7 +279,7 @@ def _with_offsets(program: Program, elements: Elements, offsets: ElementOffsets)
     return moved, source, extra
 
 
-def _displacements(program: Program, elements: Elements, offsets: ElementOffsets) -> Array:
+def _displacements(program: Program, elements: ContourElements, offsets: ElementOffsets) -> Array:
     """Displacement of the tip at the end of each row, (N, 3), mm."""
     indices = np.arange(len(elements))
     # The tip stays where the last element before a vanishing one ended.
@@ -291,7 +296,7 @@ def _displacements(program: Program, elements: Elements, offsets: ElementOffsets
 
 
 def _shapes(
-    program: Program, elements: Elements, offsets: ElementOffsets, source: Array, extra: Array
+    program: Program, elements: ContourElements, offsets: ElementOffsets, source: Array, extra: Array
 ) -> tuple[Array, Array, Array]:
     """Kind, arc centre and arc axis of the new rows."""
     blank = np.full((len(source), 3), np.nan)

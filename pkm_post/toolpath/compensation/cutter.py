@@ -175,7 +175,7 @@ def known_cutter(tool: Tool, place: Place) -> tuple[Cutter | None, tuple[Diagnos
 
 
 @dataclass(frozen=True)
-class Profile:
+class CutterProfile:
     """The outline of a cutter in the half-plane of radius and level: line, arc, line, and a line across the top.
 
     Attributes:
@@ -195,7 +195,7 @@ class Profile:
     top: float
 
     @classmethod
-    def of(cls, cutter: Cutter, tallest: float) -> Profile:
+    def of(cls, cutter: Cutter, tallest: float) -> CutterProfile:
         """The outline of a cutter.
 
         Args:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pkm_post.geometry import Array, angle_between, dot, expand_counts, grid_cells, length_of, norm, take_rows, unit
-from pkm_post.toolpath.compensation.cutter import Cutter, Profile
+from pkm_post.toolpath.compensation.cutter import Cutter, CutterProfile
 
 _BLOCK = 16
 """Steps of the path that are skipped together when they are far away."""
@@ -150,7 +150,7 @@ class SweptVolume:
     row: Array
     travel: Array
     bend: Array
-    profile: Profile
+    profile: CutterProfile
     within: float
 
     @classmethod
@@ -167,7 +167,7 @@ class SweptVolume:
         rows = len(tips)
         if rows == 1:
             tips, axes = np.repeat(tips, 2, axis=0), np.repeat(axes, 2, axis=0)
-        profile = Profile.of(cutter, tallest)
+        profile = CutterProfile.of(cutter, tallest)
         reach = profile.reach + within
         way = norm(np.diff(tips, axis=0)) + reach * angle_between(axes[:-1], axes[1:])
         count = np.maximum(1, np.ceil(way / (_STEP * cutter.radius)).astype(np.int64))

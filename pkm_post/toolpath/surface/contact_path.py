@@ -13,7 +13,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from pkm_post.geometry import Array, cross, dot
-from pkm_post.toolpath.surface.surface import ParameterRange, Patch, Surface
+from pkm_post.toolpath.surface.surface import ParameterRange, Surface, SurfaceSamples
 
 _ROUNDS = 8
 """Newton steps to a plane: each squares the error."""
@@ -86,9 +86,9 @@ class PassPattern:
     plane: Array | None
     level: Array
 
-    def direction(self, patch: Patch) -> Array:
+    def direction(self, samples: SurfaceSamples) -> Array:
         """Tangents along the lines, (N, 3), of any length: with rising u, or n x plane, its normal to the right."""
-        return patch.along_u if self.plane is None else cross(patch.normal, self.plane)
+        return samples.along_u if self.plane is None else cross(samples.normal, self.plane)
 
     def snap(self, surface: Surface, u: Array, v: Array, number: Array) -> tuple[Array, Array]:
         """The nearest points on the lines of the passes with the given numbers, (N,) each.
@@ -98,11 +98,11 @@ class PassPattern:
         if self.plane is None:
             return u, v
         for _ in range(_ROUNDS):
-            patch = surface.at(u, v)
-            off = dot(patch.point, self.plane) - self.level[number]
+            samples = surface.at(u, v)
+            off = dot(samples.point, self.plane) - self.level[number]
             if not np.any(np.abs(off) > _ON_PLANE):
                 break
-            step_u, step_v = _to_plane(patch, self.plane, off, _free(surface.u, u), _free(surface.v, v))
+            step_u, step_v = _to_plane(samples, self.plane, off, _free(surface.u, u), _free(surface.v, v))
             u, v = surface.u.clamp(u + step_u), surface.v.clamp(v + step_v)
         return u, v
 
@@ -115,10 +115,10 @@ def _free(span: ParameterRange, values: Array) -> Array:
     return free
 
 
-def _to_plane(patch: Patch, plane: Array, off: Array, free_u: Array, free_v: Array) -> tuple[Array, Array]:
+def _to_plane(samples: SurfaceSamples, plane: Array, off: Array, free_u: Array, free_v: Array) -> tuple[Array, Array]:
     """Newton steps in u and v along the slope of the surface, in its metric, to distance 0 from the plane."""
-    slope_u, slope_v = dot(patch.along_u, plane) * free_u, dot(patch.along_v, plane) * free_v
-    scale_u, scale_v = (np.maximum(dot(each, each), 1e-300) for each in (patch.along_u, patch.along_v))
+    slope_u, slope_v = dot(samples.along_u, plane) * free_u, dot(samples.along_v, plane) * free_v
+    scale_u, scale_v = (np.maximum(dot(each, each), 1e-300) for each in (samples.along_u, samples.along_v))
     steepness = slope_u**2 / scale_u + slope_v**2 / scale_v
     factor = np.where(steepness > _STEEP**2, -off / np.maximum(steepness, _STEEP**2), 0.0)
     return factor * slope_u / scale_u, factor * slope_v / scale_v

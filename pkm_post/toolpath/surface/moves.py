@@ -16,7 +16,7 @@ import numpy as np
 from pkm_post.geometry import Array
 from pkm_post.model import Amount, Diagnostic, Kind, Phrase, Place, Program
 from pkm_post.toolpath.surface.options import LeadMove, SurfaceOptions
-from pkm_post.toolpath.surface.poses import Poses
+from pkm_post.toolpath.surface.poses import SurfacePoses
 from pkm_post.toolpath.surface.tool_axis import clamp_to_cone
 
 _UP = np.array([0.0, 0.0, 1.0])
@@ -53,7 +53,7 @@ class _Rows:
 
 
 def program_from_poses(
-    covered: list[Poses], settings: SurfaceOptions, place: Place
+    covered: list[SurfacePoses], settings: SurfaceOptions, place: Place
 ) -> tuple[Program | None, tuple[Diagnostic, ...]]:
     """The program through all poses.
 
@@ -78,7 +78,7 @@ def program_from_poses(
 
 
 def _visit(
-    poses: Poses, rows: Array, come: float, leave: float, settings: SurfaceOptions, place: Place
+    poses: SurfacePoses, rows: Array, come: float, leave: float, settings: SurfaceOptions, place: Place
 ) -> tuple[list[_Rows], list[Diagnostic]]:
     """Rows down from a plane, along a run, and up to a plane; and their diagnostics."""
     first, last = int(rows[0]), int(rows[-1])
@@ -114,13 +114,13 @@ def _least_lift(begin: Array, axis: Array, end: Array, axis_at_end: Array, appro
     return z
 
 
-def _runs(poses: Poses) -> list[Array]:
+def _runs(poses: SurfacePoses) -> list[Array]:
     """The rows of each run."""
     run = poses.path.run
     return np.split(np.arange(len(run)), np.flatnonzero(run[1:] != run[:-1]) + 1)
 
 
-def _lead(poses: Poses, row: int, sense: float, settings: SurfaceOptions) -> Array:
+def _lead(poses: SurfacePoses, row: int, sense: float, settings: SurfaceOptions) -> Array:
     """Lead tips from a pose outwards, nearest first: along the feed, or on a quarter circle off the surface."""
     length, along, off = settings.lead_length, sense * poses.frame.feed[row], poses.normal[row]
     if settings.lead_move is LeadMove.NONE or length == 0.0:

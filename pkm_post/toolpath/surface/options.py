@@ -9,7 +9,7 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass, field
 
-from pkm_post.toolpath.surface.poses import Tolerances
+from pkm_post.toolpath.surface.poses import SurfaceTolerances
 from pkm_post.toolpath.surface.stepover import Stepover
 from pkm_post.toolpath.surface.tool_axis import AxisRule
 
@@ -78,7 +78,7 @@ class SurfaceOptions:
     plane: tuple[float, float, float] = (1.0, 0.0, 0.0)
     reversed: bool = False
     stepover: Stepover = field(default_factory=lambda: Stepover(distance=1.0))
-    tolerances: Tolerances = field(default_factory=Tolerances)
+    tolerances: SurfaceTolerances = field(default_factory=SurfaceTolerances)
     rule: AxisRule = field(default_factory=AxisRule)
     cut_mode: CutMode = CutMode.AS_IT_COMES
     clockwise: bool = True

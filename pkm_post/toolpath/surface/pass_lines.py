@@ -12,7 +12,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, cross, dot
 from pkm_post.toolpath.surface.contact_path import ContactPath
-from pkm_post.toolpath.surface.surface import Grid, ParameterRange, Surface
+from pkm_post.toolpath.surface.surface import ParameterRange, Surface, SurfaceGrid
 
 
 def iso_lines(u: ParameterRange, v: Array, nodes: int) -> ContactPath:
@@ -51,8 +51,8 @@ def plane_sections(surface: Surface, plane: Array, level: Array) -> ContactPath:
         plane: (3,) unit normal of the planes.
         level: (P,) positions of the planes along the normal, mm.
     """
-    grid = Grid.over(surface, *_GRID)
-    height = grid.shaped(dot(grid.patch.point, plane)).copy()
+    grid = SurfaceGrid.over(surface, *_GRID)
+    height = grid.shaped(dot(grid.samples.point, plane)).copy()
     if surface.u.closed:
         height[-1] = height[0]
     if surface.v.closed:
@@ -72,17 +72,17 @@ def plane_sections(surface: Surface, plane: Array, level: Array) -> ContactPath:
 
 def _in_direction(surface: Surface, plane: Array, path: ContactPath) -> ContactPath:
     """The lines, each in the direction of the pattern: the plane normal is on its right, seen from outside."""
-    patch = surface.at(path.u, path.v)
-    step = np.diff(patch.point, axis=0)
+    samples = surface.at(path.u, path.v)
+    step = np.diff(samples.point, axis=0)
     same = path.run[:-1] == path.run[1:]
     along = np.zeros(int(path.run[-1]) + 1)
-    np.add.at(along, path.run[:-1][same], dot(step, cross(patch.normal[:-1], plane))[same])
+    np.add.at(along, path.run[:-1][same], dot(step, cross(samples.normal[:-1], plane))[same])
     rows = np.arange(len(path))
     order = np.lexsort((np.where(along[path.run] < 0.0, -rows, rows), path.run))
     return path.take(order)
 
 
-def _crossings(grid: Grid, height: Array) -> tuple[Array, Array, Array]:
+def _crossings(grid: SurfaceGrid, height: Array) -> tuple[Array, Array, Array]:
     """Crossings of the line with cell edges, by number of the edge, and the pairs of edges that it joins.
 
     An edge along u has the number of its first node, one along v that of its node plus the number of nodes.

@@ -19,7 +19,7 @@ from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.surface.contact_path import ContactPath, PassPattern, thinned, trimmed
 from pkm_post.toolpath.surface.options import CutMode, PassLines, PassOrder, SurfaceOptions
 from pkm_post.toolpath.surface.pass_lines import iso_lines, plane_sections, spiral
-from pkm_post.toolpath.surface.poses import PoseRefinement, Poses, Progress
+from pkm_post.toolpath.surface.poses import PoseRefinement, Progress, SurfacePoses
 from pkm_post.toolpath.surface.stepover import levels_of_planes, passes_along_u
 from pkm_post.toolpath.surface.surface import Surface, unit_or_nan
 from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
@@ -38,7 +38,7 @@ _LINK = 3.0
 
 def surface_poses(
     surface: Surface, cutter: Cutter, settings: SurfaceOptions, place: Place, progress: Progress = lambda share: None
-) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
+) -> tuple[SurfacePoses | None, tuple[Diagnostic, ...]]:
     """The poses of a cutter along its path over a surface.
 
     Args:
@@ -150,14 +150,14 @@ def climbs(surface: Surface, pattern: PassPattern, path: ContactPath, rule: Axis
         rule: rule of the tool axis.
         into_rising: 1 when passes follow each other with rising v or level, -1 when falling.
     """
-    patch = surface.at(path.u, path.v)
-    feed = np.nan_to_num(unit_or_nan(pattern.direction(patch)) * path.sense[:, None])
-    next_passes = patch.along_v if pattern.plane is None else np.broadcast_to(pattern.plane, feed.shape)
+    samples = surface.at(path.u, path.v)
+    feed = np.nan_to_num(unit_or_nan(pattern.direction(samples)) * path.sense[:, None])
+    next_passes = samples.along_v if pattern.plane is None else np.broadcast_to(pattern.plane, feed.shape)
     sideways = next_passes - dot(next_passes, feed)[:, None] * feed
-    s = into_rising * np.nan_to_num(unit_or_nan(sideways - dot(sideways, patch.normal)[:, None] * patch.normal))
-    side = cross(patch.normal, feed) * path.sense[:, None]
-    k = np.nan_to_num(tool_axes(patch.normal, feed, rule, side)[0])
-    return bool(np.mean(dot(s - patch.normal, cross(feed, k))) > 0.0)
+    s = into_rising * np.nan_to_num(unit_or_nan(sideways - dot(sideways, samples.normal)[:, None] * samples.normal))
+    side = cross(samples.normal, feed) * path.sense[:, None]
+    k = np.nan_to_num(tool_axes(samples.normal, feed, rule, side)[0])
+    return bool(np.mean(dot(s - samples.normal, cross(feed, k))) > 0.0)
 
 
 def link_passes(surface: Surface, path: ContactPath, longest: float, zigzag: bool) -> ContactPath:

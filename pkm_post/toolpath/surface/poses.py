@@ -19,12 +19,12 @@ from pkm_post.toolpath.compensation.contact import tip_from_contact
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.surface.contact_path import ContactPath, PassPattern
 from pkm_post.toolpath.surface.stepover import cutter_gap
-from pkm_post.toolpath.surface.surface import Patch, Surface
+from pkm_post.toolpath.surface.surface import Surface, SurfaceSamples
 from pkm_post.toolpath.surface.tool_axis import AxisRule, FeedFrame, LinkEnds, feed_frame, tool_axes
 
 
 @dataclass(frozen=True)
-class Tolerances:
+class SurfaceTolerances:
     """Allowed deviation of a straight move between its ends.
 
     Attributes:
@@ -38,11 +38,11 @@ class Tolerances:
 
     def __post_init__(self) -> None:
         if not (self.chord > 0.0 and self.axis > 0.0):
-            raise ValueError(f"Tolerances: expected both above 0, got {self}")
+            raise ValueError(f"SurfaceTolerances: expected both above 0, got {self}")
 
 
 @dataclass(frozen=True)
-class Poses:
+class SurfacePoses:
     """Tool poses at N rows of a path.
 
     Attributes:
@@ -91,12 +91,12 @@ class PoseRefinement:
     pattern: PassPattern
     cutter: Cutter
     rule: AxisRule
-    tolerances: Tolerances
+    tolerances: SurfaceTolerances
     place: Place
 
     def poses(
         self, path: ContactPath, progress: Progress = lambda share: None
-    ) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
+    ) -> tuple[SurfacePoses | None, tuple[Diagnostic, ...]]:
         """Refine the path to the tolerances and compute the pose at each row.
 
         Args:
@@ -106,20 +106,22 @@ class PoseRefinement:
         Returns:
             The poses, or None when the cutter cannot touch the surface somewhere; and the diagnostics.
         """
-        patch = self.surface.at(path.u, path.v)
+        samples = self.surface.at(path.u, path.v)
         open_ = path.run[:-1] == path.run[1:]
         done = 0.0
         for _ in range(_ROUNDS):
-            poses, faults = self._at(path, patch)
+            poses, faults = self._at(path, samples)
             if poses is None:
                 return None, faults
             behind = np.flatnonzero(open_ & self._divisible(poses))
             if not len(behind):
                 break
-            middle, middle_patch, fails = self._midpoints(poses, behind)
+            middle, middle_samples, fails = self._midpoints(poses, behind)
             behind, middle = behind[fails], middle.take(fails)
-            rows = Patch(*(np.insert(old, behind + 1, new[fails], axis=0) for old, new in _pairs(patch, middle_patch)))
-            path, patch, open_ = path.with_rows(behind, middle), rows, _open_again(open_, behind)
+            rows = SurfaceSamples(
+                *(np.insert(old, behind + 1, new[fails], axis=0) for old, new in _pairs(samples, middle_samples))
+            )
+            path, samples, open_ = path.with_rows(behind, middle), rows, _open_again(open_, behind)
             done = max(done, 1.0 - len(behind) / max(len(path) - 1, 1))
             progress(done)
         else:
@@ -130,26 +132,26 @@ class PoseRefinement:
             )
         return poses, (*faults, *self._edges(poses))
 
-    def _at(self, path: ContactPath, patch: Patch) -> tuple[Poses | None, tuple[Diagnostic, ...]]:
-        """Poses at rows of known patch."""
-        travel = np.gradient(patch.point, axis=0) if len(path) > 1 else patch.along_u
-        frame = feed_frame(self.pattern, path, patch, travel)
+    def _at(self, path: ContactPath, samples: SurfaceSamples) -> tuple[SurfacePoses | None, tuple[Diagnostic, ...]]:
+        """Poses at rows with known samples of the surface."""
+        travel = np.gradient(samples.point, axis=0) if len(path) > 1 else samples.along_u
+        frame = feed_frame(self.pattern, path, samples, travel)
         before, after = _adjacent_passes(path)
-        links = LinkEnds(frame.take(before), frame.take(after), patch.point[after] - patch.point[before])
-        frame = frame.with_links(links, patch.normal, path.link)
-        axis, clamped = tool_axes(patch.normal, frame.feed, self.rule, frame.side)
-        tip, faults = tip_from_contact(patch.point, patch.normal, axis, self.cutter, self.place)
+        links = LinkEnds(frame.take(before), frame.take(after), samples.point[after] - samples.point[before])
+        frame = frame.with_links(links, samples.normal, path.link)
+        axis, clamped = tool_axes(samples.normal, frame.feed, self.rule, frame.side)
+        tip, faults = tip_from_contact(samples.point, samples.normal, axis, self.cutter, self.place)
         if tip is None:
-            return None, _first_of_each(faults, patch.point)
-        return Poses(path, patch.point, patch.normal, frame, axis, tip, clamped), faults
+            return None, _first_of_each(faults, samples.point)
+        return SurfacePoses(path, samples.point, samples.normal, frame, axis, tip, clamped), faults
 
-    def _divisible(self, poses: Poses) -> Array:
+    def _divisible(self, poses: SurfacePoses) -> Array:
         """Moves that may be divided: long ones, and those of links that turn the tool in place."""
         turns = angle_between(poses.axis[:-1], poses.axis[1:]) > self.tolerances.axis
         moves: Array = (norm(np.diff(poses.point, axis=0)) > _SHORTEST) | (_links(poses.path) & turns)
         return moves
 
-    def _midpoints(self, poses: Poses, behind: Array) -> tuple[ContactPath, Patch, Array]:
+    def _midpoints(self, poses: SurfacePoses, behind: Array) -> tuple[ContactPath, SurfaceSamples, Array]:
         """The rows in the middle of moves, the surface there, and the moves that exceed the tolerances."""
         path = poses.path
         left, right = path.take(behind), path.take(behind + 1)
@@ -163,33 +165,39 @@ class PoseRefinement:
             u, v = (np.where(is_link, raw, on_line) for raw, on_line in zip((u, v), settled, strict=True))
             link = np.where(is_link, _link_share(left.link, right.link, share), np.nan)
             between = replace(right, u=u, v=v, link=link)
-            patch = self.surface.at(u, v)
-            fails |= self._fails(poses, behind, between, patch, links, share)
+            samples = self.surface.at(u, v)
+            fails |= self._fails(poses, behind, between, samples, links, share)
             if share == 0.5:
-                middle, middle_patch = between, patch
-        return middle, middle_patch, fails
+                middle, middle_samples = between, samples
+        return middle, middle_samples, fails
 
     def _fails(
-        self, poses: Poses, behind: Array, between: ContactPath, patch: Patch, links: LinkEnds, share: float
+        self,
+        poses: SurfacePoses,
+        behind: Array,
+        between: ContactPath,
+        samples: SurfaceSamples,
+        links: LinkEnds,
+        share: float,
     ) -> Array:
         """Moves that exceed the tolerances at a place between their ends, (n,)."""
         chord = poses.point[behind + 1] - poses.point[behind]
-        way = patch.point - poses.point[behind]
+        way = samples.point - poses.point[behind]
         square = dot(chord, chord)
         on_the_spot = square <= _SHORTEST**2
         passed = np.where(on_the_spot, share, dot(way, chord) / np.where(on_the_spot, 1.0, square))
         passed = np.clip(passed, 0.0, 1.0)[:, None]
         tip = poses.tip[behind] + passed * (poses.tip[behind + 1] - poses.tip[behind])
         axis = along(poses.axis[behind], passed * towards(poses.axis[behind], poses.axis[behind + 1]))
-        frame = feed_frame(self.pattern, between, patch, chord).with_links(links, patch.normal, between.link)
-        wanted, _ = tool_axes(patch.normal, frame.feed, self.rule, frame.side)
-        off = cutter_gap(tip, axis, patch.point, patch.normal, self.cutter)
+        frame = feed_frame(self.pattern, between, samples, chord).with_links(links, samples.normal, between.link)
+        wanted, _ = tool_axes(samples.normal, frame.feed, self.rule, frame.side)
+        off = cutter_gap(tip, axis, samples.point, samples.normal, self.cutter)
         twisted = angle_between(axis, wanted) > self.tolerances.axis
         sideways = norm(way - passed * chord)
         fails: Array = (np.maximum(np.abs(off), sideways) > self.tolerances.chord) | twisted
         return fails
 
-    def _edges(self, poses: Poses) -> tuple[Diagnostic, ...]:
+    def _edges(self, poses: SurfacePoses) -> tuple[Diagnostic, ...]:
         """A warning where the surface has edges: adjacent contacts with different normals."""
         near = (poses.path.run[:-1] == poses.path.run[1:]) & (norm(np.diff(poses.point, axis=0)) <= _SHORTEST)
         angle = angle_between(poses.normal[:-1], poses.normal[1:])
@@ -244,6 +252,6 @@ def _open_again(open_: Array, behind: Array) -> Array:
     return np.repeat(divided, np.where(divided, 2, 1))
 
 
-def _pairs(left: Patch, right: Patch) -> list[tuple[Array, Array]]:
+def _pairs(left: SurfaceSamples, right: SurfaceSamples) -> list[tuple[Array, Array]]:
     """The columns of two patches, side by side."""
-    return [(getattr(left, item.name), getattr(right, item.name)) for item in fields(Patch)]
+    return [(getattr(left, item.name), getattr(right, item.name)) for item in fields(SurfaceSamples)]

@@ -18,7 +18,7 @@ import numpy as np
 from pkm_post.geometry import Array, cross, dot, norm
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.surface.contact_path import PassPattern
-from pkm_post.toolpath.surface.surface import Grid, ParameterRange, Surface, normal_curvatures, unit_or_nan
+from pkm_post.toolpath.surface.surface import ParameterRange, Surface, SurfaceGrid, normal_curvatures, unit_or_nan
 from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
 
 _FLAT_ON_IT = 1e-9
@@ -57,13 +57,13 @@ def passes_along_u(surface: Surface, stepover: Stepover, cutter: Cutter, rule: A
     The borders are passes; where a border is a single point, the first pass is half a step away from it.
     """
     surface = _trimmed_to_face(surface)
-    grid = Grid.over(surface, *_GRID)
+    grid = SurfaceGrid.over(surface, *_GRID)
     allowed = pass_widths(surface, grid, PassPattern(None, np.zeros(0)), stepover, cutter, rule)
     widest = _widest(allowed, grid)
     if math.isnan(widest):
         return np.zeros(0), widest
-    feed = np.nan_to_num(unit_or_nan(grid.patch.along_u))
-    across = norm(grid.patch.along_v - dot(grid.patch.along_v, feed)[:, None] * feed)
+    feed = np.nan_to_num(unit_or_nan(grid.samples.along_u))
+    across = norm(grid.samples.along_v - dot(grid.samples.along_v, feed)[:, None] * feed)
     need = np.max(grid.shaped(np.where(grid.inside, across / allowed, 0.0)), axis=0)
     first, last = (0.0 if length > _POINT else 0.5 for length in _lengths_on_borders(grid))
     need[[0, -1]] = np.where([first, last], need[[1, -2]], need[[0, -1]])  # a line has no direction at a pole
@@ -78,12 +78,12 @@ def levels_of_planes(
     The first and last plane are half a pass inside the surface. Planes barely intersect an area nearly parallel to
     them: there they are closer by a factor of 20 at most.
     """
-    grid = Grid.over(surface, *_GRID)
+    grid = SurfaceGrid.over(surface, *_GRID)
     allowed = pass_widths(surface, grid, PassPattern(plane, np.zeros(1)), stepover, cutter, rule)
-    height, widest = dot(grid.patch.point, plane)[grid.inside], _widest(allowed, grid)
+    height, widest = dot(grid.samples.point, plane)[grid.inside], _widest(allowed, grid)
     if math.isnan(widest) or not len(height) or np.ptp(height) < _POINT:
         return np.zeros(0), widest
-    slope = np.sqrt(np.maximum(1.0 - np.square(dot(grid.patch.normal, plane)), _FLATTEST**2))
+    slope = np.sqrt(np.maximum(1.0 - np.square(dot(grid.samples.normal, plane)), _FLATTEST**2))
     need = np.nan_to_num(1.0 / (allowed * slope))[grid.inside]
     edges = np.linspace(height.min(), height.max(), _LEVELS + 1)
     band = np.minimum(np.searchsorted(edges, height, side="right") - 1, _LEVELS - 1)
@@ -96,7 +96,7 @@ def levels_of_planes(
 
 
 def pass_widths(
-    surface: Surface, grid: Grid, pattern: PassPattern, stepover: Stepover, cutter: Cutter, rule: AxisRule
+    surface: Surface, grid: SurfaceGrid, pattern: PassPattern, stepover: Stepover, cutter: Cutter, rule: AxisRule
 ) -> Array:
     """Allowed distances of passes at grid points, (M * N,); NaN where the cutter does not fit into a concave area.
 
@@ -105,14 +105,14 @@ def pass_widths(
     if stepover.distance is not None:
         return np.full(len(grid.inside), stepover.distance)
     assert stepover.scallop is not None
-    patch = grid.patch
-    feed = unit_or_nan(pattern.direction(patch))
+    samples = grid.samples
+    feed = unit_or_nan(pattern.direction(samples))
     u, v = (each.ravel() for each in np.meshgrid(grid.u, grid.v, indexing="ij"))
-    curvature = normal_curvatures(surface, u, v, patch, cross(patch.normal, feed))
+    curvature = normal_curvatures(surface, u, v, samples, cross(samples.normal, feed))
     both = []
     for direction in (feed, -feed):
-        axis, _ = tool_axes(patch.normal, direction, rule, cross(patch.normal, feed))
-        both.append(pass_width(patch.normal, axis, direction, curvature, cutter, stepover.scallop))
+        axis, _ = tool_axes(samples.normal, direction, rule, cross(samples.normal, feed))
+        both.append(pass_width(samples.normal, axis, direction, curvature, cutter, stepover.scallop))
     pole = np.isnan(feed).any(axis=1) | np.isnan(curvature)
     return np.where(pole, np.inf, np.minimum(*both))
 
@@ -220,10 +220,10 @@ def cutter_gap(tip: Array, axis: Array, point: Array, normal: Array, cutter: Cut
     return distance
 
 
-def _lengths_on_borders(grid: Grid) -> tuple[float, float]:
+def _lengths_on_borders(grid: SurfaceGrid) -> tuple[float, float]:
     """Lengths of the face along the first and the last line of a grid, mm; 0 at a pole or a tip."""
     inside = grid.shaped(grid.inside)
-    steps = norm(np.diff(grid.shaped(grid.patch.point), axis=0)) * (inside[1:] & inside[:-1])
+    steps = norm(np.diff(grid.shaped(grid.samples.point), axis=0)) * (inside[1:] & inside[:-1])
     length = np.sum(steps, axis=0)
     return float(length[0]), float(length[-1])
 
@@ -256,7 +256,7 @@ def _halved(reached: Callable[[float], bool], within: float, beyond: float) -> f
     return within
 
 
-def _widest(allowed: Array, grid: Grid) -> float:
+def _widest(allowed: Array, grid: SurfaceGrid) -> float:
     """The largest finite distance; NaN where the cutter does not fit somewhere."""
     on_face = allowed[grid.inside & ~np.isposinf(allowed)]
     return float(np.max(on_face, initial=0.0))

@@ -50,7 +50,7 @@ class ParameterRange:
 
 
 @dataclass(frozen=True)
-class Patch:
+class SurfaceSamples:
     """The surface at N pairs (u, v).
 
     Attributes:
@@ -82,9 +82,9 @@ class Surface:
     u: ParameterRange
     v: ParameterRange
 
-    def at(self, u: Array, v: Array) -> Patch:
+    def at(self, u: Array, v: Array) -> SurfaceSamples:
         """The surface at columns of parameters; closed ones may exceed their range."""
-        return Patch(*self.evaluate(self.u.normalise(u), self.v.normalise(v)))
+        return SurfaceSamples(*self.evaluate(self.u.normalise(u), self.v.normalise(v)))
 
     def contains(self, u: Array, v: Array) -> Array:
         """Pairs that belong to the face, (N,)."""
@@ -102,23 +102,23 @@ class Surface:
 
 
 @dataclass(frozen=True)
-class Grid:
-    """The surface at all pairs of u and v: patch and mask are (M * N, ...), row by row of equal u.
+class SurfaceGrid:
+    """The surface at all pairs of u and v: samples and mask are (M * N, ...), row by row of equal u.
 
     Attributes:
         u: (M,) evenly spaced over the range, both ends included.
         v: (N,) likewise.
-        patch: the surface there.
+        samples: the surface there.
         inside: (M * N,) whether the point is on the face.
     """
 
     u: Array
     v: Array
-    patch: Patch
+    samples: SurfaceSamples
     inside: Array
 
     @classmethod
-    def over(cls, surface: Surface, rows: int, columns: int) -> Grid:
+    def over(cls, surface: Surface, rows: int, columns: int) -> SurfaceGrid:
         """A grid of rows u and columns v."""
         u = np.linspace(surface.u.first, surface.u.last, rows)
         v = np.linspace(surface.v.first, surface.v.last, columns)
@@ -137,7 +137,7 @@ def unit_or_nan(vectors: Array) -> Array:
     return scaled
 
 
-def normal_curvatures(surface: Surface, u: Array, v: Array, patch: Patch, direction: Array) -> Array:
+def normal_curvatures(surface: Surface, u: Array, v: Array, samples: SurfaceSamples, direction: Array) -> Array:
     """Curvatures of the surface in tangent directions, (N,) in 1/mm, positive where it is convex.
 
     The normal is differenced along u and v; for a tangent d = a Su + b Sv the curvature is dn . d / (d . d).
@@ -146,12 +146,12 @@ def normal_curvatures(surface: Surface, u: Array, v: Array, patch: Patch, direct
         surface: the surface.
         u: (N,) parameters.
         v: (N,) parameters.
-        patch: the surface there.
+        samples: the surface there.
         direction: (N, 3) tangent directions of any length; NaN gives NaN.
     """
     normal_u = _change_of_normal(surface.u, u, lambda moved: surface.at(moved, v).normal)
     normal_v = _change_of_normal(surface.v, v, lambda moved: surface.at(u, moved).normal)
-    share_u, share_v = _components(patch, direction)
+    share_u, share_v = _components(samples, direction)
     change = share_u[:, None] * normal_u + share_v[:, None] * normal_v
     curvature: Array = dot(change, direction) / dot(direction, direction)
     return curvature
@@ -167,12 +167,12 @@ def _change_of_normal(span: ParameterRange, values: Array, normal_at: Callable[[
     return change
 
 
-def _components(patch: Patch, direction: Array) -> tuple[Array, Array]:
+def _components(samples: SurfaceSamples, direction: Array) -> tuple[Array, Array]:
     """Components a and b of direction = a Su + b Sv in the tangent plane; NaN at a pole."""
-    across = cross(patch.along_u, patch.along_v)
+    across = cross(samples.along_u, samples.along_v)
     area = dot(across, across)
     area = np.where(area > _NO_LENGTH**2, area, np.nan)
     return (
-        dot(cross(direction, patch.along_v), across) / area,
-        dot(cross(patch.along_u, direction), across) / area,
+        dot(cross(direction, samples.along_v), across) / area,
+        dot(cross(samples.along_u, direction), across) / area,
     )

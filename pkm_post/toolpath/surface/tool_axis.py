@@ -16,7 +16,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, along, angle_between, cross, dot, norm, towards, unit
 from pkm_post.toolpath.surface.contact_path import ContactPath, PassPattern
-from pkm_post.toolpath.surface.surface import Patch, unit_or_nan
+from pkm_post.toolpath.surface.surface import SurfaceSamples, unit_or_nan
 
 
 @dataclass(frozen=True)
@@ -142,19 +142,19 @@ class LinkEnds:
         )
 
 
-def feed_frame(pattern: PassPattern, path: ContactPath, patch: Patch, travel: Array) -> FeedFrame:
+def feed_frame(pattern: PassPattern, path: ContactPath, samples: SurfaceSamples, travel: Array) -> FeedFrame:
     """The frame along passes: that of the pattern, or of travel where the pattern has no direction, as on a flat top.
 
     Args:
         pattern: the lines.
         path: the rows.
-        patch: the surface there.
+        samples: the surface there.
         travel: (N, 3) from row to row, of any length.
     """
-    line = pattern.direction(patch)
+    line = pattern.direction(samples)
     sense = path.sense[:, None]
-    line = _across(np.where(norm(line)[:, None] > _NO_DIRECTION, line, travel * sense), patch.normal)
-    return FeedFrame(sense * line, cross(patch.normal, line))
+    line = _across(np.where(norm(line)[:, None] > _NO_DIRECTION, line, travel * sense), samples.normal)
+    return FeedFrame(sense * line, cross(samples.normal, line))
 
 
 def _across(vectors: Array, normal: Array) -> Array:

@@ -43,7 +43,7 @@ class Sector:
 
 
 @dataclass(frozen=True)
-class Coverage:
+class AngularCoverage:
     """Union of sectors, in rad.
 
     Attributes:
@@ -122,7 +122,7 @@ def _spans(program: Program, point: Array, axis: Array) -> tuple[Array, Array]:
     return begin % ROUND, width
 
 
-def coverage(sectors: Sequence[Sector]) -> Coverage:
+def coverage(sectors: Sequence[Sector]) -> AngularCoverage:
     """The union of sectors about one axis.
 
     Raises:
@@ -137,7 +137,7 @@ def coverage(sectors: Sequence[Sector]) -> Coverage:
     middle = bounds + length / 2
     times = np.sum((middle[:, None] - start) % ROUND < width, axis=1)
     covered, overlap = float(length[times >= 1].sum()), float(length[times >= 2].sum())
-    return Coverage(covered, overlap, _longest(length, times == 0), max(each.spacing for each in sectors))
+    return AngularCoverage(covered, overlap, _longest(length, times == 0), max(each.spacing for each in sectors))
 
 
 def _longest(length: Array, empty: Array) -> float:

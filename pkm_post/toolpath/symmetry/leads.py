@@ -19,7 +19,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, along, cross, dot, norm, towards
 from pkm_post.model import Program
-from pkm_post.toolpath.symmetry.passes import Link, axial_moves
+from pkm_post.toolpath.symmetry.passes import LinkMoves, axial_moves
 
 LEVEL = 1e-6
 """mm within which two heights are equal, with six decimals."""
@@ -84,7 +84,7 @@ class LeadPair:
         return enter, leave, int(self.lift.end_row[-1]), int(self.plunge.end_row[-1])
 
 
-def lead_pairs(program: Program, runs: Array, between: list[Link], whole: Array) -> Mapping[int, LeadPair]:
+def lead_pairs(program: Program, runs: Array, between: list[LinkMoves], whole: Array) -> Mapping[int, LeadPair]:
     """The leads of the open passes by their number.
 
     Args:

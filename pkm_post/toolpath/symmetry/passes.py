@@ -127,7 +127,7 @@ def cut_chords(program: Program) -> tuple[Array, Array]:
 
 
 @dataclass(frozen=True)
-class Link:
+class LinkMoves:
     """The rows between two passes.
 
     Attributes:
@@ -143,7 +143,7 @@ class Link:
     approach: Array
 
 
-def links(program: Program, runs: Array) -> list[Link]:
+def links(program: Program, runs: Array) -> list[LinkMoves]:
     """The P + 1 links of P passes.
 
     Args:
@@ -168,7 +168,7 @@ def links(program: Program, runs: Array) -> list[Link]:
             back = away > 0 and bool(swings[rows[away - 1]])
             away, to = away - back, to - (not back and to > 0 and bool(swings[rows[-to]]))
             rest = rows[away:]
-        made.append(Link(every, rows[:away], rest[: len(rest) - to], rest[len(rest) - to :]))
+        made.append(LinkMoves(every, rows[:away], rest[: len(rest) - to], rest[len(rest) - to :]))
     return made
 
 

@@ -32,7 +32,7 @@ from pkm_post.model import (
     errors,
 )
 from pkm_post.toolpath.symmetry.leads import LEVEL, LeadPair, Rows, lead_pairs, unchanged_rows
-from pkm_post.toolpath.symmetry.passes import Link, closed_passes, links, pass_rows, same_pose, without_plunges
+from pkm_post.toolpath.symmetry.passes import LinkMoves, closed_passes, links, pass_rows, same_pose, without_plunges
 
 _ANYWHERE = (EventKind.DWELL, EventKind.STOP)
 """Events allowed in the middle of a pass: they belong to a point."""
@@ -67,7 +67,7 @@ def reversed_passes(program: Program) -> tuple[Program | None, tuple[Diagnostic,
 
 
 def _parts(
-    program: Program, runs: Array, between: list[Link], whole: Array, leads: Mapping[int, LeadPair]
+    program: Program, runs: Array, between: list[LinkMoves], whole: Array, leads: Mapping[int, LeadPair]
 ) -> list[_RowGroup]:
     """The parts of the new program in order."""
     kept = _unchanged(whole)
@@ -114,7 +114,7 @@ def _unchanged(whole: Array) -> Array:
     return either
 
 
-def _to(program: Program, link: Link, tip: int, top: int, at_start: bool) -> Rows:
+def _to(program: Program, link: LinkMoves, tip: int, top: int, at_start: bool) -> Rows:
     """One rapid move to the point above a pass, none if the tool is already there.
 
     At the start of the program, rows before the old point above the pass are kept.
@@ -130,7 +130,7 @@ def _faults(
     program: Program,
     runs: Array,
     parts: list[_RowGroup],
-    between: list[Link],
+    between: list[LinkMoves],
     whole: Array,
     leads: Mapping[int, LeadPair],
 ) -> Iterator[Diagnostic]:
@@ -157,7 +157,7 @@ def _faults(
     yield from _misplaced_events(program, runs)
 
 
-def _lost(program: Program, link: Link, leaving: int, entering: int) -> str:
+def _lost(program: Program, link: LinkMoves, leaving: int, entering: int) -> str:
     """Why the tool cannot go from one reversed pass to the next, or an empty string."""
     if not np.any(program.kind[link.rows] == Kind.RAPID):
         return "no rapid move leads to this pass"
@@ -201,7 +201,7 @@ def moved_events(
     program: Program,
     rows: int,
     runs: Array,
-    between: Sequence[Link],
+    between: Sequence[LinkMoves],
     kept: Array,
     begins: Mapping[tuple[str, int], int],
 ) -> tuple[Event, ...]:

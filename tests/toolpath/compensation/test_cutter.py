@@ -10,7 +10,7 @@ from cutters import ALL, BALL, FLAT, profile
 
 from pkm_post.model import Tool
 from pkm_post.model.setup import largest_corner_radius
-from pkm_post.toolpath.compensation.cutter import Cutter, Profile
+from pkm_post.toolpath.compensation.cutter import Cutter, CutterProfile
 
 ROUNDING = 1e-12
 
@@ -153,7 +153,7 @@ def winding(point, ring):
 
 @CUTTERS
 def test_distance_and_side_are_those_of_the_outline(cutter):
-    solid = Profile.of(cutter, TALLEST)
+    solid = CutterProfile.of(cutter, TALLEST)
     ring, step = outline(cutter, solid.top)
     rng = np.random.default_rng(1)
     points = np.column_stack([rng.uniform(0.01, 25.0, 300), rng.uniform(-10.0, TALLEST + 10.0, 300)])
@@ -167,7 +167,7 @@ def test_distance_and_side_are_those_of_the_outline(cutter):
 
 @CUTTERS
 def test_no_distance_changes_faster_than_the_way(cutter):
-    solid = Profile.of(cutter, TALLEST)
+    solid = CutterProfile.of(cutter, TALLEST)
     rng = np.random.default_rng(2)
     points = np.column_stack([rng.uniform(0.0, 20.0, 2000), rng.uniform(-5.0, 50.0, 2000)])
     other = np.abs(points + rng.normal(0.0, 1.0, points.shape) * [1, 0]) + rng.normal(0.0, 1.0, points.shape) * [0, 1]
@@ -177,14 +177,14 @@ def test_no_distance_changes_faster_than_the_way(cutter):
 
 def test_numbers_of_a_ball_and_a_flat():
     radius, level = np.array([0.0, 3.0, 0.0, 7.0]), np.array([0.0, 1.0, -2.0, 20.0])
-    ball, flat = Profile.of(BALL, TALLEST), Profile.of(FLAT, TALLEST)
+    ball, flat = CutterProfile.of(BALL, TALLEST), CutterProfile.of(FLAT, TALLEST)
     assert ball.distance(radius, level) == pytest.approx([0.0, 0.0, 2.0, 2.0], abs=ROUNDING)
     assert flat.distance(radius, level) == pytest.approx([0.0, -1.0, 2.0, 2.0], abs=ROUNDING)
     assert flat.reach == pytest.approx(np.hypot(5.0, TALLEST))
 
 
 def test_cutter_ends_at_its_height_or_where_its_side_closes():
-    assert Profile.of(ALL["dovetail"], TALLEST).top == 12.0
-    closing = Profile.of(ALL["dovetail"].apt(16.0, 1.0, b=np.radians(-60.0)), TALLEST)
+    assert CutterProfile.of(ALL["dovetail"], TALLEST).top == 12.0
+    closing = CutterProfile.of(ALL["dovetail"].apt(16.0, 1.0, b=np.radians(-60.0)), TALLEST)
     assert closing.distance(np.array([0.0]), np.array([closing.top])) == pytest.approx([0.0], abs=1e-9)
     assert closing.top == pytest.approx(8.0 * np.tan(np.radians(30.0)), abs=1e-9)

@@ -8,7 +8,7 @@ import pytest
 from cutters import ALL, BALL, BULL_NOSE, TAPERED_BALL
 
 from pkm_post.toolpath.compensation.contact import tip_from_contact
-from pkm_post.toolpath.compensation.cutter import Cutter, Profile
+from pkm_post.toolpath.compensation.cutter import Cutter, CutterProfile
 from pkm_post.toolpath.compensation.swept_volume import StockLeft, stock_left
 
 ROUNDING = 1e-9
@@ -119,7 +119,7 @@ def test_value_is_the_first_entry_into_any_pose(cutter):
     normals = np.column_stack([rng.normal(0.0, 0.1, (12, 2)), np.ones(12)])
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     found = stock_left(tips, axes, cutter, points, normals, tolerance=1e-4, reach=5.0)
-    profile = Profile.of(cutter, 30.0)
+    profile = CutterProfile.of(cutter, 30.0)
     for point, normal, left in zip(points, normals, found.left, strict=True):
         assert left == pytest.approx(first_entry(profile, path, turned, point, normal, 5.0), abs=5e-4)
 

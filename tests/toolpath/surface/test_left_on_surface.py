@@ -10,7 +10,7 @@ from shapes import BALL, BULL, FLAT, PLACE, covered, plate, settings, torus
 from pkm_post.toolpath.compensation.swept_volume import stock_left
 from pkm_post.toolpath.surface.moves import program_from_poses
 from pkm_post.toolpath.surface.options import LeadMove, PassLines, PassOrder
-from pkm_post.toolpath.surface.poses import Tolerances
+from pkm_post.toolpath.surface.poses import SurfaceTolerances
 from pkm_post.toolpath.surface.stepover import Stepover
 from pkm_post.toolpath.surface.tool_axis import AxisRule
 
@@ -25,9 +25,9 @@ def left_on(surface, cutter, count=12, **chosen):
     rng = np.random.default_rng(5)
     u, v = (rng.uniform(span.first + 0.2 * span.width, span.last - 0.2 * span.width, count**2)
             for span in (surface.u, surface.v))  # fmt: skip
-    patch = surface.at(u, v)
+    samples = surface.at(u, v)
     found = stock_left(
-        program.position, program.tool_axis, cutter, patch.point, patch.normal, tolerance=TOLERANCE, reach=5.0
+        program.position, program.tool_axis, cutter, samples.point, samples.normal, tolerance=TOLERANCE, reach=5.0
     )
     return found.left
 
@@ -38,7 +38,9 @@ LEANS = [(BALL, AxisRule()), (BALL, AxisRule(lead=0.2)), (BULL, AxisRule(lead=0.
 @pytest.mark.parametrize(("cutter", "rule"), LEANS)
 def test_scallops_on_a_plate_are_as_high_as_wanted(cutter, rule):
     height = 0.02
-    left = left_on(plate(), cutter, stepover=Stepover(scallop=height), rule=rule, tolerances=Tolerances(0.001, 0.01))
+    left = left_on(
+        plate(), cutter, stepover=Stepover(scallop=height), rule=rule, tolerances=SurfaceTolerances(0.001, 0.01)
+    )
     assert left.min() > -0.001 - TOLERANCE
     # the profile is taken for the circle that fits it best: this is as far as that goes with this lean
     assert 0.6 * height < left.max() < 1.15 * height
@@ -60,7 +62,7 @@ def test_torus_is_neither_gouged_nor_left(lines):
         lines=lines,
         order=PassOrder.ONE_WAY,
         stepover=Stepover(scallop=height),
-        tolerances=Tolerances(chord, 0.01),
+        tolerances=SurfaceTolerances(chord, 0.01),
         rule=AxisRule(lead=0.1, cone=1.0),
         lead_move=LeadMove.ARC,
         lead_length=3.0,
@@ -71,6 +73,6 @@ def test_torus_is_neither_gouged_nor_left(lines):
 
 @pytest.mark.parametrize("cutter", [BULL, FLAT], ids=["bull", "flat"])
 def test_links_do_not_gouge_where_the_lead_turns_round(cutter):
-    left = left_on(torus(lowest=0.9, highest=1.5), cutter, tolerances=Tolerances(0.005, 0.01),
+    left = left_on(torus(lowest=0.9, highest=1.5), cutter, tolerances=SurfaceTolerances(0.005, 0.01),
                    stepover=Stepover(distance=1.5), rule=AxisRule(lead=0.25))  # fmt: skip
     assert left.min() > -0.005 - TOLERANCE

@@ -26,7 +26,7 @@ from shapes import (
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.surface.options import CutMode, PassLines, PassOrder
 from pkm_post.toolpath.surface.passes import surface_poses
-from pkm_post.toolpath.surface.poses import Tolerances
+from pkm_post.toolpath.surface.poses import SurfaceTolerances
 from pkm_post.toolpath.surface.stepover import Stepover
 from pkm_post.toolpath.surface.tool_axis import AxisRule
 
@@ -81,7 +81,7 @@ def test_scallops_between_passes_on_a_sphere_have_the_height(hollow):
 @pytest.mark.parametrize("order", [PassOrder.ZIGZAG, PassOrder.SPIRAL])
 @pytest.mark.parametrize("chord", [0.05, 0.005])
 def test_ball_stays_within_the_chord_tolerance_of_a_torus_all_the_way(order, chord):
-    tolerances = Tolerances(chord, axis=1.0)
+    tolerances = SurfaceTolerances(chord, axis=1.0)
     poses = covered(torus(), order=order, tolerances=tolerances, rule=LEAN, stepover=Stepover(distance=2.5))
     tip, axis, moving = played(poses)
     off = distance_to_torus((tip + 3.0 * axis).reshape(-1, 3)) - 3.0
@@ -92,7 +92,7 @@ def test_ball_stays_within_the_chord_tolerance_of_a_torus_all_the_way(order, cho
 
 def test_bull_nose_stays_within_the_chord_tolerance_of_a_sphere():
     chord, radius = 0.01, 25.0
-    poses = covered(sphere(radius), BULL, rule=LEAN, tolerances=Tolerances(chord, 1.0))
+    poses = covered(sphere(radius), BULL, rule=LEAN, tolerances=SurfaceTolerances(chord, 1.0))
     tip, axis, _ = played(poses)
     tip, axis = tip.reshape(-1, 3), axis.reshape(-1, 3)
     off = distance_to_cutter(np.zeros_like(tip), tip, axis, BULL) - radius
@@ -103,7 +103,7 @@ def test_bull_nose_stays_within_the_chord_tolerance_of_a_sphere():
 def test_passes_that_meet_at_a_pole_turn_the_tool_about_it_without_gouging(cutter):
     chord, radius = 0.005, 25.0
     poses = covered(sphere(radius, lowest=1.0), cutter, lines=PassLines.ALONG_V, stepover=Stepover(distance=6.0),
-                    rule=AxisRule(lead=0.3), tolerances=Tolerances(chord, 0.01))  # fmt: skip
+                    rule=AxisRule(lead=0.3), tolerances=SurfaceTolerances(chord, 0.01))  # fmt: skip
     tip, axis, _ = played(poses)
     tip, axis = tip.reshape(-1, 3), axis.reshape(-1, 3)
     off = distance_to_cutter(np.zeros_like(tip), tip, axis, cutter) - radius
@@ -113,7 +113,10 @@ def test_passes_that_meet_at_a_pole_turn_the_tool_about_it_without_gouging(cutte
 def test_axis_stays_within_its_tolerance_on_a_cylinder():
     tolerance, lead = math.radians(0.02), math.radians(20.0)
     poses = covered(
-        cylinder(), rule=AxisRule(lead=lead, tilt=0.4), tolerances=Tolerances(1.0, tolerance), order=PassOrder.ONE_WAY
+        cylinder(),
+        rule=AxisRule(lead=lead, tilt=0.4),
+        tolerances=SurfaceTolerances(1.0, tolerance),
+        order=PassOrder.ONE_WAY,
     )
     tip, axis, moving = played(poses)
     point = poses.point[moving] + np.linspace(0, 1, 11)[:, None, None] * (poses.point[moving + 1] - poses.point[moving])
@@ -128,7 +131,7 @@ def test_axis_stays_within_its_tolerance_on_a_cylinder():
 
 
 def test_straight_lines_need_no_points_between():
-    few = covered(plate(), stepover=Stepover(distance=5.0), tolerances=Tolerances(1e-6, 1e-6))
+    few = covered(plate(), stepover=Stepover(distance=5.0), tolerances=SurfaceTolerances(1e-6, 1e-6))
     assert len(few.path) < 60
 
 

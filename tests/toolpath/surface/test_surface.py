@@ -5,16 +5,16 @@ import numpy as np
 import pytest
 from shapes import cylinder, plate, sphere, torus
 
-from pkm_post.toolpath.surface.surface import Grid, ParameterRange, normal_curvatures
+from pkm_post.toolpath.surface.surface import ParameterRange, SurfaceGrid, normal_curvatures
 
 ONE_IN_MILLION = 1e-6
 
 
 def curvature(surface, u, v, along):
     u, v = np.array([u]), np.array([v])
-    patch = surface.at(u, v)
-    direction = getattr(patch, along)
-    return normal_curvatures(surface, u, v, patch, direction)[0]
+    samples = surface.at(u, v)
+    direction = getattr(samples, along)
+    return normal_curvatures(surface, u, v, samples, direction)[0]
 
 
 @pytest.mark.parametrize("v", [0.2, 1.0, np.pi / 2, 2.5])
@@ -35,9 +35,9 @@ def test_curvature_of_a_direction_between(rel=ONE_IN_MILLION):
     # Euler: 1/r sin^2 of the angle to the axis
     column = cylinder(20.0)
     u, v = np.array([0.3]), np.array([12.0])
-    patch = column.at(u, v)
-    direction = patch.along_u / 20.0 + patch.along_v * np.tan(0.5)
-    assert normal_curvatures(column, u, v, patch, direction)[0] == pytest.approx(np.cos(0.5) ** 2 / 20.0, rel=rel)
+    samples = column.at(u, v)
+    direction = samples.along_u / 20.0 + samples.along_v * np.tan(0.5)
+    assert normal_curvatures(column, u, v, samples, direction)[0] == pytest.approx(np.cos(0.5) ** 2 / 20.0, rel=rel)
 
 
 def test_plane_is_flat():
@@ -62,8 +62,8 @@ def test_closed_parameters_run_on_and_open_ones_end():
 
 
 def test_grid_is_the_surface_row_by_row():
-    grid = Grid.over(plate(40.0, 20.0), 3, 2)
-    assert grid.shaped(grid.patch.point)[1, 1] == pytest.approx([20.0, 20.0, 0.0])
+    grid = SurfaceGrid.over(plate(40.0, 20.0), 3, 2)
+    assert grid.shaped(grid.samples.point)[1, 1] == pytest.approx([20.0, 20.0, 0.0])
     assert grid.inside.all()
 
 
