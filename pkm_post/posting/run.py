@@ -20,7 +20,7 @@ from pkm_post.machine import Collisions, find_collisions
 from pkm_post.model import Diagnostic, Machine, Refused, Setup, Tolerances, Trajectory, checkpoints, errors
 from pkm_post.options import Options
 from pkm_post.system import result_files
-from pkm_post.writing import Controller, manifest
+from pkm_post.writing import ControllerModule, manifest
 
 T = TypeVar("T")
 Findings = tuple[Diagnostic, ...]
@@ -180,7 +180,7 @@ class PostContext:
 
     path: Path
     machine: Machine
-    controller: Controller
+    controller: ControllerModule
     settings: Any
     options: Options
     search: CollisionSearch = find_collisions

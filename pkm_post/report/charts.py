@@ -47,7 +47,7 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Band:
+class TimeBand:
     """A stretch of time with a name, such as an operation; s."""
 
     name: str
@@ -60,7 +60,7 @@ def chart(
     lines: Sequence[Line],
     duration: float,
     limits: Sequence[float] = (),
-    bands: Sequence[Band] = (),
+    bands: Sequence[TimeBand] = (),
     span: tuple[float, float] | None = None,
 ) -> str:
     """Lines over time as an SVG element.

@@ -20,7 +20,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds
 from pkm_post.model import FeedStudy, Kind, Motion, StrutMotion, Trajectory, checkpoint, distinct
-from pkm_post.report.charts import Band, Line, chart, legend
+from pkm_post.report.charts import Line, TimeBand, chart, legend
 from pkm_post.report.results import Results
 from pkm_post.report.tables import certificate_tables, origin, row_cells, setup_table, time_table, tool_table
 from pkm_post.report.units import Shown, shown
@@ -140,7 +140,7 @@ def _instants(time_ms: Array, count: int) -> tuple[Array, Array, Array]:
     return time, interval, np.clip(share, 0.0, 1.0)
 
 
-def _charts(results: Results, duration: float, bands: Sequence[Band]) -> str:
+def _charts(results: Results, duration: float, bands: Sequence[TimeBand]) -> str:
     machine, certificate, tolerances = results.machine, results.certificate, results.tolerances
     long, fast, small = (shown(unit, results.unit) for unit in ("mm", "mm/s", "um"))
     time, length, speed = _sampled_struts(results.struts)
@@ -166,7 +166,7 @@ def _charts(results: Results, duration: float, bands: Sequence[Band]) -> str:
 
 
 def _feed(
-    shares: Mapping[str, Any], feed: FeedStudy | None, duration: float, bands: Sequence[Band], of_page: str
+    shares: Mapping[str, Any], feed: FeedStudy | None, duration: float, bands: Sequence[TimeBand], of_page: str
 ) -> str:
     """The feed over time, and what limits it."""
     if feed is None or not shares:
@@ -214,10 +214,10 @@ def _sampled_struts(struts: StrutMotion) -> tuple[Array, Array, Array]:
     return time, hermite_lengths(*ends)[:, 0].T, hermite_speeds(*ends)[:, 0].T
 
 
-def _operations(trajectory: Trajectory, motion: Motion, duration: float) -> Iterable[Band]:
+def _operations(trajectory: Trajectory, motion: Motion, duration: float) -> Iterable[TimeBand]:
     """The operations as bands of time."""
     change = np.flatnonzero(np.diff(trajectory.operation)) + 1
     begin = np.concatenate([[0.0], motion.joint_time[change - 1]])
     end = np.append(begin[1:], duration)
     for row, since, until in zip(np.append(0, change), begin.tolist(), end.tolist(), strict=True):
-        yield Band(trajectory.operations[trajectory.operation[row]], since, until)
+        yield TimeBand(trajectory.operations[trajectory.operation[row]], since, until)

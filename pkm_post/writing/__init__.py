@@ -8,7 +8,7 @@ from pkm_post.writing import manifest, outputs, trajectory_file
 from pkm_post.writing.controllers import program_files
 from pkm_post.writing.controllers.program_files import read_text, read_texts
 from pkm_post.writing.controllers.pvt.parts import split_motion
-from pkm_post.writing.controllers.registry import TABLES, Controller, controller_of, controller_settings
+from pkm_post.writing.controllers.registry import TABLES, ControllerModule, controller_of, controller_settings
 
 if TYPE_CHECKING:
     from pkm_post.writing import kinematics
@@ -39,7 +39,7 @@ else:
 __all__ = [
     "TABLES",
     "TARGETS",
-    "Controller",
+    "ControllerModule",
     "GcodeDialect",
     "PmacSettings",
     "PowerPmacSettings",

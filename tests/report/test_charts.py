@@ -3,7 +3,7 @@ import re
 
 import numpy as np
 
-from pkm_post.report.charts import Band, Line, chart, decimated, legend
+from pkm_post.report.charts import Line, TimeBand, chart, decimated, legend
 
 
 def test_a_short_line_is_drawn_as_it_is():
@@ -45,7 +45,7 @@ def test_points_are_at_their_share_of_time_and_of_the_span():
 
 def test_limits_and_bands_are_drawn_and_names_are_text():
     line = Line("<b>", np.array([0.0, 1.0]), np.array([1.0, 1.0]), "c1")
-    svg = chart("mm", [line], 1.0, limits=(0.0, 2.0), bands=[Band("</svg>", 0.0, 0.5), Band("b", 0.5, 1.0)])
+    svg = chart("mm", [line], 1.0, limits=(0.0, 2.0), bands=[TimeBand("</svg>", 0.0, 0.5), TimeBand("b", 0.5, 1.0)])
     assert svg.count('class="limit"') == 2
     assert svg.count("<rect") == 2 and svg.count("</svg>") == 1
     assert "&lt;b&gt;" in legend([line])

@@ -11,7 +11,7 @@ from pkm_post.writing.controllers.program_files import read_text, read_texts, te
 from pkm_post.writing.controllers.registry import (
     CONTROLLERS,
     TABLES,
-    Controller,
+    ControllerModule,
     Table,
     controller_of,
     controller_settings,
@@ -27,7 +27,7 @@ else:
 __all__ = [
     "CONTROLLERS",
     "TABLES",
-    "Controller",
+    "ControllerModule",
     "Table",
     "controller_of",
     "controller_settings",

@@ -21,7 +21,7 @@ from pkm_post.system import result_files
 
 
 @dataclass(frozen=True)
-class Section:
+class TableSection:
     """A section of a motion between two events that need another program; dwells are part of it.
 
     Attributes:
@@ -70,7 +70,7 @@ class _Piece:
         return len(self.clock_ms) == 1
 
 
-def sections(motion: StrutMotion) -> tuple[Section, ...]:
+def sections(motion: StrutMotion) -> tuple[TableSection, ...]:
     """The sections of a motion, at least one; only a motion at standstill has a section without duration."""
     pieces = [_Piece([0.0])]
     for event in motion.events:
@@ -83,7 +83,7 @@ def sections(motion: StrutMotion) -> tuple[Section, ...]:
         pieces[-1].before.append(event)
     pieces[-1].go_to(float(motion.time_ms[-1]))
     after = pieces.pop().before if len(pieces) > 1 and pieces[-1].is_empty else []
-    made = [Section(tuple(piece.before), tuple(piece.clock_ms), tuple(piece.motion_ms)) for piece in pieces]
+    made = [TableSection(tuple(piece.before), tuple(piece.clock_ms), tuple(piece.motion_ms)) for piece in pieces]
     return (*made[:-1], replace(made[-1], after=tuple(after)))
 
 
@@ -102,7 +102,7 @@ _PIECES = re.compile(rf"(?P<rows>(?>{_ROW})++)|(?P<period>{_PERIOD})|(?P<comment
 
 
 @dataclass(frozen=True)
-class Stream:
+class RowTable:
     """One table.
 
     Attributes:
@@ -155,7 +155,7 @@ def texts(motion: StrutMotion, heading: Sequence[str]) -> tuple[str, ...]:
     )
 
 
-def _heading(heading: Sequence[str], section: Section, number: int, count: int, error: float) -> Iterator[str]:
+def _heading(heading: Sequence[str], section: TableSection, number: int, count: int, error: float) -> Iterator[str]:
     lines = [re.sub(r"[^ -~]", lambda sign: ascii(sign[0])[1:-1], line) for line in heading]
     yield from (f"# {line}\n" for line in lines)
     yield f"# part {number} of {count}; strut lengths in mm, strut 1 first; cfg=ffffff\n"
@@ -164,7 +164,7 @@ def _heading(heading: Sequence[str], section: Section, number: int, count: int, 
     yield f"# period {PERIOD_MS} ms\n"
 
 
-def _after(section: Section) -> Iterator[str]:
+def _after(section: TableSection) -> Iterator[str]:
     if section.after:
         yield f"# after: {_event_list(section.after)}\n"
 
@@ -173,7 +173,7 @@ def _event_list(events: Sequence[Event]) -> str:
     return ", ".join(f"{event.kind.name.lower()} {event.value:.12g}" for event in events) or "nothing"
 
 
-def _rows(motion: StrutMotion, section: Section) -> Iterator[str]:
+def _rows(motion: StrutMotion, section: TableSection) -> Iterator[str]:
     times = section.rows_ms(PERIOD_MS)
     row = " ".join([f"%.{DECIMALS}f"] * 6) + "\n"
     for start in range(0, len(times), _ROWS_PER_CHUNK):
@@ -181,7 +181,7 @@ def _rows(motion: StrutMotion, section: Section) -> Iterator[str]:
         yield (row * len(length)) % tuple(length.ravel().tolist())
 
 
-def read_stream(text: str, file: str) -> tuple[Stream | None, tuple[Diagnostic, ...]]:
+def read_stream(text: str, file: str) -> tuple[RowTable | None, tuple[Diagnostic, ...]]:
     """Read a table back.
 
     Args:
@@ -202,7 +202,7 @@ def read_stream(text: str, file: str) -> tuple[Stream | None, tuple[Diagnostic, 
     length = np.fromstring("".join(rows), sep=" ").reshape(-1, 6)
     if not np.isfinite(length).all():
         return None, (Diagnostic("C106", Place(file), "a length that is too large"),)
-    return Stream(periods[0], length), ()
+    return RowTable(periods[0], length), ()
 
 
 def measured(texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str, tuple[Diagnostic, ...]]:
@@ -224,7 +224,7 @@ def measured(texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str
     return f"{rows} rows, straight lines between them {worst:.3g} mm from the cubics", ()
 
 
-def _apart(stream: Stream, section: Section, motion: StrutMotion) -> tuple[float, float]:
+def _apart(stream: RowTable, section: TableSection, motion: StrutMotion) -> tuple[float, float]:
     """Deviation of a table from the cubics at its rows and between them, mm; infinite if the number of rows differs."""
     times = section.rows_ms(stream.period_ms)
     if len(times) != len(stream.length):

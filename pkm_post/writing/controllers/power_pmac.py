@@ -32,7 +32,7 @@ from pkm_post.writing.controllers.pvt.syntax import (
     PRINTABLE,
     START,
     Flow,
-    Grammar,
+    ProgramGrammar,
     body_forms,
     line_form,
 )
@@ -107,14 +107,14 @@ _FLOW: Flow = {START: {"comment": START, "open": "cleared"}, **FLOW_FROM_MODES}
 """Opening a program clears it."""
 
 
-def _grammar(settings: PowerPmacSettings) -> Grammar:
+def _grammar(settings: PowerPmacSettings) -> ProgramGrammar:
     """The grammar of the programs of a Power PMAC."""
     forms = {
         "comment": line_form("a comment", "//", PRINTABLE),
         "open": line_form(f"open prog {settings.program}", "open prog ", str(settings.program)),
         **body_forms(settings, str.lower),
     }
-    return Grammar(forms, _FLOW, (APPROACH_RAMP_MS, 0, settings.approach_speed))
+    return ProgramGrammar(forms, _FLOW, (APPROACH_RAMP_MS, 0, settings.approach_speed))
 
 
 _COMMENT = "//"

@@ -16,7 +16,7 @@ from itertools import islice
 from pathlib import Path
 
 from pkm_post.model import Diagnostic, Place, checkpoint, pieces
-from pkm_post.writing.controllers.registry import Controller, part_siblings
+from pkm_post.writing.controllers.registry import ControllerModule, part_siblings
 
 Findings = tuple[Diagnostic, ...]
 Texts = list[tuple[str, str]]
@@ -75,7 +75,7 @@ def read_text(file: Path) -> tuple[str | None, Findings]:
         return None, (Diagnostic("F103", Place(str(file)), str(fault)),)
 
 
-def read_texts(program: Path, controller: Controller) -> tuple[Texts | None, Findings]:
+def read_texts(program: Path, controller: ControllerModule) -> tuple[Texts | None, Findings]:
     """The texts of all parts of a program, in the folder of its first part, which states their number."""
     first, faults = read_text(program)
     if first is None:

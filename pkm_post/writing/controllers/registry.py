@@ -18,7 +18,7 @@ Module = TypeVar("Module")
 Findings = tuple[Diagnostic, ...]
 
 
-class Controller(Protocol):
+class ControllerModule(Protocol):
     """The interface of a controller module. Settings are a class of its own.
 
     Attributes:
@@ -62,10 +62,10 @@ class _Modules(Mapping[str, Module]):
         return len(self._names)
 
 
-CONTROLLERS: Mapping[str, Controller] = _Modules({"turbo_pmac": "pmac", "power_pmac": "power_pmac"})
+CONTROLLERS: Mapping[str, ControllerModule] = _Modules({"turbo_pmac": "pmac", "power_pmac": "power_pmac"})
 
 
-def controller_of(machine: Machine) -> tuple[Controller | None, Findings]:
+def controller_of(machine: Machine) -> tuple[ControllerModule | None, Findings]:
     """The controller of a machine, or None with diagnostics."""
     kind = machine.controller.get("kind")
     if isinstance(kind, str) and kind in CONTROLLERS:
@@ -74,7 +74,7 @@ def controller_of(machine: Machine) -> tuple[Controller | None, Findings]:
     return None, (Diagnostic("M104", Place(machine.name), found),)
 
 
-def controller_settings(machine: Machine) -> tuple[tuple[Controller, Any] | None, Findings]:
+def controller_settings(machine: Machine) -> tuple[tuple[ControllerModule, Any] | None, Findings]:
     """The controller of a machine and its settings, or None with diagnostics.
 
     Posting and the machine file check share this function, so a file that passes the check can be posted for.
@@ -92,7 +92,7 @@ def part_names(name: str, count: int) -> list[str]:
     return [name, *(f"{path.stem}-part{number}{path.suffix}" for number in range(2, count + 1))]
 
 
-def part_siblings(controller: Controller, name: str, text: str) -> list[str]:
+def part_siblings(controller: ControllerModule, name: str, text: str) -> list[str]:
     """The names of the other parts of a program, as stated by its first part."""
     number, count = controller.stated_part(text)
     return part_names(name, count)[1:] if number == 1 else []

@@ -62,7 +62,7 @@ FEED_DECIMALS = 3
 
 
 @dataclass(frozen=True)
-class Numbers:
+class NumberFormat:
     """Number format.
 
     Attributes:
@@ -82,7 +82,7 @@ class Numbers:
 
 
 @dataclass(frozen=True)
-class Word:
+class WordColumn:
     """A column of words with one letter.
 
     Attributes:
@@ -98,7 +98,7 @@ class Word:
     written: Array
 
 
-def words_of(program: Program, axis_words: AxisWords, arcs: WrittenArcs, numbers: Numbers) -> list[Word]:
+def words_of(program: Program, axis_words: AxisWords, arcs: WrittenArcs, numbers: NumberFormat) -> list[WordColumn]:
     """The words of all rows except those that accompany codes, in text order.
 
     Args:
@@ -109,9 +109,9 @@ def words_of(program: Program, axis_words: AxisWords, arcs: WrittenArcs, numbers
     """
     always, restart = np.ones(len(program), dtype=np.bool_), tool_changes(program)
 
-    def word(letter: str, values: Array, decimals: int, given: Array) -> Word:
+    def word(letter: str, values: Array, decimals: int, given: Array) -> WordColumn:
         written = round_columns(values, decimals)
-        return Word(letter, decimals, written, new_or_changed(written, given, restart))
+        return WordColumn(letter, decimals, written, new_or_changed(written, given, restart))
 
     tip = program.position / numbers.scale
     tips = [word(letter, tip[:, i], numbers.decimals, always) for i, letter in enumerate("XYZ")]
@@ -130,23 +130,23 @@ def words_of(program: Program, axis_words: AxisWords, arcs: WrittenArcs, numbers
     return [*tips, *axes, *centres, feed]
 
 
-def feed_as_written(program: Program, numbers: Numbers) -> Array:
+def feed_as_written(program: Program, numbers: NumberFormat) -> Array:
     """Feeds in text units per minute, rounded like F, (N,)."""
     return round_columns(program.feed * (60 / numbers.scale), FEED_DECIMALS)
 
 
-def _write_together(words: list[Word]) -> None:
+def _write_together(words: list[WordColumn]) -> None:
     """Write all words of a vector where any of them changes: some controls read a missing one as zero."""
     together = np.any([word.written for word in words], axis=0)
     for word in words:
         word.written[:] = together
 
 
-def _centres(arcs: WrittenArcs, numbers: Numbers, count: int) -> list[Word]:
+def _centres(arcs: WrittenArcs, numbers: NumberFormat, count: int) -> list[WordColumn]:
     """I J K of arcs: always both coordinates of their plane."""
     offset = round_columns(arcs.offset / numbers.scale, numbers.decimals)
     return [
-        Word(
+        WordColumn(
             letter,
             numbers.decimals,
             scattered(arcs.row, offset[:, i], count),
@@ -179,8 +179,8 @@ class Codes:
     plane: Array
     side: Array
     motion: Array
-    tolerance: Word
-    diameter: Word
+    tolerance: WordColumn
+    diameter: WordColumn
 
     # The plane is selected before compensation starts and is then locked.
     ORDER = ("path", "plane", "side", "motion")
@@ -201,7 +201,7 @@ _XY = 2
 """The active plane at program start, by its normal."""
 
 
-def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers) -> Codes:
+def codes_of(program: Program, arcs: WrittenArcs, numbers: NumberFormat) -> Codes:
     """The codes of all rows; ``words_of`` returns the words.
 
     Args:
@@ -231,15 +231,15 @@ def codes_of(program: Program, arcs: WrittenArcs, numbers: Numbers) -> Codes:
         side=np.where(new_side, side, 0),
         motion=np.where(new_or_changed(motion, always, restart), motion, 0),
         tolerance=tolerance,
-        diameter=Word("D", numbers.decimals, np.abs(diameter), new_side & compensated),
+        diameter=WordColumn("D", numbers.decimals, np.abs(diameter), new_side & compensated),
     )
 
 
-def _path(program: Program, numbers: Numbers) -> tuple[Array, Word]:
+def _path(program: Program, numbers: NumberFormat) -> tuple[Array, WordColumn]:
     """The path mode code as index into ``TEXTS``, and its P; both are written where either changes."""
     code = np.select([program.exact_stop, program.exact_path], [_REST, _EXACT_PATH], _BLEND)
     decimals = numbers.decimals + _FINER
     least = np.where((code == _BLEND) & (program.tip_tolerance > 0), 10.0**-decimals, 0.0)
     value = np.where(least > 0, np.maximum(round_columns(program.tip_tolerance / numbers.scale, decimals), least), 0.0)
     new = changed(code, _BLEND) | changed(value, 0.0)
-    return np.where(new, code, 0), Word("P", decimals, value, new & (value > 0))
+    return np.where(new, code, 0), WordColumn("P", decimals, value, new & (value > 0))

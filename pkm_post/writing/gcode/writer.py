@@ -23,7 +23,16 @@ from pkm_post.writing.gcode.tool_axes import (
     axis_deviation,
     unsupported_axis,
 )
-from pkm_post.writing.gcode.words import TEXTS, Codes, Numbers, Word, codes_of, cutting, feed_as_written, words_of
+from pkm_post.writing.gcode.words import (
+    TEXTS,
+    Codes,
+    NumberFormat,
+    WordColumn,
+    codes_of,
+    cutting,
+    feed_as_written,
+    words_of,
+)
 
 _MODES = "{unit} G17 G90 G94 G40 G49 G80 G64\n"
 _COOLANT = {0: "M9", 1: "M8", 2: "M7"}
@@ -110,7 +119,7 @@ _CHUNK = 1 << 13
 """Rows formatted at a time."""
 
 
-def block_texts(words: list[Word], codes: Codes, between: Mapping[int, str]) -> Iterator[str]:
+def block_texts(words: list[WordColumn], codes: Codes, between: Mapping[int, str]) -> Iterator[str]:
     """The text of all blocks, in pieces.
 
     Args:
@@ -131,7 +140,7 @@ def block_texts(words: list[Word], codes: Codes, between: Mapping[int, str]) -> 
         yield "".join(lines) % tuple(values[written].tolist())
 
 
-def _templates(columns: list[Word], codes: Codes) -> tuple[Array, Array]:
+def _templates(columns: list[WordColumn], codes: Codes) -> tuple[Array, Array]:
     """The distinct templates, and the template index of each row, (N,)."""
     radices = [len(TEXTS[group]) for group in Codes.ORDER] + [2] * len(columns)
     digits = [getattr(codes, group) for group in Codes.ORDER] + [word.written for word in columns]
@@ -142,7 +151,7 @@ def _templates(columns: list[Word], codes: Codes) -> tuple[Array, Array]:
     return np.array([_template(int(one), radices, columns) for one in used], dtype=object), of_row
 
 
-def _template(key: int, radices: list[int], columns: list[Word]) -> str:
+def _template(key: int, radices: list[int], columns: list[WordColumn]) -> str:
     digits = []
     for radix in radices:
         key, digit = divmod(key, radix)
@@ -196,7 +205,7 @@ def write(
         return None, (
             Diagnostic("N119", program.place(int(np.argmax(program.contact))), f"{program.contact.sum()} rows"),
         )
-    numbers = Numbers(decimals, axis_decimals, _INCH if inch else 1.0)
+    numbers = NumberFormat(decimals, axis_decimals, _INCH if inch else 1.0)
     standing = np.flatnonzero(cutting(program) & (feed_as_written(program, numbers) <= 0))
     if len(standing):
         row = int(standing[0])

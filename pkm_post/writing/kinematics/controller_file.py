@@ -21,9 +21,9 @@ from pkm_post.writing.controllers.power_pmac import PowerPmacSettings
 from pkm_post.writing.controllers.pvt.decimals import exact, plain
 from pkm_post.writing.controllers.pvt.settings import PvtSettings
 from pkm_post.writing.controllers.pvt.writer import comment_lines
-from pkm_post.writing.kinematics.dialects import POWER, TURBO, Dialect, rendered, run_time_error
+from pkm_post.writing.kinematics.dialects import POWER, TURBO, KinematicDialect, rendered, run_time_error
 from pkm_post.writing.kinematics.programs import forward_program, inverse_program
-from pkm_post.writing.kinematics.variables import STRUTS, Variable, parameters
+from pkm_post.writing.kinematics.variables import STRUTS, QVariable, parameters
 
 MOST_STEPS = 9
 """Of the forward program; below the ten jumps back that a Power PMAC allows where nothing else is set (UM p. 517)."""
@@ -52,7 +52,7 @@ class Export:
     program: tuple[str, str] | None = None
 
 
-def parameters_of(machine: Machine, kind: str, export: Export) -> list[Variable]:
+def parameters_of(machine: Machine, kind: str, export: Export) -> list[QVariable]:
     """The variables that the programs of a machine read, with their first values."""
     return parameters(machine, export.tool_length, TOLERANCE[kind], MOST_STEPS)
 
@@ -145,7 +145,7 @@ def power_text(machine: Machine, settings: PowerPmacSettings, export: Export) ->
     return "\n".join(lines) + "\n"
 
 
-def _heading(machine: Machine, settings: PvtSettings, dialect: Dialect) -> list[str]:
+def _heading(machine: Machine, settings: PvtSettings, dialect: KinematicDialect) -> list[str]:
     texts = (
         f"Kinematics of {machine.name} in the controller",
         f"machine file SHA-256 {machine.fingerprint}",
@@ -156,7 +156,7 @@ def _heading(machine: Machine, settings: PvtSettings, dialect: Dialect) -> list[
 
 
 def _programs(
-    variables: Sequence[Variable], dialect: Dialect, system: int, screw: bool, homed: dict[str, str]
+    variables: Sequence[QVariable], dialect: KinematicDialect, system: int, screw: bool, homed: dict[str, str]
 ) -> tuple[list[str], list[str]]:
     """Lines of the forward and of the inverse program."""
     numbers = {variable.name: variable.number for variable in variables}
@@ -165,7 +165,7 @@ def _programs(
     return forward, rendered(inverse_program(screw), dialect, numbers, system, forward=False)
 
 
-def _variable_lines(variables: Sequence[Variable], dialect: Dialect) -> list[str]:
+def _variable_lines(variables: Sequence[QVariable], dialect: KinematicDialect) -> list[str]:
     return [
         f"Q{variable.number}={plain(variable.value)}"
         + (f" {dialect.comment} {variable.meaning}" if variable.meaning else "")

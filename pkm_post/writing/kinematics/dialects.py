@@ -20,7 +20,7 @@ _NAME = re.compile(r"[a-z]\w*")
 
 
 @dataclass(frozen=True)
-class Dialect:
+class KinematicDialect:
     """The words of one controller.
 
     Attributes:
@@ -82,7 +82,7 @@ def _power_failure(system: int) -> list[str]:
     return ["if (Ldata.Status&$40) {", f"Coord[{system}].ErrorStatus=255", "} else {", *unknown, "}"]
 
 
-TURBO = Dialect(
+TURBO = KinematicDialect(
     comment=";",
     functions={name: name.upper() for name in ("sin", "cos", "sqrt", "abs")},
     equal="=",
@@ -96,7 +96,7 @@ TURBO = Dialect(
     names=_turbo_names(),
     fail=lambda system: [f"M{run_time_error(system)}=1"],
 )
-POWER = Dialect(
+POWER = KinematicDialect(
     comment="//",
     functions={"sin": "sind", "cos": "cosd", "sqrt": "sqrt", "abs": "abs"},
     equal="==",
@@ -119,7 +119,7 @@ def run_time_error(system: int) -> int:
 
 def rendered(
     statements: Sequence[Statement],
-    dialect: Dialect,
+    dialect: KinematicDialect,
     numbers: Mapping[str, int],
     system: int,
     forward: bool,
@@ -141,7 +141,9 @@ def rendered(
     return list(_lines(statements, dialect, names, system))
 
 
-def _lines(statements: Sequence[Statement], dialect: Dialect, names: Mapping[str, str], system: int) -> Iterator[str]:
+def _lines(
+    statements: Sequence[Statement], dialect: KinematicDialect, names: Mapping[str, str], system: int
+) -> Iterator[str]:
     for statement in statements:
         match statement:
             case Comment(text):
@@ -163,7 +165,7 @@ def _lines(statements: Sequence[Statement], dialect: Dialect, names: Mapping[str
                 yield from dialect.fail(system)
 
 
-def _assignment(target: str, expression: str, dialect: Dialect, names: Mapping[str, str]) -> list[str]:
+def _assignment(target: str, expression: str, dialect: KinematicDialect, names: Mapping[str, str]) -> list[str]:
     """The lines of an assignment; the name behind them is for who checks them against the formulas."""
     if (arc := _ARC_TANGENT.fullmatch(expression)) is not None:
         *before, last = dialect.arc_tangent(names[target], names[arc[1]], names[arc[2]])
@@ -172,7 +174,7 @@ def _assignment(target: str, expression: str, dialect: Dialect, names: Mapping[s
     return [*before, f"{last} {dialect.comment} {target}"]
 
 
-def _condition(conditions: Sequence[str], dialect: Dialect, names: Mapping[str, str]) -> str:
+def _condition(conditions: Sequence[str], dialect: KinematicDialect, names: Mapping[str, str]) -> str:
     parts = (_named(condition, names).replace("=", dialect.equal) for condition in conditions)
     return dialect.both.join(parts)
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from pkm_post.model import Machine
 
 
-class Variable(NamedTuple):
+class QVariable(NamedTuple):
     """A variable that the programs read.
 
     Attributes:
@@ -46,7 +46,7 @@ _LEAST_PIVOT = 1e-9
 """Pivots of a regular system are near 1 in mm and degrees."""
 
 
-def parameters(machine: Machine, tool_length: float, tolerance: float, most_steps: int) -> list[Variable]:
+def parameters(machine: Machine, tool_length: float, tolerance: float, most_steps: int) -> list[QVariable]:
     """The variables that are set when the programs are loaded, in the order of their numbers.
 
     Args:
@@ -58,7 +58,7 @@ def parameters(machine: Machine, tool_length: float, tolerance: float, most_step
     return [*_of_machine(machine, tool_length, tolerance, most_steps), *_of_struts(machine)]
 
 
-def _of_machine(machine: Machine, tool_length: float, tolerance: float, most_steps: int) -> list[Variable]:
+def _of_machine(machine: Machine, tool_length: float, tolerance: float, most_steps: int) -> list[QVariable]:
     x, y, z = (float(value) for value in machine.home_tip)
     rows = (
         ("tool_length", tool_length, "gauge length of the tool in the spindle, mm"),
@@ -77,10 +77,10 @@ def _of_machine(machine: Machine, tool_length: float, tolerance: float, most_ste
         ("start_y", y, ""),
         ("start_z", z, ""),
     )
-    return [Variable(name, FIRST_NUMBER + row, value, text) for row, (name, value, text) in enumerate(rows)]
+    return [QVariable(name, FIRST_NUMBER + row, value, text) for row, (name, value, text) in enumerate(rows)]
 
 
-def _of_struts(machine: Machine) -> list[Variable]:
+def _of_struts(machine: Machine) -> list[QVariable]:
     zero = machine.controller["zero_length"]
     found = []
     for strut in STRUTS:
@@ -96,7 +96,7 @@ def _of_struts(machine: Machine) -> list[Variable]:
             values += [float(value) for axis in axes for value in axis]
         first = _FIRST_STRUT + _PER_STRUT * row
         for place, (name, value) in enumerate(zip(names, values, strict=True)):
-            found.append(Variable(f"{name}{strut}", first + place, value, _MEANINGS.get(name, "").format(strut=strut)))
+            found.append(QVariable(f"{name}{strut}", first + place, value, _MEANINGS.get(name, "").format(strut=strut)))
     return found
 
 

@@ -18,7 +18,7 @@ from pkm_post.writing.controllers.pvt.syntax import (
     PRINTABLE,
     START,
     Flow,
-    Grammar,
+    ProgramGrammar,
     body_forms,
     line_form,
 )
@@ -32,7 +32,7 @@ _FLOW: Flow = {
 }
 
 
-def _grammar(settings: PmacSettings) -> Grammar:
+def _grammar(settings: PmacSettings) -> ProgramGrammar:
     """The grammar of the programs of a Turbo PMAC."""
     forms = {
         "comment": line_form("a comment", ";", PRINTABLE),
@@ -41,7 +41,7 @@ def _grammar(settings: PmacSettings) -> Grammar:
         "clear": line_form("CLEAR", "CLEAR"),
         **body_forms(settings, str.upper),
     }
-    return Grammar(forms, _FLOW, (APPROACH_RAMP_MS, 0, settings.approach_speed))
+    return ProgramGrammar(forms, _FLOW, (APPROACH_RAMP_MS, 0, settings.approach_speed))
 
 
 def read_parts(

@@ -19,7 +19,7 @@ from pkm_post.writing.controllers.pvt.syntax import LineForm
 
 
 @dataclass(frozen=True)
-class Lines:
+class TextLines:
     """The lines of a text.
 
     Attributes:
@@ -67,7 +67,7 @@ class Lines:
         return lengths
 
 
-def lines_of(text: bytes, move: LineForm, interval: LineForm, longest: int) -> Lines:
+def lines_of(text: bytes, move: LineForm, interval: LineForm, longest: int) -> TextLines:
     """Find lines of moves and intervals.
 
     Args:
@@ -83,14 +83,14 @@ def lines_of(text: bytes, move: LineForm, interval: LineForm, longest: int) -> L
     interval_rows, interval_values = marks.intervals(interval, longest)
     intervals = np.zeros(len(is_move), dtype=np.int64)
     intervals[interval_rows] = interval_values
-    return Lines(marks.edges, marks.complete, is_move, values, intervals)
+    return TextLines(marks.edges, marks.complete, is_move, values, intervals)
 
 
 class _Marks:
     """The characters of a text that are neither digits nor signs.
 
     Attributes:
-        edges, complete: as in ``Lines``.
+        edges, complete: as in ``TextLines``.
     """
 
     def __init__(self, text: bytes) -> None:

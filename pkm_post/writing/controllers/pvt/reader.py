@@ -25,10 +25,18 @@ from pkm_post.model import (
     checkpoint,
     read_only,
 )
-from pkm_post.writing.controllers.pvt.moves import Lines, lines_of
+from pkm_post.writing.controllers.pvt.moves import TextLines, lines_of
 from pkm_post.writing.controllers.pvt.parts import join_motions, part_faults
 from pkm_post.writing.controllers.pvt.settings import PvtSettings
-from pkm_post.writing.controllers.pvt.syntax import FINISHED, IN_THREAD, START, Grammar, effect, is_code, state_after
+from pkm_post.writing.controllers.pvt.syntax import (
+    FINISHED,
+    IN_THREAD,
+    START,
+    ProgramGrammar,
+    effect,
+    is_code,
+    state_after,
+)
 
 MOST_FAULTS = 20
 _INTERVAL_MS = 4095
@@ -44,7 +52,7 @@ class LineReader:
         faults: faults so far.
     """
 
-    def __init__(self, grammar: Grammar, file: str) -> None:
+    def __init__(self, grammar: ProgramGrammar, file: str) -> None:
         self.forms = grammar.forms
         self.faults: list[Diagnostic] = []
         self._due = {
@@ -63,12 +71,12 @@ class LineReader:
         self._in_thread = False
         self._turns: list[tuple[int, float, float]] = []
 
-    def lines_of(self, text: str) -> Lines:
+    def lines_of(self, text: str) -> TextLines:
         """The lines of a text, with moves and intervals already found."""
         # one byte per character: one that is not Latin-1 becomes a question mark, which no line of these forms has
         return lines_of(text.encode("latin-1", "replace"), self.forms["move"], self.forms["interval"], _INTERVAL_MS)
 
-    def take(self, number: int, text: str, lines: Lines) -> None:
+    def take(self, number: int, text: str, lines: TextLines) -> None:
         """Process the lines of a text, starting at line ``number``."""
         for row, end in lines.runs():
             if len(self.faults) >= MOST_FAULTS:
@@ -223,7 +231,7 @@ _CHUNK = 1 << 20
 
 
 def read_parts(
-    texts: Sequence[tuple[str, str]], grammar: Grammar, settings: PvtSettings
+    texts: Sequence[tuple[str, str]], grammar: ProgramGrammar, settings: PvtSettings
 ) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
     """Read a motion program in one or several parts.
 
@@ -245,7 +253,7 @@ def read_parts(
 
 
 def read_program(
-    text: str, grammar: Grammar, settings: PvtSettings, file: str
+    text: str, grammar: ProgramGrammar, settings: PvtSettings, file: str
 ) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
     """Read a motion program, or one part of it.
 
@@ -283,7 +291,7 @@ def _chunks(text: str) -> Iterator[str]:
         start = end
 
 
-def _too_long(number: int, lines: Lines, settings: PvtSettings, file: str) -> Iterator[Diagnostic]:
+def _too_long(number: int, lines: TextLines, settings: PvtSettings, file: str) -> Iterator[Diagnostic]:
     lengths = lines.lengths()
     for row in np.flatnonzero(lengths > settings.line_limit)[:MOST_FAULTS].tolist():
         found = f"{lengths[row]} characters, the controller takes {settings.line_limit}"

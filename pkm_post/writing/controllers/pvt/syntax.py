@@ -19,7 +19,7 @@ from pkm_post.writing.controllers.pvt.settings import PvtSettings
 
 
 @dataclass(frozen=True)
-class Piece:
+class LinePiece:
     """A part of a line: its pattern, its name for the user, and its text if constant."""
 
     pattern: str
@@ -27,17 +27,17 @@ class Piece:
     fixed: str = ""
 
 
-Parts = tuple[str | Piece, ...]
+Parts = tuple[str | LinePiece, ...]
 
 IN_THREAD = "move in a thread"
 """Kind of a line of moves in which the spindle is an axis. Where it may stand is that of any move."""
 
-WHOLE = Piece(r"(0|[1-9][0-9]{0,14})", "a whole number")
-POSITIVE = Piece(r"([1-9][0-9]{0,14})", "a whole number above zero")
-DECIMAL = Piece(r"((?:0|[1-9][0-9]{0,14})(?:\.[0-9]+)?)", "a plain decimal")
-SIGNED = Piece(r"(-?(?:0|[1-9][0-9]{0,14})(?:\.[0-9]+)?)", "a plain decimal")
-PRINTABLE = Piece(r"[ -~]*", "printable ASCII")
-END = Piece(r"\Z", "the end of the line")
+WHOLE = LinePiece(r"(0|[1-9][0-9]{0,14})", "a whole number")
+POSITIVE = LinePiece(r"([1-9][0-9]{0,14})", "a whole number above zero")
+DECIMAL = LinePiece(r"((?:0|[1-9][0-9]{0,14})(?:\.[0-9]+)?)", "a plain decimal")
+SIGNED = LinePiece(r"(-?(?:0|[1-9][0-9]{0,14})(?:\.[0-9]+)?)", "a plain decimal")
+PRINTABLE = LinePiece(r"[ -~]*", "printable ASCII")
+END = LinePiece(r"\Z", "the end of the line")
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class LineForm:
     """
 
     name: str
-    pieces: tuple[Piece, ...]
+    pieces: tuple[LinePiece, ...]
     pattern: re.Pattern[str]
 
     def match(self, line: str) -> re.Match[str] | None:
@@ -73,9 +73,9 @@ class LineForm:
         return position, ""
 
 
-def line_form(name: str, *parts: str | Piece) -> LineForm:
+def line_form(name: str, *parts: str | LinePiece) -> LineForm:
     """A form from literal text and pieces."""
-    pieces = tuple(Piece(re.escape(part), repr(part), part) if isinstance(part, str) else part for part in parts)
+    pieces = tuple(LinePiece(re.escape(part), repr(part), part) if isinstance(part, str) else part for part in parts)
     return LineForm(name, pieces, re.compile("".join(piece.pattern for piece in pieces)))
 
 
@@ -209,7 +209,7 @@ def state_after(flow: Flow, state: str, kind: str) -> str:
 
 
 @dataclass(frozen=True)
-class Grammar:
+class ProgramGrammar:
     """The grammar of one controller's programs.
 
     Attributes:
