@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
     from pkm_post.control.link import Array, Session, Status
-    from pkm_post.control.numerical_control import NumericalControl, Plan
+    from pkm_post.control.numerical_control import MovePlan, NumericalControl
     from pkm_post.control.player import PlayContext
     from pkm_post.model import Diagnostic, Trajectory
 
@@ -53,7 +53,7 @@ def execute_plan(
     target: Target,
     namespace: argparse.Namespace,
     control: NumericalControl,
-    plan: Plan | None,
+    plan: MovePlan | None,
     diagnostics: tuple[Diagnostic, ...],
     near: float | None = None,
 ) -> int:

@@ -18,7 +18,7 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pkm_post.control.link import Job, PmacProgram, Session, Status
+    from pkm_post.control.link import PmacJob, PmacProgram, Session, Status
     from pkm_post.model import Machine
     from pkm_post.writing import PmacSettings
 
@@ -60,7 +60,7 @@ class JobTarget(Target):
         job: the program file.
     """
 
-    job: Job
+    job: PmacJob
 
 
 def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int:

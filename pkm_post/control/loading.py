@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pkm_post.control.link.program import Job, PmacProgram, parse_power_program, parse_program, read_job
+from pkm_post.control.link.program import PmacJob, PmacProgram, parse_power_program, parse_program, read_job
 from pkm_post.model import Diagnostic, Machine, Place, Refused
 from pkm_post.posting import verify_texts
 from pkm_post.system import result_files
@@ -70,7 +70,7 @@ def certified(program: Path, machine: Machine) -> tuple[Certified | None, Findin
 
 def job_to_load(
     program: Path, machine: Machine, settings: PmacSettings | PowerPmacSettings, uncertified: bool = False
-) -> tuple[Job | None, Findings]:
+) -> tuple[PmacJob | None, Findings]:
     """Convert a program file to a job for the controller.
 
     Args:

@@ -13,7 +13,7 @@ from pkm_post.control.link.errors import (
 )
 from pkm_post.control.link.ownership import claim, owned
 from pkm_post.control.link.ports import Port, port_named
-from pkm_post.control.link.program import Job, PmacProgram
+from pkm_post.control.link.program import PmacJob, PmacProgram
 from pkm_post.control.link.run import check_setup, resume_program, set_feed_override, start_program
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.ssh_link import PASSWORD, ssh_package
@@ -27,7 +27,6 @@ __all__ = [
     "Bits",
     "CancelledError",
     "EMERGENCY_STEPS",
-    "Job",
     "LinkLostError",
     "NOT_AT_REST",
     "NotOwnerError",
@@ -35,6 +34,7 @@ __all__ = [
     "OpenBufferPolicy",
     "PASSWORD",
     "PmacError",
+    "PmacJob",
     "PmacProgram",
     "Port",
     "REST_DEADLINE_S",

@@ -16,7 +16,7 @@ from enum import Enum
 
 from pkm_post.control.link.errors import CancelledError, LinkLostError
 from pkm_post.control.link.ports import PortInterface
-from pkm_post.control.link.protocol import Answer, Command, CommandKind, Lost, Message, Refusal
+from pkm_post.control.link.protocol import Answer, CommandKind, ControllerCommand, Lost, Message, Refusal
 
 LONG_QUERY_S = 0.5
 """A query that takes longer may be dropped for something more urgent; reconnecting takes about as long."""
@@ -81,12 +81,12 @@ class CommandChannel:
         Raises:
             LinkLostError: the exchange failed.
         """
-        outcome = self.run(Command(text, CommandKind.BLIND, 3 * self._port.silence))
+        outcome = self.run(ControllerCommand(text, CommandKind.BLIND, 3 * self._port.silence))
         if isinstance(outcome, Lost):
             raise LinkLostError(outcome.why)
         return "\n".join(outcome.lines) if isinstance(outcome, Answer) else ""
 
-    def run(self, command: Command | None, control: int | None = None) -> _Outcome:
+    def run(self, command: ControllerCommand | None, control: int | None = None) -> _Outcome:
         """Run one exchange, or a reset with an optional control character; return the event that outcome it.
 
         Raises:
@@ -170,7 +170,7 @@ def establish_handshake(channel: CommandChannel, open_buffer: OpenBufferPolicy) 
 def _has_handshake(channel: CommandChannel) -> bool:
     """Whether the controller answers in the form that the protocol expects."""
     names, values = zip(*_HANDSHAKE.findall(channel.handshake), strict=True)
-    outcome = channel.run(Command(" ".join(names), CommandKind.QUERY, channel.answer_timeout))
+    outcome = channel.run(ControllerCommand(" ".join(names), CommandKind.QUERY, channel.answer_timeout))
     return isinstance(outcome, Answer) and outcome.lines == values
 
 

@@ -23,7 +23,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 
-from pkm_post.control.link.protocol import Answer, ByteProtocol, Command, CommandKind, Lost, Refusal
+from pkm_post.control.link.protocol import Answer, ByteProtocol, CommandKind, ControllerCommand, Lost, Refusal
 from pkm_post.control.link.serial_protocol import ResponseParser
 
 DOWNLOAD, UPLOAD = 0x40, 0xC0
@@ -67,7 +67,7 @@ class EthernetProtocol(ByteProtocol):
         self._reader = ResponseParser(b"", False)
         self._in_packet = 0
 
-    def begin(self, command: Command, now: float) -> None:
+    def begin(self, command: ControllerCommand, now: float) -> None:
         """As ``CommandProtocol``."""
         # Each line of a buffer takes a terminator byte.
         self._take_up(command, MOST_LINES - 1 if command.kind is CommandKind.BUFFER else LONGEST_COMMAND)

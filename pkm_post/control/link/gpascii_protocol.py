@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import re
 
-from pkm_post.control.link.protocol import Answer, ByteProtocol, Command, CommandKind, Lost, Refusal
+from pkm_post.control.link.protocol import Answer, ByteProtocol, CommandKind, ControllerCommand, Lost, Refusal
 
 START, LISTENS, VALUES_ALONE = "gpascii -2", "STDIN Open for ASCII Input", "echo 7"
 START_S = 10.0
@@ -65,7 +65,7 @@ class GpasciiProtocol(ByteProtocol):
         self._lines: list[str] = []
         self._refusal: Refusal | None = None
 
-    def begin(self, command: Command, now: float) -> None:
+    def begin(self, command: ControllerCommand, now: float) -> None:
         """As ``CommandProtocol``."""
         if "\n" in command.text:
             raise ValueError(f"command: expected one line, got {command.text[:40]!r}")
@@ -80,14 +80,14 @@ class GpasciiProtocol(ByteProtocol):
         """
         if control is not None:
             raise ValueError(f"control: expected none over gpascii, got {control}")
-        self._begin_with(Command(START, CommandKind.SET, START_S))
+        self._begin_with(ControllerCommand(START, CommandKind.SET, START_S))
         self._out += f"{START}\n".encode("ascii")
         self._wait_for_answer(self._greeted, now)
 
     def _greeted(self, byte: int, now: float) -> None:
         """Ignore what the shell prints before gpascii is ready."""
         if byte == _ACK and LISTENS in self._collected.decode("latin-1"):
-            self._begin_with(Command(VALUES_ALONE, CommandKind.SET, START_S))
+            self._begin_with(ControllerCommand(VALUES_ALONE, CommandKind.SET, START_S))
             self._send(now)
             return
         self._collected.append(byte)

@@ -148,7 +148,7 @@ def _same(written: str, listed: str) -> bool:
 
 
 @dataclass(frozen=True)
-class Job:
+class PmacJob:
     """A program that is valid to send.
 
     Attributes:
@@ -167,7 +167,7 @@ class Job:
 
 def read_job(
     text: str, settings: PmacSettings | PowerPmacSettings, file: str
-) -> tuple[Job | None, tuple[Diagnostic, ...]]:
+) -> tuple[PmacJob | None, tuple[Diagnostic, ...]]:
     """Read a program file.
 
     Args:
@@ -177,6 +177,6 @@ def read_job(
     """
     if isinstance(settings, PowerPmacSettings):
         motion, faults = power_pmac.read_parts([(file, text)], settings)
-        return (None, faults) if motion is None else (Job(parse_power_program(text), motion), faults)
+        return (None, faults) if motion is None else (PmacJob(parse_power_program(text), motion), faults)
     motion, faults = read_part(text, settings, file)
-    return (None, faults) if motion is None else (Job(parse_program(text), motion), faults)
+    return (None, faults) if motion is None else (PmacJob(parse_program(text), motion), faults)

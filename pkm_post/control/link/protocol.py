@@ -27,7 +27,7 @@ class CommandKind(Enum):
 
 
 @dataclass(frozen=True)
-class Command:
+class ControllerCommand:
     r"""One command; only one is outstanding at a time.
 
     Attributes:
@@ -108,7 +108,7 @@ class CommandProtocol(Protocol):
     deadline: float | None
     handshake: str
 
-    def begin(self, command: Command, now: float) -> None:
+    def begin(self, command: ControllerCommand, now: float) -> None:
         """Start a command.
 
         Raises:
@@ -160,7 +160,7 @@ class ByteProtocol:
         """
         self.deadline: float | None = None
         self._silence = silence
-        self._command = Command("?")
+        self._command = ControllerCommand("?")
         self._step: _Step | None = None
         self._on_timeout: _Timeout = self._no_answer
         self._out = bytearray()
@@ -197,7 +197,7 @@ class ByteProtocol:
         """One line at a time: each is confirmed separately."""
         return min(len(lines), 1)
 
-    def _take_up(self, command: Command, most: int) -> None:
+    def _take_up(self, command: ControllerCommand, most: int) -> None:
         """Make a command the outstanding one.
 
         Raises:
@@ -211,9 +211,9 @@ class ByteProtocol:
 
     def _forget(self) -> None:
         """Drop the outstanding command; bytes until the next silence are discarded."""
-        self._begin_with(Command("forget", CommandKind.BLIND, self._silence))
+        self._begin_with(ControllerCommand("forget", CommandKind.BLIND, self._silence))
 
-    def _begin_with(self, command: Command) -> None:
+    def _begin_with(self, command: ControllerCommand) -> None:
         self._command, self._received = command, 0
         self._collected.clear()
 

@@ -16,7 +16,16 @@ from __future__ import annotations
 import re
 from enum import Enum, auto
 
-from pkm_post.control.link.protocol import Answer, ByteProtocol, Command, CommandKind, Event, Lost, Message, Refusal
+from pkm_post.control.link.protocol import (
+    Answer,
+    ByteProtocol,
+    CommandKind,
+    ControllerCommand,
+    Event,
+    Lost,
+    Message,
+    Refusal,
+)
 
 ACK, BEL, STX, CR = 0x06, 0x07, 0x02, 0x0D
 _ERROR = re.compile(r"\s*ERR(\d{3})")
@@ -157,7 +166,7 @@ class SerialProtocol(ByteProtocol):
         self._reader = ResponseParser(b"", True)
         self._attempts = 0
 
-    def begin(self, command: Command, now: float) -> None:
+    def begin(self, command: ControllerCommand, now: float) -> None:
         """As ``CommandProtocol``."""
         if "\n" in command.text:
             raise ValueError(f"command: expected one line, got {command.text[:40]!r}")

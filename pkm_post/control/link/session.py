@@ -17,7 +17,7 @@ from typing import Protocol, Self
 from pkm_post.control.link.channel import CommandChannel, OpenBufferPolicy, establish_handshake
 from pkm_post.control.link.errors import CancelledError, LinkLostError, OutcomeUnknownError, RefusedError
 from pkm_post.control.link.ports import PortInterface
-from pkm_post.control.link.protocol import Answer, Command, CommandKind, Lost, Refusal
+from pkm_post.control.link.protocol import Answer, CommandKind, ControllerCommand, Lost, Refusal
 
 __all__ = ["OpenBufferPolicy", "Session"]
 
@@ -156,7 +156,7 @@ class Session:
             LinkLostError: no answer to ``QUERY_ATTEMPTS`` attempts.
             CancelledError: it takes long, and something more urgent waits.
         """
-        answer = self._query_with_retries(Command(text, CommandKind.QUERY, self._answer_timeout, most))
+        answer = self._query_with_retries(ControllerCommand(text, CommandKind.QUERY, self._answer_timeout, most))
         if self.keeper is not None and not self._is_short:
             self.keeper.answered()
         return answer
@@ -172,7 +172,7 @@ class Session:
         """
         self._check()
         self.has_open_buffer |= text.upper().startswith("OPEN")
-        answer = self._exchange(Command(text, CommandKind.SET, self._answer_timeout))
+        answer = self._exchange(ControllerCommand(text, CommandKind.SET, self._answer_timeout))
         self.has_open_buffer &= text.upper() != "CLOSE"
         return answer
 
@@ -222,7 +222,7 @@ class Session:
         if not count:
             raise ValueError(f"lines: expected lines that fit into one exchange, got {lines[:1]}")
         self._check()
-        self._exchange(Command("\n".join(lines[:count]), CommandKind.BUFFER, self._answer_timeout))
+        self._exchange(ControllerCommand("\n".join(lines[:count]), CommandKind.BUFFER, self._answer_timeout))
         return count
 
     def lines_at_once(self, lines: Sequence[str]) -> int:
@@ -233,7 +233,7 @@ class Session:
         if self.keeper is not None and not self._is_short:
             self.keeper.check()
 
-    def _query_with_retries(self, command: Command) -> tuple[str, ...]:
+    def _query_with_retries(self, command: ControllerCommand) -> tuple[str, ...]:
         for _ in range(self._query_attempts - 1):
             try:
                 return self._exchange(command)
@@ -241,7 +241,7 @@ class Session:
                 self.check_preemption()
         return self._exchange(command)
 
-    def _exchange(self, command: Command) -> tuple[str, ...]:
+    def _exchange(self, command: ControllerCommand) -> tuple[str, ...]:
         if not self._is_synchronized:
             self._connect()
         self._is_synchronized = False  # until the outcome is known: an interrupt may come at any time

@@ -21,7 +21,7 @@ from pkm_post.control.numerical_control.interlocks import (
     may_move,
 )
 from pkm_post.control.numerical_control.manual_moves import CartesianJog, Jog, MdiSettings, StrutJog
-from pkm_post.control.numerical_control.plan import Plan
+from pkm_post.control.numerical_control.plan import MovePlan
 from pkm_post.control.numerical_control.probed_features import (
     ALONG,
     Feature,
@@ -48,10 +48,10 @@ __all__ = [
     "Interlock",
     "Jog",
     "MdiSettings",
+    "MovePlan",
     "NumericalControl",
     "OperatorCommand",
     "PanelState",
-    "Plan",
     "Probe",
     "ProbeInput",
     "ProbeSettings",

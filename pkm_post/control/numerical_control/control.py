@@ -19,7 +19,7 @@ from pkm_post.control.link import run, stopping
 from pkm_post.control.link.download import DownloadResult, Progress, download
 from pkm_post.control.link.errors import CancelledError, LinkLostError, NotOwnerError, NotReadyError, PmacError
 from pkm_post.control.link.ownership import claim
-from pkm_post.control.link.program import Job
+from pkm_post.control.link.program import PmacJob
 from pkm_post.control.link.run import check_setup
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings, Status, read_status, settled_status
@@ -34,7 +34,7 @@ from pkm_post.control.numerical_control.homing import (
     missing_homes,
     start_homing,
 )
-from pkm_post.control.numerical_control.plan import Plan, planned
+from pkm_post.control.numerical_control.plan import MovePlan, planned
 from pkm_post.control.numerical_control.rehearsal import Silence, longest_silence
 from pkm_post.control.numerical_control.single_block import BlockDisplay, ProgramBlocks
 from pkm_post.control.numerical_control.watchdog import Watchdog
@@ -132,7 +132,7 @@ class NumericalControl:
         self._last = replace(self._last, status=status, pose=self._readout.pose(status), lost="", emergency=())
         return self._last
 
-    def plan_jog(self, jog: manual_moves.Jog, feed: float) -> tuple[Plan | None, Findings]:
+    def plan_jog(self, jog: manual_moves.Jog, feed: float) -> tuple[MovePlan | None, Findings]:
         """Plan a jog from the current pose; ``feed`` in mm/s, for a turn in place in degrees per second.
 
         Raises:
@@ -142,7 +142,7 @@ class NumericalControl:
         plan, diagnostics = self._plan(*manual_moves.jog_trajectory(jog, self._machine, here, self.tool_length, feed))
         return (None if plan is None else replace(plan, is_jog=True)), diagnostics
 
-    def plan_line(self, line: str, reading: manual_moves.MdiSettings | None = None) -> tuple[Plan | None, Findings]:
+    def plan_line(self, line: str, reading: manual_moves.MdiSettings | None = None) -> tuple[MovePlan | None, Findings]:
         """Plan a line of G-code from the current pose.
 
         Raises:
@@ -153,11 +153,11 @@ class NumericalControl:
 
     def plan_approach(
         self,
-        job: Job,
+        job: PmacJob,
         feed: float = APPROACH_MM_S,
         free: float = -math.inf,
         check: Callable[[Trajectory], Findings] = lambda way: (),
-    ) -> tuple[Plan | None, Findings]:
+    ) -> tuple[MovePlan | None, Findings]:
         """Plan the approach from the current pose to the start of a program; as ``manual_moves.approach_trajectory``.
 
         Args:
@@ -177,7 +177,7 @@ class NumericalControl:
             found += check(way)
         return self._plan(None if errors(found) else way, found)
 
-    def execute(self, plan: Plan, near: float = START_TOLERANCE_MM) -> Status:
+    def execute(self, plan: MovePlan, near: float = START_TOLERANCE_MM) -> Status:
         """Load a plan, verify its listing and start it; as ``execute.execute``.
 
         The controller holds a jog by itself once ``poll``, ``renew`` and ``wait_for_rest`` are no longer called.
@@ -214,7 +214,7 @@ class NumericalControl:
         self._drop_watchdog(status)
         return status
 
-    def load(self, job: Job, progress: Progress, is_cancelled: Callable[[], bool]) -> DownloadResult:
+    def load(self, job: PmacJob, progress: Progress, is_cancelled: Callable[[], bool]) -> DownloadResult:
         """Check the controller's setup, load a program and verify its listing; as ``download.download``.
 
         A waiting stop ends the download as ``is_cancelled`` does.
@@ -222,12 +222,12 @@ class NumericalControl:
         check_setup(self._session, self._settings, self._machine.strut_stroke)
         return download(self._session, job.program, progress, lambda: is_cancelled() or self._session.stop_pending())
 
-    def start(self, job: Job, near: float = START_TOLERANCE_MM) -> Status:
+    def start(self, job: PmacJob, near: float = START_TOLERANCE_MM) -> Status:
         """Start a loaded program from its beginning; as ``run.start_program``."""
         order = self._session, self._settings, job.program, job.first, near, self._machine
         return self._with_ownership("run", lambda: run.start_program(*order))
 
-    def continue_after_stop(self, job: Job, stop: int, near: float = START_TOLERANCE_MM) -> Status:
+    def continue_after_stop(self, job: PmacJob, stop: int, near: float = START_TOLERANCE_MM) -> Status:
         """Continue a program after its stop (M0, M1), from 1, where it stands; as ``execute.continue_after_stop``."""
         order = self._session, self._machine, self._settings, job, stop, near
         return self._with_ownership("run", lambda: execute.continue_after_stop(*order))
@@ -247,7 +247,7 @@ class NumericalControl:
         self._set_next_block(blocks, at)
         return len(blocks)
 
-    def plan_step(self) -> tuple[Plan | None, Findings]:
+    def plan_step(self) -> tuple[MovePlan | None, Findings]:
         """Plan the next block from its start; executing it advances to the block after it.
 
         Raises:
@@ -343,7 +343,7 @@ class NumericalControl:
 
     def _plan(
         self, trajectory: Trajectory | None, diagnostics: Findings, tolerances: Tolerances = TOLERANCES
-    ) -> tuple[Plan | None, Findings]:
+    ) -> tuple[MovePlan | None, Findings]:
         if trajectory is None:
             return None, diagnostics
         plan, faults = planned(trajectory, self._machine, self._settings, tolerances, self._number)

@@ -16,7 +16,7 @@ from pkm_post.control.link import run as operate
 from pkm_post.control.link.download import download
 from pkm_post.control.link.errors import NotReadyError, PmacError
 from pkm_post.control.link.ownership import owned
-from pkm_post.control.link.program import Job, read_job
+from pkm_post.control.link.program import PmacJob, read_job
 from pkm_post.control.link.run import check_setup, check_start
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings, Array, Status, read_status
@@ -29,7 +29,7 @@ _POLL_S = 0.05
 
 
 def execute(
-    session: Session, machine: Machine, settings: AnySettings, job: Job, near: float = START_TOLERANCE_MM
+    session: Session, machine: Machine, settings: AnySettings, job: PmacJob, near: float = START_TOLERANCE_MM
 ) -> Status:
     """Load a program and start it.
 
@@ -54,7 +54,7 @@ def execute(
 
 
 def execute_watched(
-    session: Session, machine: Machine, settings: AnySettings, job: Job, silence_s: float
+    session: Session, machine: Machine, settings: AnySettings, job: PmacJob, silence_s: float
 ) -> tuple[Status, Watchdog]:
     """Load a program with a watchdog and start it; unless renewed, the watchdog holds it. Otherwise as ``execute``.
 
@@ -121,7 +121,7 @@ class ProgramStop:
     length: Array
 
 
-def program_stops(job: Job) -> tuple[ProgramStop, ...]:
+def program_stops(job: PmacJob) -> tuple[ProgramStop, ...]:
     """The stops of a program; one at its very end does not count, as no move follows."""
     events, last = job.motion.events, len(job.motion) - 1
     places = [index for index, each in enumerate(events) if each.kind is EventKind.STOP and each.row < last]
@@ -130,7 +130,7 @@ def program_stops(job: Job) -> tuple[ProgramStop, ...]:
     )
 
 
-def remaining_job(job: Job, stop: ProgramStop, settings: AnySettings) -> Job:
+def remaining_job(job: PmacJob, stop: ProgramStop, settings: AnySettings) -> PmacJob:
     """The part of a program after a stop, under the number of the job.
 
     Args:
@@ -144,7 +144,7 @@ def remaining_job(job: Job, stop: ProgramStop, settings: AnySettings) -> Job:
     return job_of(motion, replace(settings, program=job.program.number), f"after stop {stop.number}")
 
 
-def job_of(motion: StrutMotion, settings: AnySettings, name: str) -> Job:
+def job_of(motion: StrutMotion, settings: AnySettings, name: str) -> PmacJob:
     """Turn part of a program into a program.
 
     Args:
@@ -170,7 +170,12 @@ def same(one: StrutMotion, other: StrutMotion) -> bool:
 
 
 def continue_after_stop(
-    session: Session, machine: Machine, settings: AnySettings, job: Job, number: int, near: float = START_TOLERANCE_MM
+    session: Session,
+    machine: Machine,
+    settings: AnySettings,
+    job: PmacJob,
+    number: int,
+    near: float = START_TOLERANCE_MM,
 ) -> Status:
     """Load the part of a program after a stop and start it.
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from pkm_post.certificate import certify
-from pkm_post.control.link.program import Job, read_job
+from pkm_post.control.link.program import PmacJob, read_job
 from pkm_post.control.link.tool_pose import spin_of
 from pkm_post.geometry import Array, hermite_lengths
 from pkm_post.machine import (
@@ -41,7 +41,7 @@ _SHARES = np.linspace(0.0, 1.0, 9)[1:]
 
 
 @dataclass(frozen=True)
-class Plan:
+class MovePlan:
     """A move that is cleared to be sent.
 
     Attributes:
@@ -52,7 +52,7 @@ class Plan:
         block: number of its block in a program, from 1; 0 for other moves.
     """
 
-    job: Job
+    job: PmacJob
     certificate: Certificate
     end: ToolPose
     is_jog: bool = False
@@ -75,7 +75,7 @@ def planned(
     settings: PmacSettings | PowerPmacSettings,
     tolerances: Tolerances,
     number: int = MANUAL_MOVE_PROGRAM,
-) -> tuple[Plan | None, Findings]:
+) -> tuple[MovePlan | None, Findings]:
     """Plan a trajectory, or return every obstacle.
 
     Args:
@@ -104,7 +104,7 @@ def planned(
     diagnostics += faults
     if certificate is None or end is None or errors(diagnostics):
         return None, diagnostics
-    return Plan(job, certificate, end), diagnostics
+    return MovePlan(job, certificate, end), diagnostics
 
 
 def _program(

@@ -17,7 +17,7 @@ from difflib import SequenceMatcher
 
 import numpy as np
 
-from pkm_post.control.player.sections import Part, parts_of
+from pkm_post.control.player.sections import TrajectoryPart, parts_of
 from pkm_post.model import TRAJECTORY_COLUMNS, Trajectory
 
 _BY_NEIGHBOURS = {"smooth", "exact_stop", "operation", "tool"}
@@ -49,7 +49,7 @@ def stretches(whole: Trajectory, skipped: Trajectory) -> tuple[Stretch, ...]:
 
 def chosen_parts(
     whole: Trajectory, skipped: Trajectory | None, first: int, skips: Callable[[], bool]
-) -> Iterator[tuple[Trajectory, Part]]:
+) -> Iterator[tuple[Trajectory, TrajectoryPart]]:
     """The parts to play, one after the other, each with the posting that it belongs to.
 
     Args:

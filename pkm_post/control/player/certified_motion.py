@@ -14,7 +14,7 @@ import numpy as np
 
 from pkm_post.certificate import AdjacentMotion, certify
 from pkm_post.control.link.status import AnySettings
-from pkm_post.control.player.sections import PathPoint, Section, subpath
+from pkm_post.control.player.sections import PathPoint, TrajectorySection, subpath
 from pkm_post.geometry import Array
 from pkm_post.model import Certificate, Kind, Machine, Motion, Refused, StrutMotion, Tolerances, errors
 from pkm_post.planning import PathState, Schedule, WindowPlanner, strut_motion
@@ -79,7 +79,7 @@ class MotionCertifier:
 
     def motion(
         self,
-        section: Section,
+        section: TrajectorySection,
         windows: WindowPlanner,
         at: MotionState,
         schedule: Schedule,
@@ -127,7 +127,7 @@ class MotionCertifier:
 
     def _certified(
         self,
-        section: Section,
+        section: TrajectorySection,
         windows: WindowPlanner,
         struts: StrutMotion,
         motion: Motion,

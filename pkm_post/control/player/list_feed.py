@@ -25,7 +25,7 @@ from pkm_post.control.player.knot_list import (
     point_assignments,
     read_assignments,
 )
-from pkm_post.control.player.pieces import Piece
+from pkm_post.control.player.pieces import PlayedPiece
 
 _KEPT = 2
 """Points before the current one that are not written over."""
@@ -36,7 +36,7 @@ _SAME = 1e-9
 
 
 @dataclass(frozen=True)
-class Point:
+class ListPoint:
     """A point in the list.
 
     Attributes:
@@ -62,15 +62,15 @@ class _Branch:
     """
 
     after: int
-    points: tuple[Point, ...]
+    points: tuple[ListPoint, ...]
 
 
 @dataclass(frozen=True)
 class _Entry:
     """A piece that is being taken in: its points, its stop, and the lines that write them."""
 
-    points: tuple[Point, ...]
-    stop: tuple[Point, ...]
+    points: tuple[ListPoint, ...]
+    stop: tuple[ListPoint, ...]
     lines: tuple[str, ...]
     commit: str
 
@@ -86,13 +86,13 @@ class ListFeed:
     def __init__(self, session: Session, settings: AnySettings, layout: Layout) -> None:
         self._session, self._settings, self._layout = session, settings, layout
         self._free: deque[int] = deque()
-        self._points: deque[Point] = deque()
+        self._points: deque[ListPoint] = deque()
         self._branches: deque[_Branch] = deque()
         self._first = 0  # number of the first one of _points
         self._entry: _Entry | None = None
         self._at = -1
         self._early: _Branch | None = None
-        self.current: Point | None = None
+        self.current: ListPoint | None = None
         self.stopped_at: CertifiedMotion | None = None
 
     def clear(self) -> None:
@@ -117,7 +117,7 @@ class ListFeed:
         return sum(point.ms for point in islice(self._points, self._at + 1 - self._first, None))
 
     @property
-    def last(self) -> Point | None:
+    def last(self) -> ListPoint | None:
         """The point where the last stop begins; within a stop the current one, and None in an empty list."""
         return self._points[-1] if self._points and self.stopped_at is None else self.current
 
@@ -126,11 +126,11 @@ class ListFeed:
         """Whether a piece may be in the list, or not: its answers got lost."""
         return self._entry is not None
 
-    def has_room(self, piece: Piece) -> bool:
+    def has_room(self, piece: PlayedPiece) -> bool:
         """Whether a piece fits, besides what is ahead."""
         return self._entry is not None or piece.size <= len(self._free)
 
-    def append(self, piece: Piece) -> None:
+    def append(self, piece: PlayedPiece) -> None:
         """Take a piece in; after a lost link or a stop, again with the same piece.
 
         Raises:
@@ -201,7 +201,7 @@ class ListFeed:
         self._points.extend(entry.points)
         self._entry = None
 
-    def _prepared(self, piece: Piece) -> _Entry:
+    def _prepared(self, piece: PlayedPiece) -> _Entry:
         points = self._placed(piece.motion)
         stop = self._placed(piece.stop) if piece.stop is not None else ()
         written = point_assignments(piece.motion.struts, [point.place for point in points], self._settings)
@@ -211,10 +211,11 @@ class ListFeed:
         before = self._points[-1].place if self._points else self._layout.next
         return _Entry(points, stop, tuple(assignment_lines(written)), f"P{before}={points[0].place}")
 
-    def _placed(self, motion: CertifiedMotion) -> tuple[Point, ...]:
+    def _placed(self, motion: CertifiedMotion) -> tuple[ListPoint, ...]:
         times = motion.struts.time_ms.tolist()
         return tuple(
-            Point(self._free.popleft(), times[knot] - times[knot - 1], motion, knot) for knot in range(1, len(times))
+            ListPoint(self._free.popleft(), times[knot] - times[knot - 1], motion, knot)
+            for knot in range(1, len(times))
         )
 
     def _compare(self, entry: _Entry) -> None:

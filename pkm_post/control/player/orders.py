@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 from pkm_post.control.player.knot_list import FIRST_VARIABLE
-from pkm_post.control.player.list_feed import Point
+from pkm_post.control.player.list_feed import ListPoint
 from pkm_post.geometry import Array
 from pkm_post.model import EMPTY_SETUP, EventKind, Kind, Setup, Trajectory
 from pkm_post.options import PLAYER_PROGRAM
@@ -136,7 +136,7 @@ class Ahead:
     """
 
     ms: int = 0
-    last: Point | None = None
+    last: ListPoint | None = None
     slower: float = 1.0
 
 
@@ -151,7 +151,7 @@ class PathProgress:
         self._dwells = [(each.row, each.value) for each in trajectory.events if each.kind is EventKind.DWELL]
 
     def state(
-        self, point: Point | None, phase: str, override: float, reached: float, ahead: Ahead, row: int | None = None
+        self, point: ListPoint | None, phase: str, override: float, reached: float, ahead: Ahead, row: int | None = None
     ) -> PlayState:
         """The state at a point of the list, or before a row."""
         share, last = 0.0, ahead.last if row is None else None
@@ -171,7 +171,7 @@ class PathProgress:
         """What is left of a way behind a place."""
         return float(way[row] + share * (way[row + 1] - way[row]))
 
-    def text(self, point: Point | None) -> str:
+    def text(self, point: ListPoint | None) -> str:
         """Where a point is, in words."""
         if point is None:
             return "before the first point"
@@ -179,6 +179,6 @@ class PathProgress:
         return " ".join(filter(None, ("in", place.operation, f"line {place.line}")))
 
 
-def _place(point: Point) -> tuple[int, float]:
+def _place(point: ListPoint) -> tuple[int, float]:
     """The row of a point, and the share of it that is behind."""
     return int(point.motion.row[point.knot]), float(point.motion.share[point.knot])

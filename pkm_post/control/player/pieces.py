@@ -16,7 +16,7 @@ import numpy as np
 
 from pkm_post.control.link.status import AnySettings
 from pkm_post.control.player.certified_motion import CertifiedMotion, MotionCertifier, MotionState
-from pkm_post.control.player.sections import Part, Section, sections_of
+from pkm_post.control.player.sections import TrajectoryPart, TrajectorySection, sections_of
 from pkm_post.machine import strut_lengths
 from pkm_post.model import Machine, Refused, Tolerances, Trajectory
 from pkm_post.planning import PathState, Schedule, WindowPlanner, window_planner
@@ -33,7 +33,7 @@ _LEAST = 1e-6
 
 
 @dataclass(frozen=True)
-class Piece:
+class PlayedPiece:
     """What is sent next.
 
     Attributes:
@@ -60,7 +60,7 @@ class PiecePlanner:
     def __init__(
         self,
         trajectory: Trajectory,
-        part: Part,
+        part: TrajectoryPart,
         machine: Machine,
         settings: AnySettings,
         tolerances: Tolerances,
@@ -80,9 +80,9 @@ class PiecePlanner:
         self._certifier = MotionCertifier(machine, settings, tolerances)
         self._planned_for = planned_for or machine
         self._coming = sections_of(trajectory, part, tolerances)
-        self._next: Section | None = None
+        self._next: TrajectorySection | None = None
         self._count = 0
-        self._sections: dict[int, tuple[Section, WindowPlanner]] = {}
+        self._sections: dict[int, tuple[TrajectorySection, WindowPlanner]] = {}
         self._lock = threading.RLock()
 
     def start(self) -> MotionState:
@@ -107,7 +107,7 @@ class PiecePlanner:
 
     def next_piece(
         self, at: MotionState, override: float, single_block: bool = False, piece_ms: int = PIECE_MS
-    ) -> Piece:
+    ) -> PlayedPiece:
         """The next piece.
 
         Args:
@@ -141,10 +141,10 @@ class PiecePlanner:
         motion = self._certifier.motion(section, windows, at, schedule, until, override)
         rests = until == end_ms
         stop = None if rests else self._stop(motion.end)
-        return Piece(motion, stop, self._reached(windows, state, motion), rests and self.is_end(motion.end))
+        return PlayedPiece(motion, stop, self._reached(windows, state, motion), rests and self.is_end(motion.end))
 
     def _to_end_of_line(
-        self, section: Section, windows: WindowPlanner, state: PathState, override: float
+        self, section: TrajectorySection, windows: WindowPlanner, state: PathState, override: float
     ) -> Schedule | None:
         """The motion to the end of the first line that can be rested at; None if there is none up to the next rest."""
         rest = windows.next_rest(state.s)
@@ -157,7 +157,7 @@ class PiecePlanner:
                 return found
         return None
 
-    def _time_to_limit(self, section: Section, windows: WindowPlanner, schedule: Schedule) -> int:
+    def _time_to_limit(self, section: TrajectorySection, windows: WindowPlanner, schedule: Schedule) -> int:
         """Whole ms until the motion is so far in a section that the next one has to take over."""
         s = schedule.law.s
         if section.over is None:
@@ -201,7 +201,7 @@ class PiecePlanner:
         self._sections.pop(at.section - 2, None)  # a stop that is still in the list may be in the one before
         return replace(at, section=at.section + 1, state=at.state.moved(float(s)))
 
-    def _section(self, number: int) -> tuple[Section, WindowPlanner]:
+    def _section(self, number: int) -> tuple[TrajectorySection, WindowPlanner]:
         """A section and its window planner, made once; another thread may be making it.
 
         Raises:

@@ -25,13 +25,13 @@ from pkm_post.control.player.block_skip import chosen_parts
 from pkm_post.control.player.certificate_log import CertificateLog
 from pkm_post.control.player.certified_motion import MotionState
 from pkm_post.control.player.knot_list import Layout, resident_program
-from pkm_post.control.player.list_feed import ListFeed, Point
+from pkm_post.control.player.list_feed import ListFeed, ListPoint
 from pkm_post.control.player.operator_input import OperatorInput
 from pkm_post.control.player.orders import HELD_BACK, WAITS, Ahead, Order, PathProgress, PlayOptions, PlayState
 from pkm_post.control.player.pieces import PiecePlanner
 from pkm_post.control.player.retract import Retract
 from pkm_post.control.player.run_to_rest import RunToRest, Timing
-from pkm_post.control.player.sections import Part
+from pkm_post.control.player.sections import TrajectoryPart
 from pkm_post.control.player.start_line import go_to_row
 from pkm_post.control.player.stop_events import PlayContext, run_events
 from pkm_post.model import EventKind, Machine, Phrase, Tolerances, Trajectory
@@ -124,7 +124,7 @@ class Player:
         self._run: RunToRest | None = None
         self._stops, self._losses, self._is_waiting = 0, 0, False
         self._lost_at: float | None = None
-        self._point: Point | None = None
+        self._point: ListPoint | None = None
         self._retract = Retract(self._task)
         self.log = CertificateLog()
 
@@ -177,7 +177,7 @@ class Player:
             if not self._operator.is_over:
                 go_to_row(self._task, row, repeat_codes=self._choices.repeat_codes)
 
-    def _between(self, part: Part) -> None:
+    def _between(self, part: TrajectoryPart) -> None:
         """Carry out the events before a part; its stops wait for the operator."""
         events = list(part.events)
         while events and not self._operator.is_over:
@@ -192,7 +192,7 @@ class Player:
                 self._wait("M1", part.first, until=lambda: not self._operator.optional_stop)
             events = events[at + 1 :]
 
-    def _play_part(self, part: Part, planning: Executor) -> None:
+    def _play_part(self, part: TrajectoryPart, planning: Executor) -> None:
         planner = PiecePlanner(
             self._trajectory, part, self._machine, self._settings, self._tolerances, self._planning_machine
         )

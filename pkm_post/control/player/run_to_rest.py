@@ -29,7 +29,7 @@ from pkm_post.control.link.session import Session
 from pkm_post.control.player.certified_motion import LONGEST_MS, CertifiedMotion, MotionState
 from pkm_post.control.player.list_feed import ListFeed
 from pkm_post.control.player.operator_input import OperatorInput
-from pkm_post.control.player.pieces import PIECE_MS, SHORTEST_PIECE_MS, Piece, PiecePlanner
+from pkm_post.control.player.pieces import PIECE_MS, SHORTEST_PIECE_MS, PiecePlanner, PlayedPiece
 from pkm_post.model import Refused
 
 LEAST_LEAD_S = 0.25
@@ -66,7 +66,7 @@ class Timing:
     planned: float = 0.0
     programmed: float = 0.0
 
-    def add(self, piece: Piece) -> None:
+    def add(self, piece: PlayedPiece) -> None:
         """Count the motion of a piece that was sent."""
         seconds = float(piece.motion.struts.time_ms[-1]) / 1000
         self.planned += seconds
@@ -124,9 +124,9 @@ class RunToRest:
             planning,
         )
         self._begin = self._ahead = at
-        self._pending: Future[Piece] | None = None
+        self._pending: Future[PlayedPiece] | None = None
         self._asked: _Moment | None = None
-        self._planned: Piece | None = None
+        self._planned: PlayedPiece | None = None
         self._last: CertifiedMotion | None = None
         self._fault: Refused | PmacError | None = None
         self._is_block_end, self._section = False, -1
@@ -256,7 +256,7 @@ class RunToRest:
         if since is not None and since[1] == connections:
             times.append(now - since[0])
 
-    def _next_piece(self, at: MotionState, piece_ms: int) -> Piece:
+    def _next_piece(self, at: MotionState, piece_ms: int) -> PlayedPiece:
         """Plan a piece that leaves room for another one in the list; in a thread that plans.
 
         Raises:

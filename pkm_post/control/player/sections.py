@@ -33,7 +33,7 @@ _LESS = 1 - 1e-9
 
 
 @dataclass(frozen=True)
-class Part:
+class TrajectoryPart:
     """Rows of a trajectory between two events, at rest at both ends.
 
     Attributes:
@@ -48,7 +48,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Section:
+class TrajectorySection:
     """Rows of a part.
 
     Attributes:
@@ -64,7 +64,7 @@ class Section:
 
 def parts_of(
     trajectory: Trajectory, first: int = 0, end: int | None = None, has_events: bool | None = None
-) -> tuple[Part, ...]:
+) -> tuple[TrajectoryPart, ...]:
     """The parts of some rows of a trajectory; the last one may have no rows, but events.
 
     Args:
@@ -84,11 +84,11 @@ def parts_of(
     for begin, following in zip(rows, [*rows[1:], stop], strict=True):
         events = tuple(each for each in trajectory.events if each.row == begin and (begin > first or has_events))
         if following > begin or events:
-            found.append(Part(begin, following, events))
+            found.append(TrajectoryPart(begin, following, events))
     return tuple(found)
 
 
-def sections_of(trajectory: Trajectory, part: Part, tolerances: Tolerances) -> Iterator[Section]:
+def sections_of(trajectory: Trajectory, part: TrajectoryPart, tolerances: Tolerances) -> Iterator[TrajectorySection]:
     """The sections of a part with rows, one after the other."""
     lines = [part.first, *_lines(trajectory, part), part.end]
     for number in range(max(len(lines) - 2, 1)):
@@ -97,7 +97,7 @@ def sections_of(trajectory: Trajectory, part: Part, tolerances: Tolerances) -> I
         end = part.end if is_last else min(lines[number + 2] + _BESIDE, part.end)
         kept = [row - begin for row in lines[1:-1] if begin <= row < end]
         rows = _kept_lines(rows_of(trajectory, begin, end), kept, tolerances)
-        yield Section(rows, begin, None if is_last else lines[number + 1])
+        yield TrajectorySection(rows, begin, None if is_last else lines[number + 1])
 
 
 def rows_of(trajectory: Trajectory, first: int, end: int) -> Trajectory:
@@ -116,7 +116,7 @@ def rows_of(trajectory: Trajectory, first: int, end: int) -> Trajectory:
     return replace(near, **columns, start_tip=start[0], start_axis=start[1], start_spin=start[2])
 
 
-def _lines(trajectory: Trajectory, part: Part) -> list[int]:
+def _lines(trajectory: Trajectory, part: TrajectoryPart) -> list[int]:
     """The rows that stay lines, about every ``BLOCK_ROWS``."""
     length = trajectory.length
     ends = range(part.first + BLOCK_ROWS, part.end - BLOCK_ROWS, BLOCK_ROWS)

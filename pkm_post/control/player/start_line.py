@@ -22,7 +22,7 @@ from pkm_post.control.link.status import settled_status
 from pkm_post.control.link.tool_pose import pose_from_home
 from pkm_post.control.numerical_control.execute import execute, wait_for_rest
 from pkm_post.control.numerical_control.manual_moves import approach_trajectory
-from pkm_post.control.numerical_control.plan import Plan, planned
+from pkm_post.control.numerical_control.plan import MovePlan, planned
 from pkm_post.control.player.approach_check import approach_faults
 from pkm_post.control.player.stop_events import TOLERANCES, PlayContext, pose_before, run_events
 from pkm_post.model import Event, Refused, Trajectory, errors
@@ -64,7 +64,7 @@ def go_to_row(task: PlayContext, row: int, feed: float = APPROACH_MM_S, repeat_c
         raise PmacError("the approach did not arrive: " + "; ".join(status.fault_texts() or ("it is held",)))
 
 
-def approach_to_row(task: PlayContext, row: int, events: tuple[Event, ...], feed: float) -> Plan | None:
+def approach_to_row(task: PlayContext, row: int, events: tuple[Event, ...], feed: float) -> MovePlan | None:
     """The way to the start of a row, with events above it; None where the tool is there.
 
     Raises:

@@ -16,7 +16,7 @@ from functools import cache
 from typing import Protocol
 
 from pkm_post.control.simulator.errors import DATA, CommandError
-from pkm_post.control.simulator.variables import DOUBLES, ELEMENT, WORDS, Numbers
+from pkm_post.control.simulator.variables import DOUBLES, ELEMENT, WORDS, FloatFormat
 
 
 @cache
@@ -33,7 +33,7 @@ class Scanner:
         numbers: how the controller keeps the numbers in it.
     """
 
-    def __init__(self, text: str, numbers: Numbers = WORDS) -> None:
+    def __init__(self, text: str, numbers: FloatFormat = WORDS) -> None:
         self.text, self.numbers = text.replace("\t", " "), numbers
         self.position = 0
 
@@ -108,7 +108,7 @@ COMPARISONS: dict[str, Comparison] = {
 }
 
 
-def safely(compute: Callable[[], float], numbers: Numbers) -> float:
+def safely(compute: Callable[[], float], numbers: FloatFormat) -> float:
     """A result as it is kept; an undefined one (division by zero, root of a negative number) is refused."""
     try:
         return numbers.stored(float(compute()))
@@ -174,7 +174,7 @@ def argument(scanner: Scanner) -> Expression:
     return constant(scanner.expect(rf"(?P<number>[+-]?(?:{scanner.numbers.constant}))")["number"], scanner.numbers)
 
 
-def constant(text: str, numbers: Numbers = WORDS) -> Expression:
+def constant(text: str, numbers: FloatFormat = WORDS) -> Expression:
     """The expression of a single number."""
     sign = -1.0 if text.startswith("-") else 1.0
     number = sign * numbers.constant_value(text.lstrip("+-"))
@@ -256,7 +256,11 @@ def variable_number(scanner: Scanner, depth: int = 0) -> Expression:
 
 
 def _joined(
-    left: Expression, sign: str, table: dict[str, Binary] | dict[str, Comparison], right: Expression, numbers: Numbers
+    left: Expression,
+    sign: str,
+    table: dict[str, Binary] | dict[str, Comparison],
+    right: Expression,
+    numbers: FloatFormat,
 ) -> Expression:
     operation = table[sign]
 
@@ -266,7 +270,7 @@ def _joined(
     return Expression(left.text + sign + right.text, left.words + right.words + 1, value)
 
 
-def _applied(name: str, inner: Expression, numbers: Numbers) -> Expression:
+def _applied(name: str, inner: Expression, numbers: FloatFormat) -> Expression:
     function = FUNCTIONS[name]
 
     def value(scope: Scope) -> float:

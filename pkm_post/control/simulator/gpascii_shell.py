@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pkm_post.control.simulator import errors
 from pkm_post.control.simulator.controller import Controller
 from pkm_post.control.simulator.errors import CommandError
-from pkm_post.control.simulator.power_online import PowerPmac, Thread
+from pkm_post.control.simulator.power_online import GpasciiThread, PowerPmac
 from pkm_post.control.simulator.serial_port import SerialPort
 
 PROMPT = b"root@ppmac:/opt/ppmac# "
@@ -47,7 +47,7 @@ class GpasciiShell:
     """One log-in."""
 
     def __init__(self, machine: PowerPmac) -> None:
-        self._thread = Thread(machine)
+        self._thread = GpasciiThread(machine)
         self._line, self._lines = bytearray(), 0
         self._in_gpascii = False
 
@@ -94,7 +94,7 @@ def refused_line(machine: Controller | PowerPmac, lines: Sequence[str]) -> tuple
         machine: a Turbo PMAC or a Power PMAC.
         lines: of a set-up file.
     """
-    execute = Thread(machine).execute if isinstance(machine, PowerPmac) else SerialPort(machine).carry_out
+    execute = GpasciiThread(machine).execute if isinstance(machine, PowerPmac) else SerialPort(machine).carry_out
     for place, line in enumerate(lines):
         try:
             execute(line)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pkm_post.control.simulator.errors import DATA, IN_USE, NO_PROGRAM, NO_ROOM, NOT_OPEN, CommandError
-from pkm_post.control.simulator.programs import Program, Rotary, Statement, parse_statements
+from pkm_post.control.simulator.programs import FixedProgram, Rotary, Statement, parse_statements
 
 HIGHEST_PROGRAM = 32_767
 MOST_PROGRAMS = 224
@@ -39,7 +39,7 @@ class Memory:
 
     def __init__(self, size: int) -> None:
         self.size = size
-        self.programs: dict[int, Program] = {}
+        self.programs: dict[int, FixedProgram] = {}
         self.rotaries: dict[int, Rotary] = {}
         self.gather = 0
         self.opened: OpenBuffer | None = None
@@ -61,7 +61,7 @@ class Memory:
             raise CommandError(DATA)
         if number not in self.programs and len(self.programs) >= MOST_PROGRAMS:
             raise CommandError(NO_ROOM)
-        self.programs.setdefault(number, Program()).reopen()
+        self.programs.setdefault(number, FixedProgram()).reopen()
         self.opened = OpenBuffer(number, port)
 
     def open_rotary(self, port: object) -> None:
@@ -103,7 +103,7 @@ class Memory:
             raise CommandError(NOT_OPEN)
         assert self.opened is not None
         if self.opened.program is not None:
-            self.programs[self.opened.program] = Program()
+            self.programs[self.opened.program] = FixedProgram()
         elif system in self.rotaries:
             self.rotaries[system] = Rotary(self.rotaries[system].size)
 
@@ -141,7 +141,7 @@ class Memory:
             raise CommandError(NO_ROOM)
         self.rotaries[system] = Rotary(words)
 
-    def _add_to_program(self, program: Program, line: tuple[Statement, ...]) -> None:
+    def _add_to_program(self, program: FixedProgram, line: tuple[Statement, ...]) -> None:
         if sum(statement.words for statement in line) + 1 > self.free():  # one word for the return at the end
             raise CommandError(NO_ROOM)
         program.append(line)
@@ -192,7 +192,7 @@ class ProgramCounter:
         if not there:
             raise CommandError(NO_PROGRAM)
 
-    def program(self) -> Program | None:
+    def program(self) -> FixedProgram | None:
         """The fixed program pointed to."""
         return self._memory.programs.get(self.pointer or ROTARY)
 

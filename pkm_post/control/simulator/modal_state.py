@@ -19,7 +19,7 @@ from pkm_post.control.simulator.errors import DATA, CommandError
 from pkm_post.control.simulator.expressions import Expression, Scanner
 from pkm_post.control.simulator.moves import BlendedMove, Move, PvtMove, ramps_of
 from pkm_post.control.simulator.programs import LETTERS
-from pkm_post.control.simulator.variables import SIMULATED_MOTORS, WORDS, Array, Numbers, SystemScope
+from pkm_post.control.simulator.variables import SIMULATED_MOTORS, WORDS, Array, FloatFormat, SystemScope
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class AxisDefinition:
     scale: float
     offset: float
 
-    def text(self, numbers: Numbers = WORDS) -> str:
+    def text(self, numbers: FloatFormat = WORDS) -> str:
         """The definition as reported."""
         scale = "" if self.scale == 1 else numbers.printed(self.scale)
         offset = f"{'+' if self.offset > 0 else ''}{numbers.printed(self.offset)}" if self.offset else ""
@@ -55,7 +55,7 @@ def parse_axis_definition(scanner: Scanner) -> AxisDefinition | None:
     return AxisDefinition(letter, factor, _signed(offset["sign"], offset["number"], numbers) if offset else 0.0)
 
 
-def _signed(sign: str, number: str, numbers: Numbers) -> float:
+def _signed(sign: str, number: str, numbers: FloatFormat) -> float:
     value = numbers.constant_value(number)
     return -value if sign == "-" else value
 

@@ -17,8 +17,8 @@ from pkm_post.control.simulator.variables import SIMULATED_MOTORS, Array, Variab
 
 
 @dataclass(frozen=True)
-class Piece:
-    """A piece of constant acceleration: p + v t + a t^2 / 2 for ``duration`` ms."""
+class AccelerationPhase:
+    """A phase of constant acceleration: p + v t + a t^2 / 2 for ``duration`` ms."""
 
     duration: float
     position: float
@@ -26,62 +26,62 @@ class Piece:
     acceleration: float
 
     def at(self, time: float) -> float:
-        """Position at a time since the start of the piece."""
+        """Position at a time since the start of the phase."""
         return self.position + time * (self.speed + 0.5 * self.acceleration * time)
 
-    def next(self, duration: float, acceleration: float) -> Piece:
-        """The piece that continues from the end of this one."""
+    def next(self, duration: float, acceleration: float) -> AccelerationPhase:
+        """The phase that continues from the end of this one."""
         speed = self.speed + self.acceleration * self.duration
-        return Piece(duration, self.at(self.duration), speed, acceleration)
+        return AccelerationPhase(duration, self.at(self.duration), speed, acceleration)
 
 
 @dataclass(frozen=True)
-class Profile:
+class MotorProfile:
     """A move of a single motor.
 
     Attributes:
-        pieces: in order; after the last one the motor rests, or continues at constant speed.
+        phases: in order; after the last one the motor rests, or continues at constant speed.
         goal: end position; None if it does not end by itself.
     """
 
-    pieces: tuple[Piece, ...]
+    phases: tuple[AccelerationPhase, ...]
     goal: float | None
 
     @property
     def duration(self) -> float:
-        """Total duration of the pieces, ms."""
-        return sum(piece.duration for piece in self.pieces)
+        """Total duration of the phases, ms."""
+        return sum(phase.duration for phase in self.phases)
 
     def at(self, time: float) -> float:
         """Position at a time since the start."""
         if self.goal is not None and time >= self.duration:
             return self.goal
-        for piece in self.pieces[:-1]:
-            if time < piece.duration:
-                return piece.at(time)
-            time -= piece.duration
-        return self.pieces[-1].at(time)
+        for phase in self.phases[:-1]:
+            if time < phase.duration:
+                return phase.at(time)
+            time -= phase.duration
+        return self.phases[-1].at(time)
 
     def ended(self, time: float) -> bool:
         """Whether the motor rests at the goal."""
         return self.goal is not None and time >= self.duration
 
 
-def stop(position: float, speed: float, deceleration: float) -> Profile:
+def stop(position: float, speed: float, deceleration: float) -> MotorProfile:
     """Decelerate to rest."""
     duration = abs(speed) / deceleration
-    braking = Piece(duration, position, speed, -math.copysign(deceleration, speed))
-    return Profile((braking,), braking.at(duration))
+    braking = AccelerationPhase(duration, position, speed, -math.copysign(deceleration, speed))
+    return MotorProfile((braking,), braking.at(duration))
 
 
-def endless(position: float, speed: float, wanted: float, acceleration: float) -> Profile:
+def endless(position: float, speed: float, wanted: float, acceleration: float) -> MotorProfile:
     """Continue at a speed until the next command."""
     change = wanted - speed
-    ramp = Piece(abs(change) / acceleration, position, speed, math.copysign(acceleration, change))
-    return Profile((ramp, ramp.next(math.inf, 0.0)), None)
+    ramp = AccelerationPhase(abs(change) / acceleration, position, speed, math.copysign(acceleration, change))
+    return MotorProfile((ramp, ramp.next(math.inf, 0.0)), None)
 
 
-def go_to(position: float, speed: float, goal: float, limit: float, acceleration: float) -> Profile:
+def go_to(position: float, speed: float, goal: float, limit: float, acceleration: float) -> MotorProfile:
     """Move to a position: from a moving start come to rest first, then take the fastest motion within both limits.
 
     Args:
@@ -98,10 +98,10 @@ def go_to(position: float, speed: float, goal: float, limit: float, acceleration
     peak = min(limit, math.sqrt(abs(distance) * acceleration))
     ramp = peak / acceleration
     cruise = (abs(distance) - peak * ramp) / peak if peak > 0 else 0.0
-    speeding = Piece(ramp, braking.goal, 0.0, sign * acceleration)
-    steady = Piece(cruise, speeding.at(ramp), sign * peak, 0.0)
-    slowing = Piece(ramp, steady.at(cruise), sign * peak, -sign * acceleration)
-    return Profile((*braking.pieces, speeding, steady, slowing), goal)
+    speeding = AccelerationPhase(ramp, braking.goal, 0.0, sign * acceleration)
+    steady = AccelerationPhase(cruise, speeding.at(ramp), sign * peak, 0.0)
+    slowing = AccelerationPhase(ramp, steady.at(cruise), sign * peak, -sign * acceleration)
+    return MotorProfile((*braking.phases, speeding, steady, slowing), goal)
 
 
 LIMITS_DISABLED, WORD = 0x20000, 1 << 24
@@ -114,7 +114,7 @@ SLOWEST = 1e-6
 class Jog:
     """A move of a single motor and its elapsed time; a homing move continues after its profile."""
 
-    profile: Profile
+    profile: MotorProfile
     time: float = 0.0
     homing: bool = False
 
@@ -278,7 +278,7 @@ class Motors:
         for column in (self.commanded, self.actual, self.before_jog, self.home_flag):
             column[index] -= zero
 
-    def _begin(self, index: int, profile: Profile) -> None:
+    def _begin(self, index: int, profile: MotorProfile) -> None:
         if self.jogs[index] is None:
             self.before_jog[index] = self.commanded[index]
         self.closed[index] = self.enabled[index] = True

@@ -84,7 +84,7 @@ _COORD: dict[str, Converted] = {
 }
 
 
-class Elements:
+class PowerElements:
     """The data structure of one controller."""
 
     def __init__(self, controller: Controller) -> None:

@@ -20,9 +20,9 @@ from pkm_post.control.simulator.errors import DATA, NO_PROGRAM, RUNNING, Command
 from pkm_post.control.simulator.expressions import Scanner, expression, variable_number
 from pkm_post.control.simulator.machine_state import PortSession
 from pkm_post.control.simulator.modal_state import parse_axis_definition
-from pkm_post.control.simulator.power_elements import Elements
+from pkm_post.control.simulator.power_elements import PowerElements
 from pkm_post.control.simulator.power_program import BlockReader, listed_line, without_comment
-from pkm_post.control.simulator.programs import Program
+from pkm_post.control.simulator.programs import FixedProgram
 from pkm_post.control.simulator.variables import DOUBLES, ELEMENT, MOTORS, SIMULATED_MOTORS, SYSTEMS, SystemScope
 
 HIGHEST_VARIABLE = 8191
@@ -59,12 +59,12 @@ class PowerPmac:
             motors or SimulatorSettings(), numbers=DOUBLES, memory_words=words, identity="604020", firmware="2.8.3.0"
         )
         self.controller = form(settings)
-        self.elements = Elements(self.controller)
+        self.elements = PowerElements(self.controller)
         self.controller.inputs.element = self.elements.read
 
 
 @dataclass(eq=False)
-class Thread:
+class GpasciiThread:
     """The sender of commands: one gpascii.
 
     Attributes:
@@ -132,15 +132,15 @@ class Thread:
         return [value if self.echo & VALUES_ALONE else f"{name}={value}"]
 
 
-Act = Callable[[Thread, re.Match[str], Scanner], list[str]]
+Act = Callable[[GpasciiThread, re.Match[str], Scanner], list[str]]
 
 
-def _echo(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _echo(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     thread.echo = int(match["number"])
     return []
 
 
-def _address(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _address(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     number = int(match["number"])
     if not 1 <= number <= (MOTORS if match["sign"] == "#" else SYSTEMS):
         raise CommandError(DATA)
@@ -148,7 +148,7 @@ def _address(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str
     return []
 
 
-def _axis(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _axis(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     """``#n->`` reports an axis definition, with the coordinate system in front of it; ``#n->10000X`` sets one."""
     controller, session, motor = thread.machine.controller, thread.session, int(match["number"])
     if not 1 <= motor <= MOTORS:
@@ -166,7 +166,7 @@ def _axis(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
     return []
 
 
-def _element(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _element(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     name, elements = match["element"], thread.machine.elements
     if scanner.take(r"=(?!=)"):
         scope = SystemScope(thread.machine.controller.variables, thread.session.system)
@@ -175,7 +175,7 @@ def _element(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str
     return thread.named(name, DOUBLES.printed(elements.read(name)))
 
 
-def _variable(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _variable(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     """``P1`` reports, ``P1=2`` sets; ``P1..3`` and ``P1..3=0`` do so for a range."""
     letter = match["letter"].upper()
     scope = SystemScope(thread.machine.controller.variables, thread.session.system)
@@ -192,30 +192,30 @@ def _variable(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[st
     return [line for number, value in values for line in thread.named(f"{letter}{number}", value)]
 
 
-def _open(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _open(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     """``open prog`` erases; a program that runs or is suspended cannot be opened [PowerPMAC, Program Buffers]."""
     controller, number = thread.machine.controller, int(match["number"])
     if any(system.running and system.interpreter.counter.pointer == number for system in controller.systems):
         raise CommandError(RUNNING)
     controller.memory.open_program(number, thread.session)
-    controller.memory.programs[number] = Program()
+    controller.memory.programs[number] = FixedProgram()
     thread.reader = BlockReader()
     return []
 
 
-def _close(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _close(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     thread._close()
     return []
 
 
-def _list(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _list(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     program = thread.machine.controller.memory.programs.get(int(match["number"]))
     if program is None:
         raise CommandError(NO_PROGRAM)
     return list(program.source)
 
 
-def _buffer(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _buffer(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     """``buffer`` names each program with its place and size [dls_powerpmacanalyse]."""
     lines, place = [], 0
     for number, program in thread.machine.controller.memory.programs.items():
@@ -225,12 +225,12 @@ def _buffer(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]
     return lines
 
 
-def _identity(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _identity(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     settings = thread.machine.controller.settings
     return [settings.identity if match["word"].lower() == "cid" else settings.firmware]
 
 
-def _report(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _report(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     motors, motor = thread.machine.controller.motors, thread.session.motor
     if motor > SIMULATED_MOTORS:
         raise CommandError(DATA)
@@ -238,7 +238,7 @@ def _report(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]
     return [DOUBLES.printed(float(np.round(column[motor - 1], 6)) + 0.0)]
 
 
-def _motor_status(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _motor_status(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     motors, index = thread.machine.controller.motors, thread.session.motor - 1
     if index >= SIMULATED_MOTORS:
         raise CommandError(DATA)
@@ -254,7 +254,7 @@ def _motor_status(thread: Thread, match: re.Match[str], scanner: Scanner) -> lis
     return [_hexadecimal(bits)]
 
 
-def _system_status(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _system_status(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     controller = thread.machine.controller
     motors, indices = controller.motors, controller.systems[thread.session.system - 1].axes.indices()
     bits = {
@@ -270,21 +270,21 @@ def _hexadecimal(bits: Mapping[int, object]) -> str:
     return f"${sum(1 << bit for bit, is_set in bits.items() if is_set):016X}"
 
 
-def _status(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _status(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     return (_motor_status if match["sign"] == "#" else _system_status)(thread, *_addressed(thread, match, scanner))
 
 
-def _addressed(thread: Thread, match: re.Match[str], scanner: Scanner) -> tuple[re.Match[str], Scanner]:
+def _addressed(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> tuple[re.Match[str], Scanner]:
     _address(thread, match, scanner)
     return match, scanner
 
 
-def _whole(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _whole(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     thread.machine.controller.save()
     return []
 
 
-def _begin_and_run(thread: Thread, match: re.Match[str], scanner: Scanner) -> list[str]:
+def _begin_and_run(thread: GpasciiThread, match: re.Match[str], scanner: Scanner) -> list[str]:
     online_motion.point(thread.session, match, scanner)
     online_motion.run(thread.machine.controller, thread.session.system, step=False)
     return []

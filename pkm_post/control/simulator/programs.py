@@ -16,7 +16,7 @@ from typing import Any
 
 from pkm_post.control.simulator.errors import DATA, STRUCTURE, CommandError
 from pkm_post.control.simulator.expressions import Expression, Scanner, argument, condition, expression, variable_number
-from pkm_post.control.simulator.variables import WORDS, Numbers
+from pkm_post.control.simulator.variables import WORDS, FloatFormat
 
 LETTERS = "ABCUVWXYZ"
 """Axes of a coordinate system, in the order of all axis columns."""
@@ -62,7 +62,7 @@ WITH_CONDITION = {"IF": "IF", "WHILE": "WHILE"}
 WITH_TEXT = {"COMMAND": "CMD", "SEND": "SEND"}
 
 
-def parse_statements(line: str, numbers: Numbers = WORDS) -> tuple[Statement, ...]:
+def parse_statements(line: str, numbers: FloatFormat = WORDS) -> tuple[Statement, ...]:
     """Parse a line.
 
     Args:
@@ -183,7 +183,7 @@ _PAIRS = {"ENDIF": ("IF", "ELSE"), "ENDWHILE": ("WHILE",)}
 
 
 @dataclass
-class Program:
+class FixedProgram:
     """A fixed program.
 
     Attributes:

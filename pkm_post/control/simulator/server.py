@@ -46,7 +46,7 @@ NO_DESCRIPTOR_S = 0.1
 """Seconds until connections are accepted again after the system refused one."""
 
 
-class Stream(Protocol):
+class ByteStream(Protocol):
     """Bytes in, bytes out."""
 
     def receive(self, data: bytes) -> bytes:
@@ -60,7 +60,7 @@ class Channel:
     read: Callable[[int], bytes]
     write: Callable[[bytes], int]
     close: Callable[[], None]
-    stream: Stream
+    stream: ByteStream
     untaken: bytearray = field(default_factory=bytearray)
     unsent: bytearray = field(default_factory=bytearray)
 

@@ -26,7 +26,7 @@ LARGEST_EXPONENT = 1023
 
 
 @dataclass(frozen=True)
-class Numbers:
+class FloatFormat:
     """How a controller keeps numbers.
 
     Attributes:
@@ -68,9 +68,9 @@ class Numbers:
 
 
 _DECIMAL = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
-WORDS = Numbers(MANTISSA_BITS, 16, rf"\$[0-9A-F]{{1,12}}|{_DECIMAL}")
+WORDS = FloatFormat(MANTISSA_BITS, 16, rf"\$[0-9A-F]{{1,12}}|{_DECIMAL}")
 """Of a Turbo PMAC: words of 48 bits."""
-DOUBLES = Numbers(DOUBLE_BITS, 17, rf"\$[0-9A-F]{{1,16}}|{_DECIMAL}(?:E[-+]?[0-9]+)?")
+DOUBLES = FloatFormat(DOUBLE_BITS, 17, rf"\$[0-9A-F]{{1,16}}|{_DECIMAL}(?:E[-+]?[0-9]+)?")
 """Of a Power PMAC [PowerPMAC, Computational Features]."""
 stored, printed = WORDS.stored, WORDS.printed
 
@@ -157,7 +157,7 @@ class Variables:
         inputs: M-variables that are inputs of the machine.
     """
 
-    def __init__(self, numbers: Numbers = WORDS) -> None:
+    def __init__(self, numbers: FloatFormat = WORDS) -> None:
         self.numbers = numbers
         self._values: dict[str, dict[int, float]] = {"I": _defaults(), "P": {}, "M": {}}
         self._q: list[dict[int, float]] = [{} for _ in range(SYSTEMS)]

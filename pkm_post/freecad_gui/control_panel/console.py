@@ -16,15 +16,15 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore
 
-from pkm_post.control.link import Job, PmacError
+from pkm_post.control.link import PmacError, PmacJob
 from pkm_post.control.numerical_control import (
     Connection,
     ConnectionTarget,
     ControlState,
     Interlock,
+    MovePlan,
     NumericalControl,
     PanelState,
-    Plan,
     active_interlocks,
     connect,
     program_stops,
@@ -196,7 +196,7 @@ class Console(QtCore.QObject):
         """
         self.order(planning, lambda found: self._planned(*found, then, sends))
 
-    def _planned(self, plan: Plan | None, diagnostics: tuple[Diagnostic, ...], then: Then, sends: bool) -> None:
+    def _planned(self, plan: MovePlan | None, diagnostics: tuple[Diagnostic, ...], then: Then, sends: bool) -> None:
         for each in diagnostics:
             self.message.emit(fault_text(each), plan is None)
         then(plan)
@@ -223,9 +223,9 @@ class Console(QtCore.QObject):
         text = translate("ControlPanel", "Program {}: {} lines, listed back as sent")
         self.message.emit(text.format(loaded.program, loaded.lines), False)
 
-    def take_job(self, job: Job | None) -> None:
+    def take_job(self, job: PmacJob | None) -> None:
         """Replace the opened program, or close it; blocks of the previous one are no longer next."""
-        self.job: Job | None = job
+        self.job: PmacJob | None = job
         self.loaded, self.stepping, self.progress = False, False, (0, 0)
         self.stops = 0 if job is None else len(program_stops(job))
 

@@ -15,8 +15,8 @@ from pkm_post.control.numerical_control import (
     ControlState,
     Interlock,
     MdiSettings,
+    MovePlan,
     OperatorCommand,
-    Plan,
     blocking_interlock,
 )
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all, side_by_side
@@ -115,7 +115,7 @@ class MdiPage(QtWidgets.QWidget):
         reading = MdiSettings(self._work_offset.currentText(), self.axis_words.currentText())
         self._console.move(lambda control: control.plan_line(line, reading), self._planned, sends)
 
-    def _planned(self, plan: Plan | None) -> None:
+    def _planned(self, plan: MovePlan | None) -> None:
         if plan is None:
             self.outcome.setText(translate("ControlPanel", "Refused; nothing was sent"))
             return

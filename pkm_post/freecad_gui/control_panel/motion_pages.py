@@ -18,8 +18,8 @@ from pkm_post.control.numerical_control import (
     ControlState,
     Interlock,
     Jog,
+    MovePlan,
     OperatorCommand,
-    Plan,
     StrutJog,
     blocking_interlock,
     check_trigger,
@@ -142,7 +142,7 @@ class JogPage(QtWidgets.QWidget):
             return
         self._console.move(lambda control: control.plan_jog(jog, feed), self._planned)
 
-    def _planned(self, plan: Plan | None) -> None:
+    def _planned(self, plan: MovePlan | None) -> None:
         if plan is None:
             self._console.message.emit(translate("ControlPanel", "Not sent: the jog is refused"), True)
 

@@ -11,13 +11,13 @@ from pathlib import Path
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.control.link import Job
+from pkm_post.control.link import PmacJob
 from pkm_post.control.loading import job_to_load
 from pkm_post.control.numerical_control import (
     ControlState,
     Interlock,
+    MovePlan,
     OperatorCommand,
-    Plan,
     ProgramBlocks,
     read_blocks,
 )
@@ -107,12 +107,12 @@ class ProgramPage(QtWidgets.QWidget):
         assert connection is not None
         target = connection.target
 
-        def reading() -> tuple[Job | None, tuple[Diagnostic, ...]]:
+        def reading() -> tuple[PmacJob | None, tuple[Diagnostic, ...]]:
             return job_to_load(file, target.machine, target.settings, uncertified)
 
         self._console.calls.do(reading, lambda read: self._take(file, *read))
 
-    def _take(self, file: Path, job: Job | None, diagnostics: tuple[Diagnostic, ...]) -> None:
+    def _take(self, file: Path, job: PmacJob | None, diagnostics: tuple[Diagnostic, ...]) -> None:
         for each in diagnostics:
             self._console.message.emit(fault_text(each), job is None)
         if job is not None and self._console.connection is not None:
@@ -127,7 +127,7 @@ class ProgramPage(QtWidgets.QWidget):
         job = self._console.job
         self._console.move(lambda control: control.plan_approach(job), self._planned)
 
-    def _planned(self, plan: Plan | None) -> None:
+    def _planned(self, plan: MovePlan | None) -> None:
         if plan is None:
             self._console.message.emit(translate("ControlPanel", "Not sent: there is no way to the start"), True)
 
@@ -162,6 +162,6 @@ class ProgramPage(QtWidgets.QWidget):
     def _step(self) -> None:
         self._console.move(lambda control: control.plan_step(), self._stepped)
 
-    def _stepped(self, plan: Plan | None) -> None:
+    def _stepped(self, plan: MovePlan | None) -> None:
         if plan is None:
             self._console.message.emit(translate("ControlPanel", "Not sent: the block is refused"), True)

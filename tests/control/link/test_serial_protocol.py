@@ -3,7 +3,7 @@
 
 import pytest
 
-from pkm_post.control.link.protocol import Answer, Command, CommandKind, Lost, Message, Refusal
+from pkm_post.control.link.protocol import Answer, CommandKind, ControllerCommand, Lost, Message, Refusal
 from pkm_post.control.link.serial_protocol import GUARD_ATTEMPTS, LONGEST_LINE, SerialProtocol
 
 
@@ -14,7 +14,7 @@ def talk():
 
 def test_a_jog_as_the_manual_shows_it(talk):
     # J/ and ^N: the controller answers 121, 79 hexadecimal; then CR, and ACK with the same sum
-    talk.begin(Command("J/", CommandKind.SET), 0.0)
+    talk.begin(ControllerCommand("J/", CommandKind.SET), 0.0)
     assert talk.outgoing() == b"J/\x0e"
     talk.receive(b"\x79", 0.1)
     assert talk.outgoing() == b"\r"
@@ -24,7 +24,7 @@ def test_a_jog_as_the_manual_shows_it(talk):
 
 
 def test_a_line_that_arrived_wrong_is_forgotten_and_sent_again(talk):
-    talk.begin(Command("J/", CommandKind.SET), 0.0)
+    talk.begin(ControllerCommand("J/", CommandKind.SET), 0.0)
     talk.outgoing()
     talk.receive(b"\x78", 0.1)
     assert talk.outgoing() == b"\x18"
@@ -35,7 +35,7 @@ def test_a_line_that_arrived_wrong_is_forgotten_and_sent_again(talk):
 
 
 def test_a_line_that_never_arrives_right_was_not_carried_out(talk):
-    talk.begin(Command("J/", CommandKind.SET), 0.0)
+    talk.begin(ControllerCommand("J/", CommandKind.SET), 0.0)
     sent = b""
     while not (events := talk.events()):
         talk.expire(talk.deadline)
@@ -45,7 +45,7 @@ def test_a_line_that_never_arrives_right_was_not_carried_out(talk):
 
 
 def test_silence_behind_cr_leaves_it_open_whether_it_was_carried_out(talk):
-    talk.begin(Command("J/", CommandKind.SET, answer_timeout=2.0), 0.0)
+    talk.begin(ControllerCommand("J/", CommandKind.SET, answer_timeout=2.0), 0.0)
     talk.receive(b"\x79", 0.5)
     talk.outgoing()
     assert talk.deadline == pytest.approx(2.5)
@@ -55,42 +55,42 @@ def test_silence_behind_cr_leaves_it_open_whether_it_was_carried_out(talk):
 
 
 def test_a_refusal(talk):
-    talk.begin(Command("J/", CommandKind.SET), 0.0)
+    talk.begin(ControllerCommand("J/", CommandKind.SET), 0.0)
     talk.receive(b"\x79\x07ERR003\r", 0.1)
     assert talk.events() == [Refusal(3)]
 
 
 def test_messages_come_between(talk):
-    talk.begin(Command("J/", CommandKind.SET), 0.0)
+    talk.begin(ControllerCommand("J/", CommandKind.SET), 0.0)
     talk.receive(b"\x79\x02HELLO\r\x06\x79", 0.1)
     assert talk.events() == [Message("HELLO"), Answer()]
 
 
 def test_bytes_come_in_any_pieces(talk):
-    talk.begin(Command("P1..3"), 0.0)
+    talk.begin(ControllerCommand("P1..3"), 0.0)
     for byte in bytes.fromhex("10 32 35 0D 74 35 30 0D 72 37 35 0D 79 06 10"):
         talk.receive(bytes([byte]), 0.0)
     assert talk.events() == [Answer(("25", "50", "75"))]
 
 
 def test_an_answer_without_end_has_an_end(talk):
-    talk.begin(Command("P1..3", most=100), 0.0)
+    talk.begin(ControllerCommand("P1..3", most=100), 0.0)
     talk.receive(b"\x10" + b"1" * 200, 0.0)
     assert [type(event) for event in talk.events()] == [Lost]
 
 
 def test_one_command_at_a_time(talk):
-    talk.begin(Command("P1"), 0.0)
+    talk.begin(ControllerCommand("P1"), 0.0)
     with pytest.raises(ValueError, match="expected none outstanding, got 'P1'"):
-        talk.begin(Command("P2"), 0.0)
+        talk.begin(ControllerCommand("P2"), 0.0)
 
 
 def test_too_long_a_line_is_not_sent(talk):
     with pytest.raises(ValueError, match="expected up to 255 characters, got 256"):
-        talk.begin(Command("A" * (LONGEST_LINE + 1)), 0.0)
+        talk.begin(ControllerCommand("A" * (LONGEST_LINE + 1)), 0.0)
 
 
 @pytest.mark.parametrize("text", ["", "P1\r", "P1\x0b", "P\u00e4", "P1\nP2"])
 def test_control_characters_are_not_sent(text):
     with pytest.raises(ValueError, match="expected printable ASCII"):
-        Command(text)
+        ControllerCommand(text)

@@ -5,7 +5,7 @@ import pytest
 
 from pkm_post.control.simulator import CommandError, GpasciiShell, PowerPmac
 from pkm_post.control.simulator.gpascii_shell import POWER_ERRORS, refused_line
-from pkm_post.control.simulator.power_online import Thread
+from pkm_post.control.simulator.power_online import GpasciiThread
 from pkm_post.control.simulator.power_program import listed_line
 
 
@@ -16,7 +16,7 @@ def machine():
 
 @pytest.fixture
 def thread(machine):
-    made = Thread(machine)
+    made = GpasciiThread(machine)
     made.execute("echo 7")
     return made
 
@@ -131,7 +131,7 @@ def test_soft_limits_act_while_the_higher_one_is_above_the_lower_one(machine, th
 
 
 def test_a_thread_that_ends_closes_its_buffer(machine):
-    one, other = Thread(machine), Thread(machine)
+    one, other = GpasciiThread(machine), GpasciiThread(machine)
     one.execute("open prog 10")
     with pytest.raises(CommandError) as refused:
         other.execute("open prog 11")
