@@ -17,7 +17,7 @@ from functools import lru_cache
 from pathlib import Path as FilePath
 from typing import Any
 
-from pkm_post.freecad_app.commands.words import Words, undecodable_command
+from pkm_post.freecad_app.commands.words import CommandWords, undecodable_command
 from pkm_post.freecad_app.document import document_name
 from pkm_post.model import Diagnostic, Phrase, Place, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
@@ -164,6 +164,6 @@ def base_operations(operation: Any) -> list[Any]:
 def incompatible_dressups(operation: Any) -> Iterator[Any]:
     """Yield foreign dress-ups, the object itself or below it, on top of moves with tool-axis words."""
     for below in base_operations(operation):
-        if not is_pkm_object(operation) and Words.of(below.Path.Commands).axis_words().any():
+        if not is_pkm_object(operation) and CommandWords.of(below.Path.Commands).axis_words().any():
             yield operation
         yield from incompatible_dressups(below)

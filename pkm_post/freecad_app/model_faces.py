@@ -78,7 +78,7 @@ def _clone(clones: Sequence[Any], thing: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class Contacts:
+class FaceContacts:
     """Columns of N points.
 
     Attributes:
@@ -92,7 +92,7 @@ class Contacts:
     other: Array
 
 
-def find_contacts(faces: Sequence[NamedFace], points: Array, tolerance: float, text: str) -> Contacts:
+def find_contacts(faces: Sequence[NamedFace], points: Array, tolerance: float, text: str) -> FaceContacts:
     """Find the faces on which points lie.
 
     Args:
@@ -104,7 +104,7 @@ def find_contacts(faces: Sequence[NamedFace], points: Array, tolerance: float, t
     Raises:
         Stopped: the user cancelled.
     """
-    contacts = Contacts(np.full(points.shape, np.nan), np.full(len(points), -1), np.full(len(points), -1))
+    contacts = FaceContacts(np.full(points.shape, np.nan), np.full(len(points), -1), np.full(len(points), -1))
     nearest = np.full(len(points), np.inf)
     parts = [(index, rows) for index, named in enumerate(faces) for rows in _nearby_rows(named.face, points, tolerance)]
     with Progress(text, len(parts)) as progress:

@@ -20,7 +20,7 @@ from PathScripts import PathUtils
 
 from pkm_post.freecad_app.cutter_contact import Compensation, compensate_contacts, guide_rows
 from pkm_post.freecad_app.document_object import BASE_AND_ACTIVE, DerivedOperation, Row
-from pkm_post.freecad_app.model_faces import Contacts, NamedFace, find_contacts, model_faces, nearest_face
+from pkm_post.freecad_app.model_faces import FaceContacts, NamedFace, find_contacts, model_faces, nearest_face
 from pkm_post.freecad_app.tools import read_cutter
 from pkm_post.freecad_app.window import add_view
 from pkm_post.model import Diagnostic, Kind, Place, Program
@@ -103,7 +103,7 @@ def _off_face_faults(program: Program, off_face: Any, faces: Sequence[NamedFace]
     return [Diagnostic("N111", program.place(rows[0]), text + _count_text(rows))]
 
 
-def _edge_faults(program: Program, contacts: Contacts, faces: Sequence[NamedFace]) -> list[Diagnostic]:
+def _edge_faults(program: Program, contacts: FaceContacts, faces: Sequence[NamedFace]) -> list[Diagnostic]:
     """Report the first point on two faces with different normals, and the number of such points."""
     rows = np.flatnonzero(contacts.other >= 0).tolist()
     if not rows:

@@ -70,7 +70,7 @@ _NAME, _CAM_SIMULATOR = "PkmPlayer", "CAM_SimulatorGL"
 _FRAME_MS = 16
 
 
-class Player(QtWidgets.QDockWidget):
+class PlayerDock(QtWidgets.QDockWidget):
     """The dock.
 
     Attributes:
@@ -245,7 +245,7 @@ class Player(QtWidgets.QDockWidget):
         self.deleteLater()
 
 
-def open_player(subject: Any) -> Player | None:
+def open_player(subject: Any) -> PlayerDock | None:
     """Open the player of a simulation object, or report why there is none; an already open player is closed."""
     window = FreeCADGui.getMainWindow()
     for open_before in window.findChildren(QtWidgets.QDockWidget, _NAME):
@@ -256,7 +256,7 @@ def open_player(subject: Any) -> Player | None:
     except (Refused, ValueError) as fault:
         QtWidgets.QMessageBox.warning(window, translate("PKM_Simulate", "Simulate"), exception_text(fault))
         return None
-    player = Player(subject, simulation)
+    player = PlayerDock(subject, simulation)
     window.addDockWidget(QtCore.Qt.DockWidgetArea.BottomDockWidgetArea, player)
     FreeCADGui.SendMsgToActiveView("ViewFit")
     return player

@@ -16,7 +16,7 @@ from pkm_post.freecad_gui.machine_scene import MachineScene
 from pkm_post.freecad_gui.player_controls import PlayerControls, PlayerLists
 from pkm_post.freecad_gui.player_listing import Listing
 from pkm_post.freecad_gui.player_material import MaterialPage
-from pkm_post.freecad_gui.player_readout import Readout, reading_at
+from pkm_post.freecad_gui.player_readout import Readout, dro_values_at
 from pkm_post.freecad_gui.player_view import ViewPage
 from pkm_post.freecad_gui.strut_plot import StrutPlot
 from pkm_post.freecad_gui.timeline import Timeline
@@ -116,9 +116,9 @@ class PlayerContent(QtWidgets.QWidget):
         """Move cursors, marks and slider without signals of user input."""
         for part in (self.plot, self.timeline, self.listing, self.material):
             part.show_time(seconds)
-        reading = reading_at(self._simulation, seconds, self.controls.override.value() / 100.0)
-        self.readout.show_reading(reading)
-        self.view.show_tip(reading.tip)
+        values = dro_values_at(self._simulation, seconds, self.controls.override.value() / 100.0)
+        self.readout.show_values(values)
+        self.view.show_tip(values.tip)
         self.slider.blockSignals(True)
         self.slider.setValue(round(seconds * _PER_SECOND))
         self.slider.blockSignals(False)

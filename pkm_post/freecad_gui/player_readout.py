@@ -23,32 +23,32 @@ _STRUTS = 6
 
 
 @dataclass(frozen=True)
-class Reading:
-    """Numbers at a time.
+class DroValues:
+    """What the readout shows at a time.
 
     Attributes:
         tip: (3,) tool tip in {C}, mm.
         axis: (3,) unit tool axis in {C}.
         lengths: (6,) strut lengths, mm.
         feed: speed of the tip, mm/s.
-        asked: programmed speed of the tip, mm/s.
+        programmed_feed: programmed speed of the tip, mm/s.
         operation: name of the operation.
         line: number of its command.
-        left: time to the end, s.
+        time_left: time to the end, s.
     """
 
     tip: Array
     axis: Array
     lengths: Array
     feed: float
-    asked: float
+    programmed_feed: float
     operation: str
     line: int
-    left: float
+    time_left: float
 
 
-def reading_at(simulation: Simulation, seconds: float, override: float = 1.0) -> Reading:
-    """The numbers at a time.
+def dro_values_at(simulation: Simulation, seconds: float, override: float = 1.0) -> DroValues:
+    """What the readout shows at a time.
 
     Args:
         simulation: the motion.
@@ -60,15 +60,15 @@ def reading_at(simulation: Simulation, seconds: float, override: float = 1.0) ->
     work_from_machine = np.linalg.inv(simulation.trajectory.machine_from_work)
     block = simulation.block_at(seconds)
     place = simulation.trajectory.place(block)
-    return Reading(
+    return DroValues(
         tip=apply(work_from_machine, tip)[0],
         axis=(axis @ work_from_machine[:3, :3].T)[0],
         lengths=lengths[0],
         feed=simulation.feed_at(seconds) * override,
-        asked=float(simulation.trajectory.feed[block]),
+        programmed_feed=float(simulation.trajectory.feed[block]),
         operation=place.operation,
         line=place.line,
-        left=(simulation.duration - seconds) / override,
+        time_left=(simulation.duration - seconds) / override,
     )
 
 
@@ -97,16 +97,16 @@ class Readout(QtWidgets.QWidget):
         grid.setColumnStretch(1, 1)
         grid.setColumnStretch(3, 1)
 
-    def show_reading(self, reading: Reading) -> None:
+    def show_values(self, values: DroValues) -> None:
         """Show other numbers."""
         texts = (
-            *(length_text(value) for value in reading.tip),
-            *(f"{value:.5f}" for value in reading.axis),
-            *(length_text(value) for value in reading.lengths),
-            speed_text(reading.feed),
-            speed_text(reading.asked),
-            f"{reading.operation}, {reading.line}",
-            time_text(reading.left),
+            *(length_text(value) for value in values.tip),
+            *(f"{value:.5f}" for value in values.axis),
+            *(length_text(value) for value in values.lengths),
+            speed_text(values.feed),
+            speed_text(values.programmed_feed),
+            f"{values.operation}, {values.line}",
+            time_text(values.time_left),
         )
         for field, text in zip(self.fields, texts, strict=True):
             field.setText(text)

@@ -27,7 +27,7 @@ translate = FreeCAD.Qt.translate
 NAME = "PkmRefusal"
 
 
-class Refusal(QtWidgets.QDialog):
+class RefusalDialog(QtWidgets.QDialog):
     """The window."""
 
     def __init__(self, job: Any, diagnostics: Sequence[Diagnostic]) -> None:
@@ -66,4 +66,4 @@ def show_refusal(job: Any, diagnostics: Sequence[Diagnostic]) -> None:
     """Show the reasons; those of an earlier refusal go."""
     for earlier in FreeCADGui.getMainWindow().findChildren(QtWidgets.QDialog, NAME):
         earlier.reject()
-    Refusal(job, diagnostics).show()
+    RefusalDialog(job, diagnostics).show()

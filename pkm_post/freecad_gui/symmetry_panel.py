@@ -50,7 +50,7 @@ class SymmetryPanel:
         self._later = QtCore.QTimer(self.form, singleShot=True, interval=_A_MOMENT)
         self._later.timeout.connect(self.compute)
         self.place = SymmetryPlace(obj, self._fields, self.apply, self._later.start)
-        if self.place.frame is PLANE:
+        if self.place.reference is PLANE:
             self._add_climb()
         else:
             self._add_turns()
@@ -93,7 +93,7 @@ class SymmetryPanel:
         obj = self.obj
         blockers = [QtCore.QSignalBlocker(field) for field in self.form.findChildren(QtWidgets.QWidget)]
         self.place.show()
-        if self.place.frame is PLANE:
+        if self.place.reference is PLANE:
             self.keep_climb.setChecked(obj.KeepClimb)
         else:
             self.angle.setProperty("rawValue", obj.Angle.Value)
@@ -112,7 +112,7 @@ class SymmetryPanel:
         sides = self.obj.getEnumerationsOfProperty("MaterialSide")
         values: dict[str, Any] = {"MaterialSide": sides[self.side.currentIndex()]}
         values |= self.place.values()
-        if self.place.frame is PLANE:
+        if self.place.reference is PLANE:
             values["KeepClimb"] = self.keep_climb.isChecked()
         else:
             values |= {"Angle": FreeCAD.Units.Quantity(self.angle.property("rawValue"), FreeCAD.Units.Angle)}

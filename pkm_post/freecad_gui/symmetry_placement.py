@@ -21,7 +21,7 @@ QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
 
 @dataclass(frozen=True)
-class Frame:
+class SymmetryReference:
     """The reference of a mirror or a rotation.
 
     Attributes:
@@ -41,7 +41,7 @@ class Frame:
     hint: str
 
 
-PLANE = Frame(
+PLANE = SymmetryReference(
     "Normal",
     "Plane",
     plane_of,
@@ -53,7 +53,7 @@ PLANE = Frame(
     ),
     QT_TRANSLATE_NOOP("SymmetryPanel", "Pick a flat face or a datum plane"),
 )
-AXIS = Frame(
+AXIS = SymmetryReference(
     "Axis",
     "Line",
     axis_of,
@@ -74,7 +74,7 @@ class SymmetryPlace:
     """Rows of a form.
 
     Attributes:
-        frame: the reference, a plane or an axis.
+        reference: a plane or an axis.
         choice, picked, direction, point: the fields.
     """
 
@@ -90,17 +90,19 @@ class SymmetryPlace:
             chosen: called when the object has another plane or axis.
         """
         self._obj, self._changed = obj, chosen
-        self.frame = PLANE if hasattr(obj, PLANE.direction) else AXIS
-        self._pick_index = len(self.frame.choices)
+        self.reference = PLANE if hasattr(obj, PLANE.direction) else AXIS
+        self._pick_index = len(self.reference.choices)
         self.choice, self.picked = QtWidgets.QComboBox(), QtWidgets.QLabel(wordWrap=True)
         self.direction, self.point = Three("", typed), Three("mm", typed)
         picked, by_hand = translate("SymmetryPanel", "Picked"), translate("SymmetryPanel", "Typed in")
-        self.choice.addItems([*(translate("SymmetryPanel", text) for text, _ in self.frame.choices), picked, by_hand])
+        self.choice.addItems(
+            [*(translate("SymmetryPanel", text) for text, _ in self.reference.choices), picked, by_hand]
+        )
         self.choice.currentIndexChanged.connect(self.choose)
-        tips = ((self.frame.link, self.choice), (self.frame.direction, self.direction), ("Point", self.point))
+        tips = ((self.reference.link, self.choice), (self.reference.direction, self.direction), ("Point", self.point))
         for name, field in tips:
             field.setToolTip(property_tip(obj, name))
-        form.addRow(translate("SymmetryPanel", self.frame.label), self.choice)
+        form.addRow(translate("SymmetryPanel", self.reference.label), self.choice)
         form.addRow(self.picked)
         form.addRow(translate("SymmetryPanel", "Direction"), self.direction)
         form.addRow(translate("SymmetryPanel", "Point"), self.point)
@@ -119,7 +121,7 @@ class SymmetryPlace:
         """The properties edited here."""
         values = {}
         if self.direction.isEnabled() and self.direction.vector().Length > 0:
-            values[self.frame.direction] = self.direction.vector()
+            values[self.reference.direction] = self.direction.vector()
         if self.point.isEnabled():
             values["Point"] = self.point.vector()
         return values
@@ -127,9 +129,9 @@ class SymmetryPlace:
     def choose(self, index: int) -> None:
         """Take the selected plane or axis, or wait for a pick."""
         if index != self._pick_index:
-            setattr(self._obj, self.frame.link, None)
+            setattr(self._obj, self.reference.link, None)
         if index < self._pick_index:
-            setattr(self._obj, self.frame.direction, FreeCAD.Vector(*self.frame.choices[index][1]))
+            setattr(self._obj, self.reference.direction, FreeCAD.Vector(*self.reference.choices[index][1]))
         self._show_values()
         self._changed()
 
@@ -142,16 +144,16 @@ class SymmetryPlace:
             return
         link = (item, [element])
         try:
-            self.frame.read(link)
+            self.reference.read(link)
         except ValueError as unfit:
             self._show_status(str(unfit))
             return
-        setattr(self._obj, self.frame.link, link)
+        setattr(self._obj, self.reference.link, link)
         self._show_status(self._pick_text())
         self._changed()
 
     def _link(self) -> Any:
-        return getattr(self._obj, self.frame.link)
+        return getattr(self._obj, self.reference.link)
 
     def _chosen(self) -> int:
         """The displayed choice: a picked or typed reference stays that choice, whatever its direction."""
@@ -159,15 +161,15 @@ class SymmetryPlace:
             return self._pick_index
         if self.choice.currentIndex() >= self._pick_index:
             return int(self.choice.currentIndex())
-        direction = tuple(getattr(self._obj, self.frame.direction))
-        known: list[tuple[float, ...]] = [each for _, each in self.frame.choices]
+        direction = tuple(getattr(self._obj, self.reference.direction))
+        known: list[tuple[float, ...]] = [each for _, each in self.reference.choices]
         return known.index(direction) if direction in known else len(known) + 1
 
     def _show_values(self) -> None:
         """Show direction and point, which of them are editable, and the picked element."""
         chosen = self.choice.currentIndex()
         self._show_status(self._pick_text())
-        self.direction.show_values(getattr(self._obj, self.frame.direction), enabled=chosen == self._pick_index + 1)
+        self.direction.show_values(getattr(self._obj, self.reference.direction), enabled=chosen == self._pick_index + 1)
         self.point.show_values(self._obj.Point, enabled=chosen != self._pick_index)
 
     def _show_status(self, text: str) -> None:
@@ -179,4 +181,4 @@ class SymmetryPlace:
         link = self._link()
         if link:
             return " ".join([link[0].Label, *link[1]]).strip()
-        return translate("SymmetryPanel", self.frame.hint) if self.choice.currentIndex() == self._pick_index else ""
+        return translate("SymmetryPanel", self.reference.hint) if self.choice.currentIndex() == self._pick_index else ""

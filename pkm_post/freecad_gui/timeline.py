@@ -22,7 +22,7 @@ _HEIGHT, _FINDINGS = 26, 8
 
 
 @dataclass(frozen=True)
-class Band:
+class TimelineBand:
     """A stretch of time.
 
     Attributes:
@@ -36,29 +36,29 @@ class Band:
     text: str
 
 
-def operation_bands(simulation: Simulation) -> list[Band]:
+def operation_bands(simulation: Simulation) -> list[TimelineBand]:
     """One band for each run of blocks of an operation."""
     operation, ends = simulation.trajectory.operation, simulation.motion.joint_time
     last = np.append(np.flatnonzero(np.diff(operation)), len(operation) - 1)
     starts = np.append(0.0, ends[last[:-1]])
     names = simulation.trajectory.operations
     return [
-        Band(*row)
+        TimelineBand(*row)
         for row in zip(starts.tolist(), ends[last].tolist(), (names[n] for n in operation[last]), strict=True)
     ]
 
 
-def tool_changes(simulation: Simulation) -> list[Band]:
+def tool_changes(simulation: Simulation) -> list[TimelineBand]:
     """The moments at which another tool comes into the spindle."""
     tool = simulation.trajectory.tool
     rows = np.flatnonzero(np.diff(tool))
     times = simulation.motion.joint_time[rows].tolist()
-    return [Band(at, at, f"T{number}") for at, number in zip(times, tool[rows + 1].tolist(), strict=True)]
+    return [TimelineBand(at, at, f"T{number}") for at, number in zip(times, tool[rows + 1].tolist(), strict=True)]
 
 
-def finding_bands(simulation: Simulation) -> list[Band]:
+def finding_bands(simulation: Simulation) -> list[TimelineBand]:
     """What the machine cannot follow, each from its beginning to its worst moment."""
-    return [Band(problem.time, problem.worst_time, shown(problem.text)) for problem in simulation.problems]
+    return [TimelineBand(problem.time, problem.worst_time, shown(problem.text)) for problem in simulation.problems]
 
 
 class Timeline(QtWidgets.QWidget):
@@ -74,9 +74,9 @@ class Timeline(QtWidgets.QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.operations: list[Band] = []
-        self.tools: list[Band] = []
-        self.findings: list[Band] = []
+        self.operations: list[TimelineBand] = []
+        self.tools: list[TimelineBand] = []
+        self.findings: list[TimelineBand] = []
         self._duration, self._seconds = 1.0, 0.0
         self.setFixedHeight(_HEIGHT)
         self.setMinimumWidth(100)
@@ -131,7 +131,7 @@ class Timeline(QtWidgets.QWidget):
         painter.drawLine(x, 0, x, _HEIGHT)
         painter.end()
 
-    def _area(self, band: Band, top: int, height: int) -> Any:
+    def _area(self, band: TimelineBand, top: int, height: int) -> Any:
         left = self._x(band.start)
         return QtCore.QRect(left, top, max(self._x(band.end) - left, 2), height)
 

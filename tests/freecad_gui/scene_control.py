@@ -116,7 +116,7 @@ def jogs_move_the_tool_by_the_step():
     _jogged("strut")
     found["strut"] = list(newest().status.length - lengths)
     _jogged("strut", -1)
-    found["x label"] = face.readout.in_machine["X"].text()
+    found["x label"] = face.dro.in_machine["X"].text()
     return found
 
 

@@ -10,7 +10,7 @@ from PySide import QtWidgets
 from pkm_post.freecad_app.post_job import post_job
 from pkm_post.freecad_gui.post_outcome import PostOutcome
 from pkm_post.freecad_gui.post_panel import NAME
-from pkm_post.freecad_gui.refusal import Refusal, show_refusal
+from pkm_post.freecad_gui.refusal import RefusalDialog, show_refusal
 from pkm_post.model import Refused
 
 
@@ -64,7 +64,7 @@ def in_the_window_of_cam():
         post_job(job, out=FOLDER)
     except Refused as refused:
         show_refusal(job, refused.diagnostics)
-    (window,) = FreeCADGui.getMainWindow().findChildren(Refusal)
+    (window,) = FreeCADGui.getMainWindow().findChildren(RefusalDialog)
     found = clicked(document, window.outcome)
     window.reject()
     settle()

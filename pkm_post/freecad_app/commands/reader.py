@@ -25,7 +25,7 @@ from pkm_post.freecad_app.commands.words import (
     TAPPING,
     Array,
     CommandDiagnostics,
-    Words,
+    CommandWords,
     check_words,
     forward_fill,
     last_row_of,
@@ -78,7 +78,7 @@ def read_commands(
     """
     diagnostics = CommandDiagnostics(source, operation)
     try:
-        words = Words.of(commands)
+        words = CommandWords.of(commands)
     except UnicodeDecodeError as fault:
         return None, (undecodable_command(fault, source, operation),)
     check_words(words, diagnostics, spindle_axis)
@@ -100,7 +100,7 @@ def read_commands(
     return program, diagnostics.in_order()
 
 
-def _blocks(words: Words, start: Array, source: str) -> gcode.Blocks:
+def _blocks(words: CommandWords, start: Array, source: str) -> gcode.Blocks:
     """The commands as blocks of G-code, with their numbers as lines."""
     rows = np.flatnonzero(words.among(*_CODES))
     columns = {letter: np.where(_takes(words, letter), words.value(letter), np.nan) for letter in "XYZRQPSTF"}
@@ -129,12 +129,12 @@ def _blocks(words: Words, start: Array, source: str) -> gcode.Blocks:
     )
 
 
-def _takes(words: Words, letter: str) -> Array:
+def _takes(words: CommandWords, letter: str) -> Array:
     """Which commands may have a letter, (n,); where others have it, that is reported."""
     return words.among(*(code for code, letters in LETTERS.items() if letter in letters))
 
 
-def _add(fault: Diagnostic, words: Words, diagnostics: CommandDiagnostics) -> None:
+def _add(fault: Diagnostic, words: CommandWords, diagnostics: CommandDiagnostics) -> None:
     """Add the diagnostic of a block as that of its command, unless other checks have found it."""
     row = fault.place.line - 1
     name, line = words.name(row), np.array([fault.place.line])
@@ -152,7 +152,7 @@ def _add(fault: Diagnostic, words: Words, diagnostics: CommandDiagnostics) -> No
     diagnostics.add(code, np.array([True]), found + comma + more, line)
 
 
-def _tool_axes(words: Words, diagnostics: CommandDiagnostics) -> Array:
+def _tool_axes(words: CommandWords, diagnostics: CommandDiagnostics) -> Array:
     """Unit tool axis after each command, (n, 3)."""
     moves, given, count = words.among(*MOVES), words.axis_words(), words.count("IJK")
     if not given.any():

@@ -75,7 +75,7 @@ _LEADING_ZEROS = re.compile(r"(?<=^[GM])0+(?=\d)")
 
 
 @dataclass(frozen=True)
-class Words:
+class CommandWords:
     """Columns of n commands.
 
     Attributes:
@@ -93,7 +93,7 @@ class Words:
     line: Array
 
     @classmethod
-    def of(cls, commands: Iterable[Any]) -> Words:
+    def of(cls, commands: Iterable[Any]) -> CommandWords:
         """The columns of a list of ``Path.Command``."""
         commands = list(commands)
         names = [command.Name for command in commands]
@@ -222,7 +222,7 @@ def undecodable_command(fault: UnicodeDecodeError, source: str, operation: str) 
     return Diagnostic("J135", Place(source, operation), repr(fault.object))
 
 
-def check_words(words: Words, diagnostics: CommandDiagnostics, spindle_axis: bool = False) -> None:
+def check_words(words: CommandWords, diagnostics: CommandDiagnostics, spindle_axis: bool = False) -> None:
     """Report unsupported commands and words; tapping is supported where the spindle is an axis."""
     for code in words.codes:
         if code not in LETTERS and code != COMMENT:
@@ -248,11 +248,11 @@ def check_words(words: Words, diagnostics: CommandDiagnostics, spindle_axis: boo
     diagnostics.add("J106", words.among("G2", "G3") & (np.nan_to_num(words.value("K")) != 0), _shown(words, "K"))
 
 
-def _in_xy_plane(words: Words) -> Array:
+def _in_xy_plane(words: CommandWords) -> Array:
     """Whether G17 is in force, (n,); an operation begins with it."""
     return ~words.among("G18", "G19")[last_row_of(words.among("G17", "G18", "G19"))]
 
 
-def _shown(words: Words, letter: str) -> Callable[[int], str]:
+def _shown(words: CommandWords, letter: str) -> Callable[[int], str]:
     """Format a command with one of its words, as in ``G1 A30``."""
     return lambda row: f"{words.name(row)} {letter}{words.value(letter)[row]:g}"

@@ -35,7 +35,7 @@ _FARTHEST, _AXIS = "-0000.000 mm", "I -0.000000  J 0.000000  K 0.000000"
 _MM_DECIMALS = 3
 
 
-class PoseReadout(QtWidgets.QWidget):
+class PositionDisplay(QtWidgets.QWidget):
     """Tip, axis and spin.
 
     Attributes:

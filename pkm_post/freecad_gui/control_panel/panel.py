@@ -13,7 +13,7 @@ from pkm_post.control.numerical_control import Connection, ControlState
 from pkm_post.freecad_gui.control_panel.buttons import line_label, show_line
 from pkm_post.freecad_gui.control_panel.connect_page import ConnectPage
 from pkm_post.freecad_gui.control_panel.console import Console
-from pkm_post.freecad_gui.control_panel.dro import PoseReadout, StrutTable
+from pkm_post.freecad_gui.control_panel.dro import PositionDisplay, StrutTable
 from pkm_post.freecad_gui.control_panel.machine_follower import Follower
 from pkm_post.freecad_gui.control_panel.mdi_page import MdiPage
 from pkm_post.freecad_gui.control_panel.motion_pages import HomingPage, JogPage
@@ -43,7 +43,7 @@ class PanelContent(QtWidgets.QWidget):
         banner: fault of the link, and the action to take.
         activity: current activity of the controller.
         progress: line, feed, time left and operation of what is played, always in sight.
-        readout, struts, stops: pose, struts, and the stop bar.
+        dro, struts, stops: digital readout of the pose, struts, and the stop bar.
         connecting, homing, jog, mdi, program, play: the pages.
         follows: whether the machine object of the document follows the machine.
         messages: all messages, the newest last.
@@ -58,11 +58,11 @@ class PanelContent(QtWidgets.QWidget):
         )
         self.banner, self.activity, self.messages = QtWidgets.QLabel(), QtWidgets.QLabel(), QtWidgets.QListWidget()
         self.progress = line_label()
-        self.readout, self.struts, self.stops = PoseReadout(), StrutTable(), StopBar(console)
+        self.dro, self.struts, self.stops = PositionDisplay(), StrutTable(), StopBar(console)
         self.follows = QtWidgets.QCheckBox(translate("ControlPanel", "The machine of the document follows"))
         self.follows.toggled.connect(self._follow)
         self.connecting, self.homing, self.jog = ConnectPage(console, leave), HomingPage(console), JogPage(console)
-        self.mdi, self.program = MdiPage(console, self.readout.work_offset), ProgramPage(console)
+        self.mdi, self.program = MdiPage(console, self.dro.work_offset), ProgramPage(console)
         self.play = PlayPage(console)
         self.pages = self._pages()
         self._set_up()
@@ -99,7 +99,7 @@ class PanelContent(QtWidgets.QWidget):
         seen, above = QtWidgets.QWidget(), QtWidgets.QScrollArea()
         inside = QtWidgets.QVBoxLayout(seen)
         inside.setContentsMargins(0, 0, _BESIDE_BAR, 0)
-        for part in (self.activity, self.readout, self.pages):
+        for part in (self.activity, self.dro, self.pages):
             inside.addWidget(part)
         above.setWidget(seen)
         above.setWidgetResizable(True)
@@ -136,7 +136,7 @@ class PanelContent(QtWidgets.QWidget):
         self.activity.setToolTip(activity)
         shown = None if console.play is None else console.play.state
         show_line(self.progress, "" if shown is None else progress_text(shown))
-        self.readout.refresh(state.pose, self._machine_from_work())
+        self.dro.refresh(state.pose, self._machine_from_work())
         self.struts.refresh(state.status)
         for part in (self.connecting, self.homing, self.jog, self.mdi, self.program, self.play, self.stops):
             part.refresh(state, found)
@@ -145,9 +145,9 @@ class PanelContent(QtWidgets.QWidget):
     def _take(self, connection: Connection | None) -> None:
         """Switch to another machine, or none."""
         self._connection = connection
-        self.readout.work_offset.clear()
+        self.dro.work_offset.clear()
         if connection is not None:
-            self.readout.work_offset.addItems(sorted(connection.target.machine.work_offsets))
+            self.dro.work_offset.addItems(sorted(connection.target.machine.work_offsets))
             self.pages.setCurrentWidget(self.homing)
         self._follow(self.follows.isChecked())
 
@@ -155,7 +155,7 @@ class PanelContent(QtWidgets.QWidget):
         """The (4, 4) pose of the selected work frame."""
         if self._connection is None:
             return np.eye(4)
-        return self._connection.target.machine.work_offsets.get(self.readout.work_offset.currentText(), np.eye(4))
+        return self._connection.target.machine.work_offsets.get(self.dro.work_offset.currentText(), np.eye(4))
 
     def _show_link(self, state: ControlState) -> None:
         lines = []
