@@ -57,18 +57,18 @@ def at_home(machine: Machine) -> Home:
     """Evaluate the machine at home."""
     spin, tool_length = np.array([machine.home_spin]), np.array([machine.rest_tool_length])
     pose = machine.home_tip[None], machine.home_axis[None], spin, tool_length
-    way = PosePath.straight(*pose)
+    path = PosePath.straight(*pose)
     values = np.linalg.svd(scaled_jacobian(machine, *pose)[0], compute_uv=False)
     stiffness = None
     if machine.strut_stiffness is not None and values[-1] > _SINGULAR:
-        stiffness = stiffness_along(machine, way.rows(np.zeros(3, dtype=np.intp)), np.eye(3))
+        stiffness = stiffness_along(machine, path.rows(np.zeros(3, dtype=np.intp)), np.eye(3))
     return Home(
         lengths=strut_lengths(machine, *pose)[0],
         singular_values=values,
         turning_rate=float(machine.strut_speed / norm(jacobian_of_tip(machine, *pose)[0, :, 3:]).max()),
         stiffness=stiffness,
         count_at_tip=_count_at_tip(machine, pose),
-        findings=reach_findings(machine, way),
+        findings=reach_findings(machine, path),
     )
 
 

@@ -129,8 +129,8 @@ def stiffness_study(
     """
     if machine.strut_stiffness is None:
         return None, (Diagnostic("K158", Place(trajectory.source), machine.name),)
-    way, segment, _ = pose_path_of(trajectory)
+    path, segment, _ = pose_path_of(trajectory)
     tool_length = float(trajectory.tool_length().max())
-    table = table_poses(machine, float(way.tip[:, 2].min()), tool_length, step)
-    along = stiffness_map(machine, way.rows(slice(None)))
+    table = table_poses(machine, float(path.tip[:, 2].min()), tool_length, step)
+    along = stiffness_map(machine, path.rows(slice(None)))
     return StiffnessStudy(trajectory, machine.name, along, segment, stiffness_map(machine, table)), ()

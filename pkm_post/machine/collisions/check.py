@@ -45,8 +45,8 @@ def find_collisions(trajectory: Trajectory, machine: Machine, setup: Setup, tole
     from pkm_post.machine.collisions.search import Search
     from pkm_post.machine.reach.report import pose_path_of
 
-    way, segment, _ = pose_path_of(trajectory)
-    search = Search(TrajectoryPath(trajectory, way, segment), machine, setup, tolerances)
+    path, segment, _ = pose_path_of(trajectory)
+    search = Search(TrajectoryPath(trajectory, path, segment), machine, setup, tolerances)
     search.part()
     search.fixtures()
     search.stock()

@@ -53,8 +53,8 @@ class Contacts:
 class _PathIntervals:
     """Positions on the path combine cell and share in one number: cell i reaches from i - 1 to i."""
 
-    def __init__(self, way: PosePath, mover: MovingBody) -> None:
-        self.way, self.change, self.total = way, mover.change, np.cumsum(mover.change)
+    def __init__(self, path: PosePath, mover: MovingBody) -> None:
+        self.path, self.change, self.total = path, mover.change, np.cumsum(mover.change)
         breaks = np.flatnonzero(np.diff(mover.cells) > 1) + 1
         runs = np.split(mover.cells, breaks) if len(mover.cells) else []
         self.start = np.array([run[0] - 1.0 for run in runs])
@@ -67,23 +67,23 @@ class _PathIntervals:
 
     def pose(self, at: Array) -> ToolPoses:
         cell = np.maximum(np.ceil(at).astype(np.int64), 1)
-        return self.way.inside(cell, at - (cell - 1))
+        return self.path.inside(cell, at - (cell - 1))
 
 
 def contacts(
-    way: PosePath, mover: MovingBody, part: CollisionMesh, clearance: float, operation: Array, enough: int = ENOUGH
+    path: PosePath, mover: MovingBody, part: CollisionMesh, clearance: float, operation: Array, enough: int = ENOUGH
 ) -> Contacts:
     """Contacts where a mover is closer to a part than its clearance.
 
     Args:
-        way: pose path, including the motion between poses.
+        path: poses, including the motion between poses.
         mover: the moving body.
         part: the stationary body.
         clearance: smallest allowed distance, mm, above 0.
         operation: (N,) operation of each cell of the path; every operation with contacts yields some.
         enough: contacts in an operation, after which its search ends.
     """
-    stretches = _PathIntervals(way, mover)
+    stretches = _PathIntervals(path, mover)
     start, end = stretches.start, stretches.end
     found: list[tuple[Array, Array, Array]] = []
     counted = np.zeros(int(operation.max(initial=0)) + 1, dtype=np.int64)
@@ -105,9 +105,9 @@ def contacts(
     return _in_order(at, point, distance)
 
 
-def contacts_at_ends(way: PosePath, mover: MovingBody, part: CollisionMesh, clearance: float) -> Contacts:
+def contacts_at_ends(path: PosePath, mover: MovingBody, part: CollisionMesh, clearance: float) -> Contacts:
     """Contacts at the ends of the mover's cells only; the motion between them is not checked."""
-    stretches = _PathIntervals(way, mover)
+    stretches = _PathIntervals(path, mover)
     at = mover.cells.astype(np.float64)
     distance, point = _distances_at(stretches, mover, part, at, np.zeros(len(at)), clearance)
     met = distance < clearance

@@ -61,45 +61,45 @@ class MovingBody:
     cylinders: Callable[[ToolPoses], Cylinders]
 
 
-def platform_body(machine: Machine, way: PosePath, body: Body) -> MovingBody:
+def platform_body(machine: Machine, path: PosePath, body: Body) -> MovingBody:
     """A body of the platform, along the whole path."""
     offset = machine.spindle_nose + body.start, machine.spindle_nose + body.end
-    reach = body_reach(machine, way.tool_length, body)
+    reach = body_reach(machine, path.tool_length, body)
     return MovingBody(
         body.name,
-        np.arange(1, len(way)),
-        _about_the_axis(way, reach),
+        np.arange(1, len(path)),
+        _about_the_axis(path, reach),
         reach,
         np.zeros(1),
         partial(_platform_cylinder, *offset, body.radius),
     )
 
 
-def tool_body(name: str, way: PosePath, cells: Array, pieces: Iterable[ToolCylinder]) -> MovingBody:
+def tool_body(name: str, path: PosePath, cells: Array, pieces: Iterable[ToolCylinder]) -> MovingBody:
     """A part of a tool, in the cells where it is in use."""
     start, end, radius, rounding = np.array([[p.start, p.end, p.radius, p.rounding] for p in pieces]).T
     reach = float((np.hypot(np.maximum(np.abs(start), np.abs(end)), radius) + rounding).max())
     return MovingBody(
-        name, cells, _about_the_axis(way, reach), reach, rounding, partial(_tool_cylinders, start, end, radius)
+        name, cells, _about_the_axis(path, reach), reach, rounding, partial(_tool_cylinders, start, end, radius)
     )
 
 
-def strut_bodies(machine: Machine, way: PosePath) -> MovingBody | None:
+def strut_bodies(machine: Machine, path: PosePath) -> MovingBody | None:
     """The six struts; None if the joints of a strut coincide somewhere, which another check refuses."""
-    shortest = shortest_distance(machine, way)
+    shortest = shortest_distance(machine, path)
     if not shortest > 0:
         return None
-    lever, arm = rod_speed_ratio(machine, shortest), float(lever_arms(machine, way.tool_length).max())
-    pieces = len(list(strut_cylinders(PlacedMachine.of(machine, way.rows(slice(0, 1))))))
-    change = lever * (way.travel + arm * way.turn())
+    lever, arm = rod_speed_ratio(machine, shortest), float(lever_arms(machine, path.tool_length).max())
+    pieces = len(list(strut_cylinders(PlacedMachine.of(machine, path.rows(slice(0, 1))))))
+    change = lever * (path.travel + arm * path.turn())
     return MovingBody(
-        Phrase("strut"), np.arange(1, len(way)), change, lever * arm, np.zeros(6 * pieces), partial(_struts, machine)
+        Phrase("strut"), np.arange(1, len(path)), change, lever * arm, np.zeros(6 * pieces), partial(_struts, machine)
     )
 
 
-def _about_the_axis(way: PosePath, reach: float) -> Array:
+def _about_the_axis(path: PosePath, reach: float) -> Array:
     """Bound of the motion of points that move with the tip and turn about it; the spin moves no solid of revolution."""
-    return way.travel + way.angle * reach
+    return path.travel + path.angle * reach
 
 
 def _platform_cylinder(start: float, end: float, radius: float, pose: ToolPoses) -> Cylinders:

@@ -71,10 +71,10 @@ class Search:
     extents: CoverageRows = field(default_factory=CoverageRows)
 
     def __post_init__(self) -> None:
-        way = self.driven.poses
+        path = self.driven.poses
         self.used = tools_in_use(self.driven, self.setup)
-        self.bodies = [platform_body(self.machine, way, body) for body in self.machine.bodies]
-        self.struts = strut_bodies(self.machine, way) if has_strut_bodies(self.machine) else None
+        self.bodies = [platform_body(self.machine, path, body) for body in self.machine.bodies]
+        self.struts = strut_bodies(self.machine, path) if has_strut_bodies(self.machine) else None
         self.off_tip = float(self.driven.trajectory.tip_tolerances(self.tolerances.tip).max())
 
     def part(self) -> None:

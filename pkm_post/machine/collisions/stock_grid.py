@@ -83,19 +83,19 @@ class SweptPoses:
 
     @classmethod
     def of(
-        cls, way: PosePath, cells: Array, work_from_machine: Array, farthest: float, step: float, pairs: float
+        cls, path: PosePath, cells: Array, work_from_machine: Array, farthest: float, step: float, pairs: float
     ) -> SweptPoses:
         """Poses spaced so no point moves by more than a step, unless that needs too many.
 
         Args:
-            way: pose path in {M}.
+            path: poses in {M}.
             cells: (K,) cells to include, ascending.
             work_from_machine: (4, 4) transform from {M} to {C}.
             farthest: distance from the tip to the farthest point of the solid, mm.
             step: largest motion between poses, mm.
             pairs: points of the grid that one pose may touch.
         """
-        change = way.travel[cells] + way.angle[cells] * farthest
+        change = path.travel[cells] + path.angle[cells] * farthest
         step = max(step, float(change.sum()) * pairs / _MOST_PAIRS) / 2
         count = np.maximum(np.ceil(change / step), 1).astype(np.int64)
         row, number = expand_counts(count)
@@ -104,7 +104,7 @@ class SweptPoses:
         kept = np.flatnonzero(run | np.append(np.diff(stride) > 0, True))
         at = cells[row] - 1 + (number + 1) / count[row]
         begin = np.append(0, kept[:-1] + 1).astype(np.int64)[: len(kept)]
-        tip, axis, _, _ = way.inside(cells[row[kept]], ((number + 1) / count[row])[kept])
+        tip, axis, _, _ = path.inside(cells[row[kept]], ((number + 1) / count[row])[kept])
         turned = work_from_machine[:3, :3].T
         come = np.append(0.0, np.cumsum((change / count)[row]))
         return cls(

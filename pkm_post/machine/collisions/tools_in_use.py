@@ -94,15 +94,15 @@ def not_cut_before(driven: TrajectoryPath, used: Sequence[ToolUse], met: Contact
 
 def _reaches(driven: TrajectoryPath, used: ToolUse, cells: Array, point: Array) -> bool:
     """Whether a cutter reaches a point in some cells, or nearly so."""
-    profile, way = used.largest_profile(), driven.poses
-    change = way.travel[cells] + way.angle[cells] * profile.farthest
+    profile, path = used.largest_profile(), driven.poses
+    change = path.travel[cells] + path.angle[cells] * profile.farthest
     wide = float(profile.radius.max())
-    high, out = _in_tool(way.tip[cells], way.axis[cells], point)
+    high, out = _in_tool(path.tip[cells], path.axis[cells], point)
     cells = cells[(high > -change) & (high < profile.height[-1] + change) & (out < wide + change)]
-    change = way.travel[cells] + way.angle[cells] * profile.farthest
+    change = path.travel[cells] + path.angle[cells] * profile.farthest
     row, number = expand_counts(np.maximum(np.ceil(change / _STEP), 1).astype(np.int64))
     share = (number + 1) / np.maximum(np.ceil(change / _STEP), 1)[row]
-    tip, axis, _, _ = way.inside(cells[row], share)
+    tip, axis, _, _ = path.inside(cells[row], share)
     return bool(profile.contains(*_in_tool(tip, axis, point), _STEP).any())
 
 

@@ -42,13 +42,13 @@ _FIRST, _SECOND = np.triu_indices(6, 1)
 _PAIRS = tuple(Phrase("{} and {}", one + 1, two + 1) for one, two in zip(_FIRST, _SECOND, strict=True))
 
 
-def strut_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Check, ...]:
+def strut_checks(machine: Machine, path: PosePath, shortest: float) -> tuple[Check, ...]:
     """Check that struts keep clear of each other, the platform and the fixtures; none if struts have no bodies."""
     if not has_strut_bodies(machine):
         return ()
-    arm = float(lever_arms(machine, way.tool_length).max())
+    arm = float(lever_arms(machine, path.tool_length).max())
     lever = rod_speed_ratio(machine, shortest)
-    reach = max((body_reach(machine, way.tool_length, body) for body in machine.bodies), default=0.0)
+    reach = max((body_reach(machine, path.tool_length, body) for body in machine.bodies), default=0.0)
     bodies, boxes = (_names(other.name for other in others) for others in (machine.bodies, machine.fixtures))
     violation, violation_of_two = Pattern("strut {part} by {by}"), Pattern("struts {part} by {by}")
     rows = (
@@ -63,7 +63,7 @@ def strut_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Chec
     )
 
 
-def body_checks(machine: Machine, way: PosePath) -> tuple[Check, ...]:
+def body_checks(machine: Machine, path: PosePath) -> tuple[Check, ...]:
     """Check that each platform body keeps clear of the fixtures; none without either."""
     if not machine.fixtures:
         return ()
@@ -72,7 +72,7 @@ def body_checks(machine: Machine, way: PosePath) -> tuple[Check, ...]:
             Phrase("{} and fixture", body.name), "K116", "mm",
             tuple(Phrase("{} and {}", body.name, box.name) for box in machine.fixtures),
             Pattern("{part} by {by}"), partial(_body_to_fixtures, body),
-            1.0, body_reach(machine, way.tool_length, body), HUNDREDTH, COMFORT,
+            1.0, body_reach(machine, path.tool_length, body), HUNDREDTH, COMFORT,
         )
         for body in machine.bodies
     )  # fmt: skip
@@ -136,12 +136,12 @@ _FAR = 5 * COMFORT
 """mm: margins are capped here, which leaves the survey room for large steps."""
 
 
-def workpiece_checks(machine: Machine, way: PosePath, shortest: float, part: CollisionMesh) -> tuple[Check, ...]:
+def workpiece_checks(machine: Machine, path: PosePath, shortest: float, part: CollisionMesh) -> tuple[Check, ...]:
     """Check that platform bodies and struts keep clear of the part; none for those the machine file does not state.
 
     Args:
         machine: bodies and struts.
-        way: for the longest tool.
+        path: for the longest tool.
         shortest: lower bound of a strut's joint distance on the path, mm.
         part: the part to keep clear of.
     """
@@ -149,12 +149,12 @@ def workpiece_checks(machine: Machine, way: PosePath, shortest: float, part: Col
     checks = [
         Check(
             Phrase("{} and part", body.name), "K117", "mm", (body.name,), Pattern("{part} by {by}"),
-            partial(_of_body, body, part, far), 1.0, body_reach(machine, way.tool_length, body), HUNDREDTH, COMFORT,
+            partial(_of_body, body, part, far), 1.0, body_reach(machine, path.tool_length, body), HUNDREDTH, COMFORT,
         )
         for body in machine.bodies
     ]  # fmt: skip
     if has_strut_bodies(machine):
-        lever, arm = rod_speed_ratio(machine, shortest), float(lever_arms(machine, way.tool_length).max())
+        lever, arm = rod_speed_ratio(machine, shortest), float(lever_arms(machine, path.tool_length).max())
         checks.append(
             Check(
                 Phrase("strut and part"), "K121", "mm", STRUTS, Pattern("strut {part} by {by}"),

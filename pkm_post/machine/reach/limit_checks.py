@@ -38,24 +38,24 @@ _SCREW_SLOPE = 4.0
 the fixed axes of its universal joints: 1 / sin 30 for each of them."""
 
 
-def shortest_distance(machine: Machine, way: PosePath) -> float:
+def shortest_distance(machine: Machine, path: PosePath) -> float:
     """Lower bound of a strut's joint distance on the whole path, mm; not above 0 if none is proven."""
-    arms, turn, shortest = lever_arms(machine, way.tool_length), way.turn(), np.inf
-    for first in range(0, len(way), _CHUNK):
+    arms, turn, shortest = lever_arms(machine, path.tool_length), path.turn(), np.inf
+    for first in range(0, len(path), _CHUNK):
         rows = slice(first, first + _CHUNK + 1)  # includes the first row of the next chunk
-        lengths = strut_lengths(machine, *way.rows(rows)) + machine.length_offset - abs(machine.screw_lead) / 2
-        change = way.travel[rows, None] + turn[rows, None] * arms
+        lengths = strut_lengths(machine, *path.rows(rows)) + machine.length_offset - abs(machine.screw_lead) / 2
+        change = path.travel[rows, None] + turn[rows, None] * arms
         inside = (lengths[:-1] + lengths[1:] - change[1:]) / 2
         shortest = min(shortest, lengths.min(), inside.min(initial=np.inf))
     return float(shortest)
 
 
-def stroke_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Check, ...]:
+def stroke_checks(machine: Machine, path: PosePath, shortest: float) -> tuple[Check, ...]:
     """Check that no strut is too short or too long."""
     low, high = machine.strut_stroke
     per_turn = _SCREW_SLOPE * abs(machine.screw_lead) / (2 * np.pi)
     by_travel = 1.0 + per_turn / shortest
-    by_turn = lever_arms(machine, way.tool_length).max() * by_travel + per_turn
+    by_turn = lever_arms(machine, path.tool_length).max() * by_travel + per_turn
 
     def check(name: str, code: str, violation: Pattern, sign: float, limit: float) -> Check:
         def margins(placed: PlacedMachine) -> Array:
@@ -70,10 +70,10 @@ def stroke_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Che
     )
 
 
-def joint_checks(machine: Machine, way: PosePath, shortest: float) -> tuple[Check, ...]:
+def joint_checks(machine: Machine, path: PosePath, shortest: float) -> tuple[Check, ...]:
     """Check that no joint swings too far from its rest axis."""
     by_travel = 1.0 / shortest
-    by_turn = lever_arms(machine, way.tool_length).max() / shortest
+    by_turn = lever_arms(machine, path.tool_length).max() / shortest
 
     def base(placed: PlacedMachine) -> Array:
         return machine.base_cone - joint_swing(placed.direction, machine.base_rest)
@@ -94,13 +94,13 @@ def joint_swing(direction: Array, rest: Array) -> Array:
     return 2.0 * np.arcsin(np.minimum(norm(chord) / 2, 1.0))
 
 
-def singularity_check(machine: Machine, way: PosePath, shortest: float) -> Check:
+def singularity_check(machine: Machine, path: PosePath, shortest: float) -> Check:
     """Check that no singular pose is near a row or lies between two rows.
 
     The least singular value of a matrix changes by at most the Frobenius norm of the matrix change. While it stays
     above zero, the determinant keeps its sign: a sign other than at the start means that a singular pose was passed.
     """
-    start = np.sign(np.linalg.det(PlacedMachine.of(machine, way.rows(slice(0, 1))).scaled_jacobian()))
+    start = np.sign(np.linalg.det(PlacedMachine.of(machine, path.rows(slice(0, 1))).scaled_jacobian()))
     least = machine.least_singular_value
 
     def margins(placed: PlacedMachine) -> Array:
@@ -109,7 +109,7 @@ def singularity_check(machine: Machine, way: PosePath, shortest: float) -> Check
         return np.where(np.sign(np.linalg.det(jacobian)) == start, 1.0, -1.0)[:, None] * value - least
 
     arm = norm(machine.platform_joints) / machine.characteristic_length
-    swing_by_turn = lever_arms(machine, way.tool_length) / shortest
+    swing_by_turn = lever_arms(machine, path.tool_length) / shortest
     by_travel = float(np.sqrt(np.sum(1 + arm**2)) / shortest)
     by_turn = float(np.sqrt(np.sum(swing_by_turn**2 + ((1 + swing_by_turn) * arm) ** 2)))
     violation = Pattern("smallest singular value below {least} by {by}")
@@ -194,51 +194,51 @@ _SPEED_RESOLUTION = 1e-3
 """Resolution, as a share of the strut speed."""
 
 
-def strut_speed_finding(machine: Machine, way: PosePath, shortest: float, duration: Array) -> ReachFinding:
+def strut_speed_finding(machine: Machine, path: PosePath, shortest: float, duration: Array) -> ReachFinding:
     """Margins of strut speed.
 
     Args:
         machine: with ``strut_speed``.
-        way: the pose path.
+        path: poses.
         shortest: lower bound of a strut's joint distance on the path, mm.
         duration: (N,) duration of each cell, s; that of cell 0 is ignored.
     """
     limit = machine.strut_speed
     violation, values = Pattern("strut {part} by {by}; it reaches {limit}"), {"limit": Amount(limit, "mm/s", "g")}
     subject = CheckedLimit(Phrase("strut speed"), "K118", "mm/s", STRUTS, violation, rapid_code="K128", values=values)
-    lengths = strut_lengths(machine, *way.rows(slice(None)))
-    cells = np.arange(1, len(way))
-    margin, part = np.full(len(way), limit), np.zeros(len(way), dtype=np.int32)
+    lengths = strut_lengths(machine, *path.rows(slice(None)))
+    cells = np.arange(1, len(path))
+    margin, part = np.full(len(path), limit), np.zeros(len(path), dtype=np.int32)
     at_least = limit
     if len(cells):
-        bend = _second_derivative(machine, way, shortest)
+        bend = _second_derivative(machine, path, shortest)
         speed, part[1:] = _fastest(lengths[:-1], lengths[1:], duration[1:])
         margin[1:] = limit - speed
-        at_least = _halve(machine, way, lengths, duration, bend, margin, part)
+        at_least = _halve(machine, path, lengths, duration, bend, margin, part)
     return ReachFinding(subject, margin, part, at_least)
 
 
-def _second_derivative(machine: Machine, way: PosePath, shortest: float) -> Array:
+def _second_derivative(machine: Machine, path: PosePath, shortest: float) -> Array:
     """Bounds of |l''| by the share of each cell, (N,)."""
-    arm = lever_arms(machine, way.tool_length).max()
-    half_tilt, turn = way.half_tilt(), way.turn()
-    turn_1 = turn * way.angle + half_tilt * (1 + half_tilt**2) / 2 * way.angle**2
-    return way.bend + arm * (turn_1 + turn**2) + (way.travel + turn * arm) ** 2 / shortest
+    arm = lever_arms(machine, path.tool_length).max()
+    half_tilt, turn = path.half_tilt(), path.turn()
+    turn_1 = turn * path.angle + half_tilt * (1 + half_tilt**2) / 2 * path.angle**2
+    return path.bend + arm * (turn_1 + turn**2) + (path.travel + turn * arm) ** 2 / shortest
 
 
 def _fastest(start: Array, end: Array, duration: Array) -> tuple[Array, Array]:
     """Mean speeds of the fastest strut and its index, (M,) each."""
-    way = np.abs(end - start)
-    part = np.argmax(way, axis=1)
-    return way[np.arange(len(way)), part] / duration, part
+    distance = np.abs(end - start)
+    part = np.argmax(distance, axis=1)
+    return distance[np.arange(len(distance)), part] / duration, part
 
 
 def _halve(
-    machine: Machine, way: PosePath, lengths: Array, duration: Array, bend: Array, margin: Array, part: Array
+    machine: Machine, path: PosePath, lengths: Array, duration: Array, bend: Array, margin: Array, part: Array
 ) -> float:
     """Write the margins found by halving; return the proven lower bound of the margin."""
     limit, at_least = machine.strut_speed, machine.strut_speed
-    cell = np.arange(1, len(way))
+    cell = np.arange(1, len(path))
     start, before, after, width, found = np.zeros(len(cell)), lengths[:-1], lengths[1:], 1.0, margin[1:].copy()
     while True:
         excess = bend[cell] * width / 2 / duration[cell]
@@ -248,7 +248,7 @@ def _halve(
         if not len(cell):
             return at_least
         width /= 2
-        middle = strut_lengths(machine, *way.inside(cell, start + width))
+        middle = strut_lengths(machine, *path.inside(cell, start + width))
         cell, start = np.tile(cell, 2), np.concatenate([start, start + width])
         before, after = np.concatenate([before, middle]), np.concatenate([middle, after])
         speed, which = _fastest(before, after, duration[cell] * width)

@@ -55,25 +55,25 @@ class Check(CheckedLimit):
 
 
 def check_path(
-    machine: Machine, way: PosePath, checks: tuple[Check, ...], faults_alone: bool = False
+    machine: Machine, path: PosePath, checks: tuple[Check, ...], faults_alone: bool = False
 ) -> tuple[ReachFinding, ...]:
     """Evaluate each check along the whole path.
 
     Args:
         machine: the machine the checks evaluate.
-        way: the pose path, at least one row.
+        path: poses, at least one row.
         checks: the checks to evaluate.
         faults_alone: do not refine margins that are proven non-negative.
     """
-    turn = way.turn()
+    turn = path.turn()
     if faults_alone:
-        surveys = [_PathCheck(machine, way, replace(check, comfort=0.0), turn) for check in checks]
+        surveys = [_PathCheck(machine, path, replace(check, comfort=0.0), turn) for check in checks]
         return tuple(in_workers(lambda one: one.strided(_STRIDE_FOR_FAULTS, 0.0), surveys))
-    surveys = [_PathCheck(machine, way, check, turn) for check in checks]
+    surveys = [_PathCheck(machine, path, check, turn) for check in checks]
     thorough = [one for one in surveys if one.check.comfort == np.inf]
     if thorough:
-        for rows in _chunks(np.arange(len(way))):
-            placed = PlacedMachine.of(machine, way.rows(rows))
+        for rows in _chunks(np.arange(len(path))):
+            placed = PlacedMachine.of(machine, path.rows(rows))
             for one in thorough:
                 one.note(rows, one.check.margins(placed))
     return tuple(one.refined() if one in thorough else one.strided(_STRIDE, _THREE_QUARTERS) for one in surveys)
@@ -86,11 +86,11 @@ def _chunks(rows: Array) -> Iterator[Array]:
 class _PathCheck:
     """State of one check along the rows."""
 
-    def __init__(self, machine: Machine, way: PosePath, check: Check, turn: Array) -> None:
-        self.machine, self.way, self.check = machine, way, check
-        self.change = check.by_travel * way.travel + check.by_turn * turn
-        self.margin, self.part = np.empty(len(way)), np.zeros(len(way), dtype=np.int32)
-        self.computed, self.proven = np.zeros(len(way), dtype=bool), np.full(len(way), -np.inf)
+    def __init__(self, machine: Machine, path: PosePath, check: Check, turn: Array) -> None:
+        self.machine, self.path, self.check = machine, path, check
+        self.change = check.by_travel * path.travel + check.by_turn * turn
+        self.margin, self.part = np.empty(len(path)), np.zeros(len(path), dtype=np.int32)
+        self.computed, self.proven = np.zeros(len(path), dtype=bool), np.full(len(path), -np.inf)
 
     def _finding(self, at_least: float) -> ReachFinding:
         """Build the finding; skipped rows must not look as bad as the worst computed row."""
@@ -107,7 +107,7 @@ class _PathCheck:
     def look(self, rows: Array) -> None:
         """Compute and store the margins of rows."""
         for chunk in _chunks(rows):
-            self.note(chunk, self.check.margins(PlacedMachine.of(self.machine, self.way.rows(chunk))))
+            self.note(chunk, self.check.margins(PlacedMachine.of(self.machine, self.path.rows(chunk))))
 
     def strided(self, stride: int, share: float) -> ReachFinding:
         """Survey every ``stride``-th row, then the rows between them where little margin may be left.
@@ -117,7 +117,7 @@ class _PathCheck:
             share: share of the least computed margin that skipped rows must have.
         """
         sum_of_changes = np.cumsum(self.change)
-        marks = distinct(np.append(np.arange(0, len(self.way), stride), len(self.way) - 1))
+        marks = distinct(np.append(np.arange(0, len(self.path), stride), len(self.path) - 1))
         self.look(marks)
         start, end = marks[:-1], marks[1:]
         while len(start):
@@ -179,7 +179,7 @@ class _PathCheck:
         """Worst margins at shares of cells and the parts that have them, (M,) each."""
         margin, part = np.empty(len(cells)), np.empty(len(cells), dtype=np.int32)
         for chunk in _chunks(np.arange(len(cells))):
-            placed = PlacedMachine.of(self.machine, self.way.inside(cells[chunk], share[chunk]))
+            placed = PlacedMachine.of(self.machine, self.path.inside(cells[chunk], share[chunk]))
             margins = self.check.margins(placed)
             part[chunk] = np.argmin(margins, axis=1)
             margin[chunk] = margins.min(axis=1)
@@ -207,28 +207,28 @@ _NO_STRUT = 1.0
 
 
 def unproven_checks(
-    machine: Machine, way: PosePath, checks_for: Callable[[float], tuple[Check, ...]]
+    machine: Machine, path: PosePath, checks_for: Callable[[float], tuple[Check, ...]]
 ) -> tuple[int, ...]:
     """Indices of the checks that are not proven to hold on the whole path.
 
     Args:
         machine: the machine the checks evaluate.
-        way: the pose path, at least one row.
+        path: poses, at least one row.
         checks_for: the checks, with slopes that hold where every strut's joints are at least this far apart, mm.
     """
     checkpoint()
-    stretches = _PathIntervals.of(machine, way)
+    stretches = _PathIntervals.of(machine, path)
     checkpoint()
-    shortest = max(_NEARER * float(PlacedMachine.of(machine, way.rows(stretches.row)).distance.min()), _NO_STRUT)
+    shortest = max(_NEARER * float(PlacedMachine.of(machine, path.rows(stretches.row)).distance.min()), _NO_STRUT)
     checks = checks_for(shortest)
     doubts = {number: np.ones(1, dtype=bool) for number in range(len(checks))}
     violated = set()
-    for groups in _partitions(machine, way, stretches):
+    for groups in _partitions(machine, path, stretches):
         checkpoint()
         for number, doubt in list(doubts.items()):
             doubts[number] = doubt = doubt[groups.parent]
             checkpoint()
-            margin, least = groups.bounds(machine, way, checks[number], np.flatnonzero(doubt), shortest)
+            margin, least = groups.bounds(machine, path, checks[number], np.flatnonzero(doubt), shortest)
             checkpoint()
             doubt[doubt] = ~(least >= 0)
             if margin.min() < 0:
@@ -255,11 +255,11 @@ class _PathIntervals:
     turn: Array
 
     @classmethod
-    def of(cls, machine: Machine, way: PosePath) -> _PathIntervals:
-        travel, turn = np.cumsum(way.travel), np.cumsum(way.turn())
+    def of(cls, machine: Machine, path: PosePath) -> _PathIntervals:
+        travel, turn = np.cumsum(path.travel), np.cumsum(path.turn())
         checkpoint()
-        number = np.floor((travel + _longest_arm(machine, way) * turn) / _INTERVAL_TRAVEL)
-        ends = distinct(np.concatenate([[0], np.flatnonzero(np.diff(number)) + 1, [len(way) - 1]]))
+        number = np.floor((travel + _longest_arm(machine, path) * turn) / _INTERVAL_TRAVEL)
+        ends = distinct(np.concatenate([[0], np.flatnonzero(np.diff(number)) + 1, [len(path) - 1]]))
         begin, end = ends[: max(len(ends) - 1, 1)], ends[min(len(ends) - 1, 1) :]  # a path of one row has no extent
         row = (begin + end) // 2
         farther = [np.maximum(sums[row] - sums[begin], sums[end] - sums[row]) for sums in (travel, turn)]
@@ -284,9 +284,9 @@ class _Groups:
     turn: Array
     arm: float
 
-    def bounds(self, machine: Machine, way: PosePath, check: Check, at: Array, shortest: float) -> tuple[Array, Array]:
+    def bounds(self, machine: Machine, path: PosePath, check: Check, at: Array, shortest: float) -> tuple[Array, Array]:
         """Margins at the anchors of some groups, and the lower bound of each group in margin or distance."""
-        placed = PlacedMachine.of(machine, way.rows(self.anchor[at]))
+        placed = PlacedMachine.of(machine, path.rows(self.anchor[at]))
         margin = check.margins(placed).min(axis=1)
         checkpoint()
         travel, turn = self.travel[at], self.turn[at]
@@ -294,10 +294,10 @@ class _Groups:
         return margin, np.minimum(margin - (check.by_travel * travel + check.by_turn * turn), apart - shortest)
 
 
-def _partitions(machine: Machine, way: PosePath, stretches: _PathIntervals) -> Iterator[_Groups]:
+def _partitions(machine: Machine, path: PosePath, stretches: _PathIntervals) -> Iterator[_Groups]:
     """Yield all stretches as one group, then the groups split in two along their widest extent, and so on."""
-    arm = _longest_arm(machine, way)
-    tip, axis, spin, tool_length = way.rows(stretches.row)
+    arm = _longest_arm(machine, path)
+    tip, axis, spin, tool_length = path.rows(stretches.row)
     checkpoint()
     place = np.column_stack([tip, arm * axis, arm * spin, tool_length])
     group, parent = np.zeros(len(place), dtype=np.int64), np.zeros(1, dtype=np.int64)
@@ -333,5 +333,5 @@ def _partitions(machine: Machine, way: PosePath, stretches: _PathIntervals) -> I
         parent = halves // 2
 
 
-def _longest_arm(machine: Machine, way: PosePath) -> float:
-    return float(lever_arms(machine, way.tool_length).max())
+def _longest_arm(machine: Machine, path: PosePath) -> float:
+    return float(lever_arms(machine, path.tool_length).max())

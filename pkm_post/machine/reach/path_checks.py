@@ -35,7 +35,7 @@ _NO_STRUT = 1e-3
 
 def reach_findings(
     machine: Machine,
-    way: PosePath,
+    path: PosePath,
     part: CollisionMesh | None = None,
     duration: Array | None = None,
     normal: Array | None = None,
@@ -45,48 +45,48 @@ def reach_findings(
 
     Args:
         machine: the limits; a check whose numbers it does not state is left out.
-        way: the pose path, N rows.
+        path: poses, N rows.
         part: what spindle and holder must not touch.
         duration: (N,) duration of each cell, s, for the check of strut speeds.
         normal: (N, 3) unit normals of the surface, for the stiffness; ignored if the machine states no stiffness.
         least_stiffness: required stiffness of the tip along the normals, N/mm.
     """
-    shortest = _shortest(machine, way)
-    findings = check_path(machine, way, all_checks(machine, way, shortest, part))
+    shortest = _shortest(machine, path)
+    findings = check_path(machine, path, all_checks(machine, path, shortest, part))
     if duration is not None:
-        findings += (strut_speed_finding(machine, way, shortest, duration),)
+        findings += (strut_speed_finding(machine, path, shortest, duration),)
     if normal is not None and machine.strut_stiffness is not None:
-        findings += (_stiffness_finding(machine, way, normal, least_stiffness),)
+        findings += (_stiffness_finding(machine, path, normal, least_stiffness),)
     return findings
 
 
-def all_checks(machine: Machine, way: PosePath, shortest: float, part: CollisionMesh | None) -> tuple[Check, ...]:
+def all_checks(machine: Machine, path: PosePath, shortest: float, part: CollisionMesh | None) -> tuple[Check, ...]:
     """All checks of a path, in the order of their codes.
 
     Args:
         machine: the geometry.
-        way: the pose path.
+        path: poses.
         shortest: lower bound of the strut lengths on the path, mm.
         part: what the tool must not meet; None leaves its checks out.
     """
     return (
-        *stroke_checks(machine, way, shortest),
-        *joint_checks(machine, way, shortest),
-        singularity_check(machine, way, shortest),
-        *strut_checks(machine, way, shortest),
-        *body_checks(machine, way),
-        *(workpiece_checks(machine, way, shortest, part) if part is not None else ()),
+        *stroke_checks(machine, path, shortest),
+        *joint_checks(machine, path, shortest),
+        singularity_check(machine, path, shortest),
+        *strut_checks(machine, path, shortest),
+        *body_checks(machine, path),
+        *(workpiece_checks(machine, path, shortest, part) if part is not None else ()),
     )
 
 
-def _stiffness_finding(machine: Machine, way: PosePath, normal: Array, least: float) -> ReachFinding:
+def _stiffness_finding(machine: Machine, path: PosePath, normal: Array, least: float) -> ReachFinding:
     violation, values = Pattern("below {least} by {by}"), {"least": Amount(least, "N/mm", "g")}
-    margin = stiffness_along(machine, way.rows(slice(None)), normal) - least
+    margin = stiffness_along(machine, path.rows(slice(None)), normal) - least
     subject = CheckedLimit(Phrase("stiffness along the normal"), "K119", "N/mm", ("",), violation, values=values)
-    return ReachFinding(subject, margin, np.zeros(len(way), dtype=np.int32), -np.inf)
+    return ReachFinding(subject, margin, np.zeros(len(path), dtype=np.int32), -np.inf)
 
 
-def reach_faults(machine: Machine, trajectory: Trajectory, way: PosePath, segment: Array) -> tuple[Diagnostic, ...]:
+def reach_faults(machine: Machine, trajectory: Trajectory, path: PosePath, segment: Array) -> tuple[Diagnostic, ...]:
     """Diagnostics for a path that violates a limit: one for each operation and limit, at its worst.
 
     The same as from ``reach_findings``, but margins are computed only where the slopes do not prove them positive:
@@ -95,16 +95,16 @@ def reach_faults(machine: Machine, trajectory: Trajectory, way: PosePath, segmen
     Args:
         machine: the limits.
         trajectory: source positions of the segments.
-        way: N poses in order along the trajectory.
+        path: N poses in order along the trajectory.
         segment: (N,) segment of each pose.
     """
-    left = unproven_checks(machine, way, lambda shortest: all_checks(machine, way, shortest, None))
+    left = unproven_checks(machine, path, lambda shortest: all_checks(machine, path, shortest, None))
     if not left:
         return ()
-    checks = all_checks(machine, way, _shortest(machine, way), None)
-    found = check_path(machine, way, tuple(checks[number] for number in left), faults_alone=True)
+    checks = all_checks(machine, path, _shortest(machine, path), None)
+    found = check_path(machine, path, tuple(checks[number] for number in left), faults_alone=True)
     return finding_diagnostics(found, trajectory, segment)
 
 
-def _shortest(machine: Machine, way: PosePath) -> float:
-    return max(shortest_distance(machine, way), _NO_STRUT * max(machine.strut_stroke[0], 1.0))
+def _shortest(machine: Machine, path: PosePath) -> float:
+    return max(shortest_distance(machine, path), _NO_STRUT * max(machine.strut_stroke[0], 1.0))

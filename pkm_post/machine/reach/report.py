@@ -145,10 +145,10 @@ def check_reach(
         normal: (S, 3) unit normals of the surface at the ends of the S segments, in {M}, for the stiffness.
         least_stiffness: required stiffness of the tip along the normals, N/mm.
     """
-    way, segment, duration = pose_path_of(trajectory)
+    path, segment, duration = pose_path_of(trajectory)
     by_pose = None if normal is None else normal[segment]
-    findings = reach_findings(machine, way, part, duration, by_pose, least_stiffness)
-    return ReachReport(trajectory, machine, way.tip, segment, findings)
+    findings = reach_findings(machine, path, part, duration, by_pose, least_stiffness)
+    return ReachReport(trajectory, machine, path.tip, segment, findings)
 
 
 def poses_along(trajectory: Trajectory) -> ToolPoses:
@@ -178,7 +178,7 @@ def pose_path_of(trajectory: Trajectory) -> tuple[PosePath, Array, Array]:
         np.concatenate(columns) for columns in zip(*(inside(rows, np.ones(len(rows))) for rows in chunks), strict=True)
     )
     travel, bend = _motion_of_tip(segments)
-    way = PosePath(
+    path = PosePath(
         tip=tip,
         axis=axis,
         spin=spin,
@@ -189,7 +189,7 @@ def pose_path_of(trajectory: Trajectory) -> tuple[PosePath, Array, Array]:
         spin_change=segments.spin_rate[segment] * extent,
         inside=inside,
     )
-    return way, segment, extent / trajectory.feed[segment]
+    return path, segment, extent / trajectory.feed[segment]
 
 
 def _motion_of_tip(segments: Segments) -> tuple[Array, Array]:

@@ -32,8 +32,8 @@ def straight(tips, axes=None, length=LENGTH, spins=0.0):
     return PosePath.straight(tips, axes, np.broadcast_to(spins, len(tips)).astype(float), np.full(len(tips), length))
 
 
-def found(way, mover, mesh, clearance, longest=25.0):
-    return contacts(way, mover, CollisionMesh.of(subdivide(mesh, longest)), clearance, np.zeros(len(way), dtype=int))
+def found(path, mover, mesh, clearance, longest=25.0):
+    return contacts(path, mover, CollisionMesh.of(subdivide(mesh, longest)), clearance, np.zeros(len(path), dtype=int))
 
 
 @pytest.mark.parametrize("clearance", [0.5, 3.0])
@@ -48,55 +48,55 @@ def found(way, mover, mesh, clearance, longest=25.0):
     ],
 )  # fmt: skip
 def test_a_holder_that_just_clears_is_clear_and_one_that_does_not_is_found(mesh, distance, clearance):
-    way = straight([[-30, 0, 100], [40, 0, 100]])
-    mover = platform_body(example(), way, HOLDER)
+    path = straight([[-30, 0, 100], [40, 0, 100]])
+    mover = platform_body(example(), path, HOLDER)
     towards = np.array([0.0, -1.0, 0.0] if distance in (15.0, 12.0) else [0.0, 0.0, 1.0])
     for hair in (HAIR, -HAIR):
-        met = found(way, mover, mesh + towards * (distance - clearance - hair), clearance)
+        met = found(path, mover, mesh + towards * (distance - clearance - hair), clearance)
         assert bool(len(met)) == (hair < 0)
         if len(met):
             assert abs(met.distance.min() - clearance - hair) < FACETS + HUNDREDTH
 
 
 def test_a_thin_pin_between_two_far_poses_is_found_and_where_it_is():
-    way = straight([[-150, 0, 100], [150, 0, 100]])
+    path = straight([[-150, 0, 100], [150, 0, 100]])
     pin = box([37.0, 3.0, 0.0], [37.2, 3.2, 175.0])
-    met = found(way, platform_body(example(), way, HOLDER), pin, 0.001)
+    met = found(path, platform_body(example(), path, HOLDER), pin, 0.001)
     assert len(met) and set(met.cell) == {1}
     at = -150 + 300 * met.share
     assert np.all(np.abs(at - 37.1) < 25.2)
-    assert not len(contacts_at_ends(way, platform_body(example(), way, HOLDER), CollisionMesh.of(pin), 0.001))
+    assert not len(contacts_at_ends(path, platform_body(example(), path, HOLDER), CollisionMesh.of(pin), 0.001))
 
 
 def test_a_turn_of_the_axis_alone_swings_the_holder():
     axes = direction(np.array([0.0, 30.0]), np.array([0.0, 0.0])).T
-    way = straight([[0, 0, 100], [0, 0, 100]], axes)
+    path = straight([[0, 0, 100], [0, 0, 100]], axes)
     # The lower rim of the holder comes down to 100 + 70 cos 30 - 25 sin 30 and out to 70 sin 30 + 25 cos 30.
     down = 100 + 70 * np.cos(np.pi / 6) - 25 * np.sin(np.pi / 6)
     for below, hit in ((0.05, False), (-0.05, True)):
         plate = box([-200, -200, 0], [200, 200, down - below])
-        assert bool(len(found(way, platform_body(example(), way, HOLDER), plate, 0.001))) == hit
+        assert bool(len(found(path, platform_body(example(), path, HOLDER), plate, 0.001))) == hit
 
 
 def test_only_cells_in_use_are_looked_at():
-    way = straight([[-100, 0, 100], [-50, 0, 100], [50, 0, 100], [100, 0, 100]])
+    path = straight([[-100, 0, 100], [-50, 0, 100], [50, 0, 100], [100, 0, 100]])
     post = box([-5, -5, 0], [5, 5, 130])
     pieces = [ToolCylinder(0.0, 40.0, 5.0)]
     for cells, hit in ([[1, 3], False], [[1, 2, 3], True], [[2], True], [[], False]):
-        mover = tool_body("cutter", way, np.array(cells, dtype=int), pieces)
-        met = found(way, mover, post, 0.001)
+        mover = tool_body("cutter", path, np.array(cells, dtype=int), pieces)
+        met = found(path, mover, post, 0.001)
         assert bool(len(met)) == hit and set(met.cell) <= {2}
 
 
 def test_rounding_grows_a_piece_all_round():
-    way = straight([[0, 0, 100], [1, 0, 100]])
-    mover = tool_body("ball", way, np.array([1]), [ToolCylinder(6.0, 40.0, 0.0, 6.0)])
+    path = straight([[0, 0, 100], [1, 0, 100]])
+    mover = tool_body("ball", path, np.array([1]), [ToolCylinder(6.0, 40.0, 0.0, 6.0)])
     for height, hit in ((99.97, False), (100.03, True)):
-        assert bool(len(found(way, mover, box([-50, -50, 0], [50, 50, height]), 0.001))) == hit
+        assert bool(len(found(path, mover, box([-50, -50, 0], [50, 50, height]), 0.001))) == hit
     # Across the corner a ball nose leaves what a flat end mill would touch.
     corner, gap = box([5.0, -50, 0], [50, 50, 101.0]), np.hypot(4.0, 5.0) - 6.0
     for hair, hit in ((2 * HUNDREDTH, False), (-2 * HUNDREDTH, True)):
-        assert bool(len(found(way, mover, corner, gap - hair))) == hit
+        assert bool(len(found(path, mover, corner, gap - hair))) == hit
 
 
 def points_of(mesh, apart):
@@ -105,9 +105,9 @@ def points_of(mesh, apart):
     return np.unique(small.reshape(-1, 3).round(9), axis=0)
 
 
-def sampled_distance(way, cells, shares, cylinders_of, pieces, points):
+def sampled_distance(path, cells, shares, cylinders_of, pieces, points):
     """Least distances by pose, (M,), of cylinders from points: the other way to compute them."""
-    cylinders = cylinders_of(way.inside(np.repeat(cells, len(shares)), np.tile(shares, len(cells))))
+    cylinders = cylinders_of(path.inside(np.repeat(cells, len(shares)), np.tile(shares, len(cells))))
     least = []
     for middle, axis, half, radius in zip(
         cylinders.middle, cylinders.axis, cylinders.half, cylinders.radius, strict=True
@@ -124,7 +124,7 @@ def test_nothing_is_missed_and_nothing_is_found_that_is_not_there(seed):
     rng = np.random.default_rng(seed)
     rows = 6
     axes = direction(rng.uniform(0, 30, rows), rng.uniform(0, 360, rows)).T
-    way = straight(rng.uniform([-80, -80, 90], [80, 80, 150], (rows, 3)), axes, spins=rng.uniform(-0.5, 0.5, rows))
+    path = straight(rng.uniform([-80, -80, 90], [80, 80, 150], (rows, 3)), axes, spins=rng.uniform(-0.5, 0.5, rows))
     mesh = box(*np.sort(rng.uniform([-60, -60, 0], [60, 60, 190], (2, 3)), axis=0))
     if seed % 2:
         mesh = ball(rng.uniform([-60, -60, 80], [60, 60, 200]), rng.uniform(5, 25), 10)
@@ -132,11 +132,11 @@ def test_nothing_is_missed_and_nothing_is_found_that_is_not_there(seed):
     tool = [ToolCylinder(5.0, 30.0, 3.0), ToolCylinder(30.0, 70.0, 8.0)]
     apart, shares = 6.0, np.linspace(0, 1, 17)
     points = points_of(mesh, apart)
-    for mover in (platform_body(example(), way, body), tool_body("tool", way, np.arange(1, rows), tool)):
+    for mover in (platform_body(example(), path, body), tool_body("tool", path, np.arange(1, rows), tool)):
         cells, pieces = np.arange(1, rows), len(mover.rounding)
-        brute = sampled_distance(way, cells, shares, mover.cylinders, pieces, points)
+        brute = sampled_distance(path, cells, shares, mover.cylinders, pieces, points)
         for clearance in (0.01, 4.0, 12.0):
-            met = found(way, mover, mesh, clearance, longest=20.0)
+            met = found(path, mover, mesh, clearance, longest=20.0)
             # No finding is missed: what samples see is seen.
             if brute.min() < clearance:
                 assert len(met)
@@ -145,7 +145,7 @@ def test_nothing_is_missed_and_nothing_is_found_that_is_not_there(seed):
             # No false alarm: at each contact a point of the mesh is as near, by more than a sample can miss.
             for row in range(0, len(met), 4):
                 there = sampled_distance(
-                    way, met.cell[row : row + 1], met.share[row : row + 1], mover.cylinders, pieces, points
+                    path, met.cell[row : row + 1], met.share[row : row + 1], mover.cylinders, pieces, points
                 )
                 assert there[0] <= clearance + HUNDREDTH + apart
 
@@ -154,20 +154,20 @@ def test_nothing_is_missed_and_nothing_is_found_that_is_not_there(seed):
 def test_struts_are_those_of_the_kinematics(seed):
     rng = np.random.default_rng(seed)
     machine = dataclasses.replace(example(), tube_radius=32.0, tube_length=700.0, rod_radius=20.0, rod_length=650.0)
-    way = straight(rng.uniform([-80, -80, 120], [80, 80, 200], (5, 3)), spins=rng.uniform(-0.3, 0.3, 5))
-    mover = strut_bodies(machine, way)
-    middle = PlacedMachine.of(machine, way.inside(np.array([2]), np.array([0.5])))
+    path = straight(rng.uniform([-80, -80, 120], [80, 80, 200], (5, 3)), spins=rng.uniform(-0.3, 0.3, 5))
+    mover = strut_bodies(machine, path)
+    middle = PlacedMachine.of(machine, path.inside(np.array([2]), np.array([0.5])))
     pieces = StrutCapsules.of(machine, middle.distance)
     start, end = pieces.ends(machine.base_joints, middle.direction)
     spot = (start + end)[0, 1, int(rng.integers(6))] / 2
     pin = box(spot - 1.0, spot + 1.0)
-    met = found(way, mover, pin, 0.001)
+    met = found(path, mover, pin, 0.001)
     assert len(met) and 2 in met.cell
     # Far from all struts at dense samples, and from all points between them: nothing.
     far = spot + [0, 0, 400.0]
-    samples = PlacedMachine.of(machine, way.inside(np.repeat(np.arange(1, 5), 21), np.tile(np.linspace(0, 1, 21), 4)))
+    samples = PlacedMachine.of(machine, path.inside(np.repeat(np.arange(1, 5), 21), np.tile(np.linspace(0, 1, 21), 4)))
     pieces = StrutCapsules.of(machine, samples.distance)
     start, end = pieces.ends(machine.base_joints, samples.direction)
     apart = (segment_to_segment(start, end, far, far) - pieces.radius[:, None]).min()
-    met = found(way, mover, box(far - 0.5, far + 0.5), 0.001)
+    met = found(path, mover, box(far - 0.5, far + 0.5), 0.001)
     assert bool(len(met)) == (apart < 1.0) or abs(apart) < 40.0

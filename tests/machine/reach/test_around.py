@@ -25,16 +25,16 @@ def scan(lines, step=0.5):
     return PosePath.straight(*upright(tips))
 
 
-def poses_for(way):
+def poses_for(path):
     """How many poses the checks look at to prove that a way keeps all of them."""
     looked_at = []
 
     def checks_for(shortest):
-        checks, looks = counted(all_checks(bodied(), way, shortest, None))
+        checks, looks = counted(all_checks(bodied(), path, shortest, None))
         looked_at.append(looks)
         return checks
 
-    assert unproven_checks(bodied(), way, checks_for) == ()
+    assert unproven_checks(bodied(), path, checks_for) == ()
     return sum(map(sum, looked_at))
 
 
@@ -46,16 +46,16 @@ def test_what_is_proven_holds_everywhere(machine):
     for _ in range(6):
         corners = wandering(rng, 8, tilt_deg=20)
         dense = PosePath.straight(*samples(corners, np.arange(1, 8), SHARES))
-        for way in (corners, dense):
+        for path in (corners, dense):
             placed = PlacedMachine.of(machine, dense.rows(slice(None)))
-            exact = [check.margins(placed).min() for check in all_checks(machine, way, 500.0, None)]
+            exact = [check.margins(placed).min() for check in all_checks(machine, path, 500.0, None)]
             less = rng.uniform(-0.05, 0.3, len(exact)) * np.abs(exact)
             limits = np.array(exact) - less
 
-            def checks_for(shortest, way=way, limits=limits):
-                return tuple(map(with_limit, all_checks(machine, way, shortest, None), limits))
+            def checks_for(shortest, path=path, limits=limits):
+                return tuple(map(with_limit, all_checks(machine, path, shortest, None), limits))
 
-            left = unproven_checks(machine, way, checks_for)
+            left = unproven_checks(machine, path, checks_for)
             for number, check in enumerate(checks_for(500.0)):
                 if less[number] < 0 and check.code != EXACT_ALONE:
                     assert number in left, check.name
@@ -70,10 +70,10 @@ def test_many_lines_take_as_many_poses_as_few():
 
 
 def test_one_bad_row_among_many_is_doubtful():
-    way = scan(101)
-    tip = way.tip.copy()
+    path = scan(101)
+    tip = path.tip.copy()
     tip[7000] += [400.0, 0.0, 0.0]
-    bad = PosePath.straight(tip, way.axis, way.spin, way.tool_length)
+    bad = PosePath.straight(tip, path.axis, path.spin, path.tool_length)
     placed = PlacedMachine.of(bodied(), bad.rows(slice(7000, 7001)))
     broken = {
         number for number, check in enumerate(all_checks(bodied(), bad, 500.0, None)) if check.margins(placed).min() < 0
@@ -83,5 +83,5 @@ def test_one_bad_row_among_many_is_doubtful():
 
 
 def test_a_way_of_one_row_is_proven_by_itself():
-    way = PosePath.straight(*upright([[0.0, 0, 200]]))
-    assert poses_for(way) == len(all_checks(bodied(), way, 500.0, None))
+    path = PosePath.straight(*upright([[0.0, 0, 200]]))
+    assert poses_for(path) == len(all_checks(bodied(), path, 500.0, None))

@@ -21,10 +21,10 @@ STEP = 8.0
 PART = CollisionMesh.of(boxes=[Box("part", [-40.0, -40, 100], [40.0, 40, 180])])
 
 
-def margins_of(machine, way, code, part=PART):
+def margins_of(machine, path, code, part=PART):
     """Margins at the rows of all checks with a code, side by side, and what their columns are called."""
-    checks = [one for one in all_checks(machine, way, shortest_distance(machine, way), part) if one.code == code]
-    placed = PlacedMachine.of(machine, way.rows(slice(None)))
+    checks = [one for one in all_checks(machine, path, shortest_distance(machine, path), part) if one.code == code]
+    placed = PlacedMachine.of(machine, path.rows(slice(None)))
     return [name for one in checks for name in one.parts], np.hstack([one.margins(placed) for one in checks])
 
 
@@ -48,16 +48,16 @@ def strut_points(machine, pose):
         yield base + places[:, None] * (end - base) / distance, np.concatenate([np.full(len(s), r) for s, r in along])
 
 
-def poses(way):
-    return list(zip(*way.rows(slice(None)), strict=True))
+def poses(path):
+    return list(zip(*path.rows(slice(None)), strict=True))
 
 
 @pytest.mark.parametrize("rod_length", [600.0, 1300.0], ids=["inside", "behind"])
 def test_struts_are_as_far_apart_as_their_points(rod_length):
     machine = dataclasses.replace(bodied(), rod_length=rod_length)
-    way = wandering(np.random.default_rng(1), 6, tilt_deg=35, spin_deg=70)
-    parts, margins = margins_of(machine, way, "K113")
-    for row, pose in enumerate(poses(way)):
+    path = wandering(np.random.default_rng(1), 6, tilt_deg=35, spin_deg=70)
+    parts, margins = margins_of(machine, path, "K113")
+    for row, pose in enumerate(poses(path)):
         struts = list(strut_points(machine, pose))
         for pair, name in enumerate(parts):
             (p, r), (q, s) = (struts[int(number) - 1] for number in name.split(" and "))
@@ -67,16 +67,16 @@ def test_struts_are_as_far_apart_as_their_points(rod_length):
 
 def test_a_rod_that_comes_out_behind_counts_there():
     # The rods cross above the base where those inside do not.
-    way = PosePath.straight(*upright([[0.0, 0, 250]]))
-    _, inside = margins_of(bodied(), way, "K113")
-    _, behind = margins_of(dataclasses.replace(bodied(), rod_length=1700.0), way, "K113")
+    path = PosePath.straight(*upright([[0.0, 0, 250]]))
+    _, inside = margins_of(bodied(), path, "K113")
+    _, behind = margins_of(dataclasses.replace(bodied(), rod_length=1700.0), path, "K113")
     assert np.all(behind <= inside + 1e-9) and np.any(behind < inside - 5)
 
 
 def test_struts_bodies_and_boxes_are_as_far_apart_as_their_points():
-    machine, way = bodied(), wandering(np.random.default_rng(2), 12, tilt_deg=35)
-    (to_bodies, bodies), (to_boxes, boxes) = margins_of(machine, way, "K114"), margins_of(machine, way, "K115")
-    for row, pose in enumerate(poses(way)):
+    machine, path = bodied(), wandering(np.random.default_rng(2), 12, tilt_deg=35)
+    (to_bodies, bodies), (to_boxes, boxes) = margins_of(machine, path, "K114"), margins_of(machine, path, "K115")
+    for row, pose in enumerate(poses(path)):
         tip, axis, spin, length = pose
         origin = tip + (machine.spindle_nose + length) * axis
         rotation = platform_rotation(axis[None], spin[None])[0]
@@ -109,10 +109,10 @@ def body_points(machine, pose, body):
 
 
 def test_bodies_are_never_nearer_than_reported():
-    machine, way = bodied(), wandering(np.random.default_rng(3), 30, tilt_deg=35)
-    parts, margins = margins_of(machine, way, "K116")
+    machine, path = bodied(), wandering(np.random.default_rng(3), 30, tilt_deg=35)
+    parts, margins = margins_of(machine, path, "K116")
     lost = []
-    for row, pose in enumerate(poses(way)):
+    for row, pose in enumerate(poses(path)):
         for column, (body, box) in enumerate((body, box) for body in machine.bodies for box in machine.fixtures):
             points = body_points(machine, pose, body)
             least = np.linalg.norm(points - np.clip(points, box.lowest, box.highest), axis=1).min() - machine.clearance
@@ -132,15 +132,15 @@ def lathe(rows, columns):
 
 
 def test_a_mesh_is_never_nearer_than_reported_and_groups_do_not_show():
-    machine, way = bodied(), wandering(np.random.default_rng(4), 30, tilt_deg=35)
+    machine, path = bodied(), wandering(np.random.default_rng(4), 30, tilt_deg=35)
     triangles = lathe(40, 60)
-    parts, margins = margins_of(machine, way, "K117", CollisionMesh.of(triangles))
+    parts, margins = margins_of(machine, path, "K117", CollisionMesh.of(triangles))
     one_by_one = np.min(
-        [margins_of(machine, way, "K117", CollisionMesh.of(triangles[n::7]))[1] for n in range(7)], axis=0
+        [margins_of(machine, path, "K117", CollisionMesh.of(triangles[n::7]))[1] for n in range(7)], axis=0
     )
     np.testing.assert_allclose(margins, one_by_one, atol=0.006)  # each may be too low by 0.003 mm
     corners = triangles.reshape(-1, 3)
-    _, of_points = margins_of(machine, way, "K117", CollisionMesh.of(points=corners))
+    _, of_points = margins_of(machine, path, "K117", CollisionMesh.of(points=corners))
     assert np.all(margins <= of_points + 1e-9)
     assert np.all(of_points - margins < 8.0)  # the triangles are up to 7 mm large
     assert parts == ["spindle", "tool holder"]
@@ -149,9 +149,9 @@ def test_a_mesh_is_never_nearer_than_reported_and_groups_do_not_show():
 def test_struts_are_as_far_from_a_part_as_from_a_fixture():
     box = Box("post", [240.0, -60, 300], [300.0, 60, 800])
     machine = dataclasses.replace(bodied(), fixtures=(box,))
-    way = wandering(np.random.default_rng(6), 60, tilt_deg=35)
-    _, as_fixture = margins_of(machine, way, "K115")
-    _, as_part = margins_of(machine, way, "K121", CollisionMesh.of(boxes=[box]))
+    path = wandering(np.random.default_rng(6), 60, tilt_deg=35)
+    _, as_fixture = margins_of(machine, path, "K115")
+    _, as_part = margins_of(machine, path, "K121", CollisionMesh.of(boxes=[box]))
     # A fixture is never reported nearer than touching, and the ends of a strut are round there, flat here.
     near = (as_fixture > 0) & (as_fixture < 45)
     assert near.sum() > 20
@@ -162,9 +162,9 @@ def test_struts_are_as_far_from_a_part_as_from_a_fixture():
 def test_a_box_as_part_is_a_box_as_fixture():
     box = Box("stock", [-40.0, -30, 100], [50.0, 60, 190])
     machine = dataclasses.replace(bodied(), fixtures=(box,))
-    way = wandering(np.random.default_rng(5), 60, tilt_deg=35)
-    _, as_part = margins_of(machine, way, "K117", CollisionMesh.of(boxes=[box]))
-    _, as_fixture = margins_of(machine, way, "K116")
+    path = wandering(np.random.default_rng(5), 60, tilt_deg=35)
+    _, as_part = margins_of(machine, path, "K117", CollisionMesh.of(boxes=[box]))
+    _, as_fixture = margins_of(machine, path, "K116")
     near = (as_fixture > 0) & (as_fixture < 45)
     assert near.sum() > 10
     # Other directions are tried for twelve triangles than for one box; both are lower bounds, and close.
@@ -178,10 +178,10 @@ def test_a_part_of_nothing_is_refused():
 
 
 def test_what_is_not_stated_is_not_checked():
-    way = PosePath.straight(*upright([[0.0, 0, 200]]))
+    path = PosePath.straight(*upright([[0.0, 0, 200]]))
 
     def codes(machine, part=None):
-        return {check.code for check in all_checks(machine, way, 700, part)} - {"K101", "K102", "K103", "K104", "K105"}
+        return {check.code for check in all_checks(machine, path, 700, part)} - {"K101", "K102", "K103", "K104", "K105"}
 
     machine = bodied()
     assert codes(machine, PART) == {"K113", "K114", "K115", "K116", "K117", "K121"}
@@ -195,13 +195,13 @@ def test_joints_of_one_ball_are_no_collision():
     machine = bodied()
     joints = machine.base_joints.copy()
     joints[1] = joints[2] = joints[1:3].mean(axis=0)
-    way = PosePath.straight(*upright([[0.0, 0, 200]]))
+    path = PosePath.straight(*upright([[0.0, 0, 200]]))
     shared = dataclasses.replace(machine, base_joints=joints, tube_radius=15.0)
-    parts, margins = margins_of(dataclasses.replace(shared, base_joint_radius=0.0), way, "K113")
+    parts, margins = margins_of(dataclasses.replace(shared, base_joint_radius=0.0), path, "K113")
     pair = parts.index("2 and 3")
     assert margins[0, pair] < -30
-    _, margins = margins_of(dataclasses.replace(shared, base_joint_radius=120.0), way, "K113")
-    u, v = unit(PlacedMachine.of(shared, way.rows(slice(None))).direction[0, 1:3])
+    _, margins = margins_of(dataclasses.replace(shared, base_joint_radius=120.0), path, "K113")
+    u, v = unit(PlacedMachine.of(shared, path.rows(slice(None))).direction[0, 1:3])
     opening = np.arccos(u @ v)
     assert margins[0, pair] == pytest.approx(2 * 120 * np.sin(opening / 2) - 2 * 15 - 2, abs=0.01)
     assert LENGTH == 120.0

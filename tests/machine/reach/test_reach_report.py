@@ -41,22 +41,22 @@ def finding(report, name):
 @pytest.mark.parametrize("job", [cone(), square_with_arc(), random_job(np.random.default_rng(4))], ids=range(3))
 def test_the_way_is_the_trajectory_and_its_bounds_hold(job, machine):
     trajectory = placed(job, machine)
-    way, segment, duration = pose_path_of(trajectory)
+    path, segment, duration = pose_path_of(trajectory)
     ends = np.append(segment[1:] != segment[:-1], True)
     ends[0] = False
-    np.testing.assert_allclose(way.tip[ends], trajectory.tip, atol=NANOMETRE)
-    np.testing.assert_allclose(way.axis[ends], trajectory.axis, atol=1e-9)
-    np.testing.assert_allclose(way.tip[0], trajectory.start_tip, atol=NANOMETRE)
-    cells = np.arange(1, len(way))
-    tip, axis, _, _ = way.inside(np.repeat(cells, 21), np.tile(SHARES, len(cells)))
+    np.testing.assert_allclose(path.tip[ends], trajectory.tip, atol=NANOMETRE)
+    np.testing.assert_allclose(path.axis[ends], trajectory.axis, atol=1e-9)
+    np.testing.assert_allclose(path.tip[0], trajectory.start_tip, atol=NANOMETRE)
+    cells = np.arange(1, len(path))
+    tip, axis, _, _ = path.inside(np.repeat(cells, 21), np.tile(SHARES, len(cells)))
     tip, axis = tip.reshape(-1, 21, 3), axis.reshape(-1, 21, 3)
-    np.testing.assert_allclose(tip[:, -1], way.tip[1:], atol=NANOMETRE)
+    np.testing.assert_allclose(tip[:, -1], path.tip[1:], atol=NANOMETRE)
     steps = np.linalg.norm(np.diff(tip, axis=1), axis=2)
-    assert np.all(steps <= way.travel[1:, None] / 20 + NANOMETRE)
-    assert np.all(way.travel[1:] <= steps.sum(axis=1) * 1.01 + NANOMETRE)
+    assert np.all(steps <= path.travel[1:, None] / 20 + NANOMETRE)
+    assert np.all(path.travel[1:] <= steps.sum(axis=1) * 1.01 + NANOMETRE)
     bend = np.linalg.norm(np.diff(tip, 2, axis=1), axis=2) * 20**2
-    assert np.all(bend <= way.bend[1:, None] * 1.01 + MICRON)
-    np.testing.assert_allclose(np.linalg.norm(np.diff(axis, axis=1), axis=2).sum(axis=1), way.angle[1:], atol=1e-4)
+    assert np.all(bend <= path.bend[1:, None] * 1.01 + MICRON)
+    np.testing.assert_allclose(np.linalg.norm(np.diff(axis, axis=1), axis=2).sum(axis=1), path.angle[1:], atol=1e-4)
     extent = ToolPath.of(trajectory, 0.0, 0.0).segments.extent
     assert duration.sum() == pytest.approx(np.sum(extent / trajectory.feed))
 
