@@ -56,9 +56,9 @@ def trajectory_of(
     diagnostics += faults
     if turned is None or options.from_line is None:
         return turned, diagnostics
-    from pkm_post.toolpath import begun_at
+    from pkm_post.toolpath import started_at_line
 
-    begun, faults = begun_at(turned, options.from_line, machine)
+    begun, faults = started_at_line(turned, options.from_line, machine)
     return begun, diagnostics + faults
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pkm_post.toolpath.compensation.offset_options import OffsetOptions
     from pkm_post.toolpath.compensation.swept_volume import SweptVolume, stock_left
     from pkm_post.toolpath.compressor.bounds import SplineBounds
-    from pkm_post.toolpath.from_line import StartLine, begun_at, modal_events, not_repeated, row_of_line
+    from pkm_post.toolpath.from_line import StartLine, modal_events, not_repeated, row_of_line, started_at_line
     from pkm_post.toolpath.machine_offsets import MachineOffsets, with_machine_offsets
     from pkm_post.toolpath.optional_stops import OPTIONAL_STOPS, with_optional_stops
     from pkm_post.toolpath.sides import with_side
@@ -47,7 +47,7 @@ else:
             "compensation.offset_options": "OffsetOptions",
             "compensation.swept_volume": "SweptVolume stock_left",
             "compressor.bounds": "SplineBounds",
-            "from_line": "StartLine begun_at modal_events not_repeated row_of_line",
+            "from_line": "StartLine started_at_line modal_events not_repeated row_of_line",
             "machine_offsets": "MachineOffsets with_machine_offsets",
             "optional_stops": "OPTIONAL_STOPS with_optional_stops",
             "sides": "with_side",
@@ -102,7 +102,7 @@ __all__ = [
     "pose_columns",
     "SplineBounds",
     "StartLine",
-    "begun_at",
+    "started_at_line",
     "modal_events",
     "not_repeated",
     "row_of_line",

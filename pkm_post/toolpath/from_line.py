@@ -2,11 +2,11 @@
 """From line: a program that begins at a line of its source, after an abort or a loss of power.
 
 The rows before the line are left out. What they have switched on is found: the last spindle speed with its wait, the
-last coolant, the tool, and, where that is wanted, the M codes of the machine. The way to the line begins where the
+last coolant, the tool, and, where that is wanted, the M codes of the machine. The approach to the line begins where the
 whole program begins; it leads over the tool-change pose, if the machine file states one, above everything the program
 reaches to above the line, and down along the tool axis, with the feed of the line where that cuts. Spindle and
-coolant are switched on before that last move. As a part of the trajectory, the way is planned, checked for reach and
-collisions and certified like any move.
+coolant are switched on before that last move. As a part of the trajectory, the approach is planned, checked for reach
+and collisions and certified like any move.
 
 Enters: a trajectory on its machine. Leaves: the trajectory from the line on. Units: mm, rad, mm/s.
 """
@@ -34,7 +34,7 @@ from pkm_post.model import (
 from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
 
 APPROACH = "approach"
-"""Name of the operation that the way belongs to."""
+"""Name of the operation that the approach belongs to."""
 _MODAL = (EventKind.SPINDLE, EventKind.COOLANT)
 Findings = tuple[Diagnostic, ...]
 
@@ -56,7 +56,7 @@ class StartLine:
 
 @dataclass(frozen=True)
 class _Approach:
-    """The way to a row: M poses.
+    """The approach to a row: M poses.
 
     Attributes:
         start: (3,) tip before the first one.
@@ -96,8 +96,8 @@ def modal_events(trajectory: Trajectory, row: int, repeat_codes: bool = False) -
     return tuple(last.values())
 
 
-def begun_at(trajectory: Trajectory, start: StartLine, machine: Machine) -> tuple[Trajectory | None, Findings]:
-    """The trajectory from a line on, with the way there; or what is against it.
+def started_at_line(trajectory: Trajectory, start: StartLine, machine: Machine) -> tuple[Trajectory | None, Findings]:
+    """The trajectory from a line on, with the approach to it; or what is against it.
 
     Args:
         trajectory: the whole program.
@@ -111,11 +111,11 @@ def begun_at(trajectory: Trajectory, start: StartLine, machine: Machine) -> tupl
     row = min([each.first for each in threads(trajectory.events) if each.first <= row < each.end], default=row)
     if row == 0:
         return trajectory, ()
-    way = _approach(trajectory, row, machine)
-    if way is None:
+    approach = _approach(trajectory, row, machine)
+    if approach is None:
         tilt = float(np.degrees(np.arccos(trajectory.axis_before()[row, 2])))
         return None, (Diagnostic("K151", trajectory.place(row), Phrase("{} degrees from upright", f"{tilt:.3f}")),)
-    return _joined(trajectory, row, way, start.repeat_codes), (
+    return _joined(trajectory, row, approach, start.repeat_codes), (
         () if start.repeat_codes else not_repeated(trajectory, row)
     )
 
@@ -128,7 +128,7 @@ def not_repeated(trajectory: Trajectory, row: int) -> Findings:
 
 
 def _approach(trajectory: Trajectory, row: int, machine: Machine) -> _Approach | None:
-    """The way from where the program begins to a row; None if the tool is tilted too far to come down to it."""
+    """The approach from where the program begins to a row; None if the tool is tilted too far to come down to it."""
     begin = ToolPose(trajectory.start_tip, trajectory.start_axis, trajectory.start_spin)
     tips, axes = trajectory.tip_before()[row], trajectory.axis_before()[row]
     end = ToolPose(tips, axes, float(trajectory.spin_before()[row]))
@@ -151,68 +151,68 @@ def _before(trajectory: Trajectory, row: int) -> list[Event]:
     return [each for each in trajectory.events if each.row <= row]
 
 
-def _moves(begin: ToolPose, way: tuple[ToolPose, ...]) -> list[ToolPose]:
-    """The poses of a way that are not where the one before is."""
+def _moves(begin: ToolPose, approach: tuple[ToolPose, ...]) -> list[ToolPose]:
+    """The poses of an approach that are not where the one before is."""
     found, last = [], begin
-    for pose in way:
+    for pose in approach:
         if not last.is_at(pose):
             found.append(pose)
             last = pose
     return found
 
 
-def _joined(trajectory: Trajectory, row: int, way: _Approach, repeat_codes: bool) -> Trajectory:
-    """The way, and the rows from a row on."""
-    count, number = len(way.poses), len(trajectory.operations)
+def _joined(trajectory: Trajectory, row: int, approach: _Approach, repeat_codes: bool) -> Trajectory:
+    """The approach, and the rows from a row on."""
+    count, number = len(approach.poses), len(trajectory.operations)
     columns: dict[str, Any] = {
         name: np.concatenate([added, getattr(trajectory, name)[row:]])
-        for name, added in _columns(trajectory, row, way, number).items()
+        for name, added in _columns(trajectory, row, approach, number).items()
     }
     later = (replace(each, row=each.row - row + count) for each in trajectory.events if each.row > row)
-    events = (*_events(trajectory, row, way, repeat_codes), *later)
+    events = (*_events(trajectory, row, approach, repeat_codes), *later)
     operations = (*trajectory.operations, APPROACH)
-    return replace(trajectory, **columns, events=events, operations=operations, start_tip=way.start)
+    return replace(trajectory, **columns, events=events, operations=operations, start_tip=approach.start)
 
 
-def _columns(trajectory: Trajectory, row: int, way: _Approach, operation: int) -> dict[str, Array]:
-    """The columns of the way; its last move cuts if the row does."""
-    count = len(way.poses)
+def _columns(trajectory: Trajectory, row: int, approach: _Approach, operation: int) -> dict[str, Array]:
+    """The columns of the approach; its last move cuts if the row does."""
+    count = len(approach.poses)
     columns = {name: np.repeat(getattr(trajectory, name)[row : row + 1], count, axis=0) for name in TRAJECTORY_COLUMNS}
-    tip, axis, spin = pose_columns(way.poses)
+    tip, axis, spin = pose_columns(approach.poses)
     none = np.full((count, 3), np.nan)
     kind = np.full(count, Kind.RAPID)
     feed = np.full(count, trajectory.feed[trajectory.kind == Kind.RAPID].max(initial=trajectory.feed[row]))
     if count and trajectory.kind[row] != Kind.RAPID:
         kind[-1], feed[-1] = Kind.LINE, trajectory.feed[row]
     columns |= {"kind": kind, "feed": feed, "tip": tip, "axis": axis, "spin": spin}
-    columns |= {"arc_centre": none, "arc_axis": none, "sweep": np.zeros(count), "tool": np.array(way.tools)}
+    columns |= {"arc_centre": none, "arc_axis": none, "sweep": np.zeros(count), "tool": np.array(approach.tools)}
     columns |= {"smooth": np.zeros(count, dtype=bool), "exact_stop": np.ones(count, dtype=bool)}
     columns |= {"operation": np.full(count, operation), "tip_tolerance": np.zeros(count)}
-    return columns | _extents(trajectory, way, columns)
+    return columns | _extents(trajectory, approach, columns)
 
 
-def _extents(trajectory: Trajectory, way: _Approach, columns: dict[str, Array]) -> dict[str, Array]:
-    """Length and angle of each move of the way."""
-    count = len(way.poses)
-    before = np.vstack([way.start, columns["tip"]])[:count]
+def _extents(trajectory: Trajectory, approach: _Approach, columns: dict[str, Array]) -> dict[str, Array]:
+    """Length and angle of each move of the approach."""
+    count = len(approach.poses)
+    before = np.vstack([approach.start, columns["tip"]])[:count]
     axes = np.vstack([trajectory.start_axis, columns["axis"]])[:count]
-    lengths = np.array([trajectory.tools[tool].length for tool in (*way.tools[:1], *way.tools)])
+    lengths = np.array([trajectory.tools[tool].length for tool in (*approach.tools[:1], *approach.tools)])
     before -= np.diff(lengths)[:, None] * axes
     return {"length": norm(columns["tip"] - before), "angle": angle_between(axes, columns["axis"])}
 
 
-def _events(trajectory: Trajectory, row: int, way: _Approach, repeat_codes: bool) -> tuple[Event, ...]:
+def _events(trajectory: Trajectory, row: int, approach: _Approach, repeat_codes: bool) -> tuple[Event, ...]:
     """What has to be switched on: the tool where it is changed, all else before the last move."""
     earlier = _before(trajectory, row)
     tools = [each for each in earlier if each.kind is EventKind.TOOL_CHANGE]
-    found = [replace(tools[-1], row=way.changed)] if tools else []
-    last = max(len(way.poses) - 1, 0)
+    found = [replace(tools[-1], row=approach.changed)] if tools else []
+    last = max(len(approach.poses) - 1, 0)
     for one in modal_events(trajectory, row, repeat_codes):
         found.append(replace(one, row=last))
         if one.kind is EventKind.SPINDLE and one.value:
             found += [replace(each, row=last) for each in _wait_after(earlier, one)]
     begun = (
-        Event(len(way.poses), EventKind.SPINDLE_AXIS, each.lead)
+        Event(len(approach.poses), EventKind.SPINDLE_AXIS, each.lead)
         for each in threads(trajectory.events)
         if each.first == row
     )

@@ -10,7 +10,7 @@ from programs import ON_PALLET, cone, program
 
 from pkm_post.geometry import angle_between, norm
 from pkm_post.model import TRAJECTORY_COLUMNS, Event, EventKind, Kind, Tool, ToolChange
-from pkm_post.toolpath import StartLine, begun_at, place
+from pkm_post.toolpath import StartLine, place, started_at_line
 
 MACHINE = replace(example(), tool_change=None)
 POSE = ToolChange(np.array([0.0, 0.0, 600.0]), np.array([0.0, 0.0, 1.0]), 0.0, 320.0)
@@ -34,7 +34,7 @@ def placed(made=None, machine=MACHINE):
 
 
 def begun(trajectory, line, operation="", machine=MACHINE):
-    found, faults = begun_at(trajectory, StartLine(line, operation), machine)
+    found, faults = started_at_line(trajectory, StartLine(line, operation), machine)
     assert not faults
     return found
 
@@ -118,7 +118,7 @@ def test_codes_of_the_machine_before_the_line_are_named_and_left_out():
         Event(row, EventKind.FUNCTION, number) for row, number in ((0, 10.0), (1, 21.0), (1, 10.0), (3, 11.0))
     )
     whole = replace(placed(), events=functions)
-    found, (fault,) = begun_at(whole, StartLine(int(whole.line[2])), MACHINE)
+    found, (fault,) = started_at_line(whole, StartLine(int(whole.line[2])), MACHINE)
     assert (fault.code, fault.found, fault.place.line) == ("K152", "M10, M21", int(whole.line[2]))
     assert [each.value for each in found.events] == [11.0]
 
@@ -127,22 +127,22 @@ def test_codes_of_the_machine_are_repeated_where_that_is_wanted():
     kinds = EventKind.FUNCTION, EventKind.SPINDLE, EventKind.DWELL, EventKind.COOLANT
     events = ((0, 0, 10), (0, 1, 800), (0, 2, 3), (1, 0, 21), (1, 3, 1), (1, 0, 10), (3, 0, 11))
     whole = replace(placed(), events=tuple(Event(row, kinds[kind], float(value)) for row, kind, value in events))
-    found, faults = begun_at(whole, StartLine(int(whole.line[2]), repeat_codes=True), MACHINE)
+    found, faults = started_at_line(whole, StartLine(int(whole.line[2]), repeat_codes=True), MACHINE)
     assert not faults
     above = [each for each in found.events if each.row < len(found) - len(whole) + 3]
     wanted = [(1, 800), (2, 3), (0, 21), (3, 1), (0, 10)]  # each where it came last, the dwell behind its spindle
     assert [(each.kind, each.value) for each in above] == [(kinds[kind], value) for kind, value in wanted]
     assert {each.row for each in above} == {len(found) - len(whole) + 2 - 1}
-    assert begun_at(whole, StartLine(int(whole.line[0]), repeat_codes=True), MACHINE) == (whole, ())
+    assert started_at_line(whole, StartLine(int(whole.line[0]), repeat_codes=True), MACHINE) == (whole, ())
 
 
 def test_the_first_line_changes_nothing_and_others_are_refused():
     whole = placed()
     assert begun(whole, 1) is whole
     for start in (StartLine(99), StartLine(1, "Another")):
-        found, faults = begun_at(whole, start, MACHINE)
+        found, faults = started_at_line(whole, start, MACHINE)
         assert found is None and [each.code for each in faults] == ["K150"]
     flat = np.array(whole.axis)
     flat[1:3] = [1.0, 0.0, 0.0]
-    found, faults = begun_at(replace(whole, axis=flat), StartLine(int(whole.line[2])), MACHINE)
+    found, faults = started_at_line(replace(whole, axis=flat), StartLine(int(whole.line[2])), MACHINE)
     assert found is None and [each.code for each in faults] == ["K151"]

@@ -156,15 +156,15 @@ class NumericalControl:
         job: PmacJob,
         feed: float = APPROACH_MM_S,
         free: float = -math.inf,
-        check: Callable[[Trajectory], Findings] = lambda way: (),
+        check: Callable[[Trajectory], Findings] = lambda approach: (),
     ) -> tuple[MovePlan | None, Findings]:
         """Plan the approach from the current pose to the start of a program; as ``manual_moves.approach_trajectory``.
 
         Args:
             job: the program.
             feed: mm/s; while the tip stands, degrees per second.
-            free: z in {M} above which the way crosses, mm; by default nothing is known of it.
-            check: what the way would touch, where that is known; an error is no plan.
+            free: z in {M} above which the approach crosses, mm; by default nothing is known of it.
+            check: what the approach would touch, where that is known; an error is no plan.
 
         Raises:
             NotReadyError: the tool pose is unknown, the machine moves, or the start has no pose.
@@ -172,10 +172,10 @@ class NumericalControl:
         here, start = self.standing_pose(), pose_from_home(self._machine, job.first, self.tool_length)
         if start is None:
             raise NotReadyError(["no pose of the platform reachable in small steps from home is that of the start"])
-        way, found = manual_moves.approach_trajectory(self._machine, here, start, self.tool_length, feed, free)
-        if way is not None:
-            found += check(way)
-        return self._plan(None if errors(found) else way, found)
+        approach, found = manual_moves.approach_trajectory(self._machine, here, start, self.tool_length, feed, free)
+        if approach is not None:
+            found += check(approach)
+        return self._plan(None if errors(found) else approach, found)
 
     def execute(self, plan: MovePlan, near: float = START_TOLERANCE_MM) -> Status:
         """Load a plan, verify its listing and start it; as ``execute.execute``.

@@ -69,14 +69,14 @@ Jog = CartesianJog | StrutJog
 
 
 def jog_trajectory(
-    jog: Jog, machine: Machine, here: ToolPose, tool_length: float, feed: float
+    jog: Jog, machine: Machine, pose: ToolPose, tool_length: float, feed: float
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """The trajectory of a jog, or why there is none.
 
     Args:
         jog: the move requested.
         machine: its geometry and highest feed.
-        here: current pose of the tool.
+        pose: current pose of the tool.
         tool_length: gauge length of the tool in the spindle, mm.
         feed: of the tip, mm/s; while the tip stands, degrees per second, as in programs.
 
@@ -86,16 +86,16 @@ def jog_trajectory(
     if not (np.isfinite(feed) and feed > 0):
         raise ValueError(f"feed: expected a number above zero, got {feed}")
     if isinstance(jog, StrutJog):
-        poses = _of_strut(jog, machine, here, tool_length)
+        poses = _of_strut(jog, machine, pose, tool_length)
         if poses is None:
             return None, (Diagnostic("C202", Place(_JOG), f"strut {jog.strut} by {jog.by:g} mm"),)
     else:
-        poses = _of_tool(jog, here)
-    return _through(machine, here, poses, tool_length, min(feed, machine.feed_speed))
+        poses = _of_tool(jog, pose)
+    return _through(machine, pose, poses, tool_length, min(feed, machine.feed_speed))
 
 
 def approach_trajectory(
-    machine: Machine, here: ToolPose, start: ToolPose, tool_length: float, feed: float, free: float = -math.inf
+    machine: Machine, pose: ToolPose, start: ToolPose, tool_length: float, feed: float, free: float = -math.inf
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """The safe approach to the start of a program: up along the tool axis, across, down along the axis of the start.
 
@@ -103,7 +103,7 @@ def approach_trajectory(
 
     Args:
         machine: its geometry, safe height and highest feed.
-        here: current pose of the tool.
+        pose: current pose of the tool.
         start: target pose.
         tool_length: gauge length of the tool in the spindle, mm.
         feed: of the tip, mm/s; while the tip stands, degrees per second.
@@ -112,48 +112,48 @@ def approach_trajectory(
     height = max(float(start.tip[2]), free)
     if machine.tool_change is not None:
         height = max(height, machine.tool_change.safe_height)
-    if not (here.rises_to(height) and start.rises_to(height)):
+    if not (pose.rises_to(height) and start.rises_to(height)):
         return None, (Diagnostic("K142", Place("approach"), f"to z {height:.3f} mm"),)
-    way = [here, *clearance_path(here, start, height)]
-    moved = [pose for before, pose in itertools.pairwise(way) if not before.is_at(pose)]
+    route = [pose, *clearance_path(pose, start, height)]
+    moved = [each for before, each in itertools.pairwise(route) if not before.is_at(each)]
     if not moved:
         return None, (Diagnostic("C201", Place("approach"), "the tool is at the start of the program"),)
-    trajectory, diagnostics = _through(machine, here, pose_columns(moved), tool_length, min(feed, machine.feed_speed))
+    trajectory, diagnostics = _through(machine, pose, pose_columns(moved), tool_length, min(feed, machine.feed_speed))
     return None if trajectory is None else replace(trajectory, source="approach"), diagnostics
 
 
 def straight_trajectory(
-    machine: Machine, here: ToolPose, end: ToolPose, tool_length: float, feed: float
+    machine: Machine, pose: ToolPose, end: ToolPose, tool_length: float, feed: float
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """One straight move; arguments as for ``approach_trajectory``."""
-    return _through(machine, here, pose_columns([end]), tool_length, min(feed, machine.feed_speed))
+    return _through(machine, pose, pose_columns([end]), tool_length, min(feed, machine.feed_speed))
 
 
 def stationary_trajectory(
-    machine: Machine, here: ToolPose, tool_length: float, events: tuple[Event, ...]
+    machine: Machine, pose: ToolPose, tool_length: float, events: tuple[Event, ...]
 ) -> Trajectory:
     """Events at standstill, with the minimal path that planning needs.
 
     Args:
         machine: its geometry and highest feed.
-        here: current pose of the tool.
+        pose: current pose of the tool.
         tool_length: gauge length of the tool in the spindle, mm.
         events: each at row 0.
     """
-    tip = (here.tip + _MEASURABLE * here.axis)[None]
-    poses = tip, here.axis[None], np.array([here.spin])
-    trajectory, diagnostics = _through(machine, here, poses, tool_length, machine.feed_speed)
+    tip = (pose.tip + _MEASURABLE * pose.axis)[None]
+    poses = tip, pose.axis[None], np.array([pose.spin])
+    trajectory, diagnostics = _through(machine, pose, poses, tool_length, machine.feed_speed)
     if trajectory is None:
-        raise ValueError(f"here: expected a pose, got {here}: {diagnostics}")
+        raise ValueError(f"pose: expected that of the tool, got {pose}: {diagnostics}")
     return replace(trajectory, events=events)
 
 
-def _of_tool(jog: CartesianJog, here: ToolPose) -> tuple[Array, Array, Array]:
+def _of_tool(jog: CartesianJog, pose: ToolPose) -> tuple[Array, Array, Array]:
     values = np.array([*jog.shift, *jog.tilt, jog.spin])
     if not np.isfinite(values).all():
         raise ValueError(f"jog: expected finite numbers, got {values.tolist()}")
-    axis = _about(1, jog.tilt[1]) @ _about(0, jog.tilt[0]) @ here.axis
-    return (here.tip + values[:3])[None], (axis / norm(axis))[None], np.array([here.spin + jog.spin])
+    axis = _about(1, jog.tilt[1]) @ _about(0, jog.tilt[0]) @ pose.axis
+    return (pose.tip + values[:3])[None], (axis / norm(axis))[None], np.array([pose.spin + jog.spin])
 
 
 def _about(coordinate: int, angle: float) -> Array:
@@ -165,31 +165,31 @@ def _about(coordinate: int, angle: float) -> Array:
     return turn
 
 
-def _of_strut(jog: StrutJog, machine: Machine, here: ToolPose, tool_length: float) -> tuple[Array, Array, Array] | None:
+def _of_strut(jog: StrutJog, machine: Machine, pose: ToolPose, tool_length: float) -> tuple[Array, Array, Array] | None:
     if not np.isfinite(jog.by):
         raise ValueError(f"by: expected a finite number, got {jog.by}")
     steps = max(1, int(np.ceil(abs(jog.by) / _STEP_MM)))
     tool = np.full(steps, tool_length)
-    lengths = np.repeat(_lengths(machine, here, tool_length), steps, axis=0)
+    lengths = np.repeat(_lengths(machine, pose, tool_length), steps, axis=0)
     lengths[:, jog.strut - 1] += jog.by * np.arange(1, steps + 1) / steps
-    rotation = platform_rotation(here.axis[None], np.array([here.spin]))[0]
-    found = forward_along_path(machine, lengths, tool, here.tip, rotation)
+    rotation = platform_rotation(pose.axis[None], np.array([pose.spin]))[0]
+    found = forward_along_path(machine, lengths, tool, pose.tip, rotation)
     return (found.tip, found.axis, spin_of(found.rotation)) if found.converged.all() else None
 
 
-def _lengths(machine: Machine, here: ToolPose, tool_length: float) -> Array:
+def _lengths(machine: Machine, pose: ToolPose, tool_length: float) -> Array:
     """(1, 6) strut lengths of a pose, mm."""
-    return strut_lengths(machine, here.tip[None], here.axis[None], np.array([here.spin]), np.array([tool_length]))
+    return strut_lengths(machine, pose.tip[None], pose.axis[None], np.array([pose.spin]), np.array([tool_length]))
 
 
 def _through(
-    machine: Machine, here: ToolPose, poses: tuple[Array, Array, Array], tool_length: float, feed: float
+    machine: Machine, pose: ToolPose, poses: tuple[Array, Array, Array], tool_length: float, feed: float
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """Straight segments from the current pose through poses, to rest."""
     tip, axis, spin = poses
-    length = norm(np.diff(tip, axis=0, prepend=here.tip[None]))
-    axis_before = np.vstack([here.axis, axis[:-1]])
-    angle, turned = angle_between(axis_before, axis), np.abs(np.diff(spin, prepend=here.spin))
+    length = norm(np.diff(tip, axis=0, prepend=pose.tip[None]))
+    axis_before = np.vstack([pose.axis, axis[:-1]])
+    angle, turned = angle_between(axis_before, axis), np.abs(np.diff(spin, prepend=pose.spin))
     if (np.maximum(length, np.maximum(angle, turned)) < _SMALLEST_MOVE).any():
         return None, (Diagnostic("C201", Place(_JOG), "the jog leads to where the tool is"),)
     trajectory = Trajectory(
@@ -199,9 +199,9 @@ def _through(
         spin=spin,
         length=length,
         angle=angle,
-        start_tip=here.tip,
-        start_axis=here.axis,
-        start_spin=here.spin,
+        start_tip=pose.tip,
+        start_axis=pose.axis,
+        start_spin=pose.spin,
         events=(),
         operations=("",),
         tools={0: Tool(0, "in the spindle", 0.0, 0.0, tool_length)},
@@ -257,14 +257,14 @@ class MdiSettings:
 
 
 def mdi_trajectory(
-    line: str, machine: Machine, here: ToolPose, tool_length: float, reading: MdiSettings | None = None
+    line: str, machine: Machine, pose: ToolPose, tool_length: float, reading: MdiSettings | None = None
 ) -> tuple[Trajectory | None, Findings]:
     """The trajectory of a line of G-code.
 
     Args:
         line: one line of text.
         machine: its work offsets and limits apply.
-        here: current pose of the tool.
+        pose: current pose of the tool.
         tool_length: gauge length of the tool in the spindle, mm.
         reading: how to read the line.
 
@@ -278,52 +278,52 @@ def mdi_trajectory(
     offset, diagnostics = work_offset(machine, options)
     if offset is None:
         return None, diagnostics
-    program, faults = _read(line, here, offset, tool_length, reading)
+    program, faults = _read(line, pose, offset, tool_length, reading)
     if any(fault.code == _EMPTY_CODE for fault in faults):
-        return _standing(line, machine, here, offset, tool_length, reading)
+        return _standing(line, machine, pose, offset, tool_length, reading)
     diagnostics += faults
     if program is None or errors(diagnostics):
         return None, diagnostics
     # A trajectory starts at the home of its machine. Here that is the current pose, so that the line leads straight
     # from it.
-    standing = replace(machine, home_tip=here.tip, home_axis=here.axis, home_spin=here.spin, tool_change=None)
+    standing = replace(machine, home_tip=pose.tip, home_axis=pose.axis, home_spin=pose.spin, tool_change=None)
     standing = replace(standing, largest_tool_diameter=math.inf)  # diameter of the tool in the spindle is unknown
     trajectory, faults = trajectory_of(program, standing, options)
     diagnostics += tuple(replace(fault, code="C201") if fault.code == _NO_MOVES_CODE else fault for fault in faults)
     if trajectory is None or reading.axis_words == _SAYS_THE_SPIN:
         return trajectory, diagnostics
-    return replace(trajectory, spin=np.full(len(trajectory), here.spin)), diagnostics
+    return replace(trajectory, spin=np.full(len(trajectory), pose.spin)), diagnostics
 
 
 def _standing(
-    line: str, machine: Machine, here: ToolPose, machine_from_work: Array, tool_length: float, reading: MdiSettings
+    line: str, machine: Machine, pose: ToolPose, machine_from_work: Array, tool_length: float, reading: MdiSettings
 ) -> tuple[Trajectory | None, Findings]:
     """A line without a move: switching codes at standstill."""
-    stay = _STAY.format(*_in_work(here, machine_from_work))
-    program, diagnostics = _read(f"{line}\n{stay}", here, machine_from_work, tool_length, reading)
+    stay = _STAY.format(*_in_work(pose, machine_from_work))
+    program, diagnostics = _read(f"{line}\n{stay}", pose, machine_from_work, tool_length, reading)
     if program is not None and program.events and not errors(diagnostics):
-        return stationary_trajectory(machine, here, tool_length, program.events), diagnostics
+        return stationary_trajectory(machine, pose, tool_length, program.events), diagnostics
     diagnostics = tuple(fault for fault in diagnostics if fault.code != _EMPTY_CODE)
     if not errors(diagnostics):
         diagnostics += (Diagnostic("C201", Place(_MDI, line=1), line.strip() or "an empty line"),)
     return None, diagnostics
 
 
-def _in_work(here: ToolPose, machine_from_work: Array) -> tuple[float, float, float]:
+def _in_work(pose: ToolPose, machine_from_work: Array) -> tuple[float, float, float]:
     """The tip in {C}, mm."""
-    x, y, z = (machine_from_work[:3, :3].T @ (here.tip - machine_from_work[:3, 3])).tolist()
+    x, y, z = (machine_from_work[:3, :3].T @ (pose.tip - machine_from_work[:3, 3])).tolist()
     return x, y, z
 
 
 def _read(
-    line: str, here: ToolPose, machine_from_work: Array, tool_length: float, reading: MdiSettings
+    line: str, pose: ToolPose, machine_from_work: Array, tool_length: float, reading: MdiSettings
 ) -> tuple[Program | None, Findings]:
     """The line as a program in {C}."""
     # A NaN diameter reveals cutter compensation.
     tool = Tool(0, "in the spindle", math.nan, 0.0, tool_length)
     options = gcode.ReadOptions(
         default_tool=tool,
-        start=_in_work(here, machine_from_work),
+        start=_in_work(pose, machine_from_work),
         axis_words=reading.axis_words,
         functions=reading.functions,
         flavour="rs274",  # one line is no evidence, and the same words mean the same in every line
@@ -338,6 +338,6 @@ def _read(
         return None, (*diagnostics, Diagnostic("C203", Place(_MDI, line=1), line.splitlines()[0].strip()))
     tools = {number: replace(each, diameter=0.0) for number, each in program.tools.items()}
     if reading.axis_words == "none":
-        kept = np.tile(machine_from_work[:3, :3].T @ here.axis, (len(program), 1))
+        kept = np.tile(machine_from_work[:3, :3].T @ pose.axis, (len(program), 1))
         return replace(program, tools=tools, tool_axis=kept), diagnostics
     return replace(program, tools=tools), diagnostics

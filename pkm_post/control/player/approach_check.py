@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Approach check: whether the way to a row is clear of part, stock and fixtures, where these are known.
+"""Approach check: whether the approach to a row is clear of part, stock and fixtures, where these are known.
 
-The stock is what the rows before have left of it, so the way is checked as the end of a trajectory with these rows.
-From their end it goes on above everything to where the way begins, with a tool that has no cutter: there it cuts and
-touches nothing.
+The stock is what the rows before have left of it, so the approach is checked as the end of a trajectory with these
+rows. From their end it goes on above everything to where the approach begins, with a tool that has no cutter: there it
+cuts and touches nothing.
 
-Enters: a program, a way to one of its rows. Leaves: what the way would touch. Units: mm.
+Enters: a program, an approach to one of its rows. Leaves: what the approach would touch. Units: mm.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ from pkm_post.model import TRAJECTORY_COLUMNS, Diagnostic, Kind, Mesh, Setup, To
 from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.toolpath import ToolPose, clearance_path, pose_columns
 
-_WAY, _BETWEEN = "approach", "between"
+_APPROACH, _BETWEEN = "approach", "between"
 
 
-def approach_faults(task: PlayContext, row: int, way: Trajectory) -> tuple[Diagnostic, ...]:
-    """What the way to a row would touch, errors and warnings; nothing where no set-up is known.
+def approach_faults(task: PlayContext, row: int, approach: Trajectory) -> tuple[Diagnostic, ...]:
+    """What the approach to a row would touch, errors and warnings; nothing where no set-up is known.
 
     Args:
         task: the program, with its set-up.
-        row: where the way ends.
-        way: straight moves, with the tool of the row.
+        row: where the approach ends.
+        approach: straight moves, with the tool of the row.
     """
     if task.setup.is_empty:
         return ()
-    found = find_collisions(_with_rows_before(task, row, way), task.machine, task.setup, TOLERANCES)
-    return tuple(each for each in found.faults if each.place.operation == _WAY)
+    found = find_collisions(_with_rows_before(task, row, approach), task.machine, task.setup, TOLERANCES)
+    return tuple(each for each in found.faults if each.place.operation == _APPROACH)
 
 
 def check_start(task: PlayContext, first: Array, tool_length: float | None) -> None:
@@ -62,20 +62,22 @@ def check_start(task: PlayContext, first: Array, tool_length: float | None) -> N
         raise NotReadyError([f"the trajectory begins elsewhere than the program: a strut is {off:.3f} mm off there"])
 
 
-def _with_rows_before(task: PlayContext, row: int, way: Trajectory) -> Trajectory:
-    """The rows before a row, and the way to it; up and down along the axis it may cut as the row does."""
+def _with_rows_before(task: PlayContext, row: int, approach: Trajectory) -> Trajectory:
+    """The rows before a row, and the approach to it; up and down along the axis it may cut as the row does."""
     program = task.trajectory
     cuts = Kind.RAPID if program.kind[row] == Kind.RAPID else Kind.LINE
-    number = np.arange(len(way))
-    kinds = np.where(number == 0, Kind.LINE, np.where(number == len(way) - 1, cuts, Kind.RAPID))
-    start = ToolPose(way.start_tip, way.start_axis, way.start_spin)
+    number = np.arange(len(approach))
+    kinds = np.where(number == 0, Kind.LINE, np.where(number == len(approach) - 1, cuts, Kind.RAPID))
+    start = ToolPose(approach.start_tip, approach.start_axis, approach.start_spin)
     without = max(program.tools) + 1
-    parts = [_moves(program, row, way, kinds, len(program.operations))]
+    parts = [_moves(program, row, approach, kinds, len(program.operations))]
     if row:
         before = rows_of(program, 0, row)
         end = ToolPose(before.tip[-1], before.axis[-1], float(before.spin[-1]))
-        over = [pose for pose in clearance_path(end, start, _height(task, way)) if not pose.is_at(end)]
-        between = _moves(program, row, _through(way, over), np.full(len(over), Kind.RAPID), len(program.operations) + 1)
+        over = [pose for pose in clearance_path(end, start, _height(task, approach)) if not pose.is_at(end)]
+        between = _moves(
+            program, row, _through(approach, over), np.full(len(over), Kind.RAPID), len(program.operations) + 1
+        )
         parts = [before, replace(between, tool=np.full(len(over), without)), *parts]
         start = ToolPose(before.start_tip, before.start_axis, before.start_spin)
     columns: dict[str, Any] = {
@@ -85,7 +87,7 @@ def _with_rows_before(task: PlayContext, row: int, way: Trajectory) -> Trajector
         program,
         **columns,
         events=(),
-        operations=(*program.operations, _WAY, _BETWEEN),
+        operations=(*program.operations, _APPROACH, _BETWEEN),
         tools=program.tools | {without: Tool(without, "none", 0.0, 0.0, program.tools[int(program.tool[row])].length)},
         start_tip=start.tip,
         start_axis=start.axis,
@@ -94,21 +96,21 @@ def _with_rows_before(task: PlayContext, row: int, way: Trajectory) -> Trajector
     return replace(joined, **_extents(joined))
 
 
-def _through(way: Trajectory, poses: list[ToolPose]) -> Trajectory:
-    """Moves to some poses; all other columns are those of the first row of a way."""
+def _through(approach: Trajectory, poses: list[ToolPose]) -> Trajectory:
+    """Moves to some poses; all other columns are those of the first row of an approach."""
     columns: dict[str, Any] = {
-        name: np.repeat(getattr(way, name)[:1], len(poses), axis=0) for name in TRAJECTORY_COLUMNS
+        name: np.repeat(getattr(approach, name)[:1], len(poses), axis=0) for name in TRAJECTORY_COLUMNS
     }
     tip, axis, spin = pose_columns(poses)
     columns |= {"tip": tip, "axis": axis, "spin": spin}
-    return replace(way, **columns)
+    return replace(approach, **columns)
 
 
-def _moves(program: Trajectory, row: int, way: Trajectory, kinds: Array, operation: int) -> Trajectory:
+def _moves(program: Trajectory, row: int, approach: Trajectory, kinds: Array, operation: int) -> Trajectory:
     """Moves with the tool and line of a row of the program, in an operation of their own."""
-    count = len(way)
+    count = len(approach)
     return replace(
-        way,
+        approach,
         kind=kinds,
         tool=np.full(count, program.tool[row]),
         line=np.full(count, program.line[row]),
@@ -123,10 +125,10 @@ def _extents(made: Trajectory) -> dict[str, Any]:
     return {"length": length, "angle": np.where(straight, angle_between(made.axis_before(), made.axis), made.angle)}
 
 
-def _height(task: PlayContext, way: Trajectory) -> float:
+def _height(task: PlayContext, approach: Trajectory) -> float:
     """Z in {M} above everything that is known."""
     tops = [_top(mesh, task.trajectory) for mesh in _meshes(task.setup)]
-    return max(float(way.tip[:, 2].max()), float(task.trajectory.tip[:, 2].max()), *tops)
+    return max(float(approach.tip[:, 2].max()), float(task.trajectory.tip[:, 2].max()), *tops)
 
 
 def _meshes(setup: Setup) -> list[Mesh]:

@@ -44,11 +44,11 @@ class Retract:
         self._task = task
         self._from: ToolPose | None = None
 
-    def up(self, way: float, tool_length: float) -> None:
+    def up(self, distance: float, tool_length: float) -> None:
         """Go up along the tool axis; what cannot be is logged, and nothing moves.
 
         Args:
-            way: mm.
+            distance: mm.
             tool_length: gauge length of the tool in the spindle, mm.
 
         Raises:
@@ -58,14 +58,16 @@ class Retract:
         if here is None:
             _log.warning("%s", Phrase("no retract: {}", _UNKNOWN))
             return
-        x, y, z = (way * here.axis).tolist()
+        x, y, z = (distance * here.axis).tolist()
         made = jog_trajectory(CartesianJog((x, y, z)), self._task.machine, here, tool_length, APPROACH_MM_S)
         found = self._done(*made)
         for each in found:
             _log.warning("%s", Phrase("no retract: {}", each))
         if not found:
             self._from = self._from or here
-            above = Phrase("the tool is {} above its path; it goes back before the play goes on", Amount(way, "mm"))
+            above = Phrase(
+                "the tool is {} above its path; it goes back before the play goes on", Amount(distance, "mm")
+            )
             _log.info("%s", above)
 
     def back(self, tool_length: float) -> None:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Start line: begin a trajectory at a line of its source, after an abort or a loss of power.
 
-What the rows before the line have switched on is found, spindle, coolant and tool; the way to the line is that of an
+What the rows before the line have switched on is found, spindle, coolant and tool; the path to the line is that of an
 approach: up along the tool axis, across above everything that the program reaches to, and down along the axis of the
 start, planned, certified and checked for reach like any move by hand, and against part, stock and fixtures where these
 are known. Spindle and coolant are switched on above the start, before the last move down.
@@ -49,7 +49,7 @@ def go_to_row(task: PlayContext, row: int, feed: float = APPROACH_MM_S, repeat_c
 
     Raises:
         NotReadyError: the pose of the tool is unknown, or the machine is not ready.
-        Refused: the way is not certified.
+        Refused: the approach is not certified.
         PmacError: it did not arrive.
     """
     events = modal_events(task.trajectory, row, repeat_codes)
@@ -65,7 +65,7 @@ def go_to_row(task: PlayContext, row: int, feed: float = APPROACH_MM_S, repeat_c
 
 
 def approach_to_row(task: PlayContext, row: int, events: tuple[Event, ...], feed: float) -> MovePlan | None:
-    """The way to the start of a row, with events above it; None where the tool is there.
+    """The approach to the start of a row, with events above it; None where the tool is there.
 
     Raises:
         NotReadyError, Refused: as ``go_to_row``.
@@ -76,24 +76,24 @@ def approach_to_row(task: PlayContext, row: int, events: tuple[Event, ...], feed
     if here is None:
         raise NotReadyError(["no pose of the platform reachable in small steps from home has these strut lengths"])
     free = float(task.trajectory.tip[:, 2].max())
-    way, diagnostics = approach_trajectory(machine, here, start, length, feed, free)
-    if way is None:
+    approach, diagnostics = approach_trajectory(machine, here, start, length, feed, free)
+    if approach is None:
         if [each.code for each in diagnostics] == [_THERE]:
             return None
         raise Refused(diagnostics)
-    touched = approach_faults(task, row, way)
+    touched = approach_faults(task, row, approach)
     for each in touched:
         _log.warning("%s", each)
     if errors(touched):
         raise Refused(errors(touched))
-    plan, diagnostics = planned(_with_events(way, events), machine, settings, TOLERANCES)
+    plan, diagnostics = planned(_with_events(approach, events), machine, settings, TOLERANCES)
     if plan is None:
         raise Refused(diagnostics)
     return plan
 
 
-def _with_events(way: Trajectory, events: tuple[Event, ...]) -> Trajectory:
-    """The way with events before its last move, the way down."""
-    last = len(way) - 1
-    stops = way.exact_stop | (np.arange(len(way)) >= last - 1)
-    return replace(way, exact_stop=stops, events=tuple(Event(last, each.kind, each.value) for each in events))
+def _with_events(approach: Trajectory, events: tuple[Event, ...]) -> Trajectory:
+    """The approach with events before its last move, the move down."""
+    last = len(approach) - 1
+    stops = approach.exact_stop | (np.arange(len(approach)) >= last - 1)
+    return replace(approach, exact_stop=stops, events=tuple(Event(last, each.kind, each.value) for each in events))

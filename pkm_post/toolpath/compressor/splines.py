@@ -61,8 +61,8 @@ class Splines:
         length = np.array([part.begin[-1] + part.width[-1] for part in parts])
         pieces = np.array([len(part.begin) for part in parts])
         shifted = [
-            part.shifted(way, count)
-            for part, way, count in zip(parts, np.cumsum(length) - length, np.cumsum(pieces) - pieces, strict=True)
+            part.shifted(distance, count)
+            for part, distance, count in zip(parts, np.cumsum(length) - length, np.cumsum(pieces) - pieces, strict=True)
         ]
         columns = ([getattr(part, field.name) for part in shifted] for field in fields(cls))
         row, place, extent, first, last, begin, width, powers = (np.concatenate(one, axis=-1) for one in columns)
@@ -70,15 +70,15 @@ class Splines:
         order = np.argsort(whole.row, kind="stable")
         return whole._rows(order)
 
-    def shifted(self, way: float, pieces: int) -> Splines:
+    def shifted(self, distance: float, pieces: int) -> Splines:
         """The same curves after others, of this length and number of pieces."""
         return Splines(
             self.row,
-            self.place + way,
+            self.place + distance,
             self.extent,
             self.first + pieces,
             self.last + pieces,
-            self.begin + way,
+            self.begin + distance,
             self.width,
             self.powers,
         )

@@ -203,18 +203,18 @@ def quasi_interpolant(grids: Grids, polyline: Polylines, bend: Array) -> Array:
     return reflected(grids, sharp, bend)
 
 
-def end_bends(polyline: Polylines, way: Array) -> Array:
-    """Second derivatives at start and end of each run, (2, C, R): means over a way, (R,), from each.
+def end_bends(polyline: Polylines, length: Array) -> Array:
+    """Second derivatives at start and end of each run, (2, C, R): means over a length, (R,), from each.
 
-    The changes D_j of the slope at distances x_j from the end count 6 x (1 - x) / way, x = x_j / way.
+    The changes D_j of the slope at distances x_j from the end count 6 x (1 - x) / length, x = x_j / length.
     """
     inner = np.flatnonzero(polyline.inner)
     run, bend = polyline.run[inner], polyline.bend
     s = polyline.s[inner]
-    found = np.empty((2, len(bend), len(way)))
+    found = np.empty((2, len(bend), len(length)))
     for side, distance in zip(found, (s, polyline.length[run] - s), strict=True):
-        x = np.minimum(distance / way[run], 1.0)
-        weight = 6 * x * (1 - x) / way[run]
+        x = np.minimum(distance / length[run], 1.0)
+        weight = 6 * x * (1 - x) / length[run]
         for row, change in zip(side, bend, strict=True):
-            row[:] = np.bincount(run, weight * change, len(way))
+            row[:] = np.bincount(run, weight * change, len(length))
     return found

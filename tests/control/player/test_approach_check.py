@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The way to a row against a stock that the rows before have cut, and against clamps."""
+"""The approach to a row against a stock that the rows before have cut, and against clamps."""
 
 import numpy as np
 import pytest
@@ -20,13 +20,13 @@ ABOVE_MM = 25.0
 
 
 def codes(trajectory, row, setup, shift=(0.0, 0.0, 0.0)):
-    """Codes of the way to a row from a place beside the end of the row before it."""
+    """Codes of the approach to a row from a place beside the end of the row before it."""
     start, length = pose_before(trajectory, row)
     here = ToolPose(start.tip + shift, start.axis, start.spin)
     free = float(trajectory.tip[:, 2].max()) + ABOVE_MM
-    way, faults = approach_trajectory(MACHINE, here, start, length, 10.0, free)
+    approach, faults = approach_trajectory(MACHINE, here, start, length, 10.0, free)
     assert not faults
-    return {each.code for each in approach_faults(PlayContext(None, MACHINE, None, trajectory, setup), row, way)}
+    return {each.code for each in approach_faults(PlayContext(None, MACHINE, None, trajectory, setup), row, approach)}
 
 
 def test_nothing_is_known():
