@@ -131,7 +131,7 @@ class FeedStudy:
 
     Attributes:
         time: (M,) s.
-        asked: (M,) programmed feed.
+        programmed: (M,) programmed feed.
         possible: (M,) highest tip speed that the limits of the machine allow at that place.
         planned: (M,) tip speed.
         limit: (M,) index into ``limits`` of what keeps the plan below the programmed feed; -1 where it is at the feed.
@@ -141,7 +141,7 @@ class FeedStudy:
     """
 
     time: Array
-    asked: Array
+    programmed: Array
     possible: Array
     planned: Array
     limit: Array
@@ -150,7 +150,7 @@ class FeedStudy:
     cutting: Array
 
     def __post_init__(self) -> None:
-        numbers = dict.fromkeys(("time", "asked", "possible", "planned"), _NUMBER)
+        numbers = dict.fromkeys(("time", "programmed", "possible", "planned"), _NUMBER)
         rows: dict[str, RowType] = {"limit": (np.int64, ()), "row": (np.int64, ()), "cutting": (np.bool_, ())}
         freeze(self, len(self.time), numbers | rows)
 

@@ -91,9 +91,9 @@ class Highest:
                 ends_of_numbers.append(end)
                 numbers.append(one.table[:, group, end][:, None] * factor[end])
             elif len(end):
-                found.append(Limits(ends.taken(end), one.table[..., end] * factor[end], jerk))
+                found.append(Limits(ends.take(end), one.table[..., end] * factor[end], jerk))
         if sum(map(len, ends_of_numbers)):
-            found.append(Limits(ends.taken(np.concatenate(ends_of_numbers)), np.concatenate(numbers, axis=2), jerk))
+            found.append(Limits(ends.take(np.concatenate(ends_of_numbers)), np.concatenate(numbers, axis=2), jerk))
         return found
 
 

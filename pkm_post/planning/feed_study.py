@@ -41,16 +41,16 @@ def feed_study(path: ToolPath, schedule: Schedule, trajectory: Trajectory, machi
     poses = path.at(s)
     row = poses.segment
     names, possible, used = zip(*_columns(limited_quantities(machine, poses), speed, acceleration), strict=True)
-    asked = trajectory.feed[row]
-    names, used = (*names, _CONTROLLER), (*used, np.where(path.feed[row] < asked, speed / path.feed[row], 0.0))
+    programmed = trajectory.feed[row]
+    names, used = (*names, _CONTROLLER), (*used, np.where(path.feed[row] < programmed, speed / path.feed[row], 0.0))
     moved = np.where(norm(poses.tip_1) > _NEGLIGIBLE, norm(poses.tip_1), 1.0)  # 1 where the tool turns in place
     planned = speed * moved
     return FeedStudy(
         time=time,
-        asked=asked,
+        programmed=programmed,
         possible=np.minimum.reduce(possible) * moved,
         planned=planned,
-        limit=np.where(planned >= AT_FEED * asked, -1, np.argmax(used, axis=0)),
+        limit=np.where(planned >= AT_FEED * programmed, -1, np.argmax(used, axis=0)),
         limits=names,
         row=row,
         cutting=trajectory.kind[row] != Kind.RAPID,

@@ -112,7 +112,7 @@ class Demands:
             slower: (M - 1,) by what factor each cell is to be slower than the limits allow.
             held: (N,) value of each unknown that is held, NaN for the others.
         """
-        knots, ends = (one.where_free(held) for one in (spline.ends.taken(spline.knots()), spline.ends))
+        knots, ends = (one.where_free(held) for one in (spline.ends.take(spline.knots()), spline.ends))
         factor = np.maximum(slower[knots.place], slower[knots.place - 1]) ** 2
         jerks, ceiling = self._jerks(ends), np.zeros((3, 1, len(knots.place)))
         ceiling[2, 0] = 1 / self.ceiling[2 * knots.place]

@@ -174,7 +174,7 @@ def _reach_faults(
     marks = stations(path, deviates)
     few = ~straight_groups(path, bounds, deviates)[marks.segment]
     few[0] = True
-    if few.all() or reach_faults(machine, trajectory, *_way(path, marks.some(few))):
+    if few.all() or reach_faults(machine, trajectory, *_way(path, marks.take(few))):
         return reach_faults(machine, trajectory, *_way(path, marks))
     return ()
 

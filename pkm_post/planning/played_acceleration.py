@@ -53,7 +53,7 @@ class Windows:
     planned: Array
     played: Array
 
-    def some(self, rows: Array) -> Windows:
+    def take(self, rows: Array) -> Windows:
         """Some of the windows."""
         return Windows(*(getattr(self, field.name)[rows] for field in fields(self)))
 
@@ -136,9 +136,9 @@ class StationMotion:
     square: Array
     struts: Array
 
-    def some(self, rows: Array) -> StationMotion:
+    def take(self, rows: Array) -> StationMotion:
         """Some of the stations."""
-        return StationMotion(self.path, self.marks.some(rows), self.time[rows], self.square[rows], self.struts)
+        return StationMotion(self.path, self.marks.take(rows), self.time[rows], self.square[rows], self.struts)
 
     def windows(self, machine: Machine, about: Array, interval: float) -> Windows:
         """The windows about some stations.
@@ -153,7 +153,7 @@ class StationMotion:
 
         def of(piece: slice) -> Windows:
             of_piece = rows[slice(*np.searchsorted(rows, [first[piece][0], last[piece][-1]]))]
-            return self.some(of_piece)._windows(
+            return self.take(of_piece)._windows(
                 machine, np.diff(of_piece) == 1, np.searchsorted(of_piece, about[piece]), interval
             )
 

@@ -128,7 +128,7 @@ class SpanToRest:
         """The stations between both ends, and the ends."""
         gap = _NARROW * (self.end - self.start)
         inside = np.flatnonzero((marks.s > self.start + gap) & (marks.s < self.end - gap))
-        within, ends = marks.some(inside), np.array([self.start, self.end])
+        within, ends = marks.take(inside), np.array([self.start, self.end])
         last = len(path.feed) - 1
         first = np.searchsorted(path.starts, ends[:1], side="right") - 1
         segment = np.clip(np.append(first, np.searchsorted(path.starts, ends[1:]) - 1), 0, last)
@@ -165,7 +165,7 @@ def refined(
     checkpoint()
     needed = close[marks.segment] | close[next_segment(path, marks.segment, marks.u)] | marks.rest
     checkpoint()
-    first, others = marks.some(needed), marks.some(~needed)
+    first, others = marks.take(needed), marks.take(~needed)
     checkpoint()
     limits = limits_at(path, first.segment, first.u, close, rough, float(share.max()), machine)
     if span is not None and span.square > 0:

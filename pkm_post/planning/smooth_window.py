@@ -168,7 +168,7 @@ def shortest_stop(path: ToolPath, machine: Machine, moving: TimeScaledLaw) -> Ti
 
 
 def transition(
-    path: ToolPath, machine: Machine, moving: TimeScaledLaw, target: SpeedLaw, override: float, way: float
+    path: ToolPath, machine: Machine, moving: TimeScaledLaw, target: SpeedLaw, override: float, stop_distance: float
 ) -> TimeScaledLaw | None:
     """The transition from a moving law to a target; None if no length of it keeps the limits.
 
@@ -178,11 +178,11 @@ def transition(
         moving: the motion, from the place on; its speed is above 0.
         target: the motion from rest to rest to change over to; it begins behind the start of the transition.
         override: factor of the feed of the target.
-        way: distance of a stop.
+        stop_distance: length of a stop on the path, mm.
     """
     (here,), _, _ = moving.at(np.zeros(1))
     old = SpeedLaw.of(moving.law)
-    length = _FIRST_CHANGE * max(way, _LEAST)
+    length = _FIRST_CHANGE * max(stop_distance, _LEAST)
     first, last = max(old.first, target.first), min(old.s[-2], target.s[-2])
     while here >= first and here + length < last:
         changed = _blended(old, target, float(here), float(here + length))

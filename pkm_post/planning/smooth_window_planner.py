@@ -112,13 +112,13 @@ class SmoothWindowPlanner(WindowPlanner):
             return TimeScaledLaw(motion, 0.0, override, override)
         rests = path.starts[path.rests]
         last_rest = float(rests[np.searchsorted(rests, start.s, side="right") - 1])
-        way = shortest_stop(path, self.machine, law).end - start.s
-        if end < start.s + way:
+        stop_distance = shortest_stop(path, self.machine, law).end - start.s
+        if end < start.s + stop_distance:
             return None
         for behind, share in _FASTER if override > law.override else _AS_FAST:
-            begin = max(last_rest, start.s - behind * way)
+            begin = max(last_rest, start.s - behind * stop_distance)
             target = fastest_motion(path, self.machine, begin, end, share)
-            found = transition(path, self.machine, law, target, override, way)
+            found = transition(path, self.machine, law, target, override, stop_distance)
             if found is not None:
                 return found
         return None

@@ -110,9 +110,9 @@ def feed_at(path: ToolPath, poses: Poses, u: Array) -> Array:
     return feed_of_path_length(lower, norm(poses.tip_1))
 
 
-def feed_of_path_length(feed: Array, way: Array) -> Array:
+def feed_of_path_length(feed: Array, length: Array) -> Array:
     """Feed by path length, lowered where the tip travels farther than the path length: in blends with arcs."""
-    return feed / np.maximum(1.0, way / _LONGER)
+    return feed / np.maximum(1.0, length / _LONGER)
 
 
 def next_segment(path: ToolPath, segment: Array, u: Array) -> Array:

@@ -56,7 +56,7 @@ class Stations:
     rest: Array
     edges: Array
 
-    def some(self, rows: Array) -> Stations:
+    def take(self, rows: Array) -> Stations:
         """Some of the stations."""
         return Stations(self.segment[rows], self.u[rows], self.s[rows], self.rest[rows], self.edges)
 

@@ -51,7 +51,7 @@ class CellEnds:
         before, own, after = (padded[self.unknown + m] for m in range(3))
         return np.asarray(self.basis[:, 0] * before + self.basis[:, 1] * own + self.basis[:, 2] * after)
 
-    def taken(self, rows: Array) -> CellEnds:
+    def take(self, rows: Array) -> CellEnds:
         """Some of these ends."""
         columns = self.basis[..., rows], self.settled[:, rows]
         return CellEnds(self.cell[rows], self.place[rows], self.unknown[rows], *columns)
@@ -66,7 +66,7 @@ class CellEnds:
         number, value = np.cumsum(free) - 1, np.where(free, 0.0, np.nan_to_num(value))
         counts = np.stack([free[self.unknown + m] for m in range(3)])
         rows = np.flatnonzero(counts.any(axis=0))
-        ends, counts = self.taken(rows), counts[:, rows]
+        ends, counts = self.take(rows), counts[:, rows]
         settled = sum(ends.basis[:, m] * value[ends.unknown + m] for m in range(3))
         basis = ends.basis * counts
         beside = np.flatnonzero(~counts[1])

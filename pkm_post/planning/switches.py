@@ -76,7 +76,7 @@ def with_lower_switches(path: ToolPath, machine: Machine, profile: StationProfil
         passed = StationMotion(path, profile.marks, time, profile.square, profile.struts)
         found = passed.windows(machine, about, _INTERVAL)
         checkpoint()
-        found = found.some(np.flatnonzero(found.played > 1))
+        found = found.take(np.flatnonzero(found.played > 1))
         if not len(found.start):
             break
         profile, time = _cut(path, machine, profile, time, found)

@@ -86,6 +86,6 @@ class TimeScaledLaw:
         """What is left of it after some time; of a law that is not slowed down."""
         return replace(self, begin=self.begin + seconds)
 
-    def shifted(self, way: float) -> TimeScaledLaw:
+    def shifted(self, distance: float) -> TimeScaledLaw:
         """The same at path lengths that are counted from another place."""
-        return replace(self, law=replace(self.law, s=self.law.s + way))
+        return replace(self, law=replace(self.law, s=self.law.s + distance))

@@ -172,9 +172,9 @@ def _feed(
     if feed is None or not shares:
         return ""
     fast = shown("mm/s", of_page)
-    highest = _FEED_SHOWN * fast.factor * float(feed.asked[feed.cutting].max())
+    highest = _FEED_SHOWN * fast.factor * float(feed.programmed[feed.cutting].max())
     lines = [
-        Line("programmed", feed.time, fast.factor * feed.asked, "faint"),
+        Line("programmed", feed.time, fast.factor * feed.programmed, "faint"),
         Line("possible", feed.time, fast.factor * feed.possible, "c3"),
         Line("planned", feed.time, fast.factor * feed.planned, "c1"),
     ]

@@ -152,30 +152,30 @@ def feed_shares(trajectory: Trajectory, feed: FeedStudy) -> dict[str, Any]:
     where p >= 0.95 f, ``as_possible`` where v >= 0.95 min(f, p). Each limit has its share, and the place where it slows
     the tool most.
     """
-    asked, possible, planned = (column[feed.cutting] for column in (feed.asked, feed.possible, feed.planned))
+    programmed, possible, planned = (column[feed.cutting] for column in (feed.programmed, feed.possible, feed.planned))
     limit, row = feed.limit[feed.cutting], feed.row[feed.cutting]
-    if not len(asked):
+    if not len(programmed):
         return {}
     limits = []
     for number in distinct(limit[limit >= 0]).tolist():
         these = np.flatnonzero(limit == number)
-        slowest = these[np.argmin(planned[these] / asked[these])]
+        slowest = these[np.argmin(planned[these] / programmed[these])]
         place = trajectory.place(int(row[slowest]))
         limits.append(
             {
                 "limit": feed.limits[number],
                 "share": _rounded(len(these) / len(limit), 4),
                 "slowest_mm_s": _significant(float(planned[slowest])),
-                "asked_mm_s": _significant(float(asked[slowest])),
+                "asked_mm_s": _significant(float(programmed[slowest])),
                 "time_s": _rounded(feed.time[feed.cutting][slowest], 3),
                 "operation": place.operation,
                 "line": place.line,
             }
         )
     return {
-        "at_feed": _share(planned >= AT_FEED * asked),
-        "feed_possible": _share(possible >= AT_FEED * asked),
-        "as_possible": _share(planned >= AT_FEED * np.minimum(asked, possible)),
+        "at_feed": _share(planned >= AT_FEED * programmed),
+        "feed_possible": _share(possible >= AT_FEED * programmed),
+        "as_possible": _share(planned >= AT_FEED * np.minimum(programmed, possible)),
         "limits": sorted(limits, key=lambda row: -row["share"]),
     }
 

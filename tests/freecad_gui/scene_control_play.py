@@ -84,7 +84,7 @@ def it_is_played_slowed_held_and_resumed():
     found["in sight"] = [face.progress.toolTip(), face.progress.height() <= 2 * face.progress.fontMetrics().height()]
     grey = (
         page().retract,
-        page().way,
+        page().retract_distance,
         page().line,
         page().repeat_codes,
         page().skip.box,
@@ -143,12 +143,12 @@ def the_tool_is_retracted_and_comes_back():
     until(lambda: play.waits_for == "override 0")
     until(page().retract.isEnabled)
     before = newest().pose.tip.tolist()
-    page().way.setProperty("rawValue", 15.0)
+    page().retract_distance.setProperty("rawValue", 15.0)
     click(page().retract)
     until(lambda: newest().pose.tip[2] > before[2] + 14.999)
     until(lambda: "above its path" in messages()[-1])
     found = {"up": (newest().pose.tip - before).tolist(), "said": messages()[-1]}
-    page().way.setProperty("rawValue", 5000.0)
+    page().retract_distance.setProperty("rawValue", 5000.0)
     click(page().retract)
     until(lambda: "no retract" in messages()[-1])
     found["refused"] = messages()[-1]

@@ -124,19 +124,19 @@ class CycleSeries:
 class Strokes:
     """Builder for the moves of a cycle: kind and end point by row, and events as (row, kind, value) before a row."""
 
-    here: Array
+    position: Array
     kinds: list[int] = field(default_factory=list)
     ends: list[Array] = field(default_factory=list)
     events: list[tuple[int, EventKind, float]] = field(default_factory=list)
 
     def move(self, kind: Kind, axis: int | tuple[int, ...], to: float | Array) -> None:
         """Move some coordinates, unless the tool is already there."""
-        end = self.here.copy()
+        end = self.position.copy()
         end[[axis] if isinstance(axis, int) else list(axis)] = to
-        if not np.array_equal(end, self.here):
+        if not np.array_equal(end, self.position):
             self.kinds.append(kind)
             self.ends.append(end)
-            self.here = end
+            self.position = end
 
     def add_event(self, kind: EventKind, value: float) -> None:
         """Add an event at the current point."""
@@ -184,7 +184,7 @@ def cycle_strokes(
     hole: Hole,
     centres: Array,
     axes: tuple[int, int, int],
-    here: Array,
+    position: Array,
     spindle: float,
     flavour: Flavour = RS274,
 ) -> Strokes:
@@ -195,13 +195,13 @@ def cycle_strokes(
         hole: its heights.
         centres: (n, 2) hole positions, by first and second coordinate of the plane.
         axes: first, second and normal coordinate of the plane.
-        here: (3,) tool position.
+        position: (3,) of the tool.
         spindle: signed spindle speed, 1/min.
         flavour: whose cycle it is.
     """
-    strokes = Strokes(here)
+    strokes = Strokes(position)
     normal = axes[2]
-    if here[normal] <= hole.top:
+    if position[normal] <= hole.top:
         strokes.move(Kind.RAPID, normal, hole.clear)
     for centre in centres:
         strokes.move(Kind.RAPID, axes[:2], centre)
@@ -228,13 +228,13 @@ def _tap(cycle: Cycle, hole: Hole, normal: int, strokes: Strokes, spindle: float
     strokes.move(Kind.RAPID, normal, hole.clear)
 
 
-def rigid_tap(here: Array, end: Array, spindle: float) -> Strokes:
+def rigid_tap(position: Array, end: Array, spindle: float) -> Strokes:
     """To a point and back, both (3,), with a spindle that is an axis, which then turns as before."""
-    strokes = Strokes(here)
-    if not np.array_equal(here, end):
+    strokes = Strokes(position)
+    if not np.array_equal(position, end):
         strokes.add_event(EventKind.SPINDLE_AXIS, math.copysign(1.0, spindle))
         strokes.move(Kind.LINE, (0, 1, 2), end)
-        strokes.move(Kind.LINE, (0, 1, 2), here)
+        strokes.move(Kind.LINE, (0, 1, 2), position)
         strokes.add_event(EventKind.SPINDLE_AXIS, 0.0)
         strokes.add_event(EventKind.SPINDLE, spindle)
     return strokes
