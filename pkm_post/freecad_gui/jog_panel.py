@@ -64,7 +64,7 @@ class JogPanel:
         self.margins.setWordWrap(True)
         self.fields = [quantity_field(unit) for _, unit in AXES]
         self.steps = {unit: quantity_field(unit) for unit in _STEPS}
-        self.buttons = [tuple(_button(sign, partial(self.step, row, way)) for sign, way in _WAYS) for row in range(6)]
+        self.buttons = [tuple(_button(text, partial(self.step, row, sign)) for text, sign in _WAYS) for row in range(6)]
         self.home = _button(translate("JogPanel", "Home"), self.go_home)
         self._lay_out()
         for unit, step in _STEPS.items():
@@ -104,10 +104,10 @@ class JogPanel:
         obj.recompute()
         self.show()
 
-    def step(self, row: int, way: float) -> None:
+    def step(self, row: int, sign: float) -> None:
         """Move along one of ``AXES`` by its step, forth or back."""
         values = self.values()
-        values[row] += way * float(self.steps[AXES[row][1]].property("rawValue"))
+        values[row] += sign * float(self.steps[AXES[row][1]].property("rawValue"))
         self.move_to(values)
 
     def take(self) -> None:

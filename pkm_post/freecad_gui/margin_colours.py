@@ -77,7 +77,7 @@ def colour_bar(title: str, colours: Array, texts: Sequence[tuple[float, str]]) -
     return node
 
 
-def coloured_way(points: Sequence[Sequence[float]], colours: Array) -> coin.SoSeparator:
+def coloured_path(points: Sequence[Sequence[float]], colours: Array) -> coin.SoSeparator:
     """A line through points, with a colour at each.
 
     Args:

@@ -18,7 +18,7 @@ from pkm_post.freecad_app.reach_object import WORST, check_names
 from pkm_post.freecad_app.user_units import amount_text
 from pkm_post.freecad_gui.axis_vectors import axis_vectors, is_tilted
 from pkm_post.freecad_gui.context_menu import add_commands, add_entry
-from pkm_post.freecad_gui.margin_colours import coloured_way, colours_of, largest, legend
+from pkm_post.freecad_gui.margin_colours import coloured_path, colours_of, largest, legend
 from pkm_post.freecad_gui.preferences import every_nth
 from pkm_post.freecad_gui.shapes import OUT, points_through
 from pkm_post.freecad_gui.views import DrawnView
@@ -49,7 +49,7 @@ class ReachView(DrawnView):
         points = [tuple(point) for point in getattr(obj, "Points", ())]
         if not len(margin) or len(points) != len(margin) or obj.ColourBy not in (WORST, *obj.Checks):
             return
-        self._root.addChild(coloured_way(points, colours_of(margin)))
+        self._root.addChild(coloured_path(points, colours_of(margin)))
         self._axes = coin.SoSeparator()
         self._root.addChild(self._axes)
         self.show_axes()

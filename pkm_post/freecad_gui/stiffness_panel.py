@@ -22,7 +22,7 @@ from pkm_post.freecad_app.reach_object import machine_for
 from pkm_post.freecad_app.user_units import amount_text
 from pkm_post.freecad_gui.finding_view import FindingView
 from pkm_post.freecad_gui.icons import ICONS
-from pkm_post.freecad_gui.margin_colours import colour_bar, coloured_surface, coloured_way, colours_of
+from pkm_post.freecad_gui.margin_colours import colour_bar, coloured_path, coloured_surface, colours_of
 from pkm_post.freecad_gui.observers import DeletionWatch
 from pkm_post.freecad_gui.shown_pose import is_shown
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
@@ -99,7 +99,7 @@ class StiffnessPanel:
         if self.table.isChecked():
             self._drawn.addChild(_surface(table, work_from_machine, _colours(table.least, low, top)))
         points = apply(work_from_machine, self.found.job.tip).tolist()
-        self._drawn.addChild(coloured_way(points, _colours(along, low, top)))
+        self._drawn.addChild(coloured_path(points, _colours(along, low, top)))
         texts = ((1.0, amount_text(top, "N/mm")), (0.0, amount_text(low, "N/mm")))
         self._drawn.addChild(colour_bar(translate("StiffnessPanel", "stiffness"), _colours(_SHARES, 0.0, 1.0), texts))
 

@@ -47,7 +47,7 @@ class PlayPage(QtWidgets.QWidget):
 
     Attributes:
         name: of the opened file.
-        open, play, go_on, end, retract: the buttons; ``way`` belongs to the last one.
+        open, play, go_on, end, retract: the buttons; ``retract_distance`` belongs to the last one.
         line, operation: where to begin.
         approach, repeat_codes, single_block, optional_stop, dry_run: the choices; ``dry_feed`` belongs to the last one.
         skip: whether blocks behind ``/`` are skipped, and the posting without them.
@@ -64,7 +64,7 @@ class PlayPage(QtWidgets.QWidget):
         self.name, self.place, self.speeds = (line_label() for _ in range(3))
         self.line, self.operation, self.bar = QtWidgets.QSpinBox(), narrow_box(), QtWidgets.QProgressBar()
         self.override, self._percent = QtWidgets.QSlider(QtCore.Qt.Orientation.Horizontal), QtWidgets.QLabel("100 %")
-        self.dry_feed, self.way = quantity_field("mm/s"), quantity_field("mm")
+        self.dry_feed, self.retract_distance = quantity_field("mm/s"), quantity_field("mm")
         self.setup, self.skip = PlaySetup(), BlockSkip(console)
         self._make_choices()
         self._make_buttons()
@@ -124,9 +124,9 @@ class PlayPage(QtWidgets.QWidget):
         self._percent.setMinimumWidth(self._percent.fontMetrics().horizontalAdvance("150 %"))
         show_quantity(self.dry_feed, _DRY_MM_S, "mm/s")
         self.dry_feed.setMinimumWidth(NUMBER_WIDTH)
-        show_quantity(self.way, _RETRACT_MM, "mm")
-        self.way.setProperty("minimum", 0.0)
-        self.way.setProperty("maximum", float(LONGEST_TOOL))
+        show_quantity(self.retract_distance, _RETRACT_MM, "mm")
+        self.retract_distance.setProperty("minimum", 0.0)
+        self.retract_distance.setProperty("maximum", float(LONGEST_TOOL))
         self.bar.setRange(0, _SHARES)
         self.bar.setTextVisible(False)
         at_rest = (self.line, self.operation, self.approach, self.repeat_codes, self.dry_run, self.dry_feed)
@@ -137,7 +137,7 @@ class PlayPage(QtWidgets.QWidget):
             (QtWidgets.QLabel(translate("ControlPanel", "Feed")), self.override, self._percent),
         )
         below = (
-            (self.retract, self.way),
+            (self.retract, self.retract_distance),
             (QtWidgets.QLabel(translate("ControlPanel", "Begin at line")), self.line),
             (self.operation, self.approach),
             (self.repeat_codes, self.single_block),
@@ -165,7 +165,7 @@ class PlayPage(QtWidgets.QWidget):
         for part, tip in self._tips.items():
             set_usable((part,), tip, "" if rests else why_text(Interlock.PLAYS))
         against = blocking_interlock(OperatorCommand.RETRACT, found)
-        set_usable((self.way,), "", "" if against is None else why_text(against))
+        set_usable((self.retract_distance,), "", "" if against is None else why_text(against))
         self._refresh_setup(found)
         if self._opened is None:
             self.name.setText(translate("ControlPanel", "no trajectory was opened"))
@@ -275,11 +275,11 @@ class PlayPage(QtWidgets.QWidget):
         self._console.begin_play(WindowPlay(connection, ready.trajectory, opened[1], choices))
 
     def _retract(self) -> None:
-        way = float(self.way.property("rawValue"))
-        if way <= 0.0:
+        retract_distance = float(self.retract_distance.property("rawValue"))
+        if retract_distance <= 0.0:
             self._console.message.emit(translate("ControlPanel", "Not sent: the way has to be above zero"), True)
             return
-        self._order("retract", way)
+        self._order("retract", retract_distance)
 
     def _override_changed(self, percent: int) -> None:
         self._percent.setText(f"{percent} %")
