@@ -46,14 +46,14 @@ Subject = Callable[[Sequence[FreeCAD.DocumentObject]], FreeCAD.DocumentObject | 
 """From the selected objects to the one that a command applies to, or None."""
 
 
-def one(accepts: Callable[[FreeCAD.DocumentObject], bool]) -> Subject:
+def exactly_one(accepts: Callable[[FreeCAD.DocumentObject], bool]) -> Subject:
     """A subject that is the only selected object, if the command accepts it."""
     return lambda items: items[0] if len(items) == 1 and accepts(items[0]) else None
 
 
 def job_or(accepts: Callable[[FreeCAD.DocumentObject], bool] = lambda item: False) -> Subject:
     """A subject that is the only selected object, if the command accepts it, else the job that the selection means."""
-    return lambda items: one(accepts)(items) or job_for(items, FreeCAD.ActiveDocument)
+    return lambda items: exactly_one(accepts)(items) or job_for(items, FreeCAD.ActiveDocument)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import FreeCADGui
 
 from pkm_post.freecad_app.document import is_operation, is_simulation, job_of
 from pkm_post.freecad_gui import command_actions
-from pkm_post.freecad_gui.command import Command, PanelCommand, WindowCommand, job_or, one
+from pkm_post.freecad_gui.command import Command, PanelCommand, WindowCommand, exactly_one, job_or
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -20,7 +20,7 @@ COMMANDS = (
         "mirror.svg",
         QT_TRANSLATE_NOOP("PKM_Mirror", "Mirror operation"),
         QT_TRANSLATE_NOOP("PKM_Mirror", "Add the mirror image of the selected operation: plane, climb milling, report"),
-        one(is_operation),
+        exactly_one(is_operation),
         command_actions.mirror,
         "P, K, M",
     ),
@@ -29,7 +29,7 @@ COMMANDS = (
         "rotate.svg",
         QT_TRANSLATE_NOOP("PKM_Rotate", "Rotate operation"),
         QT_TRANSLATE_NOOP("PKM_Rotate", "Add the selected operation turned, once or several times about an axis"),
-        one(is_operation),
+        exactly_one(is_operation),
         command_actions.rotate,
         "P, K, R",
     ),
@@ -41,7 +41,7 @@ COMMANDS = (
             "PKM_NormalCompensation",
             "Take the points of the selected operation for contact points on the model, and let the cutter touch there",
         ),
-        one(is_operation),
+        exactly_one(is_operation),
         command_actions.compensate,
         "P, K, N",
         "compensation.md",
@@ -104,7 +104,7 @@ COMMANDS = (
         "program.svg",
         QT_TRANSLATE_NOOP("PKM_Editor", "Program editor"),
         QT_TRANSLATE_NOOP("PKM_Editor", "Edit G-code or CL data, with its faults shown while it is typed"),
-        one(lambda item: True),
+        exactly_one(lambda item: True),
         command_actions.edit,
         "P, K, E",
     ),
@@ -122,7 +122,7 @@ COMMANDS = (
         "control.svg",
         QT_TRANSLATE_NOOP("PKM_Control", "Numerical control"),
         QT_TRANSLATE_NOOP("PKM_Control", "Operate a machine, or a simulated one: look, home, jog, run programs"),
-        one(lambda item: True),
+        exactly_one(lambda item: True),
         command_actions.control,
         "P, K, O",
         "numerical-control.md",
@@ -132,7 +132,7 @@ COMMANDS = (
         "example.svg",
         QT_TRANSLATE_NOOP("PKM_Example", "New from example"),
         QT_TRANSLATE_NOOP("PKM_Example", "Make a document with a blade and the job that finishes it on a hexapod"),
-        one(lambda item: True),
+        exactly_one(lambda item: True),
         command_actions.example,
         "P, K, X",
         "tutorial-blade.md",
@@ -142,7 +142,7 @@ COMMANDS = (
         "packages.svg",
         QT_TRANSLATE_NOOP("PKM_InstallPackages", "Install packages"),
         QT_TRANSLATE_NOOP("PKM_InstallPackages", "Install the optional Python packages that are missing here"),
-        one(lambda item: True),
+        exactly_one(lambda item: True),
         command_actions.install_packages,
         "P, K, I",
     ),

@@ -190,7 +190,7 @@ class InterpolationCheck:
         bound = bounded_demand(self._machine, float(self._path.attitude[2][0]), cubics, intervals.duration)
         rows = np.flatnonzero((bound.tip > self._negligible_drift) | (bound.limits > 1))
         known = replace(bound, tip=np.zeros(len(bound.tip)))
-        return known.but(rows, self._measured(intervals[rows], cubics[rows])) if len(rows) else known
+        return known.with_rows(rows, self._measured(intervals[rows], cubics[rows])) if len(rows) else known
 
     def _measured(self, intervals: Intervals, cubics: ToolCubics) -> Demand:
         """The same, from the kinematics of both ends and of places between them."""

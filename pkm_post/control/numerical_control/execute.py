@@ -157,12 +157,12 @@ def job_of(motion: StrutMotion, settings: AnySettings, name: str) -> PmacJob:
     """
     kind: Any = power_pmac if isinstance(settings, PowerPmacSettings) else pmac
     job, faults = read_job(kind.program_text(motion, settings, [name]), settings, name)
-    if job is None or not same(job.motion, motion):
+    if job is None or not same_motion(job.motion, motion):
         raise ValueError(f"{name}: expected a text that gives its motion back, got {faults}")
     return job
 
 
-def same(one: StrutMotion, other: StrutMotion) -> bool:
+def same_motion(one: StrutMotion, other: StrutMotion) -> bool:
     """Whether two motions are identical to the last digit."""
     pairs = [(getattr(one, name), getattr(other, name)) for name in ("time_ms", "length", "speed")]
     pairs += [(getattr(one.turns, name), getattr(other.turns, name)) for name in ("knot", "angle", "speed")]

@@ -175,7 +175,7 @@ class ListFeed:
             self._set(f"P{self._points[after].place}={self._points[after + 1].place}")
         self._early = None
 
-    def look(self) -> Iterator[CertifiedMotion]:
+    def poll(self) -> Iterator[CertifiedMotion]:
         """Ask where the motion is; the motions that it has begun since.
 
         Raises:

@@ -252,7 +252,7 @@ class Player:
             self._operator.carry_out(self._session, self._settings)
             status = read_status(self._session, self._settings)
             if is_started:
-                for motion in self._feed.look():
+                for motion in self._feed.poll():
                     self.log.add(motion)
         except LinkLostError as lost:
             self._lose(lost)
@@ -290,7 +290,7 @@ class Player:
         while not (operator.may_start or operator.is_over or until()):
             self._look(False)
             if operator.retract_mm:
-                self._retract.up(operator.retract_mm, self._tool_length(row))
+                self._retract.lift(operator.retract_mm, self._tool_length(row))
                 operator.retract_mm = 0.0
             self._show(self._state(WAITS + what, row))
             self._session.sleep(_POLL_S)

@@ -44,7 +44,7 @@ class Retract:
         self._task = task
         self._from: ToolPose | None = None
 
-    def up(self, distance: float, tool_length: float) -> None:
+    def lift(self, distance: float, tool_length: float) -> None:
         """Go up along the tool axis; what cannot be is logged, and nothing moves.
 
         Args:
@@ -75,7 +75,7 @@ class Retract:
 
         Raises:
             Refused: the way cannot be planned; the tool stays where it is.
-            PmacError: as ``up``.
+            PmacError: as ``lift``.
         """
         if self._from is None:
             return

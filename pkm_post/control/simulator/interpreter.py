@@ -125,7 +125,7 @@ class Interpreter:
         self.counter.call(int(number), round(fraction * 100_000))
 
     def _return(self, arguments: tuple[Any, ...]) -> None:
-        if not self.counter.come_back():
+        if not self.counter.return_from_call():
             self.point(self.counter.pointer)
             self.finished = True
 

@@ -238,7 +238,7 @@ class ProgramCounter:
         """
         self.place = (self.place[0], self._index(self.place[0], label))
 
-    def come_back(self) -> bool:
+    def return_from_call(self) -> bool:
         """Return from the last call; False if there was none."""
         if self._calls:
             self.place = self._calls.pop()

@@ -142,7 +142,7 @@ class Demand:
     tip_speed: Array
     limits: Array
 
-    def but(self, rows: Array, other: Demand) -> Demand:
+    def with_rows(self, rows: Array, other: Demand) -> Demand:
         """Copy with another demand in some rows."""
         columns = [getattr(self, field.name).copy() for field in fields(self)]
         for column, field in zip(columns, fields(self), strict=True):

@@ -22,7 +22,7 @@ from pkm_post.reading.gcode.macro_calls import Call, call_of
 from pkm_post.reading.gcode.macro_variables import MacroVariables
 from pkm_post.reading.gcode.o_words import JumpTargets
 from pkm_post.reading.gcode.options import ExecutionLimits
-from pkm_post.reading.gcode.parameters import ExecutionFault, Parameters, SystemVariables, whole
+from pkm_post.reading.gcode.parameters import ExecutionFault, Parameters, SystemVariables, whole_number
 from pkm_post.reading.gcode.statements import MacroCall, OWord, Statement, label_of_number
 
 PROGRAM_END = (2, 30)
@@ -200,7 +200,9 @@ class Interpreter(FlowControl):
     def _call_program(self, row: int, block: Block) -> int:
         if self._after_moves is not None:
             raise ExecutionFault("G316", "M98 while G66 is in force")
-        number, passes = (whole(block.words.get(letter, default)) for letter, default in (("P", -1.0), ("L", 1.0)))
+        number, passes = (
+            whole_number(block.words.get(letter, default)) for letter, default in (("P", -1.0), ("L", 1.0))
+        )
         if number is None or passes is None or number < 0 or passes < 0:
             words = "".join(f" {letter}{block.words[letter]:.10g}" for letter in "PL" if letter in block.words)
             raise ExecutionFault("G316", f"M98{words}")

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pkm_post.reading.gcode.macro_variables import LOCAL
-from pkm_post.reading.gcode.parameters import ExecutionFault, Parameters, whole
+from pkm_post.reading.gcode.parameters import ExecutionFault, Parameters, whole_number
 from pkm_post.reading.gcode.statements import MacroCall
 
 _FIRST = {"A": 1, "B": 2, "C": 3, "D": 7, "E": 8, "F": 9, "H": 11, "M": 13, "Q": 17, "R": 18, "S": 19, "T": 20,
@@ -51,7 +51,7 @@ def call_of(statement: MacroCall, parameters: Parameters) -> Call:
     values = [(letter, value.value(parameters), value.column) for letter, value in statement.words]
     code = next(value for letter, value, _ in values if letter == "G" and value in (65, 66))
     words = {letter: value for letter, value, _ in values if letter in "PL"}
-    number, passes = whole(words.get("P", math.nan)), whole(words.get("L", 1.0))
+    number, passes = whole_number(words.get("P", math.nan)), whole_number(words.get("L", 1.0))
     text = f"G{code:g}" + "".join(f" {letter}{value:.10g}" for letter, value in words.items())
     codes = [value for letter, value, _ in values if letter == "G"]
     if number is None or number < 0 or passes is None or passes < 0 or len(codes) > 1:

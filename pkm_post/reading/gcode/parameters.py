@@ -188,7 +188,7 @@ class Parameters:
         return self._global if name.startswith("_") else self._levels[-1].named
 
 
-def whole(value: float) -> int | None:
+def whole_number(value: float) -> int | None:
     """The integer a value represents, None if it represents none."""
     if value != value:  # a vacant variable
         return None
@@ -202,7 +202,7 @@ def in_range(value: float) -> int:
     Raises:
         ExecutionFault: it is no whole number, or below 0.
     """
-    number = whole(value)
+    number = whole_number(value)
     if number is None or number < 0:
         raise ExecutionFault("G302", f"#{value:.10g}")
     return number

@@ -20,7 +20,7 @@ from pkm_post.reading.gcode.expressions import (
     plain_name,
     target_of,
 )
-from pkm_post.reading.gcode.parameters import ARGUMENTS, ExecutionFault, Parameters, whole
+from pkm_post.reading.gcode.parameters import ARGUMENTS, ExecutionFault, Parameters, whole_number
 from pkm_post.reading.gcode.parse import dialect_codes, is_macro_call
 
 if TYPE_CHECKING:
@@ -221,7 +221,7 @@ def label_of_number(number: float, column: int = 0) -> str:
     Raises:
         ExecutionFault: the number is not a label.
     """
-    label = whole(number)
+    label = whole_number(number)
     if label is None or label < 0:
         raise ExecutionFault("G311", f"O{number:.10g}", column)
     return str(label)

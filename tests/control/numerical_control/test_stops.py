@@ -8,7 +8,7 @@ import pytest
 from station import PER_BLOCK, job
 
 from pkm_post.control.link.errors import NotReadyError
-from pkm_post.control.numerical_control.execute import program_stops, remaining_job, same
+from pkm_post.control.numerical_control.execute import program_stops, remaining_job, same_motion
 from pkm_post.model import Event, EventKind
 
 COUNT = 1e-4
@@ -105,5 +105,5 @@ def test_a_piece_is_another_motion_when_a_number_differs(station):
     motion = job(station.settings, ()).motion
     length = motion.length.copy()
     length[3, 3] += 1e-6
-    assert same(motion, motion)
-    assert not same(motion, dataclasses.replace(motion, length=length))
+    assert same_motion(motion, motion)
+    assert not same_motion(motion, dataclasses.replace(motion, length=length))

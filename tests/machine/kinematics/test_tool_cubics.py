@@ -158,7 +158,7 @@ def test_some_rows_of_a_demand_are_replaced():
     demand = bounded_demand(machine, LEVER, cubics, duration)
     rows = np.array([1, 4])
     other = bounded_demand(machine, LEVER, cubics[rows], duration[rows] / 2)
-    mixed = demand.but(rows, other)
+    mixed = demand.with_rows(rows, other)
     np.testing.assert_array_equal(mixed.limits[rows], other.limits)
     np.testing.assert_array_equal(np.delete(mixed.limits, rows), np.delete(demand.limits, rows))
     assert np.all(demand.limits[rows] < mixed.limits[rows])
