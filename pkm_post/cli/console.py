@@ -11,25 +11,25 @@ GenerateConsoleCtrlEvent]
 from __future__ import annotations
 
 import signal
-import subprocess
 import sys
 import threading
 
 if sys.platform == "win32":
     import ctypes
+    from subprocess import CREATE_NEW_PROCESS_GROUP as _NEW_GROUP
+    from subprocess import CREATE_NO_WINDOW as _NO_WINDOW
 
     def has_console() -> bool:
         """Whether this process has a console, so that its user may press Ctrl-C."""
         return bool(ctypes.windll.kernel32.GetConsoleCP())
 else:
+    _NO_WINDOW = _NEW_GROUP = 0
 
     def has_console() -> bool:
         """Whether this process has a console, so that its user may press Ctrl-C."""
         return sys.stdin is not None and sys.stdin.isatty()
 
 
-_NO_WINDOW: int = getattr(subprocess, "CREATE_NO_WINDOW", 0)
-_NEW_GROUP: int = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
 BREAK: int | None = getattr(signal, "CTRL_BREAK_EVENT", None)
 """Sent to a process in a group of its own as Ctrl-C; None where the system has no consoles of this kind."""
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -77,6 +76,8 @@ def run_inside(arguments: Sequence[str]) -> int:
 
 def _run_with_us(command: Sequence[str]) -> int:
     """Run a command that Ctrl-C reaches as well, and return its exit code; after Ctrl-C it gets time to clean up."""
+    import subprocess
+
     process = subprocess.Popen(command, creationflags=console.flags_with_us())
     try:
         return process.wait()

@@ -22,6 +22,7 @@ from pkm_post.model.columns import (
     find_rows,
     freeze,
     in_pieces,
+    is_among,
     is_uniform,
     map_row_pairs,
     map_rows,
@@ -44,6 +45,7 @@ from pkm_post.model.program import (
     Kind,
     Program,
 )
+from pkm_post.model.record import dataclass
 from pkm_post.model.rules import Severity
 from pkm_post.model.setup import (
     EMPTY_SETUP,
@@ -116,6 +118,7 @@ __all__ = [
     "corner_reach",
     "coverage_summary",
     "cuts_by_speed",
+    "dataclass",
     "errors",
     "distinct",
     "find_rows",
@@ -124,6 +127,7 @@ __all__ = [
     "checkpoint",
     "checkpoints",
     "in_pieces",
+    "is_among",
     "is_uniform",
     "largest_corner_radius",
     "map_row_pairs",

@@ -9,7 +9,7 @@ change.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -159,6 +159,11 @@ def distinct(values: Array) -> Array:
     new = np.ones(len(ordered), dtype=np.bool_)
     new[1:] = ordered[1:] != ordered[:-1]
     return np.asarray(ordered[new])
+
+
+def is_among(column: Array, numbers: Iterable[int]) -> Array:
+    """Which rows of whole numbers are one of some, (N,); in short columns ``numpy.isin`` would import masked arrays."""
+    return np.isin(column, np.fromiter(numbers, dtype=np.int64), kind="table")
 
 
 def find_rows(ascending: Array, rows: Array) -> tuple[Array, Array]:

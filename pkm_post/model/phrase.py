@@ -8,7 +8,8 @@ sources; ``tools/core_texts.py`` gathers the patterns for translation, and ``fre
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+from pkm_post.model.record import dataclass
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ kinematics is independent of the feed. Units: mm, s, rad.
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from pkm_post.model import (
     Trajectory,
     as_executed,
     checkpoint,
+    dataclass,
     errors,
     read_only,
 )

@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pkm_post.system import packages
+from pkm_post.model import dataclass
 
 if TYPE_CHECKING:
     from lark import Lark, Token, Tree, UnexpectedInput
@@ -85,6 +84,8 @@ def parser_of(grammar: Grammar) -> Lark:
     try:
         from lark import Lark
     except ImportError as missing:
+        from pkm_post.system import packages
+
         raise packages.needs(f"reading {grammar.reads} needs", "lark") from missing
     return Lark(
         grammar.file.read_text(encoding="utf-8"),

@@ -4,11 +4,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from pkm_post.geometry import Array
-from pkm_post.model import Certificate, FeedStudy, Machine, Motion, Setup, StrutMotion, Tolerances, Trajectory
+from pkm_post.model import (
+    Certificate,
+    FeedStudy,
+    Machine,
+    Motion,
+    Setup,
+    StrutMotion,
+    Tolerances,
+    Trajectory,
+    dataclass,
+)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ arrives along its axis. Units: mm.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import groupby
 
 import numpy as np
@@ -33,6 +33,7 @@ from pkm_post.model import (
     Program,
     Tool,
     ToolChange,
+    dataclass,
 )
 
 FLATTEST = 0.1

@@ -10,6 +10,7 @@ from pkm_post.model.columns import (
     ColumnBuilder,
     freeze,
     in_pieces,
+    is_among,
     is_uniform,
     map_row_pairs,
     map_rows,
@@ -148,3 +149,10 @@ def test_functions_of_two_uniform_columns_are_computed_once():
     long = uniform(2.0, 10**9)
     assert is_uniform(map_row_pairs(np.subtract, long, long))
     assert map_row_pairs(np.subtract, uniform(2.0, 3), np.arange(3.0)).tolist() == [2.0, 1.0, 0.0]
+
+
+@pytest.mark.parametrize("numbers", [(), (5,), range(-3, 40, 7), {430, 435, 10}])
+def test_numbers_are_found_among_others_as_by_numpy(numbers):
+    column = np.random.default_rng(3).integers(-5, 500, 200).astype(np.int16)
+    assert np.array_equal(is_among(column, numbers), np.isin(column, [*numbers]))
+    assert is_among(column[:0], numbers).shape == (0,)

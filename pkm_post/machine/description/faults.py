@@ -9,11 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Any
 
 from pkm_post.machine.description.fields import FIELDS, Name
-from pkm_post.model import Diagnostic, Place
+from pkm_post.model import Diagnostic, Place, dataclass
 
 _PART = r"""(?:[\w-]+|"[^"]*"|'[^']*')"""
 _DOTTED = rf"{_PART}(?:\s*\.\s*{_PART})*"

@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from pkm_post.geometry import Array, Cylinders, norm
 from pkm_post.machine.kinematics.inverse import ToolPoses, counted_lengths, platform_rotation
 from pkm_post.machine.kinematics.jacobian import plucker_rows
-from pkm_post.model import Body, Box, Machine
+from pkm_post.model import Body, Box, Machine, dataclass
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
+
+from pkm_post.model.record import dataclass
 
 
 class Severity(enum.Enum):

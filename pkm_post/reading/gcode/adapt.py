@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pkm_post.model import Array, distinct
+from pkm_post.model import Array, distinct, is_among
 from pkm_post.reading.gcode.blocks import Blocks, SubprogramFile, located
 from pkm_post.reading.gcode.codes import (
     ARCS,
@@ -48,14 +48,14 @@ def adapted(blocks: Blocks, flavour: Flavour, left_out: Collection[str]) -> tupl
     g, m = np.zeros(len(blocks.g), np.bool_), np.zeros(len(blocks.m), np.bool_)
     if left_out:
         g, m = _left_out(blocks, flavour, left_out)
-    requests = np.isin(blocks.g, [*flavour.requests])
+    requests = is_among(blocks.g, flavour.requests)
     notes = [
         *_notes(blocks, "G", g, lambda _: ", left out as chosen"),
         *_notes(blocks, "M", m, lambda _: ", left out as chosen"),
         *_notes(blocks, "G", requests, lambda code: f" asks for {flavour.requests[code]}{_HERE}"),
     ]
-    g |= requests | np.isin(blocks.g, [*flavour.without_motion])
-    m |= np.isin(blocks.m, [*flavour.silent_m])
+    g |= requests | is_among(blocks.g, flavour.without_motion)
+    m |= is_among(blocks.m, flavour.silent_m)
     blocks = _without(blocks, g, m, flavour)
     blocks = without_idle_g80(_with_further_offsets(blocks))
     return _with_restored_motions(blocks) if flavour.g80_restores_motion else blocks, tuple(notes)
@@ -67,11 +67,11 @@ def _left_out(blocks: Blocks, flavour: Flavour, names: Collection[str]) -> tuple
     A G code may do so where its block has X, Y or Z, and where it is known and refused: then it says what the words of
     other blocks mean, as G16 does.
     """
-    g, m = (np.isin(codes, _named(codes, names, letter)) for letter, codes in (("G", blocks.g), ("M", blocks.m)))
+    g, m = (is_among(codes, _named(codes, names, letter)) for letter, codes in (("G", blocks.g), ("M", blocks.m)))
     refused = {*flavour.unsupported, *SPINDLE_SYNCHRONISED}
     fixed = [code for code in distinct(blocks.g[g]).tolist() if code in flavour.g_codes or name_of(code) in refused]
     moves = blocks.has("X") | blocks.has("Y") | blocks.has("Z")
-    return g & ~np.isin(blocks.g, fixed) & ~moves[blocks.g_row], m & ~np.isin(blocks.m, [*flavour.m_codes])
+    return g & ~is_among(blocks.g, fixed) & ~moves[blocks.g_row], m & ~is_among(blocks.m, flavour.m_codes)
 
 
 def _named(codes: Array, names: Collection[str], letter: str) -> list[int]:
@@ -81,7 +81,7 @@ def _named(codes: Array, names: Collection[str], letter: str) -> list[int]:
 
 def _with_equivalents(blocks: Blocks, flavour: Flavour) -> Blocks:
     """Replace codes that mean the same as another one."""
-    found = np.isin(blocks.g, [*flavour.equivalents])
+    found = is_among(blocks.g, flavour.equivalents)
     if not found.any():
         return blocks
     g = blocks.g.copy()

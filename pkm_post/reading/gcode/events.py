@@ -13,7 +13,7 @@ import re
 
 import numpy as np
 
-from pkm_post.model import Array, Event, EventKind, map_rows
+from pkm_post.model import Array, Event, EventKind, is_among, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import NONE, ORIENTED_STOP, Group, Word
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
@@ -48,7 +48,7 @@ def events_of_blocks(blocks: Blocks, modal: Modal, tools: Array, spindle: Array,
     switched = (modal.programmed[Group.SPINDLE] != NONE) | changed(spindle, 0.0)
     for row in np.flatnonzero(switched).tolist():
         events.append((row, -3, EventKind.SPINDLE, float(spindle[row])))
-    on_coolant = np.isin(blocks.m, list(_COOLANT))
+    on_coolant = is_among(blocks.m, _COOLANT)
     for row, code in zip(blocks.m_row[on_coolant].tolist(), blocks.m[on_coolant].tolist(), strict=True):
         events.append((row, -2, EventKind.COOLANT, _COOLANT[code]))
     functions = functions_of(modal)

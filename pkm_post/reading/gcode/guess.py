@@ -10,11 +10,10 @@ motion.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model import Array
+from pkm_post.model import Array, dataclass, is_among
 from pkm_post.reading.gcode.adapt import without_idle_g80
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import CANCEL_CYCLE, CYCLES, G_CODES, Group, name_of
@@ -73,7 +72,7 @@ def _for_fanuc(blocks: Blocks) -> _Found:
     yield from _macro_jumps(blocks)
     yield from _macro_calls(blocks)
     yield from _codes(blocks.g, blocks.g_row, _FANUC_G, "G")
-    here = np.flatnonzero(np.isin(blocks.g, _WITHOUT_PLACE))
+    here = np.flatnonzero(is_among(blocks.g, _WITHOUT_PLACE))
     here = here[~(blocks.has("X") | blocks.has("Y"))[blocks.g_row[here]]] if len(here) else here
     yield from _codes(blocks.g[here], blocks.g_row[here], _WITHOUT_PLACE, "G")
     yield from _codes(blocks.m, blocks.m_row, (29,), "M")
@@ -92,7 +91,7 @@ def _for_rs274(blocks: Blocks) -> _Found:
 
 def _codes(codes: Array, rows: Array, wanted: tuple[int, ...], letter: str) -> _Found:
     """The first of each of some codes."""
-    found = np.flatnonzero(np.isin(codes, wanted))
+    found = np.flatnonzero(is_among(codes, wanted))
     for index in np.sort(found[np.unique(codes[found], return_index=True)[1]]).tolist():
         yield name_of(int(codes[index]), letter), int(rows[index])
 
@@ -100,7 +99,7 @@ def _codes(codes: Array, rows: Array, wanted: tuple[int, ...], letter: str) -> _
 def _word_with_code(blocks: Blocks, codes: tuple[int, ...], letter: str, name: str, without: str = "") -> _Found:
     """The first block with one of some codes and a word, and without another word."""
     if letter in blocks.words:
-        rows = blocks.g_row[np.isin(blocks.g, codes)]
+        rows = blocks.g_row[is_among(blocks.g, codes)]
         rows = rows[blocks.has(letter)[rows] & ~blocks.has(without)[rows]]
         if len(rows):
             yield name, int(rows[0])
@@ -111,10 +110,10 @@ def _after_g80(blocks: Blocks) -> _Found:
     blocks = without_idle_g80(blocks)
     if CANCEL_CYCLE not in blocks.g:
         return
-    here = np.isin(blocks.g, [code for code, meaning in G_CODES.items() if meaning.group is Group.MOTION])
+    here = is_among(blocks.g, (code for code, meaning in G_CODES.items() if meaning.group is Group.MOTION))
     active = forward_fill(blocks.g_row[here], blocks.g[here], 0, len(blocks))
     moves = blocks.has("X") | blocks.has("Y") | blocks.has("Z")
-    moves[blocks.g_row[np.isin(blocks.g, RS274.axis_takers())]] = False
+    moves[blocks.g_row[is_among(blocks.g, RS274.axis_takers())]] = False
     found = np.flatnonzero(moves & (active == CANCEL_CYCLE))
     if len(found):
         yield "axis words after G80", int(found[0])

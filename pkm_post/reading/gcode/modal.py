@@ -9,11 +9,10 @@ incremental mode; without a word it is unchanged.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model import Array, distinct, is_uniform, map_rows, uniform
+from pkm_post.model import Array, dataclass, distinct, is_among, is_uniform, map_rows, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import ARCS, NONE, STROKES, Group
 from pkm_post.reading.gcode.flavours import RS274, Flavour
@@ -106,7 +105,7 @@ def modal_state(blocks: Blocks, unit: float, axis_words: Iterable[str], flavour:
     rows, units = by_group.get(Group.UNIT, _NOTHING)
     scale = forward_fill(rows, np.where(units == 200, 25.4, 1.0), unit, count)
     programmed = {group: _scattered(*by_group.get(group, _NOTHING), count) for group in Group}
-    takes = np.isin(blocks.g, flavour.axis_takers())
+    takes = is_among(blocks.g, flavour.axis_takers())
     takes_axes = _scattered(blocks.g_row[takes], blocks.g[takes].astype(_CODE), count)
     moves = _moves(blocks, programmed, active, axis_words) & (takes_axes == NONE)
     return Modal(programmed, active, scale, moves, takes_axes, flavour)
@@ -126,7 +125,7 @@ def _by_group(blocks: Blocks, flavour: Flavour) -> dict[Group, tuple[Array, Arra
     ):
         used = {table[code].group for code in distinct(codes).tolist() if code in table}
         for group in used:
-            of_group = np.isin(codes, [code for code, meaning in table.items() if meaning.group is group])
+            of_group = is_among(codes, (code for code, meaning in table.items() if meaning.group is group))
             by_group[group] = rows[of_group], codes[of_group].astype(_CODE)
     return by_group
 

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+
+from pkm_post.model import dataclass
 
 CHOICES = {"corners": ("chord", "arc"), "leads": ("A", "B"), "swallowed": ("refuse", "remove")}
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, EventKind, Place, StrutMotion
+from pkm_post.model import Array, Diagnostic, EventKind, Place, StrutMotion, is_among
 from pkm_post.writing.controllers.pmac.settings import PmacSettings
 from pkm_post.writing.controllers.pvt.writer import rest_knots
 
@@ -95,7 +95,8 @@ def _cuts(motion: StrutMotion, settings: PmacSettings) -> tuple[tuple[int, ...],
 
 def _cut_candidates(motion: StrutMotion, settings: PmacSettings) -> Array:
     """Knots at which the motion rests, but in a thread: the next part would begin with a spindle that is an axis."""
-    return np.setdiff1d(rest_knots(motion, settings), motion.turns.knot)
+    resting = rest_knots(motion, settings)
+    return resting[~is_among(resting, motion.turns.knot)]
 
 
 def _room(settings: PmacSettings, first: int) -> int:

@@ -10,12 +10,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
 
-from pkm_post.model import Array, StrutMotion, checkpoint, threads
+from pkm_post.model import Array, StrutMotion, checkpoint, dataclass, is_among, threads
 from pkm_post.writing.controllers.pvt.codes import code_text
 from pkm_post.writing.controllers.pvt.decimals import BLANK, print_columns, round_values
 from pkm_post.writing.controllers.pvt.settings import PvtSettings
@@ -222,6 +221,6 @@ def _check_turns(motion: StrutMotion, settings: PvtSettings, resting: Sequence[i
         raise ValueError("motion.turns: expected those of the knots of threads, got other knots")
     if len(expected) and settings.spindle_axis is None:
         raise ValueError("motion.turns: expected none for a spindle that is no axis, got some")
-    turning = np.isin(motion.turns.knot, resting) & (round_values(motion.turns.speed, settings.speed_decimals) != 0)
+    turning = is_among(motion.turns.knot, resting) & (round_values(motion.turns.speed, settings.speed_decimals) != 0)
     if turning.any():
         raise ValueError(f"motion.turns: expected rest at knot {motion.turns.knot[turning][0]}")

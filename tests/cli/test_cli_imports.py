@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A short program is posted soon: what takes time to import, and is not needed for it, is not imported."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+from interpreter import PYTHON
+
+ADDON = Path(__file__).parents[2]
+PROGRAM = """\
+T1 M6 G43 H1
+G21 G90 G94 S8000 M3
+G0 X0 Y0 Z30
+G1 X10 Y0 Z20 F600
+G1 X20 Y5 Z20
+G1 X30 Y5 Z20
+G1 X30 Y15 Z20
+G0 Z30
+M5
+M30
+"""
+CODE = """
+import sys
+import numpy
+before = set(sys.modules)
+from pkm_post.cli import main
+code = main(sys.argv[1:])
+print("IMPORTED", *sorted(set(sys.modules) - before))
+from dataclasses import is_dataclass
+for name, module in list(sys.modules.items()):
+    if name.startswith("pkm_post."):
+        for one in vars(module).values():
+            if isinstance(one, type) and is_dataclass(one) and one.__module__ == name:
+                print("FROZEN" if one.__dataclass_params__.frozen else "OTHER", name, one.__name__)
+sys.exit(code)
+"""
+NOT_NEEDED = (
+    "FreeCAD",
+    "asyncio",
+    "concurrent.futures",
+    "csv",
+    "lark",
+    "logging",
+    "matplotlib",
+    "numpy.fft",
+    "numpy.ma",
+    "numpy.polynomial",
+    "numpy.random",
+    "paramiko",
+    "serial",
+    "socket",
+    "subprocess",
+    "xml",
+    "zipfile",
+)
+"""Packages and modules of others."""
+ROOMS_NOT_NEEDED = (
+    "api",
+    "cli.batch",
+    "cli.pmac",
+    "cli.programs",
+    "cli.reach",
+    "control",
+    "freecad_app",
+    "machine.calibration",
+    "machine.reach.best_position",
+    "machine.reach.reach_map",
+    "planning.jerk_limits",
+    "planning.window",
+    "posting.place_search",
+    "posting.stiffness",
+    "reading.cldata",
+    "reading.gcode.execute",
+    "reading.siemens.reader",
+    "removal",
+    "report.plots",
+    "system.document",
+    "system.packages",
+    "toolpath.surface",
+    "writing.controllers.power_pmac",
+    "writing.gcode",
+    "writing.kinematics",
+)
+"""Modules and packages of our own."""
+WITHOUT_NUMPY = ("pkm_post.system.", "pkm_post.options.", "pkm_post.cli.")
+"""They begin where NumPy is not installed, and so cannot import the model."""
+
+
+@pytest.fixture(scope="module")
+def posted(tmp_path_factory):
+    """The lines that a process prints that posted a short program: what it imported, and its dataclasses."""
+    folder = tmp_path_factory.mktemp("posted")
+    (folder / "part.ngc").write_text(PROGRAM, encoding="ascii")
+    command = [PYTHON, "-c", CODE, "post", "part.ngc", "--work-offset=0,0,250", "--tool-length", "1=60"]
+    found = os.environ | {"PYTHONPATH": str(ADDON)}
+    ran = subprocess.run(command, cwd=folder, env=found, capture_output=True, text=True, timeout=300, check=False)
+    assert ran.returncode == 0, ran.stderr
+    assert (folder / "part.pmc").is_file()
+    return [line.split() for line in ran.stdout.splitlines()]
+
+
+def test_what_a_short_program_does_not_need_is_not_imported(posted):
+    (imported,) = (set(words) for first, *words in posted if first == "IMPORTED")
+    assert "pkm_post.posting.steps" in imported
+    of_others = {name for name in imported if name.startswith(tuple(f"{one}." for one in NOT_NEEDED))}
+    assert not of_others | imported.intersection(NOT_NEEDED)
+    rooms = [f"pkm_post.{one}" for one in ROOMS_NOT_NEEDED]
+    assert not [name for name in imported if f"{name}.".startswith(tuple(f"{room}." for room in rooms))]
+
+
+@pytest.mark.parametrize("name", ROOMS_NOT_NEEDED)
+def test_the_modules_of_the_list_are_there(name):
+    path = ADDON / "pkm_post" / name.replace(".", "/")
+    assert path.is_dir() or path.with_suffix(".py").is_file()
+
+
+def test_frozen_dataclasses_that_a_short_program_needs_are_made_quickly(posted):
+    assert ["OTHER", "pkm_post.model.machine", "Machine"] in posted
+    assert not [words for words in posted if words[0] == "FROZEN" and not words[1].startswith(WITHOUT_NUMPY)]
