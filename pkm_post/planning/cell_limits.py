@@ -24,8 +24,6 @@ _LEAST = 1e-150
 _ROUNDS = 24
 """Rounds of regula falsi for the highest speed of a cell: what is missing then is mostly below a share of 1e-6."""
 _STARTS_AND_ENDS = slice(None, -1), slice(1, None)
-_OTHER_WAY = np.array([[1.0], [-1.0], [1.0]])
-"""Products of the tip on the way back."""
 _SURELY_WITHIN = 0.9
 """Share of a limit up to which it needs no look, between stations neither."""
 
@@ -121,21 +119,27 @@ class CellLimits:
 
         At a speed that is too high, the least one is above the greatest.
         """
-        greatest = self.greatest(square, share)
-        turned = CellLimits(self.width, self.slope, -self.offset, tuple(tip * _OTHER_WAY for tip in self.tips))
-        return np.maximum(-turned.greatest(square, share), -square / self.width), greatest
+        slope, turned = np.maximum(self.slope, _LEAST), self.offset * square
+        greatest = share - turned
+        turned += share
+        greatest /= slope
+        turned /= slope
+        greatest, turned = greatest.min(axis=0, initial=np.inf), turned.min(axis=0, initial=np.inf)
+        for tip in self.tips:
+            half, mixed, size = _chord(tip, square, share)
+            greatest = np.minimum(greatest, (half - mixed) / size)
+            turned = np.minimum(turned, (half + mixed) / size)
+        return np.maximum(-turned, -square / self.width), greatest
 
     def greatest(self, square: Array, share: Array | float) -> Array:
         """Greatest acceleration at a speed squared, (K,), under a share of the limits."""
         room = self.offset * square
         np.subtract(share, room, out=room)
         room /= np.maximum(self.slope, _LEAST)
-        greatest = functools.reduce(np.minimum, room, np.full(len(square), np.inf))
-        for one, both, two in self.tips:
-            size = np.maximum(one, _LEAST)
-            root = size * share**2 - square**2 * np.maximum(one * two - both**2, 0.0)
-            half = np.sqrt(np.abs(root)) * np.sign(root)  # negative: the ellipse ends below that speed
-            greatest = np.minimum(greatest, (half - both * square) / size)
+        greatest = room.min(axis=0, initial=np.inf)
+        for tip in self.tips:
+            half, mixed, size = _chord(tip, square, share)
+            greatest = np.minimum(greatest, (half - mixed) / size)
         return np.asarray(greatest)
 
     def highest(self, ceiling: Array) -> Array:
@@ -169,7 +173,7 @@ class CellLimits:
         numerator = self.slope * square
         numerator += self.width * share
         bound = np.where(denominator > _LEAST, numerator / np.maximum(denominator, _LEAST), np.inf)
-        highest = functools.reduce(np.minimum, bound, np.full(len(square), np.inf))
+        highest = bound.min(axis=0, initial=np.inf)
         for tip in self.tips:
             highest = np.minimum(highest, _before(tip, square, self.width, share))
         return np.asarray(highest)
@@ -184,6 +188,17 @@ def _end(tip: Array) -> Array:
     """Where an ellipse ends: its greatest x, (K,)."""
     one, both, two = tip
     return np.asarray(1 / np.sqrt(np.maximum(two - both**2 / np.maximum(one, _LEAST), _LEAST)))
+
+
+def _chord(tip: Array, square: Array, share: Array | float) -> tuple[Array, Array, Array]:
+    """An ellipse at a speed squared: half of its width and its middle on the way back, both times P; and P, (K,) each.
+
+    The half is negative where the ellipse ends below that speed.
+    """
+    one, both, two = tip
+    size = np.maximum(one, _LEAST)
+    root = size * share**2 - square**2 * np.maximum(one * two - both**2, 0.0)
+    return np.sqrt(np.abs(root)) * np.sign(root), both * square, size
 
 
 def _before(tip: Array, square: Array, width: Array, share: Array) -> Array:
