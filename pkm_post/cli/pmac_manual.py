@@ -57,7 +57,7 @@ def execute_plan(
     diagnostics: tuple[Diagnostic, ...],
     near: float | None = None,
 ) -> int:
-    """Print a plan, execute it, and print the position reached; ``near`` is as for ``execute``."""
+    """Print a plan, execute it, and print the position reached; ``near`` is the ``start_tolerance`` of ``execute``."""
     from pkm_post.control.link import pose_text
     from pkm_post.control.numerical_control import target_deviation
     from pkm_post.options import START_TOLERANCE_MM

@@ -37,7 +37,7 @@ class SurfaceSpeed:
 
 
 def with_surface_speed(
-    program: Program, wanted: SurfaceSpeed, limits: tuple[float, float]
+    program: Program, surface_speed: SurfaceSpeed, limits: tuple[float, float]
 ) -> tuple[Program | None, tuple[Diagnostic, ...]]:
     """Set a spindle speed for each cut.
 
@@ -46,7 +46,7 @@ def with_surface_speed(
 
     Args:
         program: in {C}; the sense of rotation and spindle stops are kept.
-        wanted: surface speed, and whether feeds follow.
+        surface_speed: at the contact, and whether feeds follow.
         limits: lowest and highest spindle speed.
 
     Returns:
@@ -68,9 +68,9 @@ def with_surface_speed(
     number = np.cumsum(np.diff(cut.astype(np.int8), prepend=0) == 1) - 1
     count = np.bincount(number[turning], minlength=int(number.max(initial=-1)) + 1)
     mean = np.bincount(number[turning], diameter[turning], len(count)) / np.maximum(count, 1)
-    by_cut = np.clip(np.rint(60 * wanted.speed / (math.pi * np.where(count > 0, mean, np.inf))), *limits)
+    by_cut = np.clip(np.rint(60 * surface_speed.speed / (math.pi * np.where(count > 0, mean, np.inf))), *limits)
     revolutions = np.where(turning, by_cut[number] * np.sign(np.nan_to_num(spindle)), np.nan)
-    return _with_speeds(program, revolutions, spindle, wanted), ()
+    return _with_speeds(program, revolutions, spindle, surface_speed), ()
 
 
 def _cutter(program: Program, number: int, rows: Array) -> tuple[Cutter | None, tuple[Diagnostic, ...]]:
@@ -97,7 +97,7 @@ def _in_force(program: Program, kind: EventKind) -> Array:
     return in_force
 
 
-def _with_speeds(program: Program, revolutions: Array, before: Array, wanted: SurfaceSpeed) -> Program:
+def _with_speeds(program: Program, revolutions: Array, before: Array, surface_speed: SurfaceSpeed) -> Program:
     """The program with the speeds of its cutting rows; where they are NaN, the programmed speed is kept."""
     changed = ~np.isnan(revolutions)
     begins = set(np.flatnonzero(changed & np.append(True, program.kind[:-1] == Kind.RAPID)).tolist())
@@ -111,7 +111,7 @@ def _with_speeds(program: Program, revolutions: Array, before: Array, wanted: Su
             value = float(revolutions[row])
             events.append(Event(row, EventKind.SPINDLE, value))
     feed = program.feed
-    if wanted.keep_chip_load:
+    if surface_speed.keep_chip_load:
         scale = np.divide(np.abs(revolutions), np.abs(before), out=np.ones(len(program)), where=changed)
         feed = program.feed * scale
     return replace(program, feed=feed, events=tuple(sorted(events, key=lambda event: event.row)))

@@ -59,13 +59,15 @@ def check_setup(session: Session, settings: AnySettings, stroke: tuple[float, fl
         raise NotReadyError(reasons)
 
 
-def check_start(status: Status, first: Array, near: float = START_TOLERANCE_MM, machine: Machine | None = None) -> None:
+def check_start(
+    status: Status, first: Array, start_tolerance: float = START_TOLERANCE_MM, machine: Machine | None = None
+) -> None:
     """Check that a program may start: struts homed, in closed loop, without faults, standing near its first point.
 
     Args:
         status: of the struts.
         first: (6,) strut lengths of the first point, mm.
-        near: largest distance of each strut from it, mm.
+        start_tolerance: largest distance of each strut from it, mm.
         machine: its geometry, to compare the tool pose as well.
 
     Raises:
@@ -80,10 +82,10 @@ def check_start(status: Status, first: Array, near: float = START_TOLERANCE_MM, 
     reasons += [
         f"strut {motor}: {status.length[motor - 1]:.3f} mm long, {distance:.3f} mm from the first point of the program"
         for motor, distance in zip(MOTORS, away, strict=True)
-        if not distance <= near
+        if not distance <= start_tolerance
     ]
     if machine is not None and all(status.homed):
-        reasons += start_faults(machine, status.length, first, near)
+        reasons += start_faults(machine, status.length, first, start_tolerance)
     if reasons:
         raise NotReadyError(tuple(dict.fromkeys(reasons)))
 
@@ -164,7 +166,7 @@ def start_program(
     settings: AnySettings,
     program: PmacProgram,
     first: Array,
-    near: float = START_TOLERANCE_MM,
+    start_tolerance: float = START_TOLERANCE_MM,
     machine: Machine | None = None,
 ) -> Status:
     """Start a program from its beginning.
@@ -174,7 +176,7 @@ def start_program(
         settings: of the machine's controller.
         program: what the controller must hold; its listing is verified again.
         first: (6,) strut lengths of its first point, mm.
-        near: largest distance of each strut from it, mm.
+        start_tolerance: largest distance of each strut from it, mm.
         machine: its geometry, to compare the tool pose as well.
 
     Raises:
@@ -187,7 +189,7 @@ def start_program(
         there = verify_listing(session, program)
         if not there.same:
             raise NotReadyError([f"program {program.number} in the controller is a different one: {there.difference}"])
-        check_start(settled_status(session, settings), first, near, machine)
+        check_start(settled_status(session, settings), first, start_tolerance, machine)
         return _start_motion(session, settings, f"B{program.number}R", lambda status: status.running)
 
 

@@ -54,11 +54,11 @@ class RotaryStream:
         settings: PmacSettings,
         segments: tuple[Segment, ...],
         words: int,
-        near: float,
+        start_tolerance: float,
     ) -> None:
         self.segments, self.resumptions, self.line = segments, 0, 0
         self.rest: Array = segments[0].rest
-        self._session, self._settings, self._near = session, settings, near
+        self._session, self._settings, self._start_tolerance = session, settings, start_tolerance
         self._ends = list(accumulate(len(segment.lines) for segment in segments))
         self._buffer = RotaryBuffer(session, settings, [line for each in segments for line in each.lines], words)
         self._let_go = 0  # lines
@@ -184,7 +184,7 @@ class RotaryStream:
         )
 
     def _check(self, status: Status) -> None:
-        check_start(status, self.rest, self._near)
+        check_start(status, self.rest, self._start_tolerance)
 
 
 _log = logging.getLogger(__name__)
@@ -213,7 +213,7 @@ def stream(
     program: PmacProgram,
     first: Array,
     words: int,
-    near: float = START_TOLERANCE_MM,
+    start_tolerance: float = START_TOLERANCE_MM,
     progress: Progress = lambda done, sent, all_lines: None,
     is_cancelled: Callable[[], bool] = lambda: False,
     machine: Machine | None = None,
@@ -226,7 +226,7 @@ def stream(
         program: what to run.
         first: (6,) strut lengths of its first point, mm.
         words: size of the rotary buffer, as defined.
-        near: largest distance of each strut from the first point, and from each rest it continues from, mm.
+        start_tolerance: largest distance of each strut from the first point, and from each rest it continues from, mm.
         progress: called with the lines released, loaded, and in total.
         is_cancelled: polled; the machine then rests at the end of the running segment.
         machine: its geometry, to compare the tool pose with the first point as well.
@@ -237,10 +237,10 @@ def stream(
         CancelledError: it was cancelled; the machine rests and nothing is left in the buffer.
         NotOwnerError: another client owns the machine; nothing was sent.
     """
-    streaming = RotaryStream(session, settings, split_into_segments(program, settings, words), words, near)
+    streaming = RotaryStream(session, settings, split_into_segments(program, settings, words), words, start_tolerance)
     streaming.rest = first
     with owned(session, "stream"):
-        check_start(settled_status(session, settings), first, near, machine)
+        check_start(settled_status(session, settings), first, start_tolerance, machine)
         return _streamed(session, streaming, program, progress, is_cancelled)
 
 

@@ -150,18 +150,18 @@ def deviation_from_start(machine: Machine, length: Array, first: Array) -> PoseD
     return PoseDeviation(float(norm((here.tip - start.tip)[None])[0]), axis, spin)
 
 
-def start_faults(machine: Machine, length: Array, first: Array, near: float) -> tuple[str, ...]:
+def start_faults(machine: Machine, length: Array, first: Array, start_tolerance: float) -> tuple[str, ...]:
     """Why a program may not start from the current pose, in plain text; empty if it may.
 
     Args:
         machine: the geometry.
         length: (6,) current strut lengths, mm.
         first: (6,) strut lengths of the first point, mm.
-        near: largest distance of the tip, and, by its turns, of a point at the characteristic length, mm.
+        start_tolerance: largest distance of the tip, and, by its turns, of a point at the characteristic length, mm.
     """
     deviation = deviation_from_start(machine, length, first) if np.isfinite([length, first]).all() else None
     if deviation is None:
         return ("no pose of the platform reachable in small steps from home has the lengths of the struts",)
-    if deviation.largest(machine.characteristic_length) <= near:
+    if deviation.largest(machine.characteristic_length) <= start_tolerance:
         return ()
     return (f"the tool is away from the start of the program: {deviation}; plan the move there: approach",)

@@ -177,7 +177,7 @@ class NumericalControl:
             found += check(approach)
         return self._plan(None if errors(found) else approach, found)
 
-    def execute(self, plan: MovePlan, near: float = START_TOLERANCE_MM) -> Status:
+    def execute(self, plan: MovePlan, start_tolerance: float = START_TOLERANCE_MM) -> Status:
         """Load a plan, verify its listing and start it; as ``execute.execute``.
 
         The controller holds a jog by itself once ``poll``, ``renew`` and ``wait_for_rest`` are no longer called.
@@ -187,7 +187,7 @@ class NumericalControl:
             silence = self.longest_silence_s()
             status, self._watchdog = self._with_ownership("jog", lambda: execute.execute_watched(*order, silence))
         else:
-            status = self._with_ownership("run", lambda: execute.execute(*order, near))
+            status = self._with_ownership("run", lambda: execute.execute(*order, start_tolerance))
         if plan.block and self._blocks is not None:
             self._set_next_block(self._blocks[0], plan.block + 1)
         return status
@@ -222,14 +222,14 @@ class NumericalControl:
         check_setup(self._session, self._settings, self._machine.strut_stroke)
         return download(self._session, job.program, progress, lambda: is_cancelled() or self._session.stop_pending())
 
-    def start(self, job: PmacJob, near: float = START_TOLERANCE_MM) -> Status:
+    def start(self, job: PmacJob, start_tolerance: float = START_TOLERANCE_MM) -> Status:
         """Start a loaded program from its beginning; as ``run.start_program``."""
-        order = self._session, self._settings, job.program, job.first, near, self._machine
+        order = self._session, self._settings, job.program, job.first, start_tolerance, self._machine
         return self._with_ownership("run", lambda: run.start_program(*order))
 
-    def continue_after_stop(self, job: PmacJob, stop: int, near: float = START_TOLERANCE_MM) -> Status:
+    def continue_after_stop(self, job: PmacJob, stop: int, start_tolerance: float = START_TOLERANCE_MM) -> Status:
         """Continue a program after its stop (M0, M1), from 1, where it stands; as ``execute.continue_after_stop``."""
-        order = self._session, self._machine, self._settings, job, stop, near
+        order = self._session, self._machine, self._settings, job, stop, start_tolerance
         return self._with_ownership("run", lambda: execute.continue_after_stop(*order))
 
     def open_blocks(self, blocks: ProgramBlocks, at: int = 1) -> int:

@@ -29,7 +29,7 @@ _POLL_S = 0.05
 
 
 def execute(
-    session: Session, machine: Machine, settings: AnySettings, job: PmacJob, near: float = START_TOLERANCE_MM
+    session: Session, machine: Machine, settings: AnySettings, job: PmacJob, start_tolerance: float = START_TOLERANCE_MM
 ) -> Status:
     """Load a program and start it.
 
@@ -38,7 +38,7 @@ def execute(
         machine: the machine.
         settings: of its controller.
         job: of a plan, or a single block of a program.
-        near: largest distance of each strut from its first point, mm.
+        start_tolerance: largest distance of each strut from its first point, mm.
 
     Raises:
         NotReadyError: setup or machine are not ready; nothing was loaded, or nothing was started.
@@ -47,10 +47,10 @@ def execute(
         NotOwnerError: another client owns the machine; nothing was loaded.
     """
     with owned(session, "jog"):
-        check_start(read_status(session, settings), job.first, near, machine)
+        check_start(read_status(session, settings), job.first, start_tolerance, machine)
         check_setup(session, settings, machine.strut_stroke)
         download(session, job.program, is_cancelled=session.stop_pending)
-        return operate.start_program(session, settings, job.program, job.first, near, machine)
+        return operate.start_program(session, settings, job.program, job.first, start_tolerance, machine)
 
 
 def execute_watched(
@@ -175,7 +175,7 @@ def continue_after_stop(
     settings: AnySettings,
     job: PmacJob,
     number: int,
-    near: float = START_TOLERANCE_MM,
+    start_tolerance: float = START_TOLERANCE_MM,
 ) -> Status:
     """Load the part of a program after a stop and start it.
 
@@ -186,7 +186,7 @@ def continue_after_stop(
         job: the program that has stopped.
         number: of the stop, from 1. It is stated, not inferred from the strut lengths: several stops may share a
             position, and a program that was never started may begin there.
-        near: largest distance of each strut from it, mm.
+        start_tolerance: largest distance of each strut from it, mm.
 
     Raises:
         NotReadyError: the stop does not exist, or the struts do not stand at it; or as ``execute.execute``.
@@ -196,4 +196,4 @@ def continue_after_stop(
     if not 1 <= number <= len(stops):
         reason = f"the program has {len(stops)} stops (M0, M1) with moves after them: there is no stop {number}"
         raise NotReadyError([reason])
-    return execute(session, machine, settings, remaining_job(job, stops[number - 1], settings), near)
+    return execute(session, machine, settings, remaining_job(job, stops[number - 1], settings), start_tolerance)

@@ -74,9 +74,9 @@ def stop(position: float, speed: float, deceleration: float) -> MotorProfile:
     return MotorProfile((braking,), braking.at(duration))
 
 
-def endless(position: float, speed: float, wanted: float, acceleration: float) -> MotorProfile:
+def endless(position: float, speed: float, target_speed: float, acceleration: float) -> MotorProfile:
     """Continue at a speed until the next command."""
-    change = wanted - speed
+    change = target_speed - speed
     ramp = AccelerationPhase(abs(change) / acceleration, position, speed, math.copysign(acceleration, change))
     return MotorProfile((ramp, ramp.next(math.inf, 0.0)), None)
 

@@ -69,13 +69,13 @@ def tool_axes(normal: Array, feed: Array, rule: AxisRule, side: Array | None = N
     return clamp_to_cone(wanted, np.asarray(rule.cone_axis, dtype=np.float64), rule.cone)
 
 
-def clamp_to_cone(wanted: Array, cone_axis: Array, cone: float) -> tuple[Array, Array]:
+def clamp_to_cone(axis: Array, cone_axis: Array, cone: float) -> tuple[Array, Array]:
     """The nearest axes inside a cone, (N, 3), and flags of the clamped ones, (N,)."""
-    middle = np.broadcast_to(unit(cone_axis), wanted.shape)
-    away = angle_between(middle, wanted)
+    middle = np.broadcast_to(unit(cone_axis), axis.shape)
+    away = angle_between(middle, axis)
     outside = away > cone
-    shortened = towards(middle, wanted) * (cone / np.maximum(away, cone + 1e-300))[:, None]
-    return np.where(outside[:, None], along(middle, shortened), wanted), outside
+    shortened = towards(middle, axis) * (cone / np.maximum(away, cone + 1e-300))[:, None]
+    return np.where(outside[:, None], along(middle, shortened), axis), outside
 
 
 _REVERSAL = math.radians(150.0)

@@ -143,7 +143,7 @@ def test_a_start_far_from_the_first_point_is_refused(loaded):
     with pytest.raises(NotReadyError, match=r"strut 5: 500.000 mm long, 1.100 mm from the first point"):
         operate.start_program(loaded, SETTINGS, SLOW, first)
     status = read_status(loaded, SETTINGS)
-    check_start(status, first, near=1.2)
+    check_start(status, first, start_tolerance=1.2)
     with pytest.raises(NotReadyError):
         check_start(status, np.full(6, np.nan))
 
@@ -151,7 +151,7 @@ def test_a_start_far_from_the_first_point_is_refused(loaded):
 def test_a_running_program_is_not_started_again(loaded):
     operate.start_program(loaded, SETTINGS, SLOW, FIRST)
     with pytest.raises(NotReadyError, match="a program runs, or is held"):
-        operate.start_program(loaded, SETTINGS, SLOW, FIRST, near=100.0)
+        operate.start_program(loaded, SETTINGS, SLOW, FIRST, start_tolerance=100.0)
 
 
 def test_nothing_is_resumed_that_is_not_held(loaded):

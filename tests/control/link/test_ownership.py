@@ -267,7 +267,7 @@ def test_a_machine_that_moves_without_a_program_is_seen_to_move(kind):
         assert not status.running and not status.standing
         assert "no program runs, BUT THE MACHINE MOVES" in state_text(status)
         with pytest.raises(NotReadyError, match="strut 3: moves"):
-            operate.start_program(session, SETTINGS, PROGRAM, FIRST, near=1000.0)
+            operate.start_program(session, SETTINGS, PROGRAM, FIRST, start_tolerance=1000.0)
 
 
 def test_struts_that_turn_round_or_sink_are_seen_to_move():
