@@ -8,12 +8,14 @@ the middle of a rounded corner, where the tool is farthest from both segments.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.certificate.tool_states import PlaybackTask
 from pkm_post.geometry import Array, angle_between, hermite_lengths, norm
 from pkm_post.machine import forward
-from pkm_post.model import Trajectory, dataclass
+from pkm_post.model import Trajectory
 from pkm_post.system import in_workers
 
 _SETTLED = 0.005

@@ -9,6 +9,7 @@ more instants until the undetected part is small.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
@@ -17,7 +18,7 @@ from pkm_post.certificate.joints import JointDeviations
 from pkm_post.certificate.struts import extremes
 from pkm_post.certificate.tool_states import PlaybackTask, ToolStates, states_by_kinematics, states_on_spline
 from pkm_post.geometry import Array, length_of
-from pkm_post.model import checkpoint, dataclass, pieces
+from pkm_post.model import checkpoint, pieces
 from pkm_post.system import in_workers
 
 _ROOM = 1.1

@@ -7,13 +7,13 @@ interval, from the closed forms of a cubic; jerk; and bounds on the deviation of
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from pkm_post.certificate.tool_spline import KnotKinematics
 from pkm_post.geometry import Array, hermite_accelerations
-from pkm_post.model import StrutMotion, checkpoint, dataclass, in_pieces, pieces
+from pkm_post.model import StrutMotion, checkpoint, in_pieces, pieces
 
 _AT_ONCE = 4096
 """Knots in one pass: the working arrays of one pass stay in the processor's cache."""

@@ -11,6 +11,8 @@ a bound for all others. Units: mm, s, rad.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.geometry import (
@@ -22,7 +24,7 @@ from pkm_post.geometry import (
     length_of,
 )
 from pkm_post.machine import ToolPoses, attitude_rates, displaced, map_to_tool, strut_lengths, strut_state
-from pkm_post.model import Machine, Motion, StrutMotion, dataclass, distinct, pieces
+from pkm_post.model import Machine, Motion, StrutMotion, distinct, pieces
 
 _MOST_CHANGE = 0.05
 """Relative change of the Jacobian allowed in an interval; the mean of the inverses then has an error of some 6e-4."""

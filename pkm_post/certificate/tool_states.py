@@ -9,7 +9,7 @@ method where these do not converge. Where the Jacobian changes much, velocities 
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from pkm_post.certificate.struts import AdjacentMotion
 from pkm_post.certificate.tool_spline import KnotKinematics, ToolSpline, inverses_at
 from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds, length_of
 from pkm_post.machine import ToolPoses, forward, jacobian_of_tip, linearise, map_to_tool, refine_poses
-from pkm_post.model import Machine, Motion, StrutMotion, dataclass
+from pkm_post.model import Machine, Motion, StrutMotion
 
 _SPEED_MISSED = 1.3e-3
 """Relative error of a speed from the mean of two inverse Jacobians; see ``knots``."""

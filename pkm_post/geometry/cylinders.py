@@ -13,11 +13,12 @@ plane of the triangle, so its minimum is that of the whole plane if it is inside
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.geometry.distances import nearest_to_cylinder, point_to_cylinder
 from pkm_post.geometry.vectors import Array, cross, dot, norm
-from pkm_post.model import dataclass
 
 TRIANGLE_EDGES = np.array([[0, 1], [1, 2], [2, 0]])
 _SHORT = 1e-12

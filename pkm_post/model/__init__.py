@@ -45,7 +45,6 @@ from pkm_post.model.program import (
     Kind,
     Program,
 )
-from pkm_post.model.record import dataclass
 from pkm_post.model.rules import Severity
 from pkm_post.model.setup import (
     EMPTY_SETUP,
@@ -118,7 +117,6 @@ __all__ = [
     "corner_reach",
     "coverage_summary",
     "cuts_by_speed",
-    "dataclass",
     "errors",
     "distinct",
     "find_rows",

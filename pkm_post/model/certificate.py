@@ -7,11 +7,11 @@ Each quantity has its limit, and the time and the source line of its worst value
 from __future__ import annotations
 
 import enum
+from dataclasses import dataclass
 
 from pkm_post.model.diagnostics import Diagnostic, Place
 from pkm_post.model.phrase import Amount, Pattern
 from pkm_post.model.program import Array
-from pkm_post.model.record import dataclass
 
 
 @dataclass(frozen=True)

@@ -12,13 +12,12 @@ the distance.
 from __future__ import annotations
 
 import math
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from pkm_post.model.columns import Array, freeze
-from pkm_post.model.record import dataclass
 
 
 @dataclass(frozen=True)

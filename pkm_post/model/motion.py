@@ -7,11 +7,12 @@ lengths and speeds of both (position-velocity-time, PVT: a cubic Hermite).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.model.columns import RowType, freeze, uniform
 from pkm_post.model.program import Array, Event
-from pkm_post.model.record import dataclass
 
 AT_FEED = 0.95
 """Share of a feed from which on it counts as reached."""

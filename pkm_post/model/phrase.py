@@ -8,8 +8,7 @@ sources; ``tools/core_texts.py`` gathers the patterns for translation, and ``fre
 from __future__ import annotations
 
 from collections.abc import Mapping
-
-from pkm_post.model.record import dataclass
+from dataclasses import dataclass
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ an event at row r takes place before the motion of row r; r = N, one past the la
 from __future__ import annotations
 
 import enum
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +17,6 @@ import numpy as np
 from pkm_post.model.columns import Array as Array  # the alias for all packages
 from pkm_post.model.columns import RowType, freeze, uniform
 from pkm_post.model.diagnostics import Place
-from pkm_post.model.record import dataclass
 from pkm_post.model.setup import Tool
 
 if TYPE_CHECKING:

@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from pkm_post.model.columns import Array, freeze
-from pkm_post.model.record import dataclass
 
 
 @dataclass(frozen=True)

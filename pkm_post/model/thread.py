@@ -9,11 +9,10 @@ pose, and no table needs a column for it. Units: mm, turns; angles are positive 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from pkm_post.model.columns import Array
 from pkm_post.model.program import Event, EventKind, Kind
-from pkm_post.model.record import dataclass
 
 
 @dataclass(frozen=True)

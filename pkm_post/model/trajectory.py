@@ -9,6 +9,7 @@ an arc, the tool axis along the great circle, the spin linearly, all in step. Un
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,7 +17,6 @@ from pkm_post.model.certificate import Tolerances
 from pkm_post.model.columns import RowType, freeze, is_uniform, map_rows, shifted, uniform
 from pkm_post.model.diagnostics import Place
 from pkm_post.model.program import MOTION_COLUMNS, Array, Event
-from pkm_post.model.record import dataclass
 from pkm_post.model.setup import Tool, gauge_lengths
 
 MAX_SPIN = 1e6

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from pkm_post.geometry import Array
 from pkm_post.machine import ZERO_TORSION, SpinPolicy
-from pkm_post.model import EMPTY_SETUP, Setup, Tolerances, Tool, dataclass
+from pkm_post.model import EMPTY_SETUP, Setup, Tolerances, Tool
 from pkm_post.system import result_files
 from pkm_post.toolpath import Copies, OffsetOptions
 

@@ -11,11 +11,12 @@ derivatives at stations, by their limits. Leaves: these ranges, and the speeds t
 from __future__ import annotations
 
 import functools
+from dataclasses import dataclass
 
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import dataclass, pieces
+from pkm_post.model import pieces
 
 _ROWS_AT_ONCE = 1 << 14
 """Stations in one pass."""

@@ -7,12 +7,11 @@ joints inside each interval, and places between them that leave no wide gap.
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from pkm_post.geometry import Array, expand_counts
-from pkm_post.model import dataclass
 
 _ROUNDING = 1e-9
 """Tolerance on a number of gaps, so that rounding does not add one."""

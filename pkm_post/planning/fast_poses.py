@@ -14,10 +14,12 @@ curve are left to ``ToolPath.within``, which extends both segments.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.geometry import Array, along, distinct, length_of, take_rows
-from pkm_post.model import Poses, dataclass, select_rows
+from pkm_post.model import Poses, select_rows
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.toolpath import Segments
 

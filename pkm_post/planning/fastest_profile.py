@@ -10,11 +10,12 @@ ramps, and what runs at its ceiling costs one look. Units: mm, s.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import checkpoint, dataclass, pieces
+from pkm_post.model import checkpoint, pieces
 from pkm_post.planning.cell_limits import CellLimits, StationLimits
 
 _CELLS_AT_ONCE = 8192

@@ -12,13 +12,13 @@ the segments run slower: the same knots take longer, and span less of the path.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from pkm_post.geometry import Array, expand_counts
-from pkm_post.model import dataclass
 
 LONGEST_MS = 4095
 """Longest interval: the most whole ms that the time word of a PMAC takes [TurboPMAC, PVT]."""

@@ -10,7 +10,7 @@ kinematics is independent of the feed. Units: mm, s, rad.
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,7 +27,6 @@ from pkm_post.model import (
     Trajectory,
     as_executed,
     checkpoint,
-    dataclass,
     errors,
     read_only,
 )

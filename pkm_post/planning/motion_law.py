@@ -12,10 +12,11 @@ Both ways the time at which a place is passed has a closed form, too. Units: mm,
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import dataclass
 
 _SERIES = 1e-3
 """Arguments below which the series of a function is exact to the last digits."""

@@ -17,12 +17,12 @@ planned and played in them, by their limits. Units: mm, s.
 from __future__ import annotations
 
 import functools
-from dataclasses import fields
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from pkm_post.geometry import Array, length_of
-from pkm_post.model import Machine, dataclass, pieces
+from pkm_post.model import Machine, pieces
 from pkm_post.planning.speed_limits import limited_quantities
 from pkm_post.planning.speed_profile import Stations
 from pkm_post.planning.tool_path import ToolPath

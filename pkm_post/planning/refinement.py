@@ -15,12 +15,12 @@ squared. Units: mm, s.
 from __future__ import annotations
 
 import functools
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Machine, checkpoint, dataclass
+from pkm_post.model import Machine, checkpoint
 from pkm_post.planning.acceleration_limits import limits_at, limits_within
 from pkm_post.planning.cell_limits import StationLimits, demand
 from pkm_post.planning.fastest_profile import Steps, ceilings

@@ -10,13 +10,13 @@ derivations. Units: mm, s, rad.
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from pkm_post.geometry import Array, norm, tilt, turn_by_tilt
 from pkm_post.machine import strut_rate_bounds
-from pkm_post.model import Machine, checkpoint, dataclass, in_pieces, pieces
+from pkm_post.model import Machine, checkpoint, in_pieces, pieces
 from pkm_post.planning.speed_limits import (
     FOR_CURVATURE,
     NO_LIMIT,

@@ -8,12 +8,13 @@ stretched to the next whole one, which lowers every speed slightly and exceeds n
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Poses, checkpoint, dataclass, in_pieces, pieces
+from pkm_post.model import Poses, checkpoint, in_pieces, pieces
 from pkm_post.planning.motion_law import MotionLaw
 from pkm_post.planning.speed_profile import Stations, cell_times
 

@@ -7,10 +7,12 @@ knots come faster than the block rate. Units: mm, s.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.geometry import Array, expand_counts
-from pkm_post.model import Machine, Motion, dataclass
+from pkm_post.model import Machine, Motion
 from pkm_post.planning.interpolation import InterpolationCheck
 from pkm_post.planning.knots import SLOWDOWN, block_rate_factors
 from pkm_post.planning.schedule import Schedule

@@ -10,12 +10,13 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from pkm_post.geometry import Array, norm
 from pkm_post.machine import strut_rates
-from pkm_post.model import Machine, Poses, dataclass
+from pkm_post.model import Machine, Poses
 from pkm_post.planning.tool_path import ToolPath
 
 SAFE_SHARE = 0.6

@@ -12,10 +12,12 @@ the slopes, once from the left and once from the right: look-ahead of any depth 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.geometry import Array, expand_counts
-from pkm_post.model import checkpoint, dataclass, pieces
+from pkm_post.model import checkpoint, pieces
 from pkm_post.planning.tool_path import ToolPath
 
 _ROUNDING = 4 * np.finfo(np.float64).eps

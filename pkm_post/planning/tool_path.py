@@ -16,11 +16,12 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from pkm_post.geometry import Array, along_rates, norm
-from pkm_post.model import Poses, Trajectory, dataclass, pieces
+from pkm_post.model import Poses, Trajectory, pieces
 from pkm_post.toolpath import Segments, direction
 
 OFFSET = 3 / 16

@@ -11,12 +11,12 @@ from __future__ import annotations
 
 from argparse import Namespace
 from collections.abc import Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from pkm_post.geometry import Array
 from pkm_post.machine import find_collisions, machine_named
-from pkm_post.model import Diagnostic, Machine, Place, Program, Refused, Trajectory, checkpoints, dataclass, errors
+from pkm_post.model import Diagnostic, Machine, Place, Program, Refused, Trajectory, checkpoints, errors
 from pkm_post.options import (
     FIXTURE_OF_THE_JOB,
     READING_STEP,

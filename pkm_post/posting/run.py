@@ -12,12 +12,12 @@ import functools
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pkm_post.machine import Collisions, find_collisions
-from pkm_post.model import Diagnostic, Machine, Refused, Setup, Tolerances, Trajectory, checkpoints, dataclass, errors
+from pkm_post.model import Diagnostic, Machine, Refused, Setup, Tolerances, Trajectory, checkpoints, errors
 from pkm_post.options import Options
 from pkm_post.system import result_files
 from pkm_post.writing import ControllerModule, manifest

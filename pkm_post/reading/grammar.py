@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-from pkm_post.model import dataclass
 
 if TYPE_CHECKING:
     from lark import Lark, Token, Tree, UnexpectedInput

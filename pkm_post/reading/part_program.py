@@ -16,13 +16,13 @@ import hashlib
 import math
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from pkm_post.geometry import dot
-from pkm_post.model import Diagnostic, EventKind, Kind, Phrase, Place, Program, Tool, dataclass
+from pkm_post.model import Diagnostic, EventKind, Kind, Phrase, Place, Program, Tool
 from pkm_post.reading import gcode, siemens
 from pkm_post.reading.language import Language, language_of
 

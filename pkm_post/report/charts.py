@@ -11,11 +11,12 @@ from __future__ import annotations
 import html
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import checkpoint, dataclass, distinct
+from pkm_post.model import checkpoint, distinct
 
 _WIDTH, _HEIGHT = 1000.0, 240.0
 _LEFT, _RIGHT, _TOP, _BOTTOM = 78.0, 990.0, 14.0, 210.0

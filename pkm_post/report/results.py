@@ -4,21 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 from pkm_post.geometry import Array
-from pkm_post.model import (
-    Certificate,
-    FeedStudy,
-    Machine,
-    Motion,
-    Setup,
-    StrutMotion,
-    Tolerances,
-    Trajectory,
-    dataclass,
-)
+from pkm_post.model import Certificate, FeedStudy, Machine, Motion, Setup, StrutMotion, Tolerances, Trajectory
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from pkm_post.model import dataclass
+from dataclasses import dataclass
 
 _MM_IN_INCH = 25.4
 _SMALL = 0.1

@@ -8,12 +8,12 @@ beyond its ends, which the blends need. Units: mm, rad.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pkm_post.geometry import Array, across, along_rates, cross, dot, norm, towards
-from pkm_post.model import Kind, Trajectory, dataclass, find_rows, is_uniform, map_row_pairs, map_rows, select_rows
+from pkm_post.model import Kind, Trajectory, find_rows, is_uniform, map_row_pairs, map_rows, select_rows
 from pkm_post.toolpath.compressor.splines import Splines, direction
 
 _TURNING_IN_PLACE = 0.01

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.model import Diagnostic, Event, EventKind, Machine, Phrase, Program, cuts_by_speed, dataclass
+from pkm_post.model import Diagnostic, Event, EventKind, Machine, Phrase, Program, cuts_by_speed
 
 _PER_SECOND = 1000
 """Waits are whole milliseconds."""

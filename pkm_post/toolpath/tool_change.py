@@ -15,7 +15,7 @@ arrives along its axis. Units: mm.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import groupby
 
 import numpy as np
@@ -33,7 +33,6 @@ from pkm_post.model import (
     Program,
     Tool,
     ToolChange,
-    dataclass,
 )
 
 FLATTEST = 0.1

@@ -11,13 +11,14 @@ import hashlib
 import json
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from types import MappingProxyType
 from typing import BinaryIO
 
 import pkm_post
-from pkm_post.model import Diagnostic, Place, checkpoint, dataclass
+from pkm_post.model import Diagnostic, Place, checkpoint
 from pkm_post.system import result_files
 
 Findings = tuple[Diagnostic, ...]

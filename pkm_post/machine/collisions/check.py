@@ -7,10 +7,11 @@ search for, and what searches is not imported.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from pkm_post.machine.collisions.coverage import NO_SETUP
-from pkm_post.model import Coverage, Diagnostic, Machine, Setup, Tolerances, Trajectory, dataclass
+from pkm_post.model import Coverage, Diagnostic, Machine, Setup, Tolerances, Trajectory
 
 if TYPE_CHECKING:
     from pkm_post.machine.reach.collision_mesh import CollisionMesh

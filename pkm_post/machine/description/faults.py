@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 from pkm_post.machine.description.fields import FIELDS, Name
-from pkm_post.model import Diagnostic, Place, dataclass
+from pkm_post.model import Diagnostic, Place
 
 _PART = r"""(?:[\w-]+|"[^"]*"|'[^']*')"""
 _DOTTED = rf"{_PART}(?:\s*\.\s*{_PART})*"

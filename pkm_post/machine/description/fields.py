@@ -8,6 +8,7 @@ user-defined name.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from pkm_post.machine.description import units
@@ -15,7 +16,6 @@ from pkm_post.machine.description import value_types as forms
 from pkm_post.machine.description import value_types as solids
 from pkm_post.machine.description.units import Dimension
 from pkm_post.machine.description.value_types import ValueType
-from pkm_post.model import dataclass
 
 Name = tuple[str, ...]
 REQUIRED: Any = object()

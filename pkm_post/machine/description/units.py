@@ -8,9 +8,8 @@ module converts units.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
-
-from pkm_post.model import dataclass
 
 UNITS: dict[str, dict[str, float]] = {
     "length": {"mm": 1.0, "inch": 25.4},

@@ -10,12 +10,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from pkm_post.machine.description.units import Scale
-from pkm_post.model import Body, Box, dataclass
+from pkm_post.model import Body, Box
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 

@@ -8,13 +8,15 @@ hexapod has up to 40 poses for one set of lengths: Newton finds the one nearest 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.geometry import Array, dot, norm
 from pkm_post.machine.kinematics.inverse import ToolPoses, attitude_rates, platform_rotation, strut_lengths
 from pkm_post.machine.kinematics.jacobian import linearise, solve_regular
 from pkm_post.machine.kinematics.strut_cubics import map_to_tool
-from pkm_post.model import Machine, dataclass
+from pkm_post.model import Machine
 
 _MOST_STEPS = 20
 """Newton steps before a row is given up."""

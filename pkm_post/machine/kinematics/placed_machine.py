@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from pkm_post.geometry import Array, Cylinders, norm
 from pkm_post.machine.kinematics.inverse import ToolPoses, counted_lengths, platform_rotation
 from pkm_post.machine.kinematics.jacobian import plucker_rows
-from pkm_post.model import Body, Box, Machine, dataclass
+from pkm_post.model import Body, Box, Machine
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,8 @@ mean of the inverses times J is I + x (1 - x) (D - 1 + 1 / (1 + D)).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.geometry import Array, hermite_accelerations, hermite_lengths, length_of
@@ -23,7 +25,7 @@ from pkm_post.machine.kinematics.inverse import (
     strut_lengths,
 )
 from pkm_post.machine.kinematics.jacobian import linearise
-from pkm_post.model import Machine, Poses, dataclass
+from pkm_post.model import Machine, Poses
 
 
 @dataclass(frozen=True)

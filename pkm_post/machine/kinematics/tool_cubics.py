@@ -20,7 +20,7 @@ quarters: it is x^2 (1 - x)^2 q(x), with a q that over a long way is no constant
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -33,7 +33,7 @@ from pkm_post.machine.kinematics.strut_cubics import (
     max_strut_speed,
     tool_deviation,
 )
-from pkm_post.model import Machine, dataclass
+from pkm_post.model import Machine
 
 ROUNDED_SHARE = 0.99
 """Share of the accelerations of struts and tip available to cubics: rounding lengths to six decimals adds up to 0.7 %

@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Amount, Diagnostic, Kind, Pattern, Phrase, Trajectory, dataclass
+from pkm_post.model import Amount, Diagnostic, Kind, Pattern, Phrase, Trajectory
 
 DISPLAY_UNITS: dict[str, tuple[str, float]] = {
     "mm": ("mm", 1.0),

@@ -9,6 +9,8 @@ in ``interference``. docs/reach.md has the derivations.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.geometry import Array, norm
@@ -17,7 +19,7 @@ from pkm_post.machine.kinematics.placed_machine import PlacedMachine
 from pkm_post.machine.reach.findings import CheckedLimit, ReachFinding
 from pkm_post.machine.reach.path_bounds import Check
 from pkm_post.machine.reach.pose_path import PosePath
-from pkm_post.model import Amount, Machine, Pattern, Phrase, dataclass
+from pkm_post.model import Amount, Machine, Pattern, Phrase
 
 HUNDREDTH = 0.01
 """mm: resolution of a length margin between two rows."""

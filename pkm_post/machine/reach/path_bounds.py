@@ -15,7 +15,7 @@ and refines only where one is possible.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from pkm_post.machine.kinematics.inverse import lever_arms
 from pkm_post.machine.kinematics.placed_machine import PlacedMachine
 from pkm_post.machine.reach.findings import CheckedLimit, ReachFinding
 from pkm_post.machine.reach.pose_path import PosePath, rotation_bound
-from pkm_post.model import Machine, checkpoint, dataclass, distinct
+from pkm_post.model import Machine, checkpoint, distinct
 from pkm_post.system import in_workers
 
 _AT_ONCE = 2048

@@ -12,12 +12,13 @@ angle^2 + (|spin| + tan(tilt / 2) angle)^2 with the highest tilt of the cell. Un
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from pkm_post.geometry import Array, along, angle_between, norm, tilt, towards, turn_by_tilt
 from pkm_post.machine.kinematics.inverse import ToolPoses
-from pkm_post.model import checkpoint, dataclass, map_row_pairs, shifted, uniform
+from pkm_post.model import checkpoint, map_row_pairs, shifted, uniform
 
 
 @dataclass(frozen=True)

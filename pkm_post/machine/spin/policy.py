@@ -6,9 +6,8 @@ from __future__ import annotations
 import enum
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
-
-from pkm_post.model import dataclass
 
 STROKE, JOINTS, SINGULAR = range(3)
 """Columns of ``normalised_margins``, the shares that an objective weighs."""

@@ -4,8 +4,7 @@
 from __future__ import annotations
 
 import enum
-
-from pkm_post.model.record import dataclass
+from dataclasses import dataclass
 
 
 class Severity(enum.Enum):

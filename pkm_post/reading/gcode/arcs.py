@@ -9,12 +9,12 @@ may have been rounded to a hundredth of a millimetre or a thousandth of an inch 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pkm_post.geometry import arc_length, arc_points, arc_sweep, dot, norm
-from pkm_post.model import Array, dataclass, uniform
+from pkm_post.model import Array, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import Group, Word
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found

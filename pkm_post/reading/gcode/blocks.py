@@ -10,12 +10,12 @@ Only the words that the program uses have a column: a program of X, Y, Z and F t
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from pkm_post.model import Array, Place, dataclass, uniform
+from pkm_post.model import Array, Place, uniform
 
 if TYPE_CHECKING:
     from lark import Token, Tree

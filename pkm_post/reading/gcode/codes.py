@@ -7,10 +7,9 @@ Tables only; G codes in tenths (434 is G43.4). A block may have one code per gro
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
-
-from pkm_post.model import dataclass
 
 NONE = -1
 """Marks a block without a code of a group."""

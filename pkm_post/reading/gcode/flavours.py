@@ -8,9 +8,8 @@ asks the flavour for what it needs to know and never for its name, so that anoth
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from pkm_post.model import dataclass
 from pkm_post.reading.gcode.codes import (
     DRILLING,
     FURTHER_OFFSET,

@@ -7,10 +7,11 @@ Enters: points and vectors in program coordinates, mm. Leaves: the same in {C}: 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model import Array, dataclass, is_uniform, map_rows, uniform
+from pkm_post.model import Array, is_uniform, map_rows, uniform
 
 PLANES: dict[int, tuple[int, int, int]] = {170: (0, 1, 2), 180: (2, 0, 1), 190: (1, 2, 0)}
 """First, second and normal coordinate by plane; right-handed in this order."""

@@ -10,10 +10,11 @@ motion.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model import Array, dataclass, is_among
+from pkm_post.model import Array, is_among
 from pkm_post.reading.gcode.adapt import without_idle_g80
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import CANCEL_CYCLE, CYCLES, G_CODES, Group, name_of

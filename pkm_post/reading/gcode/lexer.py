@@ -14,10 +14,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model import Array, dataclass
+from pkm_post.model import Array
 from pkm_post.reading.gcode.blocks import LARGEST_CODE, MACRO_CALLS, Block
 
 _MARK = b"\x01"

@@ -9,10 +9,11 @@ incremental mode; without a word it is unchanged.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model import Array, dataclass, distinct, is_among, is_uniform, map_rows, uniform
+from pkm_post.model import Array, distinct, is_among, is_uniform, map_rows, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import ARCS, NONE, STROKES, Group
 from pkm_post.reading.gcode.flavours import RS274, Flavour

@@ -8,11 +8,12 @@ the previous one, so start points are stored per section only.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from pkm_post.model import Array, dataclass, is_uniform, uniform
+from pkm_post.model import Array, is_uniform, uniform
 from pkm_post.reading.gcode.events import CycleEvent
 from pkm_post.reading.gcode.frames import ProgramFrame
 from pkm_post.reading.gcode.modal import forward_fill

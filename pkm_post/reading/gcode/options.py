@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from pkm_post.model import Diagnostic, Program, Tool, dataclass
+from pkm_post.model import Diagnostic, Program, Tool
 from pkm_post.reading.units import UNITS as UNITS
 
 Point = tuple[float, float, float]

@@ -9,7 +9,7 @@ percent sign a file may be truncated.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from pkm_post.model import (
     Program,
     Tool,
     checkpoint,
-    dataclass,
     distinct,
     is_uniform,
     map_rows,

@@ -14,10 +14,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, Place, checkpoint, dataclass, errors
+from pkm_post.model import Array, Diagnostic, Place, checkpoint, errors
 from pkm_post.reading.gcode.block_builders import BlocksBuilder
 from pkm_post.reading.gcode.blocks import LONGEST_LINE, Block, Blocks
 from pkm_post.reading.gcode.lexer import EMPTY, PARSED_ALONE, Lexed, Patterns, lex

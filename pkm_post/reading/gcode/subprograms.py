@@ -12,13 +12,13 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pkm_post.model import IN_SUBPROGRAM_FILE, Array, Diagnostic, Place, Program, dataclass, errors
+from pkm_post.model import IN_SUBPROGRAM_FILE, Array, Diagnostic, Place, Program, errors
 from pkm_post.reading.gcode.blocks import Blocks, SubprogramFile, located
 from pkm_post.reading.gcode.scan import scan_recovering, with_line_feeds
 

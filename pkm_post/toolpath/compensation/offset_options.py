@@ -4,8 +4,7 @@
 from __future__ import annotations
 
 import math
-
-from pkm_post.model import dataclass
+from dataclasses import dataclass
 
 CHOICES = {"corners": ("chord", "arc"), "leads": ("A", "B"), "swallowed": ("refuse", "remove")}
 

@@ -7,10 +7,11 @@ and tool axis and spin where these change. Units: mm, rad.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from pkm_post.geometry import Array, length_of
-from pkm_post.model import dataclass
 from pkm_post.toolpath.compressor.splines import AXIS, SPIN, TIP
 
 

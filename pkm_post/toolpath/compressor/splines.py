@@ -10,12 +10,11 @@ run the curve goes on as a parabola, with the same second derivative. Units: mm,
 from __future__ import annotations
 
 import functools
-from dataclasses import fields
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from pkm_post.geometry import Array, length_of
-from pkm_post.model import dataclass
 
 TIP, AXIS, SPIN = slice(0, 3), slice(3, 6), slice(6, 7)
 """Columns of a place: tip, vector of the tool axis, spin."""

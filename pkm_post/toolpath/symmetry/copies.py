@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from dataclasses import dataclass
 
 from pkm_post.geometry import Array
-from pkm_post.model import Diagnostic, Event, EventKind, Kind, Phrase, Program, dataclass
+from pkm_post.model import Diagnostic, Event, EventKind, Kind, Phrase, Program
 from pkm_post.toolpath.symmetry.transform import concatenate, mirror, mirrors, rotation, transform
 from pkm_post.toolpath.threads import without_threads
 

@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
-from pkm_post.model import Diagnostic, Machine, StrutMotion, dataclass
+from pkm_post.model import Diagnostic, Machine, StrutMotion
 from pkm_post.system import result_files
 from pkm_post.writing.controllers.pvt import reader, writer
 from pkm_post.writing.controllers.pvt import settings as pvt

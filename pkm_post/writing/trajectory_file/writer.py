@@ -10,12 +10,13 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 
-from pkm_post.model import TRAJECTORY_COLUMNS, Event, Tool, Trajectory, checkpoint, dataclass
+from pkm_post.model import TRAJECTORY_COLUMNS, Event, Tool, Trajectory, checkpoint
 from pkm_post.system import staged
 from pkm_post.writing.trajectory_file.interpolation import blocks, interpolation, missed_ends
 from pkm_post.writing.trajectory_file.invariants import chunks, contradictions, first_segments, violations

@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from decimal import Decimal
 
-from pkm_post.model import Diagnostic, Machine, dataclass
+from pkm_post.model import Diagnostic, Machine
 from pkm_post.writing.controllers.pvt import settings as pvt
 from pkm_post.writing.controllers.pvt.decimals import plain
 from pkm_post.writing.controllers.pvt.settings import ROTARY_LETTERS, axis_definitions, check_stroke, stroke_counts

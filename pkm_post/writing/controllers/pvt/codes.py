@@ -12,8 +12,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
-from pkm_post.model import Diagnostic, Event, EventKind, Place, StrutMotion, dataclass
+from pkm_post.model import Diagnostic, Event, EventKind, Place, StrutMotion
 from pkm_post.writing.controllers.pvt.decimals import exact, plain
 
 

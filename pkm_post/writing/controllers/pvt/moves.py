@@ -9,10 +9,11 @@ locate the numbers. Lines that are found are proven to have the form; a line tha
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.model import Array, dataclass
+from pkm_post.model import Array
 from pkm_post.system import DecimalReader
 from pkm_post.writing.controllers.pvt.syntax import LineForm
 

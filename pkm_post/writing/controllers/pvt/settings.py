@@ -15,11 +15,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, dataclass, fields
 from decimal import Decimal
 from typing import Any, ClassVar, Self, TypeVar
 
-from pkm_post.model import Diagnostic, Machine, Place, SpindleAxis, dataclass
+from pkm_post.model import Diagnostic, Machine, Place, SpindleAxis
 from pkm_post.writing.controllers.pvt.codes import check_codes
 from pkm_post.writing.controllers.pvt.decimals import exact, plain
 

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import chain
 
-from pkm_post.model import EventKind, dataclass
+from pkm_post.model import EventKind
 from pkm_post.writing.controllers.pvt.codes import FIELD
 from pkm_post.writing.controllers.pvt.settings import PvtSettings
 

@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
 
-from pkm_post.model import Array, StrutMotion, checkpoint, dataclass, is_among, threads
+from pkm_post.model import Array, StrutMotion, checkpoint, is_among, threads
 from pkm_post.writing.controllers.pvt.codes import code_text
 from pkm_post.writing.controllers.pvt.decimals import BLANK, print_columns, round_values
 from pkm_post.writing.controllers.pvt.settings import PvtSettings
