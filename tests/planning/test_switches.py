@@ -61,15 +61,20 @@ def shortest(feed_plan):
     return float(cell_times(marks.s, square).sum())
 
 
+def ends_of(value, rate):
+    """Values and rates at both ends of the intervals between rows."""
+    return value[:-1], rate[:-1], value[1:], rate[1:]
+
+
 def played(feed_plan):
     """Largest accelerations of cubics of a millisecond by the limits, struts and tip, by kinematics, at many phases."""
     worst = np.zeros(2)
     machine, schedule = feed_plan.machine, feed_plan.schedule
     for phase in PHASES:
-        time = np.arange(schedule.rests_ms[-1]) + phase
-        ends = [poses_at(feed_plan.path, schedule, one) for one in (time, time + 1)]
-        struts = [column for poses in ends for column in strut_rates(machine, poses)[:2]]
-        tip = [column for poses in ends for column in (poses.tip, poses.tip_1)]
+        time = np.arange(schedule.rests_ms[-1] + 1) + phase
+        poses = poses_at(feed_plan.path, schedule, time)
+        struts, tip = ends_of(*strut_rates(machine, poses)[:2]), ends_of(poses.tip, poses.tip_1)
+        time = time[:-1]
         inside = ~np.isin(np.ceil(time), schedule.rests_ms) | (phase == 0)
         for row, (columns, limit) in enumerate(((struts, machine.strut_acceleration), (tip, machine.tip_acceleration))):
             found = np.stack(hermite_accelerations(*columns, np.full(len(time), MS)))[:, inside]
