@@ -15,7 +15,7 @@ from functools import partial
 
 import numpy as np
 
-from pkm_post.control.simulator.coordinate_system import CoordinateSystem
+from pkm_post.control.simulator.coordinate_system import NO_COMMAND, CoordinateSystem
 from pkm_post.control.simulator.errors import CommandError
 from pkm_post.control.simulator.machine_state import PortSession
 from pkm_post.control.simulator.memory import Memory
@@ -219,11 +219,12 @@ class Controller:
                 listen(item)
 
     def _tick(self, ms: float) -> None:
-        commanded = np.full(SIMULATED_MOTORS, np.nan)
+        commanded = NO_COMMAND
         for system in self.systems:
             if system.axes.definitions:
                 system.advance(ms)
-                commanded = np.where(np.isnan(commanded), system.commanded(), commanded)
+                its = system.commanded()
+                commanded = its if commanded is NO_COMMAND else np.where(np.isnan(commanded), its, commanded)
         self.motors.advance(ms, commanded)
         self._guard()
         self._watch_rotaries()
@@ -231,6 +232,8 @@ class Controller:
 
     def _guard(self) -> None:
         """Stop motors that have failed, and all motors that move together with them."""
+        if self.motors.are_sound():
+            return
         self.motors.fatal |= self.motors.fatal_following_errors()
         tripped = self.motors.closed & (self.motors.fatal | self.motors.amplifier_fault)
         for index in np.flatnonzero(tripped).tolist():
@@ -246,6 +249,8 @@ class Controller:
             self.motors.stopped_on_limit[index] = True
 
     def _watch_rotaries(self) -> None:
+        if not self.memory.rotaries:
+            return
         fewest, most = self.variables.setting(16), self.variables.setting(17)
         for number, rotary in self.memory.rotaries.items():
             ahead = len(rotary.lines)

@@ -10,6 +10,7 @@ in axis units per Isx90 ms, times in ms.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -78,11 +79,11 @@ class Axes:
 
     def counts(self, position: Array) -> Array:
         """Motor positions (6,) for axis positions (9,); NaN for motors without an axis."""
-        counts = np.full(SIMULATED_MOTORS, np.nan)
-        for index in self.indices():
-            definition = self.definitions[index + 1]
-            counts[index] = definition.scale * position[LETTERS.index(definition.letter)] + definition.offset
-        return counts
+        counts, along = [math.nan] * SIMULATED_MOTORS, position.tolist()
+        for motor, definition in self.definitions.items():
+            if motor <= SIMULATED_MOTORS:
+                counts[motor - 1] = definition.scale * along[LETTERS.index(definition.letter)] + definition.offset
+        return np.array(counts)
 
     def position(self, counts: Array) -> Array:
         """Axis positions (9,) for motor positions (6,); zero for axes without a motor."""

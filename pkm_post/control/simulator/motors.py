@@ -214,14 +214,17 @@ class Motors:
         for index, jog in enumerate(self.jogs):
             if jog is not None:
                 wanted[index] = self._jogged(index, jog, ms)
-        wanted = np.where(self.closed, wanted, self.actual)
+        follows = all(self.closed.tolist()) and not any(self.jammed.tolist())
+        if not follows:
+            wanted = np.where(self.closed, wanted, self.actual)
         # Where homing has shifted the zero, wanted and commanded have shifted together.
-        self.speed = np.where(self.closed, (wanted - self.commanded) / ms, 0.0)
+        speed = (wanted - self.commanded) / ms
+        self.speed = speed if follows else np.where(self.closed, speed, 0.0)
         # First-order lag behind a ramp: e' = speed - e / lag.
         fading = math.exp(-ms / self._lag_ms)
-        error = self.following_error * fading + self.speed * self._lag_ms * (1.0 - fading)
+        actual = wanted - (self.following_error * fading + self.speed * self._lag_ms * (1.0 - fading))
         self.commanded = wanted
-        self.actual = np.where(self.jammed | ~self.closed, self.actual, wanted - error)
+        self.actual = actual if follows else np.where(self.jammed | ~self.closed, self.actual, actual)
 
     def beyond_limits(self) -> Array:
         """Which motors move further beyond a limit or into a switch, (6,)."""
@@ -232,14 +235,29 @@ class Motors:
 
     def at_limits(self) -> tuple[Array, Array]:
         """Which motors are beyond Ixx13, and which beyond Ixx14; 0 means no limit, and a bit of Ixx24 disables all."""
-        high, low = self.variables.column(13), self.variables.column(14)
-        heeded = (np.abs(self.variables.column(24)) % WORD).astype(np.int64) & LIMITS_DISABLED == 0
-        return heeded & (high != 0) & (self.actual > high), heeded & (low != 0) & (self.actual < low)
+        high, low = self.variables.made_of("limits", self._limits)
+        return self.actual > high, self.actual < low
 
     def fatal_following_errors(self) -> Array:
         """Which closed-loop motors have a following error above Ixx11, (6,)."""
+        return self.closed & (np.abs(self.following_error) > self.variables.made_of("fatal", self._largest_error))
+
+    def are_sound(self) -> bool:
+        """Whether no motor has failed, is beyond a limit or is on a switch: all but always, and quickly found."""
+        high, low = self.at_limits()
+        fails = (np.abs(self.following_error) > self.variables.made_of("fatal", self._largest_error)) | self.fatal
+        return not any((fails | self.amplifier_fault | high | low | self.high_switch | self.low_switch).tolist())
+
+    def _limits(self) -> Array:
+        """The highest and the lowest position of each motor, (2, 6) counts; infinite where there is none."""
+        high, low = self.variables.column(13), self.variables.column(14)
+        heeded = (np.abs(self.variables.column(24)) % WORD).astype(np.int64) & LIMITS_DISABLED == 0
+        return np.stack([np.where(heeded & (high != 0), high, np.inf), np.where(heeded & (low != 0), low, -np.inf)])
+
+    def _largest_error(self) -> Array:
+        """The following error that is fatal, (6,) counts; infinite where there is none."""
         limit = self.variables.column(11) / 16
-        return self.closed & (limit > 0) & (np.abs(self.following_error) > limit)
+        return np.where(limit > 0, limit, np.inf)
 
     def following_error_warnings(self) -> Array:
         """Which motors have a following error above Ixx12, (6,)."""

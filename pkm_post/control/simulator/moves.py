@@ -7,6 +7,7 @@ overlap: each adds its own displacement, and the contributions sum.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -73,12 +74,17 @@ class PvtMove:
 
     def missing(self, time: float) -> Array:
         """Remaining distance at a time, (9,)."""
-        span = self.duration
-        t = min(max(time - self.start, 0.0), span)
-        distance = self.target - self.origin
+        t = min(max(time - self.start, 0.0), self.duration)
+        distance, square, cube = self._cubic
+        return distance - t * (self.first_speed + t * (square + t * cube))
+
+    @functools.cached_property
+    def _cubic(self) -> tuple[Array, Array, Array]:
+        """d, c2 and c3."""
+        span, distance = self.duration, self.target - self.origin
         square = (3 * distance - (2 * self.first_speed + self.last_speed) * span) / span**2
         cube = ((self.first_speed + self.last_speed) * span - 2 * distance) / span**3
-        return distance - t * (self.first_speed + t * (square + t * cube))
+        return distance, square, cube
 
 
 @dataclass(frozen=True)

@@ -162,6 +162,7 @@ class Variables:
         self._values: dict[str, dict[int, float]] = {"I": _defaults(), "P": {}, "M": {}}
         self._q: list[dict[int, float]] = [{} for _ in range(SYSTEMS)]
         self._columns: dict[int, Array] = {}
+        self._made: dict[str, Array] = {}
         self.definitions: dict[int, str] = {}
         self.inputs = Inputs()
 
@@ -197,6 +198,7 @@ class Variables:
         table[number] = self.numbers.stored(value)
         if letter == "I":
             self._columns.clear()
+            self._made.clear()
 
     def setting(self, number: int) -> int:
         """The value of an integer I-variable."""
@@ -211,6 +213,12 @@ class Variables:
         if which not in self._columns:
             self._columns[which] = np.array([self.of_motor(motor, which) for motor in range(1, SIMULATED_MOTORS + 1)])
         return self._columns[which]
+
+    def made_of(self, name: str, make: Callable[[], Array]) -> Array:
+        """What is computed of I-variables only: once, until one of them is written."""
+        if name not in self._made:
+            self._made[name] = make()
+        return self._made[name]
 
     def of_system(self, system: int, which: int) -> float:
         """Isx``which`` of a coordinate system."""
