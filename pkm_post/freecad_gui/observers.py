@@ -7,6 +7,7 @@ keys and the mouse, so that nothing can be changed while events are processed.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -16,6 +17,8 @@ from PySide import QtCore, QtGui, QtWidgets
 
 _CALM_MS = 700
 """ms without Escape after which it has its usual meaning again: longer than the first pause of a key that repeats."""
+_LOOK_S = 0.2
+"""s between two looks at the keys: each draws the window, and may take longer than many steps of a computation."""
 
 
 _CALMING: list[EscapeWatch] = []
@@ -28,6 +31,7 @@ class EscapeWatch(QtCore.QObject):
     hit = QtCore.Signal()
     """Escape was pressed."""
     _was_pressed = False
+    _looked, _has_passed = -_LOOK_S, False
     _calm: QtCore.QTimer | None = None
 
     def begin(self) -> None:
@@ -40,6 +44,8 @@ class EscapeWatch(QtCore.QObject):
         Pressed twice or held, it would otherwise close the panel of a new operation, which deletes the operation.
         """
         FreeCADGui.getMainWindow().statusBar().clearMessage()
+        if self._has_passed:
+            FreeCADGui.updateGui()  # an Escape since the last look is meant for the computation as well
         if not self._was_pressed:
             self._remove()
             return
@@ -56,9 +62,12 @@ class EscapeWatch(QtCore.QObject):
             _CALMING.remove(self)
 
     def pressed(self, text: str) -> bool:
-        """Show a text in the status bar, process events, and return whether Escape was pressed so far."""
-        FreeCADGui.getMainWindow().statusBar().showMessage(text)
-        FreeCADGui.updateGui()
+        """Show a text in the status bar and process events, every now and then; whether Escape was pressed so far."""
+        self._has_passed = time.monotonic() - self._looked < _LOOK_S
+        if not self._has_passed:
+            FreeCADGui.getMainWindow().statusBar().showMessage(text)
+            FreeCADGui.updateGui()
+            self._looked = time.monotonic()
         return self._was_pressed
 
     def eventFilter(self, _target: QtCore.QObject, event: QtCore.QEvent) -> bool:
