@@ -37,6 +37,11 @@ def finish(job, chosen=is_top, **properties):
     return operation
 
 
+def coarse(job, chosen=is_top, **properties):
+    """The same with few passes, and without a search for gouges unless one is asked for."""
+    return finish(job, chosen, **({"Stepover": 5.0, "CheckSpacing": 0.0} | properties))
+
+
 def valid(operation):
     assert operation.isValid(), operation.getStatusString()
     return operation

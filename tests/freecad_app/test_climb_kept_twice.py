@@ -6,7 +6,7 @@ import numpy as np
 import Part
 import pytest
 from part_jobs import job_on
-from surface_finishes import finish, valid
+from surface_finishes import coarse, valid
 
 from pkm_post.freecad_app.commands import read_commands
 from pkm_post.freecad_app.symmetry import create_mirror
@@ -59,7 +59,7 @@ def plunges(program):
 )
 def test_twice_is_the_operation_and_once_plunges_as_it_did(document, choices):
     job = job_on(document, saddle_back())
-    operation = valid(finish(job, is_round, Stepover=6.0, ChordTolerance=0.05, AxisTolerance=1.0, **choices))
+    operation = valid(coarse(job, is_round, Stepover=6.0, ChordTolerance=0.05, AxisTolerance=1.0, **choices))
     once = create_mirror(operation, (0, 1, 0), point=(0, 15, 0), keep_climb=True)
     twice = create_mirror(once, (0, 1, 0), point=(0, 15, 0), keep_climb=True)
     document.recompute()

@@ -30,10 +30,14 @@ WAYS = {
 
 @pytest.fixture
 def job(document):
+    return job_on_plate(document, 10.0)
+
+
+def job_on_plate(document, thickness):
     box = document.addObject("Part::Feature", "Plate")
-    box.Shape = Part.makeBox(40, 40, 10)
+    box.Shape = Part.makeBox(40, 40, thickness)
     for x, y in CENTRES:
-        box.Shape = box.Shape.cut(Part.makeCylinder(2.5, 10, App.Vector(x, y, 0)))
+        box.Shape = box.Shape.cut(Part.makeCylinder(2.5, thickness, App.Vector(x, y, 0)))
     document.recompute()
     job = Path.Main.Job.Create("Job", [box], None)
     controller = job.Tools.Group[0]
@@ -86,8 +90,11 @@ def test_a_mirrored_copy_drills_the_mirrored_holes(job, keep_climb):
     np.testing.assert_allclose(program.position[half:], program.position[:half] * [-1, 1, 1], atol=1e-9)
 
 
-def test_drilling_is_posted(job, tmp_path):
-    drilling(job, **WAYS["G83"])
+def test_drilling_is_posted(document, tmp_path):
+    """In a thin plate: where a cutter fits its hole, each step along it is held against the whole wall."""
+    job = job_on_plate(document, 3.0)
+    drilling(job, PeckEnabled=True, PeckDepth=1.0)
+    assert [name for name, _ in moves(job.Operations.Group[0])].count("G83") == len(CENTRES)
     offset = np.eye(4)
     offset[2, 3] = 250.0
     posted = post_job(job, "example_6tps", tmp_path, Options(work_offset=offset))

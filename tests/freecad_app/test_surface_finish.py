@@ -10,7 +10,7 @@ from another_freecad import printed_by
 from cam_jobs import add_tool_controller, moves, reopened
 from part_jobs import job_on
 from Path.Base.Util import opProperty, toolControllerForOp
-from surface_finishes import AT_G54, MICRON, SIX_DECIMALS, finish, plate_with_hole, poses, valid
+from surface_finishes import AT_G54, MICRON, SIX_DECIMALS, coarse, finish, plate_with_hole, poses, valid
 
 from pkm_post.freecad_app import surface_check
 from pkm_post.freecad_app.job import read_job
@@ -48,7 +48,7 @@ def test_tool_controller_can_be_chosen_where_there_are_several(job):
 
 
 def test_operation_can_be_copied(job):
-    operation = valid(finish(job, Stepover=5.0, Lead=5.0))
+    operation = valid(coarse(job, Lead=5.0))
     copy = job.Document.copyObject(operation)
     job.Proxy.addOperation(copy)
     copy.Reversed = True
@@ -65,7 +65,7 @@ def test_new_operation_has_no_fault_and_no_path_before_it_has_faces(job):
 
 
 def test_trimmed_face_is_covered_round_its_hole(job):
-    operation = valid(finish(job, Stepover=2.0, Lead=5.0))
+    operation = valid(coarse(job, Stepover=2.0, Lead=5.0))
     tips, axes = poses(operation, ("G1",))
     contact = tips + 5.0 * axes - [0.0, 0.0, 5.0]  # of a ball on a plane
     cutting = np.abs(contact[:, 2] - 20.0) < MICRON
@@ -76,7 +76,7 @@ def test_trimmed_face_is_covered_round_its_hole(job):
 
 
 def test_heights_and_feeds_are_those_of_cam(job):
-    operation = valid(finish(job, Lead=5.0))
+    operation = valid(coarse(job, Lead=5.0))
     operation.setExpression("SafeHeight", "31 mm")
     operation.setExpression("ClearanceHeight", "47 mm")
     job.Document.recompute()
@@ -86,7 +86,7 @@ def test_heights_and_feeds_are_those_of_cam(job):
 
 
 def test_recomputes_when_a_property_changes(job):
-    operation = valid(finish(job))
+    operation = valid(coarse(job, Stepover=2.0))
     before = len(moves(operation))
     operation.Stepover = 5.0
     job.Document.recompute()
@@ -95,7 +95,7 @@ def test_recomputes_when_a_property_changes(job):
 
 
 def test_recomputes_when_the_tool_changes(job):
-    operation = valid(finish(job, Lead=10.0))
+    operation = valid(coarse(job, Lead=10.0))
     before, _ = poses(operation, ("G1",))
     job.Tools.Group[0].Tool.Diameter = 6
     job.Document.recompute()
@@ -106,7 +106,7 @@ def test_recomputes_when_the_tool_changes(job):
 
 
 def test_recomputes_when_the_model_changes(job):
-    operation = valid(finish(job, Lead=10.0))
+    operation = valid(coarse(job, Lead=10.0))
     part = job.Proxy.baseObject(job, job.Model.Group[0])
     part.Shape = plate_with_hole(height=23)
     job.Document.recompute()
@@ -116,7 +116,7 @@ def test_recomputes_when_the_model_changes(job):
 
 def test_several_faces_follow_each_other(job):
     sides = lambda face: abs(face.normalAt(0.5, 0.5).z) < 0.1 and face.Surface.TypeId == "Part::GeomPlane"  # noqa: E731
-    operation = valid(finish(job, sides, ConeLimit=30.0, Stepover=5.0))
+    operation = valid(coarse(job, sides, ConeLimit=30.0))
     assert operation.ClampedAxes > 0
     _, axes = poses(operation)
     assert np.degrees(np.arccos(axes[:, 2].min())) == pytest.approx(30.0, abs=1e-4)
@@ -125,7 +125,7 @@ def test_several_faces_follow_each_other(job):
 
 
 def test_inactive_operation_has_no_moves(job):
-    operation = finish(job)
+    operation = coarse(job)
     operation.Active = False
     job.Document.recompute()
     assert [command.Name for command in operation.Path.Commands] == ["(inactive operation)"]
@@ -135,7 +135,7 @@ def test_one_undo_takes_it_back(job):
     document = job.Document
     document.UndoMode = 1
     document.openTransaction("Surface Finish")
-    name = finish(job).Name
+    name = coarse(job).Name
     document.commitTransaction()
     document.undo()
     assert document.getObject(name) is None
@@ -143,7 +143,7 @@ def test_one_undo_takes_it_back(job):
 
 
 def test_mirror_of_it_follows(job):
-    operation = valid(finish(job, Lead=5.0))
+    operation = valid(coarse(job, Lead=5.0))
     copy = create_mirror(operation, (0, 1, 0))
     job.Document.recompute()
     for found, expected in zip(poses(copy), poses(operation), strict=True):
@@ -151,7 +151,7 @@ def test_mirror_of_it_follows(job):
 
 
 def test_saved_operation_lives_on(job, tmp_path):
-    operation = valid(finish(job, Lead=5.0, Lines="Along V", CutMode="Climb", Order="One way"))
+    operation = valid(coarse(job, Lead=5.0, Lines="Along V", CutMode="Climb", Order="One way"))
     before = poses(operation)
     document = reopened(job.Document, tmp_path / "saved part.FCStd")
     (operation,) = find_job(document).Operations.Group
@@ -169,7 +169,7 @@ def test_saved_operation_lives_on(job, tmp_path):
 
 
 def test_document_of_an_older_version_gets_the_missing_properties(job, tmp_path):
-    operation = valid(finish(job))
+    operation = valid(coarse(job))
     operation.removeProperty("LeadMove")
     operation.removeProperty("ClampedAxes")
     document = reopened(job.Document, tmp_path / "old.FCStd")
@@ -191,7 +191,7 @@ print("finish:", type(operation.Proxy).__name__, operation.isValid(), operation.
 
 
 def test_saved_operation_lives_on_in_a_fresh_freecad(job, tmp_path):
-    finish(job)
+    coarse(job, Stepover=10.0, CheckSpacing=5.0)
     path, script = tmp_path / "saved.FCStd", tmp_path / "change.py"
     job.Document.saveAs(str(path))
     script.write_text(_OPEN_AND_CHANGE)
@@ -199,7 +199,7 @@ def test_saved_operation_lives_on_in_a_fresh_freecad(job, tmp_path):
 
 
 def test_lifts_between_passes_are_posted(job, tmp_path):
-    operation = valid(finish(job, Stepover=15.0, Order="One way", Lead=10.0, LeadMove="Tangent"))
+    operation = valid(coarse(job, Stepover=15.0, Order="One way", Lead=10.0, LeadMove="Tangent"))
     program, faults = read_job(job)
     assert faults == ()
     assert np.count_nonzero(np.diff((program.kind == Kind.RAPID).astype(int)) == 1) == 4  # the hole cuts one pass

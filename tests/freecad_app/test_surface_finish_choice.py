@@ -15,7 +15,7 @@ BITS = {
     "flat": ("endmill.fcstd", {"Diameter": 6}),
     "bull nose": ("bullnose.fcstd", {"Diameter": 8, **corner(8.0, 2.0)}),
 }
-RADIUS, SIDE = 30.0, 24.0
+RADIUS, SIDE = 30.0, 16.0
 
 
 def trough():
@@ -28,7 +28,7 @@ def trough():
 SHAPES = {
     "plane": (lambda: Part.makeBox(SIDE, SIDE, 12), lambda face: face.BoundBox.ZMin > 11.9),
     "hollow": (trough, lambda face: face.Surface.TypeId == "Part::GeomCylinder"),
-    "wall": (lambda: Part.makeCylinder(12, 12), lambda face: face.Surface.TypeId == "Part::GeomCylinder"),
+    "wall": (lambda: Part.makeCylinder(8, 8), lambda face: face.Surface.TypeId == "Part::GeomCylinder"),
 }
 
 

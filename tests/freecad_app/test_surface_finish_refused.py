@@ -7,7 +7,7 @@ import Part
 import pytest
 from cam_jobs import moves
 from part_jobs import job_on
-from surface_finishes import finish, plate_with_hole, poses, valid
+from surface_finishes import coarse, plate_with_hole, poses, valid
 from test_tools import stock_bit
 
 from pkm_post.freecad_app import progress
@@ -29,7 +29,7 @@ REFUSED = {
 
 @pytest.mark.parametrize("fault", REFUSED)
 def test_fault_is_shown_at_the_operation_and_its_path_is_empty(job, fault):
-    operation = valid(finish(job, Stepover=5.0))
+    operation = valid(coarse(job))
     properties, code = REFUSED[fault]
     for name, value in properties.items():
         setattr(operation, name, value)
@@ -43,7 +43,7 @@ def test_fault_is_shown_at_the_operation_and_its_path_is_empty(job, fault):
 
 
 def test_tool_controller_that_lacks_something_is_reported(job):
-    operation = valid(finish(job))
+    operation = valid(coarse(job))
     job.Tools.Group[0].HorizFeed = 0
     job.Document.recompute()
     assert "J105" in operation.getStatusString()
@@ -54,21 +54,21 @@ def test_tool_controller_that_lacks_something_is_reported(job):
 
 
 def test_operation_without_faces_is_reported(job):
-    operation = valid(finish(job))
+    operation = valid(coarse(job))
     operation.Base = []
     job.Document.recompute()
     assert "N308" in operation.getStatusString()
 
 
 def test_drill_finishes_no_surface(job):
-    operation = valid(finish(job))
+    operation = valid(coarse(job))
     job.Tools.Group[0].Tool = stock_bit(job.Document, "drill.fcstd", Diameter=10)
     job.Document.recompute()
     assert "N116" in operation.getStatusString()
 
 
 def test_user_can_stop_it_and_nothing_old_is_left(job, monkeypatch):
-    operation = valid(finish(job))
+    operation = valid(coarse(job))
     steps = []
 
     def stop(self):
@@ -85,7 +85,7 @@ def test_user_can_stop_it_and_nothing_old_is_left(job, monkeypatch):
 
 
 def test_machine_limits_the_tilt(job):
-    operation = valid(finish(job, Tilt=70.0, Stepover=5.0, Machine="example_6tps"))
+    operation = valid(coarse(job, Tilt=70.0, Machine="example_6tps"))
     assert 5.0 < operation.UsedConeLimit.Value < 60.0
     _, axes = poses(operation)
     assert np.degrees(np.arccos(axes[:, 2])).max() == pytest.approx(operation.UsedConeLimit.Value, abs=1e-4)
@@ -95,7 +95,7 @@ def test_machine_limits_the_tilt(job):
 
 
 def test_machine_that_cannot_be_used_is_reported(job):
-    operation = valid(finish(job, Machine="example_6tps"))
+    operation = valid(coarse(job, Machine="example_6tps"))
     for change, code in (
         (lambda: setattr(operation, "ConeAxis", App.Vector(1, 0, 1)), "N309"),
         (lambda: setattr(job, "Fixtures", ["G59"]), "K108"),
@@ -111,5 +111,5 @@ def test_machine_that_cannot_be_used_is_reported(job):
 
 def test_part_out_of_reach_is_reported(document):
     far = Part.makeBox(10, 10, 10, App.Vector(3000, 0, 0))
-    operation = finish(job_on(document, far), lambda face: face.BoundBox.ZMin > 9.9, Machine="example_6tps")
+    operation = coarse(job_on(document, far), lambda face: face.BoundBox.ZMin > 9.9, Machine="example_6tps")
     assert "N310" in operation.getStatusString()
