@@ -9,7 +9,6 @@ here.
 
 from __future__ import annotations
 
-import time
 from types import TracebackType
 from typing import Self
 
@@ -19,9 +18,6 @@ from FreeCAD import Base
 from pkm_post.freecad_app.window import escape_watch
 
 translate = App.Qt.translate
-
-_REDRAW_S = 0.1
-"""s from one drawing of the window to the next: many steps take less time than drawing it."""
 
 
 class Stopped(Exception):  # noqa: N818 - it is no error of the program
@@ -39,7 +35,7 @@ class Progress:
     def __init__(self, text: str, steps: int) -> None:
         self._text, self._steps, self._done = text, max(steps, 1), 0
         self._bar = Base.ProgressIndicator()
-        self._watch, self._due = escape_watch(), 0.0
+        self._watch = escape_watch()
 
     def __enter__(self) -> Self:
         self._bar.start(self._text, self._steps)
@@ -56,7 +52,7 @@ class Progress:
         """Report one more completed step.
 
         Raises:
-            Stopped: the user has pressed Escape.
+            Stopped: the user has pressed Escape since the last step.
         """
         self._done += 1
         share = f"{100 * self._done // self._steps} %"
@@ -65,8 +61,6 @@ class Progress:
             self._bar.next(True)
         except RuntimeError as stop:  # FreeCAD reports by this that its own bar was cancelled
             raise Stopped(stopped) from stop
-        if self._watch is None or time.monotonic() < self._due:
-            return
-        if self._watch.pressed(translate("Progress", "{}: {} done. Escape stops it.").format(self._text, share)):
+        message = translate("Progress", "{}: {} done. Escape stops it.").format(self._text, share)
+        if self._watch and self._watch.pressed(message):
             raise Stopped(stopped)
-        self._due = time.monotonic() + _REDRAW_S
