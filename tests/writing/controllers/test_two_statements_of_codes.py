@@ -8,7 +8,7 @@ import pytest
 from controller_settings import settings_for, threading_settings
 from strut_motions import threaded
 
-from pkm_post.control.numerical_control.execute import same
+from pkm_post.control.numerical_control.execute import same_motion
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.writing.controllers import CONTROLLERS
 from pkm_post.writing.controllers.pvt import codes, syntax
@@ -50,7 +50,7 @@ def test_the_begin_and_the_end_of_threads_swapped_in_the_writer_are_found(monkey
     (text,) = controller.program_parts(motion, settings, [])
     read, faults = controller.read_parts([("job.pmc", text)], settings)
     assert faults == ()
-    assert same(read, replace(motion, length=read.length, speed=read.speed))
+    assert same_motion(read, replace(motion, length=read.length, speed=read.speed))
     first, second = codes.OF_THREADS
     swapped = codes.EVENT_CODES | {first: codes.EVENT_CODES[second], second: codes.EVENT_CODES[first]}
     monkeypatch.setattr(codes, "EVENT_CODES", swapped)
