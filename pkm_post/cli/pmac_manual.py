@@ -14,6 +14,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.pmac_stop import held_at_the_end
+from pkm_post.options import START_TOLERANCE_MM
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_stop import JobTarget, Target
@@ -55,12 +56,11 @@ def execute_plan(
     control: NumericalControl,
     plan: MovePlan | None,
     diagnostics: tuple[Diagnostic, ...],
-    near: float | None = None,
+    start_tolerance: float = START_TOLERANCE_MM,
 ) -> int:
-    """Print a plan, execute it, and print the position reached; ``near`` is the ``start_tolerance`` of ``execute``."""
+    """Print a plan, execute it, and print the position reached."""
     from pkm_post.control.link import pose_text
     from pkm_post.control.numerical_control import target_deviation
-    from pkm_post.options import START_TOLERANCE_MM
 
     for diagnostic in diagnostics:
         print(diagnostic, file=sys.stderr)
@@ -70,7 +70,7 @@ def execute_plan(
     if namespace.check:
         return 0
     with held_at_the_end(session, target.settings):
-        control.execute(plan, START_TOLERANCE_MM if near is None else near)
+        control.execute(plan, start_tolerance)
         if control.silence_s is not None:
             print(f"it rests within {control.silence_s:.1f} s if this computer falls silent, at 100 %", flush=True)
         status = wait_for_end(control, plan.seconds)
@@ -218,8 +218,8 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
         if not sys.stdin.readline():
             return 0
         # Only the first line is approached by hand; the others begin where the previous one ended.
-        near = namespace.near if number == namespace.block else None
-        if execute_plan(session, target, namespace, control, *control.plan_step(), near):
+        start_tolerance = namespace.near if number == namespace.block else START_TOLERANCE_MM
+        if execute_plan(session, target, namespace, control, *control.plan_step(), start_tolerance):
             return 1
     print("the program has ended")
     return 0

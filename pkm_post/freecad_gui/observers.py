@@ -31,7 +31,7 @@ class EscapeWatch(QtCore.QObject):
     hit = QtCore.Signal()
     """Escape was pressed."""
     _was_pressed = False
-    _looked, _has_passed = -_LOOK_S, False
+    _last_look, _skipped_last = -_LOOK_S, False
     _calm: QtCore.QTimer | None = None
 
     def begin(self) -> None:
@@ -44,7 +44,7 @@ class EscapeWatch(QtCore.QObject):
         Pressed twice or held, it would otherwise close the panel of a new operation, which deletes the operation.
         """
         FreeCADGui.getMainWindow().statusBar().clearMessage()
-        if self._has_passed:
+        if self._skipped_last:
             FreeCADGui.updateGui()  # an Escape since the last look is meant for the computation as well
         if not self._was_pressed:
             self._remove()
@@ -63,11 +63,11 @@ class EscapeWatch(QtCore.QObject):
 
     def pressed(self, text: str) -> bool:
         """Show a text in the status bar and process events, every now and then; whether Escape was pressed so far."""
-        self._has_passed = time.monotonic() - self._looked < _LOOK_S
-        if not self._has_passed:
+        self._skipped_last = time.monotonic() - self._last_look < _LOOK_S
+        if not self._skipped_last:
             FreeCADGui.getMainWindow().statusBar().showMessage(text)
             FreeCADGui.updateGui()
-            self._looked = time.monotonic()
+            self._last_look = time.monotonic()
         return self._was_pressed
 
     def eventFilter(self, _target: QtCore.QObject, event: QtCore.QEvent) -> bool:

@@ -155,12 +155,8 @@ _ORIGIN = re.compile(
 
 
 def shift(text: str) -> tuple[float, float, float]:
-    """A way along X, Y and Z, mm."""
-    words = text.split(",")
-    if len(words) != 3:
-        raise argparse.ArgumentTypeError(f"expected DX,DY,DZ, got {text!r}")
-    x, y, z = map(offset, words)
-    return x, y, z
+    """A distance along X, Y and Z, mm."""
+    return _three_lengths(text, "DX,DY,DZ")
 
 
 def origin(text: str) -> tuple[str, Pose]:
@@ -176,9 +172,13 @@ def origin(text: str) -> tuple[str, Pose]:
 
 def point(text: str) -> tuple[float, float, float]:
     """X, Y and Z in mm."""
+    return _three_lengths(text, "X,Y,Z")
+
+
+def _three_lengths(text: str, expected: str) -> tuple[float, float, float]:
     words = text.split(",")
     if len(words) != 3:
-        raise argparse.ArgumentTypeError(f"expected X,Y,Z, got {text!r}")
+        raise argparse.ArgumentTypeError(f"expected {expected}, got {text!r}")
     x, y, z = map(offset, words)
     return x, y, z
 

@@ -16,7 +16,6 @@ from cam_jobs import add_operation
 from meshes import binary_stl
 from option_examples import ADDED, FLAGS, words
 from Path.Post.Processor import PostProcessorFactory
-from series import cases
 
 import pkm_post
 from pkm_post.cli import main
@@ -131,18 +130,12 @@ DOORS = [*OF_THE_JOB, *TYPED]
 WHERE = ["job", "command line", "both"]
 
 
-def in_turn(doors, turn, usual=1):
-    """The doors of this turn: so many of them usually, which are others the next time, and all in a long series."""
-    return [doors[(usual * turn + place) % len(doors)] for place in range(min(cases(usual), len(doors)))]
-
-
 def doors_for(flag, where):
-    """A door for what the job says or for what is typed, in turn; and the command line where something overrides it."""
+    """For what the job says two doors, and one of the macros for what is typed, in turn; the command line warns."""
     turn = FLAGS.index(flag)
-    doors = [] if where == "both" else in_turn(DOORS if where == "job" else TYPED, turn)
-    if (where == "both" or flag in SAID_BY_EVERY_JOB) and by_command_line not in doors:
-        doors.append(by_command_line)
-    return doors
+    if where == "job":
+        return [DOORS[(2 * turn + place) % len(DOORS)] for place in range(2)]
+    return [by_command_line] if where == "both" else [by_command_line, (by_macro, by_macro_with_the_file)[turn % 2]]
 
 
 @pytest.mark.parametrize("where", WHERE)
@@ -187,10 +180,10 @@ def test_the_page_of_the_report_has_the_units_of_the_document(job, tmp_path):
         job.Document.save()
         chosen = prepared_job(job, settings_of(job)).options.report_unit
         assert chosen == ("mm" if is_metric(system) else "inch"), name
-        for door in DOORS if system == IMPERIAL else []:
+        for door in DOORS if system == IMPERIAL else [by_panel]:
             folder = made(tmp_path / f"{door.__name__} {system}")
             door(job, [], folder)
-            assert contents(folder) == in_inch, door.__name__
+            assert contents(folder) == (in_mm if is_metric(system) else in_inch), (door.__name__, name)
     job.Document.UnitSystem = systems[IMPERIAL]
     says(job, f"{ALWAYS['--work-offset']} --report-unit mm")
     by_panel(job, [], made(tmp_path / "said"))
@@ -311,7 +304,7 @@ def test_arguments_by_chance(job, tmp_path, seed):
     chance.shuffle(of_job)
     says(job, shlex.join(of_job))
     wanted = by_pipeline(job, shlex.join([*of_job, *over_it]), made(tmp_path / "wanted"))
-    for door in in_turn(TYPED, seed // 2) if over_it else in_turn(DOORS, seed // 2, 2):
+    for door in TYPED if over_it else DOORS:
         folder = made(tmp_path / door.__name__)
         door(job, over_it, folder)
         assert contents(folder) == wanted

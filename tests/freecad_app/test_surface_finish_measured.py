@@ -93,7 +93,7 @@ def column():
         Order="One way",
         CutMode="Climb",
         LeadMove="Arc",
-        CheckSpacing=6.0,
+        CheckSpacing=3.0,
     )
     yield valid(operation), job, example.wall(solid)
     App.closeDocument(document.Name)

@@ -223,8 +223,8 @@ class Controller:
         for system in self.systems:
             if system.axes.definitions:
                 system.advance(ms)
-                its = system.commanded()
-                commanded = its if commanded is NO_COMMAND else np.where(np.isnan(commanded), its, commanded)
+                own = system.commanded()
+                commanded = own if commanded is NO_COMMAND else np.where(np.isnan(commanded), own, commanded)
         self.motors.advance(ms, commanded)
         self._guard()
         self._watch_rotaries()

@@ -243,7 +243,7 @@ class Motors:
         return self.closed & (np.abs(self.following_error) > self.variables.made_of("fatal", self._largest_error))
 
     def are_sound(self) -> bool:
-        """Whether no motor has failed, is beyond a limit or is on a switch: all but always, and quickly found."""
+        """Whether no motor has failed, is beyond a limit or on a switch: the usual case, which is found quickly."""
         high, low = self.at_limits()
         fails = (np.abs(self.following_error) > self.variables.made_of("fatal", self._largest_error)) | self.fatal
         return not any((fails | self.amplifier_fault | high | low | self.high_switch | self.low_switch).tolist())

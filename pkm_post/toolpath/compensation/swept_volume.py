@@ -208,7 +208,7 @@ class SweptVolume:
         if not len(near_all):
             return best, row
         order, group, middle = _grouped(points)
-        begin, least = self._from_steps(middle, near_all)
+        begin, least = self._step_distances(middle, near_all)
         nearest = near_all[begin.argmin(axis=1)]
         known = self._to_pose(points[order], nearest[group], np.zeros(len(order)))
         limit = np.minimum(known, self.within) + norm(points[order] - middle[group]) + _ROUNDING
@@ -237,7 +237,7 @@ class SweptVolume:
         limit = min(float(distance.min()) + radius, self.within)
         return np.flatnonzero(np.repeat(distance - radius - span <= limit, last - first))
 
-    def _from_steps(self, points: Array, steps: Array) -> tuple[Array, Array]:
+    def _step_distances(self, points: Array, steps: Array) -> tuple[Array, Array]:
         """Distances of points where steps begin, and the least that they can be within the steps, (N, K) each."""
         last = np.append(np.diff(steps) > 1, True)
         begin = self._to_poses(points, steps)
