@@ -168,8 +168,8 @@ def approach(session: Session, target: JobTarget, namespace: argparse.Namespace)
         namespace.tool_length = float(known.trajectory.tool_length()[0])
         free = float(known.trajectory.tip[:, 2].max())
 
-    def check(way: Trajectory) -> tuple[Diagnostic, ...]:
-        return () if known is None else approach_faults(known, 0, way)
+    def check(path: Trajectory) -> tuple[Diagnostic, ...]:
+        return () if known is None else approach_faults(known, 0, path)
 
     control = control_of(session, target, namespace)
     plan, found = control.plan_approach(target.job, namespace.feed / 60, free, check)

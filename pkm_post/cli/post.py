@@ -111,7 +111,7 @@ def _faults(namespace: argparse.Namespace) -> list[str]:
     return [*misplaced(namespace, files), *(f"{each}: post to different folders" for each in lost)]
 
 
-def items_of(file: Path, wanted: str | None, also: tuple[str, ...]) -> list[PostItem]:
+def items_of(file: Path, job_name: str | None, also: tuple[str, ...]) -> list[PostItem]:
     """Items of a file: a part program, or the jobs of a document, with their own optional outputs."""
     if file.suffix.lower() != _DOCUMENT:
         from pkm_post.reading import program_stem
@@ -120,7 +120,7 @@ def items_of(file: Path, wanted: str | None, also: tuple[str, ...]) -> list[Post
     jobs = _jobs_in(file)
     if len(jobs) < 2:
         return [PostItem(str(file), job_stem(file.stem, "", 1))]
-    named = [job.label for job in jobs if wanted in (None, job.name, job.label)]
+    named = [job.label for job in jobs if job_name in (None, job.name, job.label)]
     return [PostItem(f"{label} of {file}", job_stem(file.stem, label, len(jobs))) for label in named]
 
 

@@ -114,7 +114,7 @@ class PostPanel:
         require_computed(self.job.Document)
         return prepared_job(self.job, settings_of(self.job))
 
-    def _keep_or_tell(self) -> bool:
+    def _store_choices(self) -> bool:
         """Store the choices in the document without posting; if they are invalid, show why."""
         try:
             self.choices.keep()
@@ -188,7 +188,7 @@ class PostPanel:
 
     def _simulate(self) -> None:
         """Store the choices, and run the command, which itself reports why there is nothing to play."""
-        if not self._keep_or_tell():
+        if not self._store_choices():
             return
         FreeCADGui.Selection.clearSelection()
         FreeCADGui.Selection.addSelection(self.job)
@@ -207,7 +207,7 @@ class PostPanel:
 
     def _apply(self) -> None:
         """Store the choices, for reach, simulation and operations that need the machine or a gauge length."""
-        if self._keep_or_tell():
+        if self._store_choices():
             self.outcome.show_nothing(translate("PostPanel", "Kept in the document. Nothing was posted."))
 
     def reject(self) -> bool:

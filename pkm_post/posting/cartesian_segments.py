@@ -46,7 +46,7 @@ def on_segments(struts: StrutMotion, segment_time: int) -> StrutMotion:
         wanted = _divided(struts.time_ms[first : last + 1] - before)
         segments = -(-int(wanted[-1]) // segment_time)
         stretch = segments * segment_time / wanted[-1]
-        snapped = segment_time * _beside(wanted * stretch / segment_time)
+        snapped = segment_time * _neighbouring_points(wanted * stretch / segment_time)
         sources.append(before + snapped / stretch)
         slower.append(np.full(len(snapped), stretch))
         times.append(times[-1][-1] + snapped)
@@ -99,7 +99,7 @@ def _inverse(machine: Machine, axes: StrutMotion, time_ms: Array, tool_length: f
     return strut_motion(machine, there, tool_length).length
 
 
-def _beside(places: Array) -> Array:
+def _neighbouring_points(places: Array) -> Array:
     """The whole numbers before and behind each place: a cubic between knots is the same between any of its points.
 
     Where a knot is left out, the motion changes its acceleration within one segment.

@@ -79,24 +79,24 @@ def _moved(trajectory: Trajectory, machine: Machine, offsets: MachineOffsets) ->
     frame[:3, 3] += offsets.shift
     return replace(
         lengthened,
-        tip=trajectory.tip + _ways(trajectory, machine, lengthened.tool_length(), np.array(offsets.shift)),
+        tip=trajectory.tip + _tip_shifts(trajectory, machine, lengthened.tool_length(), np.array(offsets.shift)),
         arc_centre=trajectory.arc_centre + np.array(offsets.shift),
         machine_from_work=frame,
     )
 
 
-def _ways(trajectory: Trajectory, machine: Machine, length: Array, shift: Array) -> Array:
-    """How far the end of each row goes, (N, 3): that of the part, but on the ways of tool changes and approaches."""
-    ways, pose = np.tile(shift, (len(trajectory), 1)), machine.tool_change
+def _tip_shifts(trajectory: Trajectory, machine: Machine, length: Array, shift: Array) -> Array:
+    """How far the end of each row goes, (N, 3): that of the part, but on the moves of tool changes and approaches."""
+    shifts, pose = np.tile(shift, (len(trajectory), 1)), machine.tool_change
     if pose is None:
-        return ways
+        return shifts
     tip, axis, before = trajectory.tip, trajectory.axis, trajectory.tool_length()
     detours = np.array([is_detour(name) for name in trajectory.operations])[trajectory.operation]
     high = detours & (np.abs(tip[:, 2] - pose.safe_height) < _SAME_MM)
-    ways[high] -= (shift[2] / axis[high, 2])[:, None] * axis[high]
+    shifts[high] -= (shift[2] / axis[high, 2])[:, None] * axis[high]
     from_start, up = tip - trajectory.start_tip, trajectory.start_axis
     beside = norm(from_start - (from_start @ up)[:, None] * up)
-    ways[detours & (beside < _SAME_MM) & (norm(axis - up) < _SAME_MM)] = 0.0
+    shifts[detours & (beside < _SAME_MM) & (norm(axis - up) < _SAME_MM)] = 0.0
     changes = detours & (norm(tip + before[:, None] * axis - pose.nose) < _SAME_MM)
-    ways[changes] = -(length - before)[changes, None] * axis[changes]
-    return ways
+    shifts[changes] = -(length - before)[changes, None] * axis[changes]
+    return shifts

@@ -216,15 +216,15 @@ def _place(program: Program, row: int) -> Place:
 def _inserted(program: Program, detours: list[_Detour]) -> Program:
     """The program with the rows of all detours; events from a tool change on occur at its pose."""
     names = list(dict.fromkeys(detour.name for detour in detours))
-    ways = [(detour, pose) for detour in detours for pose in detour.moves]
-    at = np.array([detour.row for detour, _ in ways])
-    tip, axis, spin = pose_columns([pose for _, pose in ways])
-    added = _blank(len(ways)) | {
-        "kind": np.full(len(ways), Kind.RAPID),
+    moves = [(detour, pose) for detour in detours for pose in detour.moves]
+    at = np.array([detour.row for detour, _ in moves])
+    tip, axis, spin = pose_columns([pose for _, pose in moves])
+    added = _blank(len(moves)) | {
+        "kind": np.full(len(moves), Kind.RAPID),
         "position": tip,
         "tool_axis": axis,
         "spin": spin,
-        "operation": np.array([len(program.operations) + names.index(detour.name) for detour, _ in ways]),
+        "operation": np.array([len(program.operations) + names.index(detour.name) for detour, _ in moves]),
         "line": program.line[np.minimum(at, len(program) - 1)],
     }
     grown = {name: np.insert(getattr(program, name), at, rows, axis=0) for name, rows in added.items()}

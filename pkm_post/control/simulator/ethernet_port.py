@@ -55,14 +55,14 @@ class EthernetPort:
         return answer(self, data, value, length) if answer else b""
 
     def _get_response(self, data: bytes, value: int, length: int) -> bytes:
-        self._waiting = bytearray(self._carried_out(data))
+        self._waiting = bytearray(self._response(data))
         return self._taken(LONGEST_ANSWER)
 
     def _get_buffer(self, data: bytes, value: int, length: int) -> bytes:
         return self._taken(min(length, LONGEST_ANSWER)) or NOTHING
 
     def _send_line(self, data: bytes, value: int, length: int) -> bytes:
-        self._waiting += self._carried_out(data)
+        self._waiting += self._response(data)
         return DONE
 
     def _get_line(self, data: bytes, value: int, length: int) -> bytes:
@@ -89,7 +89,7 @@ class EthernetPort:
                 return struct.pack("<HBB", place, number, FAILED)
         return bytes(4)
 
-    def _carried_out(self, data: bytes) -> bytes:
+    def _response(self, data: bytes) -> bytes:
         """The answer to a line of text; a carriage return at its end is optional."""
         if any(code > 127 for code in data):
             return self.line.refused(CHARACTER)

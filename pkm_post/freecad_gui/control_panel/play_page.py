@@ -28,7 +28,7 @@ from pkm_post.freecad_gui.control_panel.buttons import (
 )
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.play_setup import NUMBER_WIDTH, BlockSkip, PlaySetup, Ready, trajectory_kinds
-from pkm_post.freecad_gui.control_panel.texts import placed_text, speeds_text, why_text
+from pkm_post.freecad_gui.control_panel.texts import play_text, speeds_text, why_text
 from pkm_post.freecad_gui.post_fields import narrow_box, quantity_field, show_quantity
 from pkm_post.model import Diagnostic, Tolerances, Trajectory
 from pkm_post.options import LONGEST_TOOL
@@ -171,7 +171,7 @@ class PlayPage(QtWidgets.QWidget):
             self.name.setText(translate("ControlPanel", "no trajectory was opened"))
         shown = None if console.play is None else console.play.state
         if shown is not None:
-            show_line(self.place, placed_text(shown))
+            show_line(self.place, play_text(shown))
             show_line(self.speeds, speeds_text(shown))
             self.bar.setValue(round(_SHARES * (1 - shown.to_go / self._way)))
 

@@ -159,17 +159,17 @@ def _texts_of_bits(bits: Bits, texts: dict[str, str]) -> list[str]:
     return [translate("ControlPanel", texts[name]) for name in bits.FAULT_TEXTS if bits.has(name)]
 
 
-def placed_phase(state: PlayState) -> str:
+def play_phase_text(state: PlayState) -> str:
     """What it does, or waits for."""
     phase = state.waits_for or state.phase
     text = translate("ControlPanel", PLAY_PHASES[phase]) if phase in PLAY_PHASES else phase
     return translate("ControlPanel", "waits: {}").format(text) if state.waits_for else text
 
 
-def placed_text(state: PlayState) -> str:
+def play_text(state: PlayState) -> str:
     """What it does, and in which operation and line."""
     line = translate("ControlPanel", "line {}").format(state.line)
-    return ", ".join(filter(None, (placed_phase(state), state.operation, line)))
+    return ", ".join(filter(None, (play_phase_text(state), state.operation, line)))
 
 
 def note_text(record: logging.LogRecord) -> str:
@@ -181,7 +181,7 @@ def note_text(record: logging.LogRecord) -> str:
 
 def progress_text(state: PlayState) -> str:
     """Line, feed, time left and operation in one line, and before them what it does, unless it runs."""
-    phase = placed_phase(state) if state.waits_for or state.phase != "runs" else ""
+    phase = play_phase_text(state) if state.waits_for or state.phase != "runs" else ""
     line = translate("ControlPanel", "line {}").format(state.line)
     feed = translate("ControlPanel", "feed {} ({:.0f} %)").format(speed_text(state.feed), 100 * state.reached)
     left = (

@@ -70,8 +70,8 @@ class EditorWidget(QtWidgets.QWidget):
         self.checker.checked.connect(self._show_status)
         self.checker.missing.connect(self.size.setText)
         self.findings.chosen.connect(self._jump)
-        self.find_bar.replaced.connect(self._tell_replaced)
-        self.text.edits.progressed.connect(self._tell_progress)
+        self.find_bar.replaced.connect(self._show_replaced)
+        self.text.edits.progressed.connect(self._show_progress)
         self.text.textChanged.connect(self._changed)
         self.text.cursorPositionChanged.connect(self._show_block)
         self.reading.changed.connect(self._read_otherwise)
@@ -146,11 +146,11 @@ class EditorWidget(QtWidgets.QWidget):
         if obj is not None and reading_of(obj) != self.reading.chosen():
             program_link.bring_up_to_date(obj, self.reading.chosen())
 
-    def _tell_progress(self, share: float) -> None:
+    def _show_progress(self, share: float) -> None:
         self._progress.setVisible(share < 1)
         self._progress.setValue(round(100 * share))
 
-    def _tell_replaced(self, count: int) -> None:
+    def _show_replaced(self, count: int) -> None:
         self.size.setText(translate("PKM_Editor", "{} replaced").format(count))
 
     def _show_status(self, checked: CheckedText) -> None:

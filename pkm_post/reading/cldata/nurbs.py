@@ -94,11 +94,11 @@ def _chords(state: ReaderState, motion: NurbsMotion, points: Points, mine: Array
     scale = float(scale_at(state, np.array([motion.row]))[0])
     at = _parameters(knots, degree, [curve * scale for curve in curves])
     before = points.position[mine[0] - 1] if mine[0] else None
-    paced = _paced(knots, degree, curves[0], at, points.position[mine], before, MAX_DEVIATION / scale)
-    beside = np.searchsorted(paced, at)
-    apart = np.minimum(at - paced[beside - 1], np.append(paced, np.inf)[beside] - at) > _SAME
-    at = np.unique(np.concatenate([at[apart & (beside > 0)], paced]))[1:]
-    which = np.searchsorted(paced[1:], at, "left")
+    parameters = _point_parameters(knots, degree, curves[0], at, points.position[mine], before, MAX_DEVIATION / scale)
+    beside = np.searchsorted(parameters, at)
+    apart = np.minimum(at - parameters[beside - 1], np.append(parameters, np.inf)[beside] - at) > _SAME
+    at = np.unique(np.concatenate([at[apart & (beside > 0)], parameters]))[1:]
+    which = np.searchsorted(parameters[1:], at, "left")
     tip = bspline_points(knots, degree, curves[0], at)
     axis = np.full_like(tip, np.nan)
     if motion.five_axis:
@@ -160,7 +160,7 @@ def _second_derivatives(knots: Array, degree: int, poles: Array) -> Array:
     return norm(poles)
 
 
-def _paced(
+def _point_parameters(
     knots: Array, degree: int, poles: Array, at: Array, points: Array, before: Array | None, tolerance: float
 ) -> Array:
     """Parameters of the start of the motion and of its points, ascending.

@@ -77,7 +77,7 @@ class LeadPair:
         """Whether the lift ends at or above the height that rapid moves came down to, or there is no lift."""
         return not len(self.lift.path_row) or bool(self.lift.height[-1] >= self.plunge.rapid_to - LEVEL)
 
-    def ways(self) -> tuple[Rows, Rows, int, int]:
+    def exchanged(self) -> tuple[Rows, Rows, int, int]:
         """The rows to the pass and from it, and the old rows that end where the former begin and the latter end."""
         slow = self.plunge.feed[0] if np.isfinite(self.plunge.feed[:1]).any() else self.feed
         enter, leave = lift_as_plunge(self.lift, self.plunge, slow), plunge_as_lift(self.plunge, self.lift, slow)

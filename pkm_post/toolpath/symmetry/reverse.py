@@ -76,7 +76,7 @@ def _parts(
     for number, (first, behind) in enumerate(runs):
         before, after = between[number], between[number + 1]
         if number in leads:
-            enter, leave, top, end = leads[number].ways()
+            enter, leave, top, end = leads[number].exchanged()
         else:
             enter, leave = unchanged_rows(program, before.approach), unchanged_rows(program, after.departure)
             top = int(before.approach[0] if len(before.approach) else first) - 1
