@@ -30,6 +30,9 @@ SOAK_PLAYS ?= 60
 OUT ?= out
 ARGS ?=
 
+# FreeCAD keeps compiled modules whatever this says; the processes that its tests start shall find and keep them, too.
+unexport PYTHONDONTWRITEBYTECODE
+
 # FreeCAD with the add-on, as with an add-on that is installed. It starts with default settings, so that
 # neither the user's own nor those of an earlier run decide what comes out.
 define FREECAD
