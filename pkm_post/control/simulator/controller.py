@@ -15,13 +15,21 @@ from functools import partial
 
 import numpy as np
 
-from pkm_post.control.simulator.coordinate_system import NO_COMMAND, CoordinateSystem
+from pkm_post.control.simulator.coordinate_system import CoordinateSystem
 from pkm_post.control.simulator.errors import CommandError
 from pkm_post.control.simulator.machine_state import PortSession
 from pkm_post.control.simulator.memory import Memory
-from pkm_post.control.simulator.motors import Motors
+from pkm_post.control.simulator.motors import NO_COMMAND, Motors
 from pkm_post.control.simulator.online import execute
-from pkm_post.control.simulator.variables import SIMULATED_MOTORS, SYSTEMS, WORDS, FloatFormat, Inputs, Variables
+from pkm_post.control.simulator.variables import (
+    SIMULATED_MOTORS,
+    SYSTEMS,
+    WORDS,
+    Array,
+    FloatFormat,
+    Inputs,
+    Variables,
+)
 
 _M_CODE_STATEMENTS = {
     0: "STOP", 1: "STOP", 3: "P7001=1", 4: "P7001=-1", 5: "P7001=0", 7: "P7002=2", 8: "P7002=1", 9: "P7002=0",
@@ -160,8 +168,13 @@ class Controller:
         self._owed_ms += ms
         count = math.floor(self._owed_ms / tick + 1e-9)
         self._owed_ms -= count * tick
-        for _ in range(count):
+        while count > 0:
+            before = self.motors.commanded, self.motors.actual
             self._tick(tick)
+            count -= 1
+            if count and self._rests(*before):
+                self._stand(tick, count)
+                return
 
     def system_of(self, motor: int) -> CoordinateSystem | None:
         """The coordinate system of a motor."""
@@ -229,6 +242,20 @@ class Controller:
         self._guard()
         self._watch_rotaries()
         self.time += ms
+
+    def _rests(self, commanded: Array, actual: Array) -> bool:
+        """Whether the ticks up to the next command change nothing but the time, given where the motors were."""
+        moves_none = all(system.rests() for system in self.systems if system.axes.definitions)
+        return moves_none and self.motors.rest(commanded, actual)
+
+    def _stand(self, ms: float, count: int) -> None:
+        """Advance by ticks in which nothing happens; times are summed as by ticks, to the last bit."""
+        for system in self.systems:
+            if system.axes.definitions:
+                for _ in range(count):
+                    system.path.go_on(ms, system.override)
+        for _ in range(count):
+            self.time += ms
 
     def _guard(self) -> None:
         """Stop motors that have failed, and all motors that move together with them."""

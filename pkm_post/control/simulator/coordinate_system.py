@@ -15,9 +15,9 @@ from pkm_post.control.simulator.errors import CommandError
 from pkm_post.control.simulator.interpreter import Interpreter, PortOutput
 from pkm_post.control.simulator.memory import Memory, ProgramError
 from pkm_post.control.simulator.modal_state import Axes
-from pkm_post.control.simulator.motors import Motors
+from pkm_post.control.simulator.motors import NO_COMMAND, Motors
 from pkm_post.control.simulator.moves import MoveQueue
-from pkm_post.control.simulator.variables import SIMULATED_MOTORS, Array, SystemScope, Variables
+from pkm_post.control.simulator.variables import Array, SystemScope, Variables
 
 FULL_SLEW = 1644.0
 """Isx94 and Isx95: at this value the override changes by 100 % in a second [TurboPMAC, Isx94]."""
@@ -26,8 +26,6 @@ HIGHEST_OVERRIDE = 225.0
 MOVES_AT_ONCE = 1000
 SAME_PLACE = 0.5
 """counts: beyond this, a motor counts as moved away from where its program stopped."""
-
-NO_COMMAND = np.full(SIMULATED_MOTORS, np.nan)
 
 
 class CoordinateSystem:
@@ -115,6 +113,10 @@ class CoordinateSystem:
             if not ms:
                 return
 
+    def rests(self) -> bool:
+        """Whether no tick changes anything before the next command, but the program time."""
+        return not self.running and self.path.last() is None and self.override == self.override_wanted
+
     def commanded(self) -> Array:
         """Commanded motor positions, counts, (6,); NaN where no program commands them."""
         position = None if self.holding and self.override == 0 else self.path.position()
@@ -154,10 +156,11 @@ class CoordinateSystem:
 
     def _slew(self, ms: float) -> None:
         """Slew the override: Isx95 for a hold and the resume after it, Isx94 otherwise [TurboPMAC, Isx95]."""
-        which = 95 if self.holding or self._resuming else 94
-        change = abs(self._variables.of_system(self.number, which)) / FULL_SLEW * ms / 1000
         wanted = 0.0 if self.holding else self.override_wanted
-        self.override += min(max(wanted - self.override, -change), change)
+        if self.override != wanted:
+            which = 95 if self.holding or self._resuming else 94
+            change = abs(self._variables.of_system(self.number, which)) / FULL_SLEW * ms / 1000
+            self.override += min(max(wanted - self.override, -change), change)
         self._resuming = self._resuming and self.override != wanted
 
     def _standing(self) -> Array:

@@ -106,6 +106,8 @@ def go_to(position: float, speed: float, goal: float, limit: float, acceleration
 
 LIMITS_DISABLED, WORD = 0x20000, 1 << 24
 """LIMITS_DISABLED is a bit of Ixx24, which is a word of 24 bits."""
+NO_COMMAND = np.full(SIMULATED_MOTORS, np.nan)
+"""Positions commanded by no program."""
 SLOWEST = 1e-6
 """counts/ms or counts/ms^2: lower bound of I-variables; at zero a move would never end."""
 
@@ -210,21 +212,27 @@ class Motors:
             ms: elapsed time.
             commanded: (6,) positions commanded by programs at its end, counts; NaN for a motor without a program.
         """
-        wanted = np.where(np.isnan(commanded), self.commanded, commanded)
+        # Six numbers: plain floats take a tenth of what columns do.
+        wanted = self.commanded.tolist()
+        if commanded is not NO_COMMAND:
+            wanted = [own if math.isnan(asked) else asked for own, asked in zip(wanted, commanded.tolist(), strict=True)]
         for index, jog in enumerate(self.jogs):
             if jog is not None:
-                wanted[index] = self._jogged(index, jog, ms)
-        follows = all(self.closed.tolist()) and not any(self.jammed.tolist())
-        if not follows:
-            wanted = np.where(self.closed, wanted, self.actual)
-        # Where homing has shifted the zero, wanted and commanded have shifted together.
-        speed = (wanted - self.commanded) / ms
-        self.speed = speed if follows else np.where(self.closed, speed, 0.0)
-        # First-order lag behind a ramp: e' = speed - e / lag.
-        fading = math.exp(-ms / self._lag_ms)
-        actual = wanted - (self.following_error * fading + self.speed * self._lag_ms * (1.0 - fading))
-        self.commanded = wanted
-        self.actual = actual if follows else np.where(self.jammed | ~self.closed, self.actual, actual)
+                wanted[index] = float(self._jogged(index, jog, ms))
+        # Where homing has shifted the zero, wanted, commanded and actual have shifted together.
+        before, actual, speed = self.commanded.tolist(), self.actual.tolist(), [0.0] * SIMULATED_MOTORS
+        fading, jammed = math.exp(-ms / self._lag_ms), self.jammed.tolist()
+        for index, is_closed in enumerate(self.closed.tolist()):
+            if not is_closed:
+                wanted[index] = actual[index]
+                continue
+            speed[index] = (wanted[index] - before[index]) / ms
+            if not jammed[index]:
+                # First-order lag behind a ramp: e' = speed - e / lag.
+                error = before[index] - actual[index]
+                lag = error * fading + speed[index] * self._lag_ms * (1.0 - fading)
+                actual[index] = wanted[index] - lag
+        self.commanded, self.actual, self.speed = np.array(wanted), np.array(actual), np.array(speed)
 
     def beyond_limits(self) -> Array:
         """Which motors move further beyond a limit or into a switch, (6,)."""
@@ -240,13 +248,25 @@ class Motors:
 
     def fatal_following_errors(self) -> Array:
         """Which closed-loop motors have a following error above Ixx11, (6,)."""
-        return self.closed & (np.abs(self.following_error) > self.variables.made_of("fatal", self._largest_error))
+        return self.closed & (np.abs(self.following_error) > self._fatal_error)
 
     def are_sound(self) -> bool:
         """Whether no motor has failed, is beyond a limit or on a switch: the usual case, which is found quickly."""
-        high, low = self.at_limits()
-        fails = (np.abs(self.following_error) > self.variables.made_of("fatal", self._largest_error)) | self.fatal
-        return not any((fails | self.amplifier_fault | high | low | self.high_switch | self.low_switch).tolist())
+        faults = (self.fatal, self.amplifier_fault, self.high_switch, self.low_switch)
+        if any(True in fault.tolist() for fault in faults):
+            return False
+        columns = self.actual, self.commanded, *self.variables.made_of("limits", self._limits), self._fatal_error
+        return all(
+            low <= actual <= high and abs(commanded - actual) <= largest
+            for actual, commanded, high, low, largest in zip(*(column.tolist() for column in columns), strict=True)
+        )
+
+    def rest(self, commanded: Array, actual: Array) -> bool:
+        """Whether they are sound and rest where they were a tick ago, so that the next tick changes nothing either."""
+        if any(jog is not None for jog in self.jogs):
+            return False
+        is_same = self.commanded.tolist() == commanded.tolist() and self.actual.tolist() == actual.tolist()
+        return is_same and self.are_sound()
 
     def _limits(self) -> Array:
         """The highest and the lowest position of each motor, (2, 6) counts; infinite where there is none."""
@@ -254,8 +274,12 @@ class Motors:
         heeded = (np.abs(self.variables.column(24)) % WORD).astype(np.int64) & LIMITS_DISABLED == 0
         return np.stack([np.where(heeded & (high != 0), high, np.inf), np.where(heeded & (low != 0), low, -np.inf)])
 
-    def _largest_error(self) -> Array:
+    @property
+    def _fatal_error(self) -> Array:
         """The following error that is fatal, (6,) counts; infinite where there is none."""
+        return self.variables.made_of("fatal", self._largest_error)
+
+    def _largest_error(self) -> Array:
         limit = self.variables.column(11) / 16
         return np.where(limit > 0, limit, np.inf)
 

@@ -244,6 +244,9 @@ class MoveQueue:
         Returns:
             The remaining real time.
         """
+        if not self._moves:
+            self.time += ms * override
+            return 0.0
         rate = 1.0 if any(map(self._dwells, self._moves)) else override
         times = [time for move in self._moves for time in (move.start, move.end) if time > self.time]
         boundary = min(times, default=math.inf)
