@@ -113,6 +113,15 @@ class EthernetProtocol(ByteProtocol):
             self._out += packet(GETBUFFER, length=MOST_ANSWER)
         self._wait_for_answer(self._answer, now)
 
+    def _take_text(self, data: bytes, now: float) -> int:
+        """As in ``ByteProtocol``; not the last byte of a full packet, after which more is asked for."""
+        room = MOST_ANSWER - self._in_packet - 1
+        taken = self._reader.take_text(data[:room]) if self._step == self._answer else 0
+        if taken:
+            self._in_packet += taken
+            self._wait_for_answer(self._answer, now)
+        return taken
+
     def _lines_taken(self, byte: int, now: float) -> None:
         """Four bytes: line number, low byte first; error number; 80 if there is an error."""
         self._collected.append(byte)

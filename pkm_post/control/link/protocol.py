@@ -170,11 +170,16 @@ class ByteProtocol:
 
     def receive(self, data: bytes, now: float) -> None:
         """As ``CommandProtocol``."""
-        for byte in data:
-            if self._step is None:
-                continue  # nothing is outstanding: a stray byte
+        at = 0
+        while at < len(data) and self._step is not None:  # else nothing is outstanding: stray bytes
+            taken = self._take_text(data[at : at + self._command.most - self._received], now)
+            at += taken
+            self._received += taken
+            if taken:
+                continue
             self._received += 1
-            self._step(byte, now)
+            self._step(data[at], now)
+            at += 1
             if self._received > self._command.most and self._step is not None:
                 self._end(Lost(f"more than {self._command.most} bytes", self._is_untouched()))
 
@@ -237,6 +242,10 @@ class ByteProtocol:
 
     def _no_answer(self, now: float) -> None:
         self._end(Lost(f"no answer for {self._command.answer_timeout:g} s"))
+
+    def _take_text(self, data: bytes, now: float) -> int:
+        """Take at once what is text inside a line of an answer; how many bytes, 0 if the first one is to be stepped."""
+        return 0
 
     def _is_untouched(self) -> bool:
         """Whether the controller certainly did not execute the command."""

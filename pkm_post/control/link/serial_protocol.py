@@ -29,6 +29,7 @@ from pkm_post.control.link.protocol import (
 
 ACK, BEL, STX, CR = 0x06, 0x07, 0x02, 0x0D
 _ERROR = re.compile(r"\s*ERR(\d{3})")
+_PRINTABLE = re.compile(rb"[ -~]*")
 
 
 def checksum(data: bytes | bytearray) -> int:
@@ -76,6 +77,15 @@ class ResponseParser:
     def take(self, byte: int) -> Event | None:
         """Take one byte; return the event if it completes the answer, or makes it invalid."""
         return self._steps[self._state](byte)
+
+    def take_text(self, data: bytes) -> int:
+        """Take the printable bytes at the beginning, inside a line of the answer; return how many they are."""
+        if self._state is not _State.DATA:
+            return 0
+        text = _PRINTABLE.match(data)
+        assert text is not None
+        self._line += text[0]
+        return len(text[0])
 
     def taken_messages(self) -> list[Message]:
         """Lines sent by programs in between; each call returns new ones only."""
@@ -211,6 +221,12 @@ class SerialProtocol(ByteProtocol):
 
     def _pass_over(self, byte: int, now: float) -> None:
         self.deadline = now + self._silence
+
+    def _take_text(self, data: bytes, now: float) -> int:
+        taken = self._reader.take_text(data) if self._step == self._answer else 0
+        if taken:
+            self._wait_for_answer(self._answer, now)
+        return taken
 
     def _is_untouched(self) -> bool:
         return self._step in (self._guard, self._pass_over)

@@ -20,6 +20,8 @@ from pkm_post.model import Machine
 from pkm_post.toolpath import ToolPose
 
 _STEPS_FROM_HOME = 128
+_FIRST_STEPS = (8, _STEPS_FROM_HOME)
+"""Steps that are made one after the other: few where all of them turn out to lead from one to the next, else all."""
 
 
 class ToolPoseReadout:
@@ -74,10 +76,11 @@ def pose_from_home(machine: Machine, length: Array, tool_length: float) -> ToolP
     home = machine.home_tip[None], machine.home_axis[None], np.array([machine.home_spin])
     share = np.linspace(0.0, 1.0, _STEPS_FROM_HOME)[:, None]
     way = (1 - share) * strut_lengths(machine, *home, tool[:1]) + share * length
-    found = forward_along_path(machine, way, tool, home[0][0], platform_rotation(*home[1:])[0])
-    if not found.converged[-1]:
-        return None
-    return ToolPose(found.tip[-1], found.axis[-1], float(spin_of(found.rotation[-1:])[0]))
+    for first_rows in _FIRST_STEPS:
+        found = forward_along_path(machine, way, tool, home[0][0], platform_rotation(*home[1:])[0], first_rows)
+        if found.converged[-1]:
+            return ToolPose(found.tip[-1], found.axis[-1], float(spin_of(found.rotation[-1:])[0]))
+    return None
 
 
 def pose_text(pose: ToolPose | None) -> str:

@@ -91,7 +91,7 @@ class EthernetPort:
 
     def _response(self, data: bytes) -> bytes:
         """The answer to a line of text; a carriage return at its end is optional."""
-        if any(code > 127 for code in data):
+        if not data.isascii():
             return self.line.refused(CHARACTER)
         return self.line.command(_decoded(data.rstrip(b"\r\n\0")))
 
@@ -102,6 +102,9 @@ class EthernetPort:
 
 
 def _decoded(data: bytes) -> str:
+    text = data.decode("latin-1")
+    if text.isascii() and text.isprintable():
+        return text
     return "".join(chr(code) if 0x20 <= code < 0x7F else "\x7f" for code in data)
 
 

@@ -12,7 +12,7 @@ import operator
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Protocol
 
 from pkm_post.control.simulator.errors import DATA, CommandError
@@ -117,6 +117,8 @@ def safely(compute: Callable[[], float], numbers: FloatFormat) -> float:
 
 
 DEEPEST_NESTING = 15
+CONSTANTS_KEPT = 4096
+"""Numbers of variables, intervals and codes come again and again."""
 
 
 class Scope(Protocol):
@@ -174,6 +176,7 @@ def argument(scanner: Scanner) -> Expression:
     return constant(scanner.expect(rf"(?P<number>[+-]?(?:{scanner.numbers.constant}))")["number"], scanner.numbers)
 
 
+@lru_cache(CONSTANTS_KEPT)
 def constant(text: str, numbers: FloatFormat = WORDS) -> Expression:
     """The expression of a single number."""
     sign = -1.0 if text.startswith("-") else 1.0

@@ -215,7 +215,9 @@ class Motors:
         # Six numbers: plain floats take a tenth of what columns do.
         wanted = self.commanded.tolist()
         if commanded is not NO_COMMAND:
-            wanted = [own if math.isnan(asked) else asked for own, asked in zip(wanted, commanded.tolist(), strict=True)]
+            wanted = [
+                own if math.isnan(asked) else asked for own, asked in zip(wanted, commanded.tolist(), strict=True)
+            ]
         for index, jog in enumerate(self.jogs):
             if jog is not None:
                 wanted[index] = float(self._jogged(index, jog, ms))

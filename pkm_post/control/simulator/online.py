@@ -203,6 +203,7 @@ def _plc(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[s
 
 
 COMMANDS: tuple[tuple[str, Handler], ...] = (
+    online_memory.VARIABLE,  # first, as nearly all commands assign or report variables
     (r"#(?P<number>[0-9]{1,3})->", _axis),
     (r"##(?P<number>[0-9]{1,3})", _address_bank),
     (r"#(?P<number>[0-9]{1,3})", _address_motor),

@@ -157,8 +157,9 @@ _GATHER = r"(?:GATHER|GAT)(?![A-Z])"
 _PART = r"(?: *, *(?P<first>[0-9]{1,6})?(?: *, *(?P<words>[0-9]{1,6}))?)?"
 _CLOSE, _CLEAR = r"(?:CLOSE|CLS)(?![A-Z])", r"(?:CLEAR|CLR)(?![A-Z])"
 
+VARIABLE: tuple[str, Handler] = (r"(?P<letter>[IPQM])(?=[0-9(])", _variable)
+
 COMMANDS: tuple[tuple[str, Handler], ...] = (
-    (r"(?P<letter>[IPQM])(?=[0-9(])", _variable),
     (r"OPEN *(?:PROGRAM|PROG) *(?P<number>[0-9]{1,6})", _open_program),
     (rf"OPEN *{_ROT}", _open_rotary),
     (_CLOSE, _close),

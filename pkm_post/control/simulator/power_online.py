@@ -298,6 +298,7 @@ _ALONE = r"(?![-+A-Z0-9.$(:\[])"
 _PROGRAM = r":? *(?P<number>[0-9]{1,5})(?:\.(?P<fraction>[0-9]*))?"
 
 COMMANDS: tuple[tuple[str, Act], ...] = (
+    (r"(?P<letter>[PQM])(?=[0-9(])", _variable),  # first, as nearly all commands assign or report variables
     (r"echo *(?P<number>[0-9])", _echo),
     (r"#(?P<number>[0-9]{1,3}) *->", _axis),
     (r"(?P<sign>[#&])(?P<number>[0-9]{1,3})\?", _status),
@@ -322,6 +323,5 @@ COMMANDS: tuple[tuple[str, Act], ...] = (
     (rf"(?:home|hm)(?P<here>z)?{_ALONE}", _as_turbo(online_motion.home)),
     (rf"(?:kill|k){_ALONE}", _as_turbo(online_motion.kill)),
     (rf"(?P<what>[pvf]){_ALONE}", _report),
-    (r"(?P<letter>[PQM])(?=[0-9(])", _variable),
 )
 """Command patterns and what carries them out; the first match wins [PowerPMAC, Command Syntax Summary]."""

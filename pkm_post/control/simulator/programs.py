@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 from pkm_post.control.simulator.errors import DATA, STRUCTURE, CommandError
@@ -60,8 +61,11 @@ WITH_VALUE = {
 WITH_AXES = {"ABS": "ABS", "INC": "INC", "FRAX": "FRAX"}
 WITH_CONDITION = {"IF": "IF", "WHILE": "WHILE"}
 WITH_TEXT = {"COMMAND": "CMD", "SEND": "SEND"}
+LINES_KEPT = 4096
+"""Parsed lines that are kept: a program is often sent again, and statements never change."""
 
 
+@lru_cache(LINES_KEPT)
 def parse_statements(line: str, numbers: FloatFormat = WORDS) -> tuple[Statement, ...]:
     """Parse a line.
 

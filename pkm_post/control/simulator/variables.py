@@ -53,11 +53,12 @@ class FloatFormat:
     def printed(self, value: float) -> str:
         """The shortest plain decimal stored as the same word; no exponent, a digit before the point."""
         word = self.stored(value)
-        for digits in range(9, self.digits + 1):
+        text = repr(word)  # the shortest decimal of a double
+        for digits in range(9, self.digits + 1) if self.bits < DOUBLE_BITS else ():
             text = f"{word:.{digits}g}"
             if self.stored(float(text)) == word:
                 break
-        plain = format(Decimal(text), "f")
+        plain = format(Decimal(text), "f") if "e" in text else text
         if "." in plain:
             plain = plain.rstrip("0").rstrip(".")
         return "0" if plain == "-0" else plain

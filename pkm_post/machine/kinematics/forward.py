@@ -156,13 +156,18 @@ def displaced(pose: ToolPoses, twist: Array) -> ToolPoses:
 
 
 _FIRST_ROWS = 128
-"""Rows that are solved in sequence."""
+"""Rows that are solved in sequence, by default."""
 _SAME = 1e-6
 """mm, and as much in the entries of the rotation: poses that agree to this are equal."""
 
 
 def forward_along_path(
-    machine: Machine, lengths: Array, tool_length: Array, tip: Array, rotation: Array
+    machine: Machine,
+    lengths: Array,
+    tool_length: Array,
+    tip: Array,
+    rotation: Array,
+    first_rows: int = _FIRST_ROWS,
 ) -> ForwardSolution:
     """Poses along a path.
 
@@ -172,6 +177,7 @@ def forward_along_path(
         tool_length: (N,) gauge lengths, mm; where it changes, the platform is at rest.
         tip: (3,) tip of the first tool near the first row.
         rotation: (3, 3) rotation of the platform there.
+        first_rows: how many rows are solved in sequence, about; the others begin at their neighbours.
     """
     count = len(lengths)
     # Platform origins do not jump at a tool change: they are the tips of a tool of reach zero.
@@ -184,7 +190,7 @@ def forward_along_path(
         found = forward_from_rotation(machine, lengths[rows], none[rows], origin, turned)
         origins[rows], rotations[rows], converged[rows] = found.tip, found.rotation, found.converged
 
-    stride = max(1, 1 << (max(count - 1, 1) // _FIRST_ROWS).bit_length())
+    stride = max(1, 1 << (max(count - 1, 1) // first_rows).bit_length())
     near = tip + reach[0] * rotation[:, 2], rotation
     for row in range(0, count, stride):
         solve(np.array([row]), near[0][None], near[1][None])
