@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command line, in processes of its own: exit codes, texts, and what is left on the disk."""
+"""The command line: exit codes, texts, and what is left on the disk.
+
+What is said of a document is what ``main`` says inside FreeCAD, where the tests are; that a process of its own starts
+FreeCAD for it, and hands on its paths, its text and its exit code, is tested once for each way to get there.
+"""
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -14,6 +19,8 @@ ADDON = Path(__file__).parents[2]
 sys.path.insert(0, str(Path(__file__).parents[1] / "freecad_app"))
 
 from cam_jobs import ARC, FIVE_AXIS, add_operation, new_job  # noqa: E402
+
+from pkm_post.cli import main  # noqa: E402
 
 REACHED = ["--work-offset=0,0,250"]
 
@@ -44,8 +51,24 @@ def saved_job(path, lines=FIVE_AXIS, **operation):
     return path
 
 
-def test_post_starts_freecad_by_itself(tmp_path):
-    part = saved_job(tmp_path / "my part.FCStd")
+def words(*arguments):
+    return [str(argument) for argument in arguments]
+
+
+@pytest.fixture(scope="module")
+def five_axis_job(tmp_path_factory):
+    """A document that can be posted at REACHED."""
+    return saved_job(tmp_path_factory.mktemp("five axis") / "part.FCStd")
+
+
+@pytest.fixture
+def part(five_axis_job, tmp_path):
+    """A copy of it in a folder of its own."""
+    return shutil.copy(five_axis_job, tmp_path)
+
+
+def test_post_starts_freecad_by_itself(five_axis_job, tmp_path):
+    part = shutil.copy(five_axis_job, tmp_path / "my part.FCStd")
     reported = pkm_post("post", part, "--machine", "example_6tps", "--out", tmp_path / "out dir", *REACHED)
     assert reported.returncode == 0, reported.stderr
     made = sorted(path.name for path in (tmp_path / "out dir").iterdir())
@@ -55,22 +78,16 @@ def test_post_starts_freecad_by_itself(tmp_path):
     assert json.loads((tmp_path / "out dir" / "my_part-report.json").read_text())["certificate"]["holds"]
 
 
-def test_relative_paths_mean_the_current_folder(tmp_path):
-    saved_job(tmp_path / "part.FCStd")
-    reported = pkm_post("post", "part.FCStd", "--out", "results", *REACHED, cwd=tmp_path)
+def test_two_documents_in_one_call_and_relative_paths_mean_the_current_folder(five_axis_job, tmp_path):
+    for name in ("a.FCStd", "b.FCStd"):
+        shutil.copy(five_axis_job, tmp_path / name)
+    reported = pkm_post("post", "a.FCStd", "b.FCStd", "--out", "results", *REACHED, cwd=tmp_path)
     assert reported.returncode == 0, reported.stderr
-    assert (tmp_path / "results" / "part.pmc").exists()
+    assert {"a.pmc", "b.pmc"} <= {path.name for path in (tmp_path / "results").iterdir()}
 
 
-def test_two_documents_in_one_call(tmp_path):
-    parts = [saved_job(tmp_path / name) for name in ("a.FCStd", "b.FCStd")]
-    reported = pkm_post("post", *parts, "--out", tmp_path, *REACHED)
-    assert reported.returncode == 0, reported.stderr
-    assert {"a.pmc", "b.pmc"} <= {path.name for path in tmp_path.iterdir()}
-
-
-def test_documents_in_processes_of_their_own_are_reported_in_order(tmp_path):
-    parts = [saved_job(tmp_path / name) for name in ("a.FCStd", "c.FCStd")]
+def test_documents_in_processes_of_their_own_are_reported_in_order(five_axis_job, tmp_path):
+    parts = [shutil.copy(five_axis_job, tmp_path / name) for name in ("a.FCStd", "c.FCStd")]
     parts.insert(1, saved_job(tmp_path / "b.FCStd", ["G0 X0 Y0 Z30", "G1 X10"]))
     reported = pkm_post("post", *parts, "--out", tmp_path / "out", "--jobs", 3, *REACHED)
     assert reported.returncode == 1
@@ -79,30 +96,16 @@ def test_documents_in_processes_of_their_own_are_reported_in_order(tmp_path):
     assert {path.name[0] for path in (tmp_path / "out").iterdir()} == {"a", "c"}
 
 
-def test_one_process_goes_on_behind_a_refused_document(tmp_path):
-    parts = [saved_job(tmp_path / "a.FCStd", ["G0 X0 Y0 Z30", "G1 X10"]), saved_job(tmp_path / "b.FCStd")]
-    reported = pkm_post("post", *parts, "--out", tmp_path / "out", "--jobs", 1, *REACHED)
+def test_one_process_goes_on_behind_a_refused_document_and_relative_paths_mean_the_current_folder(part, tmp_path):
+    saved_job(tmp_path / "a.FCStd", ["G0 X0 Y0 Z30", "G1 X10"])
+    reported = pkm_post("post", "a.FCStd", "part.FCStd", "--out", "out", "--jobs", 1, *REACHED, cwd=tmp_path)
     assert reported.returncode == 1
-    assert (tmp_path / "out" / "b.pmc").exists()
+    assert (tmp_path / "out" / "part.pmc").exists()
 
 
-def test_batch_from_inside_freecad(tmp_path):
-    parts = [saved_job(tmp_path / name) for name in ("a.FCStd", "b.FCStd")]
-    script = tmp_path / "batch.py"
-    arguments = ["post", *map(str, parts), "--out", str(tmp_path / "out"), "--jobs", "2", *REACHED]
-    script.write_text(f"import sys\nfrom pkm_post.cli import main\nsys.exit(main({arguments!r}))\n")
-    command = [
-        str(ADDON / "tools" / "freecad"),
-        "-M",
-        str(ADDON),
-        str(ADDON / "tools" / "run_script.py"),
-        "--",
-        str(script),
-    ]
-    reported = subprocess.run(
-        command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=300, check=False
-    )
-    assert reported.returncode == 0, reported.stderr
+def test_batch_from_inside_freecad(five_axis_job, tmp_path, capfd):
+    parts = [shutil.copy(five_axis_job, tmp_path / name) for name in ("a.FCStd", "b.FCStd")]
+    assert main(words("post", *parts, "--out", tmp_path / "out", "--jobs", 2, *REACHED)) == 0, capfd.readouterr().err
     assert {"a.pmc", "b.pmc"} <= {path.name for path in (tmp_path / "out").iterdir()}
 
 
@@ -120,54 +123,50 @@ BAD_JOBS = {
 
 
 @pytest.mark.parametrize(("lines", "code", "place"), BAD_JOBS.values(), ids=BAD_JOBS)
-def test_bad_job_is_reported_with_place_and_leaves_nothing(tmp_path, lines, code, place):
+def test_bad_job_is_reported_with_place_and_leaves_nothing(tmp_path, capsys, lines, code, place):
     part = saved_job(tmp_path / "bad.FCStd", lines)
-    reported = pkm_post("post", part, "--out", tmp_path / "out")
-    assert reported.returncode == 1
-    assert f"bad.FCStd: {place}" in reported.stderr
-    assert f" error {code}: " in reported.stderr
-    assert "Traceback" not in reported.stderr
+    assert main(words("post", part, "--out", tmp_path / "out")) == 1
+    errors = capsys.readouterr().err
+    assert f"bad.FCStd: {place}" in errors
+    assert f" error {code}: " in errors
+    assert "Traceback" not in errors
     assert not (tmp_path / "out").exists() or list((tmp_path / "out").iterdir()) == []
 
 
-def test_singular_path_is_refused(tmp_path):
+def test_singular_path_is_refused(part, tmp_path, capsys):
     text = (ADDON / "resources" / "machines" / "example_6tps.toml").read_text()
     machine = tmp_path / "near.toml"
     machine.write_text(text.replace("least_singular_value = 0.1", "least_singular_value = 0.5"))
-    reported = pkm_post(
-        "post", saved_job(tmp_path / "part.FCStd"), "--machine", machine, "--out", tmp_path / "out", *REACHED
-    )
-    assert reported.returncode == 1
-    assert "error K105: the path comes too close to a singular pose" in reported.stderr
+    assert main(words("post", part, "--machine", machine, "--out", tmp_path / "out", *REACHED)) == 1
+    assert "error K105: the path comes too close to a singular pose" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
     ("content", "code"), [(None, "M101"), ("name = ", "M102"), ("name = 'x'\n", "M103"), (b"\xff\xfe\x00", "M10")]
 )
-def test_unreadable_machine_file_is_reported(tmp_path, content, code):
+def test_unreadable_machine_file_is_reported(part, tmp_path, capsys, content, code):
     machine = tmp_path / "machine.toml"
     if content is not None:
         machine.write_bytes(content if isinstance(content, bytes) else content.encode())
-    reported = pkm_post("post", saved_job(tmp_path / "part.FCStd"), "--machine", machine, "--out", tmp_path / "out")
-    assert reported.returncode == 1
-    assert f"machine.toml: line 1:8: error {code}" in reported.stderr or f"error {code}" in reported.stderr
-    assert "Traceback" not in reported.stderr
+    assert main(words("post", part, "--machine", machine, "--out", tmp_path / "out")) == 1
+    errors = capsys.readouterr().err
+    assert f"machine.toml: line 1:8: error {code}" in errors or f"error {code}" in errors
+    assert "Traceback" not in errors
 
 
-def test_no_place_to_write_to(tmp_path):
+def test_no_place_to_write_to(part, tmp_path, capsys):
     (tmp_path / "taken").write_text("a file where the folder should be")
-    reported = pkm_post("post", saved_job(tmp_path / "part.FCStd"), "--out", tmp_path / "taken", *REACHED)
-    assert reported.returncode == 1
-    assert "error F101: the output cannot be written" in reported.stderr
+    assert main(words("post", part, "--out", tmp_path / "taken", *REACHED)) == 1
+    assert "error F101: the output cannot be written" in capsys.readouterr().err
 
 
-def test_document_that_is_none(tmp_path):
+def test_document_that_is_none(tmp_path, capsys):
     (tmp_path / "text.FCStd").write_text("no document")
     for name in ("text.FCStd", "missing.FCStd"):
-        reported = pkm_post("post", tmp_path / name, "--out", tmp_path / "out")
-        assert reported.returncode == 1
-        assert "error J101" in reported.stderr
-        assert "Traceback" not in reported.stderr
+        assert main(words("post", tmp_path / name, "--out", tmp_path / "out")) == 1
+        errors = capsys.readouterr().err
+        assert "error J101" in errors
+        assert "Traceback" not in errors
 
 
 @pytest.mark.parametrize("arguments", [(), ("post",), ("post", "x.FCStd", "--tip-tolerance", "-1"), ("nonsense",)])
@@ -177,30 +176,29 @@ def test_arguments_that_make_no_sense_end_with_two(arguments):
     assert "usage:" in reported.stderr
 
 
-def test_arcs_are_posted(tmp_path):
+def test_arcs_are_posted(tmp_path, capsys):
     meshes = ("--part", "none", "--stock", "none")  # the path begins by a rapid move through the box
-    reported = pkm_post("post", saved_job(tmp_path / "arc.FCStd", ARC), "--out", tmp_path, *REACHED, *meshes)
-    assert reported.returncode == 0, reported.stderr
+    part = saved_job(tmp_path / "arc.FCStd", ARC)
+    assert main(words("post", part, "--out", tmp_path, *REACHED, *meshes)) == 0, capsys.readouterr().err
 
 
-def test_machine_list_and_check(tmp_path):
-    assert "example_6tps" in pkm_post("machine", "list").stdout.split()
-    checked = pkm_post("machine", "check", "example_6tps")
-    assert checked.returncode == 0
-    assert "complete" in checked.stdout
-    assert pkm_post("machine", "check", "no_such_machine").returncode == 1
+def test_machine_list_and_check(capsys):
+    assert main(["machine", "list"]) == 0
+    assert "example_6tps" in capsys.readouterr().out.split()
+    assert main(["machine", "check", "example_6tps"]) == 0
+    assert "complete" in capsys.readouterr().out
+    assert main(["machine", "check", "no_such_machine"]) == 1
 
 
-def test_reach_of_what_is_no_document_is_refused(tmp_path):
+def test_reach_of_what_is_no_document_is_refused(tmp_path, capsys):
     (tmp_path / "part.FCStd").write_text("no document")
-    reported = pkm_post("reach", tmp_path / "part.FCStd")
-    assert reported.returncode == 1
-    assert "error J101" in reported.stderr
-    assert "Traceback" not in reported.stderr
+    assert main(words("reach", tmp_path / "part.FCStd")) == 1
+    errors = capsys.readouterr().err
+    assert "error J101" in errors
+    assert "Traceback" not in errors
 
 
-def test_reach_of_a_document_tells_where_it_could_lie_better(tmp_path):
-    part = saved_job(tmp_path / "part.FCStd")
+def test_reach_of_a_document_tells_where_it_could_lie_better(part):
     reported = pkm_post("reach", part, "--place", "xy", "--json", *REACHED)
     assert reported.returncode == 0, reported.stderr
     (study,) = json.loads(reported.stdout)

@@ -21,13 +21,13 @@ from pkm_post.freecad_app.symmetry import create_mirror  # noqa: E402
 RUN = "import sys; sys.path.insert(0, sys.argv.pop(1)); from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))"
 
 
-@pytest.fixture
-def installed(tmp_path):
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
     """A folder like that of an environment, with what pyproject.toml puts into the wheel, and another's NumPy."""
-    folder = tmp_path / "site-packages"
+    folder = tmp_path_factory.mktemp("environment") / "site-packages"
     wheel = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["hatch"]["build"]["targets"]["wheel"]
     for package in wheel["packages"]:
-        shutil.copytree(ROOT / package, folder / package, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(ROOT / package, folder / package)
     for source, target in wheel["force-include"].items():
         (folder / target).parent.mkdir(parents=True, exist_ok=True)
         copied = shutil.copytree if (ROOT / source).is_dir() else shutil.copy
@@ -74,7 +74,8 @@ def test_a_document_with_objects_of_our_own(installed, tmp_path):
 
 
 def test_a_wheel_that_lacks_what_runs_it_in_freecad(installed, tmp_path):
-    shutil.rmtree(installed / "pkm_post" / "tools")
-    ran = posted(installed, saved_job(tmp_path / "part.FCStd"), "--out", tmp_path / "out")
+    lacking = shutil.copytree(installed, tmp_path / "site-packages")
+    shutil.rmtree(lacking / "pkm_post" / "tools")
+    ran = posted(lacking, saved_job(tmp_path / "part.FCStd"), "--out", tmp_path / "out")
     assert ran.returncode == 1
     assert "error F141" in ran.stderr
