@@ -2,6 +2,7 @@
 """Plans with jerk limits: kept at every moment, and what they cost beside the shortest times."""
 
 import dataclasses
+from functools import cache
 
 import numpy as np
 import pytest
@@ -35,7 +36,14 @@ def square_wave():
     return program(corners, feed=80.0, events=events)
 
 
-JOBS = pytest.mark.parametrize("made", [cone(80, turns=0.5), square_wave()], ids=["cone", "corners"])
+PATHS = {"cone": cone(80, turns=0.5), "corners": square_wave()}
+JOBS = pytest.mark.parametrize("made", PATHS)
+
+
+@cache
+def planned_path(name, jerk=JERK, **limits):
+    """The plan of one of the paths."""
+    return planned(PATHS[name], jerk, **limits)
 
 
 def by_differences(path, schedule, step=1e-4):
@@ -52,13 +60,13 @@ def strut_jerks(machine, path, schedule, step=1e-4):
 
 @JOBS
 def test_the_jerk_of_every_strut_keeps_its_limit(made):
-    machine, path, schedule = planned(made)
+    machine, path, schedule = planned_path(made)
     assert np.abs(strut_jerks(machine, path, schedule)).max() <= BETWEEN_PLACES * JERK
 
 
 @JOBS
 def test_the_jerk_of_the_tip_keeps_its_limit(made):
-    machine, path, schedule = planned(made, np.inf, tip_jerk=5e4)
+    machine, path, schedule = planned_path(made, np.inf, tip_jerk=5e4)
     step = 1e-4
     jerk = np.linalg.norm(np.diff(by_differences(path, schedule, step).tip_2, axis=0), axis=1) / step
     assert 0.9 * machine.tip_jerk < jerk.max() <= BETWEEN_PLACES * machine.tip_jerk
@@ -66,7 +74,7 @@ def test_the_jerk_of_the_tip_keeps_its_limit(made):
 
 @JOBS
 def test_accelerations_keep_their_limits_without_a_jump(made):
-    machine, path, schedule = planned(made, tip_jerk=JERK)
+    machine, path, schedule = planned_path(made, tip_jerk=JERK)
     poses = by_differences(path, schedule)
     _, _, struts = strut_rates(machine, poses)
     assert np.abs(struts).max() <= machine.strut_acceleration
@@ -77,13 +85,13 @@ def test_accelerations_keep_their_limits_without_a_jump(made):
 
 @JOBS
 def test_without_the_limit_it_would_not(made):
-    _, path, schedule = planned(made, np.inf)
+    _, path, schedule = planned_path(made, np.inf)
     assert np.abs(strut_jerks(example(), path, schedule)).max() > 10 * JERK
 
 
 @JOBS
 def test_speed_and_acceleration_are_the_derivatives_of_the_way(made):
-    _, _, schedule = planned(made)
+    _, _, schedule = planned_path(made)
     random = np.random.default_rng(3)
     time, step = random.uniform(0.01, schedule.rests_ms[-1] / 1000 - 0.01, 500), 1e-5
     s, speed, acceleration = schedule.at(time)
@@ -95,7 +103,7 @@ def test_speed_and_acceleration_are_the_derivatives_of_the_way(made):
 
 @JOBS
 def test_rests_are_whole_milliseconds_at_rest(made):
-    _, path, schedule = planned(made)
+    _, path, schedule = planned_path(made)
     s, speed, acceleration = schedule.at(schedule.rests_ms / 1000)
     np.testing.assert_allclose(s, path.starts[schedule.rest_joints], atol=NANOMETRE)
     assert not speed.any()
@@ -104,13 +112,13 @@ def test_rests_are_whole_milliseconds_at_rest(made):
 
 @JOBS
 def test_joints_are_passed_when_it_is_said(made):
-    _, path, schedule = planned(made)
+    _, path, schedule = planned_path(made)
     np.testing.assert_allclose(schedule.at(schedule.joint_time)[0], path.starts[1:], atol=10 * NANOMETRE)
 
 
 @JOBS
 def test_the_feed_is_not_exceeded(made):
-    _, path, schedule = planned(made)
+    _, path, schedule = planned_path(made)
     time = np.linspace(0, schedule.rests_ms[-1] / 1000, 5000)
     s, speed, _ = schedule.at(time)
     segment = np.clip(np.searchsorted(path.starts, s) - 1, 0, len(path.feed) - 1)

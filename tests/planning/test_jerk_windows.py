@@ -2,6 +2,7 @@
 """Windows of a path: what they cover, and that the motion found in them is that of the whole path."""
 
 import dataclasses
+from functools import cache
 
 import numpy as np
 import pytest
@@ -28,14 +29,29 @@ def scan():
     return program(np.column_stack([x, 0 * x, 60 + 2 * np.sin(x / 4)]), feed=60.0)
 
 
-JOBS = pytest.mark.parametrize("made", [cone(120, turns=0.5), scan()], ids=["cone", "scan"])
+MADE = {"cone": cone(120, turns=0.5), "scan": scan()}
+JOBS = pytest.mark.parametrize("job", MADE)
 
 
-def searched(made, tolerance=1e-3):
+def searched(job, tolerance=1e-3):
     machine = dataclasses.replace(example(), strut_jerk=1e6, tip_jerk=4e5)
-    trajectory, _ = place(made, machine, ON_PALLET)
+    trajectory, _ = place(MADE[job], machine, ON_PALLET)
     path = tool_path(trajectory, Tolerances(tolerance, np.radians(tolerance)))
     return jerk_limits.jerk_limited(path, stations(path), machine)
+
+
+@cache
+def in_one(job):
+    """The profile of a job, found without smaller windows."""
+    return searched(job)
+
+
+@cache
+def in_many(job):
+    """The profile of a job found in windows of few cells, and these windows."""
+    with pytest.MonkeyPatch.context() as patched:
+        found = in_windows_of(FEW, patched)
+        return searched(job), found
 
 
 def in_windows_of(cells, monkeypatch):
@@ -54,10 +70,8 @@ def time_of(profile):
 
 
 @JOBS
-def test_the_motion_in_many_windows_is_little_slower_than_in_one(made, monkeypatch):
-    whole = searched(made)
-    used = in_windows_of(FEW, monkeypatch)
-    profile = searched(made)
+def test_the_motion_in_many_windows_is_little_slower_than_in_one(job):
+    whole, (profile, used) = in_one(job), in_many(job)
     assert len(used) >= 3
     assert (1 - 5e-3) * time_of(whole) <= time_of(profile)
     assert time_of(profile) <= (1 + 5e-3) * time_of(whole) + COST * len(used)
@@ -66,9 +80,8 @@ def test_the_motion_in_many_windows_is_little_slower_than_in_one(made, monkeypat
 
 
 @JOBS
-def test_windows_follow_one_another_and_their_motions_meet(made, monkeypatch):
-    used = in_windows_of(FEW, monkeypatch)
-    profile = searched(made)
+def test_windows_follow_one_another_and_their_motions_meet(job):
+    profile, used = in_many(job)
     for one, two in zip(used[:-1], used[1:], strict=True):
         assert one.end == two.begin
     assert (used[0].begin, used[-1].end) == (profile.s[0], profile.s[-1])
@@ -81,7 +94,7 @@ def test_windows_follow_one_another_and_their_motions_meet(made, monkeypatch):
 
 
 def test_a_path_without_borders_is_one_window_when_none_holds(monkeypatch):
-    whole = searched(scan())
+    whole = in_one("scan")
     in_windows_of(FEW, monkeypatch)
     plain = jerk_search.fastest
 
@@ -90,14 +103,14 @@ def test_a_path_without_borders_is_one_window_when_none_holds(monkeypatch):
         return dataclasses.replace(found, reached=found.reached and len(weight) > 3 * FEW)
 
     monkeypatch.setattr(jerk_search, "fastest", not_between_borders)
-    np.testing.assert_allclose(time_of(searched(scan())), time_of(whole), rtol=5e-3)
+    np.testing.assert_allclose(time_of(searched("scan")), time_of(whole), rtol=5e-3)
 
 
 @JOBS
-def test_limits_that_were_left_out_are_kept_and_cost_nothing(made, monkeypatch):
-    some = searched(made)
+def test_limits_that_were_left_out_are_kept_and_cost_nothing(job, monkeypatch):
+    some = in_one(job)
     monkeypatch.setattr(binding_limits, "_BINDS", -1.0)
-    every = searched(made)
+    every = searched(job)
     np.testing.assert_allclose(time_of(some), time_of(every), rtol=5e-3)
 
 

@@ -16,6 +16,8 @@ NO_EDGES = np.array([], dtype=np.int64)
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 MOST = 1.2
 """Intervals by the least that a search from the left finds (docs/planning.md#knots)."""
+DOUBLED, HALVED = 10, 3
+"""Widths tried at once: 2 ms to 512 ms, and those that three halvings may come to."""
 
 
 def by_width(longest):
@@ -83,18 +85,35 @@ def scan():
 
 
 def fewest(error, marks):
-    """Intervals between marks if each is the widest that holds, found by doubling and halving."""
+    """Intervals between marks if each is the widest that holds."""
     count = 0
     for first, last in zip(marks[:-1], marks[1:], strict=True):
         at = first
         while at < last:
-            least, most, width = at + 1, last + 1, 2
-            while most - least > 1:
-                tried = min(at + width, last) if most > last else (least + most) // 2
-                holds = tried == at + 1 or error(np.array([at]), np.array([tried]))[0] <= 1
-                least, most, width = (tried, most, 2 * width) if holds else (least, tried, width)
-            at, count = least, count + 1
+            at, count = widest(error, at, last), count + 1
     return count
+
+
+def widest(error, start, last):
+    """End of the widest interval that holds, found by doubling and halving; what may come next is tried at once."""
+    doubled = np.unique(np.minimum(start + 2 ** np.arange(1, DOUBLED), last))
+    fails = np.append(error(np.full(len(doubled), start), doubled) > 1, True)
+    first = int(np.argmax(fails))
+    least, most = [start + 1, *doubled, last + 1][first : first + 2]
+    while most - least > 1:
+        tried = np.array(middles(least, most, HALVED))
+        holds = dict(zip(tried, error(np.full(len(tried), start), tried) <= 1, strict=True))
+        while (middle := (least + most) // 2) in holds and most - least > 1:
+            least, most = (middle, most) if holds[middle] else (least, middle)
+    return least
+
+
+def middles(least, most, times):
+    """The middle, and those of both halves, and so on: what halving may try."""
+    if not times or most - least < 2:
+        return []
+    middle = (least + most) // 2
+    return [*middles(least, middle, times - 1), middle, *middles(middle, most, times - 1)]
 
 
 @pytest.mark.parametrize("made", [cone(60), square_with_arc(), scan()], ids=["cone", "arcs", "scan"])
