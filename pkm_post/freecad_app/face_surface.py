@@ -3,7 +3,8 @@
 
 Takes a face, in the frame of its shape; returns functions of columns (u, v), or points and outward unit normals at
 them, in mm. B-spline faces are evaluated from their poles, all points at once. For others OpenCASCADE evaluates point
-by point, at some ten microseconds each; testing whether a point lies on a trimmed face takes as long again.
+by point, at some ten microseconds each; to say whether a point lies on a trimmed face takes it several times as long,
+so it is asked near the borders only.
 """
 
 from __future__ import annotations
@@ -25,6 +26,14 @@ _SINGULAR = 1e-9
 """mm^2: cross product of both derivatives below which the normal is undefined."""
 _WHOLE = 1e-9
 """Missing share of the area of its full parameter range up to which a face still counts as untrimmed."""
+_NEAR = 0.01
+"""Share of the ranges from a border within which OpenCASCADE says whether a point is on the face."""
+_OFF = _NEAR / 8
+"""Share of the ranges by which the polygon of a border may be off it."""
+_PARTS = (4, 16, 64)
+"""Pairs of segments of a polygon for each span of an edge: the first count that is close enough."""
+_AT_ONCE = 1 << 20
+"""Pairs of a point and a segment compared at a time."""
 
 
 Columns = tuple[Array, Array, Array, Array]
@@ -39,18 +48,16 @@ def face_surface(face: Any, flipped: bool = False) -> Surface:
         flipped: whether the material is on the other side, which is possible for a face without a solid.
     """
     first_u, last_u, first_v, last_v = face.ParameterRange
-
-    def inside(u: Array, v: Array) -> Array:
-        return np.array([face.isPartOfDomain(*pair) for pair in zip(u.tolist(), v.tolist(), strict=True)], dtype=bool)
-
     u, v = np.linspace(first_u, last_u, 9), np.linspace(first_v, last_v, 9)
     closed_u = _coincide(face, np.full(9, first_u), v, np.full(9, last_u), v)
     closed_v = _coincide(face, u, np.full(9, first_v), u, np.full(9, last_v))
+    by_poles = _from_poles(face)
     return Surface(
-        _oriented(_from_poles(face) or _from_occ(face), -1.0 if flipped else 1.0),
-        _everywhere if is_untrimmed(face) else inside,
+        _oriented(by_poles or _from_occ(face), -1.0 if flipped else 1.0),
+        _everywhere if is_untrimmed(face) else _trimmed(face),
         ParameterRange(first_u, last_u, closed_u),
         ParameterRange(first_v, last_v, closed_v),
+        None if by_poles else _points_from_occ(face),
     )
 
 
@@ -101,6 +108,11 @@ def _from_occ(face: Any) -> Evaluate:
     return evaluate
 
 
+def _points_from_occ(face: Any) -> Callable[[Array, Array], Array]:
+    """Points alone from OpenCASCADE."""
+    return lambda u, v: rows_of([face.valueAt(*pair) for pair in zip(u.tolist(), v.tolist(), strict=True)])
+
+
 def _from_poles(face: Any) -> Evaluate | None:
     """The same for a B-spline face within one period of its surface; OpenCASCADE handles points without a normal."""
     if face.Surface.TypeId != "Part::GeomBSplineSurface":
@@ -130,6 +142,81 @@ def _coincide(face: Any, u: Array, v: Array, other_u: Array, other_v: Array) -> 
     """Whether two lines of the surface coincide."""
     ends = zip(u.tolist(), v.tolist(), other_u.tolist(), other_v.tolist(), strict=True)
     return all(face.valueAt(a, b).distanceToPoint(face.valueAt(c, d)) < _SAME for a, b, c, d in ends)
+
+
+def _trimmed(face: Any) -> Callable[[Array, Array], Array]:
+    """Which pairs (u, v) are on a trimmed face: by its borders as polygons and, near these, by OpenCASCADE."""
+    first_u, last_u, first_v, last_v = face.ParameterRange
+    first, width = np.array([first_u, first_v]), np.array([last_u - first_u, last_v - first_v])
+    polygons = _borders(face, first, width)
+
+    def inside(u: Array, v: Array) -> Array:
+        if polygons is None:
+            held, near = np.zeros(len(u), dtype=bool), np.arange(len(u))
+        else:
+            held, distance = _in_polygons((np.column_stack([u, v]) - first) / width, *polygons)
+            near = np.flatnonzero(distance <= _NEAR)
+        held[near] = [face.isPartOfDomain(*pair) for pair in zip(u[near].tolist(), v[near].tolist(), strict=True)]
+        return held
+
+    return inside
+
+
+def _borders(face: Any, first: Array, width: Array) -> tuple[Array, Array] | None:
+    """Ends of the segments of all borders, (S, 2) each in shares of the ranges; None where they do not close there.
+
+    A pole may have no line on the face, and the borders of a face that is not valid may enclose its outside.
+    """
+    if not face.isValid():
+        return None
+    starts, ends = [], []
+    for wire in face.Wires:
+        lines = []
+        for edge in wire.OrderedEdges:
+            line = _border_line(face, edge, first, width)
+            if line is None or (lines and norm(line[:1] - lines[-1][-1:])[0] > _OFF):
+                return None
+            lines.append(line)
+        points = np.vstack(lines)
+        if norm(points[:1] - points[-1:])[0] > _OFF:
+            return None
+        starts.append(points)
+        ends.append(np.roll(points, -1, axis=0))
+    return np.vstack(starts), np.vstack(ends)
+
+
+def _border_line(face: Any, edge: Any, first: Array, width: Array) -> Array | None:
+    """An edge as a polygon in shares of the ranges, (S, 2), in its direction; None if none is close enough."""
+    on_face = face.curveOnSurface(edge)
+    if on_face is None:
+        return None
+    curve, begin, end = on_face
+    knots = [knot for knot in curve.getKnots() if begin < knot < end] if hasattr(curve, "getKnots") else []
+    spans = np.array([begin, *knots, end])
+    for parts in _PARTS:
+        share = np.linspace(0, len(spans) - 1, 2 * parts * (len(spans) - 1) + 1)
+        values = [curve.value(place) for place in np.interp(share, np.arange(len(spans)), spans).tolist()]
+        points = (np.array([(value.x, value.y) for value in values]) - first) / width
+        if norm(points[1::2] - (points[:-2:2] + points[2::2]) / 2).max() <= _OFF:
+            return points[::-1] if edge.Orientation == "Reversed" else points
+    return None
+
+
+def _in_polygons(points: Array, starts: Array, ends: Array) -> tuple[Array, Array]:
+    """Which points are inside closed polygons by the even-odd rule, and their distances from the border, (N,) each."""
+    inside, distance = np.zeros(len(points), dtype=bool), np.zeros(len(points))
+    count = max(_AT_ONCE // len(starts), 1)
+    along = ends - starts
+    square = np.maximum(dot(along, along), np.finfo(float).tiny)
+    for row in range(0, len(points), count):
+        chunk = slice(row, row + count)
+        u, v = (points[chunk, axis, None] - starts[:, axis] for axis in (0, 1))
+        share = np.clip((u * along[:, 0] + v * along[:, 1]) / square, 0.0, 1.0)
+        distance[chunk] = np.hypot(u - share * along[:, 0], v - share * along[:, 1]).min(axis=1)
+        spans = (v >= 0.0) != (v >= along[:, 1])
+        left = (u * along[:, 1] < v * along[:, 0]) == (along[:, 1] > 0.0)
+        inside[chunk] = np.count_nonzero(spans & left, axis=1) % 2 == 1
+    return inside, distance
 
 
 def is_untrimmed(face: Any) -> bool:

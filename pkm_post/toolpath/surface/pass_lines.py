@@ -52,7 +52,7 @@ def plane_sections(surface: Surface, plane: Array, level: Array) -> ContactPath:
         level: (P,) positions of the planes along the normal, mm.
     """
     grid = SurfaceGrid.over(surface, *_GRID)
-    height = grid.shaped(dot(grid.samples.point, plane)).copy()
+    height = grid.shaped(dot(grid.point, plane)).copy()
     if surface.u.closed:
         height[-1] = height[0]
     if surface.v.closed:

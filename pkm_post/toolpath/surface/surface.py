@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -75,16 +76,23 @@ class Surface:
         inside: from u (N,) and v (N,) to whether they belong to the face, (N,).
         u: range of the first parameter.
         v: range of the second one.
+        points: from u (N,) and v (N,) to points alone, (N, 3), where that is cheaper.
     """
 
     evaluate: Callable[[Array, Array], tuple[Array, Array, Array, Array]]
     inside: Callable[[Array, Array], Array]
     u: ParameterRange
     v: ParameterRange
+    points: Callable[[Array, Array], Array] | None = None
 
     def at(self, u: Array, v: Array) -> SurfaceSamples:
         """The surface at columns of parameters; closed ones may exceed their range."""
         return SurfaceSamples(*self.evaluate(self.u.normalise(u), self.v.normalise(v)))
+
+    def points_at(self, u: Array, v: Array) -> Array:
+        """Points of the surface alone, (N, 3) in mm."""
+        pair = self.u.normalise(u), self.v.normalise(v)
+        return self.points(*pair) if self.points else self.evaluate(*pair)[0]
 
     def contains(self, u: Array, v: Array) -> Array:
         """Pairs that belong to the face, (N,)."""
@@ -98,32 +106,57 @@ class Surface:
             point, normal, along_u, along_v = self.evaluate(v, u)
             return point, normal, along_v, along_u
 
-        return Surface(evaluate, lambda u, v: self.inside(v, u), self.v, self.u)
+        points = self.points
+        return Surface(
+            evaluate,
+            lambda u, v: self.inside(v, u),
+            self.v,
+            self.u,
+            (lambda u, v: points(v, u)) if points else None,
+        )
 
 
 @dataclass(frozen=True)
 class SurfaceGrid:
-    """The surface at all pairs of u and v: samples and mask are (M * N, ...), row by row of equal u.
+    """The surface at all pairs of u and v: columns are (M * N, ...), row by row of equal u, each made when it is used.
 
     Attributes:
+        surface: the surface.
         u: (M,) evenly spaced over the range, both ends included.
         v: (N,) likewise.
-        samples: the surface there.
-        inside: (M * N,) whether the point is on the face.
     """
 
+    surface: Surface
     u: Array
     v: Array
-    samples: SurfaceSamples
-    inside: Array
 
     @classmethod
     def over(cls, surface: Surface, rows: int, columns: int) -> SurfaceGrid:
         """A grid of rows u and columns v."""
         u = np.linspace(surface.u.first, surface.u.last, rows)
         v = np.linspace(surface.v.first, surface.v.last, columns)
-        all_u, all_v = (each.ravel() for each in np.meshgrid(u, v, indexing="ij"))
-        return cls(u, v, surface.at(all_u, all_v), surface.contains(all_u, all_v))
+        return cls(surface, u, v)
+
+    @property
+    def pairs(self) -> tuple[Array, Array]:
+        """The parameters u and v of each point, (M * N,)."""
+        u, v = (each.ravel() for each in np.meshgrid(self.u, self.v, indexing="ij"))
+        return u, v
+
+    @cached_property
+    def point(self) -> Array:
+        """(M * N, 3) in mm."""
+        return self.surface.points_at(*self.pairs)
+
+    @cached_property
+    def samples(self) -> SurfaceSamples:
+        """The surface there."""
+        return self.surface.at(*self.pairs)
+
+    @cached_property
+    def inside(self) -> Array:
+        """(M * N,) whether the point is on the face."""
+        return self.surface.contains(*self.pairs)
 
     def shaped(self, column: Array) -> Array:
         """A column of values as an (M, N, ...) array."""
