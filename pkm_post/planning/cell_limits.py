@@ -179,7 +179,7 @@ class CellLimits:
             highest = np.minimum(highest, _before(tip, square, self.width, share))
         return np.asarray(highest)
 
-    def __getitem__(self, rows: Array) -> CellLimits:
+    def __getitem__(self, rows: Array | slice) -> CellLimits:
         first, second = self.tips
         tips = first[:, rows], second[:, rows]
         return CellLimits(self.width[rows], self.slope[:, rows], self.offset[:, rows], tips)

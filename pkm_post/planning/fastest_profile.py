@@ -20,6 +20,8 @@ from pkm_post.planning.cell_limits import CellLimits, StationLimits
 
 _CELLS_AT_ONCE = 8192
 """Cells in one pass: their working arrays stay in the processor's cache."""
+_STEPS_AT_ONCE, _AHEAD = 16, 256
+"""Steps of fronts whose limits are computed at once, and cells: few fronts would cost as many calls for each step."""
 _CHANGED = 1e-9
 """Share of a speed squared by which a front has to change it to go on."""
 
@@ -63,16 +65,20 @@ class Steps:
 
     def reached(self, cell: Array | slice, square: Array, backward: bool) -> Array:
         """Greatest speed squared at one side of cells by that at the other: at the starts, or at the ends, (K,)."""
-        limits, share = CellLimits.of(self.s, self.limits, cell), self.share[cell]
-        if backward:
-            return limits.before(square, share)
-        return np.asarray(square + limits.width * limits.greatest(square, share))
+        return _reached(CellLimits.of(self.s, self.limits, cell), square, self.share[cell], backward)
 
     def reached_in_pieces(self, cell: Array, square: Array, backward: bool) -> Array:
         """The same of many cells, (K,), by speeds squared at all stations, (M,)."""
         known = square[1:] if backward else square[:-1]
         parts = (cell[rows] for rows in _pieces(len(cell)))
         return np.concatenate([self.reached(part, known[part], backward) for part in parts])
+
+
+def _reached(limits: CellLimits, square: Array, share: Array, backward: bool) -> Array:
+    """The same by the limits of the cells and their shares, (K,)."""
+    if backward:
+        return limits.before(square, share)
+    return np.asarray(square + limits.width * limits.greatest(square, share))
 
 
 def ceilings(s: Array, limits: StationLimits, cell: Array, share: Array) -> Array:
@@ -93,8 +99,7 @@ def _advance(steps: Steps, square: Array, highest: Array, cell: Array, backward:
         # A front starts in the first cell of each run of steep ones, and goes through the others itself.
         checkpoint()
         _march(steps, square, highest, steep[_begins(steep, backward)], backward)
-        _, _, on = _step(steps, square, highest, steep, backward)
-        steep = steep[on]
+        steep = steep[_goes_on(steps, square, highest, steep, backward)]
 
 
 def _begins(cell: Array, backward: bool) -> Array:
@@ -105,16 +110,32 @@ def _begins(cell: Array, backward: bool) -> Array:
 
 def _march(steps: Steps, square: Array, highest: Array, cell: Array, backward: bool) -> None:
     """Move fronts that start in some cells."""
+    way = -1 if backward else 1
     while len(cell):
-        checkpoint()
-        far, found, on = _step(steps, square, highest, cell, backward)
-        square[far[on]] = found[on]
-        cell = cell[on] + (-1 if backward else 1)
-        cell = cell[(cell >= 0) & (cell < len(square) - 1)]
+        ahead = way * np.arange(min(_STEPS_AT_ONCE, 1 + _AHEAD // len(cell)))
+        ways = np.clip(cell + ahead[:, None], 0, len(square) - 2).ravel()
+        limits, share = CellLimits.of(steps.s, steps.limits, ways), steps.share[ways]
+        front, count = np.arange(len(cell)), len(cell)
+        for first in range(0, len(ways), count):
+            checkpoint()
+            rows = slice(first, first + count) if len(front) == count else front + first
+            near, far = (cell + 1, cell) if backward else (cell, cell + 1)
+            found = np.minimum(_reached(limits[rows], square[near], share[rows], backward), highest[far])
+            on = _differs(found, square[far])
+            square[far[on]] = found[on]
+            cell, front = cell[on] + way, front[on]
+            inside = (cell >= 0) & (cell < len(square) - 1)
+            cell, front = cell[inside], front[inside]
+            if not len(cell):
+                return
 
 
-def _step(steps: Steps, square: Array, highest: Array, cell: Array, backward: bool) -> tuple[Array, Array, Array]:
-    """The stations at the far sides of cells, their speeds squared, and whether these differ from the present ones."""
+def _goes_on(steps: Steps, square: Array, highest: Array, cell: Array, backward: bool) -> Array:
+    """Whether the speeds squared at the far sides of cells differ from the present ones."""
     near, far = (cell + 1, cell) if backward else (cell, cell + 1)
-    found = np.minimum(steps.reached(cell, square[near], backward), highest[far])
-    return far, found, np.abs(found - square[far]) > _CHANGED * square[far]
+    return _differs(np.minimum(steps.reached(cell, square[near], backward), highest[far]), square[far])
+
+
+def _differs(found: Array, present: Array) -> Array:
+    """Whether speeds squared change a front, (K,)."""
+    return np.asarray(np.abs(found - present) > _CHANGED * present)
