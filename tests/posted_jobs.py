@@ -9,7 +9,7 @@ from programs import random_job
 
 from pkm_post.certificate import certify
 from pkm_post.geometry import hermite_lengths
-from pkm_post.machine import forward, machine_named
+from pkm_post.machine import forward_from_rotation, machine_named, platform_rotation
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import plan
 from pkm_post.toolpath.place import place
@@ -94,11 +94,13 @@ def played(machine, motion, struts, rows, instants):
     share = np.broadcast_to(np.linspace(0, 1, instants), (len(rows), instants))
     knot = np.repeat(rows, instants)
     tool = motion.tool_length[knot + 1]
+    at, turned = motion.tip[knot], platform_rotation(motion.axis[knot], motion.spin[knot])
     tips, axes = [], []
     for shift in (-STEP, 0.0, STEP):  # the cubics go on beyond their ends
         length = hermite_lengths(*ends, duration, share + shift / duration[:, None]).reshape(-1, 6)
-        pose = forward(machine, length, tool, motion.tip[knot], motion.axis[knot], motion.spin[knot])
+        pose = forward_from_rotation(machine, length, tool, at, turned)
         assert pose.converged.all()
+        at, turned = pose.tip, pose.rotation  # little is left to the next instant
         tips.append(pose.tip.reshape(len(rows), instants, 3))
         axes.append(pose.axis.reshape(len(rows), instants, 3))
     return (axes[2] - axes[0]) / (2 * STEP), (tips[2] - 2 * tips[1] + tips[0]) / STEP**2

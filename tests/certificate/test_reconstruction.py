@@ -142,6 +142,17 @@ def test_a_tool_that_runs_to_and_fro_on_its_path_is_found(machine, swing, expect
     assert all("goes back on its path" in fault.found for fault in faults)
 
 
+@pytest.fixture(scope="module")
+def with_a_stop(machine):
+    """A trajectory with a tool change and a stop, and a program of it that holds."""
+    stops = (Event(0, EventKind.TOOL_CHANGE, 1), Event(20, EventKind.STOP, 0.0))
+    trajectory = placed(replace(cone(40), events=stops), machine)
+    motion, _ = planned(trajectory, machine, TOLERANCES)
+    struts = printed(motion, machine)
+    assert not refusals(struts, trajectory, machine)
+    return trajectory, struts
+
+
 @pytest.mark.parametrize(
     ("change", "code"),
     [
@@ -150,12 +161,8 @@ def test_a_tool_that_runs_to_and_fro_on_its_path_is_found(machine, swing, expect
         (lambda events: (*events, Event(events[-1].row, EventKind.STOP, 0.0)), "V109"),
     ],
 )
-def test_events_are_those_of_the_trajectory_where_it_rests(machine, change, code):
-    stops = (Event(0, EventKind.TOOL_CHANGE, 1), Event(20, EventKind.STOP, 0.0))
-    trajectory = placed(replace(cone(40), events=stops), machine)
-    motion, _ = planned(trajectory, machine, TOLERANCES)
-    struts = printed(motion, machine)
-    assert not refusals(struts, trajectory, machine)
+def test_events_are_those_of_the_trajectory_where_it_rests(machine, with_a_stop, change, code):
+    trajectory, struts = with_a_stop
     spoiled = replace(struts, events=change(struts.events))
     assert code in {fault.code for fault in refusals(spoiled, trajectory, machine)}
 
