@@ -7,6 +7,7 @@ does it with the whole column, which ``make demo`` posts, over TCP and over a ps
 do it with the upper part of the column, which is built, posted and certified in the same way.
 """
 
+import functools
 import math
 import os
 import sys
@@ -140,7 +141,7 @@ def follow(program, kind, speed=SPEED, machine=MACHINE):
         speed: simulated seconds in a second.
         machine: name or file of the machine.
     """
-    machine, _ = machine_named(str(machine))
+    name, (machine, _) = str(machine), machine_named(str(machine))
     settings, _ = (power_pmac if kind == "ssh" else pmac).settings_of(machine)
     job, faults = read_job(program.read_text(), settings, program.name)
     assert not faults
@@ -158,7 +159,7 @@ def follow(program, kind, speed=SPEED, machine=MACHINE):
         assert made.abrupt_stops == 0
         times, places = np.array(made.times), np.array(made.places)
     lengths = places / settings.counts_per_mm + np.array(settings.zero_length)
-    tip, axis = deviations(machine, program, times, lengths)
+    tip, axis = deviations(name, program, times, lengths)
     return Followed(
         samples=len(times),
         part=len(times) / int(job.motion.time_ms[-1]),
@@ -179,18 +180,24 @@ def played(motion, times):
     return hermite_lengths(*cubic, (end - begin) / 1000, share[:, None])[:, 0]
 
 
-def deviations(machine, program, times, lengths):
-    """How far tip (mm) and axis (rad) are from the programmed trajectory at times in ms, (N,) each."""
+@functools.cache
+def planned(name, program):
+    """The machine of a name or file, the ruler of a posted trajectory and its motion, once for all links."""
+    machine, _ = machine_named(name)
     trajectory, faults = trajectory_file.read(program.with_suffix(".pkmt"))
     assert not faults, faults
-    tolerances = trajectory.tolerances
-    motion = plan(trajectory, machine, tolerances)[0].motion
+    motion = plan(trajectory, machine, trajectory.tolerances)[0].motion
+    return machine, TrajectoryRuler(trajectory, trajectory.tolerances), motion
+
+
+def deviations(name, program, times, lengths):
+    """How far tip (mm) and axis (rad) are from the programmed trajectory at times in ms, (N,) each."""
+    machine, ruler, motion = planned(name, program)
     knot = np.clip(np.searchsorted(motion.time_ms, times, side="right") - 1, 0, len(motion) - 2)
     pose = forward(
         machine, lengths, motion.tool_length[knot + 1], motion.tip[knot], motion.axis[knot], motion.spin[knot]
     )
     assert pose.converged.all()
-    ruler = TrajectoryRuler(trajectory, tolerances)
     return deviation_from_any(ruler, pose.tip, pose.axis, motion.segment[knot], motion.segment[knot + 1])
 
 

@@ -44,7 +44,7 @@ class Statement:
     arguments: tuple[Any, ...] = ()
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Statement:
-        """Return itself: it is immutable, and each save and reset copies all programs."""
+        """Return itself: it is immutable."""
         return self
 
 
@@ -207,6 +207,13 @@ class FixedProgram:
     jumps: dict[int, int] = field(default_factory=dict)
     sound: bool = True
     source: list[str] = field(default_factory=list)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> FixedProgram:
+        """Copy the lists at once: statements never change, and each save and reset copies all programs."""
+        lists = list(self.statements), list(self.line_starts)
+        tables = dict(self.labels), dict(self.jumps)
+        memo[id(self)] = made = FixedProgram(*lists, self.words, *tables, self.sound, list(self.source))
+        return made
 
     def append(self, line: tuple[Statement, ...]) -> None:
         """Add a line."""

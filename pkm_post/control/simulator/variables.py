@@ -10,6 +10,7 @@ it stores what is written to it, unless it is an input of the machine.
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -166,6 +167,16 @@ class Variables:
         self._made: dict[str, Array] = {}
         self.definitions: dict[int, str] = {}
         self.inputs = Inputs()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Variables:
+        """Copy the tables at once: what they hold is never changed."""
+        made = memo[id(self)] = copy.copy(self)
+        made._columns, made._made = {}, {}
+        made._values = {letter: dict(table) for letter, table in self._values.items()}
+        made._q = [dict(table) for table in self._q]
+        made.definitions = dict(self.definitions)
+        made.inputs = copy.deepcopy(self.inputs, memo)
+        return made
 
     def read(self, letter: str, number: int, system: int = 1) -> float:
         """The value of a variable.
