@@ -15,6 +15,8 @@ from pkm_post.machine import forward_along_path, platform_rotation
 
 AT_ONCE = 1000
 """ms that are measured together."""
+IN_SEQUENCE = 16
+"""Poses that are solved in sequence; that each follows from the one before is asserted."""
 BESIDE = 3
 """Rows behind the last one that samples may still belong to: corners are rounded."""
 AHEAD = 256
@@ -99,7 +101,8 @@ class Follower:
         struts = struts[~still]
         if not len(struts):
             return
-        found = forward_along_path(self.machine, struts, self.lengths[[self.row] * len(struts)], *self.near)
+        tools = self.lengths[[self.row] * len(struts)]
+        found = forward_along_path(self.machine, struts, tools, *self.near, IN_SEQUENCE)
         assert found.converged.all()
         self.near = found.tip[-1], found.rotation[-1]
         tip, axis = self._deviations(found.tip, found.axis)

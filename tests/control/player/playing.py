@@ -30,6 +30,8 @@ SMOOTH = replace(MACHINE, strut_jerk=JERK, tip_jerk=JERK)
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 TOOL = 120.0
 RECTANGLE = [[0, 0, 60], [30, 0, 60], [30, 20, 60], [0, 20, 60], [0, 0, 60]]
+LEAP_MS = 60
+"""Poses this far apart are solved in sequence; that each follows from the one before is asserted."""
 LONGEST_S = 300.0
 """A play that takes longer by the clock of its wire stands."""
 HOOK = [[0, 0, 90], [25, 0, 90], [25, 15, 90]]
@@ -127,7 +129,8 @@ class Playing:
         moving = np.append(True, (np.abs(np.diff(struts, axis=0)) > 1e-9).any(axis=1))
         struts = struts[moving]
         rotation = platform_rotation(MACHINE.home_axis[None], np.array([MACHINE.home_spin]))[0]
-        found = forward_along_path(MACHINE, struts, np.full(len(struts), TOOL), MACHINE.home_tip, rotation)
+        tools = np.full(len(struts), TOOL)
+        found = forward_along_path(MACHINE, struts, tools, MACHINE.home_tip, rotation, len(struts) // LEAP_MS + 1)
         assert found.converged.all()
         return found.tip
 
