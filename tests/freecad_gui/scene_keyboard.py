@@ -35,8 +35,16 @@ def tab(modifier=QtCore.Qt.KeyboardModifier.NoModifier):
     settle()
 
 
+def hide_views():
+    """Put the 3D views out of sight: with one on the screen each change of a field has the whole window drawn again."""
+    for view in FreeCADGui.getMainWindow().findChild(QtWidgets.QMdiArea).subWindowList():
+        view.hide()
+    settle()
+
+
 def in_front(window):
     """Give the keyboard to the window on the screen that a widget is part of."""
+    hide_views()
     window.window().raise_()
     window.window().activateWindow()
     until(window.window().isActiveWindow, 10)
