@@ -23,10 +23,14 @@ arguments = "--tip-tolerance 0.002"
 """
 
 
+def write_programs(folder):
+    for name, x in (("a.ngc", 5), ("b.ngc", 8)):
+        (folder / name).write_text(G_CODE.format(x=x))
+
+
 @pytest.fixture
 def jobs(tmp_path):
-    for name, x in (("a.ngc", 5), ("b.ngc", 8)):
-        (tmp_path / name).write_text(G_CODE.format(x=x))
+    write_programs(tmp_path)
     (tmp_path / "jobs.toml").write_text(LIST)
     return tmp_path / "jobs.toml"
 
@@ -47,18 +51,28 @@ def contents(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
+@pytest.fixture(scope="module")
+def posted_alone(tmp_path_factory):
+    """A folder with both files, and in ``alone`` what posting writes of each by itself; reports name the folder."""
+    folder = tmp_path_factory.mktemp("batch")
+    write_programs(folder)
+    for file, more in (("a.ngc", []), ("b.ngc", ["--tip-tolerance", "0.002"])):
+        words = ["post", str(folder / file), "--tool-length", "1=120", "--work-offset=0,0,250", *more]
+        assert main([*words, "--out", str(folder / "alone")]) == 0
+    return folder
+
+
 @pytest.mark.parametrize("name", EXECUTORS)
-def test_the_bytes_are_those_of_any_executor_and_of_posting(jobs, tmp_path, name):
+def test_the_bytes_are_those_of_any_executor_and_of_posting(posted_alone, name):
+    jobs = posted_alone / f"{name}.toml"
+    jobs.write_text(LIST.replace("results", f"by {name}"))
     with EXECUTORS[name]() as executor:
         rows = run_batch(jobs, executor, 2)
     assert [(row.file, row.state, row.programs) for row in rows] == [
         ("a.ngc", "posted", "a.pmc"),
         ("b.ngc", "posted", "b.pmc"),
     ]
-    for file, more in (("a.ngc", []), ("b.ngc", ["--tip-tolerance", "0.002"])):
-        words = ["post", str(tmp_path / file), "--tool-length", "1=120", "--work-offset=0,0,250", *more]
-        assert main([*words, "--out", str(tmp_path / "alone")]) == 0
-    assert contents(tmp_path / "results") == contents(tmp_path / "alone")
+    assert contents(posted_alone / f"by {name}") == contents(posted_alone / "alone")
 
 
 def test_it_goes_on_where_it_was_interrupted(jobs, tmp_path, posted_files, capsys):
