@@ -62,6 +62,16 @@ class Intervals:
         joint = self.first[row] + (number if most is None else (2 * number + 1) * inside[row] // (2 * count[row]))
         return self._points(row, joint_time[joint], joint)
 
+    def at_other_joints(self, joint_time: Array, most: int) -> CheckPoints:
+        """The joints inside the intervals, each with more than so many, that ``at_joints`` leaves out."""
+        inside = self.last - self.first
+        row, number = expand_counts(inside)
+        other, begin = np.ones(len(row), dtype=np.bool_), np.cumsum(inside) - inside
+        for one in range(most):
+            other[begin + (2 * one + 1) * inside // (2 * most)] = False
+        row, joint = row[other], (self.first[row] + number)[other]
+        return self._points(row, joint_time[joint], joint)
+
     def between_joints(self, joint_time: Array, gaps: int, widest: float = np.inf) -> CheckPoints:
         """At least one place on each segment; with the joints, no gap exceeds 1 / ``gaps`` of the interval.
 
@@ -108,3 +118,35 @@ class CheckPoints:
         if len(first):
             maximum[self.row[first]] = np.maximum.reduceat(values, first)
         return maximum
+
+
+class KnownIntervals:
+    """What was found of intervals before, by a number for each."""
+
+    def __init__(self) -> None:
+        """Nothing yet."""
+        self._number, self._found = np.empty(0, dtype=np.int64), np.empty((2, 0))
+
+    def of(self, number: Array) -> Array:
+        """Both findings of intervals, (2, N); NaN where there is none."""
+        at, known = self._located(number)
+        found = np.full((2, len(number)), np.nan)
+        found[:, known] = self._found[:, at[known]]
+        return found
+
+    def put(self, number: Array, found: Array) -> None:
+        """Remember findings, (2, N), of different intervals."""
+        at, known = self._located(number)
+        self._found[:, at[known]] = found[:, known]
+        new = np.flatnonzero(~known)
+        new = new[np.argsort(number[new])]
+        self._number = np.insert(self._number, at[new], number[new])
+        self._found = np.insert(self._found, at[new], found[:, new], axis=1)
+
+    def _located(self, number: Array) -> tuple[Array, Array]:
+        """Where intervals are or would be, (N,), and whether they are there, (N,)."""
+        at = np.searchsorted(self._number, number)
+        known = np.zeros(len(at), dtype=np.bool_)
+        inside = np.flatnonzero(at < len(self._number))
+        known[inside] = self._number[at[inside]] == number[inside]
+        return at, known

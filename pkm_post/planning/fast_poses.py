@@ -8,8 +8,8 @@ and x the distance from the joint,
 
     p = p_line + D H(-x) before the joint, p_line - D H(-x) after it,    p' = t + D W(-x)
 
-as H(x) - x = H(-x) and W(x) = 1 - W(-x). Tool axis and spin follow the same formulas. Places near an arc or a smooth
-curve are left to ``ToolPath.within``, which extends both segments.
+as H(x) - x = H(-x) and W(x) = 1 - W(-x). Tool axis and spin follow the same formulas. Places on an arc, and in blends
+beside an arc or a smooth curve, are left to ``ToolPath.within``, which extends both segments.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def fast_poses_within(path: ToolPath, segment: Array, u: Array) -> FastPoses:
         return _on_curves(path, segment, u)
     if smooth.any():
         return _merged(path, segment, u, smooth)
-    curved = np.flatnonzero(_neighbours(seg, segment, other))
+    curved = np.flatnonzero(_curved(path, segment, other, distance < half))
     if len(curved) == len(segment):
         exact = path.within(segment, u)
         return FastPoses(exact.tip, exact.axis, exact.spin, exact.tip_1, exact.tool_length, exact.segment)
@@ -106,12 +106,15 @@ def _merged(path: ToolPath, segment: Array, u: Array, smooth: Array) -> FastPose
     return poses
 
 
-def _neighbours(seg: Segments, segment: Array, other: Array) -> Array:
-    """Whether places are on or beside an arc or a curve, (M,)."""
-    curved = np.zeros(len(segment), dtype=np.bool_)
+def _curved(path: ToolPath, segment: Array, other: Array, blended: Array) -> Array:
+    """Places on arcs, and those in blends beside an arc or a curve, (M,); where the axis turns, all beside them."""
+    seg, curved = path.segments, np.zeros(len(segment), dtype=np.bool_)
     for kind in (seg.arcs, seg.splines):
         for one in (segment, other):
             curved[kind.among(one)[0]] = True
+    if path.attitude is not None:
+        curved &= blended
+        curved[seg.arcs.among(segment)[0]] = True
     return curved
 
 

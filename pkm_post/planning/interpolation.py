@@ -20,7 +20,7 @@ import numpy as np
 from pkm_post.geometry import Array, length_of, unit
 from pkm_post.machine import DRIFT_SHARES, Demand, KnotState, ToolCubics, ToolPoses, bounded_demand, measured_demand
 from pkm_post.model import Machine, Poses, Tolerances, checkpoint, distinct, pieces, uniform
-from pkm_post.planning.check_points import CheckPoints, Intervals
+from pkm_post.planning.check_points import CheckPoints, Intervals, KnownIntervals
 from pkm_post.planning.fast_poses import fast_poses, fast_poses_within
 from pkm_post.planning.schedule import Schedule, by_time
 from pkm_post.planning.tool_path import ToolPath
@@ -55,6 +55,19 @@ _Deviation = Callable[[Intervals, ToolCubics, Array], Array]
 def poses_at(path: ToolPath, schedule: Schedule, ms: Array) -> Poses:
     """Poses by time at whole ms, (N,); on a path with constant attitude second derivatives are omitted (zero)."""
     return _poses(path, *schedule.at(ms / 1000))
+
+
+def _places(path: ToolPath, s: Array) -> tuple[Array, Array, Array]:
+    """Places at path lengths, their derivatives, (7, N) each, and gauge lengths, (N,): tip, axis and spin.
+
+    The tip alone, (3, N), if the attitude is constant.
+    """
+    if path.attitude is not None:
+        poses = fast_poses(path, s)
+        return poses.tip.T, poses.tip_1.T, poses.tool_length
+    exact = path.at(s)
+    place = np.concatenate([exact.tip.T, exact.axis.T, exact.spin[None]])
+    return place, np.concatenate([exact.tip_1.T, exact.axis_1.T, exact.spin_1[None]]), exact.tool_length
 
 
 def _poses(path: ToolPath, s: Array, speed: Array, acceleration: Array) -> Poses:
@@ -93,7 +106,7 @@ def _exceeded(deviation: Array, use: Array) -> Array:
 
 
 class InterpolationCheck:
-    """How well the controller's cubics follow the plan in one stretch; poses at ends of intervals are cached."""
+    """How well the controller's cubics follow the plan in one stretch; intervals and poses at their ends are cached."""
 
     def __init__(
         self, path: ToolPath, schedule: Schedule, machine: Machine, tolerances: Tolerances, marks: Array
@@ -121,6 +134,7 @@ class InterpolationCheck:
         self._row = np.full(marks[-1] - marks[0] + 1, -1)
         self._place = self._rate = np.empty((7 if path.attitude is None else 3, 0))
         self._tool_length, self._along = np.empty(0), np.empty((2, 0))
+        self._known = KnownIntervals()
 
     def error(self, start: Array, end: Array, group: Array | None = None) -> Array:
         """Worst value of intervals of whole ms, (N,), relative to its limit; above 1 the interval is too long.
@@ -129,18 +143,23 @@ class InterpolationCheck:
         exceeded. For an interval that is too long it is the value at which the check stopped, and so it is for those
         with the same number in ``group``.
         """
-        intervals = Intervals.of(self._seen_time, start, end)
-        first, last = self._rows(start), self._rows(end)
+        key = (start - self._first) * len(self._row) + end - self._first
+        at_joints, closely = known = self._known.of(key)
+        asked = np.flatnonzero(np.isnan(closely) & ~(at_joints > 1))
+        intervals = Intervals.of(self._seen_time, start[asked], end[asked])
+        first, last = self._rows(intervals.start), self._rows(intervals.end)
         cubics = self._tool_cubics(first, last, intervals.duration)
-        worst = _exceeded(self._at_joints(intervals, cubics), self._backward(first, last, intervals.duration))
-        holds = worst <= 1
+        backward = self._backward(first, last, intervals.duration)
+        at_joints[asked] = _exceeded(self._at_joints(intervals, cubics), backward)
+        holds = at_joints <= 1
         if group is not None:
-            holds &= ~np.isin(group, group[~holds])
-        within = np.flatnonzero(holds)
+            holds = (np.bincount(group, ~holds) == 0)[group]
+        within = np.flatnonzero(holds[asked])
         for part in pieces(len(within), _INTERVALS_AT_ONCE) if len(within) else ():
             rows = within[part]
-            worst[rows] = np.maximum(worst[rows], self._closely(intervals[rows], cubics[rows]))
-        return worst
+            closely[asked[rows]] = self._closely(intervals[rows], cubics[rows])
+        self._known.put(key, known)
+        return np.where(holds, np.maximum(at_joints, closely), at_joints)
 
     def _at_joints(self, intervals: Intervals, cubics: ToolCubics) -> Array:
         """Deviations at joints, (N,); of an interval that is clearly too long, at some of its joints."""
@@ -150,7 +169,8 @@ class InterpolationCheck:
             worst[rows] = self._deviation_at_joints(intervals[rows], cubics[rows], drift[:, rows], _SOME_JOINTS)
         rows = np.flatnonzero((worst <= _CLEARLY) & (intervals.last - intervals.first > _SOME_JOINTS))
         if len(rows):
-            worst[rows] = self._in_passes(self._deviation_at_joints, intervals[rows], cubics[rows], drift[:, rows])
+            others = self._in_passes(self._deviation_at_others, intervals[rows], cubics[rows], drift[:, rows])
+            worst[rows] = np.maximum(worst[rows], others)
         return worst
 
     def use_of_limits(self, start: Array, end: Array) -> Array:
@@ -219,10 +239,17 @@ class InterpolationCheck:
         self, intervals: Intervals, cubics: ToolCubics, drift: Array, most: int | None = None
     ) -> Array:
         """Largest deviation at joints, or at most so many of each interval, by tolerance, (N,), with drifts, (2, N)."""
-        joints = intervals.at_joints(self._seen_time, most)
+        return self._deviation_there(intervals.at_joints(self._seen_time, most), cubics, drift)
+
+    def _deviation_at_others(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
+        """The same at the other joints of intervals that have more than those that are looked at first."""
+        return self._deviation_there(intervals.at_other_joints(self._seen_time, _SOME_JOINTS), cubics, drift)
+
+    def _deviation_there(self, joints: CheckPoints, cubics: ToolCubics, drift: Array) -> Array:
+        """The same at some joints."""
         row = self._seen[joints.segment] - self._first_row
         plan, allowed = self._at_joint[:, row], np.minimum(*(self._allowed[:, row + side] for side in (0, 1)))
-        return joints.maximum(self._deviation(joints, cubics, plan, allowed, drift), len(intervals))
+        return joints.maximum(self._deviation(joints, cubics, plan, allowed, drift), drift.shape[1])
 
     def _deviation_between(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
         """The same between the joints."""
@@ -306,13 +333,10 @@ class InterpolationCheck:
         unknown = ms[self._row[ms - self._first] < 0]
         if len(unknown):
             self._row[unknown - self._first] = len(self._tool_length) + np.arange(len(unknown))
-            along = self._schedule.at(unknown / 1000)
-            poses = _poses(self._path, *along)
-            what = 3 if self._path.attitude is None else 1  # tip, axis and spin, or the tip alone
-            place = np.concatenate([poses.tip.T, poses.axis.T, poses.spin[None]][:what])
-            rate = np.concatenate([poses.tip_1.T, poses.axis_1.T, poses.spin_1[None]][:what])
+            s, speed, _ = self._schedule.at(unknown / 1000)
+            place, rate, tool_length = _places(self._path, s)
             self._place = np.concatenate([self._place, place], axis=1)
-            self._rate = np.concatenate([self._rate, rate], axis=1)
-            self._along = np.concatenate([self._along, along[:2]], axis=1)
-            self._tool_length = np.append(self._tool_length, poses.tool_length)
+            self._rate = np.concatenate([self._rate, rate * speed], axis=1)
+            self._along = np.concatenate([self._along, [s, speed]], axis=1)
+            self._tool_length = np.append(self._tool_length, tool_length)
         return self._row[ms - self._first]

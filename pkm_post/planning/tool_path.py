@@ -288,8 +288,11 @@ class _ExtendedSegments:
 
     def of(self, at: Callable[[Array, Array], Triple]) -> tuple[Triple, Triple, Array]:
         """A quantity on both extended segments, and the change of its first derivative at the joint."""
-        before, after = self.joint - 1, self.joint
+        before, after, places = self.joint - 1, self.joint, len(self.x)
         first = np.flatnonzero(np.diff(after, prepend=-1))  # places at one joint follow each other
-        turn = at(after[first], np.zeros(len(first)))[1] - at(before[first], self.at_end[first])[1]
-        change = np.repeat(turn, np.diff(first, append=len(after)), axis=0)
-        return at(before, self.at_end + self.x), at(after, self.x), change
+        segment = np.concatenate([before, after, before[first], after[first]])
+        u = np.concatenate([self.at_end + self.x, self.x, self.at_end[first], np.zeros(len(first))])
+        value, rate, bend = at(segment, u)  # in one call, as most blends have few places
+        one, two = ((value[side], rate[side], bend[side]) for side in (slice(places), slice(places, 2 * places)))
+        ends, starts = np.split(rate[2 * places :], 2)
+        return one, two, np.repeat(starts - ends, np.diff(first, append=len(after)), axis=0)

@@ -113,6 +113,18 @@ def dense(machine, path, schedule, start, end, late):
 
 
 @pytest.mark.parametrize("make", JOBS.values(), ids=JOBS)
+def test_intervals_that_were_asked_for_before_have_the_errors_that_they_have_at_first(make):
+    machine, path, schedule = planned(make)
+    start, end = intervals(schedule)
+    group = np.arange(len(start)) // 3
+    again, fresh = (cubics_of(machine, path, schedule, schedule.rests_ms) for _ in range(2))
+    in_groups, error = again.error(start, end, group), fresh.error(start, end)
+    assert np.any(in_groups < error)
+    np.testing.assert_array_equal(again.error(start, end), error)
+    np.testing.assert_array_equal(fresh.error(start, end, group), in_groups)
+
+
+@pytest.mark.parametrize("make", JOBS.values(), ids=JOBS)
 @pytest.mark.parametrize("singular", [0.0, 0.2], ids=["drift measured", "drift bounded"])
 def test_dense_instants_find_little_more_than_was_seen(make, singular):
     machine, path, schedule = planned(make, dataclasses.replace(STROKED, least_singular_value=singular))
