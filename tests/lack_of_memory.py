@@ -14,12 +14,14 @@ WHAT = "Unable to allocate 7 GiB"
 
 
 @contextmanager
-def traced(call: Callable[[CodeType], object]) -> Iterator[None]:
-    """Have ``call`` look at each function of PKM Post when this thread enters it."""
+def traced(call: Callable[[CodeType], bool]) -> Iterator[None]:
+    """Have ``call`` look at functions of PKM Post when this thread enters them, again if it says so."""
+    passed: dict[int, CodeType] = {}
 
     def trace(frame: FrameType, event: str, _: object) -> None:
-        if event == "call" and frame.f_code.co_filename.startswith(PACKAGE):
-            call(frame.f_code)
+        code = frame.f_code
+        if id(code) not in passed and not (code.co_filename.startswith(PACKAGE) and call(code)):
+            passed[id(code)] = code  # its number stays its own
 
     before = sys.gettrace()
     sys.settrace(trace)
@@ -46,13 +48,15 @@ def lacking(place: str, call: int = 0) -> Iterator[list[str]]:
     met: list[str] = []
     entered = 0
 
-    def raise_there(code: CodeType) -> None:
+    def raise_there(code: CodeType) -> bool:
         nonlocal entered
-        if place.endswith(code.co_qualname) and place_of(code) == place:
-            entered += 1
-            if entered == call + 1:
-                met.append(place)
-                raise MemoryError(WHAT)
+        if not place.endswith(code.co_qualname) or place_of(code) != place:
+            return False
+        entered += 1
+        if entered == call + 1:
+            met.append(place)
+            raise MemoryError(WHAT)
+        return True
 
     with traced(raise_there):
         yield met

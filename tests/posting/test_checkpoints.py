@@ -47,13 +47,17 @@ OF_ALL = (__file__, columns.__file__, sys.modules["pkm_post.model.checkpoint"]._
 """Files in which all checkpoints are, and not the place of any."""
 ON_PALLET = np.eye(4)
 ON_PALLET[2, 3] = 200.0
+COUNTED = np.ndarray, bytes, str
 
 
 class Work:
-    """Counts the bytes of new arrays and texts between checkpoints, by the places of these."""
+    """Counts the bytes of new arrays and texts between checkpoints, by the places of these.
+
+    Known are the arrays that own their numbers, and texts; seen is what needs no second look, views as well.
+    """
 
     def __init__(self):
-        self.known, self.bytes, self.since = {}, 0, ""
+        self.known, self.seen, self.bytes, self.since = {}, {}, 0, ""
         self.most = {}
 
     def visit(self):
@@ -69,13 +73,22 @@ class Work:
         return self.line if frame.f_code.co_filename.startswith(PACKAGE) else None
 
     def line(self, frame, event, _):
+        seen = self.seen.get
         for value in frame.f_locals.values():
             for each in value if type(value) is tuple else (value,):
-                if type(each) is np.ndarray and each.dtype.names is None:  # records are those of a file
-                    self.add_array(each)
-                elif type(each) in (bytes, str):
-                    self.add(each, lambda each=each: each, len(each))
+                if type(each) in COUNTED:
+                    met = seen(id(each))
+                    if met is None or met() is not each:
+                        self.meet(each)
         return self.line
+
+    def meet(self, value):
+        if type(value) is not np.ndarray:
+            self.seen[id(value)] = lambda: value
+            self.add(value, lambda: value, len(value))
+        elif value.dtype.names is None:  # records are those of a file
+            self.seen[id(value)] = weakref.ref(value)
+            self.add_array(value)
 
     def add_array(self, array):
         owner = array

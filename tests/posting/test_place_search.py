@@ -2,6 +2,7 @@
 """A place for a program out of reach: its amounts, and that posting holds there."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -47,11 +48,17 @@ def shifted(x, degrees=0.0):
     return offset
 
 
+@cache
+def far():
+    """Options of a cone that lies too far in x, and the place that is found for it, with diagnostics."""
+    options = Options(work_offset=shifted(500.0))
+    return options, *find_place(cone(60), machine_named("example_6tps")[0], options)
+
+
 def test_a_place_is_found_with_its_amounts(machine):
     program, before = cone(60), shifted(500.0)
-    options = Options(work_offset=before)
+    options, found, diagnostics = far()
     assert "K102" in {each.code for each in errors(study(program, machine, options)[1])}
-    found, diagnostics = find_place(program, machine, options)
     assert found is not None and found.holds and not diagnostics and not found.spins
     # the amounts are those between the offsets: of the middle of the tips, independently of the search
     tips = program.position @ before[:3, :3].T + before[:3, 3]
@@ -141,8 +148,8 @@ def test_other_faults_are_not_searched_for(tmp_path, capsys):
     assert "J113" in said and "place:" not in said
 
 
-def test_options_of_a_place_keep_other_fixtures_beside_the_first(machine):
-    found, _ = find_place(cone(60), machine, Options(work_offset=shifted(500.0)))
+def test_options_of_a_place_keep_other_fixtures_beside_the_first():
+    _, found, _ = far()
     beside = np.eye(4)
     beside[:3, 3] = 100.0, 0.0, -5.0
     offset, origin = place_options(found, {"G54": np.eye(4), "G55": beside})
