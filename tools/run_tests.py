@@ -24,6 +24,8 @@ import pytest
 WITH_A_WINDOW = "freecad_gui"
 CONTROL_PANEL = "test_gui_control"
 _MOST_PROCESSES = 4
+_THREADS = "/proc/self/task"
+"""Where Linux lists the threads of a process."""
 _NO_MORE = 1 << 60
 """A number of a file that stops all processes."""
 
@@ -92,6 +94,7 @@ class ForkedRun:
         """Take the place of pytest's own loop, but for runs that execute nothing."""
         if session.testsfailed or session.config.option.collectonly or not session.items:
             return None
+        _require_one_thread()
         workers = [Worker(session, self._next_file) for _ in range(min(self._count, len(session.items)))]
         try:
             self._report(session, workers)
@@ -115,6 +118,12 @@ class ForkedRun:
                 if reason := session.shouldfail or session.shouldstop:
                     self._next_file.stop()
                     raise (session.Failed if session.shouldfail else session.Interrupted)(reason)
+
+
+def _require_one_thread():
+    """Refuse to fork beside other threads: a lock that one of them holds is never released in the forked process."""
+    if os.path.isdir(_THREADS) and len(os.listdir(_THREADS)) > 1:
+        raise pytest.UsageError("a test module starts threads when it is imported, as shapes computed there do")
 
 
 class Worker:

@@ -32,7 +32,7 @@ def short_chords(count=600, chord=0.05, radius=20.0):
 
 @pytest.fixture(autouse=True)
 def jobs(monkeypatch):
-    monkeypatch.setitem(test_nothing_exceeds.JOBS, "short chords", short_chords)
+    monkeypatch.setitem(test_nothing_exceeds.SHAPES, "short chords", short_chords)
 
 
 JOBS = ["short chords", "cone", "arcs and a helix", *range(16)]

@@ -26,28 +26,42 @@ def test_closed_and_trimmed_faces_are_known_as_such():
     assert 0.9 < held.mean() < 0.97
 
 
-def trimmed_shapes():
-    """Lines, arcs, splines, holes, a seam and a pole in the borders, and a face whose hole runs the wrong way round."""
-    at, z = App.Vector, App.Vector(0, 0, 1)
-    hole = Part.makeCylinder(4, 60, at(0, -30, 20), at(0, 1, 0))
-    corners = [at(0, 0), at(30, 0), at(30, 20), at(15, 5), at(0, 20), at(0, 0)]
-    spline = Part.BSplineCurve()
-    spline.interpolate([at(0, 0), at(10, 5), at(20, -5), at(25, 10), at(8, 18)], PeriodicFlag=True)
-    yield "plate", plate_with_hole()
-    yield "pipe with a hole", Part.makeCylinder(10, 40).cut(hole)
-    yield "half of it", Part.makeCylinder(10, 40, at(), z, 180).cut(hole)
-    yield "ball with a corner", Part.makeSphere(15).cut(Part.makeBox(20, 20, 20, at(3, 3, 3)))
-    yield "cut cone", Part.makeCone(10, 3, 20).cut(Part.makeBox(30, 30, 30, at(2, -15, 5)))
-    yield "notched", Part.Face(Part.makePolygon(corners))
-    yield "spline", Part.Face(Part.Wire(spline.toShape()))
-    ellipse, circle = Part.Ellipse(at(), 30, 10).toShape(), Part.makeCircle(4, at(5, 0, 0))
-    yield "not valid", Part.Face([Part.Wire(ellipse), Part.Wire(circle)])
+def plane_inside(*borders):
+    return Part.Face([Part.Wire(border) for border in borders])
 
 
-@pytest.mark.parametrize("shape", [pytest.param(shape, id=name) for name, shape in trimmed_shapes()])
-def test_trimmed_faces_hold_what_opencascade_says(shape):
+def closed_spline():
+    curve = Part.BSplineCurve()
+    curve.interpolate([App.Vector(*at) for at in ((0, 0), (10, 5), (20, -5), (25, 10), (8, 18))], PeriodicFlag=True)
+    return curve.toShape()
+
+
+def drilled(pipe):
+    return pipe.cut(Part.makeCylinder(4, 60, App.Vector(0, -30, 20), App.Vector(0, 1, 0)))
+
+
+UP = App.Vector(0, 0, 1)
+TRIMMED = {
+    "plate with a hole": plate_with_hole,
+    "pipe with a hole": lambda: drilled(Part.makeCylinder(10, 40)),
+    "half of it": lambda: drilled(Part.makeCylinder(10, 40, App.Vector(), UP, 180)),
+    "ball with a corner": lambda: Part.makeSphere(15).cut(Part.makeBox(20, 20, 20, App.Vector(3, 3, 3))),
+    "cut cone": lambda: Part.makeCone(10, 3, 20).cut(Part.makeBox(30, 30, 30, App.Vector(2, -15, 5))),
+    "notched": lambda: plane_inside(
+        Part.makePolygon([App.Vector(*at) for at in ((0, 0), (30, 0), (30, 20), (15, 5), (0, 20), (0, 0))])
+    ),
+    "spline": lambda: plane_inside(closed_spline()),
+    "hole that runs the wrong way round": lambda: plane_inside(
+        Part.Ellipse(App.Vector(), 30, 10).toShape(), Part.makeCircle(4, App.Vector(5, 0, 0))
+    ),
+}
+"""Lines, arcs, splines, holes, a seam and a pole in the borders, and a face that is not valid."""
+
+
+@pytest.mark.parametrize("made", TRIMMED.values(), ids=TRIMMED)
+def test_trimmed_faces_hold_what_opencascade_says(made):
     chance = np.random.default_rng(1)
-    trimmed = [face for face in shape.Faces if not is_untrimmed(face)]
+    trimmed = [face for face in made().Faces if not is_untrimmed(face)]
     assert trimmed
     for face in trimmed:
         surface = face_surface(face)
