@@ -42,9 +42,9 @@ def path_of(make, tip, axis):
     return ToolPath.of(trajectory, tip, axis)
 
 
-def places_on(path, by_chance=3000):
+def places_on(path):
     """Path lengths all over a path, its joints and the edges of its blends."""
-    s = np.concatenate([np.random.default_rng(6).uniform(0, path.starts[-1], by_chance), path.starts])
+    s = np.concatenate([np.random.default_rng(6).uniform(0, path.starts[-1], 3000), path.starts])
     return np.sort(np.concatenate([s, path.starts + path.blend, path.starts - path.blend]).clip(0, path.starts[-1]))
 
 
@@ -64,7 +64,7 @@ def test_a_glimpse_agrees_with_the_poses(make, rounded):
 @pytest.mark.parametrize("make", PATHS.values(), ids=PATHS)
 def test_what_is_seen_of_a_place_does_not_depend_on_the_other_places(make):
     path = path_of(make, 1e-3, 1e-5)
-    s = places_on(path, 300)
+    s = places_on(path)
     whole = fast_poses(path, s)
     for size in (1, 7, 500):
         parts = [fast_poses(path, s[first : first + size]) for first in range(0, len(s), size)]
