@@ -110,20 +110,20 @@ def _begins(cell: Array, backward: bool) -> Array:
 
 def _march(steps: Steps, square: Array, highest: Array, cell: Array, backward: bool) -> None:
     """Move fronts that start in some cells."""
-    way = -1 if backward else 1
+    step = -1 if backward else 1
     while len(cell):
-        ahead = way * np.arange(min(_STEPS_AT_ONCE, 1 + _AHEAD // len(cell)))
-        ways = np.clip(cell + ahead[:, None], 0, len(square) - 2).ravel()
-        limits, share = CellLimits.of(steps.s, steps.limits, ways), steps.share[ways]
+        ahead = step * np.arange(min(_STEPS_AT_ONCE, 1 + _AHEAD // len(cell)))
+        next_cells = np.clip(cell + ahead[:, None], 0, len(square) - 2).ravel()
+        limits, share = CellLimits.of(steps.s, steps.limits, next_cells), steps.share[next_cells]
         front, count = np.arange(len(cell)), len(cell)
-        for first in range(0, len(ways), count):
+        for first in range(0, len(next_cells), count):
             checkpoint()
             rows = slice(first, first + count) if len(front) == count else front + first
             near, far = (cell + 1, cell) if backward else (cell, cell + 1)
             found = np.minimum(_reached(limits[rows], square[near], share[rows], backward), highest[far])
             on = _differs(found, square[far])
             square[far[on]] = found[on]
-            cell, front = cell[on] + way, front[on]
+            cell, front = cell[on] + step, front[on]
             inside = (cell >= 0) & (cell < len(square) - 1)
             cell, front = cell[inside], front[inside]
             if not len(cell):

@@ -54,24 +54,7 @@ _Deviation = Callable[[Intervals, ToolCubics, Array], Array]
 
 def poses_at(path: ToolPath, schedule: Schedule, ms: Array) -> Poses:
     """Poses by time at whole ms, (N,); on a path with constant attitude second derivatives are omitted (zero)."""
-    return _poses(path, *schedule.at(ms / 1000))
-
-
-def _places(path: ToolPath, s: Array) -> tuple[Array, Array, Array]:
-    """Places at path lengths, their derivatives, (7, N) each, and gauge lengths, (N,): tip, axis and spin.
-
-    The tip alone, (3, N), if the attitude is constant.
-    """
-    if path.attitude is not None:
-        poses = fast_poses(path, s)
-        return poses.tip.T, poses.tip_1.T, poses.tool_length
-    exact = path.at(s)
-    place = np.concatenate([exact.tip.T, exact.axis.T, exact.spin[None]])
-    return place, np.concatenate([exact.tip_1.T, exact.axis_1.T, exact.spin_1[None]]), exact.tool_length
-
-
-def _poses(path: ToolPath, s: Array, speed: Array, acceleration: Array) -> Poses:
-    """The same at path lengths, with speeds and accelerations along the path, (N,) each."""
+    s, speed, acceleration = schedule.at(ms / 1000)
     if path.attitude is None:
         return by_time(path.at(s), speed, acceleration)
     poses, still = fast_poses(path, s), np.zeros((len(s), 3))
@@ -90,6 +73,19 @@ def _poses(path: ToolPath, s: Array, speed: Array, acceleration: Array) -> Poses
         tool_length=poses.tool_length,
         segment=poses.segment,
     )
+
+
+def _places(path: ToolPath, s: Array) -> tuple[Array, Array, Array]:
+    """Places at path lengths, their derivatives, (7, N) each, and gauge lengths, (N,): tip, axis and spin.
+
+    The tip alone, (3, N), if the attitude is constant.
+    """
+    if path.attitude is not None:
+        poses = fast_poses(path, s)
+        return poses.tip.T, poses.tip_1.T, poses.tool_length
+    exact = path.at(s)
+    place = np.concatenate([exact.tip.T, exact.axis.T, exact.spin[None]])
+    return place, np.concatenate([exact.tip_1.T, exact.axis_1.T, exact.spin_1[None]]), exact.tool_length
 
 
 def _allowed(path: ToolPath, rows: slice, tolerances: Tolerances) -> Array:
@@ -239,13 +235,13 @@ class InterpolationCheck:
         self, intervals: Intervals, cubics: ToolCubics, drift: Array, most: int | None = None
     ) -> Array:
         """Largest deviation at joints, or at most so many of each interval, by tolerance, (N,), with drifts, (2, N)."""
-        return self._deviation_there(intervals.at_joints(self._seen_time, most), cubics, drift)
+        return self._largest_deviation(intervals.at_joints(self._seen_time, most), cubics, drift)
 
     def _deviation_at_others(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
         """The same at the other joints of intervals that have more than those that are looked at first."""
-        return self._deviation_there(intervals.at_other_joints(self._seen_time, _SOME_JOINTS), cubics, drift)
+        return self._largest_deviation(intervals.at_other_joints(self._seen_time, _SOME_JOINTS), cubics, drift)
 
-    def _deviation_there(self, joints: CheckPoints, cubics: ToolCubics, drift: Array) -> Array:
+    def _largest_deviation(self, joints: CheckPoints, cubics: ToolCubics, drift: Array) -> Array:
         """The same at some joints."""
         row = self._seen[joints.segment] - self._first_row
         plan, allowed = self._at_joint[:, row], np.minimum(*(self._allowed[:, row + side] for side in (0, 1)))

@@ -39,7 +39,7 @@ def test_pieces_of_any_size_give_the_same_files(monkeypatch, tmp_path, leans):
     def posted(size):
         for module, name in PIECES:
             monkeypatch.setattr(module, name, size)
-        return post(tmp_path, 60, leans, str(size))
+        return post(tmp_path, 100, leans, str(size))
 
     whole = posted(ALL)
     expected = json.loads(whole["scan-report.json"].read_text())

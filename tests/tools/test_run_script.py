@@ -114,3 +114,12 @@ def test_one_result_counts_what_all_processes_ran_and_where_one_died(script, mon
         "test_failing.py::test_fails",
         "test_killed.py::test_it",
     ]
+
+
+def test_no_process_is_forked_beside_a_thread(script, monkeypatch):
+    monkeypatch.setenv("PKM_TEST_PROCESSES", "2")
+    waits = "import threading\nthreading.Thread(target=threading.Event().wait, daemon=True).start()\n"
+    path = script(f"{waits}def test_it():\n    pass\n", "test_threads.py")
+    reported = freecad(TOOLS / "run_tests.py", f"--rootdir={path.parent}", "-p", "no:cacheprovider", path)
+    assert reported.returncode == 4
+    assert "starts threads when it is imported" in reported.stderr
