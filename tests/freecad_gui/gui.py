@@ -45,6 +45,19 @@ def press(command, item=None):
     settle()
 
 
+def player_dock():
+    """The open player; None if there is none."""
+    return FreeCADGui.getMainWindow().findChild(QtWidgets.QDockWidget, "PkmPlayer")
+
+
+def simulate(item):
+    """Simulate a job, or show a simulation, and wait for its player: it opens when the document is computed."""
+    before = player_dock()
+    press("PKM_Simulate", item)
+    until(lambda: player_dock() not in (None, before))
+    return player_dock()
+
+
 def settle():
     """Let the window do what is due."""
     for _ in range(20):

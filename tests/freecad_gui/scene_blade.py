@@ -7,7 +7,7 @@ test of this scene puts them there.
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, agree, click_named, main, press, select, settle, step, tab_of, until, widget
+from gui import FOLDER, agree, click_named, main, press, select, settle, simulate, step, tab_of, until, widget
 from pivy import coin  # noqa: F401  the camera of a view is an object of it
 from PySide import QtGui, QtWidgets
 
@@ -26,10 +26,6 @@ def document():
 
 def job():
     return document().getObject("Job")
-
-
-def player():
-    return FreeCADGui.getMainWindow().findChild(QtWidgets.QDockWidget, "PkmPlayer")
 
 
 def keep(name, part):
@@ -188,20 +184,20 @@ def face_is_finished():
 @step
 def chips_are_made():
     press("PKM_Machine", job())
-    press("PKM_Simulate", job())
-    content = player().widget()
+    player = simulate(job())
+    content = player.widget()
     page = content.material
     page.resolution.setCurrentIndex(page.resolution.findData("medium"))
     whole = page.material.replay.stock.volume
     content.show_page(page)
-    half = player().simulation.duration / 2
+    half = player.simulation.duration / 2
     content.timeline.wanted.emit(half)
     until(lambda: page.is_current, 120)
     document().getObject("Machine").ViewObject.Visibility = True
     keep_view("chips")
     middle = page.material.replay.stock.volume
     page.compared.setChecked(True)
-    player().go_to(player().simulation.duration)
+    player.go_to(player.simulation.duration)
     until(lambda: page.is_current, 120)
     page.measure()
     found = page.material.compared()
@@ -211,7 +207,7 @@ def chips_are_made():
     keep_view("compared")
     keep("material", page)
     stock, numbers = page.material.replay.stock, page.numbers.text().splitlines()
-    player().close()
+    player.close()
     settle()
     return {
         "followable": document().getObject("Simulation").Followable, "whole": whole, "middle": middle,

@@ -11,7 +11,7 @@ import os
 import FreeCAD
 import FreeCADGui
 from control_machine import connect_and_home, posted_file, the_panel
-from gui import FOLDER, click, job_on, main, new_document, press, select, settle, step, until
+from gui import FOLDER, click, job_on, main, new_document, press, select, settle, simulate, step, until
 from gui import picture as picture_of_the_screen
 from PySide import QtCore, QtGui, QtWidgets
 from window_faults import faults_of
@@ -333,9 +333,7 @@ def machine_is_shown():
 def player_shows_its_pages():
     document = saved("player")
     press("PKM_Machine", document.getObject("Job"))
-    press("PKM_Simulate", document.getObject("Job"))
-    until(lambda: dock("PkmPlayer") is not None)
-    player, found = dock("PkmPlayer"), {}
+    player, found = simulate(document.getObject("Job")), {}
     content = player.widget()
     player.go_to(player.simulation.duration / 2)
     for number in range(content.lists.count()):

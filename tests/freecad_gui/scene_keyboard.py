@@ -8,7 +8,7 @@ stand, and whether Shift-Tab goes back from the second one to the first one.
 import FreeCAD
 import FreeCADGui
 from control_machine import connect_and_home, posted_file, the_panel
-from gui import job_on, main, press, select, settle, step, until
+from gui import job_on, main, press, select, settle, simulate, step, until
 from PySide import QtCore, QtGui, QtWidgets
 
 MOST_KEYS = 200
@@ -210,9 +210,7 @@ def player_and_preferences():
     from pkm_post.freecad_gui.preferences import PostPreferences
 
     document, job = new_job("player")
-    press("PKM_Simulate", job)
-    until(lambda: FreeCADGui.getMainWindow().findChild(QtWidgets.QDockWidget, "PkmPlayer") is not None)
-    player = FreeCADGui.getMainWindow().findChild(QtWidgets.QDockWidget, "PkmPlayer")
+    player = simulate(job)
     content, found = player.widget(), {}
     content.lists.setCurrentIndex(content.lists.count() - 1)
     settle()

@@ -4,7 +4,7 @@
 import FreeCAD
 import FreeCADGui
 import numpy as np
-from gui import FOLDER, main, picture_of_all, press, settle, step, until
+from gui import FOLDER, main, picture_of_all, player_dock, press, settle, simulate, step, until
 from pivy import coin
 from PySide import QtCore, QtGui, QtWidgets
 
@@ -35,7 +35,7 @@ def player_opens_with_its_pages():
     other.ToolController = add_tool_controller(job, 2)
     document.recompute()
     press("PKM_Machine", job)
-    press("PKM_Simulate", job)
+    simulate(job)
     content = _content()
     return {
         "tabs": [content.lists.tabText(number) for number in range(content.lists.count())],
@@ -48,7 +48,7 @@ def player_opens_with_its_pages():
 
 @step
 def material_is_taken_and_comes_back():
-    player, page = _player(), _content().material
+    player, page = player_dock(), _content().material
     covered = FreeCAD.getDocument("chips").getObject("Job").Model.Group[0].ViewObject
     covered.Visibility = True
     page.resolution.setCurrentIndex(page.resolution.findData("medium"))
@@ -75,7 +75,7 @@ def material_is_taken_and_comes_back():
 
 @step
 def readout_and_program_go_together():
-    player, content = _player(), _content()
+    player, content = player_dock(), _content()
     rows = [_row(number) for number in range(content.listing.model().rowCount())]
     row = next(number for number, text in enumerate(rows) if "G1 " in text)
     content.listing.clicked.emit(content.listing.model().index(row, 0))
@@ -95,7 +95,7 @@ def readout_and_program_go_together():
 
 @step
 def readout_follows_the_units_of_the_user():
-    player, content = _player(), _content()
+    player, content = player_dock(), _content()
     before = FreeCAD.Units.getSchema()
     FreeCAD.Units.setSchema(3)  # imperial decimal
     player.go_to(player.seconds)
@@ -107,7 +107,7 @@ def readout_follows_the_units_of_the_user():
 
 @step
 def timeline_goes_to_a_click():
-    player, content = _player(), _content()
+    player, content = player_dock(), _content()
     content.timeline.wanted.emit(content.timeline.operations[-1].start)
     at = player.seconds
     text = content.timeline.text_at(content.timeline.operations[-1].start + 0.1)
@@ -116,7 +116,7 @@ def timeline_goes_to_a_click():
 
 @step
 def view_is_chosen():
-    player, page = _player(), _content().view
+    player, page = player_dock(), _content().view
     scene = page._scene
     reported = {}
     for name, choice in page.components.items():
@@ -176,7 +176,7 @@ def _transparencies(node):
 
 @step
 def bodies_that_come_too_close_are_red():
-    player = _player()
+    player = player_dock()
     scene = player._stage.scene
     scene.mark({"strut 2", "shank of T1"})
     scene.show(player.simulation.pose_at(np.array([player.seconds])))
@@ -192,7 +192,7 @@ def _colour(look):
 
 @step
 def film_has_a_caption():
-    player, frames = _player(), FOLDER / "film"
+    player, frames = player_dock(), FOLDER / "film"
     frames.mkdir()
     player.controls.factor.setCurrentText("10x")
     page = _content().material
@@ -213,7 +213,7 @@ def film_has_a_caption():
 
 @step
 def narrow_dock_hides_nothing():
-    player, content = _player(), _content()
+    player, content = player_dock(), _content()
     window = FreeCADGui.getMainWindow()
     window.removeDockWidget(player)
     window.addDockWidget(QtCore.Qt.DockWidgetArea.RightDockWidgetArea, player)
@@ -231,19 +231,15 @@ def narrow_dock_hides_nothing():
 
 @step
 def player_closes():
-    _player().close()
+    player_dock().close()
     settle()
     FreeCAD.closeDocument("chips")
     settle()
     return {}
 
 
-def _player():
-    return FreeCADGui.getMainWindow().findChild(QtWidgets.QDockWidget, "PkmPlayer")
-
-
 def _content():
-    return _player().widget()
+    return player_dock().widget()
 
 
 def _row(number):

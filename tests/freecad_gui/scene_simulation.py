@@ -6,7 +6,7 @@ import time
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, answer, main, picture_of_all, press, settle, step, until
+from gui import FOLDER, answer, main, picture_of_all, player_dock, press, settle, simulate, step, until
 from PySide import QtWidgets
 
 ARGUMENTS = "--work-offset={}"
@@ -23,17 +23,15 @@ def simulation_from_its_button():
     add_operation(job, FIVE_AXIS, "Tilted")
     document.UndoMode = 1
     press("PKM_Machine", job)
-    press("PKM_Simulate", job)
-    opened = _player() is not None
+    simulate(job)
     document.undo()
     settle()
     reported = {
-        "opened": opened,
         "undone": document.getObject("Simulation") is None,
-        "closed_by_undo": _player() is None,
+        "closed_by_undo": player_dock() is None,
     }
-    press("PKM_Simulate", job)
-    press("PKM_Simulate", job)  # one is there now: it is shown
+    simulate(job)
+    simulate(job)  # one is there now: it is shown
     made = document.getObject("Simulation")
     reported |= {
         "machine": made.Machine.Name,
@@ -41,19 +39,19 @@ def simulation_from_its_button():
         "count": len([item for item in document.Objects if item.Name.startswith("Simulation")]),
         "valid": made.isValid(),
         "duration": made.Duration.getValueAs("s").Value,
-        "plays": _player().simulation.duration,
+        "plays": player_dock().simulation.duration,
     }
-    _player().close()
+    player_dock().close()
     settle()
     made.ViewObject.Proxy.doubleClicked(made.ViewObject)
     settle()
-    reported["opened_by_double_click"] = _player() is not None
+    reported["opened_by_double_click"] = player_dock() is not None
     return reported
 
 
 @step
 def player_plays():
-    player = _player()
+    player = player_dock()
     machine = FreeCAD.getDocument("hexapod").getObject("Machine")
     reported = {"reported": player.controls.text()}
     player.controls.factor.setCurrentText("2x")
@@ -79,7 +77,7 @@ def player_plays():
 
 @step
 def override_scales_time_and_speeds():
-    player = _player()
+    player = player_dock()
     player.controls.factor.setCurrentText("1x")
     before = player.widget().plot.grab().toImage()
     player.controls.override.setValue(50)
@@ -95,7 +93,7 @@ def override_scales_time_and_speeds():
 
 @step
 def film_is_written():
-    player, frames = _player(), FOLDER / "frames"
+    player, frames = player_dock(), FOLDER / "frames"
     frames.mkdir()
     player.controls.factor.setCurrentText("10x")
     written = player.recording(2, 320, 240).write_pictures(frames)
@@ -105,7 +103,7 @@ def film_is_written():
 
 @step
 def operations_are_clicked():
-    player = _player()
+    player = player_dock()
     player.lists.operations.itemClicked.emit(player.lists.operations.item(1))
     settle()
     return {
@@ -118,7 +116,7 @@ def operations_are_clicked():
 
 @step
 def player_follows_the_job():
-    document, player = FreeCAD.getDocument("hexapod"), _player()
+    document, player = FreeCAD.getDocument("hexapod"), player_dock()
     made = document.getObject("Simulation")
     before = player.simulation
     document.getObject("Job").PostProcessorArgs = ARGUMENTS.format("500,0,200")
@@ -147,7 +145,7 @@ def player_follows_the_job():
 @step
 def cam_simulates_the_same_job():
     opened = []
-    player = _player()
+    player = player_dock()
     player.controls.removal.emit()
     settle()
     opened.append(bool(FreeCADGui.Control.activeDialog()))
@@ -166,34 +164,29 @@ def nothing_is_left_open():
     machine, job = document.getObject("Machine"), document.getObject("Job")
     job.PostProcessorArgs = ARGUMENTS.format("0,0,250")
     document.recompute()
-    _player().go_to(4.0)
-    _player().close()
+    player_dock().go_to(4.0)
+    player_dock().close()
     settle()
     reported = {"machine_is_back": abs(_highest(machine) - _shown_height(machine)) < 1e-3}
     made = document.getObject("Simulation")
-    press("PKM_Simulate", made)
+    simulate(made)
     document.removeObject("Machine")
     settle()
-    reported["closed_with_its_machine"] = _player() is None
+    reported["closed_with_its_machine"] = player_dock() is None
     refused = []
     # as after a restart: the plan has gone, and is asked for
     made.Active, made.Proxy.plan, job.PostProcessorArgs = False, None, "--machine no_such_machine"
     answer(refused)
     press("PKM_Simulate", job)
     until(lambda: refused)
-    reported |= {"refused": refused, "no_player": _player() is None}
+    reported |= {"refused": refused, "no_player": player_dock() is None}
     made.Active, job.PostProcessorArgs = True, ARGUMENTS.format("0,0,250")
     document.recompute()
-    press("PKM_Simulate", job)
-    reported["without_machine"] = _player() is not None
+    simulate(job)  # there is no machine now
     FreeCAD.closeDocument("hexapod")
     settle()
-    reported["closed_with_its_document"] = _player() is None
+    reported["closed_with_its_document"] = player_dock() is None
     return reported
-
-
-def _player():
-    return FreeCADGui.getMainWindow().findChild(QtWidgets.QDockWidget, "PkmPlayer")
 
 
 def _highest(machine):

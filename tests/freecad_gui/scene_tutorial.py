@@ -9,7 +9,7 @@ import json
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, agree, click, click_named, main, press, select, settle, step, tab_of, until, widget
+from gui import FOLDER, agree, click, click_named, main, press, select, settle, simulate, step, tab_of, until, widget
 from PySide import QtCore, QtGui, QtWidgets
 
 NAME = "tapered_column"
@@ -309,9 +309,8 @@ def reach_is_checked():
 
 @step
 def motion_is_played():
-    press("PKM_Simulate", job())
+    player = simulate(job())
     made = document().getObject("Simulation")
-    player = FreeCADGui.getMainWindow().findChild(QtWidgets.QDockWidget, "PkmPlayer")
     player.widget().slider.setValue(20_000)  # ms
     keep("player", player.widget())
     seconds = player.seconds
