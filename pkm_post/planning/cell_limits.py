@@ -115,74 +115,151 @@ class CellLimits:
         tips = table[tip], np.stack([whole, mixed, after[tip][2]])
         return cls(width, np.abs(slope), offset, tips)
 
-    def bounds(self, square: Array, share: Array | float) -> tuple[Array, Array]:
-        """Least and greatest acceleration at a speed squared, (K,) each, under a share of the limits.
+    def ahead(self, share: Array | float) -> Ahead:
+        """The accelerations under a share of the limits, a number or (K,)."""
+        struts, tips, cells = (np.empty((*rows, len(self.width))) for rows in ((2, len(self.slope)), (4, 2), (2,)))
+        struts[0], cells[0], cells[1] = self.offset, self.width, share
+        np.maximum(self.slope, _LEAST, out=struts[1])
+        for number, (one, both, two) in enumerate(self.tips):
+            size = np.maximum(one, _LEAST)
+            tips[:, number] = both, _apart(one, both, two), size * cells[1] ** 2, size
+        return Ahead(struts, tips, cells)
 
-        At a speed that is too high, the least one is above the greatest.
-        """
-        slope, turned = np.maximum(self.slope, _LEAST), self.offset * square
-        greatest = share - turned
-        turned += share
-        greatest /= slope
-        turned /= slope
-        greatest, turned = greatest.min(axis=0, initial=np.inf), turned.min(axis=0, initial=np.inf)
-        for tip in self.tips:
-            half, mixed, size = _chord(tip, square, share)
-            greatest = np.minimum(greatest, (half - mixed) / size)
-            turned = np.minimum(turned, (half + mixed) / size)
-        return np.maximum(-turned, -square / self.width), greatest
-
-    def greatest(self, square: Array, share: Array | float) -> Array:
-        """Greatest acceleration at a speed squared, (K,), under a share of the limits."""
-        room = self.offset * square
-        np.subtract(share, room, out=room)
-        room /= np.maximum(self.slope, _LEAST)
-        greatest = room.min(axis=0, initial=np.inf)
-        for tip in self.tips:
-            half, mixed, size = _chord(tip, square, share)
-            greatest = np.minimum(greatest, (half - mixed) / size)
-        return np.asarray(greatest)
+    def behind(self, share: Array) -> Behind:
+        """Greatest speeds squared at the starts under a share of the limits, (K,)."""
+        struts, tips = np.empty((3, *self.slope.shape)), np.empty((5, 2, len(self.width)))
+        divisor = self.slope - self.width * self.offset
+        struts[0] = self.slope
+        struts[1] = np.where(divisor > _LEAST, self.width * share, np.inf)
+        np.maximum(divisor, _LEAST, out=struts[2])
+        for number, (one, both, two) in enumerate(self.tips):
+            mixed, apart = one - self.width * both, _apart(one, both, two)
+            whole = np.maximum(mixed - self.width * (both - self.width * two), _LEAST)
+            slow = np.maximum(mixed, 0.0) / np.sqrt(np.maximum(apart * (mixed**2 + self.width**2 * apart), _LEAST))
+            tips[:, number] = share * np.sqrt(whole) * slow, apart, whole * share**2, mixed, whole
+        return Behind(struts, tips, self.width)
 
     def highest(self, ceiling: Array) -> Array:
         """Highest speed squared that leaves any acceleration under whole limits, (K,); infinite above a ceiling."""
         high = functools.reduce(np.minimum, map(_end, self.tips))
         highest = np.where(high < ceiling, high, np.inf)
         high = np.minimum(high, ceiling)
-        room = self._room(high)
+        least, greatest = self.ahead(1.0).bounds(high)
+        room = greatest - least
         rows = np.flatnonzero(room < 0)
         if not len(rows):
             return highest
-        tight, low, high, at_high = self[rows], np.zeros(len(rows)), high[rows], room[rows]
-        at_low = tight._room(low)
+        tight, low, high, at_high = self[rows].ahead(1.0), np.zeros(len(rows)), high[rows], room[rows]
+        at_low = tight.room(low)
         for _ in range(_ROUNDS):  # Illinois: an end that stays counts half
             middle = low + (high - low) * (at_low / (at_low - at_high))
-            there = tight._room(middle)
+            there = tight.room(middle)
             inside = there >= 0
             at_low, at_high = np.where(inside, there, at_low / 2), np.where(inside, at_high / 2, there)
             low, high = np.where(inside, middle, low), np.where(inside, high, middle)
         highest[rows] = low
         return highest
 
-    def _room(self, square: Array) -> Array:
-        """Greatest less least acceleration."""
-        least, greatest = self.bounds(square, 1.0)
-        return greatest - least
-
-    def before(self, square: Array, share: Array) -> Array:
-        """Greatest speed squared at the starts from which the ends can be met at one, (K,)."""
-        denominator = self.slope - self.width * self.offset
-        numerator = self.slope * square
-        numerator += self.width * share
-        bound = np.where(denominator > _LEAST, numerator / np.maximum(denominator, _LEAST), np.inf)
-        highest = bound.min(axis=0, initial=np.inf)
-        for tip in self.tips:
-            highest = np.minimum(highest, _before(tip, square, self.width, share))
-        return np.asarray(highest)
-
     def __getitem__(self, rows: Array | slice) -> CellLimits:
         first, second = self.tips
         tips = first[:, rows], second[:, rows]
         return CellLimits(self.width[rows], self.slope[:, rows], self.offset[:, rows], tips)
+
+
+@dataclass(frozen=True)
+class Ahead:
+    """The accelerations that K cells leave under a share of the limits, by the speed squared at their starts.
+
+    Attributes:
+        struts: (2, 2 C, K) c and b of the strips.
+        tips: (4, 2, K) of both ellipses Q, P R - Q^2, P by the square of the share, and P.
+        cells: (2, K) widths, and shares.
+    """
+
+    struts: Array
+    tips: Array
+    cells: Array
+
+    def __getitem__(self, rows: Array | slice) -> Ahead:
+        return Ahead(*(_of_cells(each, rows) for each in (self.struts, self.tips, self.cells)))
+
+    def bounds(self, square: Array) -> tuple[Array, Array]:
+        """Least and greatest acceleration at a speed squared, (K,) each.
+
+        At a speed that is too high, the least one is above the greatest.
+        """
+        offset, slope = self.struts
+        width, share = self.cells
+        turned = offset * square
+        greatest = share - turned
+        turned += share
+        greatest /= slope
+        turned /= slope
+        half, mixed, size = self._chords(square)
+        most = np.minimum(greatest.min(axis=0, initial=np.inf), ((half - mixed) / size).min(axis=0))
+        least = np.minimum(turned.min(axis=0, initial=np.inf), ((half + mixed) / size).min(axis=0))
+        return np.maximum(-least, -square / width), most
+
+    def room(self, square: Array) -> Array:
+        """Greatest less least acceleration at a speed squared, (K,)."""
+        least, greatest = self.bounds(square)
+        return greatest - least
+
+    def reached(self, square: Array) -> Array:
+        """Greatest speed squared at the ends by that at the starts, (K,)."""
+        offset, slope = self.struts
+        width, share = self.cells
+        room = offset * square
+        np.subtract(share, room, out=room)
+        room /= slope
+        half, mixed, size = self._chords(square)
+        half -= mixed
+        half /= size
+        greatest = np.minimum(room.min(axis=0, initial=np.inf), half.min(axis=0))
+        return np.asarray(square + width * greatest)
+
+    def _chords(self, square: Array) -> tuple[Array, Array, Array]:
+        """The ellipses at a speed squared: half of the width and the middle on the way back, by P; and P, (2, K) each.
+
+        The half is negative where the ellipse ends below that speed.
+        """
+        both, apart, power, size = self.tips
+        root = power - square**2 * apart
+        return np.sqrt(np.abs(root)) * np.sign(root), both * square, size
+
+
+@dataclass(frozen=True)
+class Behind:
+    """Speeds squared at the starts of K cells from which those at their ends can be met, under a share of the limits.
+
+    By an ellipse: the greatest x for which a = (x1 - x) / w, or one below it, is inside. With W = P - 2 w Q + w^2 R
+    this is a quadratic equation in x. Where x1 is so great that its root would fall again, the acceleration is less,
+    and the root that of the x1 at which it is greatest.
+
+    Attributes:
+        struts: (3, 2 C, K) of the strips b; w by the share, infinite where no speed is too great; and b - w c.
+        tips: (5, 2, K) of both ellipses that x1, P R - Q^2, W by the square of the share, P - w Q, and W.
+        width: (K,) of the cells.
+    """
+
+    struts: Array
+    tips: Array
+    width: Array
+
+    def __getitem__(self, rows: Array | slice) -> Behind:
+        return Behind(*(_of_cells(each, rows) for each in (self.struts, self.tips, self.width)))
+
+    def reached(self, square: Array) -> Array:
+        """Greatest speed squared at the starts by that at the ends, (K,)."""
+        slope, most, divisor = self.struts
+        bound = slope * square
+        bound += most
+        bound /= divisor
+        slowest, apart, power, mixed, whole = self.tips
+        end = np.minimum(square, slowest)
+        left = np.sqrt(np.maximum(power - end**2 * apart, 0.0))
+        of_tips = (end * mixed + self.width * left) / whole
+        return np.asarray(np.minimum(bound.min(axis=0, initial=np.inf), of_tips.min(axis=0)))
 
 
 def _end(tip: Array) -> Array:
@@ -191,31 +268,14 @@ def _end(tip: Array) -> Array:
     return np.asarray(1 / np.sqrt(np.maximum(two - both**2 / np.maximum(one, _LEAST), _LEAST)))
 
 
-def _chord(tip: Array, square: Array, share: Array | float) -> tuple[Array, Array, Array]:
-    """An ellipse at a speed squared: half of its width and its middle on the way back, both times P; and P, (K,) each.
-
-    The half is negative where the ellipse ends below that speed.
-    """
-    one, both, two = tip
-    size = np.maximum(one, _LEAST)
-    root = size * share**2 - square**2 * np.maximum(one * two - both**2, 0.0)
-    return np.sqrt(np.abs(root)) * np.sign(root), both * square, size
+def _of_cells(values: Array, rows: Array | slice) -> Array:
+    """Values (..., K) of some of the cells."""
+    return values[..., rows] if isinstance(rows, slice) else values.take(rows, axis=-1)
 
 
-def _before(tip: Array, square: Array, width: Array, share: Array) -> Array:
-    """The same by an ellipse: the greatest x for which a = (x1 - x) / w, or one below it, is inside.
-
-    With W = P - 2 w Q + w^2 R this is a quadratic equation in x. Where x1 is so great that its root would fall again,
-    the acceleration is less, and the root that of the x1 at which it is greatest.
-    """
-    one, both, two = tip
-    mixed = one - width * both
-    whole = np.maximum(mixed - width * (both - width * two), _LEAST)
-    apart = np.maximum(one * two - both**2, 0.0)
-    slow = np.maximum(mixed, 0.0) / np.sqrt(np.maximum(apart * (mixed**2 + width**2 * apart), _LEAST))
-    end = np.minimum(square, share * np.sqrt(whole) * slow)
-    left = np.sqrt(np.maximum(whole * share**2 - end**2 * apart, 0.0))
-    return np.asarray((end * mixed + width * left) / whole)
+def _apart(one: Array, both: Array, two: Array) -> Array:
+    """P R - Q^2 of an ellipse, (K,), not negative."""
+    return np.asarray(np.maximum(one * two - both**2, 0.0))
 
 
 def demand(limits: StationLimits, along: Array, square: Array, share: Array) -> Array:

@@ -16,7 +16,7 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.model import checkpoint, pieces
-from pkm_post.planning.cell_limits import CellLimits, StationLimits
+from pkm_post.planning.cell_limits import Ahead, Behind, CellLimits, StationLimits
 
 _CELLS_AT_ONCE = 8192
 """Cells in one pass: their working arrays stay in the processor's cache."""
@@ -65,20 +65,18 @@ class Steps:
 
     def reached(self, cell: Array | slice, square: Array, backward: bool) -> Array:
         """Greatest speed squared at one side of cells by that at the other: at the starts, or at the ends, (K,)."""
-        return _reached(CellLimits.of(self.s, self.limits, cell), square, self.share[cell], backward)
+        return self.limits_of(cell, backward).reached(square)
+
+    def limits_of(self, cell: Array | slice, backward: bool) -> Ahead | Behind:
+        """What leads from one side of cells to the other."""
+        limits, share = CellLimits.of(self.s, self.limits, cell), self.share[cell]
+        return limits.behind(share) if backward else limits.ahead(share)
 
     def reached_in_pieces(self, cell: Array, square: Array, backward: bool) -> Array:
         """The same of many cells, (K,), by speeds squared at all stations, (M,)."""
         known = square[1:] if backward else square[:-1]
         parts = (cell[rows] for rows in _pieces(len(cell)))
         return np.concatenate([self.reached(part, known[part], backward) for part in parts])
-
-
-def _reached(limits: CellLimits, square: Array, share: Array, backward: bool) -> Array:
-    """The same by the limits of the cells and their shares, (K,)."""
-    if backward:
-        return limits.before(square, share)
-    return np.asarray(square + limits.width * limits.greatest(square, share))
 
 
 def ceilings(s: Array, limits: StationLimits, cell: Array, share: Array) -> Array:
@@ -114,13 +112,13 @@ def _march(steps: Steps, square: Array, highest: Array, cell: Array, backward: b
     while len(cell):
         ahead = step * np.arange(min(_STEPS_AT_ONCE, 1 + _AHEAD // len(cell)))
         next_cells = np.clip(cell + ahead[:, None], 0, len(square) - 2).ravel()
-        limits, share = CellLimits.of(steps.s, steps.limits, next_cells), steps.share[next_cells]
+        limits = steps.limits_of(next_cells, backward)
         front, count = np.arange(len(cell)), len(cell)
         for first in range(0, len(next_cells), count):
             checkpoint()
             rows = slice(first, first + count) if len(front) == count else front + first
             near, far = (cell + 1, cell) if backward else (cell, cell + 1)
-            found = np.minimum(_reached(limits[rows], square[near], share[rows], backward), highest[far])
+            found = np.minimum(limits[rows].reached(square[near]), highest[far])
             on = _differs(found, square[far])
             square[far[on]] = found[on]
             cell, front = cell[on] + step, front[on]

@@ -37,7 +37,7 @@ def test_bounds_are_where_a_limit_is_reached(cells):
     highest = cell.highest(np.full(CELLS, 1e6))
     for share in (0.0, 0.3, 0.9):
         square = share * highest
-        least, greatest = cell.bounds(square, 1.0)
+        least, greatest = cell.ahead(1.0).bounds(square)
         assert np.all(least <= greatest)
         np.testing.assert_allclose(worst(limits, cell.width, square, greatest), 1.0, atol=ROUNDING * 100)
         stops = least <= -square / cell.width * (1 - ROUNDING)  # it stands still at the end of the cell
@@ -50,7 +50,7 @@ def test_above_the_highest_speed_no_acceleration_is_left(cells):
     highest = cell.highest(np.full(CELLS, 1e6))
     assert np.isfinite(highest).all()
     faster = 1.001 * highest
-    least, greatest = cell.bounds(faster, 1.0)
+    least, greatest = cell.ahead(1.0).bounds(faster)
     assert np.all(least > greatest)
     for share in np.linspace(-1, 3, 81):  # from standstill at the end of the cell on
         assert np.all(worst(limits, cell.width, faster, share / cell.width * faster) > 1 - ROUNDING)
@@ -61,11 +61,11 @@ def test_from_before_the_end_is_met_within_the_limits_and_from_no_greater_speed(
     highest, one = cell.highest(np.full(CELLS, 1e6)), np.ones(CELLS)
     for share in (0.0, 0.2, 1.0):
         end = share * highest
-        start = np.minimum(cell.before(end, one), highest)
-        least, _ = cell.bounds(start, 1.0)
+        start = np.minimum(cell.behind(one).reached(end), highest)
+        least, _ = cell.ahead(1.0).bounds(start)
         assert np.all(start + cell.width * least <= end + ROUNDING * (start + 1))
         faster = 1.001 * start
-        beyond = cell.bounds(faster, 1.0)
+        beyond = cell.ahead(1.0).bounds(faster)
         assert np.all((beyond[0] > beyond[1]) | (faster + cell.width * beyond[0] > end - ROUNDING))
 
 

@@ -61,9 +61,9 @@ def slow_profile(steps):
     share = steps.share[:1]
     x = np.where(steps.rest, 0.0, steps.highest())
     for i in range(count - 1, -1, -1):
-        x[i] = min(x[i], cells[i].before(x[i + 1 : i + 2], share)[0])
+        x[i] = min(x[i], cells[i].behind(share).reached(x[i + 1 : i + 2])[0])
     for i in range(count):
-        x[i + 1] = min(x[i + 1], x[i] + cells[i].width[0] * cells[i].greatest(x[i : i + 1], share)[0])
+        x[i + 1] = min(x[i + 1], cells[i].ahead(share).reached(x[i : i + 1])[0])
     return x
 
 
@@ -79,7 +79,7 @@ def test_every_cell_is_within_its_limits_and_at_one_of_them(seed):
     found = steps.fastest_profile()
     cell = CellLimits.of(steps.s, steps.limits, slice(None))
     along = np.diff(found) / cell.width
-    least, greatest = cell.bounds(found[:-1], steps.share)
+    least, greatest = cell.ahead(steps.share).bounds(found[:-1])
     size = 1e-6 * (np.abs(least) + np.abs(greatest))
     assert np.all((least - size <= along) & (along <= greatest + size))
     at_limit = (along >= greatest - size) | (along <= least + size)
