@@ -162,7 +162,7 @@ class _Grid:
         """The grid of a face with points at most this far apart along u and v."""
         surface = face_surface(face, flipped)
         u, v = np.linspace(surface.u.first, surface.u.last, 33), np.linspace(surface.v.first, surface.v.last, 33)
-        coarse = surface.at(*(each.ravel() for each in np.meshgrid(u, v, indexing="ij"))).point.reshape(33, 33, 3)
+        coarse = surface.points_at(*(each.ravel() for each in np.meshgrid(u, v, indexing="ij"))).reshape(33, 33, 3)
         rows, columns = (
             max(math.ceil(float(np.max(norm(np.diff(coarse, axis=axis)))) * 32 / spacing) + 1, _FEWEST)
             for axis in (0, 1)
@@ -220,7 +220,7 @@ class _Grid:
         v = surface.v.first + surface.v.width * (column[:, None, None] + share[None, :]) / (columns - 1)
         u, v = (each.ravel() for each in np.broadcast_arrays(u, v))
         held = surface.contains(u, v)
-        return surface.at(u[held], v[held]).point if held.any() else np.empty((0, 3))
+        return surface.points_at(u[held], v[held]) if held.any() else np.empty((0, 3))
 
     def border(self, distance: float) -> Array:
         """Points along the borders of a trimmed face, (K, 3), at most this far apart, with their ends."""

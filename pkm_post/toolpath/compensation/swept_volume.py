@@ -9,14 +9,29 @@ Distances in mm, negative inside.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pkm_post.geometry import Array, angle_between, dot, expand_counts, grid_cells, length_of, norm, take_rows, unit
+from pkm_post.geometry import (
+    Array,
+    Pairs,
+    angle_between,
+    between_rows,
+    dot,
+    expand_counts,
+    grid_cells,
+    groups_of,
+    length_of,
+    norm,
+    pairs_together,
+    take_rows,
+    unit,
+)
 from pkm_post.toolpath.compensation.cutter import Cutter, CutterProfile
 
 _BLOCK = 16
@@ -173,8 +188,8 @@ class SweptVolume:
         count = np.maximum(1, np.ceil(way / (_STEP * cutter.radius)).astype(np.int64))
         before, number = expand_counts(count)
         share = number / count[before]
-        tip = np.vstack([_interpolated(tips, before, share).T, tips[-1:]])
-        axis = unit(np.vstack([_interpolated(axes, before, share).T, axes[-1:]]))
+        tip = np.vstack([between_rows(tips.T, before, share).T, tips[-1:]])
+        axis = unit(np.vstack([between_rows(axes.T, before, share).T, axes[-1:]]))
         moved, turned = norm(np.diff(tip, axis=0)), angle_between(axis[:-1], axis[1:])
         bend = reach * turned**2 / 8.0 + moved * turned / 4.0
         return cls(tip, axis, np.minimum(before + 1, rows - 1), moved + reach * turned, bend, profile, within)
@@ -194,23 +209,26 @@ class SweptVolume:
         """
         best, row = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.int64)
         done = 0
-        for rows in grid_cells(points, _POINTS_PER_CELL):
-            best[rows], row[rows] = self._in_cell(points[rows], tolerance)
+        cells = (pairs for rows in grid_cells(points, _POINTS_PER_CELL) for pairs in self._in_cell(points, rows))
+        for rows, point, step in pairs_together(cells):
+            if len(point):
+                best[rows], row[rows] = self._search(points[rows], point, step, tolerance)
             done += len(rows)
             if progress is not None:
                 progress(done / len(points))
         return best, row
 
-    def _in_cell(self, points: Array, tolerance: float) -> tuple[Array, Array]:
-        """The distances and rows of points in one cell."""
-        best, row = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.int64)
+    def _in_cell(self, every: Array, rows: Array) -> Iterator[Pairs]:
+        """Pairs of a point of a cell, which has these rows, and a step that may be the nearest to it."""
+        points = every[rows]
         near_all = self._candidate_steps(points)
         if not len(near_all):
-            return best, row
-        order, group, middle = _grouped(points)
+            yield rows, near_all, near_all
+            return
+        order, group, middle = groups_of(points, _POINTS_TOGETHER)
         begin, least = self._step_distances(middle, near_all)
         nearest = near_all[begin.argmin(axis=1)]
-        known = self._to_pose(points[order], nearest[group], np.zeros(len(order)))
+        known = self._to_begin(points[order], nearest[group])
         limit = np.minimum(known, self.within) + norm(points[order] - middle[group]) + _ROUNDING
         near = least <= np.maximum.reduceat(limit, np.flatnonzero(np.diff(group, prepend=-1)))[:, None]
         size = max(1, _AT_ONCE // max(1, int(near.sum(axis=1).max())))
@@ -218,24 +236,25 @@ class SweptVolume:
             part = slice(start, start + size)
             point, column = np.nonzero(near[group[part]])
             held = least[group[part][point], column] <= limit[part][point]
-            point, column = point[held], column[held]
-            if len(point):
-                rows = order[part]
-                best[rows], row[rows] = self._search(points[rows], point, near_all[column], tolerance)
-        return best, row
+            yield rows[order[part]], point[held], near_all[column[held]]
 
     def _candidate_steps(self, points: Array) -> Array:
         """Candidate steps for the nearest to one of the points, (K,): those of blocks that are near enough."""
-        first = np.arange(0, len(self.travel), _BLOCK)
-        last = np.minimum(first + _BLOCK, len(self.travel))
-        half = (first + last) // 2
-        way = np.append(0.0, np.cumsum(self.travel))
-        span = np.maximum(way[last] - way[half], way[half] - way[first])
+        half, span, size = self._blocks
         middle = (points.min(axis=0) + points.max(axis=0)) / 2
         radius = float(norm(points - middle).max())
         distance = self._to_poses(middle[None], half)[0]
         limit = min(float(distance.min()) + radius, self.within)
-        return np.flatnonzero(np.repeat(distance - radius - span <= limit, last - first))
+        return np.flatnonzero(np.repeat(distance - radius - span <= limit, size))
+
+    @cached_property
+    def _blocks(self) -> tuple[Array, Array, Array]:
+        """Of blocks of steps the one in the middle, a bound of the cutter's travel from there, and their number."""
+        first = np.arange(0, len(self.travel), _BLOCK)
+        last = np.minimum(first + _BLOCK, len(self.travel))
+        half = (first + last) // 2
+        way = np.append(0.0, np.cumsum(self.travel))
+        return half, np.maximum(way[last] - way[half], way[half] - way[first]), last - first
 
     def _step_distances(self, points: Array, steps: Array) -> tuple[Array, Array]:
         """Distances of points where steps begin, and the least that they can be within the steps, (N, K) each."""
@@ -280,7 +299,7 @@ class SweptVolume:
 
     def _to_ends(self, points: Array, point: Array, step: Array) -> tuple[Array, Array]:
         """Distances of points to the cutter where steps begin and where they end, (K,) each."""
-        begin = self._to_pose(take_rows(points, point), step, np.zeros(len(step)))
+        begin = self._to_begin(take_rows(points, point), step)
         end = np.append(begin[1:], 0.0)
         follows = np.append((point[1:] == point[:-1]) & (step[1:] == step[:-1] + 1), False)
         alone = np.flatnonzero(~follows)
@@ -308,28 +327,24 @@ class SweptVolume:
         square = dot(moved, moved)[:, None] - 2.0 * moved @ tip.T + dot(tip, tip)
         return self.profile.distance(np.sqrt(np.maximum(square - level**2, 0.0)), level)
 
+    def _to_begin(self, points: Array, steps: Array) -> Array:
+        """Distances of points (N, 3), each to the cutter where its own step begins, (N,)."""
+        return self._to_placed(points, *(np.take(column, steps, axis=1) for column in self._columns))
+
     def _to_pose(self, points: Array, steps: Array, share: Array) -> Array:
         """Distances of points (N, 3), each to the cutter at a share of its own step, (N,)."""
-        x, y, z = points.T - _interpolated(self.tip, steps, share)
-        u, v, w = _interpolated(self.axis, steps, share)
+        return self._to_placed(points, *(between_rows(column, steps, share) for column in self._columns))
+
+    def _to_placed(self, points: Array, tip: Array, axis: Array) -> Array:
+        """Distances of points (N, 3), each to the cutter at its own tip and axis, (3, N), of any length."""
+        x, y, z = points.T - tip
+        u, v, w = axis
         length = length_of(u, v, w)
         level = (x * u + y * v + z * w) / length
         along = level / length
         return self.profile.distance(length_of(x - along * u, y - along * v, z - along * w), level)
 
-
-def _grouped(points: Array) -> tuple[Array, Array, Array]:
-    """Points in groups that are close together: their order, the group of each, and the middle of each group."""
-    groups = grid_cells(points, _POINTS_TOGETHER)
-    sizes = [len(rows) for rows in groups]
-    order = np.concatenate(groups)
-    starts = np.cumsum([0, *sizes[:-1]])
-    low, high = (of.reduceat(points[order], starts) for of in (np.minimum, np.maximum))
-    return order, np.repeat(np.arange(len(groups)), sizes), (low + high) / 2.0
-
-
-def _interpolated(vectors: Array, rows: Array, share: Array) -> Array:
-    """Vectors between those of rows and of the rows behind them, (3, N), from (M, 3)."""
-    start, end = take_rows(vectors, rows).T, take_rows(vectors, rows + 1).T
-    moved: Array = start + share * (end - start)
-    return moved
+    @cached_property
+    def _columns(self) -> tuple[Array, Array]:
+        """Tips and axes, (3, M + 1) each."""
+        return np.ascontiguousarray(self.tip.T), np.ascontiguousarray(self.axis.T)

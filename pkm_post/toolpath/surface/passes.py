@@ -103,7 +103,7 @@ def _nodes(surface: Surface, v: Array, cutter: Cutter) -> int:
     """Number of points of a pass for a spacing of half a cutter radius."""
     u, places = np.linspace(surface.u.first, surface.u.last, 65), v[:: max(len(v) // 16, 1)]
     all_u, all_v = (each.ravel() for each in np.meshgrid(u, places))
-    points = surface.at(all_u, all_v).point.reshape(len(places), len(u), 3)
+    points = surface.points_at(all_u, all_v).reshape(len(places), len(u), 3)
     longest = float(np.max(np.sum(norm(np.diff(points, axis=1)), axis=1)))
     wanted = math.ceil(longest / (0.5 * (cutter.radial_offset + cutter.corner_radius))) + 1
     return int(np.clip(wanted, *_NODES))
@@ -178,12 +178,12 @@ def link_passes(surface: Surface, path: ContactPath, longest: float, zigzag: boo
     begin = np.concatenate([[0], first])[:-1]
     share = np.linspace(0.0, 1.0, _LOOKS)
     u, v = ((column[last, None] + share * (column[first] - column[last])[:, None]) for column in (path.u, path.v))
-    points = surface.at(u.ravel(), v.ravel()).point.reshape(len(last), _LOOKS, 3)
+    points = surface.points_at(u.ravel(), v.ravel()).reshape(len(last), _LOOKS, 3)
     length = np.sum(norm(np.diff(points, axis=1)), axis=1)
     held = surface.contains(u.ravel(), v.ravel()).reshape(len(last), _LOOKS).all(axis=1)
     joins = (np.abs(path.number[first] - path.number[last]) == 1) & held & (length <= longest)
     if not zigzag:
-        loop = norm(surface.at(path.u[begin], path.v[begin]).point - points[:, 0]) < _SAME
+        loop = norm(surface.points_at(path.u[begin], path.v[begin]) - points[:, 0]) < _SAME
         joins &= loop
     lifts = np.zeros(max(len(path) - 1, 0), dtype=bool)
     lifts[last[~joins]] = True
