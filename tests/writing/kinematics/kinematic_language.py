@@ -7,11 +7,14 @@ variable holds a number, or an array with one for each pose; branches and loops 
 nothing has set is an error, and so is any line that is not known.
 """
 
+import operator
 import re
+from functools import cache
 
 import numpy as np
 
 _TOKEN = re.compile(r"\s*(?:(\$[0-9A-Fa-f]+|\d+(?:\.\d+)?)|([A-Za-z]\w*(?:\[\d+\])?(?:\.\w+)?)|(&&|==|[-+*/()<>=&,]))")
+_OPERATORS = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": np.divide}
 _OPENING = {"turbo": r"OPEN (FORWARD|INVERSE)", "power": r"open (forward|inverse)"}
 _COMMENT = {"turbo": ";", "power": "//"}
 DOUBLE, TURBO = 53, 35
@@ -141,55 +144,7 @@ class Run:
             result &= {"<": np.less, ">": np.greater}.get(sign, np.equal)(left, right)
         return result
 
-    def value(self, text):
-        self.tokens, place = [], 0
-        text = text.strip()
-        while place < len(text):
-            token = _TOKEN.match(text, place)
-            if token is None:
-                raise SyntaxError(text)
-            self.tokens.append(token[0].strip())
-            place = token.end()
-        found = self.sum()
-        if self.tokens:
-            raise SyntaxError(text)
-        return found
-
-    def sum(self):
-        found = self.product()
-        while self.tokens and self.tokens[0] in "+-":
-            sign, other = self.tokens.pop(0), self.product()
-            found = self.controller.rounded(found + other if sign == "+" else found - other)
-        return found
-
-    def product(self):
-        found = self.factor()
-        while self.tokens and self.tokens[0] in "*/":
-            sign, other = self.tokens.pop(0), self.factor()
-            found = self.controller.rounded(found * other if sign == "*" else np.divide(found, other))
-        return found
-
-    def factor(self):
-        token = self.tokens.pop(0)
-        if token == "(":
-            found = self.sum()
-            assert self.tokens.pop(0) == ")"
-            return found
-        if token[0] == "$":
-            return float(int(token[1:], 16))
-        if token[0].isdigit():
-            return self.controller.rounded(float(token))
-        if not token[0].isalpha():
-            raise SyntaxError(token)
-        if self.tokens and self.tokens[0] == "(":
-            return self.controller.rounded(self.function(token))
-        return self.values[token]
-
-    def function(self, name):
-        self.tokens.pop(0)
-        arguments = [self.sum()]
-        while self.tokens.pop(0) == ",":
-            arguments.append(self.sum())
+    def function(self, name, *arguments):
         if self.controller.kind == "turbo":
             assert self.values["I15"] == 0, "the file says whether angles are in degrees"
             if name == "ATAN2":
@@ -198,6 +153,77 @@ class Run:
         if name == "atan2d":
             return np.degrees(np.arctan2(*arguments))
         return {"sind": sine, "cosd": cosine, "sqrt": np.sqrt, "abs": np.abs}[name](*arguments)
+
+    def value(self, text):
+        return _compiled(text)(self)
+
+
+@cache
+def _compiled(text):
+    """A function that gives the value of an expression in a run; each expression is parsed once for all runs."""
+    tokens, place, text = [], 0, text.strip()
+    while place < len(text):
+        token = _TOKEN.match(text, place)
+        if token is None:
+            raise SyntaxError(text)
+        tokens.append(token[0].strip())
+        place = token.end()
+    found = _Compiler(tokens).sum()
+    if tokens:
+        raise SyntaxError(text)
+    return found
+
+
+class _Compiler:
+    """Makes functions of runs from the tokens of an expression, and takes these away."""
+
+    def __init__(self, tokens):
+        self.tokens = tokens
+
+    def sum(self):
+        return self.chain("+-", self.product)
+
+    def product(self):
+        return self.chain("*/", self.factor)
+
+    def chain(self, signs, operand):
+        """Operands from left to right, each result rounded."""
+        first, others = operand(), []
+        while self.tokens and self.tokens[0] in signs:
+            others.append((_OPERATORS[self.tokens.pop(0)], operand()))
+        if not others:
+            return first
+
+        def evaluate(run):
+            found = first(run)
+            for combine, other in others:
+                found = run.controller.rounded(combine(found, other(run)))
+            return found
+
+        return evaluate
+
+    def factor(self):
+        token = self.tokens.pop(0)
+        if token == "(":
+            found = self.sum()
+            assert self.tokens.pop(0) == ")"
+            return found
+        if token[0] == "$":
+            return lambda _: float(int(token[1:], 16))
+        if token[0].isdigit():
+            return lambda run: run.controller.rounded(float(token))
+        if not token[0].isalpha():
+            raise SyntaxError(token)
+        if self.tokens and self.tokens[0] == "(":
+            return self.function(token)
+        return lambda run: run.values[token]
+
+    def function(self, name):
+        self.tokens.pop(0)
+        arguments = [self.sum()]
+        while self.tokens.pop(0) == ",":
+            arguments.append(self.sum())
+        return lambda run: run.controller.rounded(run.function(name, *(each(run) for each in arguments)))
 
 
 def sine(degrees):
