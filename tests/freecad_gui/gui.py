@@ -116,10 +116,19 @@ def tab_of(form, text):
     return index
 
 
+def draw_views(are_drawn):
+    """Draw the 3D views at each change, which the processor does here, or leave them as they are."""
+    FreeCADGui.getMainWindow().centralWidget().setUpdatesEnabled(are_drawn)
+
+
 def picture(name):
-    """Keep a picture of the whole screen; whether it could be saved."""
+    """Keep a picture of the whole screen with its 3D views; whether it could be saved."""
+    drawn_before = FreeCADGui.getMainWindow().centralWidget().updatesEnabled()
+    draw_views(True)
     settle()
-    return QtGui.QGuiApplication.primaryScreen().grabWindow(0).save(str(FOLDER / name))
+    saved = QtGui.QGuiApplication.primaryScreen().grabWindow(0).save(str(FOLDER / name))
+    draw_views(drawn_before)
+    return saved
 
 
 def picture_of_all(name):
@@ -169,13 +178,14 @@ def job_on(name, shape, feed="0 mm/min"):
     return solid, job
 
 
-def main():
-    """Run the steps of the scene when the window stands, then end FreeCAD."""
-    QtCore.QTimer.singleShot(1500, _run)
+def main(are_drawn=False):
+    """Run the steps of the scene when the window stands, then end FreeCAD; views are drawn for pictures, or always."""
+    QtCore.QTimer.singleShot(1500, lambda: _run(are_drawn))
 
 
-def _run():
+def _run(are_drawn):
     results = {}
+    draw_views(are_drawn)
     for function in STEPS:
         try:
             results[function.__name__] = function()

@@ -2,8 +2,7 @@
 """Every panel, dialog, dock, page of preferences and menu of the workbench: a picture of each, and what does not fit.
 
 Language, theme, scale and size of the screen are those with which FreeCAD was started. A step returns what
-``window_faults`` finds, and the least width of the window. Only with PKM_GALLERY are pictures of the screen taken,
-and is the 3D view drawn at 200 %, where the processor takes long for it.
+``window_faults`` finds, and the least width of the window. Only with PKM_GALLERY are pictures of the screen taken.
 """
 
 import os
@@ -94,8 +93,6 @@ def press_post(form):
 
 @step
 def start_page_has_the_example():
-    is_drawn = IS_GALLERY or os.environ["QT_SCALE_FACTOR"] == "1"
-    FreeCADGui.getMainWindow().centralWidget().setUpdatesEnabled(is_drawn)
     for button in FreeCADGui.getMainWindow().findChildren(QtWidgets.QPushButton):
         if button.isVisible() and button.parentWidget().metaObject().className() == "StartGui::FirstStartWidget":
             QtCore.QTimer.singleShot(0, button.click)  # Done, of the questions at the first start; it goes with them

@@ -200,4 +200,4 @@ def _shown_height(machine):
     return tip.z + machine.ToolLength.Value + machine.ViewObject.Proxy.scene.machine.spindle_nose
 
 
-main()
+main(are_drawn=True)

@@ -352,4 +352,4 @@ def program_is_posted():
     }
 
 
-main()
+main(are_drawn=True)
