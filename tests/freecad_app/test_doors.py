@@ -21,7 +21,7 @@ import pkm_post
 from pkm_post.cli import main
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_settings import settings_of
-from pkm_post.freecad_app.job_setup import placed_job, prepared_job, study_job
+from pkm_post.freecad_app.job_setup import placed_job, prepared_job, setup_of, study_job
 from pkm_post.freecad_app.machine_object import create_machine
 from pkm_post.freecad_app.post_job import post_job
 from pkm_post.machine import find_machine, machine_named
@@ -77,23 +77,22 @@ def contents(folder):
 
 
 MADE = {}
-"""What the pipeline made of the job of the fixture, the same in all tests, by arguments in it and arguments given."""
+"""What the pipeline made of the job of the fixture, the same in all tests, by the arguments."""
 
 
 def by_pipeline(job, arguments, folder):
-    """What these arguments and no others make of a job."""
-    said = job.PostProcessorArgs, arguments
+    """What these arguments and no others make of a job; arguments that say the same make the same."""
+    chosen = parse_text(arguments)
+    said = repr(chosen)
     if said not in MADE:
-        MADE[said] = made_by_pipeline(job, arguments, folder)
+        MADE[said] = made_by_pipeline(job, chosen, folder)
     return MADE[said]
 
 
-def made_by_pipeline(job, arguments, folder):
-    chosen = parse_text(arguments)
+def made_by_pipeline(job, chosen, folder):
     program, _ = read_job(job, tool_lengths_from(chosen))
     machine, _ = machine_named(chosen.machine)
-    options = replace(options_from(chosen), setup=prepared_job(job, settings_of(job)).options.setup)
-    post(program, machine, folder / "part.pmc", options)
+    post(program, machine, folder / "part.pmc", replace(options_from(chosen), setup=setup_of(job)))
     return contents(folder)
 
 
