@@ -52,12 +52,14 @@ def face_surface(face: Any, flipped: bool = False) -> Surface:
     closed_u = _coincide(face, np.full(9, first_u), v, np.full(9, last_u), v)
     closed_v = _coincide(face, u, np.full(9, first_v), u, np.full(9, last_v))
     by_poles = _from_poles(face)
+    side = -1.0 if flipped else 1.0
     return Surface(
-        _oriented(by_poles or _from_occ(face), -1.0 if flipped else 1.0),
+        _oriented(by_poles or _from_occ(face), side),
         _everywhere if is_untrimmed(face) else _trimmed(face),
         ParameterRange(first_u, last_u, closed_u),
         ParameterRange(first_v, last_v, closed_v),
-        None if by_poles else _points_from_occ(face),
+        None if by_poles else _rows_from_occ(face.valueAt),
+        None if by_poles else _rows_from_occ(face.normalAt, side),
     )
 
 
@@ -108,9 +110,9 @@ def _from_occ(face: Any) -> Evaluate:
     return evaluate
 
 
-def _points_from_occ(face: Any) -> Callable[[Array, Array], Array]:
-    """Points alone from OpenCASCADE."""
-    return lambda u, v: rows_of([face.valueAt(*pair) for pair in zip(u.tolist(), v.tolist(), strict=True)])
+def _rows_from_occ(at: Callable[[float, float], Any], side: float = 1.0) -> Callable[[Array, Array], Array]:
+    """Points alone, or normals alone, multiplied by 1 or -1, from OpenCASCADE."""
+    return lambda u, v: side * rows_of([at(*pair) for pair in zip(u.tolist(), v.tolist(), strict=True)])
 
 
 def _from_poles(face: Any) -> Evaluate | None:

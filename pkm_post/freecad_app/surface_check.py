@@ -175,8 +175,7 @@ class _Grid:
             for low, (span, count), share in zip((each[:-1, :-1].ravel() for each in grid), spans, _SPREAD, strict=True)
         ]
         u, v = (np.append(each.ravel(), more) for each, more in zip(grid, inner, strict=True))
-        samples = surface.at(u, v)
-        return cls(face, surface, (rows, columns), samples.point, samples.normal, surface.contains(u, v))
+        return cls(face, surface, (rows, columns), *surface.oriented_at(u, v), surface.contains(u, v))
 
     def _corners(self, values: Array) -> Array:
         """Values of the grid at the four corners of each cell, (4, C, ...), in their order round it."""

@@ -73,6 +73,10 @@ def test_trimmed_faces_hold_what_opencascade_says(made):
         assert 0 < sum(expected) < len(expected)
         assert np.array_equal(surface.inside(u, v), expected)
         assert surface.points_at(u, v) == pytest.approx(surface.at(u, v).point, abs=1e-12)
+        for turned, pair in ((surface, (u, v)), (face_surface(face, True), (u, v)), (surface.swapped(), (v, u))):
+            point, normal = turned.oriented_at(*pair)
+            assert (point == turned.at(*pair).point).all()
+            assert (normal == turned.at(*pair).normal).all() and (normal == turned.normals_at(*pair)).all()
 
 
 def bspline_faces():

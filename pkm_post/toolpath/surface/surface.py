@@ -77,6 +77,7 @@ class Surface:
         u: range of the first parameter.
         v: range of the second one.
         points: from u (N,) and v (N,) to points alone, (N, 3), where that is cheaper.
+        normals: the same for outward unit normals.
     """
 
     evaluate: Callable[[Array, Array], tuple[Array, Array, Array, Array]]
@@ -84,6 +85,7 @@ class Surface:
     u: ParameterRange
     v: ParameterRange
     points: Callable[[Array, Array], Array] | None = None
+    normals: Callable[[Array, Array], Array] | None = None
 
     def at(self, u: Array, v: Array) -> SurfaceSamples:
         """The surface at columns of parameters; closed ones may exceed their range."""
@@ -93,6 +95,16 @@ class Surface:
         """Points of the surface alone, (N, 3) in mm."""
         pair = self.u.normalise(u), self.v.normalise(v)
         return self.points(*pair) if self.points else self.evaluate(*pair)[0]
+
+    def normals_at(self, u: Array, v: Array) -> Array:
+        """Outward unit normals alone, (N, 3)."""
+        pair = self.u.normalise(u), self.v.normalise(v)
+        return self.normals(*pair) if self.normals else self.evaluate(*pair)[1]
+
+    def oriented_at(self, u: Array, v: Array) -> tuple[Array, Array]:
+        """Points and outward unit normals without derivatives, (N, 3) each."""
+        pair = self.u.normalise(u), self.v.normalise(v)
+        return (self.points(*pair), self.normals(*pair)) if self.points and self.normals else self.evaluate(*pair)[:2]
 
     def contains(self, u: Array, v: Array) -> Array:
         """Pairs that belong to the face, (N,)."""
@@ -106,14 +118,19 @@ class Surface:
             point, normal, along_u, along_v = self.evaluate(v, u)
             return point, normal, along_v, along_u
 
-        points = self.points
         return Surface(
             evaluate,
             lambda u, v: self.inside(v, u),
             self.v,
             self.u,
-            (lambda u, v: points(v, u)) if points else None,
+            _exchanged(self.points),
+            _exchanged(self.normals),
         )
+
+
+def _exchanged(columns: Callable[[Array, Array], Array] | None) -> Callable[[Array, Array], Array] | None:
+    """The same columns with u and v exchanged."""
+    return None if columns is None else lambda u, v: columns(v, u)
 
 
 @dataclass(frozen=True)
@@ -182,8 +199,8 @@ def normal_curvatures(surface: Surface, u: Array, v: Array, samples: SurfaceSamp
         samples: the surface there.
         direction: (N, 3) tangent directions of any length; NaN gives NaN.
     """
-    normal_u = _change_of_normal(surface.u, u, lambda moved: surface.at(moved, v).normal)
-    normal_v = _change_of_normal(surface.v, v, lambda moved: surface.at(u, moved).normal)
+    normal_u = _change_of_normal(surface.u, u, lambda moved: surface.normals_at(moved, v))
+    normal_v = _change_of_normal(surface.v, v, lambda moved: surface.normals_at(u, moved))
     share_u, share_v = _components(samples, direction)
     change = share_u[:, None] * normal_u + share_v[:, None] * normal_v
     curvature: Array = dot(change, direction) / dot(direction, direction)
