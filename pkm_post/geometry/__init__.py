@@ -23,7 +23,7 @@ from pkm_post.geometry.cylinders import (
     nearest_on_triangle,
     separation,
 )
-from pkm_post.geometry.distances import segment_to_box, segment_to_cylinder, segment_to_segment
+from pkm_post.geometry.distances import point_to_segment, segment_to_box, segment_to_cylinder, segment_to_segment
 from pkm_post.geometry.orientation import (
     along,
     along_rates,
@@ -116,6 +116,7 @@ __all__ = [
     "pairs_together",
     "plane_feet",
     "points_within",
+    "point_to_segment",
     "segment_to_box",
     "segment_to_cylinder",
     "segment_to_segment",

@@ -31,10 +31,21 @@ def segment_to_segment(start: Array, end: Array, other_start: Array, other_end: 
     """
     d, e, r = end - start, other_end - other_start, start - other_start
     dd, ee, de, dr, er = dot(d, d), dot(e, e), dot(d, e), dot(d, r), dot(e, r)
-    s = np.clip(_quotient(de * er - dr * ee, dd * ee - de * de), 0.0, 1.0)
-    t = np.clip(_quotient(de * s + er, ee), 0.0, 1.0)
-    s = np.clip(_quotient(de * t - dr, dd), 0.0, 1.0)
+    s = _share(de * er - dr * ee, dd * ee - de * de)
+    t = _share(de * s + er, ee)
+    s = _share(de * t - dr, dd)
     return norm(r + s[..., None] * d - t[..., None] * e)
+
+
+def point_to_segment(point: Array, start: Array, end: Array) -> Array:
+    """Distances of points (..., 3) from segments between ``start`` and ``end`` (..., 3)."""
+    e, r = end - start, point - start
+    return norm(r - _share(dot(e, r), dot(e, e))[..., None] * e)
+
+
+def _share(dividend: Array, divisor: Array) -> Array:
+    """Quotients between 0 and 1."""
+    return np.asarray(np.minimum(np.maximum(_quotient(dividend, divisor), 0.0), 1.0))
 
 
 def point_to_box(point: Array, lowest: Array, highest: Array) -> Array:
@@ -115,5 +126,5 @@ def _nearest(start: Array, end: Array, away: Callable[[Array], Array]) -> Array:
 
 def _quotient(dividend: Array, divisor: Array) -> Array:
     """Quotients, 0 where the divisor is not above 0."""
-    dividend, divisor = np.broadcast_arrays(dividend, divisor)
-    return np.divide(dividend, divisor, out=np.zeros(dividend.shape), where=divisor > 0)
+    quotient = np.zeros(np.broadcast(dividend, divisor).shape)
+    return np.divide(dividend, divisor, out=quotient, where=divisor > 0)

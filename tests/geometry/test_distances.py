@@ -7,6 +7,7 @@ import pytest
 from pkm_post.geometry.distances import (
     point_to_box,
     point_to_cylinder,
+    point_to_segment,
     segment_to_box,
     segment_to_cylinder,
     segment_to_segment,
@@ -55,6 +56,16 @@ def test_segments_whose_distance_is_known(other, distance):
     c, d = np.array(other, float)
     assert segment_to_segment(start, end, c, d) == pytest.approx(distance, abs=1e-12)
     assert segment_to_segment(d, c, end, start) == pytest.approx(distance, abs=1e-12)
+
+
+def test_points_against_points_of_the_segment():
+    rng = np.random.default_rng(6)
+    (start, end), (point, _) = segments(rng), segments(rng)
+    point[:2], end[2:4] = end[:2], start[2:4]  # at an end, and from a segment that is a point
+    found = point_to_segment(point, start, end)
+    grid = np.linalg.norm(points_on(start, end) - point[:, None], axis=-1).min(axis=1)
+    assert np.all(found <= grid + 1e-9) and np.all(found >= grid - step_of(start, end) - 1e-9)
+    np.testing.assert_array_equal(found, segment_to_segment(point, point, start, end))
 
 
 def test_almost_parallel_segments_are_off_by_their_angle_at_most():

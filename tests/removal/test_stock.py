@@ -2,6 +2,8 @@
 """What tools take from a stock has the volume that geometry gives, upright and tilted."""
 
 import math
+from copy import deepcopy
+from functools import cache
 
 import numpy as np
 import pytest
@@ -31,9 +33,15 @@ CUTTERS = {
 }
 
 
+@cache
+def whole_block(step):
+    """The block before anything is cut, made once; nobody cuts this one."""
+    return Stock.of(box(*BLOCK), step)
+
+
 def after(step, tips, axis, shape):
     """The block when a tool was in some poses."""
-    stock = Stock.of(box(*BLOCK), step)
+    stock = deepcopy(whole_block(step))
     tips = np.atleast_2d(tips).astype(float)
     for _ in stock.cut(tips, np.broadcast_to(axis, tips.shape), shape):
         pass
@@ -42,7 +50,7 @@ def after(step, tips, axis, shape):
 
 def taken(step, *cut):
     """Volume that the tool takes; the edges of the block itself are known to a thousandth of it."""
-    whole = Stock.of(box(*BLOCK), step).volume
+    whole = whole_block(step).volume
     assert whole == pytest.approx(40 * 30 * 20, rel=0.003)
     return whole - after(step, *cut).volume
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, segment_to_segment
+from pkm_post.geometry import Array, point_to_segment, segment_to_segment
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def _parents(nodes: Chords) -> Chords:
     right = nodes.rows(np.minimum(np.arange(len(left)) * 2 + 1, len(nodes) - 1))
     start, end = left.start, right.end
     corners = np.stack([left.start, left.end, right.start, right.end])
-    bow = np.max(segment_to_segment(corners, corners, start, end), axis=0) if len(nodes) else left.deviation
+    bow = np.max(point_to_segment(corners, start, end), axis=0) if len(nodes) else left.deviation
     return Chords(
         start=start,
         end=end,
