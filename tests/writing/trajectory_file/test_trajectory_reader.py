@@ -324,9 +324,9 @@ MUTATIONS = 2500
 def test_thousands_of_damaged_files_of_each_sort_are_reported_or_sound(path, sound, damage, seal):
     """All in all 15,000: without the right checksums none is taken, and with them only what violates no invariant."""
     rng = np.random.default_rng(DAMAGES.index((damage, seal)))
-    outcomes = []
+    outcomes, later = [], newer(sound)
     for turn in range(MUTATIONS):
-        content = damage(rng, newer(sound) if turn % 4 == 3 else sound)
+        content = damage(rng, later if turn % 4 == 3 else sound)
         content = sealed(content) if seal and len(content) >= HEADER.itemsize else content
         trajectory, diagnostics = decode(content, "damaged.pkmt")
         if trajectory is None:
