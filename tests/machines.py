@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Machines for the tests: the assumed example, LinuxCNC's genhexkins default, and the Nategh-Agheli hexapod."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from pkm_post.model import Machine, ToolChange
 INCH = 25.4
 LEAD = 10.0
 """mm: lead of the screws of ``screwed``."""
+JERKS = re.compile(r"^(?:tip_)?jerk = .*\n", re.MULTILINE)
 
 
 def machine(base, platform, reach=0.0, stroke=(0.0, np.inf), characteristic_length=200.0) -> Machine:
@@ -34,10 +36,25 @@ def ring(radius, angles_deg, z):
 
 
 def example() -> Machine:
-    """The assumed example machine, from its ring formulas; platform plane 80 mm above the spindle nose."""
+    """The assumed example machine, from its ring formulas, without limits of jerk.
+
+    Its platform plane is 80 mm above the spindle nose.
+    """
     base = ring(600, [12, 108, 132, 228, 252, 348], 1400)
     platform = ring(200, [48, 72, 168, 192, 288, 312], 0)
     return machine(base, platform, reach=80.0, stroke=(750.0, 1250.0))
+
+
+def without_jerk(stated: Machine) -> Machine:
+    """A machine whose plans are the fastest without limits of jerk; for what is tested of these plans."""
+    return replace(stated, strut_jerk=np.inf, tip_jerk=np.inf)
+
+
+def text_without_jerk(text=None) -> str:
+    """The text of a machine file, by default the example's, without limits of jerk."""
+    text, count = JERKS.subn("", text or find_machine("example_6tps").read_text(encoding="utf-8"))
+    assert count == 2
+    return text
 
 
 def genhexkins() -> Machine:

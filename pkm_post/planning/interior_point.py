@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.geometry import Array
+from pkm_post.model import checkpoint
 from pkm_post.planning.banded import BandedFactor
 from pkm_post.planning.motion_limits import Limits
 
@@ -174,6 +175,7 @@ def fastest(weight: Array, limits: tuple[Limits, ...], start: Solution, enough: 
     rows = [_Rows.of(one) for one in limits]
     now = Solution(start.unknowns, tuple(one.lifted() for one in start.states))
     for _ in range(_MOST_STEPS):
+        checkpoint()
         states, padded = now.states or (None,) * len(limits), _padded(now.unknowns)
         linear = [_Linear.of(one, state, padded, barrier) for one, state in zip(rows, states, strict=True)]
         gap = sum(float(one.state.slack @ one.state.multiplier) for one in linear)

@@ -15,12 +15,12 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.model import Machine
+from pkm_post.model import Machine, checkpoint
 from pkm_post.planning.jerk_demands import Demands, Steady
 from pkm_post.planning.jerk_search import TOO_FAST, Iterate, NotFoundError
 from pkm_post.planning.jerk_start import first_places, start, with_middles
 from pkm_post.planning.jerk_windows import Places, Window, windows
-from pkm_post.planning.speed_profile import Stations
+from pkm_post.planning.speed_profile import Stations, inserted
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import columns_in_workers, in_workers
 
@@ -66,6 +66,7 @@ def jerk_limited(path: ToolPath, marks: Stations, machine: Machine) -> JerkLimit
 def _places(path: ToolPath, marks: Stations, machine: Machine) -> Places:
     """Places to begin with, and what is known of the motion."""
     s, rest = first_places(marks)
+    checkpoint()
 
     def allowed(cells: slice) -> tuple[Array, ...]:
         first, last = max(cells.start - 1, 0), min(cells.stop + 1, len(s))  # a place has a cell on either side
@@ -132,23 +133,27 @@ def _joined(parts: list[_Found], places: Places) -> _Found:
         for field in fields(JerkLimitedProfile)
     ]
     s, rest, square, acceleration = columns
+    checkpoint()
     too_fast = np.concatenate([one.too_fast for one in parts])
     missing = np.flatnonzero(~np.isin(places.s, s))
+    checkpoint()
     row = np.searchsorted(s, places.s[missing])
     profile = JerkLimitedProfile(
-        np.insert(s, row, places.s[missing]),
-        np.insert(rest, row, False),
-        np.insert(square, row, places.held[missing]),
-        np.insert(acceleration, row, 0.0),
+        inserted(s, row, places.s[missing]),
+        inserted(rest, row, False),
+        inserted(square, row, places.held[missing]),
+        inserted(acceleration, row, 0.0),
     )
-    return _Found(profile, np.insert(too_fast, row, 1.0))
+    return _Found(profile, inserted(too_fast, row, 1.0))
 
 
 def _from_rest_to_rest(found: _Found) -> JerkLimitedProfile:
     """The motion, slower from rest to rest by as much as it is too fast anywhere on the way."""
     profile = found.profile
     begin = np.flatnonzero(profile.rest)[:-1]
+    checkpoint()
     factor = np.maximum.reduceat(found.too_fast, begin) ** -2.0
     run = np.minimum(np.cumsum(profile.rest) - 1, len(begin) - 1)
+    checkpoint()
     columns = profile.square * factor[run], profile.acceleration * factor[run]
     return JerkLimitedProfile(profile.s, profile.rest, *columns)

@@ -11,8 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 from pkm_post.geometry import Array, expand_counts
+from pkm_post.model import checkpoint
 from pkm_post.planning.jerk_demands import Steady
-from pkm_post.planning.speed_profile import Stations, speed_profile
+from pkm_post.planning.speed_profile import Stations, inserted, speed_profile
 from pkm_post.planning.speed_spline import SpeedSpline
 
 _NARROWEST = 1e-9
@@ -35,22 +36,27 @@ def first_places(marks: Stations) -> tuple[Array, Array]:
     """The stations but for those inside half blends, and places by which cells grow in steps; and which are rests."""
     after = np.searchsorted(marks.edges, marks.s - _NARROWEST)
     inside = (after % 2 == 1) & (after == np.searchsorted(marks.edges, marks.s + _NARROWEST))
+    checkpoint()
     joint = np.append(np.diff(marks.segment) > 0, True)
     marked = np.flatnonzero(joint | ~inside | marks.rest)
     apart = np.append(True, np.diff(marks.s[marked]) > _NARROWEST)
     s = marks.s[marked][apart]
     rest = np.logical_or.reduceat(marks.rest[marked], np.flatnonzero(apart))
+    checkpoint()
     width = np.diff(s)
     to_left = np.where(rest[:-1], _AT_REST * width, np.append(np.inf, width[:-1]))
     to_right = np.where(rest[1:], _AT_REST * width, np.append(width[1:], np.inf))
     added = []
     for neighbour, origin, side in ((to_left, s[:-1], 1.0), (to_right, s[1:], -1.0)):
+        checkpoint()
         steps = np.floor(np.log(np.maximum(width / (2 * neighbour), 1.0)) / np.log(_GROWTH)).astype(np.int64)
         cell, number = expand_counts(steps)
         added.append(origin[cell] + side * neighbour[cell] * _GROWTH ** (number + 1.0))
     new = np.concatenate(added)
+    checkpoint()
     row = np.searchsorted(s, new)
-    s, rest = np.insert(s, row, new), np.insert(rest, row, False)
+    s, rest = inserted(s, row, new), inserted(rest, row, False)
+    checkpoint()
     order = np.argsort(s, kind="stable")
     return s[order], rest[order]
 
@@ -71,7 +77,9 @@ def start(s: Array, rest: Array, steady: Steady) -> tuple[Array, Array]:
     """
     square = np.where(rest, 0.0, steady.square)
     fastest = speed_profile(s, square, steady.along)
+    checkpoint()
     fastest = speed_profile(s, fastest**0.75, 0.75 * np.sqrt(2 * steady.growth)) ** (4 / 3)
+    checkpoint()
     return fastest, _plateaus(s, square, fastest, _rise(fastest, steady.along, steady.growth), steady.of_cell)
 
 
@@ -91,10 +99,13 @@ def _plateaus(s: Array, square: Array, fastest: Array, rise: Array, of_cell: Arr
     """Speed squared of cells far enough from every place at which it changes, (M - 1,); NaN for other cells."""
     even = np.abs(np.diff(square)) <= _EQUAL * square[1:]
     even &= fastest[1:] >= (1 - _EQUAL) * square[1:]
+    checkpoint()
     even &= fastest[:-1] >= (1 - _EQUAL) * square[:-1]
     even &= of_cell >= (1 - _EQUAL) * square[1:]
+    checkpoint()
     before = np.maximum.accumulate(np.where(even, -np.inf, s[1:]))
     after = np.minimum.accumulate(np.where(even, np.inf, s[:-1])[::-1])[::-1]
+    checkpoint()
     away = np.minimum(s[:-1] - before, after - s[1:])
     return long_held(np.where(away > _FAR * np.maximum(rise[1:], rise[:-1]), square[1:], np.nan))
 

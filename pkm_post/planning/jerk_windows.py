@@ -17,6 +17,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from pkm_post.geometry import Array
+from pkm_post.model import checkpoint
 
 _FREE_CELLS = 8192
 """Cells of a window that are searched: half as many again at most, where a border or a rest is within reach."""
@@ -59,9 +60,11 @@ class Places:
         known = ~np.isnan(self.held)
         begin = np.flatnonzero(np.append(True, known[1:] != known[:-1]))
         length = np.diff(np.append(begin, len(known)))
+        checkpoint()
         number = np.arange(len(known)) - np.repeat(begin, length)
         inside = known & (number >= _INSIDE) & (np.repeat(length, length) - 1 - number >= _INSIDE)
         kept = np.flatnonzero(np.concatenate([[True], ~(inside[1:] & inside[:-1]), [True]]))
+        checkpoint()
         wide = np.diff(kept) > 1
         cell = kept[:-1]
         fixed = (np.convolve(wide, np.ones(2 * _KEPT + 1))[_KEPT:-_KEPT] > 0) & known[cell]
@@ -107,11 +110,14 @@ class _Borders:
     def of(cls, places: Places) -> _Borders:
         lowest = np.minimum(places.steady, np.minimum(places.fastest[1:], places.fastest[:-1]))
         level = _LOWER * _windows(_lowest_about(lowest)).min(axis=1)
+        checkpoint()
         on_plateau = ~np.isnan(places.held)
         even = _windows(on_plateau).all(axis=1)
         level = np.where(even, places.held[: len(level)], level)
+        checkpoint()
         width, mean = np.diff(places.s), (places.fastest[1:] + places.fastest[:-1]) / 2
         way, time = (_windows(one).sum(axis=1) for one in (width, width / np.sqrt(mean)))
+        checkpoint()
         possible = ~sliding_window_view(places.rest, _BORDER + 1).any(axis=1) & (level > 0)
         with np.errstate(divide="ignore"):
             loss = np.where(even, 0.0, way / np.sqrt(level) - time)

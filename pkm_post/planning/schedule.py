@@ -107,7 +107,11 @@ def _smooth_times(s: Array, square: Array, acceleration: Array) -> Array:
     """Durations of cells whose accelerations do not jump, s."""
     from pkm_post.planning.speed_spline import durations
 
-    return durations(np.diff(s), square, acceleration)
+    found = np.empty(len(s) - 1)
+    for rows in pieces(len(found), _AT_ONCE):
+        places = slice(rows.start, rows.stop + 1)
+        found[rows] = durations(np.diff(s[places]), square[places], acceleration[places])
+    return found
 
 
 def _stretched(

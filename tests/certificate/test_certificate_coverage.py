@@ -128,9 +128,7 @@ def test_the_spindle_counts_as_covered_where_the_motion_waits_for_it():
 
 
 def test_jerk_is_covered_where_a_limit_is_stated():
-    before, after = (
-        extents(machine, Topic.LIMITS) for machine in (example(), replace(example(), strut_jerk=1e6, tip_jerk=1e6))
-    )
+    before, after = (extents(machine, Topic.LIMITS) for machine in (machines.without_jerk(example()), example()))
     changed = {subject for subject in before if before[subject] is not after[subject]}
     assert changed == {"strut jerk", "tip jerk"}
     assert all(before[subject] is Extent.NOT_COVERED and after[subject] is Extent.SAMPLED for subject in changed)
@@ -141,7 +139,7 @@ def all_stated():
     axis = SpindleAxis(
         motor=7, letter="Z", counts_per_turn=36000.0, speed=25.0, acceleration=200.0, lead_tolerance=0.005
     )
-    return dataclasses.replace(preset("example_6tps"), strut_jerk=1e6, tip_jerk=1e6, spindle_axis=axis)
+    return dataclasses.replace(preset("example_6tps"), spindle_axis=axis)
 
 
 def test_every_entry_stands_in_one_place():

@@ -77,7 +77,7 @@ def program(original, tmp_path):
 @pytest.fixture(scope="module")
 def in_parts(tmp_path_factory):
     """A program in parts, and its machine."""
-    machine = machine_of(memory_words=600)
+    machine = machine_of(memory_words=800)
     return posted_in(tmp_path_factory.mktemp("parts"), machine), machine
 
 

@@ -272,7 +272,7 @@ def in_parts(folder):
     """A machine whose controller can hold a part of a small program only."""
     text = find_machine(MACHINE).read_text(encoding="utf-8")
     machine = folder / "small.toml"
-    machine.write_text(re.sub(r"memory_words = \d+", "memory_words = 800", text))
+    machine.write_text(re.sub(r"memory_words = \d+", "memory_words = 1000", text))
     return machine
 
 

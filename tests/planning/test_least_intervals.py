@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from machines import without_jerk
 from posted_jobs import NARROW, finding, of, preset
 from programs import random_job
 
@@ -16,7 +17,7 @@ SEEDS = (2, 4, 7)
 
 
 def on(shortest=1, rate=np.inf, name="example_6tps"):
-    return dataclasses.replace(preset(name), shortest_interval=shortest, block_rate=rate)
+    return dataclasses.replace(without_jerk(preset(name)), shortest_interval=shortest, block_rate=rate)
 
 
 def job(seed):

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from long_programs import ALL, PIECES, scan
+from machines import text_without_jerk
 
 from pkm_post.options.choices import Options
 from pkm_post.posting.post_file import post_file
@@ -19,18 +20,20 @@ from pkm_post.reading.part_program import ReadingOptions
 resource = pytest.importorskip("resource")  # POSIX
 
 BYTES_PER_LINE = 1600
-"""Of a rough surface with 1.4 points of the motion to a line, at most: it takes 1300, and took 3100 in one piece."""
+"""Of a rough surface with 1.4 points of the motion to a line, at most: it takes 1300, and took 3100 in one piece.
+
+That is without limits of jerk: with them, a window is searched in one piece, which is as long as these programs."""
 ON_PALLET = np.eye(4)
 ON_PALLET[2, 3] = 200.0
 
 
-def post(folder, lines, leans=False, name="scan"):
+def post(folder, lines, leans=False, name="scan", machine="example_6tps"):
     """Post a scan; the files by name."""
     file = folder / "scan.ngc"
     file.write_text(scan(lines, leans))
     reading = ReadingOptions(axis_words="vector" if leans else "none")
     options = Options(work_offset=ON_PALLET)
-    made = post_file(file, "example_6tps", folder / name, options, {1: 120.0, 2: 100.0}, reading)
+    made = post_file(file, machine, folder / name, options, {1: 120.0, 2: 100.0}, reading)
     return {path.name: path for path in made.files}
 
 
@@ -70,17 +73,19 @@ def assert_alike(found, expected):
 def test_memory_for_a_line_is_bounded(tmp_path):
     """The difference of two jobs: what does not depend on their length, as the pieces themselves, is in both."""
     few, many = 4000, 12000
-    post(tmp_path, 500)  # what is imported and kept for later jobs is there then
-    peaks = [peak_of(tmp_path, lines) for lines in (few, many)]
+    machine = tmp_path / "jumping.toml"
+    machine.write_text(text_without_jerk(), encoding="utf-8")
+    post(tmp_path, 500, machine=machine)  # what is imported and kept for later jobs is there then
+    peaks = [peak_of(tmp_path, lines, machine) for lines in (few, many)]
     assert (peaks[1] - peaks[0]) / (many - few) < BYTES_PER_LINE
 
 
-def peak_of(folder: Path, lines: int) -> int:
+def peak_of(folder: Path, lines: int, machine: Path) -> int:
     """The most memory that posting takes, bytes."""
     gc.collect()
     tracemalloc.start()
     try:
-        post(folder, lines)
+        post(folder, lines, machine=machine)
         return tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()

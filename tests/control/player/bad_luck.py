@@ -8,7 +8,7 @@ player says why. Only the simulator's clock passes.
 
 import random
 
-from playing import HOOK, JERK, SMOOTH, Playing, trajectory_of
+from playing import HOOK, JERK, JUMPING, SMOOTH, Playing, trajectory_of
 from rig import Noise, carried
 
 from pkm_post.control.link.errors import PmacError
@@ -36,8 +36,8 @@ def by_chance(seed):
     if fault == "delays" or every:
         playing.wire.delay = lambda: chance.choice([0.0] * 9 + [chance.uniform(0, LATEST_ANSWER_S)])
     late = (lambda: chance.choice([0.0, 0.0, chance.uniform(0, LATEST_PLAN_S)])) if "late" in fault or every else None
-    if is_smooth := seed // len(FAULTS) % 2:
-        playing.machine = SMOOTH
+    is_smooth = seed // len(FAULTS) % 2
+    playing.machine = SMOOTH if is_smooth else JUMPING
     try:
         done = playing.play(delay=late, patience_s=2.0)
         end = "played to its end" if done.finished else "ended by the operator"

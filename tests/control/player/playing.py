@@ -14,6 +14,8 @@ from pathlib import Path
 sys.path += [str(Path(__file__).parents[1] / room) for room in ("link", "numerical_control")]
 
 import numpy as np  # noqa: E402
+import pytest  # noqa: E402
+from machines import without_jerk  # noqa: E402
 from programs import ON_PALLET, program  # noqa: E402
 from rig import Wire  # noqa: E402
 from station import MACHINE, SETTINGS, set_up  # noqa: E402
@@ -27,6 +29,9 @@ from pkm_post.toolpath.place import place  # noqa: E402
 
 JERK = 4e4
 SMOOTH = replace(MACHINE, strut_jerk=JERK, tip_jerk=JERK)
+JUMPING = without_jerk(MACHINE)
+BOTH = pytest.mark.parametrize("machine", [MACHINE, JUMPING], ids=["as shipped", "without limits of jerk"])
+"""For what the two ways of planning do differently: windows of the one cannot be left anywhere."""
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 TOOL = 120.0
 RECTANGLE = [[0, 0, 60], [30, 0, 60], [30, 20, 60], [0, 20, 60], [0, 0, 60]]
@@ -82,9 +87,9 @@ class Playing:
     lengths: list = field(default_factory=list)
 
     @classmethod
-    def of(cls, trajectory=None, at=None, kind="tcp", **arguments):
+    def of(cls, trajectory=None, at=None, kind="tcp", machine=None, **arguments):
         wire = Wire(copy.deepcopy(set_up()), kind, moves=True, **arguments)
-        made = cls(wire, trajectory or trajectory_of(), at or {})
+        made = cls(wire, trajectory or trajectory_of(), at or {}, machine)
         wire.sleep = made._sleep
         return made
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from playing import HOOK, MACHINE, SETTINGS, TOLERANCES, joined, trajectory_of
+from playing import BOTH, HOOK, JUMPING, MACHINE, SETTINGS, TOLERANCES, joined, trajectory_of
 from programs import cone
 
 from pkm_post.certificate import certify, reconstruct
@@ -25,10 +25,10 @@ from pkm_post.planning.motion import tool_path
 from pkm_post.toolpath.place import place
 
 
-def pieces_of(trajectory, override=lambda: 1.0, piece_ms=250):
+def pieces_of(trajectory, override=lambda: 1.0, piece_ms=250, machine=JUMPING):
     """The pieces of a trajectory in one part."""
     (part,) = (each for each in parts_of(trajectory) if each.end > each.first)
-    planner = PiecePlanner(trajectory, part, MACHINE, SETTINGS, TOLERANCES)
+    planner = PiecePlanner(trajectory, part, machine, SETTINGS, TOLERANCES)
     at, found = planner.start(), []
     while not found or not found[-1].is_end:
         found.append(planner.next_piece(at, override(), piece_ms=piece_ms))
@@ -47,16 +47,17 @@ def short_blocks(monkeypatch):
     monkeypatch.setattr(sections, "_CHOICE", 8)
 
 
+@BOTH
 @pytest.mark.parametrize("trajectory", [trajectory_of(HOOK), wave()], ids=["corners", "wave"])
-def test_the_certificates_of_the_pieces_are_that_of_the_whole(trajectory, short_blocks):
-    motions, log = [piece.motion for piece in pieces_of(trajectory)], CertificateLog()
+def test_the_certificates_of_the_pieces_are_that_of_the_whole(trajectory, machine, short_blocks):
+    motions, log = [piece.motion for piece in pieces_of(trajectory, machine=machine)], CertificateLog()
     for motion in motions:
         log.add(motion)
     whole = joined(motions)
-    recovered, faults = reconstruct(whole, "whole", trajectory, MACHINE, TOLERANCES)
+    recovered, faults = reconstruct(whole, "whole", trajectory, machine, TOLERANCES)
     assert not faults
     certificate, faults = certify(
-        whole, "whole", trajectory, MACHINE, recovered.motion, TOLERANCES, spin_deviation=recovered.spin_deviation
+        whole, "whole", trajectory, machine, recovered.motion, TOLERANCES, spin_deviation=recovered.spin_deviation
     )
     assert not faults and certificate.holds and log.holds and log.seconds == certificate.duration
     worst = {finding.name: finding.value / (finding.limit or 1) for finding in log.findings}

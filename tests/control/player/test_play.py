@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from bad_luck import by_chance
-from playing import RECTANGLE, SETTINGS, TOLERANCES, Playing, distance, trajectory_of
+from playing import BOTH, JUMPING, RECTANGLE, SETTINGS, TOLERANCES, Playing, distance, trajectory_of
 
 from pkm_post.control.link import stopping
 from pkm_post.control.link.errors import LinkLostError, PmacError
@@ -21,8 +21,9 @@ from pkm_post.geometry import norm
 from pkm_post.model import Event, EventKind
 
 
-def test_a_program_is_played_without_rests():
-    playing = Playing.of()
+@BOTH
+def test_a_program_is_played_without_rests(machine):
+    playing = Playing.of(machine=machine)
     done = playing.play()
     assert done.finished and done.log.holds and (done.stops, done.losses) == (0, 0)
     playing.check()
@@ -32,7 +33,8 @@ def test_a_program_is_played_without_rests():
     assert {state.line for state in playing.states} == {1, 2, 3}
 
 
-def test_overrides_up_to_150_a_hold_and_an_override_of_zero():
+@BOTH
+def test_overrides_up_to_150_a_hold_and_an_override_of_zero(machine):
     orders = {
         5: [Order("override", 1.5)],
         20: [Order("hold")],
@@ -41,17 +43,20 @@ def test_overrides_up_to_150_a_hold_and_an_override_of_zero():
         90: [Order("override", 0.6)],
         100: [Order("override", 9.0)],
     }
-    playing = Playing.of(trajectory_of(RECTANGLE), at=orders)
+    playing = Playing.of(trajectory_of(RECTANGLE), at=orders, machine=machine)
     done = playing.play(first_variable=7600)  # 41 points, which are written again and again
     playing.check()
     assert done.finished and done.log.holds and playing.arrived() < 1e-3 and not orders
+    held = "held" in {state.phase for state in playing.states}
+    assert held == (machine is JUMPING)  # a planned stop that is resumed before it begins is not taken
     assert max(state.override for state in playing.states) == 1.5
     assert max(state.reached for state in playing.states if state.line > 1) > 1.2
 
 
-def test_a_planner_that_is_too_late_ends_in_a_stop_on_the_path():
+@BOTH
+def test_a_planner_that_is_too_late_ends_in_a_stop_on_the_path(machine):
     calls = itertools.count()
-    playing = Playing.of()
+    playing = Playing.of(machine=machine)
     done = playing.play(delay=lambda: 1.5 if next(calls) in (4, 5) else 0.0)
     playing.check()
     assert done.finished and done.stops >= 1 and playing.arrived() < 1e-3
@@ -93,11 +98,12 @@ def test_an_end_takes_the_stop_of_a_piece_near_by():
     assert moves[-1] - given[0] < 1000 * playing.states[19].ahead  # the last stop begins there
 
 
-def test_a_stop_that_is_not_wanted_any_more_is_not_taken():
+@BOTH
+def test_a_stop_that_is_not_wanted_any_more_is_not_taken(machine):
     seen = []
     orders = {26: [Order("override", 0.0)], 28: [lambda player: seen.append(player._feed.ends_early)]}
     orders[28].append(Order("override", 1.0))
-    playing = Playing.of(trajectory_of(RECTANGLE, feed=30.0), at=orders)
+    playing = Playing.of(trajectory_of(RECTANGLE, feed=30.0), at=orders, machine=machine)
     done = playing.play()
     playing.check()
     assert seen == [True] and done.finished and done.stops == 0 and playing.arrived() < 1e-3
@@ -109,9 +115,10 @@ def test_bad_luck(seed):
     by_chance(seed)
 
 
+@BOTH
 @pytest.mark.parametrize("at", (18_000, 24_000))
-def test_a_link_that_is_cut_and_comes_back(at):
-    playing = Playing.of(cut_at=at)
+def test_a_link_that_is_cut_and_comes_back(at, machine):
+    playing = Playing.of(cut_at=at, machine=machine)
     done = playing.play()
     playing.check()
     assert done.finished and playing.arrived() < 1e-3
@@ -126,8 +133,9 @@ def test_a_link_that_is_cut_for_good_ends_in_a_stop_on_the_path():
     assert not playing.wire.controller.runs_program() and playing.arrived() > 1.0
 
 
-def test_single_block_rests_at_the_end_of_each_line():
-    playing = Playing.of()
+@BOTH
+def test_single_block_rests_at_the_end_of_each_line(machine):
+    playing = Playing.of(machine=machine)
     done = playing.play(single_block=True)
     playing.check()
     phases = [phase for phase, _ in itertools.groupby(state.phase for state in playing.states)]

@@ -84,8 +84,7 @@ def test_holds_overrides_and_a_late_planner_keep_the_limits_on_the_simulated_mac
         84: [Order("override", 0.0)],
         140: [Order("override", 1.0)],
     }
-    playing = Playing.of(trajectory_of(RECTANGLE, feed=40.0), at=orders)
-    playing.machine = SMOOTH
+    playing = Playing.of(trajectory_of(RECTANGLE, feed=40.0), at=orders, machine=SMOOTH)
     playing.answer = lambda player: None  # a hold waits for resume, an override of 0 for another one
     late = iter([0.0] * 12 + [1.5])
     done = playing.play(delay=lambda: next(late, 0.0))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from machines import spindle_axis_text
+from machines import spindle_axis_text, text_without_jerk
 
 from pkm_post.machine.description.presets import find_machine
 from pkm_post.machine.description.reader import machine_of, read_machine
@@ -190,11 +190,11 @@ def test_stated_rest_axes_take_the_place_of_computed_ones(tmp_path, machine):
 
 def test_entries_that_came_later_may_be_left_out(tmp_path):
     """A file as it could be written first: everything that was added since has a default that changes nothing."""
-    text = PRESET.read_text(encoding="utf-8")
+    text = text_without_jerk()
     text = text[: text.index("# Bodies for")] + text[text.index("[joints]") :]
     text = text[: text.index("# Cylinders")] + text[text.index("[singularity]") :]
     machine = read_text(tmp_path, text)
-    assert machine.strut_jerk == math.inf
+    assert (machine.strut_jerk, machine.tip_jerk) == (math.inf, math.inf)
     assert machine.length_offset.tolist() == [0.0] * 6
     assert (machine.base_joint_kind, machine.platform_joint_kind) == ("universal", "spherical")
     assert (machine.screw_lead, machine.clearance, machine.home_spin, machine.spindle_least_speed) == (0, 0, 0, 0)
@@ -219,7 +219,8 @@ def test_entries_that_came_later_may_be_left_out(tmp_path):
     ],
 )
 def test_later_entries_arrive(tmp_path, section, line, attribute, value):
-    machine = read_text(tmp_path, preset_with(f"[{section}]\n", f"[{section}]\n{line}\n"))
+    text = text_without_jerk().replace(f"[{section}]\n", f"[{section}]\n{line}\n")
+    machine = read_text(tmp_path, text)
     found = getattr(machine, attribute)
     assert (found if isinstance(value, str) else np.asarray(found)) == pytest.approx(value)
 
@@ -235,6 +236,10 @@ def test_solids_of_the_example(machine):
     assert (machine.tube_radius, machine.tube_length, machine.rod_radius, machine.rod_length) == (32, 700, 20, 650)
     assert (machine.clearance, machine.base_joint_radius, machine.platform_joint_radius) == (2, 60, 45)
     assert machine.strut_stiffness == 1e5
+
+
+def test_limits_of_jerk_of_the_example(machine):
+    assert (machine.strut_jerk, machine.tip_jerk) == (1e6, 4e5)
 
 
 def test_bodies_may_be_tables_of_their_own(tmp_path):
