@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """How much memory posting takes, and how soon it can be stopped: a file of G-code to a certified program, by step.
 
-    python3 benchmarks/memory.py [--lines 100000 1000000] [--axes 3 5] [--noise 0 0.002] [--repository DIR]
+    python3 benchmarks/memory.py [--lines 100000 1000000] [--axes 3 5] [--noise 0 0.002] [--jerk] [--repository DIR]
 
 Enters: numbers of lines. Leaves, for each of them and for each step: the most memory that the process had in it, what
 it had when the step began, seconds by the clock and of the processor, and the most seconds of the processor, of all
 threads, between two calls of progress, each of which may stop the run. The part is a surface of sine waves, scanned
 line by line in chords of some 0.3 mm; with five axes the tool leans by the normal of the surface. Each job is posted by
 a process of its own. ``--noise`` moves each point up or down, as a probe does, which makes many more points of the
-motion. ``--repository`` measures another version of PKM Post with the same files. Nothing is asserted.
+motion. With ``--jerk`` the machine has the limits of jerk of the example, else none. ``--repository`` measures another
+version of PKM Post with the same files. Nothing is asserted.
 
 Linux alone tells the most memory of a step (/proc/self/clear_refs).
 """
@@ -106,18 +107,19 @@ def memory(entry):
     return int(re.search(rf"{entry}:\s+(\d+) kB", status)[1]) * 1024 / 1e6
 
 
-def roomy_machine(folder):
-    """The example machine with a controller whose memory the machine file does not limit."""
+def roomy_machine(folder, jerk=False):
+    """The example machine, its limits of jerk if wished for, with a controller whose memory its file does not limit."""
     from pkm_post.machine import find_machine
 
     text = find_machine("example_6tps").read_text(encoding="utf-8")
+    text = text if jerk else re.sub(r"(?m)^(tip_)?jerk = .*\n", "", text)
     path = Path(folder) / "roomy.toml"
     text = re.sub("(?m)^memory_words = .*\n", "", text).replace('"turbo_pmac"', '"power_pmac"')
     path.write_text(text, encoding="utf-8")
     return path
 
 
-def post(path, axes):
+def post(path, axes, jerk):
     """Post a file and print what that took; the whole life of a process."""
     from pkm_post.model import Refused
     from pkm_post.posting.post_file import post_file
@@ -127,7 +129,7 @@ def post(path, axes):
     reading = ReadingOptions(axis_words="vector" if axes == 5 else "none")
     folder, words = Path(path).parent, f"{LENGTH} {PLACE}"
     try:
-        post_file(path, roomy_machine(folder), folder, reading=reading, progress=meter.begins, arguments=words)
+        post_file(path, roomy_machine(folder, jerk), folder, reading=reading, progress=meter.begins, arguments=words)
     except Refused as refused:
         raise SystemExit(refused) from refused
     meter.report()
@@ -139,12 +141,13 @@ def main():
     parser.add_argument("--lines", type=int, nargs="+", default=[100_000, 1_000_000])
     parser.add_argument("--axes", type=int, nargs="+", choices=(3, 5), default=[3, 5])
     parser.add_argument("--noise", type=float, nargs="+", default=[0.0], metavar="MM")
+    parser.add_argument("--jerk", action="store_true")
     parser.add_argument("--repository", type=Path, default=Path(__file__).resolve().parents[1])
     parser.add_argument("--post", help=argparse.SUPPRESS)
     chosen = parser.parse_args()
     sys.path.insert(0, str(chosen.repository))
     if chosen.post:
-        post(chosen.post, chosen.axes[0])
+        post(chosen.post, chosen.axes[0], chosen.jerk)
         return
     for axes, lines, noise in itertools.product(chosen.axes, chosen.lines, chosen.noise):
         with tempfile.TemporaryDirectory() as folder:
@@ -152,8 +155,8 @@ def main():
             write_scan(path, lines, axes, noise)
             print(f"{lines} lines, {axes} axes, noise of {noise:g} mm")
             print(f"{'step':<22}{'most MB':>9} {'before':>9} {'clock s':>9} {'cpu s':>9} {'gap s':>9}", flush=True)
-            command = [sys.executable, __file__, "--post", path, "--axes", str(axes), "--repository", chosen.repository]
-            subprocess.run(list(map(str, command)), check=True)
+            command = [sys.executable, __file__, "--post", path, "--axes", axes, "--repository", chosen.repository]
+            subprocess.run([*map(str, command), *(["--jerk"] if chosen.jerk else [])], check=True)
 
 
 if __name__ == "__main__":
