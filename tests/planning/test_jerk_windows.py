@@ -9,8 +9,9 @@ import pytest
 from machines import example
 from programs import ON_PALLET, cone, program
 
+from pkm_post.model import checkpoints
 from pkm_post.model.certificate import Tolerances
-from pkm_post.planning import binding_limits, jerk_limits, jerk_search
+from pkm_post.planning import binding_limits, interior_point, jerk_limits, jerk_search
 from pkm_post.planning.jerk_windows import Places, windows
 from pkm_post.planning.motion import tool_path
 from pkm_post.planning.speed_profile import stations
@@ -104,6 +105,26 @@ def test_a_path_without_borders_is_one_window_when_none_holds(monkeypatch):
 
     monkeypatch.setattr(jerk_search, "fastest", not_between_borders)
     np.testing.assert_allclose(time_of(searched("scan")), time_of(whole), rtol=5e-3)
+
+
+def test_a_search_visits_its_caller_before_each_step_and_ends_when_that_says_so(monkeypatch):
+    steps, visits = [], []
+    plain = interior_point._stepped
+    monkeypatch.setattr(interior_point, "_stepped", lambda *arguments: steps.append(len(visits)) or plain(*arguments))
+    with checkpoints(lambda: visits.append(len(steps))):
+        searched("cone")
+    assert len(steps) > 5 and (np.diff(steps) > 0).all()
+
+    class LeftError(Exception):
+        pass
+
+    def leave():
+        raise LeftError
+
+    taken = len(steps)
+    with checkpoints(lambda: leave() if len(steps) == taken + 3 else None), pytest.raises(LeftError):
+        searched("cone")
+    assert len(steps) == taken + 3
 
 
 @JOBS

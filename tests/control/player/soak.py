@@ -59,13 +59,13 @@ def play(file, kind="tcp", seed="1"):
 def links(rows="600", seed="1"):
     """A short spiral over TCP, a pseudo terminal and ssh; some things happen on the way, an abort at last.
 
-    And once more with limits of jerk, without an abort, which keeps none.
+    And once more with tight limits of jerk, without an abort, which keeps none.
     """
     happens = {"seed": int(seed), "holds": 3, "overrides": 4, "is_in_step": False}
     for kind in ("tcp", "serial", "ssh"):
         print(f"over {kind}:", flush=True)
         _report(*operated.play_operated(spiral(int(rows)), TOLERANCES, kind, **happens))
-    print("with limits of jerk, over tcp:", flush=True)
+    print("with tight limits of jerk, over tcp:", flush=True)
     played = operated.play_operated(spiral(int(rows)), TOLERANCES, "tcp", machine=SMOOTH, aborts=0, **happens)
     _report(*played, machine=SMOOTH)
 
