@@ -32,7 +32,7 @@ _COARSER = 4
 """Factor of both where a profile is refined afterwards."""
 
 
-def inserted(own: Array, row: Array, its: Array) -> Array:
+def inserted(own: Array, row: Array, its: Array | float) -> Array:
     """A column with values before some rows, (K,), with a checkpoint."""
     checkpoint()
     return np.insert(own, row, its)
