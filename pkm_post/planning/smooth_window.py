@@ -44,6 +44,8 @@ _MOST_USE = 0.985
 _SPEED_ROUNDING = 1.001
 """Factor of limits of speed, of which a motion may use all, and a stop or a change no more."""
 _FIRST_STOP_MS, _LONGEST_STOP_MS = 32, 1 << 15
+_LEAST_STEPS = 32
+"""Steps at least in which a motion is measured: those of a short stop are shorter than a ms."""
 _STOP_STEPS = 5
 """Halvings between a stop that is too short and one twice as long."""
 _FIRST_CHANGE, _LONGER_CHANGE = 0.5, 1.6
@@ -128,16 +130,17 @@ def in_whole_ms(found: SpeedLaw, shortest_ms: int) -> MotionLaw:
 
 
 def use_of_limits(path: ToolPath, machine: Machine, law: TimeScaledLaw, until: float) -> float:
-    """Largest share of limits of acceleration and jerk up to a time, each ms; infinite where a speed is too high."""
-    worst, count = 0.0, max(int(np.ceil(1000 * until)), 2)
+    """Largest share of limits of acceleration and jerk up to a time, each ms or less; infinite at too high a speed."""
+    worst, count = 0.0, max(int(np.ceil(1000 * until)), _LEAST_STEPS)
+    step = min(1e-3, until / _LEAST_STEPS)
     for rows in pieces(count, _AT_ONCE):
-        time = np.minimum(np.arange(rows.start, min(rows.stop + 1, count) + 1) / 1000, law.duration)
+        time = np.minimum(np.arange(rows.start, min(rows.stop + 1, count) + 1) * step, law.duration)
         s, speed, acceleration = law.at(time)
         poses = path.at(s)
         for item in limited_quantities(machine, poses):
             rate = item.first * speed[:, None]
             change = item.first * acceleration[:, None] + item.second * (speed**2)[:, None]
-            jerk = np.diff(change, axis=0) * 1000
+            jerk = np.diff(change, axis=0) / step
             sizes = [np.abs(values) if item.each else norm(values) for values in (rate, change, jerk)]
             speed_use, *uses = (
                 float(size.max(initial=0.0)) / limit

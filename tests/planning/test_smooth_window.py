@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Windows with limits of jerk: speed and acceleration do not jump; the limits hold by differences of strut lengths."""
+"""Windows with limits of jerk: speed and acceleration do not jump; the limits hold by differences of strut lengths.
+
+Of a stop from an even speed on a line the shortest time is known in closed form.
+"""
 
 from dataclasses import replace
 
@@ -12,7 +15,9 @@ from pkm_post.geometry import norm
 from pkm_post.machine import strut_lengths
 from pkm_post.model import Tolerances
 from pkm_post.planning import PathState, window_planner
+from pkm_post.planning.motion import tool_path
 from pkm_post.planning.motion_law import MotionLaw
+from pkm_post.planning.smooth_window import shortest_stop
 from pkm_post.planning.time_scaled_law import TimeScaledLaw
 from pkm_post.toolpath.place import place
 
@@ -24,6 +29,8 @@ STEP = 1e-3
 CRUISE = 0.02
 """Share by which cruising may be slower than the feed: limits at the ends of wide cells are lowered for what lies
 between them, and what is still too fast, by 0.5 % at most, slows the whole run (docs/planning.md)."""
+LONGER = 1.2
+"""By which a stop is longer than it has to be, at most, beside the whole ms that it takes."""
 
 
 def course_of(name, machine=MACHINE):
@@ -95,3 +102,16 @@ def test_a_stop_is_the_motion_in_a_time_that_passes_ever_more_slowly():
     np.testing.assert_allclose(np.gradient(speed, time)[1:-1], acceleration[1:-1], atol=1.0)
     np.testing.assert_allclose(stop.when(s[1:-1]), time[1:-1], atol=1e-9)
     assert np.abs(np.diff(acceleration)).max() / np.diff(time)[0] <= 6 * 50 / 0.5**2
+
+
+@pytest.mark.parametrize("speed", [0.05, 0.2, 0.4, 1.0, 5.0, 30.0, 100.0])
+def test_a_stop_takes_as_long_as_its_jerk_asks_for_and_not_much_longer(speed):
+    machine = replace(example(), strut_jerk=1e6, tip_jerk=4e5)
+    trajectory, _ = place(program([[0, 0, 60], [80, 0, 60]]), machine, ON_PALLET)
+    path = tool_path(trajectory, TOLERANCES)
+    s = np.linspace(path.starts[-2], path.starts[-1], 9)
+    law = MotionLaw(s, (s - s[0]) / speed, np.full(9, speed), np.zeros(9))
+    seconds = shortest_stop(path, machine, TimeScaledLaw(law, 10 / speed, 1.0, 1.0)).stop
+    by_jerk, by_acceleration = np.sqrt(6 * speed / machine.tip_jerk), 1.5 * speed / machine.tip_acceleration
+    needed = max(by_jerk, by_acceleration)
+    assert needed <= seconds <= LONGER * needed + STEP
