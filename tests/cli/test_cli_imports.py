@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from interpreter import PYTHON
+from machines import text_without_jerk
 
 ADDON = Path(__file__).parents[2]
 PROGRAM = """\
@@ -82,10 +83,12 @@ ROOMS_NOT_NEEDED = (
 
 @pytest.fixture(scope="module")
 def imported(tmp_path_factory):
-    """What a process imported that posted a short program."""
+    """What a process imported that posted a short program for a machine without limits of jerk."""
     folder = tmp_path_factory.mktemp("posted")
+    (folder / "jumping.toml").write_text(text_without_jerk(), encoding="utf-8")
     (folder / "part.ngc").write_text(PROGRAM, encoding="ascii")
-    command = [PYTHON, "-c", CODE, "post", "part.ngc", "--work-offset=0,0,250", "--tool-length", "1=60"]
+    words = "post part.ngc --machine=jumping.toml --work-offset=0,0,250 --tool-length 1=60"
+    command = [PYTHON, "-c", CODE, *words.split()]
     environment = os.environ | {"PYTHONPATH": str(ADDON)}
     ran = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300, check=False)
     assert ran.returncode == 0, ran.stderr
