@@ -135,9 +135,10 @@ def _joined(parts: list[_Found], places: Places) -> _Found:
     s, rest, square, acceleration = columns
     checkpoint()
     too_fast = np.concatenate([one.too_fast for one in parts])
-    missing = np.flatnonzero(~np.isin(places.s, s))
+    row = np.searchsorted(s, places.s)
+    missing = np.flatnonzero(s[np.minimum(row, len(s) - 1)] != places.s)
     checkpoint()
-    row = np.searchsorted(s, places.s[missing])
+    row = row[missing]
     profile = JerkLimitedProfile(
         inserted(s, row, places.s[missing]),
         inserted(rest, row, False),

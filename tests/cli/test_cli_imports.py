@@ -62,7 +62,6 @@ ROOMS_NOT_NEEDED = (
     "machine.calibration",
     "machine.reach.best_position",
     "machine.reach.reach_map",
-    "planning.jerk_limits",
     "planning.window",
     "posting.place_search",
     "posting.stiffness",
@@ -81,13 +80,19 @@ ROOMS_NOT_NEEDED = (
 """Modules and packages of our own."""
 
 
+@pytest.fixture(scope="module", params=["example_6tps", "jumping.toml"])
+def machine(request):
+    """The example as it is shipped, and without limits of jerk."""
+    return request.param
+
+
 @pytest.fixture(scope="module")
-def imported(tmp_path_factory):
-    """What a process imported that posted a short program for a machine without limits of jerk."""
+def imported(machine, tmp_path_factory):
+    """What a process imported that posted a short program."""
     folder = tmp_path_factory.mktemp("posted")
     (folder / "jumping.toml").write_text(text_without_jerk(), encoding="utf-8")
     (folder / "part.ngc").write_text(PROGRAM, encoding="ascii")
-    words = "post part.ngc --machine=jumping.toml --work-offset=0,0,250 --tool-length 1=60"
+    words = f"post part.ngc --machine={machine} --work-offset=0,0,250 --tool-length 1=60"
     command = [PYTHON, "-c", CODE, *words.split()]
     environment = os.environ | {"PYTHONPATH": str(ADDON)}
     ran = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300, check=False)
@@ -97,11 +102,12 @@ def imported(tmp_path_factory):
     return set(found)
 
 
-def test_what_a_short_program_does_not_need_is_not_imported(imported):
+def test_what_a_short_program_does_not_need_is_not_imported(machine, imported):
     assert "pkm_post.posting.steps" in imported
     of_others = {name for name in imported if name.startswith(tuple(f"{one}." for one in NOT_NEEDED))}
     assert not of_others | imported.intersection(NOT_NEEDED)
     rooms = [f"pkm_post.{one}" for one in ROOMS_NOT_NEEDED]
+    assert ("pkm_post.planning.jerk_limits" in imported) == (machine == "example_6tps")
     assert not [name for name in imported if f"{name}.".startswith(tuple(f"{room}." for room in rooms))]
 
 
