@@ -56,7 +56,7 @@ def play(file, kind="tcp", seed="1"):
     _report(*operated.play_operated(trajectory, tolerances, kind, int(seed)))
 
 
-def links(rows="600", seed="1"):
+def links(rows="1000", seed="1"):
     """A short spiral over TCP, a pseudo terminal and ssh; some things happen on the way, an abort at last.
 
     And once more with tight limits of jerk, without an abort, which keeps none.
@@ -64,7 +64,9 @@ def links(rows="600", seed="1"):
     happens = {"seed": int(seed), "holds": 3, "overrides": 4, "is_in_step": False}
     for kind in ("tcp", "serial", "ssh"):
         print(f"over {kind}:", flush=True)
-        _report(*operated.play_operated(spiral(int(rows)), TOLERANCES, kind, **happens))
+        follower, operator, results = operated.play_operated(spiral(int(rows)), TOLERANCES, kind, **happens)
+        assert operator.done[-1] == "abort", "the program was too short for all of it"
+        _report(follower, operator, results)
     print("with tight limits of jerk, over tcp:", flush=True)
     played = operated.play_operated(spiral(int(rows)), TOLERANCES, "tcp", machine=SMOOTH, aborts=0, **happens)
     _report(*played, machine=SMOOTH)
