@@ -3,7 +3,8 @@
 
 Its places are at first those of the window. The fastest motion with them is found (``interior_point``). A cell that
 uses no limit to the full at one of its ends is too wide: it is to be halved, and the motion found once more. In the
-middle of cells the limits are looked at as well: where they are broken there, the ends are to be slower. Units: mm, s.
+middle of cells and in their quarters the limits are looked at as well: where they are broken there, the ends are to be
+slower. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -113,6 +114,17 @@ class Iterate:
         searched = np.zeros(len(faster), dtype=np.bool_)  # the limits allow what is held
         searched[self.spline.ends.where_free(self.held[self.spline.left]).cell] = True
         return np.where(searched, faster, 1.0)
+
+    def in_quarters(self, path: ToolPath, marks: Stations, machine: Machine) -> Demands:
+        """The demands at the places, in the middles of cells, and a quarter of their width from the ends."""
+        halves = with_middles(self.spline.s)
+        return self.demands.joined(Demands.at(path, machine, marks, (halves[1:] + halves[:-1]) / 2))
+
+    def pace_in_quarters(self, demands: Demands) -> Array:
+        """The same a quarter of the width from the ends of cells, (M - 1,), by the demands there."""
+        cell = np.minimum(np.arange(len(demands.s) // 2 + 1) // 2, len(self.held) - 1)
+        motion = within_cells(self.spline.s, *self.at_places(), cell, demands.s[::2])
+        return np.asarray(demands.in_middle(*motion).reshape(-1, 2).max(axis=1))
 
     def needlessly_slow(self, pace: Array) -> bool:
         """Whether much time from rest to rest passes below limits on cells whose limits were lowered."""

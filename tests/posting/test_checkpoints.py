@@ -5,13 +5,14 @@ Work is counted, not timed: the bytes of all arrays that come into being in the 
 variables of the functions of PKM Post line by line. Pieces are small here, so that what is left are whole columns.
 """
 
+import os
 import sys
 import weakref
-from pathlib import Path
 
 import numpy as np
 import pytest
 from long_programs import PIECES, scan
+from machines import text_without_jerk
 
 import pkm_post
 from pkm_post.certificate import dynamics, playback
@@ -22,6 +23,7 @@ from pkm_post.planning import interpolation, rough_limits, tool_path
 from pkm_post.posting import post_file, run
 from pkm_post.reading.gcode import scan as scanner
 from pkm_post.reading.part_program import ReadingOptions
+from pkm_post.report import page
 from pkm_post.toolpath.compressor import bounds, compress
 from pkm_post.writing import manifest
 from pkm_post.writing.controllers import program_files
@@ -40,9 +42,12 @@ OTHERS = (
     (playback, "_TO_FIND_THE_WORST"),
     (sys.modules["pkm_post.toolpath.place"], "_AT_ONCE"),
     (rough_limits, "_AT_ONCE"),
+    (dynamics, "_MOST_KNOTS"),
+    (page, "_CHART_POINTS"),
 )
-"""Sizes of pieces that workers compute."""
-PACKAGE = str(Path(pkm_post.__file__).parent)
+"""Sizes of pieces that workers compute, and of samples of the whole motion."""
+PACKAGE = os.path.dirname(pkm_post.__file__)
+"""As the names of files in code have it, "/./" and all."""
 OF_ALL = (__file__, columns.__file__, sys.modules["pkm_post.model.checkpoint"].__file__)
 """Files in which all checkpoints are, and not the place of any."""
 ON_PALLET = np.eye(4)
@@ -110,8 +115,8 @@ def count(monkeypatch, tmp_path):
         monkeypatch.setattr(module, name, PIECE)
     for module, name in ((scanner, "PIECE"), (manifest, "_AT_ONCE"), (program_files, "_AT_ONCE")):
         monkeypatch.setattr(module, name, 16 * PIECE)
-    for module, name in ((dynamics, "_INSTANTS_AT_ONCE"), (playback, "_AT_ONCE")):
-        monkeypatch.setattr(module, name, 1025)  # all instants of an interval, at most
+    for module, name, size in ((dynamics, "_INSTANTS_AT_ONCE", 257), (playback, "_AT_ONCE", 1025)):
+        monkeypatch.setattr(module, name, size)  # all instants of an interval, at most
     monkeypatch.setenv("PKM_THREADS", "1")
     beat = run.beat
 
@@ -124,14 +129,15 @@ def count(monkeypatch, tmp_path):
 
         for module in (run, sys.modules["pkm_post.posting.post_file"]):
             monkeypatch.setattr(module, "beat", counting)
-        file = tmp_path / "scan.ngc"
+        file, machine = tmp_path / "scan.ngc", tmp_path / "jumping.toml"
         file.write_text(scan(lines, leans))
+        machine.write_text(text_without_jerk(), encoding="utf-8")
         reading = ReadingOptions(axis_words="vector" if leans else "none")
         options = Options(work_offset=ON_PALLET)
         before = sys.gettrace()
         sys.settrace(work.trace)
         try:
-            post_file(file, "example_6tps", tmp_path / "out", options, {1: 120.0, 2: 100.0}, reading)
+            post_file(file, machine, tmp_path / "out", options, {1: 120.0, 2: 100.0}, reading)
         finally:
             sys.settrace(before)
         return work.most
@@ -143,6 +149,6 @@ def count(monkeypatch, tmp_path):
 def test_few_columns_are_made_between_checkpoints(count, leans):
     """By the difference of two lengths: what does not depend on the length, as the pieces themselves, is in both."""
     few, many = (count(lines, leans) for lines in LINES)
-    assert len(many) > 100  # the places of checkpoints; it counts at all
+    assert len(many) > 100 and max(many.values()) > 8 * PIECE  # it visits checkpoints, and counts between them
     made = {between: (most - few.get(between, 0)) / 8 / (LINES[1] - LINES[0]) for between, most in many.items()}
     assert {between: number for between, number in made.items() if number > COLUMNS} == {}
