@@ -4,6 +4,7 @@
 from typing import TYPE_CHECKING
 
 from pkm_post import at_first_use
+from pkm_post.geometry.cells import Pairs, grid_cells, groups_of, pairs_together
 from pkm_post.geometry.curves import (
     arc_length,
     arc_points,
@@ -37,18 +38,14 @@ from pkm_post.geometry.orientation import (
 )
 from pkm_post.geometry.vectors import (
     Array,
-    Pairs,
     across,
     between_rows,
     cross,
     distinct,
     dot,
     expand_counts,
-    grid_cells,
-    groups_of,
     length_of,
     norm,
-    pairs_together,
     take_rows,
     unit,
 )

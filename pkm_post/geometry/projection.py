@@ -15,8 +15,9 @@ import math
 
 import numpy as np
 
+from pkm_post.geometry.cells import grid_cells
 from pkm_post.geometry.nurbs import NurbsSurface
-from pkm_post.geometry.vectors import Array, dot, grid_cells, norm
+from pkm_post.geometry.vectors import Array, dot, norm
 
 Feet = tuple[Array, Array]
 _SAMPLES = 6000

@@ -89,7 +89,7 @@ def test_a_circle_has_the_acceleration_of_a_circle():
 
 @pytest.mark.parametrize("seed", [2033, 2241, 2287, 2371, 2395])
 def test_struts_keep_their_acceleration_where_a_blend_bends_the_most(seed):
-    """It is a quarter of the way through a cell of the plan, which is half a blend: by 2 to 6 % more, seen in its middle."""
+    """A quarter of the way through half a blend, which is a cell of the plan: struts had 2 to 6 % more there."""
     *_, certificate, faults = posted("example_6tps", seed, WIDE if seed % 2 else NARROW)
     assert faults == () and certificate.holds
 

@@ -2,7 +2,8 @@
 import numpy as np
 import pytest
 
-from pkm_post.geometry.vectors import distinct, grid_cells, take_rows
+from pkm_post.geometry.cells import grid_cells
+from pkm_post.geometry.vectors import distinct, take_rows
 
 
 def test_numbers_and_rows_give_what_was_given():
