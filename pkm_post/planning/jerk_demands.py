@@ -179,14 +179,24 @@ class Demands:
         x, a = within_cells(s, square, acceleration, cell, self.s[at])
         beside_rest = (square[1:] == 0) | (square[:-1] == 0)
         k = np.where(beside_rest, 8 / 9 * x / width**2, np.diff(acceleration) / width)
-        values, faster = np.stack([k, a, x]), np.sqrt(highest_within(width, square, acceleration) / self.ceiling[at])
+        values, highest = np.stack([k, a, x]), highest_within(width, square, acceleration)
+        faster = self._by_accelerations(at, values, np.sqrt(highest / self.ceiling[at]))
         for item in self.quantities:
-            if np.isfinite(item.acceleration):
-                use = _use(_of_acceleration(item, at), values, item.each)
-                faster = np.maximum(faster, np.sqrt(use))
             if np.isfinite(item.jerk):
                 use = np.sqrt(x) * _use(_of_jerk(item, at, self._middle_third(item, at)), values, item.each)
                 faster = np.maximum(faster, np.cbrt(use))
+        return faster
+
+    def faster(self, square: Array, acceleration: Array) -> Array:
+        """How much faster a motion is at the places than limits of speed and acceleration allow, a factor."""
+        values = np.stack([np.zeros_like(square), acceleration, square])
+        return self._by_accelerations(np.arange(len(self.s)), values, np.sqrt(square / self.ceiling))
+
+    def _by_accelerations(self, at: Array, values: Array, faster: Array) -> Array:
+        """The same factor by limits of acceleration, if that is greater."""
+        for item in self.quantities:
+            if np.isfinite(item.acceleration):
+                faster = np.maximum(faster, np.sqrt(_use(_of_acceleration(item, at), values, item.each)))
         return faster
 
 

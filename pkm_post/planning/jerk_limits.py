@@ -107,10 +107,10 @@ def _searched(path: ToolPath, marks: Stations, machine: Machine, window: Window)
         if not cut.any():
             break
         iterate = iterate.at_pace(iterate.pace()).halved(cut, path, marks, machine)
-    quarters = iterate.in_quarters(path, marks, machine)
+    quarters = iterate.quarters(path, marks, machine)
     for _ in range(_ROUNDS):
         iterate = iterate.searched(_FINE)
-        pace = np.maximum(iterate.pace(), iterate.pace_in_quarters(quarters))
+        pace = iterate.pace_with(*quarters)
         if pace.max() <= 1 + TOO_FAST and not iterate.needlessly_slow(pace):
             break
         iterate = iterate.at_pace(pace)

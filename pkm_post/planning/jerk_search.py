@@ -3,8 +3,8 @@
 
 Its places are at first those of the window. The fastest motion with them is found (``interior_point``). A cell that
 uses no limit to the full at one of its ends is too wide: it is to be halved, and the motion found once more. In the
-middle of cells and in their quarters the limits are looked at as well: where they are broken there, the ends are to be
-slower. Units: mm, s.
+middle of cells, and in quarters of those that are half a blend, the limits are looked at as well: where they are broken
+there, the ends are to be slower. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from pkm_post.geometry import Array
+from pkm_post.geometry import Array, expand_counts
 from pkm_post.model import Machine
 from pkm_post.planning.interior_point import SlacksAndMultipliers, Solution, fastest
 from pkm_post.planning.jerk_demands import Demands
-from pkm_post.planning.jerk_start import long_held, unknowns, with_middles
+from pkm_post.planning.jerk_start import NARROWEST, long_held, unknowns, with_middles
 from pkm_post.planning.jerk_windows import Places
 from pkm_post.planning.motion_limits import Limits
 from pkm_post.planning.speed_profile import Stations
@@ -115,16 +115,22 @@ class Iterate:
         searched[self.spline.ends.where_free(self.held[self.spline.left]).cell] = True
         return np.where(searched, faster, 1.0)
 
-    def in_quarters(self, path: ToolPath, marks: Stations, machine: Machine) -> Demands:
-        """The demands at the places, in the middles of cells, and a quarter of their width from the ends."""
-        halves = with_middles(self.spline.s)
-        return self.demands.joined(Demands.at(path, machine, marks, (halves[1:] + halves[:-1]) / 2))
+    def quarters(self, path: ToolPath, marks: Stations, machine: Machine) -> tuple[Array, Demands]:
+        """Places a quarter of the width from the ends of cells with stations inside: their cells, (K,), and demands.
 
-    def pace_in_quarters(self, demands: Demands) -> Array:
-        """The same a quarter of the width from the ends of cells, (M - 1,), by the demands there."""
-        cell = np.minimum(np.arange(len(demands.s) // 2 + 1) // 2, len(self.held) - 1)
-        motion = within_cells(self.spline.s, *self.at_places(), cell, demands.s[::2])
-        return np.asarray(demands.in_middle(*motion).reshape(-1, 2).max(axis=1))
+        A cell leaves out the stations of half a blend, where the path may bend the most.
+        """
+        s = self.spline.s
+        inside = np.searchsorted(marks.s, s[1:] - NARROWEST) > np.searchsorted(marks.s, s[:-1] + NARROWEST)
+        cell, number = expand_counts(2 * inside)
+        return cell, Demands.at(path, machine, marks, s[cell] + (0.25 + 0.5 * number) * np.diff(s)[cell])
+
+    def pace_with(self, cell: Array, demands: Demands) -> Array:
+        """The pace of the cells, (M - 1,), with demands at some more places inside them, (K,)."""
+        pace = self.pace()
+        motion = within_cells(self.spline.s, *self.at_places(), cell, demands.s)
+        np.maximum.at(pace, cell, demands.faster(*motion))
+        return pace
 
     def needlessly_slow(self, pace: Array) -> bool:
         """Whether much time from rest to rest passes below limits on cells whose limits were lowered."""

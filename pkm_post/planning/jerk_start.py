@@ -16,7 +16,7 @@ from pkm_post.planning.jerk_demands import Steady
 from pkm_post.planning.speed_profile import Stations, inserted, speed_profile
 from pkm_post.planning.speed_spline import SpeedSpline
 
-_NARROWEST = 1e-9
+NARROWEST = 1e-9
 """mm: places nearer to each other are one, as the third derivatives would be rounding."""
 _GROWTH = 4.0
 """Cells are at first at most so many times as wide as their neighbours."""
@@ -34,12 +34,12 @@ _LEAST_HELD = 3
 
 def first_places(marks: Stations) -> tuple[Array, Array]:
     """The stations but for those inside half blends, and places by which cells grow in steps; and which are rests."""
-    after = np.searchsorted(marks.edges, marks.s - _NARROWEST)
-    inside = (after % 2 == 1) & (after == np.searchsorted(marks.edges, marks.s + _NARROWEST))
+    after = np.searchsorted(marks.edges, marks.s - NARROWEST)
+    inside = (after % 2 == 1) & (after == np.searchsorted(marks.edges, marks.s + NARROWEST))
     checkpoint()
     joint = np.append(np.diff(marks.segment) > 0, True)
     marked = np.flatnonzero(joint | ~inside | marks.rest)
-    apart = np.append(True, np.diff(marks.s[marked]) > _NARROWEST)
+    apart = np.append(True, np.diff(marks.s[marked]) > NARROWEST)
     s = marks.s[marked][apart]
     rest = np.logical_or.reduceat(marks.rest[marked], np.flatnonzero(apart))
     checkpoint()
