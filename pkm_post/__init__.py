@@ -87,12 +87,12 @@ __version__ = "0.1.0"
 
 
 def at_first_use(door: str, files: Mapping[str, str]) -> Callable[[str], Any]:
-    """``__getattr__`` of a door that imports names when they are first used [PEP 562]: small jobs need few files.
+    """Module ``__getattr__`` that imports each public name on first use [PEP 562], which keeps short runs fast.
 
     Args:
         door: name of the package.
-        files: the names that each of its files gives, by the file's dotted name in the package; files and folders
-            directly in the package by an empty one. None of the other names may be that of such a file or folder.
+        files: public names, separated by spaces, by the dotted name of the module that defines them; modules of the
+            package itself are listed under an empty key. No other name may equal that of such a module.
     """
     file_of = {name: file for file, names in files.items() for name in names.split()}
 

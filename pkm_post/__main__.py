@@ -5,16 +5,16 @@ import gc
 import os
 import sys
 
-gc.set_threshold(100_000, 20, 20)  # hardly any of the many objects that imports make is garbage
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # threads of our own share the work; those would only wait busily
+gc.set_threshold(100_000, 20, 20)  # imports create many objects, hardly any of them garbage
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # we have our own threads; those of OpenBLAS would only spin
 
 from pkm_post.cli import main  # noqa: E402 - NumPy reads the variable when it is loaded
 
 
 def run() -> int:
-    """Run with the arguments of the process; its exit code."""
+    """Run with the command line of the process; return the exit code."""
     code = main(sys.argv[1:])
-    gc.freeze()  # at the exit Python would search all that was imported for cycles
+    gc.freeze()  # else Python searches all imported objects for cycles at exit
     return code
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stages: each stage of posting as one function on the types of ``pkm_post.model``."""
+"""The stages of posting, one function each, on the types of ``pkm_post.model``."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def compensate(program: Program, options: Options | None = None) -> Program:
         options: ``contours`` and ``actual_tools``.
 
     Returns:
-        The program of tool tips; one without compensation is returned as it is.
+        The program of tool tips; one without compensation is returned unchanged.
 
     Raises:
         Refused: a contour cannot be offset, or a tool is unknown.
@@ -80,12 +80,12 @@ def place(program: Program, machine: Machine, options: Options | None = None) ->
 
 
 def reach(trajectory: Trajectory, machine: Machine, options: Options | None = None) -> ReachReport:
-    """Check whether a machine can follow a trajectory, everywhere and not only at sampled poses.
+    """Check that a machine can follow a trajectory everywhere, not only at sampled poses.
 
     Args:
         trajectory: in the machine frame.
         machine: the machine.
-        options: ``mesh_files`` and ``setup``: the part to keep clear of.
+        options: ``mesh_files`` and ``setup``, which describe the part to keep clear of.
 
     Returns:
         The least margin of each check and where it is; ``faults()`` lists the violations.
@@ -133,22 +133,22 @@ def write(
 ) -> tuple[Path, ...]:
     """Write a program as G-code, a trajectory as a trajectory file, or a plan as a motion program.
 
-    A motion program gets its set-up file and its trajectory file beside it. It is not certified: ``certify`` does that,
+    A motion program comes with its set-up file and its trajectory file. It is not certified: ``certify`` does that,
     and ``post`` writes certified programs only.
 
     Args:
         what: a program, a trajectory or a plan.
         file: path of the result; the suffixes are .ngc, .pkmt and .pmc by custom.
-        machine: of a plan; its file says for which controller.
-        trajectory: of a plan.
-        form: how G-code says the tool axis.
+        machine: required for a plan; its file names the controller.
+        trajectory: required for a plan.
+        form: notation of the tool axis in G-code.
 
     Returns:
         The files written; they appear together or not at all.
 
     Raises:
-        Refused: G-code of this form or the controller cannot express it, or the folder cannot be written.
-        ValueError: a plan needs its machine and its trajectory.
+        Refused: G-code in this dialect or the controller cannot express it, or the folder is not writable.
+        ValueError: a plan without its machine or its trajectory.
 
     Example:
         >>> [path.name for path in pkm.write(pkm.read("part.ngc", tool_lengths={1: 120.0}), "copy.ngc")]
@@ -173,7 +173,7 @@ def write(
 
 
 def certify(program: str | Path, machine: Machine, trajectory: str | Path | None = None) -> Certificate:
-    """Read a motion program back and compare it with its trajectory file and with the limits of its machine.
+    """Read a motion program back and check it against its trajectory file and the limits of its machine.
 
     Args:
         program: the motion program, or the first of its parts.
@@ -181,10 +181,10 @@ def certify(program: str | Path, machine: Machine, trajectory: str | Path | None
         trajectory: the trajectory file; by default the one beside the program.
 
     Returns:
-        The certificate; it holds.
+        The certificate, which holds.
 
     Raises:
-        Refused: it does not hold, or a file cannot be read.
+        Refused: the certificate does not hold, or a file cannot be read.
 
     Example:
         >>> program, machine = pkm.read("part.ngc", tool_lengths={1: 120.0}), pkm.read_machine()
@@ -219,21 +219,21 @@ def post(
         source: a CAM job, or the path of a FreeCAD document (needs FreeCAD) or of a part program.
         machine: name of a machine that comes with PKM Post, or path of a machine file; None for that of the job.
         out: folder for the results.
-        options: replace all settings of the job that ``Options`` holds.
+        options: override all settings of the job that ``Options`` covers.
         tool_lengths: gauge lengths by tool number, mm.
-        reading: what a part program does not state itself.
+        reading: facts that a part program does not state itself.
         arguments: options as on the command line; not together with ``options``.
-        job_name: the only job of a document to post.
-        log: callback, receives a line for each step.
+        job_name: name or label of one job of a document to post; None for all.
+        log: callback for a line per step.
         progress: callback, a few times a second; an exception from it aborts the run.
 
     Returns:
-        What was posted: one, or one for each job of a document.
+        The posted programs, one per job.
 
     Raises:
-        Refused: the input or the folder has errors, or memory runs out (F130). If a document has several jobs, those
-            already posted remain; otherwise nothing was written.
-        ValueError: the suffix of the file is not known, or both options and arguments are given.
+        Refused: the input or the folder has errors, or memory runs out (F130). Jobs of a document that are already
+            posted remain; otherwise nothing is written.
+        ValueError: the suffix of the file is unknown, or both options and arguments are given.
 
     Example:
         >>> (posted,) = pkm.post("part.ngc", tool_lengths={1: 120.0}, out="results")

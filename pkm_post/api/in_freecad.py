@@ -11,7 +11,7 @@ def jobs(document: Any) -> list[Any]:
     """The CAM jobs of a FreeCAD document.
 
     Raises:
-        Refused: there is none, J102.
+        Refused: the document has no job, J102.
 
     Example:
         >>> [job.Label for job in pkm.jobs(FreeCAD.ActiveDocument)]  # in FreeCAD
@@ -23,10 +23,10 @@ def jobs(document: Any) -> list[Any]:
 
 
 def job(document: Any, name: str | None = None) -> Any:
-    """The CAM job of a document with a name or label; without a name its only job.
+    """Find a CAM job of a document by name or label; without a name, its only job.
 
     Raises:
-        Refused: there is none, or more than one, J102.
+        Refused: no job matches, or more than one, J102.
 
     Example:
         >>> pkm.job(FreeCAD.ActiveDocument).Label  # in FreeCAD
@@ -51,7 +51,7 @@ def mirror(
         normal: (3,) normal of the mirror plane.
         point: (3,) a point of the plane, mm.
         label: displayed name.
-        keep_climb: whether each pass is reversed, so that the copy climb mills as the original does.
+        keep_climb: reverse each pass, so that the copy climb mills as the original does.
 
     Raises:
         ValueError: the operation is in no job.
@@ -96,10 +96,10 @@ def rotate(
 
 
 def symmetry(operation: Any) -> Any:
-    """What an operation and its mirrored and rotated copies cover together, and where they meet.
+    """Joint coverage of an operation and its mirrored and rotated copies.
 
     Args:
-        operation: one that has copies, or a copy.
+        operation: an operation with copies, or a copy.
 
     Returns:
         Number of members, covered angle about the common axis (rad), and joints.
@@ -157,12 +157,12 @@ def add_machine(document: Any, machine: str = "", job: Any = None, label: str = 
 
     Args:
         document: gets the object.
-        machine: name or path of a machine file; empty for that of the job, or the example.
+        machine: name or path of a machine file; empty for that of the job, else the example.
         job: CAM job that supplies the work offset.
         label: displayed name; empty for that of the machine.
 
     Raises:
-        Refused: the machine does not exist, or its file has faults; nothing was added.
+        Refused: the machine does not exist, or its file has errors; nothing is added.
 
     Example:
         >>> pkm.add_machine(FreeCAD.ActiveDocument, "example_6tps").Label  # in FreeCAD

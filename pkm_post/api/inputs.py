@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Inputs: a program, a machine and options from their sources; errors are raised and warnings issued."""
+"""Read programs, machines and options; errors are raised and warnings issued."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def read(
     Args:
         source: path of G-code or CL data, or a CAM job.
         tool_lengths: gauge lengths by tool number, mm; they override those of the source.
-        reading: what a part program does not state itself, such as its unit.
+        reading: facts that a part program does not state itself, such as its unit.
         arguments: options as on the command line.
 
     Returns:
@@ -70,7 +70,7 @@ def read_machine(name: str | Path = _EXAMPLE) -> Machine:
         name: name of a machine that comes with PKM Post, or path of a machine file.
 
     Raises:
-        Refused: there is none, or it has errors.
+        Refused: the file does not exist or has errors.
 
     Example:
         >>> pkm.read_machine("example_6tps").strut_stroke
@@ -80,13 +80,13 @@ def read_machine(name: str | Path = _EXAMPLE) -> Machine:
 
 
 def find_machine(name: str) -> Path:
-    """The file of a machine, to copy and change.
+    """Path of a machine file, to copy and edit.
 
     Args:
         name: name of a machine that comes with PKM Post, or path of a machine file.
 
     Raises:
-        Refused: there is none.
+        Refused: the file does not exist.
 
     Example:
         >>> pkm.find_machine("example_6tps").name
@@ -99,10 +99,10 @@ def find_machine(name: str) -> Path:
 
 
 def read_options(arguments: str) -> Options:
-    """Options from text as on the command line.
+    """Parse options written as on the command line.
 
     Raises:
-        ValueError: an option or its value is not known.
+        ValueError: an option is unknown or its value invalid.
 
     Example:
         >>> pkm.read_options("--work-offset=0,0,150 --tip-tolerance 0.002").tip_tolerance
@@ -112,15 +112,15 @@ def read_options(arguments: str) -> Options:
 
 
 def is_path(source: Source) -> bool:
-    """Whether a source is a file, not a CAM job."""
+    """Whether a source is a file rather than a CAM job."""
     return isinstance(source, str | Path)
 
 
 def sound_value(value: Value | None, diagnostics: Iterable[Diagnostic]) -> Value:
-    """The value; warnings are issued.
+    """Return the value; issue the warnings.
 
     Raises:
-        Refused: there is none, or there are errors.
+        Refused: there is no value, or there are errors.
     """
     listed = tuple(diagnostics)
     if value is None or errors(listed):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Certify: decide whether a program follows its trajectory within tolerances and limits.
 
-Enters: the strut motion read back from the written program, the trajectory read back from its file, the machine, and
-the planned motion, which assigns each knot a place on the trajectory. Leaves: a certificate with each quantity at its
+Input: the strut motion read back from the written program, the trajectory read back from its file, the machine, and
+the planned motion, which locates each knot on the trajectory. Output: a certificate with each quantity at its
 worst, its limit, a time and a source line; figures without a limit; and a diagnostic for every finding that does not
 hold. docs/certificate.md has the table; ``coverage`` assigns entries of the machine file to rows.
 """
@@ -92,7 +92,7 @@ def findings(
 
 
 def _of_threads(task: PlaybackTask, trajectory: Trajectory, starts: _When) -> tuple[_Row, ...]:
-    """The rows of a spindle that is an axis; a machine without one has been refused (T107)."""
+    """Rows of a spindle as an axis; a machine without one has been refused (T107)."""
     from pkm_post.certificate.lead import thread_bounds
 
     axis, bounds = task.machine.spindle_axis, thread_bounds(task, trajectory)
@@ -153,9 +153,9 @@ def _largest_sample(
     values: Array,
     limit: Array | float,
 ) -> tuple[Array, float, _When]:
-    """The largest figure by its limit, assigned to the interval with the largest measured value; its limit and time.
+    """The largest figure by its limit, in the interval with the largest measured value; with limit and time.
 
-    The figure may belong to another interval, due to its undetected part, whose time is unknown.
+    The figure may belong to another interval, due to its bound between samples, whose time is unknown.
     """
     interval = int(played.most_found[quantity])
     there = float(np.broadcast_to(limit, values.shape)[interval])
@@ -199,8 +199,8 @@ _LEAST = ("shortest strut", "shortest interval")
 _FEED_SHARE = 1.01
 """Factor by which the cubic may exceed the planned speed where the acceleration changes."""
 _SWING = 1 / 3
-"""Share of the change of speed within one millisecond, which cannot be divided by a knot: if the tip reaches its speed
-long before the end, the cubic is faster by this in between, to cover the same distance."""
+"""Share of the change of speed within one millisecond, which no knot can divide: a tip at its speed long before
+the end overshoots by this to cover the same distance."""
 _FEED_ROUNDING = 0.05
 """mm/s: effect of rounding lengths to six decimals on the speed within one millisecond, with margin."""
 
@@ -229,7 +229,7 @@ def certify(
         collisions: coverage of the checks against part, stock and fixtures.
         spin_deviation: (K + 1,) mm of a strut due to spin error, if the motion was reconstructed and so has the spin
             of the program itself.
-        rests: whether the program rests at its start, and at its end; a piece of a motion may not.
+        rests: whether the program is at rest at its start and end; a piece of a motion may not be.
         adjacent: the motion before and after such a piece; the jerk at its ends depends on it.
 
     Raises:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Consistency: what program, plan, trajectory and machine must have in common before they can be compared.
+"""Consistency: preconditions for comparing a program with its plan, trajectory and machine.
 
-Enters: a strut motion as read back, the plan it was made from, a trajectory as read from its file, and the machine it
-names. Leaves: diagnostics, each with the first difference, as found and as planned; and the values of a trajectory that
-no posting for its machine can produce. Such a file was modified; it is not planned, since its path or duration may be
+Input: a strut motion as read back, the plan it was made from, a trajectory as read from its file, and the machine it
+names. Output: diagnostics, each with the first difference, as found and as planned; and the values of a trajectory that
+no posting for its machine can produce. Such a file was modified and is not planned, since its path or duration may be
 unbounded. Times: whole ms, as in the program.
 """
 
@@ -43,7 +43,7 @@ def structure_faults(
         trajectory: the programmed trajectory.
         machine: the machine to check the program on.
         motion: the plan.
-        rests: whether the program rests at its start, and at its end.
+        rests: whether the program is at rest at its start and end.
     """
     another, found = machine_fault(trajectory, machine, program_name), []
     if not np.array_equal(struts.time_ms, motion.time_ms):
@@ -72,7 +72,7 @@ def machine_fault(trajectory: Trajectory, machine: Machine, name: str) -> Diagno
 
 
 def event_fault(found: Sequence[Event], planned: Sequence[Event]) -> str:
-    """The first event that differs, in words."""
+    """The first event that differs, as text."""
     return _first_difference("event", found, planned, _event)
 
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Coverage: which hazards a certificate covers, and which it does not.
+"""Coverage: the hazards that a certificate covers, and those it does not.
 
-Enters: a machine and a trajectory. Leaves: a row for each hazard. A body whose size the machine file does not state is
+Input: a machine and a trajectory. Output: a row for each hazard. A body whose size the machine file does not state is
 not checked, so the rows differ from machine to machine. For approach, tool changes and spindle start, statements of the
 machine file alone are not trusted: a row is covered if the trajectory confirms it. ``CERTIFIED`` and
-``CHECKED_ELSEWHERE`` name what enforces each limit that a machine file can state. docs/certificate.md has the same
+``CHECKED_ELSEWHERE`` name the check behind each limit that a machine file can state. docs/certificate.md has the same
 table for users.
 """
 
@@ -19,11 +19,11 @@ from pkm_post.machine import NO_SETUP, has_strut_bodies
 from pkm_post.model import Coverage, EventKind, Extent, Machine, Phrase, Topic, Trajectory, cuts_by_speed
 
 _SAME = 1e-6
-"""mm, and of unit axes: a tool change within this distance of the pose in the machine file counts as there."""
+"""mm, and of unit axes: a tool change this close to the pose in the machine file is at that pose."""
 _UNPLANNED = "each strut moves by itself, on a way that is not planned"
 _PLANNED_BY_HAND = f"{_UNPLANNED}; pmac approach and the panel plan one, loading the program by other means does not"
 _Answer = tuple[str, str]
-"""How a hazard is covered, or nothing; and the reason if it is not."""
+"""Method that covers a hazard, or nothing; and the reason if it is not covered."""
 
 
 def approach_and_tool_change_coverage(machine: Machine, trajectory: Trajectory) -> tuple[Coverage, ...]:
@@ -107,7 +107,7 @@ def coverage(
 
     Args:
         machine: the statements of its file determine what was checked.
-        trajectory: determines the coverage beside the path.
+        trajectory: determines the coverage outside the path.
         collisions: rows of checks against part, stock and fixtures, which are not in the machine file.
     """
     return (
@@ -214,4 +214,4 @@ CHECKED_ELSEWHERE = {
     "controller.memory_words": "a program that is too long is cut into parts, or refused, before it is written",
     "controller.approach_speed": _NOT_PLANNED,
 }
-"""Limits without a finding, and what enforces them."""
+"""Limits without a finding, and the checks that enforce them."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Deviation: distance of tool poses from segments of the programmed trajectory, independent of time and plan.
 
-Enters: poses, and a segment for each. Leaves: deviations of tip (mm) and axis (rad). A pose is compared with the
+Input: poses, and a segment for each. Output: deviations of tip (mm) and axis (rad). A pose is compared with the
 best-fitting programmed pose of its segment: the one with the least sum of squares of tip and axis deviation, each by
 its tolerance. On a helix that pose is one step of Newton's method away from the one at the same angle. A wrong segment
 can only give a deviation larger than that from the trajectory, never smaller.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Fault causes: whether a limit is violated by the plan, or by the decimals of the printed program.
 
-Enters: a certificate, and its program. Leaves: a diagnostic for each finding that does not hold. A program that equals
+Input: a certificate, and its program. Output: a diagnostic for each finding that does not hold. A program that equals
 its printed plan is played again with the exact lengths and speeds of the plan; findings that then hold are due to the
 decimals, and more decimals are tried until they hold. Units: mm, mm/s.
 """
@@ -61,7 +61,7 @@ def diagnose(
 
 
 def _of_short_intervals(fault: Diagnostic, time: float, struts: StrutMotion, machine: Machine) -> Diagnostic:
-    """The same diagnostic, or that of an interval that only the controller's shortest interval keeps from being cut."""
+    """The same diagnostic, or that of an interval too short to split on this controller."""
     row = np.clip(np.searchsorted(struts.time_ms, 1000 * time, side="right") - 1, 0, len(struts) - 2)
     interval = int(np.diff(struts.time_ms[row : row + 2])[0])
     if fault.code not in _OF_KNOTS or not 1 < interval < 2 * machine.shortest_interval:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Dynamics: turning rate of the tool axis, acceleration and jerk of the tip, and effects of the drives at the tip.
 
-Enters: a playback task. Leaves: upper bounds of turning rate and acceleration for each interval. Most come from the
+Input: a playback task. Output: upper bounds of turning rate and acceleration for each interval. Most come from the
 tool's cubics; where these could be the worst of the program or decide a limit, or have no bound, velocity and
 acceleration follow from poses found by Newton's method, at as many instants as needed.
 
@@ -9,7 +9,7 @@ Drives, as far as the machine file describes them: figures at the knots; they ar
 strut is 1 / c mm, and for the worst signs s of +1 or -1 the tip deviates by |J^-1 s| / c.
 
 A strut with the velocity gain k follows its length l as a first-order lag, y' = k (l - y). The lag e = l - y obeys
-e' = l' - k e, which on a cubic has the solution l' / k - l'' / k^2 + j / k^3, j being its jerk, plus the residual of
+e' = l' - k e, which on a cubic has the solution l' / k - l'' / k^2 + j / k^3, with its jerk j, plus the residual of
 the earlier lag times exp(-k t). With T the mean of all 1 / k, l(t - T) is a place of the path; the component of
 J^-1 (y(t) - l(t - T)) perpendicular to the tip's motion there is the contour error. Units: mm, s.
 """
@@ -65,7 +65,7 @@ def tool_limits(task: PlaybackTask) -> tuple[Array, Array]:
 
 
 def _unsettled(found: Array, hidden: Array) -> Array:
-    """Intervals whose figures, by the limits, exceed the measured values by too much."""
+    """Intervals with too large a gap between bound and measured value, relative to the limits."""
     figure = found + hidden
     enough = np.maximum(found.max(axis=1, keepdims=True) * (1 + _REMAINDER), _FAR_BELOW)
     undecided = (found <= 1) & (figure > 1)

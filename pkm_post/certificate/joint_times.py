@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Matching: times at which a played program passes the ends of the programmed segments, found without a plan.
+"""Joint times: when a played program passes the ends of the programmed segments, found without a plan.
 
-Enters: the path of a program, a trajectory, and the knots at which both rest. Leaves: a time for each joint. Between
+Input: the path of a program, a trajectory, and the knots at which both rest. Output: a time for each joint. Between
 two rests the played path is as long as the programmed one, except for rounded corners: this gives an estimate for each
 joint, near which the best-fitting time is searched for. Joints already found refine the estimates of their neighbours.
-About a rounded corner between two feeds many times fit alike; there the joint is passed where the tool is no faster
-than the slower one. Times are no guarantee: the certificate measures the program with them, and wrong times can only
-increase a deviation.
+On a rounded corner between two feeds many times fit equally well; there the joint is passed where the tool is no faster
+than the slower feed. The times need not be exact: the certificate measures the program with them, and wrong times can
+only increase a deviation.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ _LOOKS = 4
 _REACHES = (12, 4, 48, 8, 192, 16, 768, 24)
 """Numbers of instants to search on either side of the estimate, tried in turn for joints not found yet."""
 _WIDEST_FULL_SEARCH = 24
-"""Beyond this reach, only joints without any match are searched for."""
+"""Beyond this reach, the search covers only joints without any match."""
 _FITS = 1.5
 """Deviation by tolerance within which a joint counts as found; the certificate allows 1."""
 _WELL = 0.6
-"""Deviation by tolerance within which no better time is searched for."""
+"""Deviation by tolerance at which the search for a better time stops."""
 _NEWTON_STEPS = 8
 _STEPS_TO_FEED = 4
 _SPIN_COUNTS = 1e-3
@@ -40,7 +40,7 @@ _AT_ONCE = 1 << 18
 
 @dataclass(frozen=True)
 class _SampledPath:
-    """Even instants of all intervals, (S,), with the quantities to compare joints with.
+    """Even instants of all intervals, (S,), with the quantities compared with joints.
 
     Attributes:
         place: (7, S).
@@ -66,7 +66,7 @@ def joint_times(
         trajectory: the programmed trajectory.
         machine: determines the weight of turns relative to distance.
         tolerances: the requested tolerances.
-        joints: (R,) segments at the ends of which both rest, ascending; the last is the last segment.
+        joints: (R,) segments at whose ends both rest, ascending; the last is the last segment.
         knots: (R,) the knots of these rests.
     """
     search = _Search(path, trajectory, machine, tolerances)
@@ -173,7 +173,7 @@ class _Search:
         """Times of joints, moved into the faster segment where the tool is too fast for the slower one.
 
         Args:
-            rows: (M,) segments with another one behind them.
+            rows: (M,) segments that have a successor.
             time: (N,) times of all joints, never decreasing.
         """
         before, after = self._feed[rows], self._feed[rows + 1]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Joints: tool poses of a played motion at the times when it should pass from one segment to the next.
+"""Joints: tool poses of a played motion at the transitions between segments.
 
-Enters: a playback task. Leaves: deviations of the tool from each programmed point, and from the segments on both sides
+Input: a playback task. Output: deviations of the tool from each programmed point, and from the segments on both sides
 of it. Deviation from the trajectory alone would miss a motion that turns back too early; and even instants rarely hit
 the middle of a rounded corner, where the tool is farthest from both segments.
 """
@@ -65,7 +65,7 @@ def _measured(task: PlaybackTask, trajectory: Trajectory, rows: Array) -> tuple[
     off_point = norm(tip - programmed_tip), angle_between(axis, programmed_axis)
     off, tolerance = _off_both(task, tip, axis, rows, len(trajectory) - 1)
     tight = np.stack([tolerance.min(axis=0), np.full(len(rows), task.ruler.axis_tolerance)])
-    # the programmed point lies on both segments: it counts where it fits better than their best-fitting poses
+    # the programmed point lies on both segments: used where it fits better than their best-fitting poses
     at_point = np.stack(off_point) / tight
     by_point = at_point.max(axis=0) < off.max(axis=(0, 1))
     worse = (off[1, 0] > off[0, 0]).astype(int)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Lead: how far the depth of the tool in a thread is off what the turns of the spindle make of it.
+"""Lead: deviation of the depth of the tool in a thread from the turns of the spindle times the lead.
 
-Enters: a program as read back, with the turns of a spindle that is an axis. Leaves: for each interval of the program
-the largest deviation, and the highest speed and acceleration of the spindle; 0 outside threads. Poses come from the
-strut lengths by forward kinematics, so the depth is that of the program; with it counts the platform's own turn about
-the tool axis, counterclockwise for a positive spin:
+Input: a program as read back, with the turns of a spindle that is an axis. Output: for each interval of the program the
+largest deviation, and the highest speed and acceleration of the spindle; 0 outside threads. Poses come from the strut
+lengths by forward kinematics, so the depth is that of the program. The platform's own turn about the tool axis counts
+as well, counterclockwise for a positive spin:
 
     deviation = depth - lead (turns - (spin - spin at the start) / 2 pi)
 
@@ -26,14 +26,14 @@ from pkm_post.model import StrutMotion, Trajectory, pieces, threads
 _SHARES = np.linspace(0.0, 1.0, 17)
 """Instants of each interval."""
 _HIDDEN = 1.1 / 8
-"""Of the largest second difference: what a smooth course can be off between two instants, with a tenth of room."""
+"""Bound between two instants as a share of the largest second difference: 1/8 for a smooth curve, plus 10 %."""
 _AT_ONCE = 256
 """Intervals in one pass."""
 
 
 @dataclass(frozen=True)
 class ThreadBounds:
-    """Of each of K intervals, (K,).
+    """Bounds of each of K intervals, (K,).
 
     Attributes:
         lead: deviation of the depth, mm; infinite where there is no pose.
@@ -51,7 +51,7 @@ class _Intervals:
     """The I intervals of all threads: their knots, and for each the turns at both ends and its thread.
 
     Attributes:
-        knot: (I,) at which it begins.
+        knot: (I,) its first knot.
         turns: angle and speed at its start, angle and speed at its end, (I, 1) each.
         lead: (I,) of its thread.
         row: (I,) first row of its thread in the trajectory.
@@ -81,7 +81,7 @@ class _Intervals:
 
 
 def thread_bounds(task: PlaybackTask, trajectory: Trajectory) -> ThreadBounds:
-    """Measure the threads of a program; its knots of threads are those of its events, as its reader has checked."""
+    """Measure the threads of a program; the reader has checked that its events mark their knots."""
     count = len(task.struts) - 1
     lead, speed, acceleration = np.zeros((3, count))
     intervals = _Intervals.of(task.struts, trajectory)
@@ -95,7 +95,7 @@ def thread_bounds(task: PlaybackTask, trajectory: Trajectory) -> ThreadBounds:
 def _deviation(
     task: PlaybackTask, trajectory: Trajectory, intervals: _Intervals, duration: Array, some: slice
 ) -> Array:
-    """Largest deviation of the depth in some intervals, with what can hide between the instants, (n,)."""
+    """Largest deviation of the depth in some intervals, with the bound between the instants, (n,)."""
     row, lead = intervals.row[some], intervals.lead[some, None]
     start, axis, spin = trajectory.tip_before()[row], trajectory.axis_before()[row], trajectory.spin_before()[row]
     tip, rotation, found = _poses(task, intervals.knot[some])
@@ -121,6 +121,6 @@ def _poses(task: PlaybackTask, knot: Array) -> tuple[Array, Array, Array]:
 
 
 def _turn(before: Array, after: Array, axis: Array, near: Array) -> Array:
-    """Angles by which vectors were turned about an axis, rad; of those that differ by full turns the nearest."""
+    """Angles by which vectors were turned about an axis, rad; among those a full turn apart, the nearest."""
     found = np.arctan2(dot(cross(before, after), axis), (before * after).sum(axis=-1))
     return np.asarray(found + 2 * np.pi * np.round((near - found) / (2 * np.pi)))

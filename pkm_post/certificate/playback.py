@@ -93,7 +93,7 @@ class _Measured:
 
 
 def sample(task: PlaybackTask, rows: Array, instants: int, closely: bool) -> Samples:
-    """Play the intervals that begin at some knots, (N,), and measure each at a number of even instants."""
+    """Play the intervals that start at the given knots, (N,), and measure each at a number of even instants."""
     measured = _measured(task, rows, instants, closely)
     tool, tip_tolerance, (by_tolerance, off_axis, speed) = measured.tool, measured.tip_tolerance, measured.values
     worst = np.argmax(by_tolerance, axis=0), np.arange(len(rows))
@@ -142,10 +142,10 @@ def _measured(task: PlaybackTask, rows: Array, instants: int, closely: bool) -> 
 
 
 _ON_SPLINE = (9, 33)
-"""Sampled instants of each interval on the cubic of the tool, including its two knots; then of intervals that may have
-the worst undetected."""
+"""Sampled instants per interval on the cubic of the tool, including its two knots; the second number for intervals that
+may have the worst undetected."""
 _INSTANTS = (17, 33, 65, 129, 257, 513, 1025)
-"""The same by kinematics for intervals that still may: a step halves the spacing and quarters the undetected part."""
+"""The same by kinematics, for those that still may: each step halves the spacing and quarters the undetected part."""
 _REMAINDER = np.array([0.005, 0.005, 0.001])[:, None]
 """Final undetected shares of the worst deviations of tip and axis and of the worst speed, which are added."""
 _AT_ONCE = 8192

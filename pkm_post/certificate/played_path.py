@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Played path: the tool path of a played program, its backward motion, and its deviation of spin, without a plan.
 
-Enters: a strut motion as read back, the gauge length in use at each knot, the trajectory with its ruler, and when each
-joint is passed. Leaves: tool poses at the knots by forward kinematics, each starting from the previous one, with their
+Input: a strut motion as read back, the gauge length in use at each knot, the trajectory with its ruler, and when each
+joint is passed. Output: tool poses at the knots by forward kinematics, each starting from the previous one, with their
 rates; between two knots tip, axis and spin are approximated by cubics. The certificate is not measured on these cubics
 (``tool_states``). Units: mm, s, rad.
 
@@ -48,14 +48,14 @@ _AT_ONCE = 8192
 
 @dataclass(frozen=True)
 class PlayedPath:
-    """Columns of K + 1 knots: tip in mm, tool axis, spin in rad, one after the other.
+    """Columns of K + 1 knots: rows of tip in mm, tool axis, and spin in rad.
 
     Attributes:
-        place: (7, K + 1) with the tool of the interval before the knot.
+        place: (7, K + 1) with the tool of the interval that ends at the knot.
         rate: (7, K + 1) by time.
         start: (7, K) at the start of each interval, with the tool of that interval.
         time: (K + 1,) s.
-        tool_length: (K + 1,) of the tool of the interval before the knot, mm.
+        tool_length: (K + 1,) of the tool of the interval that ends at the knot, mm.
         struts: the program, read back.
     """
 
@@ -189,7 +189,7 @@ class _Allowed:
         """Excess of spins over the allowed range at their poses, (M,) rad."""
         share, slack = self._ruler.share_of(tip, axis, segment)
         turn = self._turn[segment]
-        still = np.isinf(slack)  # a pure turn about the tool axis: any spin in between fits
+        still = np.isinf(slack)  # a pure turn about the tool axis allows any spin in between
         ahead = np.clip((spin - self._before[segment]) / np.where(turn == 0, 1.0, turn), 0.0, 1.0)
         expected = self._before[segment] + turn * np.where(still, ahead, share)
         distance = share * self._extent[segment], (1 - share) * self._extent[segment]

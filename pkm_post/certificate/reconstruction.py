@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Recovered: the motion of a program in the form of a plan, from program and trajectory alone.
+"""Reconstruction: the motion of a program in the form of a plan, from program and trajectory only.
 
-Enters: the strut motion of a program, the trajectory, the machine. Leaves: tool poses and rates at its knots, the
+Input: the strut motion of a program, the trajectory, the machine. Output: tool poses and rates at its knots, the
 segment of each knot and the time of each joint, so that ``certify`` can measure the program of any planner; and the
 deviation of the spin from the programmed one. Rests and events, and their order, must match the trajectory.
 """
@@ -41,7 +41,7 @@ class ReconstructedMotion:
     path: PlayedPath
 
     def pose_path(self) -> tuple[PosePath, Array]:
-        """The pose path through even instants of all intervals, and the segments of these."""
+        """The pose path through even instants of all intervals, and their segments."""
         count = len(self.motion) - 1
         first = self.path.at(np.array([0]), np.zeros((1, 1)))[:, 0]
         inside = self.path.at(np.arange(count), _SAMPLE_SHARES).transpose(0, 2, 1).reshape(7, -1)
@@ -81,7 +81,7 @@ def reconstruct(
 
 
 _Fault = tuple[str, str]
-"""A code, and its finding."""
+"""Diagnostic code and finding."""
 
 
 def _diagnostics(fault: _Fault | None, program_name: str) -> Findings:
@@ -143,7 +143,7 @@ class _Rests:
         return cls(np.flatnonzero(~struts.speed.any(axis=1)), np.flatnonzero(rests))
 
     def fault(self, struts: StrutMotion, trajectory: Trajectory, machine: Machine) -> _Fault | None:
-        """The reason that prevents a comparison: another machine, motion at the ends, other rests or events."""
+        """The fault that prevents a comparison: another machine, motion at the ends, other rests or events."""
         if trajectory.machine_fingerprint != machine.fingerprint:
             return "T104", f"made for {trajectory.machine}, checked on {machine.name}"
         for which, speed in (("first", struts.speed[0]), ("last", struts.speed[-1])):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Struts: exact extremes of the strut cubics of a program, and their deviation from the plan.
 
-Enters: the strut motion as read back. Leaves: highest speeds and accelerations, longest and shortest lengths of every
+Input: the strut motion as read back. Output: highest speeds and accelerations, longest and shortest lengths of every
 interval, from the closed forms of a cubic; jerk; and bounds on the deviation of struts from the plan. Units: mm, s.
 """
 
@@ -76,10 +76,10 @@ class AdjacentMotion:
     """The motion before and after a piece: the jerk at the ends of the piece depends on it.
 
     Attributes:
-        duration: of the interval before it, s; 0 where it begins at rest.
+        duration: of the interval before the piece, s; 0 if it starts at rest.
         struts: (6,) mean acceleration in that interval, mm/s^2.
-        tip: (3,) that of the tip.
-        goes_on: whether the piece ends at speed: the jerk at its last knot is measured with what comes next.
+        tip: (3,) the same for the tip.
+        goes_on: whether the piece ends at speed; the next piece then measures the jerk at its last knot.
     """
 
     duration: float = 0.0
@@ -104,11 +104,11 @@ def mean_changes(time_ms: Array, speed: Array, adjacent: AdjacentMotion, before:
     Args:
         time_ms: (K + 1,) whole ms.
         speed: (K + 1, C) by s.
-        adjacent: what is before the first and after the last knot.
+        adjacent: the motion before the first and after the last knot.
         before: (C,) mean acceleration in the interval before.
 
     Returns:
-        (K + 1, C) and (K + 1,) s; no change at the last knot where the motion goes on.
+        (K + 1, C) and (K + 1,) s; no change at the last knot if the motion continues.
     """
     duration = np.diff(time_ms / 1000)
     checkpoint()

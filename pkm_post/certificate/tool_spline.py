@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tool spline: kinematic state at the knots, and the path of the tool in each interval as one cubic, with error bounds.
 
-Enters: a strut motion as read back, and the planned motion as start value. Leaves: planned strut lengths and speeds,
+Input: a strut motion as read back, and the planned motion as start value. Output: planned strut lengths and speeds,
 inverse Jacobians, and the intervals in which the Jacobian varies so little that the mean of both inverses can replace
-that of an instant; tool poses and their rates at the knots. Between two of them tip, axis and spin follow the cubics
+that of any instant; tool poses and rates at the knots. Between two knots tip, axis and spin follow the cubics
 with these ends, which need no kinematics: the rough pair of ``tool_states.states_by_kinematics``. The struts of such a
-cubic are not exactly those that are played; their difference at three instants gives the error of the cubic there, and
-a bound for all others. Units: mm, s, rad.
+cubic differ slightly from those played; the difference at three instants gives the error of the cubic there, and a
+bound for all other instants. Units: mm, s, rad.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tool states: tool pose and velocity on the cubics of some intervals, at shares of each.
 
-Enters: a strut motion as read back, and a planned motion as the start value for each pose; the poses found do not
-depend on it. Leaves: tip, axis and velocity of the tip, with error bounds. Poses come from the tool's cubics
+Input: a strut motion as read back, and a planned motion as the start value for each pose; the poses found do not
+depend on it. Output: tip, axis and velocity of the tip, with error bounds. Poses come from the tool's cubics
 (``tool_spline``) or from forward kinematics: mostly by linear steps from the plan (``refine_poses``); by Newton's
-method where these do not converge. Where the Jacobian changes much, velocities come from that of each pose.
+method where these do not converge. Where the Jacobian changes a lot, each pose has its own for the velocity.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pkm_post.machine import ToolPoses, forward, jacobian_of_tip, linearise, map
 from pkm_post.model import Machine, Motion, StrutMotion
 
 _SPEED_MISSED = 1.3e-3
-"""Relative error of a speed from the mean of two inverse Jacobians; see ``knots``."""
+"""Relative error of a speed from the mean of two inverse Jacobians; see ``tool_spline``."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class PlaybackTask:
         spline: approximate cubics of the tool.
         ceiling: (K,) highest tip speed of each interval, mm/s.
         spin_deviation: (K + 1,) mm of a strut due to spin error, in addition to the deviation from the plan.
-        adjacent: the motion before and after, where this one is a piece of a longer one.
+        adjacent: the motion before and after, if this is a piece of a longer motion.
     """
 
     struts: StrutMotion

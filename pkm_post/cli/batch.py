@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The command ``batch``: post the files of a list, go on after an interruption, and leave a table of results.
 
-Enters: a TOML file with jobs. Leaves: the results of each job, and a table. Each job is posted by the command line in a
+Input: a TOML file with jobs. Output: the results of each job, and a table. Each job is posted by the command line in a
 process of its own, so that any executor of ``concurrent.futures`` may run the jobs, on this computer or others that see
 the same folders, and the bytes are the same. A job whose inputs and results are as in the table is left.
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Loading: read a program file for the controller if its exact bytes are certified for this machine.
 
-Enters: the file of a program, or of one of its parts, and a machine. Leaves: the job for the controller, or the reasons
+Input: the file of a program, or of one of its parts, and a machine. Output: the job for the controller, or the reasons
 against it. Bytes are certified if the heading of the program, its report, its manifest and the trajectory file agree on
 their SHA-256 and on the machine file; else if ``verify`` passes now. Command line, panel and macros load programs
 through this module.

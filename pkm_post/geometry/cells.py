@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cells of a grid in space: points that are close together are looked at together, with what may be near them."""
+"""Cells of a grid in space: points close together are processed together, with their candidate neighbours."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import numpy as np
 from pkm_post.geometry.vectors import Array
 
 Pairs = tuple[Array, Array, Array]
-"""Rows of N points, (N,), then K pairs: indices into these, ascending, and what each is paired with, (K,) both."""
+"""Rows of N points, (N,); for K pairs, indices into these, ascending, and the partners, (K,) each."""
 
 _PAIRS_TOGETHER = 1 << 13
-"""Pairs after which no part is joined to others: each number of a call costs more than the call."""
+"""Pairs at which a batch is complete: beyond, arithmetic costs more than calls."""
 _PARTS_TOGETHER = 64
-"""Parts after which no other is joined, however few pairs they have: who waits for them can stop in between."""
+"""Most parts per batch, however few pairs they have: work can be cancelled between batches."""
 
 
 def grid_cells(points: Array, about: int) -> list[Array]:
@@ -47,7 +47,7 @@ def groups_of(points: Array, about: int) -> tuple[Array, Array, Array]:
         about: target number of points per group.
 
     Returns:
-        Rows of the points (N,), group by group, the number of the group of each (N,), and middles of groups (G, 3).
+        Rows of the points (N,), group by group, group number of each (N,), and centres of the groups (G, 3).
     """
     groups = grid_cells(points, about)
     sizes = [len(rows) for rows in groups]
@@ -58,7 +58,7 @@ def groups_of(points: Array, about: int) -> tuple[Array, Array, Array]:
 
 
 def pairs_together(parts: Iterable[Pairs]) -> Iterator[Pairs]:
-    """Parts joined where they have few pairs, so that what is done with them is worth its calls; no point is in two."""
+    """Join parts with few pairs, to save calls; no point may be in two parts."""
     waiting: list[Pairs] = []
     pairs = 0
     for part in parts:
@@ -72,7 +72,7 @@ def pairs_together(parts: Iterable[Pairs]) -> Iterator[Pairs]:
 
 
 def _joined(parts: list[Pairs]) -> Pairs:
-    """The parts as one."""
+    """The parts in one."""
     firsts = np.cumsum([0, *(len(rows) for rows, _, _ in parts[:-1])])
     rows, _, other = (np.concatenate(column) for column in zip(*parts, strict=True))
     return rows, np.concatenate([index + first for (_, index, _), first in zip(parts, firsts, strict=True)]), other

@@ -20,7 +20,7 @@ _TOGETHER = 4096
 """Parameters evaluated at a time: limits the memory for gathered poles."""
 
 _ORDERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
-"""Derivatives by u and v, in the order of the result."""
+"""Orders of the derivatives by u and v, in the order of the result."""
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ def grid_points_inside(triangles: Array, x: Array, y: Array, z: Array) -> Array:
 
     From each point in the plane a ray goes up: a point is outside if as many triangles below it face up as face down. A
     ray through an edge or a corner is treated as shifted by an infinitesimal amount along +y, and by much less along
-    -x, so it meets the right ones of the adjacent triangles.
+    -x, so it meets exactly one of the adjacent triangles.
 
     Args:
         triangles: (T, 3, 3) of a closed mesh.

@@ -81,7 +81,7 @@ def take_rows(vectors: Array, rows: Array) -> Array:
 
 
 def between_rows(vectors: Array, rows: Array, share: Array) -> Array:
-    """Vectors at a share of the way from a row to the one behind it, (3, N), from columns (3, M)."""
+    """Linear interpolation from given rows to the next ones, (3, N), in columns (3, M)."""
     start, end = np.take(vectors, rows, axis=1), np.take(vectors, rows + 1, axis=1)
     moved: Array = start + share * (end - start)
     return moved

@@ -39,13 +39,13 @@ class Finding:
         code: diagnostic of a violation.
         name: measured quantity.
         unit: unit of value and limit, as printed.
-        value: the worst value, including the bound of what samples may miss, in that unit.
+        value: the worst value, including the bound between samples, in that unit.
         limit: the limit at that time.
         holds: whether the value is within the limit.
-        time: s since the start, at the worst value; start of the interval for a value of an interval between two knots
-            as a whole, like the speed of a strut.
-        place: the source line that is executed at that time.
-        is_least: whether the value may not be below the limit, rather than above it.
+        time: s since the start, at the worst value; for a value of a whole interval between two knots, such as the
+            speed of a strut, the start of that interval.
+        place: source line executed at that time.
+        is_least: whether the limit is a minimum rather than a maximum.
     """
 
     code: str
@@ -75,7 +75,7 @@ class Figure:
         unit: as printed.
         value: in that unit.
         time: s since the start.
-        place: the source line that is executed at that time.
+        place: source line executed at that time.
     """
 
     name: str
@@ -86,7 +86,7 @@ class Figure:
 
 
 class Topic(enum.Enum):
-    """Topic of a hazard; each topic is one line in the meaning of the certificate."""
+    """Topic of a hazard; the summary of the certificate has one line per topic."""
 
     PATH = "tool path"
     LIMITS = "machine limits"
@@ -111,7 +111,7 @@ class Coverage:
         topic: topic of the hazard.
         subject: the hazard, such as "spindle and holder against the part".
         extent: extent of coverage.
-        detail: against what and how it was checked, or why it was not.
+        detail: the method and the reference of the check, or the reason for none.
     """
 
     topic: Topic
@@ -121,7 +121,7 @@ class Coverage:
 
 
 def coverage_summary(coverage: tuple[Coverage, ...]) -> tuple[str, ...]:
-    """Lines on what certified means, and what it does not: one for each topic, by extent."""
+    """Scope of the certificate as text: one line for each topic, by extent of coverage."""
     lines = []
     for topic in Topic:
         rows = [row for row in coverage if row.topic is topic]
@@ -145,7 +145,7 @@ class Certificate:
         instants: number of poses that were measured.
         time: (K,) s, at the start of each interval.
         tip_deviation: (K,) largest in the interval relative to its tolerance, mm.
-        tip_tolerance: (K,) its tolerance there, mm: that of the program (G64 P), else the requested one.
+        tip_tolerance: (K,) tolerance there, mm: from the program (G64 P), else the requested one.
         axis_deviation: (K,) largest in the interval, rad.
         coverage: one row for each hazard, in the order of the topics.
         figures: measured quantities without a limit, in a fixed order.
@@ -164,5 +164,5 @@ class Certificate:
 
     @property
     def holds(self) -> bool:
-        """Whether everything holds."""
+        """Whether all findings hold."""
         return all(finding.holds for finding in self.findings)

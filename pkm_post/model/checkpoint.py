@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Checkpoint: long computations visit their caller between pieces of work, to show progress and to be stopped.
+"""Checkpoint: long computations call back between pieces of work, to show progress and to be cancelled.
 
-The caller sets what a visit does for the time of a computation; an exception from it stops the computation. Without a
-caller, and in the threads of a pool, a visit does nothing.
+The caller sets the callback for the duration of a computation; an exception from it cancels the computation. Without a
+callback, and in the threads of a pool, a checkpoint does nothing.
 """
 
 from __future__ import annotations
@@ -13,20 +13,20 @@ from contextvars import ContextVar
 
 
 def _nothing() -> None:
-    """Without a caller."""
+    """Default callback."""
 
 
 _visit: ContextVar[Callable[[], None]] = ContextVar("visit", default=_nothing)
 
 
 def checkpoint() -> None:
-    """Visit the caller: at least three times a second in a computation that may be long."""
+    """Call back; long computations do so at least three times a second."""
     _visit.get()()
 
 
 @contextlib.contextmanager
 def checkpoints(visit: Callable[[], None]) -> Iterator[None]:
-    """Let the computation in this context visit.
+    """Set the callback of computations in this context.
 
     Args:
         visit: called at each checkpoint, in the thread of the computation.

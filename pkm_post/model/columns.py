@@ -52,7 +52,7 @@ def _frozen(column: Array, dtype: DTypeLike) -> Array:
 
 
 class ColumnBuilder:
-    """A column built piece by piece; while all rows are equal it takes the memory of one."""
+    """A column built piece by piece; it takes the memory of one row while all are equal."""
 
     def __init__(self, rows: int) -> None:
         """Start a column of this many rows."""
@@ -60,7 +60,7 @@ class ColumnBuilder:
         self._column: Array | None = None
 
     def put(self, first: int, piece: Array) -> None:
-        """Store rows; pieces come in order and leave no gap."""
+        """Store rows; pieces come in order and without gaps."""
         if self._column is None:
             self._column = np.broadcast_to(np.array(piece[:1], order="C"), (self._rows, *piece.shape[1:]))
         if len(piece) and is_uniform(self._column) and not _all_equal(self._column[:1], piece):
@@ -108,7 +108,7 @@ def in_pieces(rows: int, at_once: int, compute: Callable[[slice], Sequence[Array
 
 
 def read_only(column: Array) -> Array:
-    """Make the array read-only and return it; only for arrays without another writer."""
+    """Make the array read-only and return it; the array must have no other writer."""
     column.flags.writeable = False
     return column
 
@@ -154,7 +154,7 @@ def select_rows(column: Array, rows: Array) -> Array:
 
 
 def distinct(values: Array) -> Array:
-    """The different values of a column, ascending; ``numpy.unique`` would import masked arrays for it."""
+    """The distinct values of a column, ascending; ``numpy.unique`` would import masked arrays."""
     ordered = np.sort(values, axis=None)
     new = np.ones(len(ordered), dtype=np.bool_)
     new[1:] = ordered[1:] != ordered[:-1]
@@ -162,12 +162,12 @@ def distinct(values: Array) -> Array:
 
 
 def is_among(column: Array, numbers: Iterable[int]) -> Array:
-    """Which rows of whole numbers are one of some, (N,); in short columns ``numpy.isin`` would import masked arrays."""
+    """Whether each integer is among some numbers, (N,); ``numpy.isin`` imports masked arrays for short columns."""
     return np.isin(column, np.fromiter(numbers, dtype=np.int64), kind="table")
 
 
 def find_rows(ascending: Array, rows: Array) -> tuple[Array, Array]:
-    """Where ``rows``, (N,), occur in ``ascending``, (M,): their indices in both, (K,) each."""
+    """Find ``rows``, (N,), in ``ascending``, (M,): indices of the matches in both, (K,) each."""
     if not len(ascending):
         return ascending, ascending
     at = np.minimum(np.searchsorted(ascending, rows), len(ascending) - 1)
@@ -179,7 +179,7 @@ def map_rows(function: Callable[[Array], Array], column: Array) -> Array:
     """Apply a function to each row, computed once where all rows are equal.
 
     Args:
-        function: from rows to as many rows.
+        function: maps rows to equally many rows.
         column: the rows.
     """
     checkpoint()

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Diagnostics: faults of the input, collected while reading and checking, reported as text.
 
-Every fault has a code; the table ``RULES`` has the severity, cause and cure of each. A diagnostic adds the place and
-what was found there. A ``DiagnosticLog`` keeps the first ones of each group and counts the others, since a program of a
-million blocks may have the same fault in each. Faults of the caller are ``ValueError`` and not part of this module.
+Every fault has a code; the table ``RULES`` has the severity, cause and cure of each. A diagnostic adds the place
+and the text found there. A ``DiagnosticLog`` keeps the first ones of each group and counts the rest, since a program of
+a million blocks may have the same fault in each. Errors of the caller are ``ValueError``, not diagnostics.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Diagnostic:
     Attributes:
         code: key into ``RULES``.
         place: position in the input.
-        found: what was found there, in the words of the input.
+        found: the offending text or value, in the words of the input.
     """
 
     code: str
@@ -58,7 +58,7 @@ class Diagnostic:
 
     @property
     def text(self) -> str:
-        """Severity, code, cause, what was found, and the cure."""
+        """Severity, code, cause, finding and cure."""
         from pkm_post.model.rules import RULES
 
         rule = RULES[self.code]
@@ -93,7 +93,7 @@ class DiagnosticLog:
     """Diagnostics of one input.
 
     Attributes:
-        most: number kept of each group.
+        most: maximum kept per group.
     """
 
     most: int
@@ -101,7 +101,7 @@ class DiagnosticLog:
     _count: Counter[Hashable] = field(default_factory=Counter)
 
     def keeps(self, group: Hashable = "") -> bool:
-        """Whether one more of a group would be kept."""
+        """Whether the group still has room."""
         return self._count[group] < self.most
 
     def add(self, diagnostic: Diagnostic, group: Hashable = "") -> None:
@@ -115,7 +115,7 @@ class DiagnosticLog:
         self._count[group] += number
 
     def more(self, group: Hashable = "") -> int:
-        """Number that are counted but not kept."""
+        """Number counted but not kept."""
         return max(self._count[group] - self.most, 0)
 
     @property
@@ -124,11 +124,11 @@ class DiagnosticLog:
         return tuple(diagnostic for _, diagnostic in self._kept)
 
     def has_errors(self) -> bool:
-        """Whether errors are among them."""
+        """Whether any of them is an error."""
         return bool(errors(self.kept))
 
     def in_order(self, key: Callable[[Diagnostic], Any]) -> tuple[Diagnostic, ...]:
-        """The kept diagnostics by a sort key; the last one of a group states how many more there are."""
+        """The kept diagnostics, sorted by a key; the last one of a group states the number not kept."""
         ordered = sorted(self._kept, key=lambda entry: key(entry[1]))
         last = {group: index for index, (group, _) in enumerate(ordered)}
         diagnostics = [diagnostic for _, diagnostic in ordered]

@@ -4,9 +4,8 @@
 Frames: {M} machine, z up, fixed to the table; {T} platform, origin in the plane its joints are given in, z along the
 tool axis from the tip towards the spindle. Units: mm, rad, s, N.
 
-The length of a strut is the one that its controller counts: the distance of its joint centres, corrected for the
-rotation of its screw, less its length offset. Screw lead and offsets are zero unless the file states them; then it is
-the distance.
+The length of a strut is the one its controller counts: the distance of its joint centres, corrected for the rotation of
+its screw, minus its length offset. Without screw lead and offsets, the defaults, it is the distance.
 """
 
 from __future__ import annotations
@@ -63,7 +62,7 @@ class ToolChange:
         nose: (3,) centre of the spindle nose in {M}, mm: the tip is below it by the gauge length of the tool.
         axis: (3,) unit tool axis in {M}.
         spin: of the platform about it, rad.
-        safe_height: z in {M} at and above which the tip may travel between any two points, mm.
+        safe_height: least z in {M} at which the tip may travel between any two points, mm.
     """
 
     nose: Array
@@ -84,12 +83,12 @@ class SpindleAxis:
     """A spindle that the controller can move as an axis, for threads.
 
     Attributes:
-        motor: its number.
+        motor: motor number.
         letter: of the axis in the coordinate system of the struts; its unit is a turn.
         counts_per_turn: encoder counts of one turn of the spindle clockwise, seen from the spindle.
         speed: highest speed as an axis, turns/s.
         acceleration: highest acceleration as an axis, turns/s^2.
-        lead_tolerance: largest deviation of the depth from what the turns make of it, mm.
+        lead_tolerance: largest deviation of the depth from turns times lead, mm.
     """
 
     motor: int
@@ -118,11 +117,11 @@ class Machine:
         strut_speed: highest rate of strut length, mm/s.
         strut_acceleration: highest second rate of strut length, mm/s^2.
         base_rest: (6, 3) unit rest axes of the base joints in {M}, from the base towards the platform.
-        base_cone: (6,) half angle each base joint may swing from its rest axis; one number serves all.
+        base_cone: (6,) half angle each base joint may swing from its rest axis; or one number for all.
         platform_rest: (6, 3) unit rest axes of the platform joints in {T}, from the platform towards the base.
-        platform_cone: (6,) half angle each platform joint may swing from its rest axis; one number serves all.
-        characteristic_length: divides the rotation columns of the Jacobian so that all its entries are plain numbers.
-        least_singular_value: the path may not come nearer to a singular pose than this, dimensionless.
+        platform_cone: (6,) half angle each platform joint may swing from its rest axis; or one number for all.
+        characteristic_length: mm; divides the rotation columns of the Jacobian to make it dimensionless.
+        least_singular_value: least singular value of the Jacobian allowed on the path, dimensionless.
         home_tip: (3,) tool tip in {M} where a program starts.
         rapid_speed: tool-tip speed of rapid moves, mm/s.
         feed_speed: highest tool-tip speed of cutting moves, mm/s.
@@ -133,11 +132,11 @@ class Machine:
         controller: settings of the controller, as in the machine file.
         strut_jerk: highest third rate of strut length, mm/s^3; infinite when no limit is stated.
         tip_jerk: highest third rate of the tool tip position, mm/s^3; infinite when no limit is stated.
-        length_offset: (6,) mm by which the joints of each strut are farther apart than its controller counts.
+        length_offset: (6,) joint distance of each strut minus the length its controller counts, mm.
         base_joint_kind: ``"universal"`` or ``"spherical"``.
         platform_joint_kind: ``"universal"`` or ``"spherical"``.
         base_axes: (6, 3) unit axes of the universal base joints that are fixed to the base, in {M}; zero if unstated.
-        platform_axes: (6, 3) those of the platform joints that are fixed to the platform, in {T}; zero if unstated.
+        platform_axes: (6, 3) the same for the platform joints, fixed to the platform, in {T}; zero if unstated.
         screw_lead: nut travel per turn of the screw when only the joints keep the strut's halves from turning against
             each other, mm; negative for a left-hand screw, zero with a key.
         tube_radius: of the strut's outer part, fixed to its base joint; zero when strut bodies are not stated.
@@ -145,32 +144,32 @@ class Machine:
         rod_radius: of the strut's inner part, fixed to its platform joint.
         rod_length: from the centre of the platform joint along the strut; more than the strut's length when the rod
             emerges behind the base joint.
-        base_joint_radius: mm around the centre of a base joint in which contact of bodies is no collision.
+        base_joint_radius: mm from the centre of a base joint within which contact is no collision.
         platform_joint_radius: the same around a platform joint.
         clearance: least distance between bodies, mm.
         bodies: cylinders that move with the platform.
         fixtures: fixed boxes.
-        rest_tool_length: gauge length of the tool in the rest pose; also used for the figures of the home pose.
+        rest_tool_length: gauge length of the tool in the rest pose; also used at the home pose.
         home_axis: (3,) unit tool axis in {M} where a program starts.
         home_spin: spin where a program starts.
         spindle_least_speed: lowest spindle speed in revolutions per minute.
-        strut_stiffness: of one strut with its joints, all but the part that depends on the length, N/mm; None when
-            nothing is stated.
-        strut_rigidity: Young's modulus times cross-section of the screw, N: a length l of it has the stiffness
+        strut_stiffness: stiffness of one strut with its joints, without the part that depends on the length, N/mm;
+            None if not stated.
+        strut_rigidity: Young's modulus times cross-section of the screw, N: a length l has the stiffness
             rigidity / l, in series with ``strut_stiffness``. Infinite when unstated.
         shortest_interval: between two points that the controller accepts, ms.
         block_rate: most points that the controller accepts in any second; infinite when no limit is stated.
-        velocity_gain: (6,) of the position loop of each strut, 1/s: the lag of a strut is its speed over that; None
-            when nothing is stated.
-        tool_change: tool-change pose; None where the file states none, and tools are changed at the current pose.
-        spin_up_time: of the spindle from rest to its highest speed, s; None when it is not stated.
+        velocity_gain: (6,) of the position loop of each strut, 1/s: a strut lags by its speed over the gain; None if
+            not stated.
+        tool_change: tool-change pose; without one, None, tools are changed at the current pose.
+        spin_up_time: of the spindle from rest to its highest speed, s; None if not stated.
         spin_down_time: from its highest speed to rest, s; None when equal to ``spin_up_time``.
-        largest_tool_diameter: that the spindle accepts, mm; infinite when no limit is stated.
+        largest_tool_diameter: of the spindle, mm; infinite when no limit is stated.
         longest_tool: largest gauge length that the spindle accepts, mm; infinite when no limit is stated.
-        machine_zero: (3,) tool tip in {M} where G-code has X, Y and Z of G53, G28 and G30 at 0; None if not stated.
-        left_out: codes of G-code, such as "M21", to leave out where they are not understood.
-        optional_stops: what becomes of M1: "written", "stop" or "leave-out".
-        spindle_axis: the spindle as an axis, for threads; None where it is none.
+        machine_zero: (3,) tool tip in {M} at zero of the G53, G28 and G30 coordinates; None if not stated.
+        left_out: unsupported codes of G-code to skip, such as "M21".
+        optional_stops: treatment of M1: "written", "stop" or "leave-out".
+        spindle_axis: the spindle as an axis, for threads; None if it cannot be one.
         tool_table: path of the tool table for part programs, with its unit behind a comma; None if not stated.
     """
 
@@ -235,13 +234,13 @@ class Machine:
 
     @property
     def functions(self) -> tuple[int, ...]:
-        """Numbers of the M codes of part programs that the controller has a code for."""
+        """Numbers of the M codes of part programs that map to a code of the controller."""
         named = self.controller.get("codes", {})
         return tuple(int(name[1:]) for name in named if name[0] == "M" and name[1:].isdigit())
 
     @property
     def thread_codes(self) -> tuple[int, ...]:
-        """Numbers of the M codes that make the spindle an axis, and give it back to its speed."""
+        """Numbers of the M codes that switch the spindle to an axis, and back to speed control."""
         texts = [self.controller.get("codes", {}).get(name, "") for name in ("spindle_axis", "spindle_speed")]
         return tuple(int(text[1:]) for text in texts if text[:1] == "M" and text[1:].isdigit())
 

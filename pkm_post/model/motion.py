@@ -15,7 +15,7 @@ from pkm_post.model.columns import RowType, freeze, uniform
 from pkm_post.model.program import Array, Event
 
 AT_FEED = 0.95
-"""Share of a feed from which on it counts as reached."""
+"""Fraction of a feed at which it counts as reached."""
 _VECTOR: RowType = (np.float64, (3,))
 _NUMBER: RowType = (np.float64, ())
 MOTION_BY_TIME: dict[str, RowType] = {
@@ -82,9 +82,9 @@ class Motion:
         axis_rate: (M, 3) rate of the unit tool axis, 1/s.
         spin_rate: (M,) rate of the spin, rad/s.
         tool_length: (M,) gauge length of the tool in use.
-        segment: (M,) the trajectory segment the knot lies on; at a joint the earlier one.
-        joint_time: (N,) s, when the end of each of the N trajectory segments is passed.
-        events: by knot: the motion rests at knot r, the event takes place, the motion continues.
+        segment: (M,) trajectory segment of the knot; the earlier one at a joint.
+        joint_time: (N,) s, time at the end of each of the N trajectory segments.
+        events: by knot: the motion stops at knot r, the event takes place, the motion resumes.
     """
 
     time_ms: Array
@@ -107,7 +107,7 @@ class Motion:
         return len(self.time_ms)
 
     def poses(self, rows: slice | Array = slice(None)) -> Poses:
-        """Poses at all or some knots, with their rates; second derivatives are unknown here and zero."""
+        """Poses at all or some knots, with their rates; second derivatives are unknown and set to zero."""
         tip = self.tip[rows]
         unknown = uniform([0.0] * 3, len(tip))
         return Poses(
@@ -132,12 +132,12 @@ class FeedStudy:
     Attributes:
         time: (M,) s.
         programmed: (M,) programmed feed.
-        possible: (M,) highest tip speed that the limits of the machine allow at that place.
+        possible: (M,) highest tip speed that the machine limits allow there.
         planned: (M,) tip speed.
-        limit: (M,) index into ``limits`` of what keeps the plan below the programmed feed; -1 where it is at the feed.
+        limit: (M,) index into ``limits`` of the limit that binds; -1 where the plan is at the programmed feed.
         limits: names of the limits.
         row: (M,) segment of the trajectory.
-        cutting: (M,) whether it is not a rapid move.
+        cutting: (M,) whether the move is at feed rather than rapid.
     """
 
     time: Array
@@ -157,7 +157,7 @@ class FeedStudy:
 
 @dataclass(frozen=True)
 class SpindleTurns:
-    """The spindle where it is an axis: S knots of a motion, those of each thread but the first.
+    """The spindle as an axis: S knots of a motion, all but the first of each thread.
 
     At the first knot of a thread, where the spindle becomes an axis, it is at 0 turns and at rest. Between two knots it
     follows the cubic of both, as the struts do.
@@ -179,13 +179,13 @@ class SpindleTurns:
         return len(self.knot)
 
     def slice(self, first: int, last: int) -> SpindleTurns:
-        """Those of a part of the motion, counted from its first knot."""
+        """The turns of a part of the motion, with knots counted from its first."""
         rows = (self.knot > first) & (self.knot <= last)
         return SpindleTurns(self.knot[rows] - first, self.angle[rows], self.speed[rows])
 
 
 NO_TURNS = SpindleTurns(np.zeros(0), np.zeros(0), np.zeros(0))
-"""Of a motion whose spindle is never an axis."""
+"""For a motion without threads."""
 
 
 @dataclass(frozen=True)
@@ -196,7 +196,7 @@ class StrutMotion:
         time_ms: (M,) whole milliseconds since the start, strictly increasing; dwells do not count.
         length: (M, 6) joint-to-joint strut lengths in mm.
         speed: (M, 6) their rates in mm/s.
-        events: by knot: the motion rests at knot r, the event takes place, the motion continues.
+        events: by knot: the motion stops at knot r, the event takes place, the motion resumes.
         turns: the spindle at the knots of threads; none by default.
     """
 
@@ -213,13 +213,13 @@ class StrutMotion:
         return len(self.time_ms)
 
     def cubics(self, rows: Array) -> tuple[Array, Array, Array, Array, Array]:
-        """Cubics that begin at some knots, in the form of ``geometry.curves``.
+        """Cubics that start at the given knots, in the form of ``geometry.curves``.
 
         Args:
-            rows: (N,) the knots; none of them is the last.
+            rows: (N,) the knots, without the last.
 
         Returns:
-            Lengths and speeds at the beginning, lengths and speeds at the end, (N, 6) each in mm and mm/s; and the
+            Lengths and speeds at the start, lengths and speeds at the end, (N, 6) each in mm and mm/s; and the
             durations, (N,) in s.
         """
         after = rows + 1

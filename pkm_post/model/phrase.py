@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Phrase: a text that keeps what it was made of, so that a window can show it in another language and other units.
+"""Phrase: a text that remembers its pattern and values, so that the GUI can translate it and convert its units.
 
-A phrase is its English text: files, the command line and comparisons see nothing else. Its pattern is a literal in the
-sources; ``tools/core_texts.py`` gathers the patterns for translation, and ``freecad_app.core_texts`` shows phrases.
+Files, the command line and comparisons see only its English text. Its pattern is a literal in the sources:
+``tools/core_texts.py`` gathers the patterns for translation, and ``freecad_app.core_texts`` displays phrases.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Amount:
 
 
 class Pattern(str):
-    """The pattern of a phrase whose values come later."""
+    """The pattern of a phrase, before its values are known."""
 
     __slots__ = ()
 
@@ -43,8 +43,8 @@ class Phrase(str):
     """A text made of a pattern and its values, as by ``str.format``.
 
     Attributes:
-        pattern: English, with a place in braces for each value.
-        values: by position; phrases and amounts among them are shown as such.
+        pattern: English, with a field in braces for each value.
+        values: by position; phrases and amounts among them are translated and converted, too.
         named: by name.
     """
 

@@ -37,10 +37,10 @@ class EventKind(enum.IntEnum):
     STOP = 5
     """value: 0 program stop, 1 optional stop."""
     FUNCTION = 6
-    """value: number of an M code that the machine has for purposes of its own."""
+    """value: number of a machine-specific M code."""
     SPINDLE_AXIS = 7
-    """value: lead in mm of the thread that begins, positive for a right-hand one; 0 where the spindle ends to be an
-    axis. In between the angle of the spindle follows the depth (``thread.Thread``)."""
+    """value: lead in mm of the thread that begins, positive for a right-hand one; 0 at the end of a thread. In between
+    the angle of the spindle follows the depth (``thread.Thread``)."""
 
 
 @dataclass(frozen=True)
@@ -81,11 +81,11 @@ OPTIONAL_COLUMNS: dict[str, tuple[DTypeLike, tuple[int, ...], float]] = {
     "contact": (np.bool_, (), False),
     "spin": (np.float64, (), np.nan),
 }
-"""Columns that few sources have, each with its default."""
+"""Columns that few sources give, with their defaults."""
 
 
 IN_SUBPROGRAM_FILE = "subprogram "
-"""How the operation of rows begins that come from another file than ``Program.source``, before the name of the file."""
+"""Prefix of the operation name of rows from a file other than ``Program.source``; the file name follows."""
 
 
 @dataclass(frozen=True)
@@ -101,29 +101,29 @@ class Program:
         arc_axis: (N, 3) unit axis the arc turns about right-handed; NaN on other rows.
         operation: (N,) index into ``operations``.
         line: (N,) line (or command number, from 1) in the source of that operation.
-        events: what happens between rows, in order.
+        events: events between rows, in order.
         operations: names of the operations the rows come from.
         tools: the tools used, by number.
-        length_offsets: numbers of the tool length offsets (H) in use, those of its tools included.
+        length_offsets: numbers of the tool length offsets (H) in use, including those of its tools.
         source: name of the file the program comes from.
         source_fingerprint: SHA-256 of the bytes of that file, hexadecimal; empty if unknown.
-        reading: interpretation of an ambiguous file, and its evidence; as text, by subject.
-        exact_stop: (N,) whether the motion comes to rest at the end of the row (exact stop); none does by default.
-        exact_path: (N,) whether the corners at both ends of the row are followed and not rounded, so that the motion
-            rests there (G61.1); none are by default.
+        reading: interpretation of an ambiguous file with the evidence, as text by subject.
+        exact_stop: (N,) whether the motion comes to rest at the end of the row (exact stop); False by default.
+        exact_path: (N,) whether the corners at both ends of the row are not rounded, so that the motion comes to rest
+            there (G61.1); False by default.
         tip_tolerance: (N,) tolerance of the tool tip along the row, where the program states it (G64 P), mm; 0, the
             default, leaves it to the posting.
-        side_offset: (N,) radius of the 2D cutter compensation that is programmed for the row and not yet applied, mm:
-            positive to the left of the path (G41), negative to the right (G42), 0 for none, the default.
-        smaller_tool: (N,) whether the row is the path of a tool larger than the one it is compensated for, which it
-            leads towards the part; False by default. Such a path bounds no part: closer to it less is cut.
-        plane: (N,) the coordinate the compensation's plane is normal to: 2 for XY (G17), the default, 1 for ZX (G18),
+        side_offset: (N,) radius of the 2D cutter compensation programmed for the row and not yet applied, mm: positive
+            to the left of the path (G41), negative to the right (G42), 0, the default, for none.
+        smaller_tool: (N,) whether the row compensates for a tool smaller than the path was programmed for, which moves
+            the tool towards the part; False by default. Such a path is not the border of the part.
+        plane: (N,) coordinate normal to the compensation plane: 2 for XY (G17), the default, 1 for ZX (G18),
             0 for YZ (G19).
         normal: (N, 3) unit surface normal at the contact point, towards the tool, in {C}; NaN, the default, where the
             source gives none.
-        contact: (N,) whether ``position`` is the contact point of ``normal``, of which compensation makes the tool tip;
-            False by default.
-        spin: (N,) rotation of the platform about the tool axis, from the shortest rotation upright, rad; NaN, the
+        contact: (N,) whether ``position`` is the contact point with ``normal``, from which compensation computes the
+            tool tip; False by default.
+        spin: (N,) rotation of the platform about the tool axis, from zero torsion, rad; NaN, the
             default, where the source gives none.
     """
 

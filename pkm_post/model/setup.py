@@ -23,13 +23,13 @@ class Tool:
     Attributes:
         number: tool number, 0 when the source names none.
         name: display name.
-        diameter: cutter diameter in mm, 0 when unknown: that of the circle where the lines of bottom and side meet.
+        diameter: cutter diameter in mm, at the intersection of bottom and side line; 0 when unknown.
         corner_radius: corner radius in mm: 0 for a flat end mill, half the diameter for a ball.
         length: gauge length in mm, from the spindle nose to the tip.
         bottom_angle: rise of the bottom from the tip outwards, in rad: 0 for a flat bottom, 31 degrees for a drill
             with a point of 118.
         side_angle: angle of the side to the tool axis in rad, positive where the tool widens upwards.
-        corner_known: whether the source gives the corner radius; if not, it is 0: the flat end mill contains every
+        corner_known: whether the source gives the corner radius; if not, it is 0, since a flat end mill contains every
             other cutter of its diameter.
     """
 
@@ -104,7 +104,7 @@ class Mesh:
     Attributes:
         source: origin for messages: the name of a file or of an object.
         triangles: (T, 3, 3) corners in {C}, anticlockwise as seen from outside.
-        assumed: whether it is a default, such as the box CAM puts around a model: nothing about it is certain.
+        assumed: whether it is a guess, such as the default stock box that CAM puts around a model.
     """
 
     source: str
@@ -135,7 +135,7 @@ class Setup:
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is nothing to collide with."""
+        """Whether there are no solids to collide with."""
         return self.part is None and self.stock is None and not self.fixtures
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Thread: the stretches of a path along which the spindle is an axis, synchronised with the depth of the tool.
 
-A thread begins and ends at rest, with an event each. In between the tool moves along its own axis, and turns against
-the work by one turn for each lead of depth, to the bottom and back. So the angle of the spindle is a function of the
-pose, and no table needs a column for it. Units: mm, turns; angles are positive clockwise, seen from the spindle.
+A thread starts and ends at rest, with an event each. In between the tool moves along its own axis to the bottom and
+back, and turns against the work once per lead of depth. The spindle angle is thus a function of the pose and needs no
+column of its own. Units: mm, turns; angles are positive clockwise, seen from the spindle.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ class Thread:
     """One stretch.
 
     Attributes:
-        first: row of the table of motions that it begins with, or the knot at which the spindle becomes an axis.
-        end: the row after its last one, or the knot at which the spindle ends to be an axis.
-        lead: mm of depth for a turn of the tool against the work, negative for a left-hand thread.
+        first: its first row in the table of motions, or the knot at which the spindle becomes an axis.
+        end: the row after its last, or the knot at which the spindle returns to speed control.
+        lead: depth per turn of the tool against the work, mm; negative for a left-hand thread.
     """
 
     first: int
@@ -31,10 +31,10 @@ class Thread:
 
 
 def threads(events: Iterable[Event]) -> tuple[Thread, ...]:
-    """The threads between events, in order.
+    """The threads that the events delimit, in order.
 
     Raises:
-        ValueError: a thread begins within another one, or does not end.
+        ValueError: a thread starts within another, or has no end.
     """
     found: list[Thread] = []
     begun: Event | None = None
@@ -52,7 +52,7 @@ def threads(events: Iterable[Event]) -> tuple[Thread, ...]:
 
 
 def as_executed(events: Iterable[Event]) -> tuple[Event, ...]:
-    """The events as a program of the controller has them: no lead of a thread, only that the spindle is an axis."""
+    """The events as a controller program has them: whether the spindle is an axis, without the lead."""
     return tuple(
         replace(event, value=float(event.value != 0)) if event.kind is EventKind.SPINDLE_AXIS else event
         for event in events
@@ -60,7 +60,7 @@ def as_executed(events: Iterable[Event]) -> tuple[Event, ...]:
 
 
 def cuts_by_speed(kind: Array, events: Iterable[Event]) -> Array:
-    """Rows that cut with a spindle that runs at a speed, (N,): feed moves outside threads."""
+    """Whether each row cuts with the spindle under speed control, (N,): feed moves outside threads."""
     cuts = kind != Kind.RAPID
     for thread in threads(events):
         cuts[thread.first : thread.end] = False

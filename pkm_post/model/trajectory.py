@@ -20,9 +20,9 @@ from pkm_post.model.program import MOTION_COLUMNS, Array, Event
 from pkm_post.model.setup import Tool, gauge_lengths
 
 MAX_SPIN = 1e6
-"""rad: a platform rotates by less than one turn; a larger number leaves too few digits for planning."""
+"""rad: a platform rotates by less than one turn; larger numbers leave too few digits for planning."""
 MIN_TOLERANCE = 1e-9
-"""mm and rad: a tolerance below a thousandth of a nanometre is a typing error, and no plan meets it."""
+"""mm and rad: a tolerance below a thousandth of a nanometre is a typing error that no plan could meet."""
 
 TRAJECTORY_COLUMNS: dict[str, RowType] = MOTION_COLUMNS | {
     "tip": (np.float64, (3,)),
@@ -40,7 +40,7 @@ TRAJECTORY_COLUMNS: dict[str, RowType] = MOTION_COLUMNS | {
 
 @dataclass(frozen=True)
 class Trajectory:
-    """Columns of N segments, none of them of zero extent.
+    """Columns of N segments, each of nonzero extent.
 
     Attributes:
         kind: (N,) ``Kind``.
@@ -54,24 +54,24 @@ class Trajectory:
         length: (N,) path length of the tip.
         angle: (N,) angle the tool axis turns.
         smooth: (N,) the tip's direction continues into the next segment without a corner.
-        exact_stop: (N,) the motion comes to rest at the end of the segment: a feed hold can end there, and work begin.
+        exact_stop: (N,) the motion rests at the end of the segment: a feed hold can stop there, and a run start.
         tool: (N,) tool number.
         operation: (N,) index into ``operations``.
         line: (N,) line in the source of that operation.
         start_tip: (3,) tool tip before the first segment.
         start_axis: (3,) unit tool axis before the first segment.
         start_spin: spin before the first segment.
-        events: what happens between segments, in order.
+        events: events between segments, in order.
         operations: names of the operations.
-        tools: the tools used, by number; their lengths are those the trajectory was made for.
+        tools: the tools used, by number; with the lengths the trajectory was made for.
         machine_from_work: (4, 4) work offset that was applied.
         machine: name of the machine it was made for.
         machine_fingerprint: SHA-256 of that machine's file, hexadecimal.
         source: name of the file the program came from.
         source_fingerprint: SHA-256 of that file, hexadecimal; empty, the default, if unknown.
         tolerances: requested when the trajectory was made; None, the default, if none were.
-        tip_tolerance: (N,) tolerance of the tool tip along the segment, where the program states it (G64 P), mm; 0, the
-            default, stands for that of ``tolerances``.
+        tip_tolerance: (N,) tolerance of the tool tip along the segment where the program states it (G64 P), mm; 0, the
+            default, for that of ``tolerances``.
     """
 
     kind: Array
@@ -142,11 +142,11 @@ class Trajectory:
         return shifted(self.start_axis, self.axis)
 
     def axis_at(self, rows: Sequence[int]) -> Array:
-        """Tool axis at events of these rows, (M, 3); row N is the end of the trajectory."""
+        """Tool axis at events at these rows, (M, 3); row N is the end of the trajectory."""
         return np.vstack([self.start_axis, self.axis])[np.asarray(rows, dtype=np.intp)]
 
     def nose_before(self, rows: Sequence[int]) -> Array:
-        """Centre of the spindle nose at events of these rows, (M, 3) mm; row N is the end of the trajectory."""
+        """Centre of the spindle nose at events at these rows, (M, 3) mm; row N is the end of the trajectory."""
         at = np.asarray(rows, dtype=np.intp)
         length = self.tool_length()
         tip, length = np.vstack([self.start_tip, self.tip]), np.concatenate([length[:1], length])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Cartesian check: a program of tip and axis is read, taken through the kinematics, and certified by the struts.
 
-Enters: texts of a program, its trajectory file, a machine. Leaves: axis positions and rates, a certificate and the
+Input: texts of a program, its trajectory file, a machine. Output: axis positions and rates, a certificate and the
 report. What the program may find at the machine is read from its guard, which has to be the one that these numbers
 give; with the gauge length of the trajectory, the certificate holds at every corner of it.
 """

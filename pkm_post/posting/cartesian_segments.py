@@ -10,7 +10,7 @@ ends of segments it is one cubic, so it is a ``StrutMotion`` itself.
 
 So that no move ends within a segment, the points of a program are at whole segments, counted from the last rest.
 
-Enters: struts and axes at whole ms. Leaves: the same motion with its knots at whole segments; struts as they then move.
+Input: struts and axes at whole ms. Output: the same motion with its knots at whole segments; struts as they then move.
 """
 
 from __future__ import annotations

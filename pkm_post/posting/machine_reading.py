@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Machine reading: what a machine file says about G-code, in the work frame of a post.
 
-Enters: the machine, the work offset chosen, and the reading options of the user, which go before. Leaves: reading
+Input: the machine, the work offset chosen, and the reading options of the user, which go before. Output: reading
 options with the zero of the machine, its other work offsets, its functions, the codes to leave out and the tool table.
 """
 

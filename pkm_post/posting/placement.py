@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Placement: a program as a trajectory on its machine, with its set-up of part, stock and fixtures.
 
-Enters: a program in {C}, a machine and the options. Leaves: the compensated trajectory on the machine, in {M}, with its
+Input: a program in {C}, a machine and the options. Output: the compensated trajectory on the machine, in {M}, with its
 spin; and the effective set-up, where files named by the user override those of the job; or diagnostics.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Post file: from a part program, G-code or CL data, to a certified motion program.
 
-Enters: a file and its options. Leaves: the files of a post. All faults of the file and of the machine file are
+Input: a file and its options. Output: the files of a post. All faults of the file and of the machine file are
 collected before anything is refused. Tool lengths, which a part program rarely states, are required as options.
 ``Prepared`` holds the inputs of a post for every entry point: documents and user files are no longer needed, so a run
 can continue in any thread.

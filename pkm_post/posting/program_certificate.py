@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Program certificate: certifies a motion that was read from a program, or that kinematics make of one.
 
-Enters: strut motion, a trajectory file and a machine. Leaves: a certificate that holds, and the report.
+Input: strut motion, a trajectory file and a machine. Output: a certificate that holds, and the report.
 """
 
 from __future__ import annotations

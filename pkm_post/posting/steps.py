@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Steps: the order of the steps from a program to files, and the steps themselves.
 
-Enters: a program and a machine. Leaves: the files, all of them or none. A step takes the results of earlier steps, and
+Input: a program and a machine. Output: the files, all of them or none. A step takes the results of earlier steps, and
 the frame, which all steps share.
 """
 

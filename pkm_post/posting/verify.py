@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Verify: whether an existing motion program still follows its trajectory file.
 
-Enters: the text of a program, of strut lengths or of tip and axis, a trajectory file and a machine. Leaves: the
+Input: the text of a program, of strut lengths or of tip and axis, a trajectory file and a machine. Output: the
 report, as posting would have written it. Nothing is planned: the motion is reconstructed from the lengths and speeds of
 the program and compared with the trajectory, so the verdict does not depend on the planner.
 """

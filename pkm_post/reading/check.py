@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Check: report the diagnostics and the size of part programs.
 
-Enters: files. Leaves: diagnostics and size of each, as readable text or as JSON. Lengths in mm.
+Input: files. Output: diagnostics and size of each, as readable text or as JSON. Lengths in mm.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Editing: the text of a file and its format, and the renumbering of G-code.
 
-Enters: the bytes of a file. Leaves: its text with line feeds, and its format: byte order mark, line endings, encoding.
+Input: the bytes of a file. Output: its text with line feeds, and its format: byte order mark, line endings, encoding.
 Controls depend on these, so saving an unchanged file reproduces its bytes.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Grammars of record of one line, in EBNF, and their lark parsers. The package creates lark parsers only here.
 
-Enters: the text of one line. Leaves: its parse tree, or lark's report of the unexpected input and what it expected.
+Input: the text of one line. Output: its parse tree, or lark's report of the unexpected input and what it expected.
 """
 
 from __future__ import annotations

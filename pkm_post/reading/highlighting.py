@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Highlighting: the coloured parts of a line of a part program, and the part that a diagnostic underlines.
 
-Enters: a line, and the column of a diagnostic. Leaves: classified spans. The tables list for each kind the
+Input: a line, and the column of a diagnostic. Output: classified spans. The tables list for each kind the
 corresponding terminals of the grammars of record (``gcode/block.lark``, ``cldata/statement.lark``). One regular
 expression splits a line instead of the grammar: an editor colours the visible lines at every keystroke, including
 faulty ones. Valid lines are coloured as the grammar reads them; tests keep the two consistent. One exception: where the

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Language of a part program, G-code or CL data: by its name, and by the first line where the name does not say.
 
-Enters: the name of a file. Leaves: its language, and the stem that its results take. Creo counts the versions of a file
+Input: the name of a file. Output: its language, and the stem that its results take. Creo counts the versions of a file
 behind its suffix, ``part.ncl.3``. Text files (``.txt``) are of either language: CL data begin with a word of APT and
 a slash, or with a comment of APT.
 """

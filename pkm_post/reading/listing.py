@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Listing: the lines of a part program with its diagnostics beneath, as a compiler lists its source.
 
-Enters: a file and what was found in it. Leaves: lines of text, one by one: the file is read again, and no more than one
+Input: a file and what was found in it. Output: lines of text, one by one: the file is read again, and no more than one
 of its lines is in memory.
 """
 

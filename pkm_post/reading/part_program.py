@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Part program: read a file of G-code or CL data, and check the state in which it leaves the machine.
 
-Enters: a path and the tool data of the user. Leaves: a ``Program`` in {C}, mm, or the faults of the file, and warnings
+Input: a path and the tool data of the user. Output: a ``Program`` in {C}, mm, or the faults of the file, and warnings
 about a spindle left running and a tool left low. Truncated programs end like this, and so do programs that leave both
 to the operator.
 

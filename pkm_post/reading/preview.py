@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Preview: diagnostics, size and tip path of the text of an unsaved part program.
 
-Enters: the text in an editor. Leaves: what the editor shows of it, mm in {C}.
+Input: the text in an editor. Output: what the editor shows of it, mm in {C}.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tool table: cutters and gauge lengths of a magazine, from the file that a shop keeps them in.
 
-Enters: a tool table of LinuxCNC (.tbl), a table with headings (.csv), or a tool library of FreeCAD (.fctl with its
-.fctb). Leaves: cutters and gauge lengths by number, mm, or the faults of the file. Neither of the first two states its
+Input: a tool table of LinuxCNC (.tbl), a table with headings (.csv), or a tool library of FreeCAD (.fctl with its
+.fctb). Output: cutters and gauge lengths by number, mm, or the faults of the file. Neither of the first two states its
 unit, which is therefore given with the name of the file. FreeCAD keeps no gauge lengths. [LinuxCNC, tool table]
 """
 

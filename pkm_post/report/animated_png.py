@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Animated PNG: combine frames into one file that browsers and viewers play.
 
-Enters: PNG files of one size and kind, in order. Leaves: one animated PNG. The frames are not recompressed: their data
+Input: PNG files of one size and kind, in order. Output: one animated PNG. The frames are not recompressed: their data
 is copied into the animation chunks of PNG. Programs without support for animated PNG show the first frame.
 [PNG third edition]
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Charts: lines over time as SVG text, for the report page.
 
-Enters: lines, limits and bands of time. Leaves: an ``<svg>`` element; colours and fonts come from the style sheet of
+Input: lines, limits and bands of time. Output: an ``<svg>`` element; colours and fonts come from the style sheet of
 the page, so that the chart follows the theme of the browser. Numbers are printed with fixed decimals: the same lines
 give the same text.
 """

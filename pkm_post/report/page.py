@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Page: the report as one HTML file that a browser shows without a network.
 
-Enters: the content of the report, the planned motion, the program as read back and its certificate. Leaves: the file,
+Input: the content of the report, the planned motion, the program as read back and its certificate. Output: the file,
 with the verdict, the path in 3D, charts over time and the tables. A click on a row or into a chart marks that instant
 everywhere. It has a date only if one
 is given: the same job gives the same bytes.

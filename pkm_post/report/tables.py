@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tables: the tables of the report page as HTML.
 
-Enters: parts of the content of the report, in mm, and the unit of lengths on the page. Leaves: text; a row with an
+Input: parts of the content of the report, in mm, and the unit of lengths on the page. Output: text; a row with an
 instant can be clicked.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Decimals: parse many numbers of one text at once.
 
-Enters: the bytes of a text, and the offsets of its numbers. Leaves: the double nearest to each number, as by Python's
+Input: the bytes of a text, and the offsets of its numbers. Output: the double nearest to each number, as by Python's
 ``float``. Eight digits are one word of 64 bits and are combined in three steps [Lemire2021]; below 2^53 whole numbers
 and the powers of ten are exact as doubles, and one division rounds once. This takes a quarter of the time of
 ``numpy.fromstring``, with which parsing numbers took half of the time of reading a program.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Document: verify a FreeCAD document on disk and list its CAM jobs, without FreeCAD and without NumPy.
 
-Enters: a file. Leaves: its jobs with their operations and its archive members, or ``DamagedDocument``. FreeCAD accepts
+Input: a file. Output: its jobs with their operations and its archive members, or ``DamagedDocument``. FreeCAD accepts
 truncated XML and omits missing objects, so the lists are compared here. Entity declarations are refused: FreeCAD never
 writes them, and would expand them without limit.
 """

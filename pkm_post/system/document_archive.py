@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Document archive: verify the ZIP archive of a FreeCAD document from first to last byte.
 
-Enters: an open file. Leaves: its members, or ``DamagedDocument``. FreeCAD reads members sequentially by their local
+Input: an open file. Output: its members, or ``DamagedDocument``. FreeCAD reads members sequentially by their local
 headers. It ignores the central directory and checksums, and treats members that it cannot unpack as empty. So here each
 member must match its checksum, the central directory must match the local headers, and there must be no gap between
 members: then the archive is unambiguous. [PKWARE APPNOTE 4.3]

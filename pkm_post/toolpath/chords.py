@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Chords: replace arcs by lines, where the format of an output or a later step has no arcs.
 
-Enters: a program and a selection of its arcs. Leaves: the program with these arcs split into lines; the tool axis
+Input: a program and a selection of its arcs. Output: the program with these arcs split into lines; the tool axis
 rotates along them. mm throughout.
 """
 

@@ -8,7 +8,7 @@ reaches to above the line, and down along the tool axis, with the feed of the li
 coolant are switched on before that last move. As a part of the trajectory, the approach is planned, checked for reach
 and collisions and certified like any move.
 
-Enters: a trajectory on its machine. Leaves: the trajectory from the line on. Units: mm, rad, mm/s.
+Input: a trajectory on its machine. Output: the trajectory from the line on. Units: mm, rad, mm/s.
 """
 
 from __future__ import annotations

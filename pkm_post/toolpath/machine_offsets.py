@@ -5,7 +5,7 @@ The path moves with the part, and each tool keeps its tip on it: the trajectory 
 offsets. So what belongs to the machine stays: the start; the tool-change pose, with the spindle nose in its place; and
 the safe height, at which the way there comes to a line along the tool axis of the moved path.
 
-Enters: a trajectory of a posting. Leaves: the trajectory for the machine as it is. Units: mm.
+Input: a trajectory of a posting. Output: the trajectory for the machine as it is. Units: mm.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Optional stops: what becomes of M1, for which a control has a switch.
 
-Enters: a program, and what its optional stops are to be. Leaves: the program with stops, without them, or as it was,
+Input: a program, and what its optional stops are to be. Output: the program with stops, without them, or as it was,
 and a line for the report about what was changed.
 """
 

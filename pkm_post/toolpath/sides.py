@@ -5,7 +5,7 @@ CAM systems write all set-ups of a part into one file, in the frame of the part.
 turns by half a turn from one row to the next, which no machine follows. A side begins with the spindle, the coolant and
 the tool that the rows before it have left, as the file does not say them again, and ends with spindle and coolant off.
 
-Enters: a program in {C}. Leaves: the rows and events of one side.
+Input: a program in {C}. Output: the rows and events of one side.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Threads: what a spindle that is an axis asks of a program, and what does not go with it.
 
-Enters: a program with threads, and the machine. Leaves: the highest feed on their rows, and diagnostics. A thread is
+Input: a program with threads, and the machine. Output: the highest feed on their rows, and diagnostics. A thread is
 made of feed moves along the tool axis; a mirror image would need another tap, and a thread that is cut backwards comes
 to an end before it begins. Units: mm, mm/s.
 """

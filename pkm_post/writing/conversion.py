@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Convert: read a part program and write it in another form of G-code.
 
-Enters: a file. Leaves: a file, or diagnostics. On an error nothing is written.
+Input: a file. Output: a file, or diagnostics. On an error nothing is written.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ A controller may be in any state when the link connects. A program buffer may be
 become a line of the program. So the handshake queries ``SIZE`` first, whose sign reveals an open buffer, and sets no
 value that is already right.
 
-Enters: commands. Leaves: the outcome of each; exceptions of the link propagate.
+Input: commands. Output: the outcome of each; exceptions of the link propagate.
 """
 
 from __future__ import annotations

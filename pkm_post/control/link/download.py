@@ -6,7 +6,7 @@ sent, the buffer is closed, and the program is listed and compared. If the link 
 listing decides: if it consists of complete lines from the first on, the download continues after them, else it starts
 again. Every exception leaves nothing under the number, or states that this could not be verified.
 
-Enters: a session and a program. Leaves: a record of what was loaded.
+Input: a session and a program. Output: a record of what was loaded.
 """
 
 from __future__ import annotations

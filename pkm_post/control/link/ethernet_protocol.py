@@ -15,7 +15,7 @@ TCP neither loses nor corrupts data, so there are no checksums (I4=0), and inval
 unusable: the protocol ends with ``Lost``, and its caller reconnects.
 [UMACEthernet, Ethernet Protocol]
 
-Enters: commands, bytes and times. Leaves: bytes and events.
+Input: commands, bytes and times. Output: bytes and events.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ is no longer waited for. [gpascii]
 ssh neither loses nor corrupts data, so there are no checksums; invalid data ends with ``Lost``, and the caller
 reconnects.
 
-Enters: commands, bytes and times. Leaves: bytes and events.
+Input: commands, bytes and times. Output: bytes and events.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Links: carry bytes between this computer and a controller. This is the package's only import of pyserial.
 
-Enters and leaves: bytes. Reads and writes have deadlines; a lost link raises ``LinkLostError``.
+Input and output: bytes. Reads and writes have deadlines; a lost link raises ``LinkLostError``.
 """
 
 from __future__ import annotations

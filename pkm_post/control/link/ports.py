@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Ports: turn ``serial:/dev/ttyUSB0``, ``tcp:HOST[:PORT]`` or ``ssh:USER@HOST[:PORT]`` into a link.
 
-Enters: the name of a port. Leaves: its link, and the protocol that this kind of link requires.
+Input: the name of a port. Output: its link, and the protocol that this kind of link requires.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ Definition Statements]. They are reported with the coordinate system in front, `
 dls_powerpmacanalyse]; whether values of ``echo 7`` have it is open, so both are read. Soft limits act while
 ``MaxPos`` is above ``MinPos`` [PowerPMAC, Overtravel Limits].
 
-Enters: a session, settings, the stroke in mm. Leaves: every difference in words.
+Input: a session, settings, the stroke in mm. Output: every difference in words.
 """
 
 from __future__ import annotations

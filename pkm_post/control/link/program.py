@@ -6,8 +6,8 @@ A controller does not list the original text: it stores numbers, not digits, so 
 equal, and so must the lines: half a line is a different move. A number must match to a hundredth of its last
 written digit, or to the precision of the controller's numbers.
 
-Enters: the text of a program or of one part of it, with the settings it was written for; the lines of a listing.
-Leaves: a job (lines and motion in mm) or its faults; how many lines match, and where they differ.
+Input: the text of a program or of one part of it, with the settings it was written for; the lines of a listing.
+Output: a job (lines and motion in mm) or its faults; how many lines match, and where they differ.
 """
 
 from __future__ import annotations

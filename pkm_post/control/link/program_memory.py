@@ -7,7 +7,7 @@ ceases to exist, and one that does not exist is error #22 [PowerPMAC, open prog;
 Diamond Light Source's backup of programs rests on that [dls_powerpmacanalyse]. Its free memory is not asked: a line
 without room is error #34.
 
-Enters: a session and a program number. Leaves: commands, and the lines of a listing.
+Input: a session and a program number. Output: commands, and the lines of a listing.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Queries: single lines and numbers that a controller reports.
 
-Enters: a session and the name of a variable or an element. Leaves: a line or a number.
+Input: a session and the name of a variable or an element. Output: a line or a number.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ lines up to a place where it stops by itself.
 Lines are counted from the first one sent: some are certainly in the controller, some after them may be. The controller
 reports how many it has not begun, which shows how many of the last ones arrived.
 
-Enters: a session, a program, the size of the buffer in 48-bit words. Leaves: segments, and lines in the buffer.
+Input: a session, a program, the size of the buffer in 48-bit words. Output: segments, and lines in the buffer.
 """
 
 from __future__ import annotations

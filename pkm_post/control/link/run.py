@@ -5,7 +5,7 @@ Hold and abort are in ``stopping``. ``Q`` is not offered: it would end a program
 The controller's state shows a command with a short delay, so the state is polled until it does. Preconditions in
 controller and machine are queried, never assumed.
 
-Enters: a session, settings, a program, strut lengths in mm. Leaves: the resulting state, or ``NotReadyError``
+Input: a session, settings, a program, strut lengths in mm. Output: the resulting state, or ``NotReadyError``
 with every reason.
 """
 

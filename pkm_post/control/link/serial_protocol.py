@@ -8,7 +8,7 @@ the controller refuses it with ERR004. That is noise, as lines contain printable
 framing error does not count in the checksum, but the controller does not execute a line that has one.
 [TurboPMAC, <CTRL-N>, <CTRL-X>, I6]
 
-Enters: commands, bytes and times. Leaves: bytes and events.
+Input: commands, bytes and times. Output: bytes and events.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Session: a controller that answers. Queries are retried, sets are not.
 
-Enters: the text of commands. Leaves: the lines of the answers, or an exception: ``RefusedError`` with the controller's
+Input: the text of commands. Output: the lines of the answers, or an exception: ``RefusedError`` with the controller's
 number, ``OutcomeUnknownError`` for a set that may or may not have been executed, ``LinkLostError``, and
 ``CancelledError`` when something more urgent waits.
 """

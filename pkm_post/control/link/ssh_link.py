@@ -4,7 +4,7 @@
 No host is trusted on first use: the controller's host key must be known, or nothing is sent to it. A key of the user or
 of the ssh agent is tried first, then a password, which is requested and kept for this link only.
 
-Enters and leaves: bytes.
+Input and output: bytes.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ its data structure show whether a program runs [EPICSpmac, pmacHardwarePower].
 A motor may move without a program: when another client jogs it, during homing, under a PLC program, or after losing
 power. And a strut that reverses in the middle of a move stands for a moment. So ``settled_status`` reads twice.
 
-Enters: a session, the settings of its controller. Leaves: lengths in mm, bits and their meanings.
+Input: a session, the settings of its controller. Output: lengths in mm, bits and their meanings.
 """
 
 from __future__ import annotations

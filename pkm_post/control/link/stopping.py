@@ -9,7 +9,7 @@ struts without power may sink, so power is cut only while they are seen to move 
 A computer without a link stops nothing: then, and after a stop that is not confirmed in time, the operator gets
 instructions.
 
-Enters: a session, settings. Leaves: the state of a machine at rest. Only another waiting stop ends it earlier.
+Input: a session, settings. Output: the state of a machine at rest. Only another waiting stop ends it earlier.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ help. When the link is back, the stream waits until the controller rests and que
 number shows which of the last lines arrived. If it is inconsistent, or the machine is not where the segment ends, the
 stream does not continue.
 
-Enters: a session, settings, a program, the size of the rotary buffer. Leaves: a record of what was executed.
+Input: a session, settings, a program, the size of the rotary buffer. Output: a record of what was executed.
 """
 
 from __future__ import annotations

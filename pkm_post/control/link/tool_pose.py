@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tool pose: DRO of the tool from the six strut lengths that the controller reports, and its deviation from a start.
 
-Enters: a machine, the gauge length of its tool, states of the controller or strut lengths in mm. Leaves: tip in mm,
+Input: a machine, the gauge length of its tool, states of the controller or strut lengths in mm. Output: tip in mm,
 axis and spin by forward kinematics, deviations, and lines of text. The deviation uses the tool of the rest pose: the
 distance that the platform has to travel is nearly the same for any other.
 """

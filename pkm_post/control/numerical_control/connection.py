@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Connection: turn a port and a machine file into a worker that operates the machine, and into what must be closed.
 
-Enters: the name of a port and of a machine, or a machine alone for simulation. Leaves: a connection, or what is wrong
+Input: the name of a port and of a machine, or a machine alone for simulation. Output: a connection, or what is wrong
 with the names. Connecting blocks until the controller answers, so windows connect in a thread.
 """
 

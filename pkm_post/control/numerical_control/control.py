@@ -4,7 +4,7 @@
 Every method talks to the controller, returns within its deadlines, and must be called from one thread; ``worker``
 provides a dedicated one. Plans are made first and executed later: a move that fails its checks never becomes a plan.
 
-Enters: a session, a machine and its gauge length. Leaves: states and plans, frozen.
+Input: a session, a machine and its gauge length. Output: states and plans, frozen.
 """
 
 from __future__ import annotations

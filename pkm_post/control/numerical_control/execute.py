@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Execute: load a plan under its own program number, verify its listing, and start it from its first point.
 
-Enters: a session and a plan; only planning with its checks creates one. Leaves: the state after the start.
+Input: a session and a plan; only planning with its checks creates one. Output: the state after the start.
 """
 
 from __future__ import annotations

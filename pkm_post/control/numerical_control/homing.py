@@ -6,7 +6,7 @@ the platform attached. Homing is therefore a program in the controller, usually 
 line that the builder specifies, if it has one of the forms below, and then watches the home-complete bits of all six
 struts, with a deadline.
 
-Enters: the line, states of the controller and the time in s. Leaves: the progress of the homing.
+Input: the line, states of the controller and the time in s. Output: the progress of the homing.
 """
 
 from __future__ import annotations

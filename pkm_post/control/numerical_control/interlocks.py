@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Interlocks: the commands an operator can give, and why one is not allowed in a state of the machine.
 
-Enters: the state of a machine and of a panel. Leaves: for each command the active interlocks, the most important
+Input: the state of a machine and of a panel. Output: for each command the active interlocks, the most important
 first. This only saves the operator commands that would be refused; the checks of the control and of the controller
 alone decide what may move the machine.
 """

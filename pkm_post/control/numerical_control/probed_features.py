@@ -5,7 +5,7 @@ The ball meets a face at half its diameter, so a face is one half of the ball be
 touched on both sides along X, through the middle of that along Y, and again along X: the first chord along X need not
 go through the centre, and its middle does.
 
-Enters: a probe, a work frame. Leaves: coordinates in the frame in mm, and the origin of the frame in {M}.
+Input: a probe, a work frame. Output: coordinates in the frame in mm, and the origin of the frame in {M}.
 """
 
 from __future__ import annotations

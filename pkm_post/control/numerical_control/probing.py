@@ -8,7 +8,7 @@ finds the place better. Then trials halve what is left between a place where the
 touched. Each trial starts where the probe is free and ends at rest, where the actual lengths of the struts have to show
 it within the resolution, so neither the link nor the feed has a part in the result.
 
-Enters: numerical control, the input of the probe. Leaves: contacts, tips in {M} in mm.
+Input: numerical control, the input of the probe. Output: contacts, tips in {M} in mm.
 """
 
 from __future__ import annotations

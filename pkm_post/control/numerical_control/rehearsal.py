@@ -7,7 +7,7 @@ alone, until ``Coord[].FeedHold`` says that the time base is at zero (1; 3 while
 Manual, p. 693]. That proves on this controller all that a jog relies on: that the program counts, that a renewal gets
 through, that it holds itself, and within which time. It is done again when the element has another value.
 
-Enters: a machine at standstill. Leaves: a time, for this session.
+Input: a machine at standstill. Output: a time, for this session.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ of one line are planned separately, from rest to rest, and certified like any ma
 move belong to the second. A tool change also ends a block. The program's stops (M0, M1) are left out: each block ends
 at rest anyway.
 
-Enters: a motion program with the other results of its posting. Leaves: a trajectory for each block, and its text for
+Input: a motion program with the other results of its posting. Output: a trajectory for each block, and its text for
 display.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Watchdog: a program that counts its own time down and holds itself, unless this computer renews the count.
 
-Enters: the lines of a program whose moves are no longer than ``plan.LONGEST_MOVE_MS``. Leaves: the same lines with
+Input: the lines of a program whose moves are no longer than ``plan.LONGEST_MOVE_MS``. Output: the same lines with
 those of the watchdog, and how long silence may last until standstill. What a hold takes is an I-variable of a Turbo
 PMAC with a documented unit; a Power PMAC is asked by a rehearsal (``rehearsal``).
 """

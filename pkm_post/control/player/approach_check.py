@@ -5,7 +5,7 @@ The stock is what the rows before have left of it, so the approach is checked as
 rows. From their end it goes on above everything to where the approach begins, with a tool that has no cutter: there it
 cuts and touches nothing.
 
-Enters: a program, an approach to one of its rows. Leaves: what the approach would touch. Units: mm.
+Input: a program, an approach to one of its rows. Output: what the approach would touch. Units: mm.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ A block that is skipped changes what the blocks behind it mean, so no rows can b
 played is the one posting or the other. Both are the same up to a block behind ``/`` and, as a rule, again behind it.
 At these places the machine comes to rest, and the operator's switch decides which of both goes on.
 
-Enters: two trajectories. Leaves: stretches of rows, in order; and the parts of one.
+Input: two trajectories. Output: stretches of rows, in order; and the parts of one.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@
 What a certificate measures of a motion by itself is the same in the whole, but for the blocks in a second: these are
 counted over the ends of motions.
 
-Enters: motions with their certificates, in the order in which they were played. Leaves: findings as of one certificate.
+Input: motions with their certificates, in the order in which they were played. Output: findings as of one certificate.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 
 The certificate compares with the programmed trajectory between the two points, and with the limits of the machine.
 
-Enters: a schedule along a section, and where the motion before it ends. Leaves: points with a certificate.
+Input: a schedule along a section, and where the motion before it ends. Output: points with a certificate.
 """
 
 from __future__ import annotations

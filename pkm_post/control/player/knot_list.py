@@ -11,7 +11,7 @@ The program reads P(a) when it computes the move after that point. So one assign
 it, as a whole or not at all: until then the list leads through a stop to rest. Diamond Light Source feeds trajectories
 to Turbo PMACs in a similar way, from a resident program and two buffers of points [EPICSpmac, trajectory scan].
 
-Enters: points in mm, mm/s and whole ms. Leaves: lines for the controller, and the points that lines state.
+Input: points in mm, mm/s and whole ms. Output: lines for the controller, and the points that lines state.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Operator input: where the operator's orders arrive, from any thread, and what they have come to.
 
-Enters: orders. Leaves: the override, single block, stops at M1, and whether to go on or to end; holds and resumes go
+Input: orders. Output: the override, single block, stops at M1, and whether to go on or to end; holds and resumes go
 to the controller at once.
 """
 

@@ -4,7 +4,7 @@
 A piece is a fraction of a second of motion and the stop from its end, each a ``certified_motion``. A piece that is not
 certified is never sent: the controller executes the stop that it has already.
 
-Enters: a part of a trajectory, where the motion is, an override. Leaves: points with their certificates.
+Input: a part of a trajectory, where the motion is, an override. Output: points with their certificates.
 """
 
 from __future__ import annotations

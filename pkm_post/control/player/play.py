@@ -5,7 +5,7 @@ A thread plans the next piece while the controller runs the ones before; this si
 (``run_to_rest``). The list always ends in a stop on the path. So a computer that is too late, a dead link, a piece that
 its certificate refuses and an override of 0 all end the same way: in that stop, from which the motion can go on.
 
-Enters: a session, a machine, a trajectory, orders of an operator. Leaves: states for display, and a log.
+Input: a session, a machine, a trajectory, orders of an operator. Output: states for display, and a log.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Playable: a trajectory file that can be played on a machine, and where in it to begin.
 
-Enters: a file, a machine, a line. Leaves: the trajectory, its tolerances and a row; or what is against it.
+Input: a file, a machine, a line. Output: the trajectory, its tolerances and a row; or what is against it.
 """
 
 from __future__ import annotations

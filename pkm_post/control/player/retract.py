@@ -4,7 +4,7 @@
 Both are moves by hand, planned, certified and checked for reach. The way back is straight down the axis; where somebody
 has moved the tool meanwhile, it is that of an approach.
 
-Enters: a machine at rest, mm. Leaves: the machine at rest above its path, and later on it again.
+Input: a machine at rest, mm. Output: the machine at rest above its path, and later on it again.
 """
 
 from __future__ import annotations

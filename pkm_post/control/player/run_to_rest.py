@@ -12,7 +12,7 @@ are for the controller, which computes two moves ahead, and for the 20 ms betwee
 pieces with their stops at least, so pieces with many points are shorter; where it has no room for all of the lead, it
 starts when it is full.
 
-Enters: a planner, a place at rest, the operator's input. Leaves: the place at rest where the motion has ended.
+Input: a planner, a place at rest, the operator's input. Output: the place at rest where the motion has ended.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ go over to the next section. The last rows of a section are its reserve for stop
 The subpath between two points is what a motion between them is certified against: a line becomes a shorter line, an arc
 an arc of the same circle or helix, and the tool axis stays on its great circle.
 
-Enters: a trajectory. Leaves: its parts, from one event to the next, their sections, and subpaths, as trajectories.
+Input: a trajectory. Output: its parts, from one event to the next, their sections, and subpaths, as trajectories.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ approach: up along the tool axis, across above everything that the program reach
 start, planned, certified and checked for reach like any move by hand, and against part, stock and fixtures where these
 are known. Spindle and coolant are switched on above the start, before the last move down.
 
-Enters: a trajectory, a line, a machine that stands anywhere with the tool of that line in its spindle. Leaves: the row,
+Input: a trajectory, a line, a machine that stands anywhere with the tool of that line in its spindle. Output: the row,
 and a machine at its beginning.
 """
 

@@ -4,7 +4,7 @@
 The worker reads nothing else meanwhile; what the player reads is its state. Stops that are ordered of the worker come
 first, and the play goes on behind a hold. When the worker is closed, the play ends, and the machine rests on the path.
 
-Enters: a connection, a trajectory, orders from the thread of the window. Leaves: the newest state, notes, and a result.
+Input: a connection, a trajectory, orders from the thread of the window. Output: the newest state, notes, and a result.
 """
 
 from __future__ import annotations

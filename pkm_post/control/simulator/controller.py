@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Controller: a Turbo PMAC with six motors, whose time is advanced by its owner.
 
-Enters: commands through ports, and milliseconds. Leaves: motor positions in counts, and the output of ports. It reads
+Input: commands through ports, and milliseconds. Output: motor positions in counts, and the output of ports. It reads
 no clock: the same commands at the same times give the same positions.
 """
 

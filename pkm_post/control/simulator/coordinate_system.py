@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Coordinate system: a running program, with a time base that an override slows down or stops.
 
-Enters: R, S, H, Q, A, an override in per cent, and elapsed time in ms. Leaves: commanded motor positions in counts. One
+Input: R, S, H, Q, A, an override in per cent, and elapsed time in ms. Output: commanded motor positions in counts. One
 move is computed ahead: statements between two moves are executed when the first of them begins, except that a DWELL is
 waited for.
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Ethernet: packets of the Turbo PMAC's Ethernet protocol to commands, and answers to bytes.
 
-Enters and leaves: bytes of a TCP stream, in pieces of any size. A packet has a header of eight bytes (type, request,
+Input and output: bytes of a TCP stream, in pieces of any size. A packet has a header of eight bytes (type, request,
 value, index, length; words in big-endian order), followed, on the way to the controller, by as many bytes of data as
 the header states [UMACEthernet]. Unknown or invalid requests are ignored.
 """

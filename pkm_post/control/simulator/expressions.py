@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Expressions: constants, variables, operators and functions of programs and on-line commands.
 
-Enters: text, scanned token by token. Leaves: an expression with its text for a listing, its size, and its value in a
+Input: text, scanned token by token. Output: an expression with its text for a listing, its size, and its value in a
 given coordinate system. ``* / % &`` bind tighter than ``+ - | ^``. Angles are in degrees.
 """
 

@@ -4,7 +4,7 @@
 A line that is sent comes back as the terminal's echo, then the data, then ACK CR LF. An error is a line of data,
 ``stdin:LINE:COLUMN: error #20: ILLEGAL CMD: text`` [gpascii].
 
-Enters and leaves: bytes. Only LF ends a line.
+Input and output: bytes. Only LF ends a line.
 """
 
 from __future__ import annotations

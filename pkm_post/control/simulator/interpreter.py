@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Interpreter: executes the statements of a coordinate system's program up to the next move.
 
-Enters: a program, variables, the end position of the moves so far. Leaves: the next move. Codes G, M, T and D call
+Input: a program, variables, the end position of the moves so far. Output: the next move. Codes G, M, T and D call
 programs 1000 to 1003 at the label of their number [TurboPMAC, motion programs]; S writes its value to Q127.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Memory: the controller's program buffers, the open one and its owner, and the program counter.
 
-Enters: lines of programs. Leaves: programs, rotary buffers, and the number of free words. One buffer is open at a time;
+Input: lines of programs. Output: programs, rotary buffers, and the number of free words. One buffer is open at a time;
 only the port that opened it fills and closes it.
 """
 

@@ -4,7 +4,7 @@
 An axis definition assigns one motor to one axis of a coordinate system, counts = scale * axis position + offset:
 ``#1->10000A-5000000``. Definitions that combine several axes are refused.
 
-Enters: axis definitions, statements that set a mode, and axis words. Leaves: moves. Positions are in axis units, speeds
+Input: axis definitions, statements that set a mode, and axis words. Output: moves. Positions are in axis units, speeds
 in axis units per Isx90 ms, times in ms.
 """
 

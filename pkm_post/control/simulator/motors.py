@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Motors: six simulated motors in columns, with their servo loops, limits, jogs and homing moves.
 
-Enters: commanded positions in counts, and elapsed time in ms. Leaves: actual positions and faults. The actual position
+Input: commanded positions in counts, and elapsed time in ms. Output: actual positions and faults. The actual position
 follows the commanded one with a first-order lag, so at constant speed the following error is speed times ``lag_ms``. An
 open-loop motor stands still, and its commanded position with it.
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Moves: the axis positions of a coordinate system over the time of a move, and the queue of a program's moves.
 
-Enters: end points of moves in axis units, program times in ms. Leaves: positions of the nine axes. Blended moves
+Input: end points of moves in axis units, program times in ms. Output: positions of the nine axes. Blended moves
 overlap: each adds its own displacement, and the contributions sum.
 """
 

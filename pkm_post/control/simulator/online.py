@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """On-line commands: a line from a port, executed command by command.
 
-Enters: a line without its terminator, and its sender. Leaves: lines of data, or the error that refuses the line;
+Input: a line without its terminator, and its sender. Output: lines of data, or the error that refuses the line;
 commands ahead of the faulty one were executed. While a buffer is open, everything that parses as a program statement
 goes into it.
 """

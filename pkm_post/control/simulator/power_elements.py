@@ -5,7 +5,7 @@
 is one of these, converted; an element of the status is read from motors and coordinate systems. Motor units are counts,
 times are in ms [PowerPMAC, Saved Data Structure Elements].
 
-Enters: names and values. Leaves: values, or a refusal of what does not exist here.
+Input: names and values. Output: values, or a refusal of what does not exist here.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Power on-line commands: a line for a Power PMAC, carried out command by command.
 
-Enters: a line without its terminator, and its thread. Leaves: lines of data, or the error that refuses the line;
+Input: a line without its terminator, and its thread. Output: lines of data, or the error that refuses the line;
 commands ahead of the faulty one were executed. While a thread has a buffer open, everything that is no ``close`` goes
 into it, or is refused. Answers come as ``name=value`` and, after ``echo 7``, as values [gpascii].
 """

@@ -5,7 +5,7 @@ The language is free of case; ``//`` begins a comment, ``;`` ends a statement, `
 statements of ``if``, ``else`` and ``while`` [PowerPMAC, Command Syntax Summary]. What the Turbo PMAC has under the same
 word means the same here, so a line is brought into its spelling, and one interpreter carries out both.
 
-Enters: lines in order. Leaves: statements, and for each line the text that ``list`` shows.
+Input: lines in order. Output: statements, and for each line the text that ``list`` shows.
 """
 
 from __future__ import annotations

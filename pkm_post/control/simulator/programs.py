@@ -4,7 +4,7 @@
 The keywords are those of the Turbo PMAC, in long and short spelling. What the simulator cannot execute (CIRCLE, SPLINE,
 HOME, PLC words, cutter compensation) does not parse as a statement.
 
-Enters: lines in order. Leaves: statements by number, the labels and jumps of a fixed program, its listing.
+Input: lines in order. Output: statements by number, the labels and jumps of a fixed program, its listing.
 """
 
 from __future__ import annotations

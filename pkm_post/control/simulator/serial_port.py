@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Serial port: bytes to commands and control characters, and answers to bytes.
 
-Enters and leaves: bytes, in pieces of any size. I3 selects the framing of answers, I4 enables checksums, I6 selects the
+Input and output: bytes, in pieces of any size. I3 selects the framing of answers, I4 enables checksums, I6 selects the
 error format [TurboPMAC, I3, I4, I6]. Control characters act at once, even inside a line.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Serve: the simulated controller on a local TCP port, a pseudo terminal or ssh, in real or scaled time.
 
-Enters: bytes from clients and the computer's clock. Leaves: bytes. A single thread does everything, so access to the
+Input: bytes from clients and the computer's clock. Output: bytes. A single thread does everything, so access to the
 controller is serialized. Connections from other computers are not accepted.
 
 No client blocks the others: each has a share of a turn, and a client that does not read its answers is no longer read

@@ -4,7 +4,7 @@
 Each log-in gets a shell. Its bytes go through a pair of sockets to the one thread that serves the controller, so access
 to the controller is serialized. Whoever says nothing, or does not get through the log-in, is cut after a time.
 
-Enters and leaves: bytes. paramiko is handed in by its one door.
+Input and output: bytes. paramiko is handed in by its one door.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Calibrated: write a machine file with identified joints and length offsets, and a report on them.
+"""Calibrate a file: write a machine file with identified joints and length offsets, and a report on them.
 
-The new file is the old text with three entries replaced; it is parsed again before it is kept. Lengths in mm.
+The new file is the old text with three entries replaced; it is parsed again before it is written. Lengths in mm.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
 
 
 def _fault(cells: list[str]) -> str:
-    """Fault of a row, empty when it has none."""
+    """Fault of a row; empty if none."""
     if len(cells) != len(COLUMNS):
         return f"expected {len(COLUMNS)} numbers, got {len(cells)}"
     numbers = np.array([_number(cell) for cell in cells])
@@ -124,11 +124,11 @@ _WRITTEN = 1e-6
 
 @dataclass(frozen=True)
 class Repetition:
-    """Repeat a calibration with noise, to see how far the machine may be off.
+    """Repeat a calibration with noise, to estimate the error of the result.
 
     Attributes:
-        runs: how often, 2 or more.
-        noise: of a measurement; None for noise of the lengths alone, as what is left of them shows.
+        runs: number of runs, at least 2.
+        noise: of a measurement; None for noise of the lengths only, from their residuals.
         executor: distributes the runs; by default they run in this process.
     """
 

@@ -27,7 +27,7 @@ PARAMETERS = ("base x", "base y", "base z", "platform x", "platform y", "platfor
 _STEP_TOLERANCE = 1e-9
 """mm: Gauss-Newton stops when no parameter moves by more."""
 _LEAST_SHARE = 1e-6
-"""Smaller shares of a parameter in a combination are rounding."""
+"""Smaller shares of a parameter in a combination are rounding errors."""
 
 
 @dataclass(frozen=True)
@@ -72,12 +72,12 @@ class Calibration:
         condition: of the scaled rows: ratio of the worst to the best amplification of length errors, over the
             determined combinations.
         deviation: (6, 7) standard deviations of the parameters, mm, estimated from the length residuals; infinite for
-            a parameter in an undetermined combination, and everywhere when the poses are just enough.
+            a parameter in an undetermined combination, and everywhere if there are no residuals to spare.
         undetermined: (strut, (7,) combination) of unit length for each one that the poses do not determine.
         before: root mean square of the length residuals before, mm.
         after: the same with the identified machine.
-        left_over: (N, 6) counted lengths less those of the identified machine, mm; a wrong measurement row stands
-            out here.
+        left_over: (N, 6) counted lengths minus those of the identified machine, mm; a wrong measurement
+            stands out here.
     """
 
     machine: Machine
@@ -94,14 +94,14 @@ class Calibration:
 def calibrate(
     machine: Machine, measured: MeasuredPoses, least_share: float = 1e-4, iterations: int = 50
 ) -> Calibration:
-    """Identify the 42 parameters of a machine, or the part of them that the poses determine.
+    """Identify the 42 parameters of a machine, or as many of them as the poses determine.
 
     Args:
         machine: the nominal machine; undetermined combinations keep its values.
         measured: poses and counted lengths.
         least_share: combinations with a singular value below this share of their strut's largest are kept. It should
             exceed the noise of measured orientations, in rad.
-        iterations: most steps.
+        iterations: maximum number of steps.
 
     Raises:
         ValueError: there are no poses.
@@ -119,7 +119,7 @@ def calibrate(
 
 
 def identification_rows(machine: Machine, measured: MeasuredPoses) -> Array:
-    """Derivatives of the counted lengths by the parameters of their struts, (6, N, 7), plain numbers."""
+    """Derivatives of the counted lengths by the parameters of their struts, (6, N, 7), dimensionless."""
     struts = strut_vectors(machine, *measured.pose)
     distance = norm(struts)
     direction, rotation = struts / distance[..., None], platform_rotation(measured.axis, measured.spin)
@@ -135,7 +135,7 @@ def combination_text(strut: int, combination: Array) -> str:
 
 
 def _missing(machine: Machine, measured: MeasuredPoses) -> Array:
-    """Counted lengths less those of the machine, (N, 6)."""
+    """Counted lengths minus those of the machine, (N, 6)."""
     struts = strut_vectors(machine, *measured.pose)
     distance, rotation = norm(struts), platform_rotation(measured.axis, measured.spin)
     return measured.lengths - counted_lengths(machine, distance, struts / distance[..., None], rotation)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Uncertainty: how far a calibrated machine may be off, by repeating its calibration with noise of the instruments.
+"""Uncertainty: errors of a calibrated machine, by repeating its calibration with simulated measurement noise.
 
 Input: the calibrated machine, the poses it was measured at, and the noise of a measurement. Output: the spread of the
-42 parameters, and how far the tool tip is off when the controller believes them. Each run takes the calibrated machine
-for the real one, measures it again with other noise, and calibrates with that. Parameters that are badly known together
-may still give a well-known tip, so the tip is what counts. The runs are independent, and each has random numbers of its
-own: any executor of ``concurrent.futures`` can distribute them, with the same bits as a result. [JCGM101, 7]
+42 parameters, and the tip error of a controller that uses them. Each run takes the calibrated machine for the real one,
+measures it again with new noise, and calibrates with that. The tip may be well known even where single parameters are
+not, so judge by the tip. The runs are independent, each with its own random numbers: any executor of
+``concurrent.futures`` can distribute them, with bit-identical results. [JCGM101, 7]
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from pkm_post.model import Machine
 
 _RUNS_PER_TASK = 16
 _COVERED = 0.95
-"""Share of the tips that are off by less than the reported distance."""
+"""Share of the tips with less error than the reported distance."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class MeasurementNoise:
 
 
 def noise_of_residuals(found: Calibration) -> MeasurementNoise:
-    """The noise of the lengths if the poses were exact, by what is left of them; 0 when the poses are just enough."""
+    """Noise of the lengths from their residuals, for exact poses; 0 if there are no residuals to spare."""
     spare = found.left_over.size - found.rank
     return MeasurementNoise(0.0, 0.0, math.sqrt(float((found.left_over**2).sum()) / spare) if spare > 0 else 0.0)
 
@@ -61,10 +61,10 @@ class CalibrationUncertainty:
         noise: of a measurement.
         runs: number of runs that converged.
         failed: number of runs that did not.
-        deviation: (6, 7) standard deviations of the parameters, mm; of a combination that the poses do not determine
-            only the part that varies. Infinite, as the distances are, when fewer than 2 runs converged.
-        tip_median: distance by which half of the tool tips are off, over all runs and poses, mm.
-        tip_most: distance below which 95 of 100 are off, mm.
+        deviation: (6, 7) standard deviations of the parameters, mm; for an undetermined combination
+            only the part that varies. Infinite, like the distances, if fewer than 2 runs converged.
+        tip_median: median tip error over all runs and poses, mm.
+        tip_most: 95th percentile of the tip error, mm.
     """
 
     noise: MeasurementNoise
@@ -87,10 +87,10 @@ def calibration_uncertainty(
 
     Args:
         found: a calibration that converged.
-        measured: the poses that it was made of; their lengths do not matter.
+        measured: the poses it was identified from; their lengths are not used.
         noise: of each measurement.
-        runs: how often, 2 or more.
-        seed: decides all random numbers.
+        runs: number of runs, at least 2.
+        seed: of the random numbers.
         executor: distributes the runs; by default they run in this process.
 
     Raises:
@@ -134,14 +134,14 @@ def _repeated(
 
 
 def tip_distances(believed: Machine, real: Machine, poses: MeasuredPoses) -> Array:
-    """How far the tips are off, (N,) mm, when a controller believes in another machine; NaN where none is found."""
+    """Tip errors, (N,) mm, of a controller that assumes another machine; NaN where no pose is found."""
     sent = strut_lengths(believed, *poses.pose)
     reached = forward(real, sent, poses.tool_length, poses.tip, poses.axis, poses.spin)
     return np.where(reached.converged, norm(reached.tip - poses.tip), np.nan)
 
 
 def _with_noise(exact: MeasuredPoses, noise: MeasurementNoise, random: np.random.Generator) -> MeasuredPoses:
-    """The poses as instruments show them."""
+    """The poses with measurement noise."""
     across = platform_rotation(exact.axis, exact.spin)[:, :, :2] @ random.normal(0.0, 1.0, (len(exact), 2, 1))
     return MeasuredPoses(
         tip=exact.tip + random.normal(0.0, 1.0, exact.tip.shape) * noise.tip,

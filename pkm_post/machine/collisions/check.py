@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Check: collisions of a trajectory with the set-up, and the coverage of the checks.
 
-Takes a trajectory, a machine and a set-up; returns diagnostics and coverage rows. Without a set-up there is nothing to
-search for, and what searches is not imported.
+Takes a trajectory, a machine and a set-up; returns diagnostics and coverage rows. Without a set-up, the search
+is not even imported.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Collisions:
 
     Attributes:
         faults: errors and warnings.
-        coverage: what was checked against what, and what was unknown.
+        coverage: the checks made, and the unknown items.
     """
 
     faults: tuple[Diagnostic, ...]

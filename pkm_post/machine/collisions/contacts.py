@@ -51,7 +51,7 @@ class Contacts:
 
 
 class _PathIntervals:
-    """Positions on the path combine cell and share in one number: cell i reaches from i - 1 to i."""
+    """Positions on the path combine cell and share in one number: cell i is from i - 1 to i."""
 
     def __init__(self, path: PosePath, mover: MovingBody) -> None:
         self.path, self.change, self.total = path, mover.change, np.cumsum(mover.change)
@@ -166,7 +166,7 @@ def _exactly(cylinders: Cylinders, part: CollisionMesh, allowed: Array, rounding
     pose, triangle, bound = pairs_within(cylinders, part, allowed + rounding)
     order = np.lexsort((bound, pose))
     pose, triangle, bound = pose[order], triangle[order], bound[order]
-    # Where bodies overlap many spheres are inside, and a few of them decide.
+    # Where bodies overlap, many spheres are inside; a few of them are enough.
     rank = np.arange(len(pose)) - np.searchsorted(pose, pose)
     for few in (rank < _FEW, rank >= _FEW):
         open_yet = few & (bound < np.minimum(distance, allowed)[pose] + rounding[pose]) & (distance > 0)[pose]

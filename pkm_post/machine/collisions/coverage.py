@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Coverage: what a search for collisions looked at, as rows of the certificate, and the rows of what is not known."""
+"""Coverage: certificate rows of the collision checks made, and of unknown items."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Movers: moving bodies that may collide: bodies of the platform, struts, shank and cutter of a tool.
+"""Moving bodies that may collide: bodies of the platform, struts, shank and cutter of a tool.
 
 Each is a set of cylinders at any pose, with a bound of the motion of any point in each cell of the path. Solids of
 revolution about the tool axis are independent of the spin. Units: mm, rad.
@@ -85,7 +85,7 @@ def tool_body(name: str, path: PosePath, cells: Array, pieces: Iterable[ToolCyli
 
 
 def strut_bodies(machine: Machine, path: PosePath) -> MovingBody | None:
-    """The six struts; None if the joints of a strut coincide somewhere, which another check refuses."""
+    """The six struts; None if the joints of a strut coincide somewhere, which another check reports."""
     shortest = shortest_distance(machine, path)
     if not shortest > 0:
         return None

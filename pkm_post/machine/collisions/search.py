@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Search: the checks for collisions of the machine and its tools with the set-up, one body after the other.
+"""Search: collision checks of the machine and its tools with the set-up, body by body.
 
 Takes the path of the machine and a set-up; returns diagnostics and coverage rows. Distances refer to the programmed
 trajectory; the allowed deviation of the tool from it is added to clearances and allowances. Units: mm, rad.
@@ -42,7 +42,7 @@ from pkm_post.machine.kinematics.placed_machine import has_strut_bodies
 from pkm_post.model import Diagnostic, Machine, Mesh, Phrase, Place, Setup, Tolerances
 
 ALLOWANCE = 0.25
-"""mm that a cutter or a shank may enter the workpiece: its faces are triangulated, and the cutter has to touch them."""
+"""mm that a cutter or a shank may enter the workpiece: its faces are triangulated, and the cutter must touch them."""
 _TOUCH = 1e-3
 """mm: bodies without clearance collide where they are closer than this."""
 _SAMPLES = 2000
@@ -52,7 +52,7 @@ _ALL = 1_000_000
 
 @dataclass
 class Search:
-    """The checks, which a caller makes in the order of their definition.
+    """The checks, to be called in the order of their definition.
 
     Attributes:
         driven: the path.
@@ -60,7 +60,7 @@ class Search:
         setup: workpiece, stock and fixtures.
         tolerances: allowed deviation of the tool from the path.
         found: errors and warnings so far.
-        extents: what was looked at so far.
+        extents: checks made so far.
     """
 
     driven: TrajectoryPath

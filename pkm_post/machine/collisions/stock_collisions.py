@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Against the stock: rapid moves, shanks and bodies of the machine in remaining or possibly remaining material.
+"""Collisions with the stock: rapid moves, shanks and bodies of the machine in remaining or possibly remaining material.
 
 A stock point met before any cutter can have reached it certainly remains: an error. A point that no cutter has
 certainly cut may remain: a warning. Units: mm.
@@ -20,7 +20,7 @@ from pkm_post.machine.collisions.tools_in_use import ToolUse
 from pkm_post.model import Body, Diagnostic, Machine, Mesh, Phrase
 
 _SCALLOP = 0.1
-"""mm: largest ridge between two poses of a cutter, which counts as having cut everything between them."""
+"""mm: largest ridge between two poses of a cutter, which is taken to cut everything between them."""
 
 _MOST_MET = 4000
 """Most intruded points whose cutting time is determined."""

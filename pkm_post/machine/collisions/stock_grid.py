@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Stock: points of the material, and the times when each may have been cut and certainly has been cut.
 
-The stock is a grid of points. Statements about a point are exact: it is in the stock, it was in a cutter at a pose, or
+The stock is a grid of points. For each point the result is exact: it is in the stock, it was in a cutter at a pose, or
 it was farther from every cut than a cutter can have moved between two poses. Features between points are missed.
 Positions on a path combine cell and share in one number. Units: mm.
 """

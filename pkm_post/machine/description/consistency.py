@@ -19,7 +19,7 @@ from pkm_post.model import ToolChange
 
 Values = dict[str, Any]
 Check = Callable[[Values], Iterator[tuple[str, str]]]
-"""Yields the faulty entry and what was found there."""
+"""Yields the faulty entry and its finding."""
 
 COINCIDENT = 1e-3
 """mm: joint centres closer than this leave the strut direction undefined."""
@@ -196,7 +196,7 @@ _STRUT_CHECKS: tuple[tuple[tuple[str, ...], Check], ...] = (
 
 _STRUTS = 6
 _BEYOND_REACH = 10
-"""In lengths of the longest strut."""
+"""In units of the longest strut."""
 
 
 def _fast_approach(values: Values) -> Iterator[tuple[str, str]]:
@@ -218,7 +218,7 @@ def _short_lines(values: Values) -> Iterator[tuple[str, str]]:
 
 
 def _far(entry: str) -> Check:
-    """Check that a position is not beyond all reach: the path to it would be planned, step by step."""
+    """Check that a position is not far beyond reach: planning the path to it would take too long."""
 
     def check(values: Values) -> Iterator[tuple[str, str]]:
         away = float(np.linalg.norm(values[entry] - values["base.joints"].mean(axis=0)))
@@ -260,7 +260,7 @@ def _low_nose(values: Values) -> Iterator[tuple[str, str]]:
 
 
 def _spun_on_the_spot(values: Values) -> Iterator[tuple[str, str]]:
-    """Home and tool change with one tool axis on one line: the tip of some tool may be at one point in both."""
+    """Home and tool change with the same tool axis on one line: some tool may have the same tip in both."""
     axis, home = np.asarray(values[_AXIS]), np.asarray(values[_HOME[1]])
     away = np.cross(values[_HOME[0]] - values[_NOSE], axis)
     if max(np.abs(away).max(), np.abs(home - axis).max()) < _SAME and values[_SPIN] != values[_HOME[2]]:

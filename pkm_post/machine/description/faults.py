@@ -28,7 +28,7 @@ MOST_SHOWN = 100
 
 @dataclass(frozen=True)
 class EntryFault:
-    """One fault: rule code, entry name, and what was found there; for M105 that is the suggested name."""
+    """One fault: rule code, entry name, and finding; for M105 the suggested name."""
 
     code: str
     name: Name
@@ -40,7 +40,7 @@ def _parts(dotted: str) -> Name:
 
 
 def _stands(document: Any, name: Name) -> bool:
-    """Whether the document has such an entry: a row of numbers in brackets looks like a section header."""
+    """Whether the document has such an entry: numbers in brackets may look like a section header."""
     for part in name:
         if not isinstance(document, dict) or part not in document:
             return False
@@ -71,7 +71,7 @@ def _line(name: Name, lines: dict[Name, int]) -> int:
 def fault_diagnostics(
     faults: Iterable[EntryFault], file: str, text: str, document: dict[str, Any]
 ) -> tuple[Diagnostic, ...]:
-    """Convert faults to diagnostics in line order; beyond the limit, report only how many more."""
+    """Convert faults to diagnostics in line order; beyond the limit, only count the rest."""
     lines = entry_lines(text, document)
     placed = sorted(((_line(fault.name, lines), fault) for fault in faults), key=lambda pair: pair[0])
     shown = [

@@ -53,9 +53,9 @@ class Field:
 MOST_DECIMALS = 9
 MOST_WORDS = 2**24
 MOST_MOTORS = 32
-"""Of a Turbo PMAC."""
+"""Number of motors of a Turbo PMAC."""
 LONGEST_SHORTEST = 50
-"""ms: intervals can be split evenly into pieces no shorter than that."""
+"""ms: longer ones would leave intervals that cannot be split evenly."""
 OPTIONAL_STOPS = ("written", "stop", "leave-out")
 """As in ``toolpath.OPTIONAL_STOPS``."""
 JOINT_KIND = forms.choice("universal", "spherical")
@@ -163,7 +163,7 @@ FIELDS: tuple[Field, ...] = (
 
 
 def section_tree() -> dict[str, Any]:
-    """Table as nested sections: a dict is a section, a ``Field`` an entry."""
+    """The table as nested sections: a dict is a section, a ``Field`` an entry."""
     tree: dict[str, Any] = {}
     for field in FIELDS:
         *sections, key = field.name

@@ -24,7 +24,7 @@ def presets() -> list[str]:
 
 
 def templates() -> list[str]:
-    """Names of machines with too little known data: their files are to be copied and filled in."""
+    """Names of machines with incomplete data; users copy and complete their files."""
     return _names(TEMPLATES)
 
 

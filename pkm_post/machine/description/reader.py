@@ -185,7 +185,7 @@ def _machine(values: dict[str, Any], offsets: list[str], fingerprint: str) -> Ma
 
 
 def _controller(values: dict[str, Any]) -> dict[str, Any]:
-    """Entries below ``controller``, nested as in the file, in mm and mm/s; functions are codes as the others are."""
+    """Entries below ``controller``, nested as in the file, in mm and mm/s; functions are listed among the codes."""
     settings: dict[str, Any] = {}
     for field in FIELDS:
         if field.name[0] == CONTROLLER:

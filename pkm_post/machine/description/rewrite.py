@@ -18,7 +18,7 @@ from pkm_post.machine.description.value_types import Array
 
 
 class CannotRewriteError(Exception):
-    """The entry is written in an unsupported form; the text says what was expected."""
+    """The entry is written in an unsupported form; the text names the expected one."""
 
 
 DECIMALS = 6
@@ -35,7 +35,7 @@ def with_entries(text: str, entries: dict[str, Array]) -> str:
         entries: new numbers of each entry, in mm, as rows or in one row.
 
     Raises:
-        CannotRewriteError: an entry does not start a line, or is absent and its section has no header of its own to
+        CannotRewriteError: an entry does not start a line, or is absent and its section has no header to
             insert it below.
     """
     units = stated_units(tomllib.loads(text))
@@ -83,6 +83,6 @@ def _replaced(lines: list[str], first: int, value: str) -> str:
 
 
 def _depth(line: str) -> int:
-    """Opening less closing brackets of a line. Lists of numbers hold no text with brackets."""
+    """Opening minus closing brackets of a line. Lists of numbers hold no text with brackets."""
     code = line.partition("#")[0]
     return code.count("[") - code.count("]")

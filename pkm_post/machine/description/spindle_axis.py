@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Spindle axis: the entries of a spindle that the controller can move as an axis, and what contradicts them.
+"""Spindle axis: the entries of a spindle that the controller can move as an axis, and their checks.
 
 Input: the entries in mm and rad, by name; None for omitted ones, malformed ones are absent. Output: the axis, in
 turns, mm and s; and checks for ``consistency``.
@@ -18,7 +18,7 @@ _OF_THE_AXIS = tuple(
     f"spindle.axis.{key}" for key in ("motor", "letter", "counts_per_turn", "speed", "acceleration", "lead_tolerance")
 )
 _TOGETHER = (*_OF_THE_AXIS, "controller.codes.spindle_axis", "controller.codes.spindle_speed")
-"""All of them are stated, or none."""
+"""Entries to state all together or not at all."""
 
 
 def spindle_axis(values: Values) -> SpindleAxis | None:

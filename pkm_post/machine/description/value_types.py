@@ -2,7 +2,7 @@
 """Forms: allowed values of an entry, as a description and a parser.
 
 Input: one value from ``tomllib`` and the scale of its unit. Output: a number, numpy array or text in mm, rad, s, or
-``WrongValueError`` with what was found instead. The descriptions are those of the documentation.
+``WrongValueError`` with the finding. The descriptions are those of the documentation.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pkm_post.model import Body, Box
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 LARGEST = 1e12
-"""A larger number, an infinity or a NaN is a typing error: no machine quantity comes near it."""
+"""A larger number, an infinity or a NaN is a typing error: no machine quantity is that large."""
 SHORTEST_DIRECTION = 1e-9
 UNKNOWN = "unknown"
 """Placeholder in a template for unknown machine data."""
@@ -36,7 +36,7 @@ MOST_SHOWN = 60
 
 
 class WrongValueError(Exception):
-    """A value does not have the required form; the text says what was found."""
+    """A value does not have the required form; the text is the finding."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def collect(value: Any, shape: tuple[int, ...], at: tuple[int, ...] = ()) -> Any
     """Nested lists of ``value`` as floats, with exactly this shape.
 
     Raises:
-        FormError: the shape differs; the text says what was found where.
+        WrongValueError: the shape differs; the text is the finding with its place.
     """
     where = f" at place {', '.join(map(str, at))}" if at else ""
     if not shape and _is_number(value):
@@ -96,7 +96,7 @@ def converted(value: Any, shape: tuple[int, ...], scale: Scale, is_positive: boo
     """Numbers of ``value`` in mm, rad and s.
 
     Raises:
-        FormError: wrong shape or implausible magnitude; a positive number may not be too small either.
+        WrongValueError: wrong shape or implausible magnitude; positive numbers also have a minimum.
     """
     numbers: Array = np.array(collect(value, shape)) * scale.factor
     size = np.abs(numbers)
@@ -206,7 +206,7 @@ _CODE = re.compile(r"(?:[ -z|~]|\{value\}|\{value:d\}|\{value:\.[1-9]f\})+")
 
 _FUNCTION = re.compile(r"M[1-9]\d{1,3}")
 _OF_THE_LANGUAGE = {17, 29, 30, *range(47, 54), *range(60, 74), *range(96, 100)}
-"""M codes of two digits or more that say how a program runs, in one flavour of G-code or another."""
+"""M codes of two digits or more with a meaning in some flavour of G-code."""
 
 
 def _read_functions(value: Any, scale: Scale) -> dict[str, str]:

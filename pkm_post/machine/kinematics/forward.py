@@ -19,7 +19,7 @@ from pkm_post.machine.kinematics.strut_cubics import map_to_tool
 from pkm_post.model import Machine
 
 _MOST_STEPS = 20
-"""Newton steps before a row is given up."""
+"""Newton steps before giving up on a row."""
 _AT_ONCE = 4096
 """Poses per pass: their Jacobians stay in the processor's cache."""
 LENGTH_TOLERANCE = 1e-10
@@ -125,7 +125,7 @@ _FAR = 1.0
 def refine_poses(
     machine: Machine, lengths: Array, guess: ToolPoses, inverses: tuple[Array, Array], share: Array
 ) -> tuple[ToolPoses, Array]:
-    """Tool poses that have the given strut lengths, and which of them do, (N * M,); other rows are undefined.
+    """Tool poses that have the given strut lengths, and whether each one does, (N * M,); other rows are undefined.
 
     Args:
         machine: the geometry.
@@ -177,7 +177,7 @@ def forward_along_path(
         tool_length: (N,) gauge lengths, mm; where it changes, the platform is at rest.
         tip: (3,) tip of the first tool near the first row.
         rotation: (3, 3) rotation of the platform there.
-        first_rows: how many rows are solved in sequence, about; the others begin at their neighbours.
+        first_rows: approximate number of rows solved in sequence; the others start from their neighbours.
     """
     count = len(lengths)
     # Platform origins do not jump at a tool change: they are the tips of a tool of reach zero.

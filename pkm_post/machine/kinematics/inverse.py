@@ -3,7 +3,7 @@
 
 r_T = q + L k, MT_i = r_T + R_T TT_i, d_i = |MT_i - MB_i| [paper eq. 1 to 5], where L is the distance from the tool
 tip to the platform origin: gauge length plus spindle nose. Strut vectors here run from the base to the platform; in the
-paper, the other way round. The controller counts d_i, corrected for the screw rotation, less the length offset; both
+paper, the other way round. The controller counts d_i, corrected for the screw rotation, minus the length offset; both
 are zero unless the machine file states them.
 
 Lengths alone need no strut vectors. With p from the middle of the base to the platform origin, a and b the joints in
@@ -152,7 +152,7 @@ def lengths_at_constant_attitude(machine: Machine, tip: Array, axis: Array, spin
 
 
 def counted_lengths(machine: Machine, distance: Array, direction: Array, rotation: Array) -> Array:
-    """Lengths that the controller counts for these joint distances, (N, 6) in mm.
+    """Lengths as the controller counts them, from joint distances, (N, 6) in mm.
 
     Args:
         machine: screw and length offsets.

@@ -76,7 +76,7 @@ def plucker_rows(along: Array, arm: Array) -> Array:
 def solve_regular(matrices: Array, right: Array) -> tuple[Array, Array]:
     """Solutions x of A x = b, (N, 6), and which rows have one, (N,); exactly singular matrices yield zeros.
 
-    What is singular is known by trying, in halves: LAPACK's determinant may differ from zero by its own rounding.
+    Singular rows are found by trial and bisection: rounding may keep LAPACK's determinant from zero.
     """
     try:
         return np.linalg.solve(matrices, right[..., None])[..., 0], np.ones(len(right), dtype=bool)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Placed: platform and strut positions at some poses, the input of every pose check. Units: mm."""
+"""Placed machine: platform and strut positions at some poses, the input of every pose check. Units: mm."""
 
 from __future__ import annotations
 

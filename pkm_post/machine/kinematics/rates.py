@@ -147,7 +147,7 @@ def tool_rates(
 
 
 def _without_acceleration(machine: Machine, tip: Array, rotation: Array, tool_length: Array, twist: Array) -> Array:
-    """Second derivatives of the strut lengths, (N, 6), of a tool at constant twist."""
+    """Second derivatives of the strut lengths, (N, 6), for a tool with constant twist."""
     reach = (machine.spindle_nose + tool_length)[:, None]
     arm = machine.platform_joints @ rotation.transpose(0, 2, 1) + (reach * rotation[:, :, 2])[:, None, :]
     strut = arm + tip[:, None, :] - machine.base_joints
@@ -179,7 +179,7 @@ def least_joint_distance(machine: Machine) -> float:
 def strut_rate_bounds(
     machine: Machine, tip: Pair, axis: Pair, spin: Pair, half_tilt: Array, tool_length: Array
 ) -> Pair:
-    """Bounds of the first and second derivative of any strut length, (N,) each, while struts are within their stroke.
+    """Bounds of the first and second derivative of any strut length, (N,) each, for struts within their stroke.
 
     Infinite for a screw without a key, whose correction has no bound here, and without a shortest length.
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Screw: correction of the counted strut length for the relative rotation of the strut's halves.
 
-A strut between two universal joints has no joint that lets its halves turn freely. Each half follows its own joint,
+A strut between two universal joints has no joint about its own axis. Each half follows its universal joint,
 and when nut and screw turn against each other, the nut travels: the motor must compensate. Input: strut directions from
 base to platform and platform rotations. Output: mm to add to the distance of the joint centres.
 

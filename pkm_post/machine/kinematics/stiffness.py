@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stiffness: how much the tool tip gives way to a force, by the struts alone.
+"""Stiffness: stiffness of the tool tip against a force, due to the struts only.
 
 Takes poses of a machine whose file states the stiffness of its struts; returns N/mm. A force n at the tip puts forces f
-into the struts, J^T f = [n, 0], and each strut gives way by f_i / k_i. The compliance of the tip is the symmetric
-matrix of these; its greatest eigenvalue is that of the softest direction.
+into the struts, J^T f = [n, 0], and each strut deflects by f_i / k_i. The compliance of the tip is the symmetric matrix
+of these; its greatest eigenvalue is that of the softest direction.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def principal_stiffness(machine: Machine, pose: ToolPoses) -> tuple[Array, Array
 
 
 def _one_way(direction: Array) -> Array:
-    """Directions, (N, 3), with their largest component positive: n and -n are alike."""
+    """Directions, (N, 3), with their largest component positive: n and -n are equivalent."""
     largest = np.take_along_axis(direction, np.abs(direction).argmax(axis=1)[:, None], axis=1)
     return np.where(largest < 0.0, -direction, direction)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Interpolation: machine motion when the controller plays cubics between the strut knots.
+"""Strut cubics: machine motion when the controller plays cubics between the strut knots.
 
 Input: true poses by time at the ends of intervals, and nominal tool poses inside them. Output: the deviation of tool
 and struts. The inverse Jacobian maps length residuals to the tool: to the tip by the linear part, to the tool axis by
@@ -81,8 +81,8 @@ def tool_deviation(
         machine: the geometry.
         start: N knots.
         end: N knots.
-        inside: N * M nominal poses at the shares of the duration, interval by interval; one row of axis, spin and gauge
-            length stands for all where they are constant.
+        inside: N * M nominal poses at the shares of the duration, interval by interval; where axis, spin and gauge
+            length are constant, one row of each is enough.
         duration: (N,) s.
         share: (M,) shares of the duration.
     """

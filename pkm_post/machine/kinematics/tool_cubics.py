@@ -2,9 +2,9 @@
 """Tool cubics: cubics of tip, axis and spin between two poses, and the drift of the strut cubics from them.
 
 The controller plays cubics of strut lengths. Between the same two poses the tool has cubics of its own, with the same
-positions and rates at both ends: the plan is compared with these, without kinematics. What remains is the drift, by
-which the strut cubics L take the tool off its own cubics. L is the cubic with the ends of l, the lengths along the
-tool cubics, so with x for the elapsed share of the duration and M for the maximum of |l''''| by x,
+positions and rates at both ends: the plan is compared with these, without kinematics. The rest is the drift of the
+strut cubics L from the tool cubics. L is the cubic with the ends of l, the lengths along the tool cubics, so with x for
+the elapsed share of the duration and M for the maximum of |l''''| by x,
 
     |L - l| <= 16 x^2 (1 - x)^2 M / 384
 
@@ -13,9 +13,9 @@ cubic's derivatives by x and d for the shortest strut, the fourth derivative of 
 
     M <= (3 A^2 + 4 V J) / d + 12 V^2 A / d^2 + 3 V^4 / d^3
 
-and the inverse Jacobian maps that to the tip: by at most 1 / s for a platform that comes no nearer to a singular pose
-than s, and by the lever of the tool. Where the attitude moves, the drift is measured at a quarter, a half and three
-quarters: it is x^2 (1 - x)^2 q(x), with a q that over a long way is no constant, and may be zero in the middle.
+and the inverse Jacobian maps that to the tip: by at most 1 / s for a platform whose least singular value is s, and by
+the lever of the tool. Where the attitude moves, the drift is measured at a quarter, a half and three quarters: it is
+x^2 (1 - x)^2 q(x), with a q that varies over a long interval and may be zero in the middle.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ ROUNDED_SHARE = 0.99
 """Share of the accelerations of struts and tip available to cubics: rounding lengths to six decimals adds up to 0.7 %
 where an interval is 1 ms."""
 _STEPS = 3
-"""Newton steps to the best fit: each squares the relative error of the first, some hundredths."""
+"""Newton steps to the best fit: the first leaves a relative error of some hundredths, each further one squares it."""
 DRIFT_SHARES = np.array([0.25, 0.5, 0.75])
 """Shares of the duration at which the drift is measured."""
 _BUMP = 16 * (DRIFT_SHARES * (1 - DRIFT_SHARES)) ** 2
@@ -190,7 +190,7 @@ def measured_demand(
         first: N knots.
         last: N knots.
         cubics: N of them.
-        inside: 3 N tool poses of theirs at these shares of their durations, interval by interval.
+        inside: 3 N tool poses of the cubics at these shares, interval by interval.
         duration: (N,) s.
     """
     found = tool_deviation(machine, first, last, inside, duration, DRIFT_SHARES)

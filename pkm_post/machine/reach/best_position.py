@@ -70,11 +70,11 @@ _ROUNDS = 50
 _EQUAL = 1e-6
 """Score difference that counts as zero."""
 _SEARCH_RANGE = np.array([150.0, 150.0, 150.0, *np.radians([20.0, 20.0, 120.0])])
-"""mm and rad: how far from the best position others are tried."""
+"""mm and rad: range about the best position in which others are tried."""
 _WORTH = 1e-3
-"""Share of the margins times distance in these steps, below which a position is not worth a try."""
+"""Least product of margin share and distance, in these steps, for a position worth trying."""
 _START_RANGE = np.array([200.0, 200.0, 200.0, *np.radians([10.0, 10.0, 180.0])])
-"""mm, rad: how far starts are from the position as it is, in each freedom."""
+"""mm, rad: range of the starts about the original position, in each freedom."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class WorkpiecePosition:
 
     Attributes:
         machine_from_work: (4, 4) the work offset.
-        move: (6,) what was added: mm along, and rad about, the axes of {M} through the middle of the job.
+        move: (6,) displacement: mm along, and rad about, the axes of {M} through the middle of the job.
         before: (3,) least shares of stroke, joints and distance to singular poses with the original work offset.
         after: (3,) the same with the new work offset.
     """
@@ -133,13 +133,13 @@ def best_position(
         machine: geometry and limits.
         free: letters of ``FREEDOMS`` that may change.
         weights: weights of the shares, by column; the stroke by default.
-        fixed: (N,) segments that stay on the machine when the workpiece moves: those of tool changes; none by default.
-        starts: number of positions to climb from: that of the trajectory, and others at random but always the same;
-            the best result counts, of equal ones the first.
+        fixed: (N,) segments that do not move with the workpiece, such as tool changes; none by default.
+        starts: number of starts: the position of the trajectory, and reproducible random ones; the best result counts,
+            the first of equal ones.
         executor: distributes the climbs; by default they run in this process.
 
     Raises:
-        ValueError: a letter is unknown, or there is none; or there is no start.
+        ValueError: a letter is unknown, or there are no letters or no starts.
     """
     job, climbs = _climbs(trajectory, machine, free, weights, fixed, starts, executor)
     return _position(job, trajectory, climbs[int(np.argmax([least for _, least in climbs]))][0])
@@ -153,12 +153,12 @@ def good_positions(
     starts: int = 1,
     executor: Executor | None = None,
 ) -> tuple[WorkpiecePosition, ...]:
-    """Positions for other checks to choose among: arguments and errors as ``best_position``.
+    """Candidate positions for further checks; arguments and errors as in ``best_position``.
 
     Returns:
-        The best position; and the ends of the other climbs, the best one shifted and turned in its freedoms, as far as
-        they leave something of stroke and joints. Each is far from those before it and leaves much: what speaks against
-        one may not speak against the next.
+        The best position; then the ends of the other climbs, and the best position displaced in its freedoms, where
+        margins of stroke and joints remain. Each has good margins and is far from those before it, so that it may pass
+        a check that they fail.
     """
     job, climbs = _climbs(trajectory, machine, free, None, fixed, starts, executor)
     best = climbs[int(np.argmax([least for _, least in climbs]))][0]
@@ -185,7 +185,7 @@ def _climbs(
     starts: int,
     executor: Executor | None,
 ) -> tuple[_Job, list[tuple[Array, float]]]:
-    """The job, and for each start the move that a climb ends with, (6,), with its score."""
+    """The job, and the final move, (6,), and score of the climb from each start."""
     if not free or set(free) - set(FREEDOMS):
         raise ValueError(f"free: expected letters of {FREEDOMS!r}, got {free!r}")
     if starts < 1:
@@ -202,26 +202,26 @@ def _position(job: _Job, trajectory: Trajectory, move: Array) -> WorkpiecePositi
     every = np.arange(len(job.tip))
     return WorkpiecePosition(
         machine_from_work=_matrix(move, job.middle) @ trajectory.machine_from_work,
-        move=np.array(move.tolist()),  # a column of its own: the same bytes from every executor
+        move=np.array(move.tolist()),  # copied, for the same bytes from every executor
         before=job.normalised_margins(np.zeros((1, 6)), every)[0].min(axis=0),
         after=job.normalised_margins(move[None], every)[0].min(axis=0),
     )
 
 
 def _distance(move: Array, other: Array) -> float:
-    """How far two moves are apart, in the steps that are made about the best position."""
+    """Distance of two moves, in steps of ``_SEARCH_RANGE``."""
     apart = np.append((move - other)[:3], np.angle(np.exp(1j * (move - other)[3:])))
     return float(np.abs(apart / _SEARCH_RANGE).max())
 
 
 def _starts(count: int) -> Array:
-    """Moves to climb from, (count, 6), the first of them none; more starts begin with the same ones."""
+    """Moves to climb from, (count, 6), the first of them zero; a larger count only appends moves."""
     random = np.random.default_rng(_SEED)
     return np.vstack([np.zeros(len(FREEDOMS)), random.uniform(-_START_RANGE, _START_RANGE, (count - 1, len(FREEDOMS)))])
 
 
 def _climb(job: _Job, weights: dict[int, float], chosen: Array, start: Array) -> tuple[Array, float]:
-    """The move that a climb from a start ends with, (6,), and the score of its worst pose."""
+    """The final move of a climb, (6,), and the score of its worst pose."""
     every = np.arange(len(job.tip))
     move, active, least = start, _first_poses(job), -math.inf
     # Even if the rounds do not suffice, the reported result is evaluated at every pose.
@@ -242,7 +242,7 @@ def _climb(job: _Job, weights: dict[int, float], chosen: Array, start: Array) ->
 
 
 def _job(trajectory: Trajectory, machine: Machine, fixed: Array) -> _Job:
-    """The poses that move with the workpiece; only the end of a segment from home or a tool change."""
+    """The poses that move with the workpiece; of a segment from home or a tool change only the end."""
     samples = SampledPoses.of(trajectory)
     from_elsewhere, at_end = np.append(True, fixed[:-1]), np.append(np.diff(samples.segment) > 0, True)
     rows = ~fixed[samples.segment] & (~from_elsewhere[samples.segment] | at_end)

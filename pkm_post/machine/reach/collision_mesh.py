@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Part: workpiece as a mesh of triangles, boxes or points in {M}, and its distance from cylinders.
+"""Collision mesh: the workpiece as a mesh of triangles, boxes or points in {M}, and its distance from cylinders.
 
 The triangles are kept in a hierarchy of bounding spheres, the balls. A ball farther away than the nearest triangle so
 far, or than the distance of interest, is skipped. Units: mm.
@@ -21,7 +21,7 @@ _GROUP = 16
 _POSES = 256
 """Poses in one pass."""
 _HAIR = 0.003
-"""mm by which a result may be too low, so that the last of many equally near triangles do not matter."""
+"""mm by which a result may be too low, to skip the last of many equally near triangles."""
 _BOX_FACES = np.array(
     [
         [0, 1, 2], [1, 2, 3], [4, 5, 6], [5, 6, 7], [0, 1, 4], [1, 4, 5],
@@ -99,7 +99,7 @@ def _along_a_curve(points: Array) -> Array:
 
 
 def distance_from_mesh(cylinders: Cylinders, part: CollisionMesh, far: float) -> Array:
-    """Lower bounds of the distances of cylinders from the part, (M,), none of them above ``far``."""
+    """Lower bounds of the distances of cylinders from the part, (M,), at most ``far``."""
     passes = (cylinders.take(slice(first, first + _POSES)) for first in range(0, len(cylinders), _POSES))
     return np.concatenate([_distance(some, part, far) for some in passes])
 

@@ -31,7 +31,7 @@ class CheckedLimit:
         name: display name.
         code: diagnostic code of a violation.
         unit: of the margin, a key of ``DISPLAY_UNITS``.
-        parts: what may have the least margin: struts, pairs of bodies.
+        parts: the items with a margin each: struts, pairs of bodies.
         violation: pattern of the message of a violation, with {part} and {by}.
         rapid_code: diagnostic code of a violation in a rapid move; empty for the same one.
         values: further values of the pattern.
@@ -64,8 +64,8 @@ class ReachFinding:
         subject: the checked subject.
         margin: (N,) least margin found on the cell that ends at the row, its end included; negative is a violation.
             A comfortable margin may be a lower bound, but is never the least.
-        part: (N,) index into ``subject.parts`` of what has this margin.
-        at_least: proven lower bound of the margin on the whole path, between the rows as well; minus infinity where
+        part: (N,) index into ``subject.parts`` of the item with this margin.
+        at_least: proven lower bound of the margin on the whole path, also between the rows; minus infinity where
             only the rows were checked.
     """
 

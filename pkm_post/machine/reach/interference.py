@@ -2,8 +2,8 @@
 """Interference: clearance between struts, platform, spindle and fixtures.
 
 Strut tubes and rods are capsules here, cylinders with round ends; platform bodies are cylinders with flat ends,
-fixtures are boxes. Margins are distances less radii less clearance; between a body and a fixture, a lower bound of it,
-see ``geometry.separation``. Units: mm.
+fixtures are boxes. Margins are distances minus radii and clearance; between a body and a fixture, a lower bound of it,
+see ``geometry.cylinders``. Units: mm.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _PAIRS = tuple(Phrase("{} and {}", one + 1, two + 1) for one, two in zip(_FIRST,
 
 
 def strut_checks(machine: Machine, path: PosePath, shortest: float) -> tuple[Check, ...]:
-    """Check that struts keep clear of each other, the platform and the fixtures; none if struts have no bodies."""
+    """Check that struts keep clear of each other, the platform and the fixtures; no checks if struts have no bodies."""
     if not has_strut_bodies(machine):
         return ()
     arm = float(lever_arms(machine, path.tool_length).max())
@@ -64,7 +64,7 @@ def strut_checks(machine: Machine, path: PosePath, shortest: float) -> tuple[Che
 
 
 def body_checks(machine: Machine, path: PosePath) -> tuple[Check, ...]:
-    """Check that each platform body keeps clear of the fixtures; none without either."""
+    """Check that each platform body keeps clear of the fixtures; no checks without them."""
     if not machine.fixtures:
         return ()
     return tuple(
@@ -137,7 +137,7 @@ _FAR = 5 * COMFORT
 
 
 def workpiece_checks(machine: Machine, path: PosePath, shortest: float, part: CollisionMesh) -> tuple[Check, ...]:
-    """Check that platform bodies and struts keep clear of the part; none for those the machine file does not state.
+    """Check that platform bodies and struts keep clear of the part, as far as the machine file states them.
 
     Args:
         machine: bodies and struts.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Between: evaluate a check on a whole pose path, not only at its samples.
+"""Path bounds: evaluate a check on a whole pose path, not only at its samples.
 
 Every margin has a slope: its greatest rate of change with platform motion. If the margin is m0 and m1 at the ends of a
 stretch and changes by at most c on it, it is at least (m0 + m1 - c) / 2 in between. Where that is not negative, the
@@ -7,7 +7,7 @@ stretch is free of violations. Otherwise the stretch is halved and checked again
 out, or the bound is 0 within the resolution of the check, which counts as a violation. Margins may be lower bounds
 of the true ones at any pose: the result stays valid.
 
-A check with expensive margins starts with every 64th row. It refines to the rows where less than its comfort is left,
+A check with expensive margins starts with every 64th row. It refines to every row where less than its comfort is left,
 and elsewhere far enough to know the least margin to a quarter. When only violations are requested, every check does so
 and refines only where one is possible.
 """
@@ -93,7 +93,7 @@ class _PathCheck:
         self.computed, self.proven = np.zeros(len(path), dtype=bool), np.full(len(path), -np.inf)
 
     def _finding(self, at_least: float) -> ReachFinding:
-        """Build the finding; skipped rows must not look as bad as the worst computed row."""
+        """Build the finding; skipped rows must not appear as bad as the worst computed row."""
         beyond = np.nextafter(self.margin[self.computed].min(), np.inf)
         margin = np.where(self.computed, self.margin, np.maximum(self.margin, beyond))
         return ReachFinding(self.check, margin, self.part, at_least)
@@ -132,7 +132,7 @@ class _PathCheck:
         return self.refined()
 
     def _fill(self, start: Array, end: Array, bound: Array) -> None:
-        """Assign the rows between two rows the bound of the whole stretch and the part of the first one."""
+        """Give the rows between two rows the bound of the stretch and the part of its first row."""
         count = end - start
         rows = np.repeat(start + 1 - (np.cumsum(count) - count), count) + np.arange(int(count.sum()))
         self.proven[rows] = np.repeat(bound, count)
@@ -140,7 +140,7 @@ class _PathCheck:
         self.margin[rows], self.part[rows] = self.proven[rows], np.repeat(self.part[start], count - 1)
 
     def refined(self) -> ReachFinding:
-        """Finding after refining between the rows where a violation may hide."""
+        """Finding, refined where a violation between rows is possible."""
         first = np.concatenate([self.margin[:1], self.margin[:-1]])
         bound = np.maximum((first + self.margin - self.change) / 2, self.proven)
         cells = np.flatnonzero((bound < 0) & (first >= 0) & (self.margin >= 0))
@@ -186,7 +186,7 @@ class _PathCheck:
         return margin, part
 
     def _blame(self, cells: Array, owner: Array, found: Array, part: Array | None, least: Array) -> None:
-        """Store margins found inside cells where they are the least so far."""
+        """Store margins found inside cells if they are the least so far."""
         worse = found < self.margin[cells[owner]]
         order = np.argsort(-found[worse], kind="stable")  # the least of several in one cell is written last
         rows = cells[owner[worse]][order]

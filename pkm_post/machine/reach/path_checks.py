@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Workspace: whether the machine can follow a pose path; the paper's check before any controller output.
+"""Path checks: whether the machine can follow a pose path; the paper's check before any controller output.
 
 Input: a pose path. Output: one finding for each check that the machine file has numbers for, in order of relevance.
 Checking strut lengths alone is not enough: singular poses can lie well inside the stroke.
@@ -46,7 +46,7 @@ def reach_findings(
     Args:
         machine: the limits; a check whose numbers it does not state is left out.
         path: poses, N rows.
-        part: what spindle and holder must not touch.
+        part: body that spindle and holder must not touch.
         duration: (N,) duration of each cell, s, for the check of strut speeds.
         normal: (N, 3) unit normals of the surface, for the stiffness; ignored if the machine states no stiffness.
         least_stiffness: required stiffness of the tip along the normals, N/mm.
@@ -67,7 +67,7 @@ def all_checks(machine: Machine, path: PosePath, shortest: float, part: Collisio
         machine: the geometry.
         path: poses.
         shortest: lower bound of the strut lengths on the path, mm.
-        part: what the tool must not meet; None leaves its checks out.
+        part: body to keep clear of; None skips its checks.
     """
     return (
         *stroke_checks(machine, path, shortest),

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Way: a pose path: tool poses in order, the motion between them, and bounds of platform point travel.
+"""Pose path: tool poses in order, the motion between them, and bounds of platform point travel.
 
 Cell i leads from row i - 1 to row i. Inside it the pose is known for any share of the cell, from 0 to 1, and tip, axis
 and spin move uniformly with the share: the tip along a line or an arc, the axis along a great circle. Two numbers bound
 the motion of any platform point in a cell: it moves by at most travel + turn * its distance from the tip.
 
-The platform turns by w = k x k' + (psi' + tau) k, |tau| <= tan(tilt / 2) |k'| (``geometry.torsion``), so that turn^2 =
+The platform turns by w = k x k' + (psi' + tau) k, |tau| <= tan(tilt / 2) |k'| (``geometry.orientation``), so turn^2 =
 angle^2 + (|spin| + tan(tilt / 2) angle)^2 with the highest tilt of the cell. Units: mm, rad.
 """
 
@@ -29,7 +29,7 @@ class PosePath:
         tip: (N, 3) tool tips in {M}.
         axis: (N, 3) unit tool axes.
         spin: (N,) spins.
-        tool_length: (N,) gauge lengths, of the cell that ends at the row as well.
+        tool_length: (N,) gauge lengths, also of the cell that ends at the row.
         travel: (N,) upper bound of the tip's path length in the cell.
         bend: (N,) largest second derivative of the tip by the share of the cell: 0 on lines, sweep^2 radius on arcs.
         angle: (N,) angle the tool axis turns in the cell.

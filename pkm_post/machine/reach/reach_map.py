@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reach map: largest tilt of the tool, in every direction, at each place of a volume.
+"""Reach map: largest tilt of the tool, in all directions, at each place of a volume.
 
-Takes a machine and a grid of places; returns the half angle of the cone of reachable tool axes, and what limits it. The
+Takes a machine and a grid of places; returns the half angle of the cone of reachable tool axes, and its limit. The
 spin is zero. The places are independent: any executor of ``concurrent.futures`` can distribute them to processes or
 machines.
 """
@@ -31,8 +31,8 @@ class ReachMap:
     Attributes:
         tip: (N, 3) tool tip in {M}, mm.
         cone: (N,) half angle of the widest cone about upright in which the tool may tilt, rad; ``NOWHERE`` where there
-            is none.
-        limit: (N,) first limit beyond it: 0 stroke, 1 joints, 2 a singular pose; -1 where there is none up to
+            is no such cone.
+        limit: (N,) first limit beyond it: 0 stroke, 1 joints, 2 a singular pose; -1 if there is none up to
             ``widest``.
         widest: the largest angle tried, rad.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reach: whether a machine can follow a trajectory, everywhere and not only at sampled poses.
+"""Reach: whether a machine can follow a trajectory, not only at sampled poses.
 
 Takes a trajectory and a machine; returns a report: for each check its least margin, the element and block where it
 occurs, the first block that violates it, and the remedy. As data, as text, as a dictionary for JSON, and as columns by

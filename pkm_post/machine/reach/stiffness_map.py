@@ -41,7 +41,7 @@ class StiffnessMap:
         return np.where(self.reached, self.stiffness[:, 0], np.nan)
 
     def as_csv(self) -> str:
-        """The map as text with a header, one line per pose, in mm and N/um; empty where nothing is reached."""
+        """The map as text with a header, one line per pose, in mm and N/um; empty where the machine does not reach."""
         head = "x_mm,y_mm,z_mm,softest_N_per_um,middle_N_per_um,stiffest_N_per_um,softest_x,softest_y,softest_z"
         values = (self.stiffness * _PER_MICRON).tolist()
         rows = zip(self.tip.tolist(), values, (self.softest).tolist(), self.reached.tolist(), strict=True)
@@ -75,7 +75,7 @@ def table_poses(machine: Machine, height: float, tool_length: float, step: float
     """Poses of an upright tool over the whole table, on a grid.
 
     Args:
-        machine: the grid is as wide as its base joints stand apart.
+        machine: its base joints give the extent of the grid.
         height: of the tool tip in {M}, mm.
         tool_length: gauge length, mm.
         step: distance of neighbours along x and y, mm.

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Spin: rotation of the platform about the tool axis, which cuts nothing and moves every strut."""
+"""Spin: rotation of the platform about the tool axis, which does not affect the cut but moves every strut."""

@@ -29,7 +29,7 @@ def spin_in_plane(axis: Array, heading: float, of_y: bool = False) -> Array:
     Args:
         axis: (N, 3) unit tool axes in {M}, in order along the path.
         heading: direction of the x axis of the platform when the tool is upright, rad from x towards y.
-        of_y: whether the y axis stays in its plane instead of the x axis.
+        of_y: whether the y axis of the platform stays parallel to the plane instead of the x axis.
 
     Returns:
         The spins; NaN where the tool axis is normal to the plane, which leaves the spin undefined.
@@ -45,7 +45,7 @@ def spin_in_plane(axis: Array, heading: float, of_y: bool = False) -> Array:
 
 
 _SAME = 1e-6
-"""mm, and difference of unit axes: a tool this close to the tool-change pose is there."""
+"""mm, and difference of unit axes: a tool this close to the tool-change pose is at it."""
 
 
 def with_spin(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shares: margins of a pose as comparable, dimensionless numbers.
+"""Normalised margins of a pose: comparable, dimensionless shares.
 
 Takes tool poses; returns three shares for each. 1 is the optimum, 0 is the limit, negative is beyond it.
 """
@@ -48,7 +48,7 @@ def score(left: Array, weights: Mapping[int, float]) -> Array:
 
     Args:
         left: (N, 3) shares.
-        weights: weights of the columns that count; the others only have to be above zero.
+        weights: weights by column; the other columns only have to be above zero.
     """
     worst = left.min(axis=1)
     columns = list(weights)

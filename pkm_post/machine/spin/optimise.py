@@ -2,7 +2,7 @@
 """Optimise: the spin along a whole path with the largest margins.
 
 Takes a trajectory; returns it with another spin. The search first maximises the score at the worst place of the path,
-then minimises the change of spin that this needs. It starts coarse and is refined around its result. The scores of the
+then minimises the change of spin needed for it. It starts coarse and refines around its result. The scores of the
 candidates are most of the work; any executor of ``concurrent.futures`` can distribute them. [Merlet2000]
 """
 
@@ -25,7 +25,7 @@ _SLACK = 1e-9
 
 
 def best_sequence(candidates: Array, scores: Array, start: float, limit: Array, extent: Array) -> Array:
-    """The index of the candidate to take at each node, (K,).
+    """Choose a candidate at each node: their indices, (K,).
 
     Args:
         candidates: (K, M) values to choose from at each node.
@@ -35,7 +35,7 @@ def best_sequence(candidates: Array, scores: Array, start: float, limit: Array, 
         extent: (K,) path length from the node before; the sum of change^2 / extent is minimised.
 
     Raises:
-        ValueError: no course keeps within the limits.
+        ValueError: no sequence stays within the limits.
     """
     before = np.vstack([np.full(candidates.shape[1], start), candidates[:-1]])
     worst = _worst_score(before, candidates, scores, limit)
@@ -43,7 +43,7 @@ def best_sequence(candidates: Array, scores: Array, start: float, limit: Array, 
 
 
 def _worst_score(before: Array, candidates: Array, scores: Array, limit: Array) -> float:
-    """The largest worst score of any course."""
+    """The best score at the worst node, over all sequences."""
     best = np.full(candidates.shape[1], np.inf)
     for node, at_node in enumerate(scores):
         change = np.abs(candidates[node][:, None] - before[node])
@@ -55,7 +55,7 @@ def _worst_score(before: Array, candidates: Array, scores: Array, limit: Array) 
 
 
 def _least_change(before: Array, candidates: Array, allowed: Array, limit: Array, extent: Array) -> Array:
-    """The course of least change through allowed candidates, as indices (K,)."""
+    """The sequence of least change through allowed candidates, as indices (K,)."""
     nodes, choices = candidates.shape
     came_from = np.empty((nodes, choices), dtype=np.int32)
     cost = np.zeros(choices)
@@ -89,7 +89,7 @@ def optimise_spin(
     """Search for the spin.
 
     Args:
-        trajectory: at least one segment; its spin at the start stays.
+        trajectory: at least one segment; its spin at the start is kept.
         machine: geometry and limits.
         policy: objective, and range and rate of the spin.
         executor: distributes the scores of candidates; by default they are computed in this process.
@@ -118,7 +118,7 @@ def least_normalised_margins(trajectory: Trajectory, machine: Machine) -> Array:
 
 
 def _nodes(row_s: Array, least: float) -> list[int]:
-    """Segments whose ends are nodes: each the first far enough from the node before, and the last."""
+    """Segments whose ends are nodes: each the first one far enough from the previous node, and the last segment."""
     nodes, at, last = [], 0.0, len(row_s) - 1
     while at + least < row_s[-1]:
         nodes.append(min(int(np.searchsorted(row_s, at + least)), last))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Rules: the table of all input faults by code, with the severity, cause and cure of each.
 
-A code is a letter for the topic, a digit for its part, and two digits. Rows follow the order of the families in
-docs/diagnostics.md, and the number within each. A published code never changes its meaning. The table
-is imported when there is a fault.
+A code is a letter for the topic, a digit for its part, and two digits. Rows are in the order of the families in
+docs/diagnostics.md and, within a family, of the numbers. A published code never changes its meaning. The table is
+imported on the first fault.
 """
 
 from typing import TYPE_CHECKING

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Arc statements. docs/cl-data.md lists the forms.
 
-Enters: a statement. Leaves: an arc, as written, and its end point if the statement has one. CIRCLE, CYLNDR and MOVARC
+Input: a statement. Output: an arc, as written, and its end point if the statement has one. CIRCLE, CYLNDR and MOVARC
 end at the next point; ARCDAT with ARCMOV, GOCLW and GOCCLW, CW and CCW, and HELICAL have their own end point. Clockwise
 is as seen against the written axis (ARCMOV), or against the tool axis, from the holder to the tip (the others).
 """

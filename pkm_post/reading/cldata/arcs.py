@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Arcs: assign points to arcs, determine their sense of rotation, and check their radii.
 
-Enters: the recorded arcs and the columns of points. Leaves: for each arc its point, centre and unit axis of
+Input: the recorded arcs and the columns of points. Output: for each arc its point, centre and unit axis of
 right-handed rotation.
 
 Most arcs end at the next point. Points that follow their GOTO without a major word lie on the same circle, and so do

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Arcs to a check surface: TLON,GOFWD along a circle until the tool end reaches a check surface, a plane or a line.
 
-Enters: statements. Leaves: arcs and their end points, as written. A preceding INDIRV or INDIRP gives the start
+Input: statements. Output: arcs and their end points, as written. A preceding INDIRV or INDIRP gives the start
 direction. The circle intersects a check plane twice: without a number the first intersection in the direction of travel
 applies, with 2,INTOF the second. A line represents the plane through it along the circle axis; if it leads from the
 centre to a point of the circle, as CATIA writes it, that point is the end point.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Copies: repeat the statements between INDEX and COPY, each time further translated or rotated.
 
-Enters: the table of statements. Leaves: a table in which each COPY is replaced by its copies; a statement ``_COPY``
+Input: the table of statements. Output: a table in which each COPY is replaced by its copies; a statement ``_COPY``
 with a matrix, three rows of four as written, precedes each of them, and one with the unit matrix ends them.
 
 COPY/n,...,k stands behind a path that INDEX/n begins and that has been made once. It makes k copies, the last one moved

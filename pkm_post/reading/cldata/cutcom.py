@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """CUTCOM: start and end of cutter compensation, and what the file states about its points there.
 
-Enters: statements and comments. Leaves: records in the state, evaluated once all points are known: see
+Input: statements and comments. Output: records in the state, evaluated once all points are known: see
 ``contour_data``.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """CYCLE statements of any CAM system.
 
-Enters: a statement. Leaves: the active cycle, in mm and mm/s. Each number of a CYCLE is identified by its preceding
+Input: a statement. Output: the active cycle, in mm and mm/s. Each number of a CYCLE is identified by its preceding
 word. For numbers without a word before the first one an option gives the meaning, or the CAM system: CATIA writes them
 according to the post-processor table, Creo always in one order.
 """

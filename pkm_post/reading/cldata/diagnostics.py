@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Diagnostics of CL data: line and column, what was found and what was expected, in words.
 
-Enters: lark errors, or invalid statements. Leaves: diagnostics in file order. Equal faults are one with their number
+Input: lark errors, or invalid statements. Output: diagnostics in file order. Equal faults are one with their number
 and the first of their lines. At most a hundred errors are reported; the last one states the number of the others.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Drilling: the moves of all holes of a program at once.
 
-Enters: the recorded cycles and the resolved points, mm and the work frame. Leaves: columns of moves. A hole has up to
+Input: the recorded cycles and the resolved points, mm and the work frame. Output: columns of moves. A hole has up to
 two approach moves, the strokes of its cycle along the tool axis, and the return. Between holes the tool retracts first,
 traverses, and descends last: it leaves a hole along its axis, and enters the next along that of the next. The tool
 position before a hole follows from the previous hole: its point, axis and return height.

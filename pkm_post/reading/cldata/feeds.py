@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Feeds and speeds: FEDRAT, RAPID, SPINDL, COOLNT, DELAY and stops, with items in any order.
 
-Enters: statements. Leaves: feeds in mm/s and events. A feed per revolution follows the spindle speed.
+Input: statements. Output: feeds in mm/s and events. A feed per revolution follows the spindle speed.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Interpreter: dispatch the statements other than plain GOTO, in order, to the handlers of their words.
 
-Enters: statements. Leaves: the state that they set. A word has a handler, or does not affect the motion and is ignored,
+Input: statements. Output: the state that they set. A word has a handler, or does not affect the motion and is ignored,
 or is refused by name because ignoring it would change the motion. All other words are reported once with their count.
 
 FINI ends CL data. CLSF of NX has no FINI: each of its tool paths ends with END-OF-PATH; and APT-CL of Makino ends with

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Logical lines: split bytes into statement texts, one for each line that does not continue the previous one.
 
-Enters: the bytes of a file. Leaves: statement texts with comments removed, continuation lines joined and data extracted
+Input: the bytes of a file. Output: statement texts with comments removed, continuation lines joined and data extracted
 from comments, each with the number of its first line. Columns are preserved: text never shifts within a physical line.
 """
 

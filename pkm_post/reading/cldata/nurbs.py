@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """NURBS motion of Creo: curves that MOVNRB statements give, in place of the points that pace them.
 
-Enters: MOVNRB statements and the points of the file. Leaves: the points, with chords of the curves in place of those
+Input: MOVNRB statements and the points of the file. Output: the points, with chords of the curves in place of those
 between MOVNRB/NEXT and OFF. Creo writes both, the curve and its points; a feed between two points applies on the curve
 between the places nearest to them.
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Points: all GOTO at once, with FROM, GODLTA and the end points of self-contained arcs, in file order.
 
-Enters: the table of statements and the recorded state. Leaves: columns of points, in mm and in the work frame, with
+Input: the table of statements and the recorded state. Output: columns of points, in mm and in the work frame, with
 unit tool axes.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Program: convert points, arcs, holes and feeds to the rows of a program.
 
-Enters: points in the work frame and the records of the state. Leaves: a ``Program``. A point is one row, except for
+Input: points in the work frame and the records of the state. Output: a ``Program``. A point is one row, except for
 holes, which expand to the moves of their cycle, and multi-turn arcs.
 """
 

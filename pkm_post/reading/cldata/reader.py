@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Reader: the steps from CL data to a program.
 
-Enters: the text of a file. Leaves: a ``Program`` in mm, mm/s and the work frame, and all faults. With an error there is
+Input: the text of a file. Output: a ``Program`` in mm, mm/s and the work frame, and all faults. With an error there is
 no program.
 """
 

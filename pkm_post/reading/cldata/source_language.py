@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Source language: variables, arithmetic, points and macros of APT part programs, resolved to plain statements.
 
-Enters: logical lines. Leaves: logical lines without them. A statement of a macro keeps its line number in each call.
+Input: logical lines. Output: logical lines without them. A statement of a macro keeps its line number in each call.
 Angles of functions are in degrees. Only files that assign or call anything take this way, line by line.
 
     A = 10.                    HOLE = MACRO/X,Y,DEPTH=-5

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Statements: scan logical lines to a table, one row per statement, with all numbers in one column.
 
-Enters: logical lines. Leaves: the table, and the lexical and syntax faults. Numbers are as written: program units,
+Input: logical lines. Output: the table, and the lexical and syntax faults. Numbers are as written: program units,
 degrees.
 
 Most statements of a file differ only in their numbers. Each number is replaced by a marker; the rest of the line is its

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tools: CUTTER, TLDATA, LOADTL, LOAD/TOOL and TOOLNO.
 
-Enters: statements. Leaves: tools and tool changes, in mm. Dialects define the cutter before or after the change, so a
+Input: statements. Output: tools and tool changes, in mm. Dialects define the cutter before or after the change, so a
 tool is final at the first motion after both.
 """
 

@@ -4,7 +4,7 @@
 UNITS decides on the length unit. Without it the unit of the feeds applies, or a comment that names the units; if these
 disagree or are absent, the unit is unknown.
 
-Enters: statements. Leaves: 4 x 4 matrices that transform points of the file, in mm, to the work frame. That is the
+Input: statements. Output: 4 x 4 matrices that transform points of the file, in mm, to the work frame. That is the
 first machining frame of the file, or the frame those are defined in: matrix = TRANS @ ORIGIN @ inverse(first) @ active
 @ LAST @ COPY @ TRACUT. TRACUT and COPY change the path before a post-processor reads it, in the order of ANSI APT, or
 of CATIA, where the copies come first [ICAM]; ORIGIN and TRANS are words for the post-processor.

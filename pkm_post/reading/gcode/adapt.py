@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Adapt: blocks of a flavour to blocks that mean the same in RS274NGC, before they are resolved.
 
-Enters: plain blocks. Leaves: as many blocks, with other codes: G80 as the motion that is in force after it, codes
+Input: plain blocks. Output: as many blocks, with other codes: G80 as the motion that is in force after it, codes
 without an effect here and codes that the user leaves out gone together with their words; and what was left out, as
 text for the report. A program in which nothing of this occurs comes out as it went in, without a copy.
 """

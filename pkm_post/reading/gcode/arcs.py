@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Arcs: centre and axis from centre words or a radius; arcs of several turns are split.
 
-Enters and leaves: columns in program coordinates, mm. An arc lies in one of the three planes; a change of the third
+Input and output: columns in program coordinates, mm. An arc lies in one of the three planes; a change of the third
 coordinate makes it a helix. Tolerances are those of LinuxCNC, so programs that run there are accepted here: end points
 may have been rounded to a hundredth of a millimetre or a thousandth of an inch [LinuxCNC, interp_internal.hh].
 """

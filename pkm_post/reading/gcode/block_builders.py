@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Builders of ``Blocks``: in file order by the scan, in execution order by the execution.
 
-Enters: patterns and numbers of many lines, or ranges of scanned blocks and computed ones. Leaves: ``Blocks``. Words are
+Input: patterns and numbers of many lines, or ranges of scanned blocks and computed ones. Output: ``Blocks``. Words are
 written in place without copies: they dominate memory use, 8 bytes per block for each letter in use.
 """
 

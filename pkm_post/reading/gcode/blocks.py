@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Blocks: one block of G-code, and a program as columns of blocks, before interpretation.
 
-Enters: the result of the scan or of the execution. Leaves: the same, checked and read-only. Units: as programmed
+Input: the result of the scan or of the execution. Output: the same, checked and read-only. Units: as programmed
 (inches or millimetres, degrees, F as written); the resolve step converts them.
 
 Only the words that the program uses have a column: a program of X, Y, Z and F takes 37 bytes per block.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Call levels: the subprograms that run, those that are missing, and the rows that jumps go to.
 
-Enters: what the interpreter knows of a call. Leaves: the state of one level, for it to keep on its stack.
+Input: what the interpreter knows of a call. Output: the state of one level, for it to keep on its stack.
 """
 
 from __future__ import annotations

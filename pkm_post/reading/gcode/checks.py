@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Checks: faults of a block that do not depend on the tool position.
 
-Enters: plain blocks and their modal codes. Leaves: faults: unsupported codes, mutually exclusive codes, words that no
+Input: plain blocks and their modal codes. Output: faults: unsupported codes, mutually exclusive codes, words that no
 code of the block uses, and missing or invalid words.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Cycle tracker: the words of canned cycles from block to block, and their strokes.
 
-Enters: blocks with their modal codes, and the tool position before each cycle block. Leaves: the strokes of the block.
+Input: blocks with their modal codes, and the tool position before each cycle block. Output: the strokes of the block.
 R, Q, P and the depth hold as long as the flavour says; the initial level until another motion intervenes.
 """
 

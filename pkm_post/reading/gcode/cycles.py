@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Canned cycles: G73, G81, G82, G83, G85, G86 and G89 drill, G74 and G84 tap, in any plane.
 
-Enters: cycle blocks and the tool position, in mm and program coordinates. Leaves: rapid and linear moves, with the
+Input: cycle blocks and the tool position, in mm and program coordinates. Output: rapid and linear moves, with the
 events between them. R, Q, P and the depth are modal as long as the cycle is active, the initial level until another
 motion intervenes. L, or K on Fanuc, repeats the hole, with G91 at the same increment each time [LinuxCNC; Fanuc, canned
 cycles]. The flavour says where controls differ.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Diagnostics of blocks: collected by row while a program is resolved, and located in its text.
 
-Enters: rows of blocks, and what was found there. Leaves: diagnostics in line order, with the columns of the words they
+Input: rows of blocks, and what was found there. Output: diagnostics in line order, with the columns of the words they
 name. Every faulty block counts, but only the first ones of each code are reported individually: a program of a million
 blocks may have the same fault in each.
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Events: M codes, S and dwells between motions.
 
-Enters: columns of codes, and P of G4 and of the cycles that dwell at the bottom. Leaves: events, and warnings about
+Input: columns of codes, and P of G4 and of the cycles that dwell at the bottom. Output: events, and warnings about
 doubtful dwells. Order within a block: tool change, spindle and coolant, functions of the machine, dwell, motion,
 program stop [LinuxCNC, order of execution]. P is in seconds on LinuxCNC and in milliseconds, without a decimal point,
 on Fanuc-style controls [LinuxCNC; Weihong]. With a point some of these read seconds [Haas], so it is refused there.

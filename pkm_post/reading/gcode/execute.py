@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Execution: turn the blocks as written into the blocks as executed.
 
-Enters: scanned blocks, some with parameters, expressions, O words or calls. Leaves: plain blocks in execution order,
+Input: scanned blocks, some with parameters, expressions, O words or calls. Output: plain blocks in execution order,
 every value computed, every loop and call unrolled; lines and units as in the source. A program without any of these is
 returned unchanged. Semantics are those of RS274NGC as implemented by LinuxCNC, and for M98 and M99 those of Fanuc.
 """

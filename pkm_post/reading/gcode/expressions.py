@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Expressions: the values in a block, compiled once and evaluated at each execution of the block.
 
-Enters: subtrees of the parse tree of a block. Leaves: their values, in the units as written; angles of functions are in
+Input: subtrees of the parse tree of a block. Output: their values, in the units as written; angles of functions are in
 degrees, as in the program; true is 1 and false is 0. An expression compiles to a list of stack operations, so Python's
 recursion depth does not depend on the program.
 """

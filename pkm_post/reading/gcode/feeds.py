@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Feeds and path modes: F in any feed mode, and G61, G61.1 and G64.
 
-Enters: F by block, in the unit of its mode: units per minute (G94), units per revolution (G95), or inverse time in
-1/min (G93); and the path control codes. Leaves: speeds of the tool tip in mm/s, by motion; and by block whether the
+Input: F by block, in the unit of its mode: units per minute (G94), units per revolution (G95), or inverse time in
+1/min (G93); and the path control codes. Output: speeds of the tool tip in mm/s, by motion; and by block whether the
 motion stops at its end (exact stop), whether corners are followed rather than rounded (exact path), and the permitted
 deviation of the tip from the path (G64 P), mm. A change of feed mode cancels F: the next cutting move needs a new one.
 Which of G61 and G61.1 is which depends on the flavour. Q of G64, which merges nearly collinear moves, is not needed: no

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Flavours: what controls of two families mean by the same G-code, in one table.
 
-Enters: nothing. Leaves: ``FLAVOURS``; its rows are the differences, with their sources in docs/g-code.md. The reader
+Input: nothing. Output: ``FLAVOURS``; its rows are the differences, with their sources in docs/g-code.md. The reader
 asks the flavour for what it needs to know and never for its name, so that another family is another row.
 """
 

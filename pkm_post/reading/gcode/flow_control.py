@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Flow control: branches and loops of O words, and WHILE DO of Fanuc's macros.
 
-Enters: a row with such a word, and where the linked words of a program are. Leaves: the row that is carried out next.
+Input: a row with such a word, and where the linked words of a program are. Output: the row that is carried out next.
 """
 
 from __future__ import annotations

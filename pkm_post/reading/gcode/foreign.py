@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Foreign languages: part programs that are not G-code of RS274NGC or ISO, recognised by what they alone have.
 
-Enters: the text of a program. Leaves: the name of its language and where it shows, or nothing. Two
+Input: the text of a program. Output: the name of its language and where it shows, or nothing. Two
 kinds of evidence are needed: one may be a slip of the pen.
 """
 

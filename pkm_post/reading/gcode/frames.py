@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Frames: planes, and the pose of the program coordinate system in {C}.
 
-Enters: points and vectors in program coordinates, mm. Leaves: the same in {C}: {C} = turn @ program + shift.
+Input: points and vectors in program coordinates, mm. Output: the same in {C}: {C} = turn @ program + shift.
 """
 
 from __future__ import annotations

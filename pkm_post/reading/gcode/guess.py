@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Guess: the flavour of a program, by what only one family of controls would take.
 
-Enters: scanned blocks. Leaves: the flavour and the evidence for it, for the report. Evidence is a code, word or order
+Input: scanned blocks. Output: the flavour and the evidence for it, for the report. Evidence is a code, word or order
 of blocks that the other flavour does not have or refuses; one kind of it counts once, wherever it stands. Without any
 the program is RS274NGC, which is the stricter of the two: what means something else there is an error, or the same
 motion.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Interpreter: one execution of a program, from block to block.
 
-Enters: scanned blocks with their compiled statements. Leaves: the executed blocks in a builder. Calls, loops, jumps and
+Input: scanned blocks with their compiled statements. Output: the executed blocks in a builder. Calls, loops, jumps and
 conditions decide which row comes next; parameters keep their values on the way.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Lexer: the patterns and numbers of many lines at once, and the blocks that the patterns stand for.
 
-Enters: the bytes of whole lines, comments blanked. Leaves: the pattern of each line: the line with a marker for each
+Input: the bytes of whole lines, comments blanked. Output: the pattern of each line: the line with a marker for each
 number, and the offsets of the numbers. Work is done per byte with tables and per number with numpy, not per line.
 Real programs have some ten to hundred patterns, so a million blocks take some hundred parses. Patterns of plain words
 are parsed here: importing lark and making its tables take longer than a short program. Lark parses all others.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Macro calls: the program, the passes and the local variables that G65 and G66 give.
 
-Enters: the words of the block, in their order. Leaves: the arguments by the letters of specification I, or I, J and K
+Input: the words of the block, in their order. Output: the arguments by the letters of specification I, or I, J and K
 of specification II, which may stand ten times each: the first ones are #4 to #6, the second ones #7 to #9 and so on.
 The control knows them by the words, and of two for the same variable the later one holds [Fanuc, custom macro, argument
 specification; B-63684EN, 16.7.1].

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Macro variables: the memory of custom macro B of Fanuc's controls.
 
-Enters: numbers of variables and values. Leaves: values, in the unit of the program; NaN is a vacant variable, which
+Input: numbers of variables and values. Output: values, in the unit of the program; NaN is a vacant variable, which
 arithmetic takes as 0 and for which a word is left out. #0 is always vacant, #1 to #33 belong to a level of
 macro calls and are vacant where it begins, #100 to #199 and #500 to #999 are common to all levels [Fanuc, custom macro,
 variables]. What #500 to #999 hold when a program begins is not known: reading one before it is assigned is a fault.

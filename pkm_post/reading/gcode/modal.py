@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Modal state: the active code of each group, and the coordinates that absolute and incremental words add up to.
 
-Enters: blocks. Leaves: columns of codes, in tenths for G (434 is G43.4), and of coordinates in mm. A modal code stays
+Input: blocks. Output: columns of codes, in tenths for G (434 is G43.4), and of coordinates in mm. A modal code stays
 active until another code of its group. A coordinate word sets the coordinate in absolute mode and adds to it in
 incremental mode; without a word it is unchanged.
 """

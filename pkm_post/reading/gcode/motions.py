@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Motions: the motions of a program as columns in execution order, in program coordinates and mm, each with its frame.
 
-Enters: sections, as ``position_tracker`` finds them. Leaves: all of them together. A motion starts at the end point of
+Input: sections, as ``position_tracker`` finds them. Output: all of them together. A motion starts at the end point of
 the previous one, so start points are stored per section only.
 """
 

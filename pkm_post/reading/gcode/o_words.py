@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """O words: match the O words of a program before it is executed.
 
-Enters: the O words by row. Leaves: the jump targets of each O word, and the rows of the subprograms; or every unmatched
+Input: the O words by row. Output: the jump targets of each O word, and the rows of the subprograms; or every unmatched
 O word, with its row.
 """
 

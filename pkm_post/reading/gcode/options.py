@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Options: settings that a G-code program does not contain and the user must supply, and limits of its execution.
 
-Enters: choices of the user, lengths in mm, angles in degrees. Leaves: frozen values. Nothing is guessed: a required but
+Input: choices of the user, lengths in mm, angles in degrees. Output: frozen values. Nothing is guessed: a required but
 missing option is a fault of the program. The limits let every execution end in bounded time and memory.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Parameters: the memory of a running program, as defined by RS274NGC.
 
-Enters: numbers or names of parameters and the values assigned to them. Leaves: their values, in the unit the program
+Input: numbers or names of parameters and the values assigned to them. Output: their values, in the unit the program
 uses. ``#1`` to ``#30`` are local to the called subprogram, ``#31`` and up are global, and all of them start at 0;
 ``#<name>`` is local and ``#<_name>`` global, and both are undefined until assigned. Parameters that only the control
 knows are refused.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Parse: one line to a block, by the grammar of record.
 
-Enters: the bytes of one line. Leaves: a ``Block``, an empty one for an empty line, or a fault. This is the slow
+Input: the bytes of one line. Output: a ``Block``, an empty one for an empty line, or a fault. This is the slow
 reference parser: the scan calls it once per line pattern, and for lines without a plain pattern.
 """
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Polar coordinates: distance and angle as words X and Y of the same place.
 
-Enters: @ and ^ of LinuxCNC, or the words of the plane under G16 of Fanuc's controls, which are a radius and an angle in
-degrees about the origin of the program. Leaves: the coordinates of that place. A word that is not given keeps its
+Input: @ and ^ of LinuxCNC, or the words of the plane under G16 of Fanuc's controls, which are a radius and an angle in
+degrees about the origin of the program. Output: the coordinates of that place. A word that is not given keeps its
 value, so the place depends on where the tool is: such blocks are resolved one by one.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Position tracker: the tool from block to block.
 
-Enters: blocks with their modal codes. Leaves: their motions (``motions``). Motions between two blocks that change the
+Input: blocks with their modal codes. Output: their motions (``motions``). Motions between two blocks that change the
 frame or move in a special manner form a section and are processed as columns; only those blocks are looped over.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Read: convert the text of a G-code program to motions, in three independent steps.
 
-Enters: the content of a file, in its own units. Leaves: a ``Program`` in mm, rad and mm/s, or all faults. Where a step
+Input: the content of a file, in its own units. Output: a ``Program`` in mm, rad and mm/s, or all faults. Where a step
 fails, the next ones look at what is left of the program for faults that are not consequences of the first.
 """
 

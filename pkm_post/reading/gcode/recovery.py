@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Recovery: which faults stand behind another one, and which of them are its consequences.
 
-Enters: diagnostics found in a program from which faulty blocks were left out. Leaves: those that are faults of their
+Input: diagnostics found in a program from which faulty blocks were left out. Output: those that are faults of their
 own: all before the first faulty block, and behind it those that a block shows by itself, whatever came before. Equal
 faults become one with their number and the first of their lines.
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Resolve: convert plain blocks to a program.
 
-Enters: blocks in the units as written. Leaves: columns in mm, mm/s and unit vectors in {C}, every modal word resolved,
+Input: blocks in the units as written. Output: columns in mm, mm/s and unit vectors in {C}, every modal word resolved,
 cycles as moves, arcs with centre and axis; or the faults of the blocks. Moves before X, Y and Z are all known have no
 end point and are merged into the first one with a known end point. Text after M2 or M30 is ignored; without these or a
 percent sign a file may be truncated.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Scaling: G51 and G50 of Fanuc's controls, as words of other size.
 
-Enters: plain blocks with their codes. Leaves: blocks with scaled words, and G51.1 and G50.1 in place of G51 and G50
+Input: plain blocks with their codes. Output: blocks with scaled words, and G51.1 and G50.1 in place of G51 and G50
 where factors below 0 mirror: all later steps see a program without scaling. A place x becomes c + s (x - c), with the
 centre c and the factor s of its coordinate; distances of G91, I, J and K, and R of arcs are multiplied by s. Offsets
 and cutter compensation are not scaled [Fanuc, scaling; B-63944EN-2, 6.9].

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Scan: the text of a G-code program to columns of blocks, the first step of reading.
 
-Enters: the content of a file, any bytes, with any line endings. Leaves: ``Blocks``, or all lexical and syntax faults.
+Input: the content of a file, any bytes, with any line endings. Output: ``Blocks``, or all lexical and syntax faults.
 Two implementations give the same result. ``scan_by_block`` parses every line with lark: the reference. ``scan`` parses
 one block of each line pattern with lark and reads the numbers of all lines of that pattern at once; lines that lark
 rejects, and blocks with more than plain words, use the reference.

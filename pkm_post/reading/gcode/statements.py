@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Statements: special blocks, compiled once and executed each time the program reaches them.
 
-Enters: the parse trees of the blocks. Leaves: for an O word its keyword, label and values; for every other block its
+Input: the parse trees of the blocks. Output: for an O word its keyword, label and values; for every other block its
 words, codes and assignments as expressions. Words that switch a dialect mode on and off become the equivalent G codes.
 """
 

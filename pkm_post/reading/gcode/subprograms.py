@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Subprograms in other files: found by the number or name of a call, and added to the program that calls them.
 
-Enters: a call whose subprogram is missing, and folders. Leaves: the program with the blocks of the file behind its own,
+Input: a call whose subprogram is missing, and folders. Output: the program with the blocks of the file behind its own,
 lines counted on, so that all later steps see one program. On a control of Fanuc's kind M98 P1234 calls O1234, in a file
 O1234.nc or the like; on LinuxCNC ``o<name> call`` looks for name.ngc in the folder of the program and in those of
 ``SUBROUTINE_PATH`` [LinuxCNC, O codes, calling files].

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Syntax faults: turn lark errors into readable diagnostics.
 
-Enters: the bytes of a line and lark's report of unexpected input. Leaves: a lexical fault (G1xx: an invalid character
+Input: the bytes of a line and lark's report of unexpected input. Output: a lexical fault (G1xx: an invalid character
 or number) or a syntax fault (G2xx), with its location, what was found and what was expected, in words.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """System variables: the tool position and the modal codes that the blocks executed so far lead to.
 
-Enters: the executed blocks. Leaves: values of the variables that a program can read, in the program's units: #5420 to
+Input: the executed blocks. Output: values of the variables that a program can read, in the program's units: #5420 to
 #5422 of LinuxCNC, #5001 to #5043 and #4001 to #4130 of Fanuc controls. The blocks are resolved by the same functions as
 after execution. A value that is unknown, or follows a faulty block, cannot be read.
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tapping: the lead of threads, from the feed and the spindle speed of their cycles.
 
-Enters: events, with the hand of each thread in place of its lead, and the feeds of the motions. Leaves: events with
+Input: events, with the hand of each thread in place of its lead, and the feeds of the motions. Output: events with
 leads. The feed of a tapping cycle is lead times spindle speed, or with G95 the lead itself [LinuxCNC, G84; Fanuc,
 rigid tapping]. Units: mm, mm/s, 1/min.
 """

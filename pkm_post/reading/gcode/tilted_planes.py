@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tilted planes: the blocks of a program in a plane of G68.2, to which G53.1 turns the tool.
 
-Enters: plain blocks with their codes. Leaves: faults where it is not clear how the tool stands. On a control the tool
+Input: plain blocks with their codes. Output: faults where it is not clear how the tool stands. On a control the tool
 keeps its direction from G68.2 to G53.1, and from G69 until words for the rotary axes turn it back; X, Y and Z are not
 those of its tip meanwhile [Fanuc, tilted working plane command]. Here cuts are refused there, and where the turning
 brings the tip is not known: the next places with X, Y and Z are those of the tip again.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Axes: convert tool axis words to unit vectors.
 
-Enters: columns of I J K after G43.5, of its equivalents on other controls, or of rotary words in degrees under a
-declared kinematic. Leaves: unit tool axes in program coordinates, from the tip towards the spindle, and unit surface
+Input: columns of I J K after G43.5, of its equivalents on other controls, or of rotary words in degrees under a
+declared kinematic. Output: unit tool axes in program coordinates, from the tip towards the spindle, and unit surface
 normals. k = Rz(C) Ry(B) Rx(A) e_z, with zero for an angle that the kinematic lacks: (sin B cos C, sin B sin C, cos B)
 for a BC head, (sin A sin C, -sin A cos C, cos A) for an AC head.
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tools: the tool in the spindle, the spindle speed and the cutter compensation of each block.
 
-Enters: columns of T, M6, S, M3 to M5, D and G40 to G42. Leaves: columns of tool numbers, signed speeds in 1/min, and
+Input: columns of T, M6, S, M3 to M5, D and G40 to G42. Output: columns of tool numbers, signed speeds in 1/min, and
 offsets to the left of the path in mm.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Work offsets: the offsets of a program, and the codes that change them: G10, G43, G51.1, G52, G54 to G59.3, G68, G92.
 
-Enters: a block with the tool position, in program coordinates and mm. Leaves: the active frame. From the program
+Input: a block with the tool position, in program coordinates and mm. Output: the active frame. From the program
 outwards: mirror (G51.1), rotation (G68), local offset (G52, G92), angle and origin of the work offset (G54 to G59.3),
 and along Z the excess of the active length offset over the tool's own gauge length: program positions are tool tips.
 The order within a block is that of RS274NGC: length offset, work offset, then non-modal codes.

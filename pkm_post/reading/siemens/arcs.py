@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Arcs: centre and axis of G2, G3, CIP and CT.
 
-Enters: columns of points and words in coordinates of the program, mm. Leaves: centres at the height of the start
+Input: columns of points and words in coordinates of the program, mm. Output: centres at the height of the start
 points, and unit axes of right-handed rotation. G2 and G3 share their geometry and its limits with G-code; AR= is the
 opening angle, CIP goes through I1= J1= K1=, CT leaves the motion before it along its tangent [SiemensNC, circular
 interpolation].

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Blocks: one block with its values computed, and the notes that a program leaves in the report.
 
-Enters: compiled items and the variables of the running program. Leaves: codes, words, names and calls.
+Input: compiled items and the variables of the running program. Output: codes, words, names and calls.
 """
 
 from __future__ import annotations

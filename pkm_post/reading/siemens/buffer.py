@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Buffer: blocks of moves between two changes of the modal state, gathered to be computed as columns.
 
-Enters: ranges of plain lines, and computed blocks. Leaves: ``Columns`` of all of them in their order. A loop that
+Input: ranges of plain lines, and computed blocks. Output: ``Columns`` of all of them in their order. A loop that
 computes its points costs a list entry for each word, and no array.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Diagnostics of Siemens programs: collected by row, and located in their lines.
 
-Enters: codes and what was found, by row. Leaves: diagnostics in line order.
+Input: codes and what was found, by row. Output: diagnostics in line order.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Drilling: CYCLE81, 82, 83, 84, 85 and 89 at the place of the tool, and rows and circles of holes.
 
-Enters: calls with their arguments, in the unit in force. Leaves: moves and dwells [SiemensCycles, drilling cycles]. All
+Input: calls with their arguments, in the unit in force. Output: moves and dwells [SiemensCycles, drilling cycles]. All
 come from RFP + SDIS and go back to RTP; the depth is DP, or RFP - DPR where DPR is given. Motion code and feed are as
 before behind a cycle.
 """

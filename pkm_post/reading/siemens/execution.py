@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Execution: carries out computed blocks, one after the other.
 
-Enters: blocks in the order of execution. Leaves: what they do to the machine. Within a block come first the modal
+Input: blocks in the order of execution. Output: what they do to the machine. Within a block come first the modal
 codes, then tool, spindle and coolant, a dwell, the motion, and a stop at last.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Expressions: compiled once, computed at each execution of their block.
 
-Enters: tokens. Leaves: numbers and texts, in the units as written; angles are in degrees, true is 1 and false is 0. The
+Input: tokens. Output: numbers and texts, in the units as written; angles are in degrees, true is 1 and false is 0. The
 priorities are those of the manual, in which comparisons bind last [SiemensNC, operator priorities]: AND, OR and XOR
 beside a comparison without brackets are refused, since most readers take them the other way. An expression is a list
 of operations on a stack, so that its length does not matter to Python's recursion.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Flow: jumps, branches, loops, repeated sections and definitions, compiled.
 
-Enters: tokens behind a keyword. Leaves: ``Flow`` [SiemensNC, program jumps, program section repetitions, control
+Input: tokens behind a keyword. Output: ``Flow`` [SiemensNC, program jumps, program section repetitions, control
 structures, user data, subprograms].
 """
 

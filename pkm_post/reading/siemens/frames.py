@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Frames: the coordinate systems of TRANS, ROT, SCALE and MIRROR, and their chains.
 
-Enters: words of frame statements, mm and degrees. Leaves: points and directions of the program in {C}:
+Input: words of frame statements, mm and degrees. Output: points and directions of the program in {C}:
 {C} = matrix @ program + shift. A frame without the prefix A replaces the programmable frame with all its parts, one
 with it is chained behind it [SiemensNC, programmable coordinate transformations].
 """

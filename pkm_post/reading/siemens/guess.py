@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Guess: whether a program is in Siemens's language, by what only that has.
 
-Enters: name and content of a file. Leaves: the evidence, for the report. Two kinds of it are needed, or one in a file
+Input: name and content of a file. Output: the evidence, for the report. Two kinds of it are needed, or one in a file
 whose suffix is Siemens's; without any such a file is Siemens's where nothing in it belongs to G-code alone.
 """
 

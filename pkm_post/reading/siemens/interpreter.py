@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Interpreter: one execution of a Siemens program, from block to block.
 
-Enters: the structure of a file. Leaves: all blocks carried out by the machine in the order of execution. Every
+Input: the structure of a file. Output: all blocks carried out by the machine in the order of execution. Every
 execution ends: blocks, and levels of calls, are bounded.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Items: words, names, calls and assignments of a block, compiled.
 
-Enters: tokens. Leaves: items with expressions for their values.
+Input: tokens. Output: items with expressions for their values.
 """
 
 from __future__ import annotations

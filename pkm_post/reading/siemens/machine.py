@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Machine: what carries out blocks: the path, the tools, the options and the state, with the elementary actions.
 
-Enters: moves and dwells of blocks and cycles. Leaves: motions and events in ``path``, and notes for the report.
+Input: moves and dwells of blocks and cycles. Output: motions and events in ``path``, and notes for the report.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Modal codes: what G and M codes, words and names put in force.
 
-Enters: codes and words of a block. Leaves: the state of the machine, and events of tool, spindle and coolant.
+Input: codes and words of a block. Output: the state of the machine, and events of tool, spindle and coolant.
 """
 
 from __future__ import annotations

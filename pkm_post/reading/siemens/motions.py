@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Motions: blocks of moves with their start and end points, and the geometry of the arcs among them.
 
-Enters: columns of words and the state before them. Leaves: ``Motions`` in coordinates of the program, mm.
+Input: columns of words and the state before them. Output: ``Motions`` in coordinates of the program, mm.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Orientation: the words of the tool axis after TRAORI as unit vectors.
 
-Enters: columns of A3= B3= C3=, of A2= B2= C2= after ORIEULER or ORIRPY, or of rotary axes under a declared notation.
-Leaves: unit tool axes in {C}, from the tip towards the spindle. A component of the vector that is not written is zero
+Input: columns of A3= B3= C3=, of A2= B2= C2= after ORIEULER or ORIRPY, or of rotary axes under a declared notation.
+Output: unit tool axes in {C}, from the tip towards the spindle. A component of the vector that is not written is zero
 [SiemensNC, direction vector]; vectors and angles turn with the frame (ORIWKS), rotary axes are those of the machine.
 """
 

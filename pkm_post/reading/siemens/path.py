@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Path: the motions of a program in {C}, from blocks of moves under one modal state.
 
-Enters: columns of blocks and the state before them. Leaves: the state after them, and sections of motions in mm, mm/s
+Input: columns of blocks and the state before them. Output: the state after them, and sections of motions in mm, mm/s
 and unit vectors in {C}. Blocks before X, Y and Z are all known have no end point and are left out, as in G-code. Where
 X Y Z are not those of the tip, a rapid block loses the place of the tip, and a cut is a fault.
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Read: convert the text of a Siemens program to motions.
 
-Enters: the content of a file, in its own units. Leaves: a ``Program`` in mm, rad and mm/s, or the faults: of malformed
+Input: the content of a file, in its own units. Output: a ``Program`` in mm, rad and mm/s, or the faults: of malformed
 blocks, of jumps and calls, and of what blocks mean. Behind the first fault only those are reported that a block shows
 by itself.
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Scan: the text of a Siemens program to columns, one row for each line.
 
-Enters: the bytes of a file, lines ended by line feeds. Leaves: ``ScannedLines``: the numbers of plain lines in columns,
+Input: the bytes of a file, lines ended by line feeds. Output: ``ScannedLines``: the numbers of plain lines in columns,
 and which lines are statements. A plain line has G0 to G3 and words of a move with numbers; CAM systems write little
 else. One line of each pattern is looked at, and the numbers of all lines of that pattern are read at once.
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """State: what is in force between two blocks of a Siemens program.
 
-Enters and leaves: nothing; ``machine`` and its neighbours change it. Lengths in mm, angles in degrees, positions in
+Input and output: nothing; ``machine`` and its neighbours change it. Lengths in mm, angles in degrees, positions in
 coordinates of the program, directions in {C}.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Statements: one block of a Siemens program, compiled.
 
-Enters: the tokens of a line. Leaves: a ``Statement``: its labels, and either one jump, branch or loop, or the words,
+Input: the tokens of a line. Output: a ``Statement``: its labels, and either one jump, branch or loop, or the words,
 names, calls and assignments of a block in their order. Nothing is computed here.
 """
 

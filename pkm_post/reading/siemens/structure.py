@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Structure: the programs of a file, their labels, and which ends belong to which beginnings.
 
-Enters: scanned lines and compiled statements. Leaves: programs by name as ranges of rows, the rows of labels and block
+Input: scanned lines and compiled statements. Output: programs by name as ranges of rows, the rows of labels and block
 numbers, and partners of loops and branches. An archive has a line %_N_NAME_MPF or %_N_NAME_SPF before each program.
 """
 

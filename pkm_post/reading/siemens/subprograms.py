@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Subprograms in other files: NAME.SPF or NAME.MPF in the folders of subprograms, for a call of NAME or L123.
 
-Enters: folders, and the name of a call. Leaves: the text of the program with that of the file behind it, behind a line
+Input: folders, and the name of a call. Output: the text of the program with that of the file behind it, behind a line
 %_N_NAME_SPF as in an archive, so that all later steps see one file.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Swivel: CYCLE800, a plane turned in space with the tool along its normal.
 
-Enters: the arguments (_FR, _TC, _ST, _MODE, _X0, _Y0, _Z0, _A, _B, _C, _X1, _Y1, _Z1, _DIR, ...). Leaves: the frame of
+Input: the arguments (_FR, _TC, _ST, _MODE, _X0, _Y0, _Z0, _A, _B, _C, _X1, _Y1, _Z1, _DIR, ...). Output: the frame of
 the plane in the state: shifted to X0 Y0 Z0, turned axis by axis about new axes, shifted to X1 Y1 Z1
 [SiemensCycles, CYCLE800]. The bits of _MODE name the axes: two each for _A, _B and _C, from the lowest, 1 X, 2 Y, 3 Z;
 the two above them are 0 for turns axis by axis, and other kinds are refused. The digits of _ST say, from the lowest,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tapping: CYCLE84, with a spindle that is an axis.
 
-Enters: the arguments of a call, in the unit in force. Leaves: feed moves down and up, at the speeds SST and SST1,
+Input: the arguments of a call, in the unit in force. Output: feed moves down and up, at the speeds SST and SST1,
 between the events of a thread [SiemensCycles, CYCLE84]. The lead is PIT in the unit that _PTAB says, or that of the
 metric coarse thread MPIT [ISO 261]; its sign is the hand of the thread.
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tokens: one block of a Siemens program as names, letters, numbers, texts and signs.
 
-Enters: a line without its comment. Leaves: tokens with their columns. A name has a letter or an underscore as each of
+Input: a line without its comment. Output: tokens with their columns. A name has a letter or an underscore as each of
 its first two characters [SiemensNC, identifiers], so that G1X10 is two addresses and CR=10 is one.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tools: numbers for the tools of a program, which Siemens's language may call by name.
 
-Enters: T words, numbers or texts. Leaves: tool numbers. A name stands for the tool of that name among the options, a
+Input: T words, numbers or texts. Output: tool numbers. A name stands for the tool of that name among the options, a
 text of digits for that number, and any other name for the lowest number that the program does not use.
 """
 

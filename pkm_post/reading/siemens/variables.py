@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Variables: R parameters of the program, and variables that DEF and PROC define for one program or subprogram.
 
-Enters: names, indices and values. Leaves: values. Variables of DEF begin with 0 or an empty text; an R parameter
+Input: names, indices and values. Output: values. Variables of DEF begin with 0 or an empty text; an R parameter
 without a value is a fault, since a control keeps that of the program before [SiemensNC, arithmetic parameters].
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Compressor: runs of short lines of a trajectory become smooth curves of tip, tool axis and spin within tolerance.
 
-Enters: a trajectory and what the curves may be off. Leaves: ``Splines``. Where no curve stays within that, rows remain
+Input: a trajectory and what the curves may be off. Output: ``Splines``. Where no curve stays within that, rows remain
 lines, and the rest of their run is tried again without them.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Fit: smooth curves of runs as pieces, the place of each row on them, and how far each row is off.
 
-Enters: polylines of tip, tool axis and spin, and what curves may be off. Leaves: pieces that join with continuous
+Input: polylines of tip, tool axis and spin, and what curves may be off. Output: pieces that join with continuous
 second derivatives, and for each row the largest deviation by what is allowed. Where that is above 1, the curve is of no
 use. A curve is shorter than a polyline with noise, so the parameter is scaled to the length of the curve.
 """

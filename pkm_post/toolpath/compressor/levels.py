@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Levels: the coefficients of the curves of runs, from a coarse grid to as fine ones as the tolerance needs.
 
-Enters: polylines and what the curve may be off. Leaves: coefficients on the finest grid, and the nodes between which
+Input: polylines and what the curve may be off. Output: coefficients on the finest grid, and the nodes between which
 the curve is one polynomial. On the coarsest grid the curve averages the polyline. On each finer one it follows the
 polyline more closely where much is off by too much, and elsewhere takes away only what is too much at single places: a
 vertex off by noise bends the curve no more than it must. Where nothing is off, the curve of the coarser grid remains.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs: which rows of a trajectory are short lines of one smooth movement, and may become one curve.
 
-Enters: a trajectory and tolerances. Leaves: the first row and the number of rows of each run. A run never passes a rest
+Input: a trajectory and tolerances. Output: the first row and the number of rows of each run. A run never passes a rest
 (events, G9, G61, corners of G61.1), a change of operation, tool, feed or tolerance, or a corner that is meant.
 """
 

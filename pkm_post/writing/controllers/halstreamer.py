@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Halstreamer: strut lengths row by row at a fixed period, for LinuxCNC's ``halstreamer``.
 
-Enters: the cubics of a strut motion. Leaves: tables of six lengths in mm, one row for each period of 1 ms, and back.
+Input: the cubics of a strut motion. Output: tables of six lengths in mm, one row for each period of 1 ms, and back.
 Dwells repeat a row. Other events need another program: a table ends there, at rest, and the next one begins. A drive
 that interpolates linearly between rows deviates from the cubic by no more than ``chord_error``.
 """

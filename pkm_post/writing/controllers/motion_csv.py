@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Motion CSV: strut motion as a CSV table, and back.
 
-Enters: strut motion. Leaves: a line of names, then a line for each knot: time in ms, six lengths in mm, six speeds in
+Input: strut motion. Output: a line of names, then a line for each knot: time in ms, six lengths in mm, six speeds in
 mm/s, and its events. Numbers have as many digits as needed to read back the same motion.
 """
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Power PMAC: motion programs written and read back, and the set-up that they rely on.
 
-Enters: the ``[controller]`` table of a machine, strut motion in mm, mm/s and whole ms, and the text of programs.
-Leaves: text with the words and the frame of the Power PMAC, and strut motion. The memory for programs is configured in
+Input: the ``[controller]`` table of a machine, strut motion in mm, mm/s and whole ms, and the text of programs.
+Output: text with the words and the frame of the Power PMAC, and strut motion. The memory for programs is configured in
 the controller's own project: the machine file does not state it, and a motion is never cut into parts. The grammar is
 independent of the writer, so that the reader detects a fault of the writer.
 """

@@ -5,7 +5,7 @@ A solution names one project; the project lists its files; ``pp_proj.ini`` says 
 [PowerPMACProjects]. The tree below the project is that of /var/ftp/usrflash/Project. ``save`` in the IDE writes
 ``pp_save.cfg`` itself, from the controller, so it is none of the files here.
 
-Enters: texts by their place in the project. Leaves: names and texts of all files; the same ones give the same project.
+Input: texts by their place in the project. Output: names and texts of all files; the same ones give the same project.
 """
 
 from __future__ import annotations

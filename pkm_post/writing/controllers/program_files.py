@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Program files: read the bytes of a motion program, identically at every entry point, and check its hashes.
 
-Enters: bytes, or the file of a program or of its first part. Leaves: text with LF line ends, or diagnostics. A program
+Input: bytes, or the file of a program or of its first part. Output: text with LF line ends, or diagnostics. A program
 may have only printable ASCII, LF and CR LF: any other control character acts on the controller immediately, even within
 a comment, and some readers treat some of them as line ends. The heading of a program states the SHA-256 of all its
 other lines and of its source files, 32 of the 64 digits of each to keep lines short; the report has all digits.

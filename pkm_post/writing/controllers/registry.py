@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Registry: the controllers by the ``controller.kind`` of the machine file, and the tables by their option value.
 
-Enters: a machine. Leaves: the module of its controller, which takes motion in mm, mm/s and whole ms. A table is an
+Input: a machine. Output: the module of its controller, which takes motion in mm, mm/s and whole ms. A table is an
 optional output of the certified motion; it is not a program, but it is read back and compared with the motion.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Arcs that G-code text can express.
 
-Enters: a program and the decimals of its text. Leaves: centres that still fit both end points of their arcs when all
+Input: a program and the decimals of its text. Output: centres that still fit both end points of their arcs when all
 three are rounded, and the arcs that G2 and G3 cannot express. mm throughout.
 """
 

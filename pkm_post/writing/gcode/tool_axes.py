@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Dialects of G-code that a program can be written in, and the tool axis words of each.
 
-Enters: unit tool axes in {C}. Leaves: columns of words: vector components, or angles in degrees under a kinematic,
+Input: unit tool axes in {C}. Output: columns of words: vector components, or angles in degrees under a kinematic,
 continuous from row to row. The formulas invert those of ``axes.py``. Where linear interpolation of the angles leaves
 the great circle between two tool axes, the deviation is reported.
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Words and codes of the written blocks: their rounded values, and the rows on which they are written.
 
-Enters: a ``Program`` whose arcs can be expressed. Leaves: columns, lengths in the unit of the text, angles in degrees,
+Input: a ``Program`` whose arcs can be expressed. Output: columns, lengths in the unit of the text, angles in degrees,
 feeds per minute; and codes of path mode, plane, cutter compensation and motion, as indices into ``TEXTS``. A word is
 written where its rounded value differs from the last one written, and again after a tool change, so a program can be
 restarted there.

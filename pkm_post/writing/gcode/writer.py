@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Writer: convert a program to equivalent G-code, one block per row.
 
-Enters: a ``Program`` (mm, rad, mm/s). Leaves: text: mm or inch, degrees, feed per minute. The text is modal: a word is
+Input: a ``Program`` (mm, rad, mm/s). Output: text: mm or inch, degrees, feed per minute. The text is modal: a word is
 written where its rounded value changes, and again after a tool change. Reading the text restores the program within the
 decimals. What a dialect cannot express is refused, or replaced and reported; nothing is dropped silently.
 """

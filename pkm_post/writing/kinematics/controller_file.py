@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Controller file: axis definitions, limits, look-ahead, variables, and both kinematic programs, in one text.
 
-Enters: a machine and settings of the export. Leaves: ASCII text for the controller, loaded once by the controls
+Input: a machine and settings of the export. Output: ASCII text for the controller, loaded once by the controls
 engineer. Axis X Y Z in mm, A B C in degrees, feeds in mm/s. Sources beside those of ``dialects``: Turbo PMAC Software
 Reference, Isx13 (p. 177), Isx20 and Isx50 (p. 181); Turbo PMAC User Manual, "Setting Up Lookahead" (p. 310 to 315);
 Power PMAC User's Manual, "Lookahead" (p. 790 to 794).

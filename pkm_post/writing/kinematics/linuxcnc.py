@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """LinuxCNC: the configuration of a machine for LinuxCNC's hexapod kinematics, genhexkins.
 
-Enters: a machine in mm and rad. Leaves: texts of the ini file, of HAL files with the geometry and with simulated
+Input: a machine in mm and rad. Output: texts of the ini file, of HAL files with the geometry and with simulated
 drives, and of the tool table, in mm and degrees. Joint i - 1 is strut i; its position is the distance of the joint
 centres, corrected for the screw: counted length plus length offset. Tool lengths count from the plane of the platform
 joints: ``spindle_nose`` plus gauge length, with ``genhexkins.spindle-offset`` at zero.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Sign-off sheet: what the operator and the controls engineer check before kinematics in the controller are used.
 
-Enters: the machine, the target, the files with their SHA-256, and positions with the strut lengths that PKM Post
-computes for them. Leaves: Markdown with a box for each check.
+Input: the machine, the target, the files with their SHA-256, and positions with the strut lengths that PKM Post
+computes for them. Output: Markdown with a box for each check.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Targets: the files of an export by the controller they are for.
 
-Enters: a machine, the settings of the export, and positions with their strut lengths. Leaves: names and texts of files,
+Input: a machine, the settings of the export, and positions with their strut lengths. Output: names and texts of files,
 or diagnostics.
 """
 

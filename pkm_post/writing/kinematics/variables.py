@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Variables: the Q-variables of the kinematic programs, with the values that a machine gives them.
 
-Enters: a machine in mm and rad. Leaves: number, value and meaning of each variable that is set when the programs are
+Input: a machine in mm and rad. Output: number, value and meaning of each variable that is set when the programs are
 loaded, in mm and degrees; and the numbers of the variables that the programs compute with. The numbers are the same on
 both controllers. Q1 to Q19 belong to the Turbo PMAC [Turbo PMAC User Manual, Reserved Variables, p. 261]; Q0 is an
 argument of its ATAN2.

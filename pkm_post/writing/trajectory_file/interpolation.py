@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Interpolation: precomputed data for a player to evaluate a segment; and the first segment of each source line.
 
-Enters: a trajectory. Leaves: the columns of a segment's record that follow from the others, mm and rad, and the table
+Input: a trajectory. Output: the columns of a segment's record that follow from the others, mm and rad, and the table
 of blocks. With them, the pose at a share u of the segment, from 0 to 1, is
 
     tip  = start_tip + u shift + (1 + u growth) (cos(u sweep) radius + sin(u sweep) quarter) - radius

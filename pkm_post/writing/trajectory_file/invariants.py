@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Invariants of a trajectory, which both the writer and the reader of trajectory files check.
 
-Enters: a ``model.Trajectory`` with any values. Leaves: in words, each violation of a rule for single values, and then
+Input: a ``model.Trajectory`` with any values. Output: in words, each violation of a rule for single values, and then
 each contradiction between data that are stated twice, with the first record (counted from 0) where it occurs. A player
 of the file would make a wrong motion of either. The tool of a segment also follows from the instructions, a rest from
 the instructions executed there, and a smooth joint from the directions of its two segments.

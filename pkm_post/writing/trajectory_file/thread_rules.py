@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Thread rules: what a trajectory has to keep where the spindle is an axis.
 
-Enters: a ``model.Trajectory`` whose single values are valid. Leaves: in words, what contradicts its threads.
+Input: a ``model.Trajectory`` whose single values are valid. Output: in words, what contradicts its threads.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Memory: whether a motion program fits into the controller, and where to cut it if it does not.
 
-Enters: strut motion. Leaves: an estimate of the program's size in the controller's 48-bit words, the knots where it is
+Input: strut motion. Output: an estimate of the program's size in the controller's 48-bit words, the knots where it is
 cut into parts that fit, and a diagnostic if there is no rest for a cut. The controller stores one word per value;
 ``SIZE`` reports its free memory.
 """

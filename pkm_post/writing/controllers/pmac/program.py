@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Program: strut motion written as a Turbo PMAC motion program.
 
-Enters: strut motion in mm, mm/s and whole ms. Leaves: the moves with the words and the frame of the Turbo PMAC, in one
+Input: strut motion in mm, mm/s and whole ms. Output: the moves with the words and the frame of the Turbo PMAC, in one
 program or in as many parts as its memory requires.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Reader: Turbo PMAC programs read back as strut motion.
 
-Enters: the text of a program or of its parts, and the settings of the controller it was written for. Leaves: strut
+Input: the text of a program or of its parts, and the settings of the controller it was written for. Output: strut
 motion, or diagnostics. The grammar is independent of the writer, so that the reader detects a fault of the writer.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Settings: wiring and communication of one machine's Turbo PMAC, and the set-up file made of them.
 
-Enters: the ``[controller]`` table of the machine file, and the stroke of the struts in mm. Leaves: settings with the
+Input: the ``[controller]`` table of the machine file, and the stroke of the struts in mm. Output: settings with the
 memory of the controller; and ASCII text of on-line commands that make axis values true strut lengths. The controls
 engineer loads them once; they are separate from the programs, as a part program must not redefine the machine.
 Positions are in encoder counts from motor zero.

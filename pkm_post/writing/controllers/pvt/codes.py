@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Codes: a machine's program text for its events, such as ``T3 M6`` for a tool change.
 
-Enters: an event and the machine's table of codes. Leaves: the program line that executes it. The table must be
+Input: an event and the machine's table of codes. Output: the program line that executes it. The table must be
 invertible: no text may stand for two events, so that a program can be read back and compared with its job. Values are
 in the units of the event, except the dwell: s inside, ms in the program. A code may call a subprogram of the machine
 (M, T, S words) or set an output with a synchronous assignment, ``M60==1 DWELL0``.

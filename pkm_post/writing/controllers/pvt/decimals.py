@@ -2,7 +2,7 @@
 """Decimals: numbers as text in the form that the controller reads.
 
 The controller reads plain decimals: digits, and a point with digits on both sides of it. It has no exponent form.
-Enters: a number of any unit. Leaves: the shortest such decimal that reads back as the same number. Or many numbers and
+Input: a number of any unit. Output: the shortest such decimal that reads back as the same number. Or many numbers and
 their count of decimals: characters as columns of bytes, without a Python object per number. These are rounded to
 integers in units of the last decimal; each division by ten gives one column of digits. Numbers beyond the exact range
 of doubles are printed by Python.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Moves: find and read all lines of moves of a text, and the intervals between them, at once, for the reader.
 
-Enters: text, and the forms of the two kinds of line. Leaves: which lines have these forms, and their numbers. If all
+Input: text, and the forms of the two kinds of line. Output: which lines have these forms, and their numbers. If all
 numbers have a point, lines of moves differ only in signs and digits. All other characters are marks, whose places
 locate the numbers. Lines that are found are proven to have the form; a line that is not found may still have it.
 """

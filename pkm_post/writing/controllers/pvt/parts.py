@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Parts: split a motion into several programs that run in sequence, and join them again.
 
-Enters: strut motion and the knots where it is cut, or the motions read from the parts. Leaves: a motion for each part,
+Input: strut motion and the knots where it is cut, or the motions read from the parts. Output: a motion for each part,
 each starting at 0 ms, or one motion. Events at a cut belong to the part after it. Each part states its number in its
 heading, for the user and for the reader.
 """

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Reader: read a motion program back as strut motion, or report its faults.
 
-Enters: the text of a program or of its parts, the grammar of the controller and the settings it was written for.
-Leaves: knots with lengths in mm and speeds in mm/s at whole ms, and the events, as the controller executes them.
+Input: the text of a program or of its parts, the grammar of the controller and the settings it was written for.
+Output: knots with lengths in mm and speeds in mm/s at whole ms, and the events, as the controller executes them.
 The reader is strict: an unknown or misplaced line is a fault.
 """
 

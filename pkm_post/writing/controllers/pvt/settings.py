@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Settings: wiring and communication of one machine's controller, as far as common to the family.
 
-Enters: the ``[controller]`` table of a machine, whose entries the reader of machine files has checked one by one.
-Leaves: settings that the writer, the reader and the set-up file share as data. Checks here are those that the reader of
+Input: the ``[controller]`` table of a machine, whose entries the reader of machine files has checked one by one.
+Output: settings that the writer, the reader and the set-up file share as data. Checks here are those that the reader of
 machine files cannot make: the kind of controller, whether the codes are distinguishable, and a program number that no
 file states. With them come the axis definitions of set-up files, which make axis values true strut lengths:
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Syntax: the lines of a strut program and their valid order, for the reader.
 
-Enters: the settings of the controller. Leaves: the form of each kind of line, a sequence of pieces, so that faults are
+Input: the settings of the controller. Output: the form of each kind of line, a sequence of pieces, so that faults are
 located to the column; the effect of each code; and the flow, the order of the program. These rules are independent of
 the writer, so that the reader detects a fault of the writer. Each controller defines the opening of its programs.
 """

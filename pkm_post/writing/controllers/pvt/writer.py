@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Writer: write strut motion as the text of a motion program, from its first comment to its last move.
 
-Enters: knots with six lengths in mm and six speeds in mm/s at whole ms. Leaves: ASCII text. The controller approaches
+Input: knots with six lengths in mm and six speeds in mm/s at whole ms. Output: ASCII text. The controller approaches
 knot 0 slowly in LINEAR mode, then follows the cubic through the lengths and speeds of consecutive knots (PVT mode).
 Axis values are true strut lengths; times in the program are in ms.
 """
