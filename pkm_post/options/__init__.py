@@ -142,7 +142,7 @@ _WITH_NUMPY = ("CARTESIAN", "LINUXCNC", "NO_MESH", "PICTURE", "MeshFiles", "Opti
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> Any:
-        """Import what needs NumPy at its first use: the arguments do without."""
+        """Import names that need NumPy on first use; the arguments do not need it."""
         if name in _WITH_NUMPY:
             from pkm_post.options import choices
 

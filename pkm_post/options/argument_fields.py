@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Argument fields: the arguments of CAM jobs as fields of a form, and the text that the filled fields stand for.
+"""Argument fields: the arguments of CAM jobs as fields of a form, and the text of the filled fields.
 
 Input: a parser with the options of a job. Output: a row for each argument. A field that is left empty gives no
-argument, so that the choice of a lower layer stays.
+argument, so a lower layer decides.
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ from pkm_post.options.converters import (
 from pkm_post.options.layers import NOTHING
 
 FIXTURE_OF_THE_JOB = "job"
-"""Name of the work offset that stands for the fixture of the CAM job."""
+"""Name of the work offset that selects the fixture of the CAM job."""
 
 ARGUMENTS: dict[str, dict[str, Any]] = {
     "--machine": {

@@ -55,7 +55,7 @@ def above_zero(most: float) -> Converter[float]:
 
 
 LONGEST_TOOL, FARTHEST_OFFSET = 10_000, 1_000_000
-"""mm; a larger number is a typing error, and leaves no digits for the rest of the arithmetic."""
+"""mm; a larger number is a typing error, and would exhaust the digits of the arithmetic."""
 tool_length = above_zero(LONGEST_TOOL)
 """Gauge length or diameter of a tool, mm."""
 offset = between(-FARTHEST_OFFSET, FARTHEST_OFFSET)

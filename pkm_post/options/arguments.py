@@ -30,7 +30,7 @@ def add_machine(parser: argparse.ArgumentParser) -> None:
 
 
 def add_part_program(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments for what a part program does not state itself."""
+    """Add the arguments for facts that a part program does not state itself."""
     _add(
         parser,
         (
@@ -61,7 +61,7 @@ def _add(parser: argparse.ArgumentParser, flags: Iterable[str]) -> None:
 
 
 class TextParser(argparse.ArgumentParser):
-    """Raise a ``ValueError`` where a program of its own would print its usage and exit."""
+    """A parser that raises ``ValueError`` instead of printing its usage and exiting."""
 
     def error(self, message: str) -> NoReturn:
         """Handle a parse error of argparse."""
@@ -77,7 +77,7 @@ def text_parser(name: str = "options", description: str = "") -> TextParser:
 
 
 def parse_text(text: str, parser: TextParser | None = None) -> argparse.Namespace:
-    """Parse options from a text; the others have their defaults.
+    """Parse options from a text; all others keep their defaults.
 
     Raises:
         ValueError: the text is invalid.

@@ -26,12 +26,12 @@ PICTURE = "picture"
 """The name in ``Options.also`` of the report as a picture."""
 
 NO_MESH = "none"
-"""Instead of a file: the mesh is unknown, even if the job has one."""
+"""In place of a file: no mesh, even if the job has one."""
 
 
 @dataclass(frozen=True)
 class MeshFiles:
-    """Files with meshes of the set-up; they replace the meshes of the job, and so does ``NO_MESH``.
+    """Files with meshes of the set-up; they, or ``NO_MESH``, replace the meshes of the job.
 
     Attributes:
         part: mesh of the finished part; None to use that of the job.
@@ -52,16 +52,16 @@ class Options:
         work_offset: name of a work offset in the machine file, or the (4, 4) pose of {C} in {M}.
         tip_tolerance: largest deviation of the tool tip from the programmed path, mm.
         axis_tolerance: largest deviation of the tool axis from the programmed one, rad.
-        spin: how the platform turns about the tool axis.
-        contours: how 2D cutter compensation (G41, G42, CUTCOM) is applied.
+        spin: rule for the rotation of the platform about the tool axis.
+        contours: options of 2D cutter compensation (G41, G42, CUTCOM).
         actual_tools: by number, tools whose cutters differ from those the program was made for; a program with
             surface normals is compensated for them.
         copies: mirror images and rotations that follow the program.
-        optional_stops: what becomes of optional stops, one of ``toolpath.OPTIONAL_STOPS``; None as the machine file has
-            it.
+        optional_stops: treatment of optional stops, one of ``toolpath.OPTIONAL_STOPS``; None for that of the machine
+            file.
         surface_speed: cutting speed to keep; None leaves the spindle as programmed.
         side: number of the side to post, from 1, where a part is turned over; None for the whole program.
-        from_line: the line that the program begins at; None for its beginning.
+        from_line: line to start from; None for the whole program.
         also: side outputs, keys of ``system.result_files.SIDE_OUTPUTS``.
         report_unit: unit of lengths on the page of the report, mm or inch; all other files are in mm.
         report_date: text on the page of the report, such as a date; empty for none.

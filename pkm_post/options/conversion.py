@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Conversion: parsed arguments to options in mm and rad, and options back to the values of arguments.
 
-The command line imports this module in a Python without NumPy: functions import what needs NumPy.
+The command line imports this module in a Python without NumPy: functions import modules that need NumPy.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def _cutters(sizes: Iterable[tuple[int, tuple[float, float | None]]]) -> dict[in
 
 
 def part_program_from(namespace: argparse.Namespace, axis_words: str) -> ReadingOptions:
-    """Reading options of a part program, beside the tool axis notation of its G-code."""
+    """Reading options of a part program, without the tool axis notation of its G-code."""
     from pkm_post.reading import ReadingOptions
 
     return ReadingOptions(
@@ -126,12 +126,12 @@ def part_program_from(namespace: argparse.Namespace, axis_words: str) -> Reading
 
 
 def tools_from(namespace: argparse.Namespace) -> dict[int, Tool]:
-    """Cutters of a part program by tool number; the last of several for one tool."""
+    """Cutters of a part program by tool number; the last value for a tool counts."""
     return _cutters(namespace.tools)
 
 
 def tool_lengths_from(namespace: argparse.Namespace) -> dict[int, float]:
-    """Gauge lengths by tool number, mm; the last of several for one tool."""
+    """Gauge lengths by tool number, mm; the last value for a tool counts."""
     return dict(namespace.tool_length)
 
 

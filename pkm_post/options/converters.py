@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Converters: the text of one option to its value, in the units of the user; for ``type=`` of ``argparse``.
 
-Input: the text as typed. Output: the value; or ``argparse.ArgumentTypeError`` with what was expected. NumPy is not
+Input: the text as typed. Output: the value; or ``argparse.ArgumentTypeError`` with the expected form. NumPy is not
 needed.
 """
 
@@ -66,7 +66,7 @@ def spin(text: str) -> tuple[str, float, str]:
 
 
 def also(text: str) -> tuple[str, ...]:
-    """Distinct names; the word for nothing cancels a job's choice."""
+    """Distinct names; the word for none cancels a job's choice."""
     chosen = text.split(",") if text != NOTHING else []
     if not set(chosen) <= set(SIDE_OUTPUTS):
         raise argparse.ArgumentTypeError(f"expected names out of {', '.join(SIDE_OUTPUTS)}, got {text!r}")
@@ -74,7 +74,7 @@ def also(text: str) -> tuple[str, ...]:
 
 
 OPTIONAL_STOPS = ("written", "stop", "leave-out")
-"""What becomes of optional stops, as in ``toolpath.OPTIONAL_STOPS``."""
+"""Treatments of optional stops, as in ``toolpath.OPTIONAL_STOPS``."""
 
 CL_DIALECTS = ("nx", "creo", "catia", "solidworks", "makino", "apt")
 """Sources of CL data, as in ``cldata.DIALECTS``."""
@@ -96,7 +96,7 @@ _CYCLE_KIND = re.compile(r"(\w+)=(\w+)", re.ASCII)
 
 
 def cycle_kinds(text: str) -> tuple[tuple[str, str], ...]:
-    """Words in upper case with the strokes that they stand for; no word twice."""
+    """Distinct words in upper case, with their strokes."""
     pairs = [match.groups() if (match := _CYCLE_KIND.fullmatch(part)) else ("", "") for part in text.split(",")]
     chosen = {word.upper(): strokes for word, strokes in pairs}
     if not set(chosen.values()) <= set(CYCLE_STROKES) or len(chosen) < len(pairs):
@@ -126,7 +126,7 @@ MIRRORS = ("xy", "xz", "yz")
 
 
 def copies(text: str) -> tuple[str | float, ...]:
-    """Mirror planes and angles in degrees, in order; the word for nothing cancels a job's choice."""
+    """Mirror planes and angles in degrees, in order; the word for none cancels a job's choice."""
     words = text.split(",") if text != NOTHING else []
     return tuple(word if word in MIRRORS else _copy_angle(word) for word in words)
 
@@ -137,7 +137,7 @@ _copy_angle = validated(number, lambda angle: 0 < abs(angle) < 360, "xy, xz, yz 
 MOST_FEED = 1_000_000
 """mm/min."""
 GCODE_FLAVOURS = ("rs274", "fanuc", "siemens")
-"""Whose G-code it is, as in ``reading.FLAVOUR_NAMES``."""
+"""Flavours of G-code, as in ``reading.FLAVOUR_NAMES``."""
 _CODE = re.compile(r"[GM]\d{1,4}(\.\d)?", re.IGNORECASE)
 
 
@@ -184,12 +184,12 @@ def _three_lengths(text: str, expected: str) -> tuple[float, float, float]:
 
 
 def surface_speed_or_none(text: str) -> float | None:
-    """A surface speed in m/min; None for the word for nothing."""
+    """A surface speed in m/min; None for the word for none."""
     return None if text == NOTHING else above_zero(100_000)(text)
 
 
 def start_line(text: str) -> tuple[int, str] | None:
-    """A line, and the operation it belongs to, or nothing; None for the word for nothing."""
+    """A line and its operation, which may be empty; None for the word for none."""
     operation, _, line = text.rpartition(":")
     if text == NOTHING:
         return None
@@ -199,7 +199,7 @@ def start_line(text: str) -> tuple[int, str] | None:
 
 
 def side(text: str) -> int | None:
-    """The number of a side, from 1; None for the word for nothing."""
+    """The number of a side, from 1; None for the word for none."""
     if text == NOTHING:
         return None
     if not (text.isascii() and text.isdigit() and 0 < int(text) < 1 << 31):
@@ -208,7 +208,7 @@ def side(text: str) -> int | None:
 
 
 def listed(file: str) -> tuple[str, str]:
-    """A file with its own name: named in two layers of options, it counts once."""
+    """A file keyed by its own name, so that naming it in two layers of options counts once."""
     return file, file
 
 

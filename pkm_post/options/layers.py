@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers: the options of a job, overridden one by one by those of a command line, and the input that each applies to.
+"""Layers: the options of a job, overridden one by one by those of a command line, and the inputs they apply to.
 
 Input: parsed arguments, with the values that were given explicitly, and kinds of files. Output: one layer merged over
 another, every option whose value changes, and messages on options that do not apply. A default overrides nothing. An
@@ -190,7 +190,7 @@ _KINDS: dict[str, tuple[InputKind, ...]] = {
     "feed": _PART_PROGRAMS,
     "allow_open_end": _PART_PROGRAMS,
     "side": _PART_PROGRAMS,
-    "wear": _PART_PROGRAMS,  # L432 names the alternative when it is given for G-code
+    "wear": _PART_PROGRAMS,  # for G-code, L432 names the alternative
     "job": (InputKind.JOB,),
 }
 """Kinds of input of an option, by attribute; all others apply to every input."""
@@ -215,5 +215,5 @@ def inapplicable_options(names: Iterable[str], kinds: Collection[InputKind]) -> 
 
 
 def applicable_values(given: ArgumentValues, kind: InputKind) -> ArgumentValues:
-    """Options that apply to an input: with several files each option may be for some of them."""
+    """Options that apply to an input: with several files, an option may apply to some of them only."""
     return {name: value for name, value in given.items() if kind in _KINDS.get(name, InputKind)}

@@ -50,7 +50,7 @@ def job_stem(document: str, label: str, jobs: int) -> str:
     Args:
         document: stem of its document.
         label: of the job; used where the document has several jobs.
-        jobs: how many jobs the document has.
+        jobs: number of jobs of the document.
     """
     return re.sub(r"[^\w.-]+", "_", f"{document}-{label}" if jobs > 1 else document)
 
@@ -64,7 +64,7 @@ def missing_results(items: Sequence[PostItem], out: Path) -> list[Path]:
     """Required results that are absent after posting.
 
     Args:
-        items: what was posted.
+        items: the posted items.
         out: the folder for the results.
     """
     required = [out / f"{item.stem}{ending}" for item in items for ending in _REQUIRED]

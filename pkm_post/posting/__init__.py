@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Posting: the single route from a program to files for the controller and the user.
+"""Posting: the only route from a program to the files for the controller and the user.
 
-Only ``steps`` defines the order of the steps. Either all files are written and certified, or none.
+The order of the steps is in ``steps``. Either all files are written and certified, or none.
 """
 
 from typing import TYPE_CHECKING

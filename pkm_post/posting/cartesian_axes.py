@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cartesian axes: strut motion as positions and rates of X Y Z A B C in {M}, and what kinematics make of them.
+"""Cartesian axes: strut motion converted to positions and rates of X Y Z A B C in {M}, and back.
 
-A B C are the angles of Rz(C) Ry(B) Rx(A), as in ``writing.kinematics``. Axes stand in the columns of a
+A B C are the angles of Rz(C) Ry(B) Rx(A), as in ``writing.kinematics``. The axes are the columns of a
 ``StrutMotion``: mm and degrees, and per second.
 """
 
@@ -17,7 +17,7 @@ from pkm_post.model import Machine, StrutMotion, Trajectory
 
 
 def axis_motion(machine: Machine, struts: StrutMotion, tool_length: float, planned: Trajectory) -> StrutMotion:
-    """Axis positions and rates at the knots of a strut motion, in its columns.
+    """Axis positions and rates at the knots of a strut motion, as columns of a ``StrutMotion``.
 
     Raises:
         ValueError: the lengths have no continuous poses.
@@ -36,7 +36,7 @@ def axis_motion(machine: Machine, struts: StrutMotion, tool_length: float, plann
 
 
 def strut_motion(machine: Machine, axes: StrutMotion, tool_length: float) -> StrutMotion:
-    """What the inverse program makes of axis positions and rates: strut lengths and speeds at the same knots."""
+    """Strut lengths and speeds at the same knots, as the inverse program computes them from the axes."""
     tip, angles = axes.length[:, :3], np.radians(axes.length[:, 3:])
     jacobian, length = linearise(machine, tip, _rotation_of(angles), np.full(len(axes), tool_length))
     turning = _turning_axes(angles) @ np.radians(axes.speed[:, 3:, None])
@@ -48,8 +48,8 @@ def at_times(motion: StrutMotion, time_ms: Array) -> tuple[Array, Array]:
     """Positions and rates of the cubics between knots, (K, 6) each.
 
     Args:
-        motion: of struts or of axes.
-        time_ms: (K,) within its time, ms.
+        motion: of struts or axes.
+        time_ms: (K,) ms, within the motion.
     """
     if len(motion) == 1:
         return np.repeat(motion.length, len(time_ms), axis=0), np.zeros((len(time_ms), 6))
@@ -78,7 +78,7 @@ def _rotation_of(angles: Array) -> Array:
 
 
 def _turning_axes(angles: Array) -> Array:
-    """(N, 3, 3) whose columns are the axes that A, B and C turn about."""
+    """Rotation axes of A, B and C as columns, (N, 3, 3)."""
     cosine, sine = np.cos(angles.T), np.sin(angles.T)
     zero, one = np.zeros(len(angles)), np.ones(len(angles))
     rows = [[cosine[1] * cosine[2], -sine[2], zero], [cosine[1] * sine[2], cosine[2], zero], [-sine[1], zero, one]]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cartesian check: a program of tip and axis is read, taken through the kinematics, and certified by the struts.
+"""Cartesian check: read a program of tip and axis, run it through the kinematics, and certify the strut motion.
 
 Input: texts of a program, its trajectory file, a machine. Output: axis positions and rates, a certificate and the
-report. What the program may find at the machine is read from its guard, which has to be the one that these numbers
-give; with the gauge length of the trajectory, the certificate holds at every corner of it.
+report. The guard of the program states the values allowed at the machine and must be the one that these values give;
+with the gauge length of the trajectory, the certificate holds at every corner of this allowance.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ LETTERS = ("X", "Y", "Z", "A", "B", "C")
 def certified_axes(
     texts: Texts, name: str, trajectory: Path, machine: Machine, digests: list[str]
 ) -> tuple[Certificate, dict[str, Any]]:
-    """The certificate of an existing program, which holds, and the report.
+    """Certify an existing program; return its certificate, which holds, and the report.
 
     Args:
         texts: file name and text of each part.
@@ -41,7 +41,7 @@ def certified_axes(
         digests: SHA-256 of the parts, for the report.
 
     Raises:
-        Refused: a file cannot be read, the guard is not that of such a program, or the certificate does not hold.
+        Refused: a file cannot be read, the guard does not match the program, or the certificate does not hold.
     """
     planned = planned_of_one_tool(trajectory, name)
     tool_length = float(planned.tool_length()[0])
@@ -57,7 +57,7 @@ def certified_axes(
 def read_axes(
     texts: Texts, controller: Any, settings: PmacSettings | PowerPmacSettings, setting: Setting
 ) -> tuple[StrutMotion | None, tuple[Diagnostic, ...]]:
-    """Axis positions and rates of a program, in the columns of a motion; or None with diagnostics."""
+    """Axis positions and rates of a program, as columns of a motion; or None with diagnostics."""
     guard, opening = guard_lines(settings, setting), controller.buffer_opening(settings)
     try:
         bare = [(name, unguarded(text, opening, guard)) for name, text in texts]
@@ -70,10 +70,10 @@ def read_axes(
 def certify_axes(
     axes: StrutMotion, name: str, trajectory: Path, machine: Machine, setting: Setting, digests: list[str]
 ) -> tuple[Certificate, dict[str, Any]]:
-    """The certificate of what the struts do, at each corner of the allowance, and the report.
+    """Certify the strut motion at each corner of the allowance; return certificate and report.
 
     Raises:
-        Refused: it does not hold; C115 and C116 lead the faults of a corner and of segments.
+        Refused: the certificate does not hold; C115 and C116 precede the faults of a corner and of segments.
     """
     segment = setting.segment_time
     fault = Diagnostic("C116", Place(name), f"segments of {segment} ms") if segment else None
@@ -84,10 +84,10 @@ def certify_axes(
 
 
 def _check_points(axes: StrutMotion, name: str, machine: Machine) -> None:
-    """Compare the points of a program with what the controller accepts.
+    """Check that the controller accepts the spacing of the points.
 
     Raises:
-        Refused: they are too close to each other.
+        Refused: points are too close together.
     """
     shortest, most = np.diff(axes.time_ms).min(), blocks_in_a_second(axes.time_ms).max()
     faults = []
@@ -110,11 +110,11 @@ def _certify(
     digests: list[str],
     fault: Diagnostic | None,
 ) -> tuple[Certificate, dict[str, Any]]:
-    """What one machine does with the axes; ``fault`` leads the faults that it has."""
+    """Certify the axes on one machine; ``fault`` precedes its faults."""
     if setting.segment_time:
         played = played_in_segments(machine, axes, setting.tool_length, setting.segment_time)
         _check_points(axes, name, machine)
-        machine = replace(machine, block_rate=math.inf, shortest_interval=0)  # segments are no points of a program
+        machine = replace(machine, block_rate=math.inf, shortest_interval=0)  # segments are not points of a program
     else:
         played = strut_motion(machine, axes, setting.tool_length)
     try:
@@ -124,7 +124,7 @@ def _certify(
 
 
 def axis_controller(machine: Machine, segment_time: int) -> tuple[Any, PmacSettings | PowerPmacSettings]:
-    """The controller of a machine, and its settings with the axes of the form."""
+    """The controller of a machine, and its settings with X Y Z A B C as axes."""
     found, faults = controller_settings(machine)
     if found is None:
         raise Refused(faults)
@@ -139,7 +139,7 @@ def axis_controller(machine: Machine, segment_time: int) -> tuple[Any, PmacSetti
 
 
 def planned_of_one_tool(file: Path, name: str) -> Trajectory:
-    """The trajectory of a program, whose tools have one length."""
+    """Read the trajectory of a program; all its tools must have the same length."""
     planned, faults = trajectory_file.read(file)
     if planned is None:
         raise Refused(faults)

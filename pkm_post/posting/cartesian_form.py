@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Cartesian form: a certified program of strut lengths as a program of tip and axis, for kinematics in the controller.
 
-In PVT mode the controller runs its inverse program once for each point, with the rates of the axes, and gives each
-motor a cubic between two points [Turbo PMAC User Manual, p. 265 and 266; Power PMAC User's Manual, p. 518 and 519]: the
-same cubics as in a program of strut lengths. So the new program has the same points and times, X Y Z in mm and A B C in
-degrees in {M}. A Power PMAC with segmentation plays other curves, through points at whole segments
-(``cartesian_segments``). The program is read back from its text, taken through the kinematics, and certified as what
-the struts then do. Doubles here and in a Power PMAC, 36 bits in a Turbo PMAC: there the lengths differ by less than
-2e-7 mm (docs/controller-kinematics.md). A guard ends it where the kinematics are off, or with another tool, work frame
-or segment time than it is certified for.
+In PVT mode the controller runs its inverse program once per point, with the rates of the axes, and moves each motor on
+a cubic between two points [Turbo PMAC User Manual, p. 265 and 266; Power PMAC User's Manual, p. 518 and 519], as in a
+program of strut lengths. So the new program has the same points and times, X Y Z in mm and A B C in degrees in {M}. A
+Power PMAC with segmentation plays other curves, through points at whole segments (``cartesian_segments``). The program
+is read back from its text, run through the kinematics, and certified by the resulting strut motion. A Power PMAC uses
+doubles, as we do, a Turbo PMAC 36 bits: its lengths differ by less than 2e-7 mm (docs/controller-kinematics.md). A
+guard ends the program where the kinematics are off, or the tool, work frame or segment time is not the certified one.
 """
 
 from __future__ import annotations
@@ -38,12 +37,12 @@ from pkm_post.writing import (
 
 
 class CartesianProgram(NamedTuple):
-    """A program of tip and axis that does what was posted.
+    """A program of tip and axis with the posted motion.
 
     Attributes:
         files: its parts.
-        certificate: it holds.
-        off: largest difference of a strut from the program of strut lengths at its points, mm.
+        certificate: its certificate, which holds.
+        off: largest strut difference from the program of strut lengths at its points, mm.
     """
 
     files: tuple[Path, ...]
@@ -59,19 +58,19 @@ def cartesian_program(
     allowance: Allowance | None = None,
     segment_time: int = 0,
 ) -> CartesianProgram:
-    """Write a program in X Y Z A B C that moves the struts as a posted one does.
+    """Write a program in X Y Z A B C with the strut motion of a posted one.
 
     Args:
         program: the motion program, or the first of its parts.
         trajectory: the trajectory file it was made from.
         machine: the machine it was made for.
-        out: the file to write; further parts stand beside it.
-        allowance: what may be changed at the machine; nothing by default.
+        out: the file to write; further parts go beside it.
+        allowance: permitted changes at the machine; none by default.
         segment_time: of a Power PMAC (``Coord[].SegMoveTime``), whole ms; 0 without segmentation.
 
     Raises:
-        Refused: a file cannot be read, the certificate of either program does not hold, the controller or the tools
-            have no such program, or the folder cannot be written.
+        Refused: a file cannot be read, the certificate of either program does not hold, controller or tools do
+            not allow the form, or the folder is not writable.
     """
     controller, settings = axis_controller(machine, segment_time)
     verify(program, trajectory, machine)
@@ -86,11 +85,11 @@ def cartesian_program(
 
 
 def write_cartesian(file: Path, struts: StrutMotion, trajectory: Path, machine: Machine) -> float:
-    """Write the form of a motion that was certified, beside its other results.
+    """Write a certified motion in this form, beside its other results.
 
     Args:
-        file: the file to write; further parts stand beside it.
-        struts: the motion, as it was read back.
+        file: the file to write; further parts go beside it.
+        struts: the motion as read back.
         trajectory: the trajectory file it was made from.
         machine: the machine it was made for.
 
@@ -107,15 +106,15 @@ def write_cartesian(file: Path, struts: StrutMotion, trajectory: Path, machine: 
 
 @dataclass(frozen=True)
 class _Source:
-    """A motion that was posted, and what it was posted for.
+    """A posted motion with its trajectory, machine and controller.
 
     Attributes:
         struts: the motion.
         file: its trajectory file.
-        planned: what is in there; all tools have one length.
+        planned: content of that file; all tools have one length.
         machine: the machine.
         controller: the module that writes and reads its programs.
-        settings: of its controller, with the axes of the form.
+        settings: of its controller, with X Y Z A B C as axes.
     """
 
     struts: StrutMotion
@@ -131,7 +130,7 @@ class _Source:
         return float(self.planned.tool_length()[0])
 
     def written(self, private: Path, out: Path, setting: Setting) -> CartesianProgram:
-        """Write the parts, read them back, and certify what they do at each corner of the allowance."""
+        """Write the parts, read them back, and certify their motion at each corner of the allowance."""
         guard, opening = guard_lines(self.settings, setting), self.controller.buffer_opening(self.settings)
         struts = on_segments(self.struts, setting.segment_time)
         axes = axis_motion(self.machine, struts, setting.tool_length, self.planned)
@@ -157,7 +156,7 @@ class _Source:
 
 
 def _needs(settings: PmacSettings | PowerPmacSettings, setting: Setting, allowed: str) -> list[str]:
-    """What the program runs with, and the numbers that it is certified for."""
+    """Heading lines: what the program requires, and the values it is certified for."""
     steps = f"forward program of at most {kinematics.MOST_STEPS} steps to {kinematics.TOLERANCE[settings.KIND]:g} mm"
     if isinstance(settings, PmacSettings):
         switch = f"I{50 + settings.coordinate_system}50"

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cartesian guard: a program of tip and axis ends before its first move on a controller that is set up otherwise.
+"""Cartesian guard: ends a program of tip and axis before its first move if the controller is set up differently.
 
-The guard looks at the switch of the kinematics (Isx50; of a Power PMAC the axis definitions, and the segment time), the
-gauge length in Q50 and the work frame in Q51 to Q54. A Turbo PMAC then says what is otherwise; a Power PMAC, whose form
-of ``send`` is in no source that was at hand, writes a number to Q66. What may be changed at the machine without posting
-again is an allowance: up to that far from what the program was made for it runs, and its certificate holds at every
-corner of the allowance. ``RETURN`` outside of a subroutine ends a program, and the next ``R`` begins at its beginning
-[Turbo PMAC Software Reference, RETURN; Power PMAC User's Manual, p. 692].
+The guard checks the switch of the kinematics (Isx50; on a Power PMAC the axis definitions and the segment time), the
+gauge length in Q50 and the work frame in Q51 to Q54. A Turbo PMAC then names the mismatch; a Power PMAC, whose syntax
+of ``send`` no available source documents, writes its number to Q66. An allowance permits changes at the machine without
+posting again: the program runs within it, and its certificate holds at every corner of it. ``RETURN`` outside of a
+subroutine ends a program, and the next ``R`` starts it from the beginning [Turbo PMAC Software Reference, RETURN; Power
+PMAC User's Manual, p. 692].
 
-A work frame that is shifted by d is the same as base joints that are shifted by -d, and a tool that is longer the same
-as a longer spindle nose: so the corners are machines.
+Shifting the work frame by d is equivalent to shifting the base joints by -d, a longer tool to a longer spindle nose: so
+each corner is a machine.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from pkm_post.model import Machine
 from pkm_post.writing import PmacSettings, PowerPmacSettings
 
 _SAME_MM, _SAME_DEG = 0.0005, 0.00001
-"""Half a micrometre, and 10 um at a distance of 57 m: what the variables may be off where nothing is allowed."""
+"""Tolerance of the variables without an allowance: half a micrometre, and 10 um at a distance of 57 m."""
 
 
 ALLOWED_DECIMALS = 3
-"""Of an allowance in mm: a guard has no more digits."""
+"""Decimals of an allowance in mm; a guard has no more."""
 
 
 @dataclass(frozen=True)
 class Allowance:
-    """How far values at the machine may be from those that a program was made for, to either side.
+    """Permitted deviations, to either side, of values at the machine from those of the program.
 
     Attributes:
         tool_length: of the gauge length, mm.
@@ -52,13 +52,13 @@ class Allowance:
                 raise ValueError(f"expected at most {ALLOWED_DECIMALS} decimals, got {value:g} mm")
 
     def words(self, tool_length: float) -> str:
-        """What the variables may be, for the heading of a program."""
+        """The allowed values of the variables, for the heading of a program."""
         origin = f"Q51 to Q53 up to {self.origin:g} from zero" if self.origin else "Q51 to Q53 zero"
         length = f"Q50={tool_length:g}" + (f" up to {self.tool_length:g} more or less" if self.tool_length else "")
         return f"{length}, {origin}, Q54 zero" if self.origin else f"{length} and Q51 to Q54 zero"
 
     def corners(self, machine: Machine) -> Iterator[tuple[str, Machine]]:
-        """Each corner of the allowance in words, and the machine that moves as the controller then does."""
+        """Yield each corner of the allowance as text, with the equivalent machine."""
         shifts = (-self.origin, self.origin) if self.origin else (0.0,)
         lengths = (-self.tool_length, self.tool_length) if self.tool_length else (0.0,)
         for *shift, longer in product(shifts, shifts, shifts, lengths):
@@ -70,11 +70,11 @@ class Allowance:
 
 @dataclass(frozen=True)
 class Setting:
-    """What a program of tip and axis finds at the controller where its certificate counts.
+    """State of the controller for which the certificate of a program of tip and axis holds.
 
     Attributes:
         tool_length: gauge length, mm.
-        allowance: how far it and the work frame may be changed.
+        allowance: of the gauge length and the work frame.
         segment_time: of a Power PMAC, ms; 0 without segmentation.
     """
 
@@ -95,7 +95,7 @@ class Setting:
 
 
 def guard_lines(settings: PmacSettings | PowerPmacSettings, setting: Setting) -> tuple[str, ...]:
-    """The lines of the guard, in front of everything else in the program."""
+    """The lines of the guard, which precede the rest of the program."""
     if isinstance(settings, PowerPmacSettings):
         return tuple(_power_lines(settings.coordinate_system, setting))
     return tuple(_turbo_lines(settings.coordinate_system, setting))
@@ -115,12 +115,12 @@ def _turbo_lines(system: int, setting: Setting) -> Iterator[str]:
 
 
 POWER_REASONS = ("the axes are motors, so the kinematics are off", "SegMoveTime", "Q50", "Q51 to Q53", "Q54")
-"""What is otherwise, by the value of Q66 from 1 on."""
+"""The mismatch by the value of Q66, from 1."""
 _LINEAR, _REASON = "Q65", "Q66"
 
 
 def _power_lines(system: int, setting: Setting) -> Iterator[str]:
-    """Its scale factors are those of linear axis definitions, which a motor of the kinematics does not have.
+    """The guard of a Power PMAC; motors with kinematics have no scale factors of linear axis definitions.
 
     [Power PMAC User's Manual, p. 505: CoordSf[0] to [2] are A B C, [6] to [8] X Y Z; p. 692: return ends a program]
     """
@@ -147,14 +147,14 @@ _SEGMENT = re.compile(r"SegMoveTime!=(\d+)")
 
 
 def stated_allowance(text: str) -> Allowance:
-    """The allowance by the numbers of a guard; none where the text has no guard."""
+    """The allowance that a guard states; zero without a guard."""
     tool, origin = _TOOL.search(text), _ORIGIN.search(text)
     half = (float(tool[2]) - float(tool[1])) / 2 if tool else 0.0
     return Allowance(_allowed(half), _allowed(float(origin[1]) if origin else 0.0))
 
 
 def stated_segment_time(text: str) -> int:
-    """The segment time by the numbers of a guard, ms."""
+    """The segment time that a guard states, ms."""
     found = _SEGMENT.search(text)
     return int(found[1]) if found else 0
 
@@ -164,10 +164,10 @@ def _allowed(beside: float) -> float:
 
 
 def guarded(text: str, opening: str, lines: tuple[str, ...]) -> str:
-    """A program with its guard behind the opening of its buffer.
+    """Insert the guard after the opening of the program buffer.
 
     Raises:
-        ValueError: the program does not have the opening once.
+        ValueError: the program does not have exactly one opening.
     """
     if text.count(opening) != 1:
         raise ValueError(f"text: expected {opening!r} once, got it {text.count(opening)} times")
@@ -175,10 +175,10 @@ def guarded(text: str, opening: str, lines: tuple[str, ...]) -> str:
 
 
 def unguarded(text: str, opening: str, lines: tuple[str, ...]) -> str:
-    """A program that was read, without its guard.
+    """Remove the guard from a program.
 
     Raises:
-        ValueError: the guard is not there, or not in front of everything else.
+        ValueError: the guard is missing, or not in front of everything else.
     """
     expected = opening + "".join(f"{line}\n" for line in lines)
     if text.count(expected) != 1:

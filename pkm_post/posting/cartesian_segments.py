@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cartesian segments: what a Power PMAC with segmentation makes of PVT moves of tip and axis.
+"""Cartesian segments: motion of a Power PMAC with segmentation for PVT moves of tip and axis.
 
 In segmentation mode the controller computes the axes at the end of each segment, a whole number of ms apart, runs the
-inverse program there, and draws a cubic spline through the counts [Power PMAC User's Manual, p. 518 and 781]. The
-spline is a uniform cubic B-spline, as the manuals of the family have it for its splines [PMAC User Manual, p. 182 and
-183]: with control points P it passes (P0 + 4 P1 + P2) / 6 at the speed (P2 - P0) / (2 T), inside the points on curves,
-and takes one segment more at either end of a rest. A spline through the counts would stay closer to them. Between two
-ends of segments it is one cubic, so it is a ``StrutMotion`` itself.
+inverse program there, and fits a cubic spline to the counts [Power PMAC User's Manual, p. 518 and 781]. The spline is
+a uniform cubic B-spline, as in the manuals of the family [PMAC User Manual, p. 182 and 183]: with control points P it
+passes (P0 + 4 P1 + P2) / 6 at the speed (P2 - P0) / (2 T), on the inside of curves, and takes one more segment at
+either end of a rest. A spline through the counts would stay closer to them. Between two segment ends it is one cubic,
+so it is a ``StrutMotion`` itself.
 
-So that no move ends within a segment, the points of a program are at whole segments, counted from the last rest.
+The points of a program are at whole segments, counted from the last rest, so that no move ends within a segment.
 
-Input: struts and axes at whole ms. Output: the same motion with its knots at whole segments; struts as they then move.
+Input: struts and axes at whole ms. Output: the same motion with knots at whole segments; the resulting strut motion.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from pkm_post.model import Machine, StrutMotion, read_only
 from pkm_post.posting.cartesian_axes import at_times, strut_motion
 
 _LONGEST_INTERVAL_MS = 2000
-"""Half of what a move may take, which is enough for any segment time."""
+"""Half the longest move, which is enough for any segment time."""
 
 _SAME = 1e-6
-"""Segments."""
+"""In segments."""
 
 
 def on_segments(struts: StrutMotion, segment_time: int) -> StrutMotion:
-    """A motion with its knots at whole segments; each way between rests takes the next longer whole number of them.
+    """Move the knots of a motion to whole segments; the time between rests is rounded up to whole segments.
 
     Args:
         struts: knots at whole ms, at rest at its events.
@@ -62,11 +62,11 @@ def on_segments(struts: StrutMotion, segment_time: int) -> StrutMotion:
 
 
 def played_in_segments(machine: Machine, axes: StrutMotion, tool_length: float, segment_time: int) -> StrutMotion:
-    """How the struts move: one knot at the end of each segment.
+    """The resulting strut motion, with a knot at the end of each segment.
 
     Args:
         machine: its geometry.
-        axes: positions and rates at whole segments from each rest, as ``on_segments`` has them.
+        axes: positions and rates at whole segments from each rest, as from ``on_segments``.
         tool_length: gauge length, mm.
         segment_time: ms.
     """
@@ -87,7 +87,7 @@ def played_in_segments(machine: Machine, axes: StrutMotion, tool_length: float, 
 
 
 def _spline(points: Array, seconds: float) -> tuple[Array, Array]:
-    """Places and speeds at the ends of segments of a B-spline between two rests, (N + 2, 6) for (N, 6) points."""
+    """Positions and speeds of a B-spline between two rests at segment ends, (N + 2, 6) for (N, 6) points."""
     control = np.concatenate([points[:1], points[:1], points, points[-1:], points[-1:]])
     length = (control[:-2] + 4 * control[1:-1] + control[2:]) / 6
     return length, (control[2:] - control[:-2]) / (2 * seconds)
@@ -100,20 +100,20 @@ def _inverse(machine: Machine, axes: StrutMotion, time_ms: Array, tool_length: f
 
 
 def _neighbouring_points(places: Array) -> Array:
-    """The whole numbers before and behind each place: a cubic between knots is the same between any of its points.
+    """The whole numbers before and after each place: a cubic between knots is the same between any of its points.
 
-    Where a knot is left out, the motion changes its acceleration within one segment.
+    At an omitted knot, the acceleration changes within one segment.
     """
     around = np.concatenate([np.floor(places + _SAME), np.ceil(places - _SAME)]).astype(np.int64)
     return np.unique(around[around > 0])
 
 
 def _divided(time_ms: Array) -> Array:
-    """The times behind the first, with one more in the middle of each interval that segments could make too long."""
+    """The times after the first, with the middle of each interval that segments could make too long."""
     middle = (time_ms[:-1] + time_ms[1:]) / 2
     return np.unique(np.concatenate([time_ms[1:], middle[np.diff(time_ms) > _LONGEST_INTERVAL_MS]]))
 
 
 def _rests(motion: StrutMotion) -> Array:
-    """The knots at which a motion rests: its ends, and those of its events."""
+    """The knots at which a motion rests: its ends and its events."""
     return np.unique(np.array([0, len(motion) - 1, *(event.row for event in motion.events)]))

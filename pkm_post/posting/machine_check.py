@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine check: contents of a machine file as figures to compare with the real machine.
+"""Machine check: figures of a machine file to compare with the real machine.
 
 Input: a machine. Output: rows of text, label and figure, and warnings when the home pose breaks limits. Home figures
 use the tool of the rest pose; lengths in mm, angles in degrees.
@@ -29,7 +29,7 @@ from pkm_post.writing import controller_settings
 
 Rows = list[tuple[str, str]]
 _SINGULAR = 1e-9
-"""Smaller singular values are rounding."""
+"""Smaller singular values are rounding errors."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ class Home:
     Attributes:
         lengths: (6,) counted strut lengths.
         singular_values: (6,) of the scaled Jacobian, from the largest to the smallest.
-        turning_rate: about the tip, within the strut speed for any rotation axis, rad/s.
-        stiffness: (3,) of the tip in x, y and z of {M}, N/mm; None when it is not stated, or the pose singular.
+        turning_rate: about the tip, about any axis, within the strut speed, rad/s.
+        stiffness: (3,) of the tip in x, y and z of {M}, N/mm; None if not stated, or if the pose is singular.
         findings: of all reach checks.
         count_at_tip: tip displacement by one count of each strut, mm; None where the pose is singular.
     """
@@ -226,6 +226,6 @@ def _at_home(machine: Machine, home: Home) -> Iterator[tuple[str, str]]:
 
 
 def _span(values: Array, decimals: int = 4) -> str:
-    """Format the least and the greatest value, or the one they share."""
+    """Format the least and the greatest value, or the common value."""
     texts = list(dict.fromkeys(f"{value + 0.0:.{decimals}f}" for value in (values.min(), values.max())))
     return " to ".join(texts)

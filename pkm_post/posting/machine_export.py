@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine export: kinematics of a machine for its controller, with a sign-off sheet, as files that appear together.
+"""Machine export: kinematics of a machine for its controller, with a sign-off sheet, as files written together.
 
 Input: a machine, the controller to export to, and a folder. The strut lengths on the sheet are those of
 ``machine.kinematics``, not of the exported programs. Lengths in mm, angles in degrees.
@@ -29,13 +29,13 @@ def export_machine(
 
     Args:
         machine: the machine.
-        file: name or path of its file; its stem begins the names of the files.
+        file: name or path of its file; the file names start with its stem.
         target: one of ``writing.kinematics.TARGETS``.
-        folder: is created where it is missing.
+        folder: is created if missing.
         export: settings.
 
     Returns:
-        The files, none when the machine was refused or the folder cannot be written, and the diagnostics.
+        The files, none if the machine is refused or the folder is not writable; and the diagnostics.
     """
     diagnostics = machine_faults(machine, file)
     if errors(diagnostics):
@@ -65,7 +65,7 @@ def _home_lengths(machine: Machine, tool_length: float) -> list[float]:
 
 
 def check_poses(machine: Machine, tool_length: float) -> kinematics.CheckPoses:
-    """The home position, upright, and positions a step from it in each axis, as far as the machine reaches them."""
+    """The home position, upright, and reachable positions a step from it in each axis."""
     steps = np.diag([_SHIFT] * 3 + [_TURN] * 3)
     axes = np.concatenate([np.zeros((1, 6)), steps, -steps])
     axes[:, :3] += machine.home_tip

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine reading: what a machine file says about G-code, in the work frame of a post.
+"""Machine reading: reading options from a machine file, in the work frame of a post.
 
-Input: the machine, the work offset chosen, and the reading options of the user, which go before. Output: reading
-options with the zero of the machine, its other work offsets, its functions, the codes to leave out and the tool table.
+Input: the machine, the chosen work offset, and the reading options of the user, which take precedence. Output: reading
+options with the zero of the machine, its other work offsets, its functions, the codes to skip and the tool table.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ _EXACT = 1e-12
 
 
 def with_machine(reading: ReadingOptions, machine: Machine, options: Options) -> ReadingOptions:
-    """Add what the machine file says and the user does not.
+    """Complete the reading options of the user from the machine file.
 
     Args:
-        reading: what the user says.
+        reading: as given by the user.
         machine: with its work offsets in {M}.
-        options: with the work offset chosen.
+        options: with the chosen work offset.
     """
     name = options.work_offset
     pose = machine.work_offsets.get(name) if isinstance(name, str) else name
@@ -38,7 +38,7 @@ def with_machine(reading: ReadingOptions, machine: Machine, options: Options) ->
         spindle_axis=machine.spindle_axis is not None,
         tool_table=reading.tool_table or machine.tool_table,
     )
-    if pose is None:  # posting refuses a name that the machine does not have
+    if pose is None:  # posting refuses an unknown name
         return reading
     return replace(
         reading,
@@ -48,7 +48,7 @@ def with_machine(reading: ReadingOptions, machine: Machine, options: Options) ->
 
 
 def _zero(machine: Machine, pose: Array) -> tuple[float, float, float] | None:
-    """The zero of the machine in {C}, where the directions of the axes are those of {M}."""
+    """The zero of the machine in {C}; None unless the axes are parallel to {M}."""
     if machine.machine_zero is None or np.abs(pose[:3, :3] - np.eye(3)).max() > _EXACT:
         return None
     x, y, z = (machine.machine_zero - pose[:3, 3]).tolist()
@@ -56,7 +56,7 @@ def _zero(machine: Machine, pose: Array) -> tuple[float, float, float] | None:
 
 
 def _others(machine: Machine, pose: Array) -> dict[str, tuple[float, float, float, float]]:
-    """Work offsets that are turned against the chosen one about z alone: origins in mm and turns in degrees."""
+    """Work offsets rotated from the chosen one about z only: origins in mm and rotations in degrees."""
     found = {}
     for name, other in machine.work_offsets.items():
         relative = np.linalg.inv(pose) @ other

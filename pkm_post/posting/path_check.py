@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Path check: all checks of a trajectory on its machine, those that posting runs.
+"""Path check: all checks that posting runs on a trajectory.
 
 Takes a trajectory in {M} with machine, set-up and tolerances; returns its margins and findings.
 """
@@ -25,10 +25,10 @@ def check_path_of(
         machine: its limits and bodies.
         setup: part, stock and fixtures, and the shanks of the tools.
         tolerances: allowed deviation of the tool from the trajectory.
-        search: ``find_collisions``, or what knows its result.
+        search: ``find_collisions``, or a function that has its result.
 
     Returns:
-        The margins along the path, and all findings: of reach, and of collisions that no margin stands for.
+        The margins along the path, and all findings: of reach, and of collisions without a margin.
     """
     checked = check_reach(trajectory, machine, placed_workpiece(setup, trajectory))
     collisions = search(trajectory, machine, setup, tolerances)
@@ -37,4 +37,4 @@ def check_path_of(
 
 
 _IN_REACH = ("K117", "K121")
-"""Diagnostics that reach also covers, by the margins of each pose."""
+"""Diagnostics that the margins of reach cover, too."""

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Place search: a work offset, and if need be another spin, with which the machine can follow a program.
+"""Place search: find a work offset, and if necessary another spin, with which the machine can follow a program.
 
-Takes a program, a machine and the options of the user; returns the place with its amounts, checked as posting would
-check it, collisions included. The search climbs from the place as it is, then from others too. Where the best place is
-refused, by a collision for instance, other good ones are checked, and then the best one with an optimised spin; it ends
-at the first place that holds. It is no proof that there is none if it finds none.
+Input: a program, a machine and the options of the user. Output: the place with its shift and turn, checked as in
+posting, collisions included. The search climbs from the current place, then from others. If the best place fails,
+because of a collision for instance, other good ones are checked, then the best one with an optimised spin. It stops at
+the first place that passes. Failing to find one is no proof that none exists.
 """
 
 from __future__ import annotations
@@ -32,22 +32,22 @@ from pkm_post.posting.placement import effective_setup, trajectory_of
 from pkm_post.posting.run import Progress, beat, no_progress
 
 _MORE_STARTS = 12
-"""Places that the search climbs from if the first ones do not suffice."""
+"""Starts of the search if the first ones are not enough."""
 _MOST_JUDGED = 8
-"""Places that are checked as posting checks them, from each number of starts."""
+"""Most places with a full check, per number of starts."""
 _PLACES = 4
-"""Checked places after which half of the search counts as done: how many are needed is not known."""
+"""Checked places at which progress shows half of the search, as the number needed is unknown."""
 PLACE_STEP = "place search"
 """The name of the step in progress."""
 MENDED_BY_A_PLACE = frozenset({f"K{number}" for number in (*range(101, 106), *range(113, 118), 121, 133)})
-"""Codes of what another place or spin may mend: limits of struts and joints, singular poses, and bodies of the machine
-that come too close to something."""
+"""Codes that another place or spin may cure: limits of struts and joints, singular poses, and machine bodies that come
+too close to something."""
 _MM, _DEGREES = 3, 4
-"""Decimals of a work offset: it is checked as it can be typed."""
+"""Decimals of a work offset: the place is checked as typed."""
 _STILL = 0.05
-"""mm and degrees: less is not said."""
+"""mm and degrees: smaller changes are not reported."""
 _ONE_PLACE: Mapping[str, Array] = {}
-"""No fixtures: the whole program is in {C}."""
+"""No fixtures: the program has one {C}."""
 _SPARE = {True: "to spare", False: "missing"}
 
 
@@ -56,10 +56,10 @@ class FoundPlace:
     """A place of the workpiece.
 
     Attributes:
-        options: those of the user with its work offset and spin.
+        options: options of the user, with the new work offset and spin.
         shift: (3,) mm in {M}, of the middle of the job.
         turn: (3,) degrees about x, y and z of {M} through that middle.
-        spins: whether the spin is another than before.
+        spins: whether the spin differs from that of the user.
         reach: the margins there.
         findings: errors and warnings there.
     """
@@ -77,7 +77,7 @@ class FoundPlace:
         return not errors(self.findings)
 
     def text(self) -> str:
-        """What to do and what comes of it, such as "shift 12 mm in x, turn 30 degrees about z: reaches, ..."."""
+        """The change and its result, such as "shift 12 mm in x, turn 30 degrees about z: reaches, ..."."""
         moves = [f"shift {mm:.1f} mm in {axis}" for axis, mm in zip("xyz", self.shift, strict=True) if abs(mm) > _STILL]
         turns = zip("xyz", self.turn, strict=True)
         moves += [f"turn {degrees:.1f} degrees about {axis}" for axis, degrees in turns if abs(degrees) > _STILL]
@@ -87,7 +87,7 @@ class FoundPlace:
         return f"{', '.join(moves) or 'where it is'}: {said}, {', '.join(left)}"
 
     def spare(self) -> dict[str, float]:
-        """The least proven margin of all checks that forbid posting, by unit: mm and degrees; negative is missing."""
+        """The least proven margin of all checks that prevent posting, by unit: mm and degrees; negative if violated."""
         least: dict[str, float] = {}
         for each in self.reach.findings:
             unit, scale = DISPLAY_UNITS[each.subject.unit]
@@ -106,20 +106,20 @@ def find_place(
     executor: Executor | None = None,
     progress: Progress = no_progress,
 ) -> tuple[FoundPlace | None, tuple[Diagnostic, ...]]:
-    """Look for a place at which the machine can follow a program.
+    """Search for a place at which the machine can follow a program.
 
     Args:
         program: cutter locations in {C}.
         machine: geometry and limits.
         options: work offset, spin and compensation, and the set-up.
         free: letters of ``position.FREEDOMS`` in which the workpiece may be moved.
-        starts: number of positions from which a better one is looked for first.
+        starts: number of starts of the first search.
         executor: distributes the climbs; by default they run in this process.
-        progress: called a few times a second, with ``PLACE_STEP``; if it raises, the search ends.
+        progress: called a few times a second, with ``PLACE_STEP``; an exception from it ends the search.
 
     Returns:
-        The first place that holds, otherwise the last one that was tried; None when the program cannot be placed at
-        all, with the diagnostics.
+        The first place that passes, else the last one tried, or None if the program cannot be placed; and the
+        diagnostics.
     """
     placed, diagnostics = trajectory_of(program, machine, replace(options, spin=ZERO_TORSION))
     if placed is None:
@@ -127,7 +127,7 @@ def find_place(
     setup, faults = effective_setup(options, program)
     if errors(faults):
         return None, (*diagnostics, *faults)
-    of_machine = placed.operation >= len(program.operations)  # the routes to tool changes and back
+    of_machine = placed.operation >= len(program.operations)  # moves to and from tool changes
     found, judged = None, 0
     with checkpoints(beat(lambda _share: progress(PLACE_STEP, judged / (judged + _PLACES)))):
         for count in (starts, max(starts, _MORE_STARTS)):
@@ -147,16 +147,16 @@ def find_place(
 
 
 def may_be_mended(diagnostics: Sequence[Diagnostic]) -> bool:
-    """Whether all errors are such that another place of the workpiece may mend them; not if there is none."""
+    """Whether there are errors and another place of the workpiece may cure them all."""
     return bool(errors(diagnostics)) and {each.code for each in errors(diagnostics)} <= MENDED_BY_A_PLACE
 
 
 def place_offer(diagnostics: Sequence[Diagnostic], subject: str) -> str:
-    """What the command line offers where another place may mend a refusal; empty where none may.
+    """Hint of the command line if another place may cure a refusal; else empty.
 
     Args:
         diagnostics: of the refusal.
-        subject: the file that was refused, as its user named it.
+        subject: the refused file, as the user named it.
     """
     if not may_be_mended(diagnostics):
         return ""
@@ -171,11 +171,11 @@ def place_options(found: FoundPlace, places: Mapping[str, Array] = _ONE_PLACE) -
 
     Args:
         found: the place.
-        places: poses in {C} of the fixtures of a job, (4, 4) by name; the first is the work offset, the others keep
-            their place beside it.
+        places: poses in {C} of the fixtures of a job, (4, 4) by name; the first is the work offset, the others move
+            with it.
 
     Returns:
-        Nothing if an offset turns about other axes than z, which no option states.
+        The options; empty if an offset rotates about another axis than z, which no option can state.
     """
     offset = work_offset_text(found.reach.trajectory.machine_from_work)
     origins = [work_offset_text(pose, f"{flag_of('origin')}={name}") for name, pose in list(places.items())[1:]]
@@ -188,7 +188,7 @@ def place_options(found: FoundPlace, places: Mapping[str, Array] = _ONE_PLACE) -
 def place_found(
     program: Program, machine: Machine, options: Options, places: Mapping[str, Array], progress: Progress = no_progress
 ) -> str:
-    """Look for a place; return in words what to do, what comes of it, and with which options to post.
+    """Search for a place; return the change, its result and the options to post with, as text.
 
     Args:
         program: cutter locations in {C}.
@@ -198,7 +198,7 @@ def place_found(
         progress: as ``find_place``.
 
     Raises:
-        Refused: the program cannot be placed at all.
+        Refused: the program cannot be placed.
     """
     found, faults = find_place(program, machine, options, progress=progress)
     if found is None:
@@ -214,7 +214,7 @@ def place_found(
 def _candidates(
     positions: Sequence[WorkpiecePosition], spin: SpinPolicy
 ) -> Iterator[tuple[WorkpiecePosition, SpinPolicy]]:
-    """Yield positions with the spin of the user, best first, and the best one with a spin that is optimised."""
+    """Yield positions with the spin of the user, best first, then the best one with an optimised spin."""
     for position in positions:
         yield position, spin
     if spin.rule not in (SpinRule.OPTIMISED, SpinRule.FILE):
@@ -222,7 +222,7 @@ def _candidates(
 
 
 def _as_typed(offset: Array) -> Array:
-    """A work offset, rounded as ``--work-offset`` states it, if it turns about z only."""
+    """A work offset, rounded as in ``--work-offset``, if it rotates about z only."""
     if not np.allclose(offset[2, :3], [0.0, 0.0, 1.0]):
         return offset
     turn = np.radians(np.round(np.degrees(np.arctan2(offset[1, 0], offset[0, 0])), _DEGREES))
@@ -233,7 +233,7 @@ def _as_typed(offset: Array) -> Array:
 
 
 def work_offset_text(machine_from_work: Array, flag: str = "--work-offset") -> str:
-    """A work offset as an option accepts it, or as a matrix if it rotates about other axes than z."""
+    """A work offset as an option accepts it, or as a matrix if it rotates about another axis than z."""
     x, y, z = machine_from_work[:3, 3]
     if np.allclose(machine_from_work[2, :3], [0.0, 0.0, 1.0]):
         turn = np.degrees(np.arctan2(machine_from_work[1, 0], machine_from_work[0, 0]))

@@ -27,9 +27,9 @@ Findings = tuple[Diagnostic, ...]
 def trajectory_of(
     program: Program, machine: Machine, options: Options, executor: Executor | None = None
 ) -> tuple[Trajectory | None, Findings]:
-    """The compensated program and its copies on the machine, with their spin; or None with diagnostics.
+    """Compensate a program and place it with its copies and spin on the machine; or None with diagnostics.
 
-    An executor distributes the search for a spin, if there is one.
+    An executor, if given, distributes the search for the spin.
     """
     offset, diagnostics = work_offset(machine, options)
     moved, faults = compensate(program, options.contours, options.actual_tools)
@@ -78,7 +78,7 @@ def effective_setup(options: Options, program: Program | None) -> tuple[Setup, t
 
     Args:
         options: the files, and the set-up of the job.
-        program: knows the tools with unknown corners, which a trajectory file does not store; None if it has errors.
+        program: has the tools with unknown corners, which a trajectory file does not store; None if it has errors.
     """
     files, diagnostics = options.mesh_files, list[Diagnostic]()
 

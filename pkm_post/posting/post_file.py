@@ -2,8 +2,8 @@
 """Post file: from a part program, G-code or CL data, to a certified motion program.
 
 Input: a file and its options. Output: the files of a post. All faults of the file and of the machine file are
-collected before anything is refused. Tool lengths, which a part program rarely states, are required as options.
-``Prepared`` holds the inputs of a post for every entry point: documents and user files are no longer needed, so a run
+collected before the post is refused. Tool lengths, which a part program rarely states, are required as options.
+``Prepared`` holds the inputs of a post for every entry point; from there on a run needs no documents or user files and
 can continue in any thread.
 """
 
@@ -82,7 +82,7 @@ class Prepared:
         """The trajectory in {M}, and all diagnostics.
 
         Raises:
-            Refused: it cannot be read or placed.
+            Refused: the program cannot be read or placed.
         """
         trajectory, diagnostics = trajectory_of(*self.sound, self.options)
         if trajectory is None:
@@ -96,7 +96,7 @@ class Prepared:
         progress: Progress = no_progress,
         search: CollisionSearch = find_collisions,
     ) -> Posted:
-        """Post it to a motion program of this name; the other files take its stem. Arguments as ``posting.post``.
+        """Post to a motion program of this name; the other files take its stem. Arguments as in ``posting.post``.
 
         Raises:
             Refused: an input has an error; nothing was written.
@@ -105,7 +105,7 @@ class Prepared:
 
 
 _ASKED_FOR = "L411"
-"""The warning that a gauge length defaulted to 0: posting requires one for each tool, and J113 requests it."""
+"""Warning that a gauge length defaulted to 0; dropped, as posting requires one per tool and J113 says so."""
 _NO_LENGTHS: Mapping[int, float] = {}
 
 
@@ -126,16 +126,16 @@ def post_file(
         file: G-code or CL data, distinguished by the suffix.
         machine: name of a machine that comes with PKM Post, or path of a machine file.
         out: folder for the results, which take the stem of the file.
-        options: the user's choices; without them, or with the fixture of a job, the work offset is G54.
+        options: the user's choices; by default, and for the fixture of a job, the work offset is G54.
         tool_lengths: gauge lengths by tool number that override those of the file, mm.
-        reading: what the file does not state itself.
+        reading: facts that the file does not state itself.
         log: receives a line for each step.
         progress: called a few times a second; an exception from it aborts the run, and nothing is written.
         arguments: options as typed, or parsed.
 
     Raises:
-        Refused: something in the file, the machine file or the folder does not allow it; nothing was written.
-        ValueError: the suffix of the file is not known, or there are both options and arguments.
+        Refused: the file, the machine file or the folder has an error; nothing is written.
+        ValueError: the suffix of the file is unknown, or both options and arguments are given.
     """
     progress(READING_STEP, 0.0)
     with checkpoints(beat(lambda _: progress(READING_STEP, 0.0))):
@@ -151,7 +151,7 @@ def prepared_file(
     reading: ReadingOptions = AS_WRITTEN,
     arguments: str | ArgumentValues = "",
 ) -> Prepared:
-    """A part program with its machine and all inputs of posting, and their diagnostics; arguments as ``post_file``."""
+    """Read a part program, its machine and all inputs of posting; arguments as in ``post_file``."""
     if options is not None and arguments:
         raise ValueError("expected options or arguments, got both")
     given = _given(arguments, Path(file))
@@ -177,7 +177,7 @@ def _given(arguments: str | ArgumentValues, file: Path) -> ArgumentValues:
     """The options given as arguments.
 
     Raises:
-        Refused: they cannot be parsed, J117.
+        Refused: the arguments cannot be parsed, J117.
     """
     try:
         return explicit_values(parse_text(arguments)) if isinstance(arguments, str) else arguments
@@ -190,7 +190,7 @@ _ATTRIBUTES = {"leave_out": "left_out", "origin": "work_offsets"}
 
 
 def _with_typed_options(reading: ReadingOptions, chosen: Namespace) -> ReadingOptions:
-    """How to read a file; typed options override ``reading``."""
+    """Reading options of a file; typed options override ``reading``."""
     typed_ones = part_program_from(chosen, reading.axis_words)
     names = [_ATTRIBUTES.get(name, name) for name in explicit_values(chosen)]
     return replace(reading, **{name: getattr(typed_ones, name) for name in names if hasattr(reading, name)})
@@ -229,7 +229,7 @@ def _missing_lengths(program: Program) -> Iterator[Diagnostic]:
 
 
 def _at_first_fixture(options: Options) -> Options:
-    """The options with G54 in place of the fixture of a job, as a part program has no job."""
+    """The options with G54 in place of the fixture of a job, since a part program has no job."""
     if isinstance(options.work_offset, str) and options.work_offset == FIXTURE_OF_THE_JOB:
         return replace(options, work_offset="G54")
     return options

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Program certificate: certifies a motion that was read from a program, or that kinematics make of one.
+"""Program certificate: certify a motion read from a program, or computed from one by kinematics.
 
 Input: strut motion, a trajectory file and a machine. Output: a certificate that holds, and the report.
 """
@@ -19,12 +19,12 @@ from pkm_post.writing import manifest, trajectory_file
 def certified(
     struts: StrutMotion, name: str, trajectory: Path, machine: Machine, digests: list[str]
 ) -> tuple[Certificate, dict[str, Any]]:
-    """The certificate of a motion against a trajectory file, which holds, and the report.
+    """Certify a motion against a trajectory file; return the certificate, which holds, and the report.
 
     Args:
         struts: read from a program.
         name: of the program, for the diagnostics.
-        trajectory: the file.
+        trajectory: the trajectory file.
         machine: the machine.
         digests: SHA-256 of the parts of the program, for the report.
 

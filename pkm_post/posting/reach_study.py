@@ -27,10 +27,10 @@ class Study:
     """Result of the study.
 
     Attributes:
-        reach: all checks of the path as it would be driven.
+        reach: all checks of the path as driven.
         stages: each option, in order, and the least shares (3,) after it.
         machine_from_work: (4, 4) the work offset of the last stage.
-        place: what was looked for, if the workpiece may be moved.
+        place: the place found, if the workpiece may be moved.
     """
 
     reach: ReachReport
@@ -69,11 +69,11 @@ def study(
         machine: geometry and limits.
         options: work offset, spin and compensation, and the set-up.
         free: letters of ``position.FREEDOMS`` in which the workpiece may be moved; empty for none.
-        starts: number of positions from which a better one is looked for; more, if no place is found from them.
+        starts: number of starts of the search; more are added if it finds no place.
         executor: distributes the searches for position and spin; by default they run in this process.
 
     Returns:
-        The study, or None when the program cannot be placed; and the diagnostics, those of the checks included.
+        The study, or None when the program cannot be placed; and the diagnostics, including those of the checks.
     """
     placed, diagnostics = trajectory_of(program, machine, replace(options, spin=ZERO_TORSION))
     if placed is None:

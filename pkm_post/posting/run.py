@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Run: log, progress and diagnostics of one run, what its steps share, and its result.
+"""Run: log, progress and diagnostics of one run, the context of its steps, and its result.
 
 Log and progress are callbacks; warnings are collected, errors stop the run.
 """
@@ -27,15 +27,15 @@ Findings = tuple[Diagnostic, ...]
 Log = Callable[[str], None]
 """Receives a line."""
 Progress = Callable[[str, float], None]
-"""Receives the name of the step and the completed share of the work, 0 to 1: when a step begins, and a few times a
-second while it goes on; at the end an empty name and 1. An exception from it stops the run, and no files remain."""
+"""Receives the name of the step and the completed share of the work, 0 to 1: at the start of a step, and a few times a
+second during it; at the end an empty name and 1. An exception from it stops the run, and no files remain."""
 CollisionSearch = Callable[[Trajectory, Machine, Setup, Tolerances], Collisions]
 """``machine.find_collisions``, or a function that keeps its results."""
 _PROGRESS_PERIOD = 0.1
 """s: least time between two calls of progress within a step."""
 _HALF_OF_A_STEP = 1.0
-"""s: within a step the share approaches that of its end, as its duration is not known: half of the way in this time,
-two thirds in twice the time."""
+"""s: within a step of unknown duration, the share approaches that of its end: half of the way in this time, two thirds
+in twice the time."""
 
 
 def no_log(line: str) -> None:
@@ -71,7 +71,7 @@ class Run:
         self.warnings.extend(diagnostics)
 
     def value(self, result: tuple[T | None, Findings]) -> T:
-        """The value of a step that may return diagnostics."""
+        """Accept the diagnostics of a step and return its value."""
         value, diagnostics = result
         self.accept(diagnostics)
         if value is None:
@@ -97,7 +97,7 @@ class Run:
 
     @contextlib.contextmanager
     def goes_on(self) -> Iterator[None]:
-        """Let the last step go on, for what belongs to all of them."""
+        """Continue the last step, for work that belongs to all steps."""
         name = [*self.shares][-1]
         with checkpoints(beat(lambda _: self._call(self.progress, name, 1.0))):
             yield
@@ -125,7 +125,7 @@ class Run:
 
 
 def beat(progress: Callable[[float], None]) -> Callable[[], None]:
-    """What a checkpoint does: call progress a few times a second with the estimated share of a step that is done."""
+    """Make a checkpoint callback that reports the estimated share of a step a few times a second."""
     begin = last = time.monotonic()
 
     def visit() -> None:
@@ -139,7 +139,7 @@ def beat(progress: Callable[[float], None]) -> Callable[[], None]:
 
 
 def give_back_memory() -> None:
-    """Return free memory to the system: glibc keeps the gaps that columns of some megabytes leave between others."""
+    """Return free memory to the system: glibc keeps the gaps left by columns of some megabytes."""
     if sys.platform == "linux":
         trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # other C libraries have none
         if trim is not None:
@@ -167,7 +167,7 @@ class Posted:
 
 @dataclass(frozen=True)
 class PostContext:
-    """What all steps share.
+    """Context of all steps.
 
     Attributes:
         path: path of the motion program; the other files take its folder and its stem.
@@ -197,7 +197,7 @@ class PostContext:
 
     @functools.cached_property
     def trajectory_hash(self) -> str:
-        """Fingerprint of the trajectory file, which nothing changes once it has been read back."""
+        """Fingerprint of the trajectory file, which does not change after it was read back."""
         return manifest.fingerprint_of_file(self.trajectory)
 
     def sibling(self, ending: str) -> Path:

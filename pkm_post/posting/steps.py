@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Steps: the order of the steps from a program to files, and the steps themselves.
 
-Input: a program and a machine. Output: the files, all of them or none. A step takes the results of earlier steps, and
-the frame, which all steps share.
+Input: a program and a machine. Output: the files, all of them or none. A step takes the results of earlier steps and
+the context that all steps share.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ _SHARES = {
 _SHORT = 10_000
 """Segments of a trajectory whose file is read in a few milliseconds."""
 _SHARE_OF_ANOTHER = 0.2
-"""The same for an additional output."""
+"""Relative duration of an additional output."""
 
 
 def post(
@@ -78,10 +78,10 @@ def post(
         log: receives a line for each step.
         found: diagnostics from reading these; returned with those found here.
         progress: called a few times a second; an exception from it aborts the run, and nothing is written.
-        search: finds the collisions with part, stock and fixtures, or knows those of the same trajectory and set-up.
+        search: finds the collisions with part, stock and fixtures, or returns those known for the same inputs.
 
     Raises:
-        Refused: the input has an error, or the folder cannot be written; nothing was written.
+        Refused: the input has an error, or the folder is not writable; nothing is written.
     """
     options = options or Options()
     setup, faults = effective_setup(options, program)
@@ -156,7 +156,7 @@ def _stored_trajectory(run: Run, frame: PostContext, program: Program) -> Trajec
 
 
 def _outputs_without_threads(trajectory: Trajectory, options: Options) -> tuple[Diagnostic, ...]:
-    """K157 for outputs whose format has no spindle that is an axis."""
+    """K157 for outputs whose format has no spindle as an axis."""
     others = [f"--also {name}" for name in options.also if name != PICTURE]
     if not others or not (found := threads(trajectory.events)):
         return ()
@@ -173,7 +173,7 @@ def _store(run: Run, frame: PostContext, program: Program) -> Path:
 def _written_program(
     run: Run, frame: PostContext, trajectory: Trajectory, setup: Setup
 ) -> tuple[Motion, FeedStudy, list[str], tuple[Coverage, ...]]:
-    """The planned motion with its feed, the names of the parts of the program, and the coverage.
+    """Plan and write the program: its motion and feed, the names of its parts, and the coverage.
 
     Schedule and struts are freed before the program is read back: a long one needs the memory.
     """
@@ -191,7 +191,7 @@ def _planned(run: Run, frame: PostContext, trajectory: Trajectory, setup: Setup)
     ):
         feed_plan = _feed_plan(run, frame, trajectory)
         covered = _collisions(run, found, setup)
-        fingerprint()  # kept by the frame
+        fingerprint()  # cached in the context
     return _interpolation(run, frame, feed_plan), covered
 
 
@@ -251,13 +251,13 @@ def _write_parts(frame: PostContext, trajectory: Trajectory, struts: StrutMotion
 def write_program(
     path: Path, trajectory: Trajectory, plan: Plan, machine: Machine
 ) -> tuple[list[str] | None, tuple[Diagnostic, ...]]:
-    """Write a trajectory and its plan: the trajectory file, the motion program, and the set-up it relies on.
+    """Write a trajectory and its plan: trajectory file, motion program and its set-up file.
 
     Args:
         path: of the program; the other files take its stem.
-        trajectory: what was planned.
+        trajectory: the planned trajectory.
         plan: strut motion by time.
-        machine: its file says for which controller.
+        machine: its file names the controller.
 
     Returns:
         The names of the parts of the program, or None if the controller cannot take it; and the diagnostics.
@@ -274,7 +274,7 @@ def write_program(
 
 
 def _work_offset(frame: PostContext) -> tuple[str, Array]:
-    """Name of the work offset, and the (4, 4) pose of {C} in {M}; the trajectory exists, so a name is known."""
+    """Name of the work offset, and the (4, 4) pose of {C} in {M}; a trajectory exists, so a name is valid."""
     offset = frame.options.work_offset
     return (offset, frame.machine.work_offsets[offset]) if isinstance(offset, str) else ("as given", offset)
 

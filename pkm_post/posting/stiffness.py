@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stiffness study: how stiff the tool tip is held along a job, and by an upright tool all over the table.
+"""Stiffness study: stiffness of the tool tip along a job, and of an upright tool over the whole table.
 
 Takes a trajectory in {M} and its machine; returns the maps of both, with the softest place of each operation. The table
 is mapped at the lowest height of the tip in the job, with the longest tool of the job. Units: mm, N/mm; N/um in texts.
@@ -18,13 +18,13 @@ from pkm_post.machine import StiffnessMap, pose_path_of, stiffness_map, table_po
 from pkm_post.model import Diagnostic, Machine, Place, Trajectory
 
 STEP = 25.0
-"""mm: distance of neighbours on the table, if none is chosen."""
+"""mm: default spacing on the table."""
 _PER_MICRON = 1e-3
 
 
 @dataclass(frozen=True)
 class SoftestPlace:
-    """Where an operation is held least.
+    """The softest place of an operation.
 
     Attributes:
         operation: its name.
@@ -41,7 +41,7 @@ class SoftestPlace:
     direction: Array
 
     def text(self) -> str:
-        """For people, such as "Finish, line 12: 31.4 N/um along (0.71, 0.70, 0.05)"."""
+        """As text, such as "Finish, line 12: 31.4 N/um along (0.71, 0.70, 0.05)"."""
         along = ", ".join(f"{round(value, 2) + 0.0:.2f}" for value in self.direction.tolist())
         where = f"{self.operation}, line {self.line}" if self.operation else f"line {self.line}"
         return f"{where}: {self.stiffness * _PER_MICRON:.1f} N/um along ({along})"
@@ -122,7 +122,7 @@ def stiffness_study(
     Args:
         trajectory: in {M}, at least one segment.
         machine: its struts.
-        step: distance of neighbours on the table, mm.
+        step: spacing on the table, mm.
 
     Returns:
         The study, or None with K158 when the machine file states no stiffness.

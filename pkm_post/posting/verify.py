@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Verify: whether an existing motion program still follows its trajectory file.
+"""Verify: check that an existing motion program follows its trajectory file.
 
 Input: the text of a program, of strut lengths or of tip and axis, a trajectory file and a machine. Output: the
 report, as posting would have written it. Nothing is planned: the motion is reconstructed from the lengths and speeds of
@@ -21,10 +21,10 @@ Texts = Sequence[tuple[str, str]]
 
 
 class Verified(NamedTuple):
-    """A program that does what was posted.
+    """A verified program.
 
     Attributes:
-        certificate: it holds.
+        certificate: its certificate, which holds.
         report: as posting writes it.
         diagnostics: warnings.
     """
@@ -50,7 +50,7 @@ def verify(program: Path, trajectory: Path, machine: Machine) -> Verified:
 
 
 def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> Verified:
-    """The same for the texts of all parts of a program, by file name, as read from its files."""
+    """The same for the texts of all parts of a program, with their file names."""
     listed = tuple(dict.fromkeys(one for file in (program, trajectory) for one in manifest.check(file)[1]))
     changed = tuple(
         Diagnostic("C109", Place(name), "the lines give another one")
@@ -71,7 +71,7 @@ def read_motion(program: Path, machine: Machine) -> StrutMotion:
     """The motion of a program in all its parts.
 
     Raises:
-        Refused: it cannot be read, or is faulty.
+        Refused: the program cannot be read or is faulty.
     """
     return _played(_read(program, machine), machine)
 
@@ -88,7 +88,7 @@ def _read(program: Path, machine: Machine) -> Texts:
 
 
 def _certified(texts: Texts, program: Path, trajectory: Path, machine: Machine) -> tuple[Certificate, dict[str, Any]]:
-    """The certificate of a program, which holds, and the report."""
+    """Certify a program; return the certificate, which holds, and the report."""
     digests = [program_files.program_hash(text) for _, text in texts]
     if program_files.is_of_tip_and_axis(texts[0][1]):
         from pkm_post.posting.cartesian_check import certified_axes  # only this needs it

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Removal: the stock that turning tools leave, at any time of a motion, and its difference from the part."""
+"""Removal: the stock left by the tools at any time of a motion, and its difference from the part."""
 
 from pkm_post.removal.comparison import Comparison, compare, part_distances
 from pkm_post.removal.replay import CutterPath, Replay, cutting_times

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Comparison: what is left of a stock over the part, and what is missing of the part. Units: mm, mm^3."""
+"""Comparison: excess stock on the part, and gouges in it. Units: mm, mm^3."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class Comparison:
         gouged: volume of the part outside the stock, mm^3.
         thickest: largest distance of the surface of the stock from the part, outside it, mm; at most ``limit``.
         deepest: largest distance inside it, mm; at most ``limit``.
-        thickest_at: (3,) where, in {C}.
-        deepest_at: (3,) where, in {C}.
-        limit: largest distance that is measured, mm.
+        thickest_at: (3,) its point in {C}.
+        deepest_at: (3,) its point in {C}.
+        limit: largest measured distance, mm.
     """
 
     left: float

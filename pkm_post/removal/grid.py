@@ -17,7 +17,7 @@ from pkm_post.geometry import Array
 BRICK = 8
 """Nodes along the side of a brick."""
 _MARGIN = 1.5
-"""Steps by which the nodes go beyond the box: the surface of the stock lies between nodes everywhere."""
+"""Steps by which the nodes go beyond the box: the surface of the stock is then between nodes everywhere."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Grid:
 
     Attributes:
         origin: (3,) the first node.
-        step: distance of neighbours, mm.
+        step: node spacing, mm.
         bricks: number of bricks along x, y and z.
     """
 
@@ -41,7 +41,7 @@ class Grid:
         Args:
             low: (3,) lowest corner of the box.
             high: (3,) highest corner.
-            step: distance of nodes, mm.
+            step: node spacing, mm.
         """
         nodes = np.ceil((high - low) / step + 2 * _MARGIN) + 1
         count = np.ceil(nodes / BRICK).astype(np.int64)
@@ -86,7 +86,7 @@ class Grid:
     def node_indices(self, brick: Array, before: int, after: int) -> Array:
         """Flat indices into (B, 512) of the nodes of bricks and of some layers around them.
 
-        Beyond the grid the outermost node stands for its neighbours.
+        Beyond the grid the outermost nodes are repeated.
 
         Args:
             brick: (K,) numbers of bricks.

@@ -22,7 +22,7 @@ _BAND = 1.0
 """Steps from the mesh within which nodes are compared with every triangle."""
 _ROUNDS = 2
 _CLOSER = 0.01
-"""Steps by which a neighbour's plane must be nearer to be tried: those of a flat face are all alike."""
+"""Steps by which a neighbour's plane must be nearer to be tried: those of a flat face are all equal."""
 _PAIRS = 400_000
 _FLAT = 1e-12
 """mm^2: a triangle of less area is represented by its edges."""
@@ -49,7 +49,7 @@ def mesh_distances(grid: Grid, triangles: Array, band: float) -> Array:
 
 
 def _try_neighbours(grid: Grid, triangles: Array, nearest: Array, distance: Array) -> None:
-    """Let each node take the triangle of a neighbour whose plane is nearer than its own triangle, if that is, too."""
+    """Give each node the triangle of a neighbour if both its plane and the triangle itself are nearer."""
     normal, level = _planes(triangles)
     strides = [int(one) for one in np.array(nearest.strides) // nearest.itemsize]
     flat = nearest.reshape(-1)
@@ -96,7 +96,7 @@ def _nearest_triangles(grid: Grid, triangles: Array) -> Array:
 
 
 def _pairs(grid: Grid, triangles: Array) -> Iterator[tuple[Array, Array]]:
-    """Nodes in the boxes around triangles, in batches."""
+    """Pairs of nodes and triangles whose boxes contain them, in batches."""
     shape = np.array([len(axis) for axis in grid.axes])
     room = _BAND * grid.step
     begin = np.ceil((triangles.min(axis=1) - room - grid.origin) / grid.step).astype(np.int64)
@@ -130,7 +130,7 @@ def _spread(nearest: Array, layers: int) -> Array:
 
 
 def _shifted(axis: int, shift: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
-    """Where the values of nodes go that are shifted along an axis, and where they come from."""
+    """Target and source slices of a shift along an axis."""
     here, there = slice(max(shift, 0), min(shift, 0) or None), slice(max(-shift, 0), min(-shift, 0) or None)
     before = (slice(None),) * axis
     return (*before, here), (*before, there)

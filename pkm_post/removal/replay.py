@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Replay: the stock at any time of a motion, forwards and backwards.
 
-Takes poses by time. Forwards they cut; backwards the bricks that they changed get back the values that they had at the
-beginning of their stretch, and the rest of that stretch is cut again. Units: mm, s.
+Takes poses by time. Forwards, they cut. Backwards, the changed bricks get back their values at the start of the
+stretch, and the stretch is cut again up to the time. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from pkm_post.removal.rotating_shape import RotatingShape
 from pkm_post.removal.stock import Stock
 
 _POSES_PER_RUN = 64
-"""Poses after which the changed bricks are kept."""
+"""Poses per stretch, whose changed bricks are saved."""
 _MOST_KEPT = 100_000
-"""Bricks kept, of 2 kB each; with more of them two stretches become one."""
+"""Saved bricks, of 2 kB each; beyond this, stretches are joined in pairs."""
 _RIDGE = 0.05
 """Steps: height of the ridges that a round tool leaves between two poses."""
 _STAIR = 0.25
@@ -34,7 +34,7 @@ class CutterPath:
         tip: (P, 3) tool tips in {C}.
         axis: (P, 3) unit tool axes.
         tool: (P,) index into the shapes.
-        shapes: cutting parts of the tools; None for a tool of unknown size, which takes nothing.
+        shapes: cutting parts of the tools; None for a tool of unknown size, which cuts nothing.
     """
 
     seconds: Array
@@ -45,21 +45,21 @@ class CutterPath:
 
 
 def cutting_times(seconds: Array, tip: Array, axis: Array, shape: RotatingShape, step: float) -> Array:
-    """Times between which a tool moves so little that it leaves no ridges that the grid would show.
+    """Times between which a tool moves too little for ridges that the grid would resolve.
 
     Args:
         seconds: (K,) times of poses, ascending; between them the tool moves smoothly.
         tip: (K, 3) tool tips.
         axis: (K, 3) unit tool axes.
         shape: the tool.
-        step: distance of the nodes of the grid.
+        step: node spacing of the grid.
     """
     way = np.diff(tip, axis=0)
     length = norm(way)
     along = np.abs(np.einsum("kj,kj->k", way, axis[1:]))
     across = np.sqrt(np.maximum(length**2 - along**2, 0.0)) + shape.top * angle_between(axis[:-1], axis[1:])
     round_step = min(np.sqrt(8.0 * shape.widest * _RIDGE * step), 2.0 * step)
-    # cut straight up or down, or straight across, there are no stairs
+    # straight plunges and straight cuts across leave no stairs
     count = np.maximum(across / round_step, np.minimum(across, along) / (_STAIR * step))
     count = np.maximum(np.ceil(count), (length > 0.0)).astype(np.int64)
     row, number = expand_counts(count)
@@ -87,7 +87,7 @@ class Replay:
         return float(self.path.seconds[self.done - 1]) if self.done else 0.0
 
     def is_at(self, seconds: float) -> bool:
-        """Whether the stock is that of a time."""
+        """Whether the stock is at a time."""
         return self.done == self._due(seconds)
 
     def go_to(self, seconds: float, most: int | None = None) -> Array:
@@ -112,7 +112,7 @@ class Replay:
         return int(np.searchsorted(self.path.seconds, seconds, side="right"))
 
     def _run_end(self) -> int:
-        """The last pose of the present stretch and of the present tool."""
+        """The last pose of the current stretch and tool."""
         if not self._kept or self.done >= self._kept[-1][0] + _POSES_PER_RUN:
             self._kept.append((self.done, {}))
             self._forget()
@@ -133,7 +133,7 @@ class Replay:
         return changed
 
     def _undo(self) -> Array:
-        """Go back to the beginning of the last stretch."""
+        """Go back to the start of the last stretch."""
         self.done, kept = self._kept.pop()
         self._count -= len(kept)
         brick = np.array(list(kept), dtype=np.int64)
@@ -142,7 +142,7 @@ class Replay:
         return brick
 
     def _forget(self) -> None:
-        """Join stretches two by two when they hold too much: the way back to a time in one is longer then."""
+        """Join stretches in pairs when too many bricks are saved; stepping back then cuts more poses again."""
         if self._count <= _MOST_KEPT:
             return
         joined = []

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rotating shape: which nodes a turning tool has taken, as a function that is negative inside the tool.
+"""Rotating shape: a rotating tool as a function that is negative inside it.
 
-The outline is a bottom line and a side line that touch an arc, as in ``toolpath.Cutter``, and a flat top. Outside the
-values are distances, but for those from the edge of the top and from a point; everywhere they change by no more than
-the way from place to place. Units: mm, rad.
+The outline is a bottom line and a side line tangent to an arc, as in ``toolpath.Cutter``, and a flat top. Outside, the
+values are distances, except near the edge of the top and near a point; they never change by more than the distance
+between two places. Units: mm, rad.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class RotatingShape:
 
     @property
     def widest(self) -> float:
-        """Radius of a cylinder about the axis that holds it, mm."""
+        """Radius of the enclosing cylinder about the axis, mm."""
         radius = self.centre[0] + self.corner / max(math.cos(self.side_angle), 1e-9)
         return radius + max(math.tan(self.side_angle), 0.0) * self.top
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stock: a block of material from which turning tools take what they sweep.
+"""Stock: a block of material from which rotating tools remove their swept volume.
 
-At each node of a grid the stock keeps its distance from the surface, negative in the material, within a band of some
-steps. A tool in a pose replaces it by the larger of itself and the negative value of the tool's shape, so that the
-surface between nodes stays sharp to a small part of a step. Motions are sampled by the caller. Units: mm.
+Each node of a grid stores its distance from the surface, negative in the material, within a band of some steps. A tool
+in a pose replaces it by the larger of itself and the negative value of the tool's shape, so the surface between nodes
+is accurate to a small part of a step. Motions are sampled by the caller. Units: mm.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from pkm_post.removal.mesh_distance import mesh_distances
 from pkm_post.removal.rotating_shape import RotatingShape
 
 BAND = 3.0
-"""Steps up to which distances from the surface are kept."""
+"""Steps up to which distances from the surface are stored."""
 _BAND = 1.75
-"""Steps around a tool within which nodes get to know its surface: those of a cell that it passes."""
+"""Steps around a tool within which nodes are updated: all nodes of a cell that its surface passes."""
 _PAIRS = 2048
-"""Pairs of a brick and a pose that are computed together: their arrays stay in the cache."""
+"""Pairs of a brick and a pose per pass: their arrays stay in the cache."""
 _POSES = 64
 
 
@@ -32,7 +32,7 @@ class Stock:
 
     Attributes:
         grid: its nodes.
-        band: largest distance that is kept, mm.
+        band: largest stored distance, mm.
         field: (B, 512) distance of each node from the surface, negative in the material, mm.
     """
 
@@ -49,7 +49,7 @@ class Stock:
 
         Args:
             triangles: (T, 3, 3) in {C}, anticlockwise as seen from outside.
-            step: distance of nodes, mm.
+            step: node spacing, mm.
         """
         corners = triangles.reshape(-1, 3)
         grid = Grid.enclosing(corners.min(axis=0), corners.max(axis=0), step)
@@ -61,7 +61,7 @@ class Stock:
         return float(self._amount.sum() * self.grid.step**3)
 
     def cut(self, tip: Array, axis: Array, shape: RotatingShape) -> Iterator[tuple[Array, Array]]:
-        """Take what a tool holds in some poses.
+        """Remove the material inside a tool in some poses.
 
         Args:
             tip: (P, 3) tool tips in {C}.
@@ -78,12 +78,12 @@ class Stock:
                 yield self._take(brick[some], tip[rows][pose[some]], axis[rows][pose[some]], shape)
 
     def put_back(self, brick: Array, before: Array) -> None:
-        """Give bricks (K,) the values (K, 512) that they had before."""
+        """Restore the earlier values (K, 512) of bricks (K,)."""
         self.field[brick] = before
         self._changed(brick)
 
     def _touched(self, tip: Array, axis: Array, shape: RotatingShape) -> tuple[Array, Array]:
-        """Poses and bricks in which these may take something, sorted by brick."""
+        """Pairs of poses and bricks that may cut, sorted by brick."""
         grid, room = self.grid, self.grid.half_diagonal + _BAND * self.grid.step
         ends = np.stack([tip, tip + shape.top * axis])
         wide = shape.widest * np.sqrt(np.maximum(1.0 - axis * axis, 0.0)) + _BAND * grid.step
@@ -104,7 +104,7 @@ class Stock:
         return pose[order], brick[order]
 
     def _take(self, brick: Array, tip: Array, axis: Array, shape: RotatingShape) -> tuple[Array, Array]:
-        """Cut K bricks, sorted, each by a pose of its own; return those that changed, and their values before."""
+        """Cut K bricks, sorted, by one pose each; return those that changed, and their values before."""
         middle, turned = (self.grid.centres[brick] - tip).astype(np.float32), axis.astype(np.float32)
         height = turned @ self._offsets.T
         height += np.einsum("kj,kj->k", middle, turned)[:, None]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surface: the surface of a stock as quadrangles, brick by brick; a brick that was not cut keeps its own.
+"""Surface: the surface of a stock as quadrangles, brick by brick; an uncut brick keeps its surface.
 
 Each cell of eight nodes that the surface passes has one vertex, the mean of the crossings on its edges; each edge that
 it crosses has one quadrangle of the vertices around it (surface nets). [Gibson1998] Units: mm.
@@ -45,7 +45,7 @@ class BrickSurface:
 
 
 def brick_surfaces(stock: Stock, brick: Array, part: Array | None = None) -> Iterator[BrickSurface]:
-    """The surface in some bricks; one without any surface has one without vertices.
+    """Yield the surface in each of some bricks, without vertices if there is none.
 
     Args:
         stock: the material.

@@ -24,9 +24,9 @@ _COLUMNS = 500
 """Columns of a chart; each shows the minimum and maximum of its values."""
 _TICKS = 6
 _LETTER = 7.0
-"""Width of a letter: the name of a band stands in it where there is room."""
+"""Width of a letter: the name of a band is printed in it if it fits."""
 _ROOM = 0.04
-"""Share of the range that stays free above and below the lines."""
+"""Margin above and below the lines, as a share of the range."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def chart(
 
     Args:
         label: quantity and unit of the vertical axis.
-        lines: what to draw.
+        lines: the lines to draw.
         duration: s, the end of the time axis; above 0.
         limits: values of dashed horizontal lines.
         bands: drawn behind the lines, every other one shaded.
@@ -102,14 +102,14 @@ def chart(
 
 
 def legend(lines: Sequence[Line]) -> str:
-    """The names of lines, each with a piece of its line."""
+    """The names of lines, each with a sample of its line."""
     sample = '<svg class="sample" viewBox="0 0 24 8"><path class="line {}" d="M0 4H24"/></svg>'
     names = (f"<span>{sample.format(line.style)}{html.escape(line.name)}</span>" for line in lines)
     return f'<p class="legend">{"".join(names)}</p>'
 
 
 def decimated(time: Array, values: Array, columns: int = _COLUMNS) -> tuple[Array, Array]:
-    """A line over increasing times, or the minimum and maximum of each column of pixels if it has more points."""
+    """Reduce a line with more points than columns to the minimum and maximum of each column of pixels."""
     if len(time) <= 2 * columns:
         return time, values
     first = distinct(np.searchsorted(time, np.linspace(time[0], time[-1], columns)))
@@ -128,7 +128,7 @@ def _span(lines: Sequence[Line], limits: Sequence[float]) -> tuple[float, float]
 
 
 def _ticks(low: float, high: float, place: object) -> list[tuple[float, float]]:
-    """Round numbers between two values, and where they are."""
+    """Round numbers between two values, with their positions."""
     step = 10 ** math.floor(math.log10((high - low) / _TICKS))
     step *= next(factor for factor in (1, 2, 5, 10, 20) if (high - low) / (factor * step) <= _TICKS)
     ticks = np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step

@@ -3,8 +3,7 @@
 
 Input: the content of the report, the planned motion, the program as read back and its certificate. Output: the file,
 with the verdict, the path in 3D, charts over time and the tables. A click on a row or into a chart marks that instant
-everywhere. It has a date only if one
-is given: the same job gives the same bytes.
+everywhere. It has a date only if one is given: the same job gives the same bytes.
 """
 
 from __future__ import annotations
@@ -46,7 +45,7 @@ def write_page(path: Path, report: Mapping[str, Any], results: Results) -> None:
     Args:
         path: of the HTML file.
         report: the content of the report (``summary.report``).
-        results: what the report was made from.
+        results: the data of the report.
     """
     trajectory, machine, motion = results.trajectory, results.machine, results.motion
     duration = float(results.struts.time_ms[-1]) / 1000
@@ -131,7 +130,7 @@ def _packed(values: Array) -> str:
 def _instants(time_ms: Array, count: int) -> tuple[Array, Array, Array]:
     """Even instants and knots: time, s; the interval of each; and the elapsed share of it.
 
-    Where there are more knots than instants, every n-th is taken.
+    If there are more knots than instants, every n-th knot is taken.
     """
     knots = time_ms[:: max(1, len(time_ms) // count)] / 1000
     time = distinct(np.concatenate([knots, np.linspace(0.0, time_ms[-1] / 1000, max(2, count - len(knots)))]))
@@ -168,7 +167,7 @@ def _charts(results: Results, duration: float, bands: Sequence[TimeBand]) -> str
 def _feed(
     shares: Mapping[str, Any], feed: FeedStudy | None, duration: float, bands: Sequence[TimeBand], of_page: str
 ) -> str:
-    """The feed over time, and what limits it."""
+    """The feed over time, and its limits."""
     if feed is None or not shares:
         return ""
     fast = shown("mm/s", of_page)

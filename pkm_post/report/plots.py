@@ -32,7 +32,7 @@ _PLOTS_OVER_TIME = {"left": 0.09, "right": 0.99, "bottom": 0.06, "top": 0.92, "h
 
 
 def missing_matplotlib(picture: Path) -> tuple[Diagnostic, ...]:
-    """The warning that no picture is drawn, or nothing.
+    """Warn if no picture can be drawn.
 
     The import may raise anything, as with a matplotlib built for another NumPy.
     """
@@ -146,14 +146,14 @@ def draw_reach(path: Path, machine: str, tip: Array, cone: Array) -> tuple[Diagn
 
 
 def draw_levels(path: Path, title: str, label: str, tip: Array, values: Array) -> tuple[Diagnostic, ...]:
-    """Draw values on a grid to a PNG file, a panel for each of some heights.
+    """Draw values on a grid to a PNG file, with a panel per height.
 
     Args:
         path: path of the file.
         title: heading, shown as it is.
-        label: what the values are, with their unit.
+        label: name of the values, with their unit.
         tip: (N, 3) grid points in {M}, mm.
-        values: (N,) from 0; NaN where there is none.
+        values: (N,) from 0; NaN for missing ones.
     """
     missing = missing_matplotlib(path)
     if missing:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Results: everything a posting or a verification found out, as the report, its page and its picture show it."""
+"""Results: the results of a posting or a verification, for the report, its page and its picture."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class Results:
         certificate: certificate of the program.
         tolerances: the requested tolerances.
         feed: feed of the plan; None if only the program is known.
-        reading: how the input was read, as in ``model.Program``.
+        reading: interpretation of the input, as in ``model.Program``.
         files: hashes of the files (``summary.hashes``).
-        setup: what is on the table; None if it is not known.
-        work_offset: name of the work offset and the (4, 4) pose of {C} in {M}; None if it is not known.
+        setup: the set-up; None if unknown.
+        work_offset: name of the work offset and the (4, 4) pose of {C} in {M}; None if unknown.
         unit: of lengths on the page, mm or inch.
         date: text on the page; empty for none.
     """

@@ -110,7 +110,7 @@ def report(results: Results) -> dict[str, Any]:
 
 
 def _setup(results: Results) -> dict[str, Any]:
-    """What is on the table by name, and where the work frame is; without what is not known."""
+    """Names of the items of the set-up, and the work frame; unknown items are omitted."""
     found: dict[str, Any] = {}
     if results.work_offset is not None:
         name, pose = results.work_offset
@@ -146,7 +146,7 @@ def machining_time(trajectory: Trajectory, motion: Motion) -> dict[str, Any]:
 
 
 def feed_shares(trajectory: Trajectory, feed: FeedStudy) -> dict[str, Any]:
-    """Shares of the cutting time at the programmed feed, and what limits the rest.
+    """Shares of the cutting time at the programmed feed, and the limits for the rest.
 
     With f the programmed, p the possible and v the planned feed: ``at_feed`` is where v >= 0.95 f, ``feed_possible``
     where p >= 0.95 f, ``as_possible`` where v >= 0.95 min(f, p). Each limit has its share, and the place where it slows
@@ -185,7 +185,7 @@ def _share(where: Array) -> float:
 
 
 def hold_points(trajectory: Trajectory, motion: Motion) -> dict[str, list[Any]]:
-    """Columns of times and source lines at which the motion rests: a feed hold can end there, and work resume."""
+    """Columns of times and source lines at which the motion rests: a feed hold can stop there, and the work resume."""
     rows = np.flatnonzero(trajectory.exact_stop)
     return {
         "time_s": _rounded(motion.joint_time[rows], 3),

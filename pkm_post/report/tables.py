@@ -15,7 +15,7 @@ from pkm_post.report.units import shown
 
 
 def certificate_tables(certificate: Mapping[str, Any], of_page: str) -> str:
-    """The worst values with their limits, and what is covered; ``of_page`` is the unit of lengths, mm or inch."""
+    """The worst values with their limits, and the coverage; ``of_page`` is the unit of lengths, mm or inch."""
     findings = "".join(_finding(row, of_page) for row in certificate["findings"])
     figures = "".join(
         _finding(figure | {"limit": None, "holds": True, "is_least": False}, of_page)
@@ -44,7 +44,7 @@ def _finding(row: Mapping[str, Any], of_page: str) -> str:
 
 
 def time_table(machining: Mapping[str, Any]) -> str:
-    """How long each operation takes."""
+    """The time of each operation."""
     rows = (
         _row([one["name"], *(f"{one[part]:.1f}" for part in ("cutting_s", "rapid_s", "dwell_s"))])
         for one in machining["operations"]
@@ -74,7 +74,7 @@ _UNKNOWN = "not known"
 
 
 def setup_table(setup: Mapping[str, Any], of_page: str) -> str:
-    """Where the work frame is, and what is on the table; nothing where neither is known."""
+    """The work frame and the set-up; empty if both are unknown."""
     rows = []
     if offset := setup.get("work_offset"):
         rows.append(["work offset", offset["name"]])
@@ -95,7 +95,7 @@ def _vector(values: Sequence[float]) -> str:
 
 
 def origin(report: Mapping[str, Any]) -> str:
-    """Hashes of the files, and how the source was read."""
+    """Hashes of the files, and the interpretation of the source."""
     files = report["files"]
     rows = [
         ("machine file", report["machine"]["sha256"]),

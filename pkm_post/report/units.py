@@ -12,7 +12,7 @@ _SMALL = 0.1
 
 @dataclass(frozen=True)
 class Shown:
-    """How a unit is shown.
+    """Display form of a unit.
 
     Attributes:
         unit: its text.
@@ -38,7 +38,7 @@ INCH = {
 
 
 def shown(unit: str, of_page: str, limit: float | None = None) -> Shown:
-    """How a unit of the report is shown on a page.
+    """Display form of a unit of the report on a page.
 
     Args:
         unit: such as mm or degrees.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""System: files and processes: results that appear together, locks, documents on disk, threads, numbers of texts.
+"""System: files and processes: results written together, locks, documents on disk, threads, parsing of numbers.
 
-The command line starts in a Python without NumPy: what needs NumPy is imported at its first use.
+The command line starts in a Python without NumPy: modules that need it are imported on first use.
 """
 
 from typing import TYPE_CHECKING

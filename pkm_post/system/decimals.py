@@ -4,7 +4,7 @@
 Input: the bytes of a text, and the offsets of its numbers. Output: the double nearest to each number, as by Python's
 ``float``. Eight digits are one word of 64 bits and are combined in three steps [Lemire2021]; below 2^53 whole numbers
 and the powers of ten are exact as doubles, and one division rounds once. This takes a quarter of the time of
-``numpy.fromstring``, with which parsing numbers took half of the time of reading a program.
+``numpy.fromstring``, with which parsing took half of the reading time of a program.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class DecimalReader:
         return values
 
     def decimals(self, before: Array, points: Array, ends: Array) -> tuple[Array, Array]:
-        """Decimals of the form ``-?(0|[1-9][0-9]*)[.][0-9]+``, and which of them are proven to have it.
+        """Decimals of the form ``-?(0|[1-9][0-9]*)[.][0-9]+``, and whether each is proven to have it.
 
         Args:
             before: offset of the byte before each number.
@@ -78,7 +78,7 @@ class DecimalReader:
         return values, good & _is_whole_number(whole, points - begin) & (ends - points > 1)
 
     def whole_numbers(self, before: Array, ends: Array) -> tuple[Array, Array]:
-        """Whole numbers of the form ``0|[1-9][0-9]*`` between two bytes, and which of them have it."""
+        """Whole numbers of the form ``0|[1-9][0-9]*`` between two bytes, and whether each has it."""
         count = ends - before - 1
         value, good = self._digits(ends, count)
         return value, good & _is_whole_number(value, count)
@@ -111,7 +111,7 @@ class DecimalReader:
 
 
 def _is_whole_number(value: Array, count: Array) -> Array:
-    """Whether digits of this value and count are there, without leading zeros."""
+    """Whether there are digits, and no leading zeros for this value and count."""
     good: Array = (count >= 1) & (value >= _LEAST.take(count, mode="clip"))
     return good
 

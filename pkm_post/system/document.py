@@ -43,7 +43,7 @@ class Job:
 
 @dataclass(frozen=True)
 class DocumentContent:
-    """What a document lists.
+    """Content of a document.
 
     Attributes:
         jobs: the CAM jobs, in document order.

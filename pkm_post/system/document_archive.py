@@ -49,7 +49,7 @@ class DamagedDocument(Exception):  # noqa: N818 - it is no error of the program
 
     Attributes:
         code: diagnostic code.
-        found: what was found, and where in the file.
+        found: the finding and its place in the file.
     """
 
     def __init__(self, code: str, found: str) -> None:

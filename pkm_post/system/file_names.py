@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""File names: which ones the system would take for something else than a file of that name, and too long paths.
+"""File names: names that the system does not take literally, and too long paths.
 
-Windows opens a device, an alternate stream or a file of another name, and reports nothing. It takes paths of at most
-259 characters, unless they are prefixed or long paths are switched on. [Microsoft Learn, Naming Files, Paths, and
+Windows may silently open a device, an alternate stream or a file of another name. It limits paths to
+259 characters, unless they are prefixed or long paths are enabled. [Microsoft Learn, Naming Files, Paths, and
 Namespaces; Maximum Path Length Limitation]
 """
 
@@ -33,7 +33,7 @@ _CHARACTERS = re.compile(r'[<>:"|?*\\\x00-\x1f]')
 
 
 def unusable_name(name: str, system: str = sys.platform) -> str:
-    """Why a file cannot have this name; empty if it can.
+    """The reason why a file cannot have this name; empty if it can.
 
     Args:
         name: without folder.
@@ -50,7 +50,7 @@ def unusable_name(name: str, system: str = sys.platform) -> str:
 
 
 def unusable_path(path: str, long_paths: bool | None = None) -> str:
-    """Why other programs could not open a file of this path; empty if they can.
+    """The reason why other programs could not open this path; empty if they can.
 
     Args:
         path: absolute.
@@ -62,7 +62,7 @@ def unusable_path(path: str, long_paths: bool | None = None) -> str:
 
 
 def prefixed(folder: str, longest_name: int) -> str:
-    """A folder of Windows such that files below it can be opened, however long their paths are.
+    """A Windows folder with a prefix, if files below it need one to be opened.
 
     Args:
         folder: absolute.
@@ -75,14 +75,14 @@ def prefixed(folder: str, longest_name: int) -> str:
 
 
 class UnusableNameError(OSError):
-    """A file cannot have the name that was chosen for it."""
+    """A file cannot have the chosen name."""
 
 
 def require_usable(name: str, system: str = sys.platform) -> None:
     """Check a name before a file of this name is opened.
 
     Raises:
-        UnusableNameError: the system would not make a file of this name.
+        UnusableNameError: the system does not allow the name.
     """
     fault = unusable_name(name, system)
     if fault:
@@ -93,7 +93,7 @@ def require_short(path: str) -> None:
     """Check the path of a result.
 
     Raises:
-        UnusableNameError: other programs could not open it.
+        UnusableNameError: other programs could not open the file.
     """
     fault = unusable_path(path)
     if fault:

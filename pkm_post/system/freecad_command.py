@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""FreeCAD command: where FreeCADCmd is, FreeCAD's program without a window.
+"""FreeCAD command: find FreeCADCmd, FreeCAD's program without a window.
 
-Input: the environment of the process and the system. Output: the beginning of a command line, or why there is none. The
-environment variable FREECADCMD goes first, then the path, then the places where FreeCAD's own bundles for Windows,
-macOS and Linux are installed, the highest version first.
+Input: the environment of the process and the system. Output: the beginning of a command line, or the reason for none.
+The environment variable FREECADCMD takes precedence, then the path, then the install locations of FreeCAD's own bundles
+for Windows, macOS and Linux, the highest version first.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from pathlib import Path
 
 VARIABLE = "FREECADCMD"
 _NAMES = ("freecadcmd", "FreeCADCmd", "freecad.cmd")
-"""On the path: of distributions and FreeCAD's bundles, of older builds, and of the snap."""
+"""Names on the path: of distributions and FreeCAD's bundles, of older builds, and of the snap."""
 _IN_APPIMAGE = "freecadcmd"
-"""An AppImage of FreeCAD runs the program of its own that its first argument names."""
+"""The first argument of a FreeCAD AppImage selects the program inside it."""
 _APPIMAGE = ".appimage"
 _LOCATIONS: dict[str, tuple[tuple[str, str], ...]] = {
     "win32": (
@@ -44,11 +44,11 @@ _LOCATIONS: dict[str, tuple[tuple[str, str], ...]] = {
 
 @dataclass(frozen=True)
 class FreeCADCommand:
-    """Where FreeCADCmd is.
+    """The command that starts FreeCADCmd.
 
     Attributes:
         words: the command line without arguments; empty if there is none.
-        missing: why there is none.
+        missing: the reason if there is none.
     """
 
     words: tuple[str, ...]
@@ -90,14 +90,14 @@ def _chosen(text: str, environment: Mapping[str, str], system: str) -> FreeCADCo
 
 
 def _split(text: str, system: str) -> list[str]:
-    """The words of a command line; backslashes of Windows separate folders."""
+    """The words of a command line; on Windows, backslashes separate folders."""
     if system != "win32":
         return shlex.split(text)
     return [word.strip('"') for word in shlex.split(text, posix=False)]
 
 
 def _with_program(file: str) -> tuple[str, ...]:
-    """The file, and for an AppImage the program in it."""
+    """The file, followed by the program name for an AppImage."""
     return (file, _IN_APPIMAGE) if file.lower().endswith(_APPIMAGE) else (file,)
 
 

@@ -18,7 +18,7 @@ if sys.platform == "win32":
     import msvcrt
 
     _LOCKED_BYTE = 1 << 30
-    """Other processes cannot read a locked byte: this one is far behind the record."""
+    """Other processes cannot read a locked byte: this one is far beyond the record."""
 
     def _lock(descriptor: int) -> None:
         os.lseek(descriptor, _LOCKED_BYTE, os.SEEK_SET)
@@ -64,7 +64,7 @@ class Lock:
             os.close(self._descriptor)
 
     def _remove(self) -> None:
-        with contextlib.suppress(PermissionError):  # open on Windows, or another user's in a folder such as /tmp
+        with contextlib.suppress(PermissionError):  # open on Windows, or owned by another user in a folder such as /tmp
             self._path.unlink(missing_ok=True)
 
 
@@ -90,7 +90,7 @@ def try_lock(path: Path) -> Lock | None:
 
 
 def lock_owner(path: Path) -> OwnerRecord:
-    """The record that the owning process wrote; empty when there is none."""
+    """The record that the owning process wrote; empty if there is none."""
     try:
         record = json.loads(path.read_bytes()[:_MOST_BYTES])
     except (OSError, ValueError):

@@ -40,7 +40,7 @@ def memory_guard(subject: str) -> Iterator[None]:
         subject: the current task, or its file, as named in messages.
 
     Raises:
-        Refused: memory ran out, F130. Memory held by the calls inside is released.
+        Refused: memory ran out, F130. Memory of the calls inside is released.
     """
     try:
         _begin()
@@ -73,7 +73,7 @@ def memory_diagnostic(fault: BaseException, subject: str) -> Diagnostic | None:
 
 
 def _begin() -> None:
-    """Refuse a senseless number of threads, and compute once while there is memory, before anything is written."""
+    """Check the number of threads, and compute once while there is memory, before anything is written."""
     from pkm_post.system.thread_count import VARIABLE, ThreadCountError, threads
     from pkm_post.system.workers import compute_once
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Packages: which optional Python packages are missing here, and how they are installed for the Python that runs.
+"""Packages: find missing optional Python packages, and install them for the running Python.
 
-Input: names of modules, and a folder with wheels where there is no network. Output: installed packages, or the line
-that installs them in this installation. FreeCAD has a folder of its own for packages, by the version of its Python;
-``freecad_app.startup`` states it. Nothing is downloaded before ``install`` is called.
+Input: names of modules, and a folder with wheels if there is no network. Output: installed packages, or the line
+that installs them here. FreeCAD has its own folder for packages, by Python version;
+``freecad_app.startup`` sets it. Nothing is downloaded before ``install`` is called.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _NO_WINDOW = getattr(subprocess, "CREATE_NO_WINDOW", 0)
 
 @dataclass
 class _Place:
-    """Where packages go; None stands for the place of the running Python."""
+    """Target of packages; None for that of the running Python."""
 
     folder: Path | None = None
 
@@ -41,11 +41,11 @@ _PLACE = _Place()
 
 
 class NotInstalledError(Exception):
-    """A package could not be installed; the text says why."""
+    """A package could not be installed; the text gives the reason."""
 
 
 def use_folder(folder: Path) -> None:
-    """State the folder of FreeCAD's packages, which this process has on its path or gets there."""
+    """Set the folder of FreeCAD's packages and put it on the path of this process."""
     _PLACE.folder = folder
 
 
@@ -56,17 +56,17 @@ def missing() -> list[str]:
 
 
 def needs(purpose: str, module: str) -> ImportError:
-    """The exception for a missing package, which names what installs it here.
+    """The exception for a missing package, which names the command that installs it here.
 
     Args:
-        purpose: what cannot be done without it, with a verb.
+        purpose: the task that needs it, with a verb.
         module: key of ``OPTIONAL``.
     """
     return ImportError(f"{purpose} {OPTIONAL[module]}: {cure(module)}", name=module)
 
 
 def cure(module: str) -> str:
-    """What installs a package in this installation."""
+    """The command that installs a package here."""
     if _PLACE.folder is not None:
         return f"choose Install packages in the workbench PKM Post, or type: {_line(module)}"
     if _belongs_to_debian():
@@ -80,7 +80,7 @@ def _line(module: str) -> str:
 
 
 def _belongs_to_debian() -> bool:
-    """Whether the distribution installs the packages of this Python, and pip refuses to [PEP 668]."""
+    """Whether the distribution manages the packages of this Python, so pip refuses to [PEP 668]."""
     import sysconfig
 
     marker = Path(sysconfig.get_path("stdlib")) / "EXTERNALLY-MANAGED"
@@ -115,7 +115,7 @@ def _pip(packages: Sequence[str], wheels: Path | None) -> list[str]:
 
 
 def install(modules: Sequence[str], wheels: Path | None = None) -> str:
-    """Install packages for this Python; return what was done, in words.
+    """Install packages for this Python; return the result as text.
 
     Args:
         modules: keys of ``OPTIONAL``.
@@ -159,7 +159,7 @@ def _has_pip() -> bool:
 
 
 def _make_importable() -> None:
-    """Let this process import what was installed."""
+    """Make new packages importable in this process."""
     folder = _PLACE.folder
     if folder is not None and str(folder) not in sys.path:
         sys.path.append(str(folder))
@@ -167,7 +167,7 @@ def _make_importable() -> None:
 
 
 def _wheel(package: str, wheels: Path) -> Path:
-    """The newest wheel of a package that any Python 3 can use; without pip no other one is installed."""
+    """The newest pure-Python wheel of a package; only such wheels are installed without pip."""
     found = sorted(file for file in wheels.glob("*-none-any.whl") if file.name.lower().startswith(f"{package}-"))
     if not found:
         raise NotInstalledError(f"{wheels} has no {package}-*-none-any.whl, and there is no pip for other wheels")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Result files: the endings of the files that one posting may write, after the stem of their names.
+"""Result files: name endings, after the stem, of the files that a posting may write.
 
-Every room takes the endings from here: the writer of a file, and the check that no result replaces another file.
+All code takes the endings from here: the writer of a file, and the check that no result replaces another file.
 """
 
 from __future__ import annotations

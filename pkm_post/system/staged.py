@@ -32,7 +32,7 @@ _Move = tuple[Path, Path]
 """Source and destination."""
 _PREFIX = ".staged-"
 _LONGEST_NAME = 150
-"""Characters of the longest path in a folder of results, that of its private folder included."""
+"""Characters of the longest path in a folder of results, including the private folder."""
 _PRIVATE = re.compile(re.escape(_PREFIX) + "[a-z0-9_]{8}")
 """Names of private folders, as ``tempfile.mkdtemp`` makes them."""
 _LOCK = _PREFIX + "lock"
@@ -42,7 +42,7 @@ _OWNER = "owner"
 _PATIENCE = 30.0
 """s, timeout for another process to move its files; that takes milliseconds."""
 _RESERVE = 4 << 20
-"""Bytes that are free again when the private folder is removed: that takes memory, also where all of it is used."""
+"""Bytes reserved for removing the private folder, which takes memory even when none is left."""
 _PAUSE = 0.005
 """s, between attempts to acquire the lock, or to move a file that is open."""
 _OPEN_ELSEWHERE = (5, 32, 33)
@@ -56,7 +56,7 @@ class BusyError(OSError):
 
 
 class OpenElsewhereError(OSError):
-    """Another program has a file open, which Windows does not let be moved or replaced then."""
+    """Another program has a file open, which Windows then does not move or replace."""
 
 
 class MixedError(OSError):
@@ -74,7 +74,7 @@ def staged(folder: Path, last: str = "") -> Iterator[Path]:
     process is removed by the next process that writes into ``folder``.
 
     Not guaranteed: a process killed while it moves files leaves some of them, or some of the earlier ones. Then there
-    is no ``last``. A missing ``folder`` is created, and stays.
+    is no ``last``. A missing ``folder`` is created and remains.
 
     Args:
         folder: target folder.
@@ -102,7 +102,7 @@ def staged(folder: Path, last: str = "") -> Iterator[Path]:
 
 
 def _any_length(folder: Path) -> Path:
-    """The folder by a path to which private names can be added: on Windows they could make it too long."""
+    """The folder by a path that stays valid with private names added: on Windows they could make it too long."""
     return Path(prefixed(str(folder.absolute()), _LONGEST_NAME)) if sys.platform == "win32" else folder
 
 
@@ -114,7 +114,7 @@ def _private(folder: Path) -> Iterator[Path]:
             _sweep(folder)
             reserve = [bytearray(_RESERVE)]
             private = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
-            stack.callback(shutil.rmtree, private, ignore_errors=True)  # the next sweep removes what is left
+            stack.callback(shutil.rmtree, private, ignore_errors=True)  # the next sweep removes the rest
             stack.enter_context(_lock_of(private / _OWNER))
             stack.callback(reserve.clear)
         yield private

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Staged folder: a tree of files that appears as a whole, under a name that was free.
+"""Staged folder: a tree of files that appears as a whole, under an unused name.
 
 Input: the name. Output: the tree, or nothing.
 """
@@ -16,16 +16,16 @@ _PREFIX = ".staged-folder-"
 
 
 class FolderExistsError(OSError):
-    """There is something of this name already."""
+    """The name is in use."""
 
 
 @contextmanager
 def staged_folder(folder: Path) -> Iterator[Path]:
-    """Yield a new private folder, which becomes ``folder`` when the block ends; nothing appears when it raises.
+    """Yield a new private folder, which becomes ``folder`` when the block ends; if the block raises, nothing appears.
 
     Raises:
-        FolderExistsError: there is something of this name; nothing of it is changed.
-        OSError: a folder cannot be made, or not be renamed.
+        FolderExistsError: the name is in use; the existing item is unchanged.
+        OSError: a folder cannot be created or renamed.
     """
     if folder.exists():
         raise FolderExistsError(f"{folder} is there already")

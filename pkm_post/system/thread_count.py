@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Thread count: how many threads this process may use, decided in one place.
+"""Thread count: the number of threads this process may use, decided in one place.
 
-Input: the processors that the system lets this process run on, the share of its control group, and what a batch system
-or the user says. Output: a number. A node with 64 processors of which a job has 4 gets 4 threads, and processes that
-are started together share what there is.
+Input: the processors available to this process, the share of its control group, and the settings of a batch system or
+the user. Output: a number. A job with 4 of the 64 processors of a node gets 4 threads, and processes started together
+share them.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 VARIABLE = "PKM_THREADS"
-"""Set by the user, and for each of several processes that are started together; goes before everything else."""
+"""Set by the user, and for each of several processes started together; takes precedence."""
 _OF_BATCH_SYSTEMS = ("SLURM_CPUS_PER_TASK", "OMP_NUM_THREADS")
 _LARGEST = 4096
 _GROUPS, _GROUP_OF_THIS_PROCESS = Path("/sys/fs/cgroup"), Path("/proc/self/cgroup")
 
 
 class ThreadCountError(ValueError):
-    """The variable PKM_THREADS has a value that is no number of threads; the text is the value."""
+    """The value of the variable PKM_THREADS is not a number of threads; the text is the value."""
 
 
 def threads(environment: Mapping[str, str] = os.environ) -> int:
@@ -43,10 +43,10 @@ def threads(environment: Mapping[str, str] = os.environ) -> int:
 
 
 def share(processes: int) -> dict[str, str]:
-    """Variables for each of several processes that run at the same time, so that together they use what there is.
+    """Environment variables for each of several simultaneous processes, to share the processors.
 
     Args:
-        processes: how many run at the same time.
+        processes: number of simultaneous processes.
     """
     each = str(max(1, threads() // processes))
     return {VARIABLE: each, "OMP_NUM_THREADS": each}
@@ -64,12 +64,12 @@ def processors() -> int:
 
 
 def quotas(groups: Path, group_of_this_process: Path) -> Iterator[int]:
-    """Yield the processors that control groups allow, rounded up; nothing where there is no limit.
+    """Yield the processors that control groups allow, rounded up; nothing without a limit.
 
     Args:
         groups: where control groups are mounted.
-        group_of_this_process: the file that names the groups, a line ``number:controllers:path`` for each hierarchy;
-            that of version 2 names no controllers. [Linux, Documentation/admin-guide/cgroup-v2, cpu.max;
+        group_of_this_process: the file with the groups, a line ``number:controllers:path`` for each hierarchy;
+            version 2 has no controllers. [Linux, Documentation/admin-guide/cgroup-v2, cpu.max;
             Documentation/scheduler/sched-bwc, cpu.cfs_quota_us]
     """
     try:
@@ -81,11 +81,11 @@ def quotas(groups: Path, group_of_this_process: Path) -> Iterator[int]:
         if not controllers:
             yield from _quotas_above(groups, path, _quota_of_version_2)
         elif "cpu" in controllers.split(","):
-            yield from _quotas_above(groups / "cpu", path, _quota_of_version_1)  # a link where several share a mount
+            yield from _quotas_above(groups / "cpu", path, _quota_of_version_1)  # a link if controllers share a mount
 
 
 def _quotas_above(mounted: Path, path: str, quota_of: Callable[[Path], list[str]]) -> Iterator[int]:
-    """Yield the limits of a group and of those that it is in; in a container some of these are not to be seen."""
+    """Yield the limits of a group and its ancestors, as far as they are visible in a container."""
     group = mounted / path.strip().lstrip("/")
     for folder in (group, *group.parents):
         if not folder.is_relative_to(mounted):
@@ -99,10 +99,10 @@ def _quotas_above(mounted: Path, path: str, quota_of: Callable[[Path], list[str]
 
 
 def _quota_of_version_2(folder: Path) -> list[str]:
-    """Time of all processors in a period, and the period; the word max where there is no limit."""
+    """Time of all processors in a period, and the period; the word max for no limit."""
     return (folder / "cpu.max").read_text().split()
 
 
 def _quota_of_version_1(folder: Path) -> list[str]:
-    """The same; -1 where there is no limit."""
+    """The same; -1 for no limit."""
     return [(folder / name).read_text().strip() for name in ("cpu.cfs_quota_us", "cpu.cfs_period_us")]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Workers: one pool of compute threads, as many as ``threads`` says, kept for the life of the process.
+"""Workers: one pool of ``threads`` compute threads for the life of the process.
 
-The pool starts when there is work for it: small jobs are done before. All its threads start and compute once before any
+The pool starts when there is work for it; small jobs never need it. All its threads start and compute once before any
 receives work. A thread that Python starts without memory can wait forever, and OpenBLAS, which NumPy uses, allocates
-memory at the first use in a thread and ends the process if there is none: half-written files would remain. Work in a
-worker must not submit work to the pool.
+memory at the first use in a thread and ends the process if there is none: half-written files would remain. A worker
+must not submit work to the pool.
 """
 
 from __future__ import annotations
@@ -33,17 +33,17 @@ Result = TypeVar("Result")
 _FOR_EACH = 112 << 20
 """Bytes of address space that a thread may take: 64 MB to allocate in, 32 for OpenBLAS, and its stack."""
 _MATRICES, _ROWS = 8, 96
-"""Matrices that keep a thread busy for a millisecond or more, so that all compute at once, and the rows of each: few
-enough for OpenBLAS to take no further threads, which would wait busily for more work for a tenth of a second."""
+"""Matrices that keep a thread busy for a millisecond or more, so that all threads compute at once, and their rows: few
+enough for OpenBLAS not to start threads of its own, which would spin for a tenth of a second."""
 _AHEAD = 4
-"""Items for each thread that are taken ahead: with fewer, a thread would wait where items differ in length."""
+"""Items queued per thread; with fewer, threads would idle when items differ in length."""
 _CHECKPOINT_PERIOD = 0.1
-"""s between two checkpoints of a caller that waits."""
+"""s between checkpoints of a waiting caller."""
 
 
 @functools.cache
 def compute_once() -> None:
-    """Let this thread compute, once in the life of the process: OpenBLAS takes its memory for it now.
+    """Make this thread compute once, so that OpenBLAS allocates its memory now.
 
     Raises:
         MemoryError: there is not enough memory.
@@ -67,7 +67,7 @@ def workers() -> ThreadPoolExecutor:
     import numpy as np
 
     count = threads()
-    np.empty(count * _FOR_EACH, dtype=np.uint8)  # released at once: only tests whether there is room
+    np.empty(count * _FOR_EACH, dtype=np.uint8)  # released at once: only a test for enough memory
     together, pool = threading.Barrier(count), ThreadPoolExecutor(count, thread_name_prefix="pkm_post")
 
     def compute(_: int) -> None:
@@ -84,23 +84,23 @@ def workers() -> ThreadPoolExecutor:
 
 
 if hasattr(os, "register_at_fork"):  # POSIX
-    os.register_at_fork(after_in_child=workers.cache_clear)  # a process that was forked has none of the threads
+    os.register_at_fork(after_in_child=workers.cache_clear)  # a forked process has none of the threads
 
 
 class _EndedError(Exception):
-    """The caller of a worker has left: nothing waits for its result."""
+    """The caller of a worker has left; its result is not needed."""
 
 
 def in_workers(function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:
-    """The results of a function for items, in order, computed by the pool, with checkpoints while the caller waits.
+    """Yield results of a function for items, in order, computed by the pool, with checkpoints while waiting.
 
-    A single item is computed in the thread of the caller. Few items are taken ahead of the results that the caller has,
-    so that these do not fill the memory. When the caller leaves, as by an exception from a checkpoint, workers stop at
-    their next checkpoint.
+    A single item is computed in the caller's thread. Only a few items are queued ahead of the caller, so that results
+    do not fill the memory. When the caller leaves, as by an exception from a checkpoint, workers stop at their next
+    checkpoint.
 
     Args:
         function: must not submit work to the pool.
-        items: what it is called with.
+        items: its arguments.
     """
     from pkm_post.model import checkpoint
 
@@ -129,14 +129,14 @@ def in_workers(function: Callable[[Item], Result], items: Iterable[Item]) -> Ite
 
 @contextmanager
 def in_background(function: Callable[[], Result], is_long: bool = True) -> Iterator[Callable[[], Result]]:
-    """Let a worker compute something while the block goes on; the block gets a function that waits for the result.
+    """Compute something in a worker while the block runs; yield a function that waits for the result.
 
-    With one thread, and where it takes no time, it is computed when the result is asked for. When the block ends
+    With one thread, or if it is short, it is computed when the result is requested. When the block ends
     earlier, the worker stops at its next checkpoint.
 
     Args:
         function: must not submit work to the pool.
-        is_long: whether it takes longer than to start the pool, some milliseconds.
+        is_long: whether it takes longer than starting the pool, some milliseconds.
     """
     if not is_long or threads() == 1:
         yield function
@@ -171,7 +171,7 @@ def columns_in_workers(rows: int, at_once: int, compute: Callable[[slice], Seque
 
 
 def _until(ended: threading.Event, function: Callable[[Item], Result], item: Item) -> Result:
-    """The result of a function, unless its caller leaves before."""
+    """The result of a function, unless its caller leaves first."""
     from pkm_post.model import checkpoints
 
     def leave() -> None:
@@ -183,7 +183,7 @@ def _until(ended: threading.Event, function: Callable[[Item], Result], item: Ite
 
 
 def _awaited(future: Future[Result]) -> Result:
-    """The result of a future, with checkpoints until it is there."""
+    """Wait for a future with checkpoints; return its result."""
     from concurrent.futures import wait
 
     from pkm_post.model import checkpoint

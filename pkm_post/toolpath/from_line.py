@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""From line: a program that begins at a line of its source, after an abort or a loss of power.
+"""From line: start a program at a line of its source, after an abort or a loss of power.
 
-The rows before the line are left out. What they have switched on is found: the last spindle speed with its wait, the
-last coolant, the tool, and, where that is wanted, the M codes of the machine. The approach to the line begins where the
-whole program begins; it leads over the tool-change pose, if the machine file states one, above everything the program
-reaches to above the line, and down along the tool axis, with the feed of the line where that cuts. Spindle and
-coolant are switched on before that last move. As a part of the trajectory, the approach is planned, checked for reach
-and collisions and certified like any move.
+The rows before the line are skipped. Their modal state is restored: the last spindle speed with its wait, the last
+coolant, the tool and, on request, the M codes of the machine. The approach starts where the whole program starts; it
+passes the tool-change pose, if the machine file states one, crosses above everything that the program reaches above the
+line, and comes down along the tool axis, at the feed of the line if that cuts. Spindle and coolant are switched on
+before that last move. As a part of the trajectory, the approach is planned, checked for reach and collisions and
+certified like any move.
 
 Input: a trajectory on its machine. Output: the trajectory from the line on. Units: mm, rad, mm/s.
 """
@@ -34,19 +34,19 @@ from pkm_post.model import (
 from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
 
 APPROACH = "approach"
-"""Name of the operation that the approach belongs to."""
+"""Name of the operation of the approach."""
 _MODAL = (EventKind.SPINDLE, EventKind.COOLANT)
 Findings = tuple[Diagnostic, ...]
 
 
 @dataclass(frozen=True)
 class StartLine:
-    """Where to begin.
+    """Where to start.
 
     Attributes:
         line: line of the source, or number of the command in its operation.
         operation: name of the operation; empty for the first one with such a line.
-        repeat_codes: whether the M codes of the machine before it are repeated.
+        repeat_codes: whether machine-specific M codes before it are repeated.
     """
 
     line: int
@@ -62,7 +62,7 @@ class _Approach:
         start: (3,) tip before the first one.
         poses: end of each move.
         tools: number of the tool during each move.
-        changed: move before which the tool is changed; 0 also where it is in the spindle already.
+        changed: move before which the tool is changed; also 0 if the tool is in the spindle already.
     """
 
     start: Array
@@ -79,12 +79,12 @@ def row_of_line(trajectory: Trajectory, start: StartLine) -> int | None:
 
 
 def modal_events(trajectory: Trajectory, row: int, repeat_codes: bool = False) -> tuple[Event, ...]:
-    """What the program has switched on before a row: the last event of each kind, in the order of the program.
+    """The modal state before a row: the last event of each kind, in the order of the program.
 
     Args:
         trajectory: the program.
-        row: where it begins.
-        repeat_codes: whether M codes of the machine are among them, each once: where it came last.
+        row: the first row to run.
+        repeat_codes: whether to include machine-specific M codes, each once at its last place.
     """
     last: dict[tuple[EventKind, float], Event] = {}
     for each in trajectory.events:
@@ -97,11 +97,11 @@ def modal_events(trajectory: Trajectory, row: int, repeat_codes: bool = False) -
 
 
 def started_at_line(trajectory: Trajectory, start: StartLine, machine: Machine) -> tuple[Trajectory | None, Findings]:
-    """The trajectory from a line on, with the approach to it; or what is against it.
+    """The trajectory from a line on, with the approach to it; or the reasons against it.
 
     Args:
         trajectory: the whole program.
-        start: the line; with the first line that moves, the program stays as it is.
+        start: the line; the first line with motion leaves the program unchanged.
         machine: its tool-change pose and safe height.
     """
     row = row_of_line(trajectory, start)
@@ -121,14 +121,14 @@ def started_at_line(trajectory: Trajectory, start: StartLine, machine: Machine) 
 
 
 def not_repeated(trajectory: Trajectory, row: int) -> Findings:
-    """K152 with the M codes of the machine before a row: what they do, and for how long, is not known."""
+    """K152 with the machine-specific M codes before a row: their effect and its duration are unknown."""
     codes = [f"M{each.value:.0f}" for each in _before(trajectory, row) if each.kind is EventKind.FUNCTION]
     found = ", ".join(dict.fromkeys(codes))
     return (Diagnostic("K152", trajectory.place(row), found),) if found else ()
 
 
 def _approach(trajectory: Trajectory, row: int, machine: Machine) -> _Approach | None:
-    """The approach from where the program begins to a row; None if the tool is tilted too far to come down to it."""
+    """The approach from the start of the program to a row; None if the tool is tilted too far to come down to it."""
     begin = ToolPose(trajectory.start_tip, trajectory.start_axis, trajectory.start_spin)
     tips, axes = trajectory.tip_before()[row], trajectory.axis_before()[row]
     end = ToolPose(tips, axes, float(trajectory.spin_before()[row]))
@@ -152,7 +152,7 @@ def _before(trajectory: Trajectory, row: int) -> list[Event]:
 
 
 def _moves(begin: ToolPose, approach: tuple[ToolPose, ...]) -> list[ToolPose]:
-    """The poses of an approach that are not where the one before is."""
+    """The poses of an approach, without repeated ones."""
     found, last = [], begin
     for pose in approach:
         if not last.is_at(pose):
@@ -202,7 +202,7 @@ def _extents(trajectory: Trajectory, approach: _Approach, columns: dict[str, Arr
 
 
 def _events(trajectory: Trajectory, row: int, approach: _Approach, repeat_codes: bool) -> tuple[Event, ...]:
-    """What has to be switched on: the tool where it is changed, all else before the last move."""
+    """Events of the approach: the tool at its change, all others before the last move."""
     earlier = _before(trajectory, row)
     tools = [each for each in earlier if each.kind is EventKind.TOOL_CHANGE]
     found = [replace(tools[-1], row=approach.changed)] if tools else []
@@ -220,6 +220,6 @@ def _events(trajectory: Trajectory, row: int, approach: _Approach, repeat_codes:
 
 
 def _wait_after(events: list[Event], spindle: Event) -> list[Event]:
-    """The dwell that comes right after a spindle event: the spindle reaches its speed."""
+    """The dwell right after a spindle event, in which the spindle reaches its speed."""
     after = events[events.index(spindle) + 1 :][:1]
     return [each for each in after if each.kind is EventKind.DWELL and each.row == spindle.row]

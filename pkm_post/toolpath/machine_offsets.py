@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine offsets: a work offset and tool lengths that were changed at the machine after the posting.
+"""Machine offsets: a work offset and tool lengths changed at the machine after posting.
 
-The path moves with the part, and each tool keeps its tip on it: the trajectory is that of another posting with these
-offsets. So what belongs to the machine stays: the start; the tool-change pose, with the spindle nose in its place; and
-the safe height, at which the way there comes to a line along the tool axis of the moved path.
+The path moves with the part, and each tool keeps its tip on it: the trajectory is that of a new posting with these
+offsets. Everything tied to the machine stays: the start; the tool-change pose, with the spindle nose in its place; and
+the safe height, where the way there meets a line along the tool axis of the moved path.
 
-Input: a trajectory of a posting. Output: the trajectory for the machine as it is. Units: mm.
+Input: a posted trajectory. Output: the trajectory for the current offsets. Units: mm.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ Findings = tuple[Diagnostic, ...]
 
 @dataclass(frozen=True)
 class MachineOffsets:
-    """What was changed.
+    """The changes.
 
     Attributes:
-        shift: how far the work offset has moved in {M}, mm.
-        lengths: gauge lengths by tool number, mm; the others are those of the posting.
+        shift: displacement of the work offset in {M}, mm.
+        lengths: gauge lengths by tool number, mm; other tools keep those of the posting.
     """
 
     shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -43,12 +43,12 @@ class MachineOffsets:
 def with_machine_offsets(
     trajectory: Trajectory, machine: Machine, offsets: MachineOffsets
 ) -> tuple[Trajectory | None, Findings]:
-    """The trajectory with these offsets, or what is against it (C209).
+    """The trajectory with these offsets, or the reason against it (C209).
 
     Args:
         trajectory: as posted.
         machine: its tool-change pose.
-        offsets: what was changed.
+        offsets: the changes.
     """
     if offsets.is_empty:
         return trajectory, ()
@@ -63,13 +63,13 @@ def with_machine_offsets(
     if len(torn):
         found = f"an arc begins {apart[torn[0]]:.3f} mm from where it did"
         return None, (Diagnostic("C209", trajectory.place(int(torn[0])), found),)
-    bent = apart > _SAME_MM  # these rows have another direction
+    bent = apart > _SAME_MM  # the direction of these rows changes
     length = np.where(bent, norm(moved.tip - moved.tip_before()), moved.length)
     return replace(moved, length=length, smooth=moved.smooth & ~bent & ~np.append(bent[1:], False)), ()
 
 
 def _moved(trajectory: Trajectory, machine: Machine, offsets: MachineOffsets) -> Trajectory:
-    """With tips, centres and tools moved; lengths of rows are those of the posting."""
+    """Move tips, centres and tools; lengths of rows stay those of the posting."""
     tools = {
         key: replace(tool, length=offsets.lengths.get(tool.number, tool.length))
         for key, tool in trajectory.tools.items()
@@ -86,7 +86,7 @@ def _moved(trajectory: Trajectory, machine: Machine, offsets: MachineOffsets) ->
 
 
 def _tip_shifts(trajectory: Trajectory, machine: Machine, length: Array, shift: Array) -> Array:
-    """How far the end of each row goes, (N, 3): that of the part, but on the moves of tool changes and approaches."""
+    """Shift of the end of each row, (N, 3): that of the part, except on moves of tool changes and approaches."""
     shifts, pose = np.tile(shift, (len(trajectory), 1)), machine.tool_change
     if pose is None:
         return shifts

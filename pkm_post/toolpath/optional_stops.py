@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Optional stops: what becomes of M1, for which a control has a switch.
+"""Optional stops: treatment of M1, for which a control has a switch.
 
-Input: a program, and what its optional stops are to be. Output: the program with stops, without them, or as it was,
-and a line for the report about what was changed.
+Input: a program and the treatment of its optional stops. Output: the program with stops, without them, or unchanged,
+and a line for the report about the change.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from pkm_post.model import Event, EventKind, Program
 
 WRITTEN, STOPS, LEFT_OUT = "written", "stop", "leave-out"
 OPTIONAL_STOPS = (WRITTEN, STOPS, LEFT_OUT)
-"""Written as the code that the machine file has for them, so that the switch of the controller decides; written as
-program stops; left out."""
+"""Written as the code of the machine file, so that the switch of the controller decides; written as program stops; left
+out."""
 _OPTIONAL, _ALWAYS = 1.0, 0.0
 
 
@@ -26,7 +26,7 @@ def with_optional_stops(program: Program, choice: str) -> Program:
         choice: one of ``OPTIONAL_STOPS``.
 
     Raises:
-        ValueError: it is none of them.
+        ValueError: unknown choice.
     """
     if choice not in OPTIONAL_STOPS:
         raise ValueError(f"optional stops: expected one of {', '.join(OPTIONAL_STOPS)}, got {choice!r}")

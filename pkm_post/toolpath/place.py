@@ -48,7 +48,7 @@ _NO_CORNER = 1e-6
 _AT_ONCE = 1 << 14
 """Joints in one pass: the working arrays take more memory than the result."""
 _AT_JOINTS = ("kind", "tip", "axis", "arc_centre", "arc_axis", "sweep", "length", "angle")
-"""Columns that say whether the path goes on smoothly."""
+"""Columns that determine whether the path continues smoothly."""
 _TANGENT = np.radians(0.1)
 """rad: rounding of tangents by the decimals of a program; an exact path does not stop for it."""
 _BEYOND_REACH = 10
@@ -115,7 +115,7 @@ def _path_columns(placed: Program, machine: Machine) -> dict[str, Any]:
     turns = x | y | z
     checkpoint()
     angle[turns] = angle_between(axis_before[turns], axis[turns])
-    # At a tool change the platform stands still: the tip of a longer tool starts lower.
+    # At a tool change the platform is at rest: the tip of a longer tool starts lower.
     longer = np.diff(gauge_lengths(placed.tools, tool), prepend=placed.tools[int(tool[0])].length)
     tip_before = np.vstack([machine.home_tip, tip[:-1]]) - longer[:, None] * axis_before
     checkpoint()
@@ -195,7 +195,7 @@ def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterat
 
 
 def _of_tools(program: Program, machine: Machine, number: Array) -> Iterator[Diagnostic]:
-    """The tools in use that the spindle does not accept, each at its first use."""
+    """Tools in use that do not fit the spindle, each at its first use."""
     for used in map(int, distinct(number)):
         tool, place = program.tools[used], program.place(int(np.argmax(number == used)))
         for what, size, most in (
@@ -217,7 +217,7 @@ def _first_of_each(operation: Array, wrong: Array) -> list[int]:
 
 
 def _columns(placed: Program, way: dict[str, Any], keep: Array, events: tuple[Event, ...]) -> dict[str, Any]:
-    """Columns of the trajectory: the path without rows that stand still, and the transition from each row to the next.
+    """Columns of the trajectory: the path without rows without motion, and the transition from each row to the next.
 
     Args:
         placed: the program in {M}.
@@ -250,7 +250,7 @@ def _stops(events: tuple[Event, ...], segments: int) -> Array:
     """Segments that end at standstill, (N,): before an event, in a thread, and at the end of the program."""
     stops = np.zeros(segments, dtype=bool)
     stops[[event.row - 1 for event in events if event.row > 0]] = True
-    for thread in threads(events):  # where the tap turns round
+    for thread in threads(events):  # where the tap reverses
         stops[thread.first : thread.end] = True
     stops[-1:] = True
     return stops
@@ -266,7 +266,7 @@ def _exact_corners(exact_path: Array, columns: dict[str, Any], tip_before: Array
 def corners(columns: dict[str, Any], tip_before: Array) -> Array:
     """Segments with a corner of the tip path at their end, (N,); never the last.
 
-    A tip that stands still while the tool turns has a corner at both ends. The tool axis does not count.
+    A turn in place has a corner at both ends. The tool axis does not count.
 
     Args:
         columns: kind, tip, arc_centre, arc_axis, sweep of N segments.
@@ -312,7 +312,7 @@ def _jump_of_rate(columns: dict[str, Any], axis_before: Array) -> Array:
 
 
 def _tangents(columns: dict[str, Any], tip_before: Array) -> tuple[Array, Array]:
-    """Unit tangents of the tip path at start and end of the segments, (N, 3) each; zero where the tip stands still."""
+    """Unit tangents of the tip path at start and end of the segments, (N, 3) each; zero where the tip does not move."""
     way = columns["tip"] - tip_before
     at_start = _directions(way)
     at_end = at_start.copy()

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Segments: the tool path before corner rounding, each segment parametrized by its own path length.
 
-Path length u is the distance travelled by the tip; where the tip (nearly) stands and only the axis turns, a degree
+Path length u is the distance travelled by the tip; where the tip is (nearly) at rest and only the axis turns, a degree
 counts as a millimetre, so that F in mm/min becomes degrees per minute, as on CNC controls. A segment can be evaluated
-beyond its ends, which the blends need. Units: mm, rad.
+beyond its ends, as the blends need. Units: mm, rad.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class ArcSegments:
 
 @dataclass(frozen=True)
 class Segments:
-    """Columns of N segments, ready for evaluation; one row stands for N equal ones.
+    """Columns of N segments, ready for evaluation; one row may represent N equal ones.
 
     Attributes:
         extent: (N,) path length.
@@ -114,14 +114,14 @@ class Segments:
         return replace(self, extent=extent, splines=splines)
 
     def in_one_curve(self) -> Array:
-        """Joints at which the curve of a run goes on, (N - 1,)."""
+        """Joints within the curve of a run, (N - 1,)."""
         within, row = np.zeros(len(self) - 1, dtype=np.bool_), self.splines.row
         same = (np.diff(row) == 1) & (np.diff(self.splines.first) == 0)
         within[row[:-1][same]] = True
         return within
 
     def in_one_piece(self, first: int, last: int) -> Array:
-        """Joints from one segment to another, (last - first,), at which one piece of a curve goes on."""
+        """Joints from one segment to another, (last - first,), that are within one piece of a curve."""
         part = slice(*np.searchsorted(self.splines.row, [first, last + 1]))
         row, within = self.splines.row[part], np.zeros(last - first, dtype=np.bool_)
         same = (np.diff(row) == 1) & (np.diff(self.splines.piece_at(self.splines.place[part], part)) == 0)
@@ -202,5 +202,5 @@ class Segments:
 
 
 def _by_length(change: Array, extent: Array) -> Array:
-    """Changes over a segment by its path length; one row of zeros stands for all if there are none."""
+    """Changes over a segment by its path length; a single row of zeros if there are none."""
     return change if is_uniform(change) and not change.any() else change / extent

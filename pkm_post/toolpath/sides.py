@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Sides: a program for a part that is turned over by hand becomes one program for each clamping.
 
-CAM systems write all set-ups of a part into one file, in the frame of the part. Where it is turned over, the tool axis
-turns by half a turn from one row to the next, which no machine follows. A side begins with the spindle, the coolant and
-the tool that the rows before it have left, as the file does not say them again, and ends with spindle and coolant off.
+CAM systems write all set-ups of a part into one file, in the frame of the part. Where the part is turned over, the tool
+axis turns by half a turn from one row to the next, which no machine can follow. A side starts with the spindle, coolant
+and tool set by the rows before it, since the file does not repeat them, and ends with spindle and coolant off.
 
 Input: a program in {C}. Output: the rows and events of one side.
 """
@@ -30,7 +30,7 @@ def with_side(program: Program, side: int | None) -> tuple[Program | None, Findi
 
     Args:
         program: rows with their tool axes in {C}.
-        side: its number, from 1; None for the program as it is.
+        side: its number, from 1; None for the whole program.
 
     Returns:
         The side, or None and K153 if the program has no such side.
@@ -76,7 +76,7 @@ def _as_start(columns: dict[str, Array]) -> dict[str, Array]:
 
 
 def _events(program: Program, begin: int, end: int) -> tuple[Event, ...]:
-    """What earlier rows have switched on, the side's own events, and spindle and coolant off where it is not the last.
+    """The modal state from earlier rows, the side's own events, and spindle and coolant off unless it is the last.
 
     Events between the last row of a side and the first of the next prepare the next one.
     """
@@ -93,5 +93,5 @@ def _events(program: Program, begin: int, end: int) -> tuple[Event, ...]:
 
 
 def _ends_thread(event: Event) -> bool:
-    """Whether an event belongs to the row before it: the spindle ends to be an axis where a thread ends."""
+    """Whether an event belongs to the row before it, like the end of a thread."""
     return event.kind is EventKind.SPINDLE_AXIS and event.value == 0

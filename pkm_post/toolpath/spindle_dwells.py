@@ -72,7 +72,7 @@ def _waited(events: tuple[Event, ...], ramp: _Ramp) -> Iterator[Event]:
             coasting = 0.0 if event.value else speed or coasting
             speed = event.value
         else:
-            if event.kind is EventKind.SPINDLE_AXIS:  # its code has stopped the spindle
+            if event.kind is EventKind.SPINDLE_AXIS:  # its code stops the spindle
                 speed, coasting = 0.0, 0.0
             yield event
 

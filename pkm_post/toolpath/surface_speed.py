@@ -74,7 +74,7 @@ def with_surface_speed(
 
 
 def _cutter(program: Program, number: int, rows: Array) -> tuple[Cutter | None, tuple[Diagnostic, ...]]:
-    """The cutter of a tool; its corner matters only for programs with normals."""
+    """The cutter of a tool; its corner is needed only for programs with normals."""
     tool = program.tools[number]
     normals = bool(np.isfinite(program.normal[rows]).all(axis=1).any())
     return known_cutter(replace(tool, corner_known=tool.corner_known or not normals), Place(program.source))
@@ -90,7 +90,7 @@ def _contact_diameter(program: Program, cutter: Cutter, rows: Array) -> Array:
 
 
 def _in_force(program: Program, kind: EventKind) -> Array:
-    """The value of the latest event of a kind on each row, (N,); NaN before the first."""
+    """The active value of a kind of event on each row, (N,); NaN before the first."""
     events = [event for event in program.events if event.kind is kind]
     values = np.array([np.nan, *(event.value for event in events)])
     in_force: Array = values[np.searchsorted([event.row for event in events], np.arange(len(program)), side="right")]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Threads: what a spindle that is an axis asks of a program, and what does not go with it.
+"""Threads: requirements of a spindle as an axis on a program, and features it excludes.
 
 Input: a program with threads, and the machine. Output: the highest feed on their rows, and diagnostics. A thread is
-made of feed moves along the tool axis; a mirror image would need another tap, and a thread that is cut backwards comes
-to an end before it begins. Units: mm, mm/s.
+made of feed moves along the tool axis. A mirror image would need another tap, and a thread cut backwards would end
+before it starts. Units: mm, mm/s.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pkm_post.geometry import Array, norm
 from pkm_post.model import Amount, Diagnostic, Kind, Machine, Phrase, Program, threads
 
 _SPEED_SHARE = 0.95
-"""Share of the spindle's speed that is planned: the controller's cubics oscillate slightly about it."""
+"""Planned share of the spindle's speed limit: the controller's cubics oscillate slightly about it."""
 _ASIDE = 1e-6
 """mm, and of unit axes: rounding of work offsets."""
 
@@ -31,7 +31,7 @@ def thread_feeds(program: Program, machine: Machine) -> Array:
 
 
 def thread_faults(program: Program, machine: Machine, tip_before: Array, axis_before: Array) -> Iterator[Diagnostic]:
-    """What is against the threads of a program.
+    """Faults of the threads of a program.
 
     Args:
         program: in {M}.
@@ -63,11 +63,11 @@ def thread_faults(program: Program, machine: Machine, tip_before: Array, axis_be
 
 
 def without_threads(program: Program, purpose: str) -> tuple[Diagnostic, ...]:
-    """K157 for a program with threads, where they cannot be.
+    """K157 for a program with threads where they are not supported.
 
     Args:
         program: any.
-        purpose: what it is for, in words.
+        purpose: its purpose, as text.
     """
     found = threads(program.events)
     return (Diagnostic("K157", program.place(found[0].first), purpose),) if found else ()

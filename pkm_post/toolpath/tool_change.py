@@ -158,7 +158,7 @@ def _end_of(program: Program, row: int) -> ToolPose:
 
 
 def _goes_on(program: Program, machine: Machine, row: int) -> ToolPose | None:
-    """Target pose of the route back: the end of a rapid row, else the start of the row; None at the end."""
+    """Target pose of the route back: the end of a rapid row, else its start; None at the end of the program."""
     if row == len(program):
         return None
     return _end_of(program, row) if program.kind[row] == Kind.RAPID else _pose_before(program, machine, row)
@@ -191,7 +191,7 @@ def _low_tips(program: Program, pose: ToolChange, changes: tuple[_Tools, ...]) -
 
 
 def _flat_axes(program: Program, machine: Machine, pose: ToolChange, rows: list[int]) -> Iterator[Diagnostic]:
-    """Diagnostics of route ends before these rows from which no height is gained."""
+    """Diagnostics of route ends before these rows from which a retract gains no height."""
     for row in rows:
         for end in (_pose_before(program, machine, row), _goes_on(program, machine, row)):
             if end is not None and not end.rises_to(pose.safe_height):
@@ -201,11 +201,11 @@ def _flat_axes(program: Program, machine: Machine, pose: ToolChange, rows: list[
 
 
 _APPROACH, _CHANGE = "approach", "tool change T"
-"""Names of the operations that are added; behind the latter comes the number of the tool."""
+"""Names of the operations that are added; the number of the tool follows the latter."""
 
 
 def is_detour(operation: str) -> bool:
-    """Whether an operation has this name: a way to a tool change and back, or an approach."""
+    """Whether an operation has this name: a route to a tool change and back, or an approach."""
     return operation == _APPROACH or operation.startswith(_CHANGE)
 
 

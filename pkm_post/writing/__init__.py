@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Writing: trajectory files, controller programs, G-code and what stands beside them."""
+"""Writing: trajectory files, controller programs, G-code, and the files beside them."""
 
 from typing import TYPE_CHECKING
 

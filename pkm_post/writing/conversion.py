@@ -31,7 +31,7 @@ def convert(
         inch: whether to write inches.
 
     Returns:
-        The diagnostics; the file is written only if none is an error.
+        The diagnostics; nothing is written if one is an error.
 
     Raises:
         ValueError: the target or the suffix of the file is not known.

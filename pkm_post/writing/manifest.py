@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Manifest: files of one posting with their fingerprints, so that no reader mixes files of two postings.
+"""Manifest: files of one posting with their fingerprints, to detect files of different postings.
 
-Writing: from a folder with the results of a posting to ``STEM-manifest.json`` beside them. Checking: from any of the
-results to the manifest, if every listed file is present and unchanged, or to the fault.
+Writing: from a folder with the results of a posting to ``STEM-manifest.json`` beside them. Checking: from any result to
+its manifest, if every listed file is present and unchanged, or to the fault.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _FORMAT = 1
 _BINARY = (result_files.TRAJECTORY, ".png")
 """Suffixes of binary results."""
 _MOST_BYTES = 1 << 24
-"""Largest manifest that is read: a hundred thousand program parts need less."""
+"""Largest manifest that is read: enough for a hundred thousand program parts."""
 _AT_ONCE = 1 << 20
 """Bytes per pass."""
 _FINGERPRINT = re.compile("[0-9a-f]{64}")
@@ -66,7 +66,7 @@ def write(folder: Path, stem: str, known: Mapping[str, str] = MappingProxyType({
     """Write the manifest of all files in a folder into it; identical files yield identical bytes.
 
     Args:
-        folder: the results, and nothing else.
+        folder: contains only the results.
         stem: their stem.
         known: fingerprints of large files that were computed before, by name.
     """

@@ -25,10 +25,10 @@ _CHARACTERS_AT_ONCE = 1 << 20
 
 
 def left_over(program: Path, names: Collection[str], earlier: Collection[str] = ()) -> Findings:
-    """The warning that files of an earlier result remain beside a new one, or nothing.
+    """Warn if files of an earlier result remain beside a new one.
 
-    A smaller memory gives more parts, the program may have had another suffix, and the additional files may have
-    changed: leftovers appear to belong to the new program.
+    A smaller memory gives more parts, and the suffix of the program or the additional files may have changed: leftovers
+    then appear to belong to the new program.
 
     Args:
         program: path of the motion program.

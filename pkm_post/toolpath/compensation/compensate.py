@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Compensation of a program: contours in 2D, and tips along surface normals in 3D for the cutters in the spindle.
 
-Takes a program as read; returns one whose tips are where the tool has to go. Compensation precedes symmetry and the
+Takes a program as read; returns it with the compensated tips. Compensation precedes symmetry and the
 work offset: a mirror would swap left and right.
 """
 
@@ -33,7 +33,7 @@ def compensate(
 
     Args:
         program: with side offsets, normals, or neither.
-        contours: how contours are offset.
+        contours: options of contour offsets.
         actual: by number, the tools whose cutters differ from those the program was made for.
     """
     moved, diagnostics = _with_contours(program, contours) if program.side_offset.any() else (program, ())
@@ -49,7 +49,7 @@ def compensate(
 
 
 def _with_tips(program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """Make tool tips of contact points, by the cutter of each tool; other rows are tips and stay.
+    """Convert contact points to tool tips, by the cutter of each tool; rows that are tips are unchanged.
 
     Returns:
         The program, or None when a row cannot be compensated; and the diagnostics: N101 to N107, N109 and N117.
@@ -108,7 +108,7 @@ def _for_cutter(program: Program, number: int, actual: Tool) -> tuple[Program | 
     tool = program.tools[number]
     ground_tool = replace(actual, number=number, name=tool.name, length=tool.length)
     if program.contact[_rows_of(program, number if len(program.tools) > 1 else None)].any():
-        # contact points were made for no cutter
+        # contact points are independent of the cutter
         return replace(program, tools=program.tools | {number: ground_tool}), ()
     nominal, faults = known_cutter(tool, place)
     ground, more = known_cutter(actual, place)

@@ -56,7 +56,7 @@ def tip_from_contact(
         normals: (N, 3) surface normals n there, towards the tool, of any length.
         axes: (N, 3) tool axes k from the tip towards the spindle, of any length.
         cutter: the cutter.
-        place: what diagnostics name; the row number, from 1, becomes their line.
+        place: place for diagnostics; the row number, from 1, becomes their line.
 
     Returns:
         The tips (N, 3) in mm, or None when a row cannot be compensated; and the diagnostics: N101 to N106.
@@ -91,7 +91,7 @@ def tip_shift(
         actual: the cutter in the spindle: r2, e2, f2.
         points: (N, 3) tips or contact points in order of travel, mm; they give the direction of travel where a path
             begins with n parallel to k.
-        place: what diagnostics name; the row number, from 1, becomes their line.
+        place: place for diagnostics; the row number, from 1, becomes their line.
 
     Returns:
         The shifts (N, 3) in mm, or None when a row has none; and the diagnostics: N101 to N106.
@@ -240,7 +240,7 @@ def _moving_sum(rows: Array) -> Array:
 
 
 def _filled(points: Array, m: Array, k: Array) -> Array:
-    """Directions with missing rows filled: the first rule that yields one decides."""
+    """Directions with missing rows filled: the first rule that yields one counts."""
     along_path = unit_across(_travel(points), k)
     m[:1] = np.where(np.isnan(m[:1]), along_path[:1], m[:1])
     known = ~np.isnan(m).any(axis=1)

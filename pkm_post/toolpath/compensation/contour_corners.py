@@ -76,7 +76,7 @@ def transitions(
         first: (J,) the elements that end at the corners.
         second: (J,) those that begin there. If one is not the next element, those between were removed, and the
             remaining two have to meet.
-        options: how contours begin and end.
+        options: options of corners and leads.
         rounded: (J,) whether an outer corner is rounded by an arc.
     """
     corner = corner_geometry(elements, first, second)
@@ -108,7 +108,7 @@ def _kinds(
     options: OffsetOptions,
     rounded: Array,
 ) -> Array:
-    """Kinds of the corners, (J,): the first rule that holds decides."""
+    """Kinds of the corners, (J,): the first rule that holds counts."""
     offset = elements.offset[second]
     lead = (elements.role[first] == Role.START) | (elements.role[second] == Role.CANCEL)
     adjacent = second == first + 1

@@ -25,7 +25,7 @@ PARALLEL = 1e-5
 _LEAST_COSINE = 0.5
 """An axis tilted by more than 60 degrees that does not lie in the plane is ambiguous."""
 _STANDS = 1e-6
-"""mm in the plane below which a row counts as standing still: shorter moves have no reliable direction."""
+"""mm in the plane: a shorter move has no reliable direction and counts as no motion."""
 
 
 class Role(enum.IntEnum):

@@ -4,7 +4,7 @@
 Takes the program, the compensated program and its source rows; returns diagnostics. Every row of a contour is checked
 against every element of the same contour that bounds the workpiece, not only its neighbours. These are the cutting rows
 or, of a path that closes, those of the closed part: elements before and after it, such as lead-in arcs, lie on the side
-of the tool, which passes over them. Rows below the tip are not touched, and the path of a larger tool bounds no part.
+of the tool, which passes over them. Rows below the tip are not touched, and the path of a larger tool is no wall.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ def _by_row(program: Program, elements: ContourElements) -> tuple[Array, Array]:
     number[elements.row] = np.arange(len(elements))
     latest = np.maximum.accumulate(number)
     inside = latest >= 0
-    # Rows that stand still in the plane between two elements belong to the contour too.
+    # Rows without motion in the plane between two elements belong to the contour, too.
     ended = (elements.role[latest] == Role.CANCEL) & (number < 0)
     inside &= ~ended
     contour[inside] = elements.contour[latest[inside]]

@@ -27,7 +27,7 @@ from pkm_post.toolpath.compensation.contour_gouge import gouges
 from pkm_post.toolpath.compensation.offset_options import OffsetOptions
 
 _UNMET = 1e30
-"""mm: missing length of elements that do not meet their neighbours; more than any corner takes."""
+"""mm: missing length of elements that do not meet their neighbours; more than at any corner."""
 _COPIED = (
     "tool_axis",
     "feed",

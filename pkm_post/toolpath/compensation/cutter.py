@@ -154,10 +154,10 @@ def known_cutter(tool: Tool, place: Place) -> tuple[Cutter | None, tuple[Diagnos
 
     Args:
         tool: the tool.
-        place: what diagnostics name.
+        place: place for diagnostics.
 
     Returns:
-        The cutter, or None; and diagnostics of what is unknown: N109, N117.
+        The cutter, or None; and diagnostics of unknown sizes: N109, N117.
     """
     try:
         cutter = Cutter.of(tool)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Offset options: how 2D compensation rounds corners, leads in and out, and treats what is too narrow for the tool."""
+"""Offset options: rounding of corners, leads, and treatment of rows too narrow for the tool in 2D compensation."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ CHOICES = {"corners": ("chord", "arc"), "leads": ("A", "B"), "swallowed": ("refu
 
 @dataclass(frozen=True)
 class OffsetOptions:
-    """How contours are offset.
+    """Options of contour offsets.
 
     Attributes:
-        corners: how outer corners are rounded. "chord": the offset lines are extended until they meet, and beyond a
+        corners: rounding of outer corners. "chord": the offset lines are extended until they meet, and beyond a
             right angle are cut off by a chord, as in the paper; "arc": an arc around the corner, as in LinuxCNC.
         leads: "A" leads straight to and from the offset point at the end of the contour; "B" goes around outer corners.
         swallowed: treatment of rows that the tool is too large for: "refuse" the program, or "remove" them.

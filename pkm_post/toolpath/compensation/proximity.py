@@ -48,7 +48,7 @@ class Chords:
 
 
 def close_pairs(paths: Chords, walls: Chords, tolerance: float) -> tuple[Array, Array, Array]:
-    """Pairs of segments closer than the smaller clearance of both, less the tolerance.
+    """Pairs of segments closer than the smaller of their clearances minus the tolerance.
 
     Pairs belong to one contour, and a wall counts where it is not below the path.
 

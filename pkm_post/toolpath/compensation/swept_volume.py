@@ -131,8 +131,8 @@ def _entries(
 ) -> StockLeft:
     """Where the lines through the points along their normals enter the swept volume.
 
-    The steps terminate: all but the last are longer than ``enough``, and those of one point have the same sign. None
-    leaves the volume again, and none is too long by more than ``enough``.
+    The steps terminate: all but the last are longer than ``enough``, and those of one point have the same sign. No
+    step leaves the volume again or is too long by more than ``enough``.
     """
     left, row = np.zeros(len(start)), np.full(len(start), -1, dtype=np.int64)
     open_rows = np.arange(len(start))
@@ -257,7 +257,7 @@ class SweptVolume:
         return half, np.maximum(way[last] - way[half], way[half] - way[first]), last - first
 
     def _step_distances(self, points: Array, steps: Array) -> tuple[Array, Array]:
-        """Distances of points where steps begin, and the least that they can be within the steps, (N, K) each."""
+        """Distances of points where steps begin, and their lower bounds within the steps, (N, K) each."""
         last = np.append(np.diff(steps) > 1, True)
         begin = self._to_poses(points, steps)
         end = np.empty_like(begin)

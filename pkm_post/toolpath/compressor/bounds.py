@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Bounds of splines: the most that the derivatives of tip, axis and spin can be on each row of a run.
+"""Bounds of splines: upper bounds of the derivatives of tip, axis and spin on each row of a run.
 
-A polynomial is nowhere outside the hull of its Bezier coefficients, so the largest of their magnitudes bounds it on the
+A polynomial stays within the hull of its Bezier coefficients, so the largest of their magnitudes bounds it on the
 whole piece. The axis is the direction k = v / m of a vector polynomial: with n the least of m, |k'| <= |v'| / n and
 |k''| <= |v''| / n + 3 |v'|^2 / n^2. Units: mm, rad, by path length.
 """

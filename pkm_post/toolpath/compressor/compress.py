@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Compressor: runs of short lines of a trajectory become smooth curves of tip, tool axis and spin within tolerance.
 
-Input: a trajectory and what the curves may be off. Output: ``Splines``. Where no curve stays within that, rows remain
+Input: a trajectory and the allowed deviations. Output: ``Splines``. Where no curve stays within them, rows remain
 lines, and the rest of their run is tried again without them.
 """
 
@@ -23,7 +23,7 @@ from pkm_post.toolpath.segments import Segments
 _ROWS_AT_ONCE = 16384
 """Rows of runs in one pass: the working arrays of one pass stay in the processor's cache."""
 _ATTEMPTS = 3
-"""Attempts to fit a run; in each next one without the rows where the one before failed."""
+"""Attempts to fit a run; each without the rows that failed in the previous one."""
 _WORTH = 0.5
 """Share of a run that may fail; if more does, its noise is beyond the tolerance, and all of it remains lines."""
 
@@ -34,8 +34,8 @@ def compress(trajectory: Trajectory, segments: Segments, tip: Array, axis: float
     Args:
         trajectory: N segments.
         segments: the same as programmed.
-        tip: (N,) what the tip may be off its segment, mm.
-        axis: what tool axis and spin may be off, rad.
+        tip: (N,) allowed deviation of the tip from its segment, mm.
+        axis: allowed deviation of tool axis and spin, rad.
     """
     begin, count = runs(trajectory, segments.extent, tip, axis)
     turns = _turn(segments, begin, count)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Deviation: how far places of polylines are off from a curve, in tip, tool axis and spin.
+"""Deviation: deviations of places on polylines from a curve, in tip, tool axis and spin.
 
-The curve is compared across the path: with its place where the tip is nearest, to first order. Columns are (C, N): tip,
+The reference on the curve is the place nearest to the tip, to first order. Columns are (C, N): tip,
 and tool axis and spin where these change. Units: mm, rad.
 """
 
@@ -17,7 +17,7 @@ from pkm_post.toolpath.compressor.splines import AXIS, SPIN, TIP
 
 @dataclass(frozen=True)
 class Allowed:
-    """What the curve may be off, in columns of N rows or places.
+    """Allowed deviations of the curve, in columns of N rows or places.
 
     Attributes:
         tip: (N,) mm.
@@ -32,7 +32,7 @@ class Allowed:
 
 
 def deviation(point: Array, curve: Array, slope: Array) -> tuple[Array, Array]:
-    """How points are off from the nearest places of a curve, (C, N); and how far ahead these are, (N,).
+    """Deviations of points from the nearest places of a curve, (C, N); and how far ahead these are, (N,).
 
     Args:
         point: (C, N) points of polylines.
@@ -49,7 +49,7 @@ def deviation(point: Array, curve: Array, slope: Array) -> tuple[Array, Array]:
 
 
 def by_allowed(off: Array, allowed: Allowed) -> tuple[Array, Array]:
-    """Deviations of the tip, and of axis or spin, by what is allowed, (N,) each."""
+    """Deviations of the tip, and of axis or spin, relative to those allowed, (N,) each."""
     tip = length_of(*off[TIP]) / allowed.tip
     if not len(off[AXIS]):
         return tip, np.zeros_like(tip)

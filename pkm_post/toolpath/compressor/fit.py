@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Fit: smooth curves of runs as pieces, the place of each row on them, and how far each row is off.
+"""Fit: smooth curves of runs as pieces, the place of each row on them, and the deviation of each row.
 
-Input: polylines of tip, tool axis and spin, and what curves may be off. Output: pieces that join with continuous
-second derivatives, and for each row the largest deviation by what is allowed. Where that is above 1, the curve is of no
-use. A curve is shorter than a polyline with noise, so the parameter is scaled to the length of the curve.
+Input: polylines of tip, tool axis and spin, and the allowed deviations. Output: pieces that join with continuous second
+derivatives, and for each row the largest deviation relative to the allowed one; above 1 the curve is useless there. A
+curve is shorter than a noisy polyline, so the parameter is scaled to the length of the curve.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ _CHECKED = np.array([0.25, 0.5, 0.75, 1.0])
 """Shares of each row at which the result is measured."""
 _NEWTON_STEPS = 2
 _LONGER = 0.3
-"""Share by which the curve of a row may be longer or shorter than the row; else it is of no use."""
+"""Largest relative difference in length of a row and its curve; beyond it the curve is useless."""
 
 
 def fit(point: Array, extent: Array, count: Array, allowed: Allowed) -> tuple[Splines, Array]:
-    """Curves of R runs, with rows numbered from 0 on; and the deviation of each row by what is allowed, (n,).
+    """Curves of R runs, with rows numbered from 0; and the relative deviation of each row, (n,).
 
     Args:
-        point: (7, n + R) vertices: tip, tool axis, spin; or (3, n + R), the tip alone.
+        point: (7, n + R) vertices: tip, tool axis, spin; or (3, n + R), the tip only.
         extent: (n,) path length of each row, mm.
         count: (R,) number of rows of each run.
-        allowed: (n,) deviations on each row.
+        allowed: (n,) allowed deviations on each row.
     """
     polyline = Polylines.of(point, extent, count)
     splines = _as_splines(polyline, fitted_curves(polyline, allowed))
@@ -71,7 +71,7 @@ def _as_splines(polyline: Polylines, curves: Curves) -> Splines:
 
 
 def _nearer(splines: Splines, polyline: Polylines) -> Splines:
-    """The curves with rows that end nearer to their programmed points: one step of Newton's method."""
+    """Move the ends of rows nearer to their programmed points by one step of Newton's method."""
     end = polyline.starts + 1
     value, slope = splines.within(splines.row, splines.extent, splines.powers)
     _, ahead = deviation(polyline.point[:, end], value, slope)
@@ -81,7 +81,7 @@ def _nearer(splines: Splines, polyline: Polylines) -> Splines:
 
 
 def _scaled(splines: Splines, polyline: Polylines) -> Splines:
-    """The curves with path lengths that are, from end to end of each run, those of the tip."""
+    """Scale the parameter to the path length of the tip over each run."""
     row, run = splines.row, polyline.run[polyline.starts]
     _, slope = splines.within(row, splines.extent / 2, splines.tip)
     travel = np.bincount(run, length_of(*slope) * splines.extent)
@@ -98,7 +98,7 @@ def _scaled(splines: Splines, polyline: Polylines) -> Splines:
 
 
 def _off(splines: Splines, polyline: Polylines, allowed: Allowed) -> Array:
-    """The largest deviation on each row by what is allowed, (n,)."""
+    """The largest relative deviation on each row, (n,)."""
     places = PolylinePoints.of(polyline, _CHECKED)
     u = (splines.extent[:, None] * _CHECKED).ravel()
     value, slope = splines.within(places.row, u, splines.powers)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Levels: the coefficients of the curves of runs, from a coarse grid to as fine ones as the tolerance needs.
+"""Levels: fit the coefficients of the curves of runs, from a coarse grid to grids as fine as the tolerance needs.
 
-Input: polylines and what the curve may be off. Output: coefficients on the finest grid, and the nodes between which
-the curve is one polynomial. On the coarsest grid the curve averages the polyline. On each finer one it follows the
-polyline more closely where much is off by too much, and elsewhere takes away only what is too much at single places: a
-vertex off by noise bends the curve no more than it must. Where nothing is off, the curve of the coarser grid remains.
+Input: polylines and the allowed deviations. Output: coefficients on the finest grid, and the nodes between which the
+curve is one polynomial. On the coarsest grid the curve averages the polyline. On each finer one it follows the polyline
+more closely where many places exceed the allowed deviation, and elsewhere only removes the excess at single places, so
+that a noisy vertex bends the curve no more than necessary. Where nothing exceeds it, the coarser curve remains.
 """
 
 from __future__ import annotations
@@ -31,23 +31,23 @@ from pkm_post.toolpath.compressor.uniform_splines import (
 _ROWS_IN_CELL = 8
 """Rows in a cell of the coarsest grid, on average."""
 _AVERAGED = 3
-"""Of these grids the number whose cells hold enough places for an average."""
+"""Number of grids whose cells have enough places for an average."""
 _PASSES = 3, 3, 3, 8
-"""Corrections of single places on each grid after the coarsest, with cells half as wide each: down to half a row."""
+"""Correction passes on each grid after the coarsest; each halves the cells, down to half a row."""
 _PATIENCE, _HOPELESS = 2, 0.6
-"""After so many of these grids, a run of which this share is off is given up: its tolerance is too tight for it."""
+"""After this number of grids, runs with this share of places in excess are abandoned as hopeless."""
 _AIM = 0.9
-"""Deviation by what is allowed above which the curve is corrected."""
+"""Relative deviation above which the curve is corrected."""
 _LEFT = 0.5
-"""Deviation by what is allowed that a correction of a single place leaves."""
+"""Relative deviation left by the correction of a single place."""
 _SHARES = np.array([0.5, 1.0])
 """Shares of each row at which the curve is compared."""
 _WINDOW_CELLS = 4
-"""Cells about a node, half of them on either side."""
+"""Cells around a node, half of them on either side."""
 _DENSE = 0.25
-"""Share of the places in these cells that are off, from which on the curve follows the polyline there."""
+"""Share of places in excess within these cells at which the curve follows the polyline there."""
 _MOST = 0.7
-"""Share of the places from which on all are computed, which takes no copies."""
+"""Share of the places at which all are computed, which avoids copies."""
 _CELLS_AT_END = 2
 """Cells over which the curvature at the end of a run is averaged."""
 
@@ -75,7 +75,7 @@ class Curves:
         return Curves(grids, coefficients, self.bend, grids.first[run] + 2 * number)
 
     def changed(self, coefficients: Array, where: Array, bend: Array) -> Curves:
-        """With other coefficients in the columns ``where``: the cells that they reach become pieces."""
+        """Replace coefficients in the columns ``where``; the cells they affect become pieces."""
         run, number = self.grids.nodes
         node = self.grids.first[run] + number
         begin = node[(number < self.grids.cells[run]) & reached(where)[node - SUPPORT // 2 + 1]]
@@ -83,7 +83,7 @@ class Curves:
 
 
 def fitted_curves(polyline: Polylines, allowed: Allowed) -> Curves:
-    """The smoothest curves within what is allowed on each row of the polylines, as far as they were found."""
+    """Fit the smoothest curves within the allowed deviations of each row; some runs may exceed them."""
     count = polyline.end - polyline.begin
     search = _Search(
         polyline, allowed, Grids(polyline.length, np.maximum(1, np.rint(count / _ROWS_IN_CELL).astype(int)))
@@ -102,7 +102,7 @@ def fitted_curves(polyline: Polylines, allowed: Allowed) -> Curves:
 
 
 class _Search:
-    """The curves of one level, and which places of the polylines are off from them by too much: ``wrong``."""
+    """The curves of one level; ``wrong`` marks places of the polylines that deviate too far."""
 
     def __init__(self, polyline: Polylines, allowed: Allowed, grids: Grids) -> None:
         self._polyline, self._places = polyline, PolylinePoints.of(polyline, _SHARES)
@@ -116,7 +116,7 @@ class _Search:
         self._compare(slice(None))
 
     def _compare(self, at: Array | slice) -> None:
-        """Find out which of these places are off by too much, and by what."""
+        """Update ``wrong`` and the deviations at these places."""
         off, _ = deviation(_some(self._places.point, at), *_some(self._state, at))
         by = by_allowed(off, self._allowed[at])
         wrong = np.flatnonzero(np.maximum(*by) > _AIM)
@@ -124,20 +124,20 @@ class _Search:
         self._off, self._by = off[:, wrong], [one[wrong] for one in by]
 
     def give_up(self) -> None:
-        """Leave runs as they are of which too much is off."""
+        """Abandon runs with too many places in excess."""
         run = self._places.run
         hopeless = np.bincount(run[self.wrong], minlength=run[-1] + 1) > _HOPELESS * np.bincount(run)
         kept = np.flatnonzero(~hopeless[run[self.wrong]])
         self.wrong, self._off, self._by = self.wrong[kept], self._off[:, kept], [one[kept] for one in self._by]
 
     def refine(self) -> None:
-        """Go to the next grid."""
+        """Go to the next finer grid."""
         self.curves = self.curves.refined()
         self._column, self._share = self.curves.grids.locate(self._places.run, self._places.s)
         self._weights: Array | None = None
 
     def follow(self) -> None:
-        """Average the polyline on this grid where much is off."""
+        """Average the polyline on this grid where many places are in excess."""
         curves, polyline, column = self.curves, self._polyline, self._column
         grids = curves.grids
         every, wrong = (_about_nodes(grids, at) for at in (column, column[self.wrong]))
@@ -152,7 +152,7 @@ class _Search:
             self._compare(at)
 
     def correct(self) -> None:
-        """Take away what is too much at single places."""
+        """Remove the excess at single places."""
         if not len(self.wrong):
             return
         excess = self._off * 1.0
@@ -170,7 +170,7 @@ class _Search:
         self._compare(at)
 
     def _reached_by(self, where: Array) -> Array | slice:
-        """The places at which the curve changes with some coefficients, and those that are off; or all."""
+        """Places affected by some coefficients, and those in excess; or all."""
         again = reached(where)[self._column]
         again[self.wrong] = True
         at = np.flatnonzero(again)
@@ -178,7 +178,7 @@ class _Search:
 
 
 def _some(columns: Array, at: Array | slice) -> Array:
-    """Some of columns, (..., N)."""
+    """Columns at some places, (..., N)."""
     return columns[..., at] if isinstance(at, slice) else np.take(columns, at, axis=-1)
 
 
@@ -187,7 +187,7 @@ def _ends(polyline: Polylines, grids: Grids) -> Array:
 
 
 def _about_nodes(grids: Grids, column: Array) -> Array:
-    """The number of places in the cells about each node, from the first of their six columns; (size,)."""
+    """The number of places in the cells around each node, (size,), from the first of their six columns."""
     in_cell = np.bincount(column + SUPPORT // 2 - 1, minlength=grids.size + _WINDOW_CELLS)
     until = np.cumsum(np.concatenate([np.zeros(_WINDOW_CELLS // 2, dtype=np.int64), in_cell]))
     return np.asarray(until[_WINDOW_CELLS // 2 - 1 + _WINDOW_CELLS // 2 :] - until[: len(until) - _WINDOW_CELLS + 1])[
@@ -196,7 +196,7 @@ def _about_nodes(grids: Grids, column: Array) -> Array:
 
 
 def _with_ends(grids: Grids, where: Array) -> Array:
-    """The columns on runs only; the end of a run goes with its neighbour, and with all beyond it."""
+    """Restrict columns to runs; the end of a run follows its neighbour, and all columns beyond follow the end."""
     run, number = grids.nodes
     node = grids.first[run] + number
     inner = np.zeros(grids.size, dtype=np.bool_)
@@ -209,11 +209,11 @@ def _with_ends(grids: Grids, where: Array) -> Array:
 
 
 def _spread(grids: Grids, column: Array, weights: Array, excess: Array) -> Array:
-    """Coefficients of the least curves that pass through excesses at places, (C, size); means where these overlap.
+    """Coefficients of the smallest curves through the excesses at places, (C, size); means on overlap.
 
     Places are given by the columns of their first coefficients, (N,), and the weights of the six, (6, N).
 
-    A single excess e at weights w_k is met by c_k = w_k e / sum of w^2; where several ask for one coefficient, it is
+    A single excess e at weights w_k is met by c_k = w_k e / sum of w^2; if several share a coefficient, it is
     their mean, weighted by w_k^2 [Lee1997].
     """
     at = (column + np.arange(SUPPORT)[:, None]).ravel()
@@ -226,7 +226,7 @@ def _spread(grids: Grids, column: Array, weights: Array, excess: Array) -> Array
 
 
 def reached(where: Array) -> Array:
-    """Whether any of the six columns from each one on is meant."""
+    """Whether any of the six columns from each one on is marked."""
     some = np.cumsum(np.concatenate([[0], where]))
     last = np.minimum(np.arange(len(where)) + SUPPORT, len(where))
     return np.asarray(some[last] > some[:-1])

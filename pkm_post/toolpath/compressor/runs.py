@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs: which rows of a trajectory are short lines of one smooth movement, and may become one curve.
+"""Runs: the rows of a trajectory that are short lines of one smooth movement and may become one curve.
 
 Input: a trajectory and tolerances. Output: the first row and the number of rows of each run. A run never passes a rest
-(events, G9, G61, corners of G61.1), a change of operation, tool, feed or tolerance, or a corner that is meant.
+(events, G9, G61, corners of G61.1), a change of operation, tool, feed or tolerance, or an intended corner.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from pkm_post.model import Kind, Trajectory
 LEAST_ROWS = 6
 """Rows of the shortest run."""
 _MOST_ROWS = 1 << 15
-"""Rows of the longest run: what is computed at once."""
+"""Rows of the longest run, computed in one pass."""
 _LONGEST = 5.0
-"""mm: a longer line is meant as a line."""
+"""mm: a longer line is intended as a line."""
 _LONGER = 10.0
-"""A line that is so many times longer than both of its neighbours is meant as one."""
+"""A line this many times longer than both neighbours is intended as a line."""
 _CORNER = np.radians(20.0)
 """A larger turn is a corner, unless noise explains it."""
 _ISOLATED, _SHARPER = np.radians(2.0), 3.0
-"""A turn above the first is a corner if it is also so many times larger than those before and after it."""
+"""A turn above the first value is a corner if it is also this many times larger than both its neighbours."""
 _FEED = 0.1
-"""Relative change of the feed that ends a run; blocks with inverse time have a feed of their own each."""
+"""Relative change of the feed that ends a run; blocks with inverse-time feed each have their own."""
 _AXIS_TURN_CUBED = 2.5
 """Cube of the turn in a row by the tolerance of the axis, at most: then the direction of an even chord of the turn and
 the even turn differ by 0.02 of the tolerance."""
@@ -37,8 +37,8 @@ def runs(trajectory: Trajectory, extent: Array, tip: Array, axis: float) -> tupl
     Args:
         trajectory: N segments.
         extent: (N,) their path lengths.
-        tip: (N,) what the tip of a curve may be off, mm.
-        axis: what its tool axis may be off, rad.
+        tip: (N,) allowed deviation of the tip, mm.
+        axis: allowed deviation of the tool axis, rad.
     """
     if len(trajectory) < LEAST_ROWS:
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
@@ -50,7 +50,7 @@ def runs(trajectory: Trajectory, extent: Array, tip: Array, axis: float) -> tupl
 
 
 def divided(begin: Array, count: Array) -> tuple[Array, Array]:
-    """Runs without those that are too short, and with cuts in those that are too long."""
+    """Drop runs that are too short, and split those that are too long."""
     pieces = -(-count // _MOST_ROWS)
     run, number = expand_counts(pieces)
     first, last = (count[run] * (number + side) // pieces[run] for side in (0, 1))
@@ -81,9 +81,9 @@ def _ends(trajectory: Trajectory) -> Array:
 
 
 def _corners(trajectory: Trajectory, short: Array, tip: Array) -> Array:
-    """Corners that are meant, (N - 1,).
+    """Intended corners, (N - 1,).
 
-    Vertices that are off by what the curve may be off turn a straight line of chords c by up to 2 tip (1 / c + 1 / c').
+    Vertices within the allowed deviation turn a straight line of chords c by up to 2 tip (1 / c + 1 / c').
     """
     way, length = trajectory.tip - trajectory.tip_before(), np.where(short, trajectory.length, 1.0)
     sine, cosine = norm(cross(way[:-1], way[1:])), dot(way[:-1], way[1:])

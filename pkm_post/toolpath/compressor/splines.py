@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Splines: smooth curves of tip, tool axis and spin that stand for runs of short lines.
+"""Splines: smooth curves of tip, tool axis and spin in place of runs of short lines.
 
 A run is a sequence of rows of the trajectory; its curve is a sequence of quintic pieces that join with continuous
 second derivatives. Tip, axis and spin have the same parameter, nearly the path length of the tip: a row ends where the
 curve passes its programmed point most closely. The axis is the direction of a vector polynomial. Beyond the ends of a
-run the curve goes on as a parabola, with the same second derivative. Units: mm, rad.
+run the curve continues as a parabola with the same second derivative. Units: mm, rad.
 """
 
 from __future__ import annotations
@@ -48,14 +48,14 @@ class Splines:
 
     @classmethod
     def none(cls) -> Splines:
-        """No runs."""
+        """Splines without runs."""
         nothing, number = np.empty(0), np.empty(0, dtype=np.int64)
         powers = np.empty((_DEGREE + 1, 3, 0))
         return cls(number, nothing, nothing, number, number, nothing, nothing, powers)
 
     @classmethod
     def joined(cls, parts: list[Splines]) -> Splines:
-        """The curves of different rows in one."""
+        """Join the curves of different rows."""
         if not parts:
             return cls.none()
         length = np.array([part.begin[-1] + part.width[-1] for part in parts])
@@ -71,7 +71,7 @@ class Splines:
         return whole._rows(order)
 
     def shifted(self, distance: float, pieces: int) -> Splines:
-        """The same curves after others, of this length and number of pieces."""
+        """The same curves, placed after others of this length and number of pieces."""
         return Splines(
             self.row,
             self.place + distance,
@@ -113,7 +113,7 @@ class Splines:
         return first, np.clip(last, first, self.last)
 
     def piece_at(self, place: Array, row: Array | slice) -> Array:
-        """The pieces at places along all curves, (N,), of rows that are there."""
+        """The pieces at places along all curves, (N,), on the given rows."""
         piece = np.searchsorted(self.begin, place, side="right") - 1
         return np.clip(piece, self.first[row], self.last[row])
 
@@ -129,7 +129,7 @@ class Splines:
 
     @functools.cached_property
     def _number(self) -> Array:
-        """The same of all segments up to the last one with a curve, and of one behind it."""
+        """The same of all segments up to the last one with a curve, and one beyond."""
         number = np.full(int(self.row[-1]) + 2 if len(self.row) else 1, -1, dtype=np.int32)
         number[self.row] = np.arange(len(self.row))
         return number

@@ -2,10 +2,9 @@
 """Uniform splines: quintic B-splines on an even grid for each of many runs, all in the same columns.
 
 Run r has the length L, divided into M cells of the width h. Its curve is the sum of c_i B(s / h - i) for i = -2 to
-M + 2, with B the centred quintic B-spline: four times continuously differentiable. Beyond the ends the curve
-goes on as an odd function about the end beside a parabola with the second derivative b there: c_{-i} = 2 c_0 - c_i +
-b (i h)^2, and it meets c_0 + b h^2 / 4. Columns are (C, N):
-C coordinates of N places. [deBoor2001]
+M + 2, with B the centred quintic B-spline: four times continuously differentiable. Beyond the ends the curve minus a
+parabola with the second derivative b there continues as an odd function about the end: c_{-i} = 2 c_0 - c_i +
+b (i h)^2, and it meets c_0 + b h^2 / 4. Columns are (C, N): C coordinates of N places. [deBoor2001]
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from pkm_post.toolpath.compressor.polylines import Polylines
 _BEYOND = 2
 """Coefficients beyond each end of a run."""
 SUPPORT = 6
-"""Coefficients that reach into one cell."""
+"""Coefficients that affect a cell."""
 _POWERS = (
     np.array(
         [
@@ -37,8 +36,8 @@ _POWERS = (
 )
 """Rows are powers of the share of a cell, columns its six coefficients."""
 _SHARPENING = 1 / 3
-"""Of the filter (-a, 1 + 2 a, -a) after which smoothing with hat and quintic keeps every cubic: their variances are
-1/6 and 1/2, and 2 a takes both away."""
+"""a of the filter (-a, 1 + 2 a, -a), with which smoothing by hat and quintic preserves every cubic: 2 a cancels their
+variances of 1/6 and 1/2."""
 
 
 @dataclass(frozen=True)
@@ -135,10 +134,10 @@ def values(grids: Grids, coefficients: Array, run: Array, s: Array) -> tuple[Arr
 
 
 def weighted(coefficients: Array, column: Array, weights: Array) -> Array:
-    """The sum of the six coefficients at each place, (C, N), with weights, (6, N), from the column of the first on."""
+    """The sum of the six coefficients at each place, (C, N), with weights, (6, N), from the column of the first."""
     total, part = np.zeros((2, len(coefficients), len(column)))
     for k, weight in enumerate(weights):
-        np.take(coefficients, column + k, axis=1, out=part, mode="clip")  # unlike "raise" without a copy
+        np.take(coefficients, column + k, axis=1, out=part, mode="clip")  # avoids the copy of "raise"
         part *= weight
         total += part
     return total
@@ -170,7 +169,7 @@ def refined(grids: Grids, coefficients: Array, bend: Array) -> tuple[Grids, Arra
 
 
 def quasi_interpolant(grids: Grids, polyline: Polylines, bend: Array) -> Array:
-    """Coefficients of curves that follow polylines as smoothly as their cells are wide, (C, size).
+    """Coefficients of curves that follow polylines as smoothly as the width of their cells, (C, size).
 
     The polyline is averaged with a hat of the half width h about each node: with D_j the change of its slope at the
     vertex at s_j, the mean is P(s_i) + sum of D_j h (1 - |s_i - s_j| / h)^3 / 6 over |s_i - s_j| < h, without any

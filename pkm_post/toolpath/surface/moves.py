@@ -3,7 +3,7 @@
 
 Between two runs the tool retracts along its axis, through the space it came from, up to a plane; there it turns
 upright, crosses, tilts again and descends along its next axis. It retracts beyond the plane where rapid motion ended
-farther from the run than the plane is: so the run can be cut the other way as well. Units: mm, mm/s.
+farther from the run than the plane is: so the run can also be cut the other way. Units: mm, mm/s.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ def _approach(begin: Array, axis: Array, height: float, settings: SurfaceOptions
 
 
 def _least_lift(begin: Array, axis: Array, end: Array, axis_at_end: Array, approach: float) -> float:
-    """The z at which the lift from a run is as far from it as the approach to it, and from its begin as high."""
+    """The z at which the lift is as far from the run as the approach, and as high above its start."""
     below = max(float((begin - end) @ axis), 0.0) if axis @ axis_at_end > _ONE_AXIS else 0.0
     z: float = end[2] + (approach + below) * axis_at_end[2]
     return z

@@ -103,7 +103,7 @@ def _crossings(grid: SurfaceGrid, height: Array) -> tuple[Array, Array, Array]:
 
 
 def _joined_edges(height: Array, above: Array) -> Array:
-    """Pairs of edges joined within a cell, (K, 2). In a saddle the mean of the corners decides."""
+    """Pairs of edges joined within a cell, (K, 2). In a saddle the mean of the corners selects them."""
     rows, columns = height.shape
     corner = [above[:-1, :-1], above[1:, :-1], above[1:, 1:], above[:-1, 1:]]
     node = np.arange(rows * columns).reshape(rows, columns)[:-1, :-1]

@@ -33,7 +33,7 @@ _NODES = (17, 513)
 _EVERY = 4
 """Stepping starts with one in this many of the points used by trimming."""
 _LINK = 3.0
-"""Links along the surface are at most this many stepovers long."""
+"""Longest link along the surface, in stepovers."""
 
 
 def surface_poses(
@@ -45,7 +45,7 @@ def surface_poses(
         surface: the surface to cover.
         cutter: a ball, bull nose or flat end mill.
         settings: pattern, tolerances, tool axis.
-        place: what diagnostics name.
+        place: place for diagnostics.
         progress: called with the completed share, from 0 to 1; may raise to abort.
 
     Returns:

@@ -76,7 +76,7 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True)
 class PoseRefinement:
-    """Everything that determines the pose at a point of the surface.
+    """The inputs that determine the pose at a point of the surface.
 
     Attributes:
         surface: the surface.
@@ -84,7 +84,7 @@ class PoseRefinement:
         cutter: the corner of the cutter.
         rule: rule of the tool axis.
         tolerances: tolerances of straight moves.
-        place: what diagnostics name.
+        place: place for diagnostics.
     """
 
     surface: Surface

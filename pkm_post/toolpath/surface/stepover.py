@@ -38,8 +38,8 @@ class Stepover:
     """Distance of passes: at most ``distance``, or for scallops at most ``scallop`` high, mm.
 
     Attributes:
-        distance: largest distance of neighbouring passes along the surface; None where the scallops decide.
-        scallop: largest scallop height between passes; None where the distance decides.
+        distance: largest distance of neighbouring passes along the surface; None if the scallop height decides.
+        scallop: largest scallop height between passes; None if the distance decides.
     """
 
     distance: float | None = None

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Surface: interface of a face for patterns of passes, whatever its source.
 
-Takes two functions of columns (u, v); returns points, normals and derivatives. Patterns treat a face of OpenCASCADE, a
-formula in a test and the same face with u and v exchanged alike. Units: mm; u and v have their own.
+Takes two functions of columns (u, v); returns points, normals and derivatives. Patterns handle a face of OpenCASCADE, a
+formula in a test, and the same face with u and v exchanged in the same way. Units: mm; u and v have their own.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class Surface:
         inside: from u (N,) and v (N,) to whether they belong to the face, (N,).
         u: range of the first parameter.
         v: range of the second one.
-        points: from u (N,) and v (N,) to points alone, (N, 3), where that is cheaper.
+        points: from u (N,) and v (N,) to points only, (N, 3), where that is cheaper.
         normals: the same for outward unit normals.
     """
 
@@ -92,12 +92,12 @@ class Surface:
         return SurfaceSamples(*self.evaluate(self.u.normalise(u), self.v.normalise(v)))
 
     def points_at(self, u: Array, v: Array) -> Array:
-        """Points of the surface alone, (N, 3) in mm."""
+        """Points of the surface only, (N, 3) in mm."""
         pair = self.u.normalise(u), self.v.normalise(v)
         return self.points(*pair) if self.points else self.evaluate(*pair)[0]
 
     def normals_at(self, u: Array, v: Array) -> Array:
-        """Outward unit normals alone, (N, 3)."""
+        """Outward unit normals only, (N, 3)."""
         pair = self.u.normalise(u), self.v.normalise(v)
         return self.normals(*pair) if self.normals else self.evaluate(*pair)[1]
 

@@ -29,8 +29,8 @@ class Copies:
     """Required copies.
 
     Attributes:
-        moves: in the order of cutting, the name of a mirror plane or the angle of a rotation about z, rad; each of the
-            original program.
+        moves: in the order of cutting, the name of a mirror plane or the angle of a rotation about z, rad; each applies
+            to the original program.
         keep_climb: whether the passes of mirror images are reversed, so that climb milling stays climb milling.
     """
 
@@ -42,8 +42,8 @@ def with_copies(program: Program, copies: Copies) -> tuple[Program | None, tuple
     """The program followed by its copies; None with diagnostics if a copy is not possible.
 
     Args:
-        program: cutter locations in {C}, without cutter compensation to come.
-        copies: what follows.
+        program: cutter locations in {C}, without unapplied cutter compensation.
+        copies: the copies.
     """
     if not copies.moves or not len(program):
         return program, ()

@@ -126,7 +126,7 @@ def coverage(sectors: Sequence[Sector]) -> AngularCoverage:
     """The union of sectors about one axis.
 
     Raises:
-        ValueError: there is none.
+        ValueError: there are no sectors.
     """
     if not sectors:
         raise ValueError("coverage: expected one sector or more, got none")

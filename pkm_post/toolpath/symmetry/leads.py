@@ -174,7 +174,7 @@ def _lead(program: Program, point: Array, way: Array) -> Lead:
     position, axis, feed = program.position[point], program.tool_axis[point], program.feed[way]
     height = np.append(0.0, np.cumsum(norm(np.diff(position, axis=0))))
     made = Lead(position, axis, point, way, feed, np.isfinite(feed) & (axial_moves(program)[way] == 0), height)
-    # A move that turns the tool and changes from rapid to feed is a divided rapid lift.
+    # A move that turns the tool and changes from rapid to feed is a split rapid lift.
     turning = norm(np.diff(axis, axis=0)[:-1]) > _ON_LINE
     divided = turning & _straight_on(made) & np.isnan(feed[1:])
     return replace(made, slanted=made.slanted & ~np.append(divided, False)[: len(way)])

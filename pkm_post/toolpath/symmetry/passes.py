@@ -21,7 +21,7 @@ from pkm_post.geometry import Array, arc_points, arc_sweep, dot, norm
 from pkm_post.model import Kind, Program
 
 _NO_MOVE = 1e-9
-"""mm, and difference of unit vectors: a row that moves less stands still."""
+"""mm, and difference of unit vectors: a row that moves less counts as no motion."""
 _ALONG = 1e-3
 """rad within which a straight move counts as along the tool axis."""
 _SLANTED = 0.5

@@ -158,7 +158,7 @@ def _faults(
 
 
 def _lost(program: Program, link: LinkMoves, leaving: int, entering: int) -> str:
-    """Why the tool cannot go from one reversed pass to the next, or an empty string."""
+    """The reason why the tool cannot reach the next reversed pass, or an empty string."""
     if not np.any(program.kind[link.rows] == Kind.RAPID):
         return "no rapid move leads to this pass"
     if not leaving or not entering:

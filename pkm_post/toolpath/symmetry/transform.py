@@ -106,7 +106,7 @@ def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, tupl
 
 
 def _turned(vectors: Array, turn: Array) -> Array:
-    """(N, 3) vectors times a (3, 3) matrix, without the threads that a matrix product of many rows would start."""
+    """(N, 3) vectors times a (3, 3) matrix, without the threads of a large matrix product."""
     return np.einsum("nj,ij->ni", vectors, turn)
 
 
@@ -148,7 +148,7 @@ def _matrix(matrix: ArrayLike) -> Array:
 
 
 def _fault(matrix: Array) -> str:
-    """Why the matrix is not rigid, or an empty string."""
+    """The reason why the matrix is not rigid, or an empty string."""
     if not np.all(np.isfinite(matrix)):
         return "it has elements that are no finite number"
     if np.max(np.abs(matrix[3] - [0, 0, 0, 1])) > _RIGID:
@@ -169,7 +169,7 @@ def concatenate(programs: Sequence[Program]) -> Program:
         programs: at least one; each is reached from the one before by its first rapid move.
 
     Raises:
-        ValueError: there is none, or they do not have the same operations.
+        ValueError: there are no programs, or their operations differ.
     """
     if not programs or any(program.operations != programs[0].operations for program in programs):
         raise ValueError("concatenate: expected programs of the same operations, at least one")

@@ -2,7 +2,7 @@
 """Halstreamer: strut lengths row by row at a fixed period, for LinuxCNC's ``halstreamer``.
 
 Input: the cubics of a strut motion. Output: tables of six lengths in mm, one row for each period of 1 ms, and back.
-Dwells repeat a row. Other events need another program: a table ends there, at rest, and the next one begins. A drive
+Dwells repeat a row. Other events need another program: a table ends there, at rest, and the next one starts. A drive
 that interpolates linearly between rows deviates from the cubic by no more than ``chord_error``.
 """
 
@@ -22,7 +22,7 @@ from pkm_post.system import result_files
 
 @dataclass(frozen=True)
 class TableSection:
-    """A section of a motion between two events that need another program; dwells are part of it.
+    """A section of a motion between two events that need another program; it includes dwells.
 
     Attributes:
         before: events before it begins, in order.
@@ -71,7 +71,7 @@ class _Piece:
 
 
 def sections(motion: StrutMotion) -> tuple[TableSection, ...]:
-    """The sections of a motion, at least one; only a motion at standstill has a section without duration."""
+    """The sections of a motion, at least one; only a motion without duration has a section without duration."""
     pieces = [_Piece([0.0])]
     for event in motion.events:
         pieces[-1].go_to(float(motion.time_ms[event.row]))

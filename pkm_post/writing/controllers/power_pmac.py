@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Power PMAC: motion programs written and read back, and the set-up that they rely on.
+"""Power PMAC: motion programs written and read back, and the set-up they rely on.
 
 Input: the ``[controller]`` table of a machine, strut motion in mm, mm/s and whole ms, and the text of programs.
 Output: text with the words and the frame of the Power PMAC, and strut motion. The memory for programs is configured in
@@ -56,7 +56,7 @@ SETUP_SUFFIX = result_files.SETUPS["power_pmac"]
 
 @dataclass(frozen=True, kw_only=True)
 class PowerPmacSettings(pvt.PvtSettings):
-    """Settings of the Power PMAC of one machine; its numbers are doubles."""
+    """Settings of the Power PMAC of one machine; it stores numbers as doubles."""
 
     KIND = "power_pmac"
 
@@ -91,7 +91,7 @@ def program_parts(motion: StrutMotion, settings: PowerPmacSettings, heading: Seq
 
 
 def buffer_opening(settings: PowerPmacSettings) -> str:
-    """The line that opens the program and erases what it was: all that precedes its modes and moves."""
+    """The line that opens and clears the program: everything before its modes and moves."""
     return f"open prog {settings.program}\n"
 
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Power project: a set-up and a program, or kinematics, in the folders of a project of the Power PMAC IDE.
 
-A solution names one project; the project lists its files; ``pp_proj.ini`` says in which order the controller loads them
-[PowerPMACProjects]. The tree below the project is that of /var/ftp/usrflash/Project. ``save`` in the IDE writes
-``pp_save.cfg`` itself, from the controller, so it is none of the files here.
+A solution names one project; the project lists its files; ``pp_proj.ini`` gives the order in which the controller loads
+them [PowerPMACProjects]. The tree below the project is that of /var/ftp/usrflash/Project. ``save`` in the IDE writes
+``pp_save.cfg`` from the controller, so it is not among the files here.
 
-Input: texts by their place in the project. Output: names and texts of all files; the same ones give the same project.
+Input: texts by their path in the project. Output: names and texts of all files, reproducible.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _FOLDERS = (
 )  # fmt: skip
 _ROOT = "/var/ftp/usrflash/Project"
 _SOLUTION_KIND = "{D6E1C338-3587-4566-BEE3-F0DEB1D41E98}"
-"""Of projects of this IDE, in every public solution."""
+"""Project type of this IDE, the same in every public solution."""
 _NAMESPACE = uuid.UUID("5c0f3c4e-8f0f-4a53-9d5c-0b7a2c9d6b11")
 _BUFFERS = {
     "UserBufSize": 1 << 20,
@@ -33,7 +33,7 @@ _BUFFERS = {
     "LookAheadBufSize": 16 << 20,
     "SymbolsBufSize": 1 << 20,
 }
-"""Bytes, as public projects have them."""
+"""Bytes, as in public projects."""
 _PROPERTIES = {
     "SchemaVersion": "2.0",
     "OutputType": "Exe",
@@ -56,7 +56,7 @@ _PROPERTIES = {
     "PPCPUType": "armLS1043A;4.1.18-ipipe",
     "CPUType": "arm,LS1043A",
 }
-"""Of a project, with the spelling of the IDE. Without C, the type of the CPU decides nothing that is written here."""
+"""Properties of a project, in the spelling of the IDE. Without C code the CPU type has no effect here."""
 _TASK = (
     'Files="@(Compile)" OutputPath="$(OutputPath)" DebugSymbols="$(DebugSymbols)"'
     ' ProjectPath="$(MSBuildProjectDirectory)" PPCPUType="$(PPCPUType)"'
@@ -65,11 +65,11 @@ _TASK = (
 
 
 def project_files(name: str, scripts: Mapping[str, str], note: str) -> dict[str, str]:
-    """Names and texts of the files of a project, from the folder of its solution on.
+    """Names and texts of the files of a project, starting at the folder of its solution.
 
     Args:
         name: of the project.
-        scripts: texts by their place below the project, in the order in which the controller loads them.
+        scripts: texts by their path below the project, in loading order.
         note: for Documentation/note.txt.
     """
     texts = {

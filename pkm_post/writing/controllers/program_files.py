@@ -25,7 +25,7 @@ Texts = list[tuple[str, str]]
 _FOREIGN = re.compile(rb"[^\n -~]")
 _MOST_FAULTS = 20
 _AT_ONCE = 1 << 22
-"""Characters that are examined at once."""
+"""Characters per pass."""
 _NAMES = {
     0x00: "NUL", 0x09: "tab", 0x0B: "vertical tab", 0x0C: "form feed", 0x0D: "carriage return without line feed",
     0x1A: "Ctrl-Z", 0x1B: "escape", 0x7F: "delete",
@@ -48,7 +48,7 @@ def text_of(content: bytes, file: str) -> tuple[str | None, Findings]:
 
 
 def _foreign(content: bytes) -> Iterator[re.Match[bytes]]:
-    """Characters that no program has, in order."""
+    """Illegal characters, in order."""
     for part in pieces(len(content), _AT_ONCE):
         yield from _FOREIGN.finditer(content, part.start, part.stop)
 
@@ -90,9 +90,9 @@ def read_texts(program: Path, controller: ControllerModule) -> tuple[Texts | Non
 
 
 TIP_AND_AXIS = "X Y Z are the tip in mm, A B C the platform in degrees, in the machine frame; do not edit"
-"""Line of the heading of programs for kinematics in the controller; the others are of strut lengths."""
+"""Heading line of programs for kinematics in the controller; without it a program is of strut lengths."""
 _TIP_AND_AXIS = re.compile(r"^(?:;|//) X Y Z are the tip in mm", re.M)
-"""Its beginning: the line may be broken."""
+"""Start of that line, which may be wrapped."""
 _DIGITS = 32
 _HEADING = re.compile(r"(?:(?:;|//).*\n)*")
 _MARK = re.compile(r";|//")
@@ -127,7 +127,7 @@ def with_own_hash(text: str) -> str:
 
 
 def is_of_tip_and_axis(text: str) -> bool:
-    """Whether the axes of a program are tip and axis, as its heading says."""
+    """Whether a program is of tip and axis, according to its heading."""
     return _TIP_AND_AXIS.search(text, 0, _heading_end(text)) is not None
 
 

@@ -47,7 +47,7 @@ class ControllerModule(Protocol):
 
 
 class _Modules(Mapping[str, Module]):
-    """Modules beside this one, by name; each is imported when it is first looked up."""
+    """Modules beside this one, by name; each is imported on first use."""
 
     def __init__(self, names: Mapping[str, str]) -> None:
         self._names = names

@@ -50,8 +50,8 @@ class AxisWords:
 
     Attributes:
         letters: of the words.
-        length_code: the code that enables tool length compensation.
-        as_vector: whether the words are written all or none, and never with an arc, where they are its centre.
+        length_code: code that enables tool length compensation.
+        as_vector: whether the words are written all or none, and never with an arc, where I J K are its centre.
         values: maps (N, 3) unit axes and (N,) spins to (N, len(letters)) words.
     """
 
@@ -130,7 +130,7 @@ def axis_deviation(axis: Array, spin: Array, dialect: GcodeDialect) -> Array:
     """Deviation of the tool axis from its great circle under linear interpolation of the angles, (N,), rad.
 
     Row i holds the deviation of the move to it. It is 0 for forms without angles, and is measured at equal fractions of
-    both motions, so lag counts as well.
+    both motions, so lag counts, too.
 
     Args:
         axis: (N, 3) unit tool axes.
@@ -156,7 +156,7 @@ _LEVEL, _UPSIDE_DOWN = "the tool axis is {:.6f} deg from upright", "the tool axi
 
 
 def unsupported_axis(axis: Array, dialect: GcodeDialect) -> tuple[int, str, str] | None:
-    """The first row whose tool axis a dialect cannot express, with the fault code and what was found; or None."""
+    """The first row whose tool axis a dialect cannot express, with fault code and finding; or None."""
     if dialect is GcodeDialect.PLAIN:
         level = np.hypot(axis[:, 0], axis[:, 1])
         tilted = np.flatnonzero((level > POLE) | (axis[:, 2] < 0))

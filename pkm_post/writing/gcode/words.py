@@ -187,7 +187,7 @@ class Codes:
 
 
 WRITTEN = FLAVOURS["rs274"]
-"""What the codes of all forms mean."""
+"""The flavour whose codes all dialects use."""
 TEXTS: dict[str, tuple[str, ...]] = {
     "path": ("", "G64", *(f"G{code / 10:g}" for code in (WRITTEN.exact_stop, WRITTEN.exact_path))),
     "plane": ("", "G19", "G18", "G17"),

@@ -26,7 +26,7 @@ from pkm_post.writing.kinematics.programs import forward_program, inverse_progra
 from pkm_post.writing.kinematics.variables import STRUTS, QVariable, parameters
 
 MOST_STEPS = 9
-"""Of the forward program; below the ten jumps back that a Power PMAC allows where nothing else is set (UM p. 517)."""
+"""Steps of the forward program; below the default limit of ten jumps back of a Power PMAC (UM p. 517)."""
 TOLERANCE = {"turbo_pmac": 1e-6, "power_pmac": 1e-9}
 """mm of strut length where the forward program ends: some tens of roundings of 36-bit and 53-bit numbers."""
 _HOME_COMPLETE = {strut: f"Y:${0xC0 + 0x80 * (strut - 1):06X},10,1" for strut in STRUTS}
@@ -41,9 +41,9 @@ class Export:
 
     Attributes:
         segment_time: of the coarse interpolation, whole ms.
-        tool_length: gauge length of the tool that is set at first, mm.
-        home_lengths: counted strut lengths at home with that tool, mm; for controllers that home by them.
-        program: name and text of a posted program, for a project that has one in place of the kinematics.
+        tool_length: initial gauge length, mm.
+        home_lengths: counted strut lengths at home with that tool, mm; for controllers that home with them.
+        program: name and text of a posted program, for a project with a program instead of the kinematics.
     """
 
     segment_time: int
@@ -53,12 +53,12 @@ class Export:
 
 
 def parameters_of(machine: Machine, kind: str, export: Export) -> list[QVariable]:
-    """The variables that the programs of a machine read, with their first values."""
+    """The variables that the programs of a machine read, with their initial values."""
     return parameters(machine, export.tool_length, TOLERANCE[kind], MOST_STEPS)
 
 
 def lookahead_segments(machine: Machine, export: Export) -> int:
-    """Segments that the slowest stop takes, with a third to spare: Isx20 and LHDistance.
+    """Segments of the slowest stop, plus a third: Isx20 and LHDistance.
 
     4/3 v / (2 a T), rounded up [Turbo PMAC Software Reference, Isx20; Power PMAC User's Manual, p. 791].
     """

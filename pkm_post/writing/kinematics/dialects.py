@@ -28,14 +28,14 @@ class KinematicDialect:
         functions: its names of functions with angles in degrees.
         equal: its comparison of equal numbers.
         both: between two conditions.
-        arc_tangent: target, sine and cosine to lines that assign the angle in degrees.
+        arc_tangent: maps target, sine and cosine to lines that assign the angle in degrees.
         branch: opens the first branch of a condition, with ``{}`` for the condition.
         otherwise: between two branches.
         end_branch: ends a condition.
         loop: opens a loop, with ``{}`` for the condition.
         end_loop: ends a loop.
         names: names of axes, rates, motors and the flag of speeds.
-        fail: coordinate system to the lines that report a position that does not exist.
+        fail: maps the coordinate system to the lines that report a missing solution.
     """
 
     comment: str
@@ -133,7 +133,7 @@ def rendered(
         numbers: Q-variables of the parameters, by name.
         system: number of the coordinate system.
         forward: whether it is the forward program.
-        literal: further names as the controller has them.
+        literal: further names in the spelling of the controller.
     """
     computed = (name for name in assigned(statements) if name not in dialect.names)
     variables = {name: f"Q{number}" for name, number in {**numbers, **work_numbers(computed, forward)}.items()}
@@ -166,7 +166,7 @@ def _lines(
 
 
 def _assignment(target: str, expression: str, dialect: KinematicDialect, names: Mapping[str, str]) -> list[str]:
-    """The lines of an assignment; the name behind them is for who checks them against the formulas."""
+    """The lines of an assignment; the trailing name is for checks against the formulas."""
     if (arc := _ARC_TANGENT.fullmatch(expression)) is not None:
         *before, last = dialect.arc_tangent(names[target], names[arc[1]], names[arc[2]])
     else:

@@ -6,10 +6,10 @@ Axes: X Y Z of the tool tip in the work frame {C}, and A B C in degrees, the rot
 
     R = Rz(w) Rz(C) Ry(B) Rx(A) Rz(-w),  arm_i = R (a_i + L z),  d_i = |p + arm_i - b_i|
 
-so A = B = C = 0 is the upright platform with zero spin in {M}, whatever the work frame. A work frame that is tilted
-has no such form. The length that the controller counts is d_i + lead twist / 360 - offset, as in
-``machine.kinematics.screw``: two statements of one formula, which tests compare. Derivatives are by the axes, in mm per
-mm and mm per degree: the rows of the Jacobian by twist, times the twist of each axis.
+so A = B = C = 0 is the upright platform with zero spin in {M}, whatever the work frame. A tilted work frame has no such
+form. The length that the controller counts is d_i + lead twist / 360 - offset, as in ``machine.kinematics.screw``:
+tests compare both statements of the formula. Derivatives are by the axes, in mm per mm and mm per degree: the rows of
+the Jacobian by twist, times the twist of each axis.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ def pose_terms() -> list[Statement]:
 
 
 def length_of(strut: int, screw: bool) -> list[Statement]:
-    """The counted length of a strut, mm, and what its derivatives need."""
+    """The counted length of a strut, mm, and the terms of its derivatives."""
     if screw:
         return assignments((_DISTANCE + _DIRECTION.lstrip() + _TWIST.lstrip()).format(i=strut))
     return [*assignments(_DISTANCE.format(i=strut)), Assign("length", f"distance-offset{strut}")]
@@ -142,7 +142,7 @@ def counts_of(strut: int) -> Statement:
 
 
 def residual_of(strut: int) -> Statement:
-    """The length that the motor's counts say, less the length just computed, mm."""
+    """The length from the motor's counts minus the length just computed, mm."""
     return Assign(f"residual{strut}", f"motor{strut}/counts_per_mm+zero{strut}-length")
 
 
@@ -186,5 +186,5 @@ def _less(target: str, products: list[str]) -> list[Statement]:
 
 
 def regular() -> tuple[str, ...]:
-    """Conditions that hold where the last step was solved for."""
+    """Conditions for a solvable last step."""
     return tuple(f"s{row}{row}>least_pivot" for row in STRUTS)

@@ -56,7 +56,7 @@ def _section(name: str, entries: Iterable[tuple[str, str]]) -> list[str]:
 
 
 def _home(machine: Machine, tool_length: float) -> list[float]:
-    """X Y Z of the platform origin and A B C at home: the position while no tool length is in force."""
+    """X Y Z of the platform origin and A B C at home: the position without an active tool length."""
     origin = machine.home_tip + (machine.spindle_nose + tool_length) * machine.home_axis
     roll_pitch_yaw = NOTATIONS[GcodeDialect.LINUXCNC].values
     angles = roll_pitch_yaw(machine.home_axis[None], np.array([machine.home_spin]))[0]
@@ -112,7 +112,7 @@ def _joint(machine: Machine, joint: int, length: float) -> tuple[str, list[tuple
 
 
 def kinematics_hal(machine: Machine) -> str:
-    """Geometry of the machine on the pins of genhexkins, and the tool length in force."""
+    """Geometry of the machine on the pins of genhexkins, and the active tool length."""
     lines = ["# Geometry for genhexkins: base joints in {M}, platform joints in {T}, mm"]
     lines += _points("base", machine.base_joints) + _points("platform", machine.platform_joints)
     lines.append(f"setp genhexkins.screw-lead {_number(machine.screw_lead)}")
@@ -137,7 +137,7 @@ def _points(pin: str, points: Array) -> list[str]:
 
 
 def simulated_drives_hal() -> str:
-    """Drives that are where they are sent, tools that are changed at once, and no emergency stop."""
+    """Drives that follow exactly, tools that change at once, and no emergency stop."""
     lines = [
         "# Simulated drives: to be replaced by those of the machine",
         "loadrt [KINS]KINEMATICS",
@@ -153,7 +153,7 @@ def simulated_drives_hal() -> str:
 
 
 def tool_table(machine: Machine, tool_length: float) -> str:
-    """A tool table with the one tool of the rest pose."""
+    """A tool table with only the tool of the rest pose."""
     length, nose = _number(machine.spindle_nose + tool_length), _number(machine.spindle_nose)
     return f"T1 P1 Z{length} D0 ; gauge length {_number(tool_length)} and {nose} to the platform joints\n"
 

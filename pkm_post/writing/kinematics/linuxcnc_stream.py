@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""LinuxCNC's streamer: a HAL file that lets a table for halstreamer move the struts only from where they are.
+"""LinuxCNC's streamer: a HAL file that lets a halstreamer table move the struts only from their current position.
 
-halstreamer puts the first row of a table on the pins at once. Here each strut's command goes through two switches: it
-follows the feedback until ``drives-on``, then stands still, and takes the streamer's pins from the moment at which
-the first row was found within ``START_TOLERANCE`` of the command of all six struts. With another first row
-``stream-refused`` comes on, no further row is taken, and no strut moves. Lengths are counted lengths in mm.
+halstreamer puts the first row of a table on the pins at once. Here each strut's command passes two switches: it follows
+the feedback until ``drives-on``, then holds its position, and takes the streamer's pins once the first row is within
+``START_TOLERANCE`` of the command of all six struts. With any other first row ``stream-refused`` turns on, no further
+row is taken, and no strut moves. Lengths are counted lengths in mm.
 
 Sources: LinuxCNC 2.9, manual pages streamer(9), near(9), logic(9), flipflop(9), mux2(9), and2(9), not(9).
 """
@@ -14,12 +14,12 @@ from __future__ import annotations
 START_TOLERANCE = 0.05
 """mm; posted programs start at a pose to the same length."""
 DEPTH = 4000
-"""Rows that the streamer holds: four seconds at a servo period of 1 ms."""
+"""Rows in the streamer's buffer: four seconds at a servo period of 1 ms."""
 _STRUTS = range(6)
 
 
 def stream_hal() -> str:
-    """The HAL file, for a thread that is named servo-thread and signals strut-N-fb that the drives write."""
+    """The HAL file, for a thread named servo-thread and signals strut-N-fb written by the drives."""
     return "\n".join([*_components(), *_start_interlock(), *_commands(), *_functions()]) + "\n"
 
 
@@ -48,7 +48,7 @@ def _each(name: str) -> list[str]:
 
 
 def _start_interlock() -> list[str]:
-    """The first row decides: accepted or refused. What is decided holds until stream-start or drives-on goes."""
+    """Accept or refuse the first row; the result is latched until stream-start or drives-on goes off."""
     return [
         "# a row is on the pins when the streamer was enabled and had one; its enable is set at the period's end",
         "net stream-empty streamer.0.empty => filled.in",
@@ -89,7 +89,7 @@ def _commands() -> list[str]:
 
 
 def _functions() -> list[str]:
-    """In the order of the signals: what the first row decides takes effect in the period in which it arrives."""
+    """In signal order, so that the result for the first row takes effect in the period in which it arrives."""
     order = [
         "go", "stop", *_each("still"), "streamer.0", *_each("near"), "all-near", "far", "filled", "row-there", "accept",
         "accepted", "not-accepted", "refuse", "refused", "not-refused", "enable", *_each("command"),

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Programs: the inverse and the forward kinematic program, as statements.
 
-The inverse program takes axis positions to motor counts, and in PVT mode axis rates to motor speeds. The forward
-program finds the axis positions of six counts by Newton's method from the start position in the variables, tool
-upright, whatever was found before: the same counts always give the same position. Where it does not end within its
-steps, or ends in a pose that is tilted or turned too far, it reports that there is no solution.
+The inverse program converts axis positions to motor counts, and in PVT mode axis rates to motor speeds. The forward
+program finds the axis positions of six counts by Newton's method. It always starts upright at the start position in the
+variables, so the same counts give the same position. If it does not converge within its steps, or converges to a pose
+with too much tilt or turn, it reports that there is no solution.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ steps = 0
 outcome = 1
 worst = tolerance+1
 """
-"""The start in the work frame."""
+"""The start position in the work frame."""
 
 _PLAUSIBLE = ("abs(a)<90", "abs(b)<90", "abs(c)<180")
-"""Other poses have the same lengths; these limits leave out the ones with the platform upside down."""
+"""Other poses have the same lengths; these limits exclude an upside-down platform."""
 
 
 def inverse_program(screw: bool) -> tuple[Statement, ...]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Sign-off sheet: what the operator and the controls engineer check before kinematics in the controller are used.
+"""Sign-off sheet: checks for the operator and the controls engineer before using kinematics in the controller.
 
 Input: the machine, the target, the files with their SHA-256, and positions with the strut lengths that PKM Post
 computes for them. Output: Markdown with a box for each check.
@@ -49,7 +49,7 @@ PMAC_CHECKS = (
     "Joints, cones, collisions and singular poses are not checked by the controller: it knows the strokes alone.",
 )
 _PER_OPERATION = 0.0031
-"""ms."""
+"""ms per operation."""
 _SEGMENTS = (
     "How far the tool is off between segments: the fine interpolation is a cubic B-spline of the segment points, which"
     " cuts inside by about v^2 T^2 / (6 r) on a radius r."
@@ -136,7 +136,7 @@ LINUXCNC_CHECKS = (
 
 
 def linuxcnc_sheet(machine: Machine, files: Mapping[str, str], poses: CheckPoses) -> str:
-    """The sheet for LinuxCNC; the positions are with G43, and joints in mm."""
+    """The sheet for LinuxCNC; positions with G43, and joints in mm."""
     joints = poses.lengths + machine.length_offset
     return "\n".join([
         *heading(machine, "linuxcnc", files),
@@ -201,7 +201,7 @@ def _work_offset(name: str, pose: Array) -> str:
 
 
 def table(poses: CheckPoses, what: str, rows: Sequence[Sequence[str]]) -> list[str]:
-    """The positions and what each strut shows there."""
+    """The positions with the reading of each strut."""
     found = [
         "## Positions to compare",
         "",

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Statements: a kinematic program before it has the words of a controller.
+"""Statements: a kinematic program, independent of the controller.
 
 Expressions are texts of names, decimals, ``+ - * /``, brackets and the functions sin, cos, sqrt, abs and atan2, with
-angles in degrees. They do without a sign before a name, which not every controller of the family is documented to take.
+angles in degrees. No name has a sign, since not every controller of the family is documented to accept one.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Assign:
 
 @dataclass(frozen=True)
 class If:
-    """Two branches; all conditions, comparisons by ``=``, ``<`` or ``>``, have to hold for the first."""
+    """Two branches; the first runs if all conditions, comparisons by ``=``, ``<`` or ``>``, hold."""
 
     conditions: tuple[str, ...]
     then: tuple[Statement, ...]
@@ -45,7 +45,7 @@ class While:
 
 @dataclass(frozen=True)
 class Fail:
-    """Report that there is no solution, as the controller has it."""
+    """Report that there is no solution, in the way of the controller."""
 
 
 Statement = Comment | Assign | If | While | Fail

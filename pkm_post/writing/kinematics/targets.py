@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Targets: the files of an export by the controller they are for.
+"""Targets: the files of an export, by controller.
 
 Input: a machine, the settings of the export, and positions with their strut lengths. Output: names and texts of files,
 or diagnostics.
@@ -34,7 +34,7 @@ def _pmac(
     form: type[Any], write: Callable[..., str], target: str, suffix: str,
     machine: Machine, stem: str, export: Export, poses: CheckPoses,
 ) -> tuple[Files | None, Findings]:  # fmt: skip
-    """The kinematic file of a PMAC, whichever of the family the machine file names, and its sheet."""
+    """The kinematic file and the sheet for the PMAC that the machine file names."""
     of_kind = replace(machine, controller={**machine.controller, "kind": form.KIND})
     settings, faults = settings_of(form, of_kind)
     if settings is None:
@@ -79,7 +79,7 @@ def _linuxcnc(machine: Machine, stem: str, export: Export, poses: CheckPoses) ->
 
 
 def _power_project(machine: Machine, stem: str, export: Export, poses: CheckPoses) -> tuple[Files | None, Findings]:
-    """A project for the IDE: with a program of strut lengths and its set-up, or else with the kinematics."""
+    """A project for the IDE: with a program of strut lengths and its set-up, else with the kinematics."""
     if export.program is None:
         made, faults = TARGETS["power-pmac"](machine, stem, export, poses)
         if made is None:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Variables: the Q-variables of the kinematic programs, with the values that a machine gives them.
+"""Variables: the Q-variables of the kinematic programs, with the values of a machine.
 
 Input: a machine in mm and rad. Output: number, value and meaning of each variable that is set when the programs are
-loaded, in mm and degrees; and the numbers of the variables that the programs compute with. The numbers are the same on
-both controllers. Q1 to Q19 belong to the Turbo PMAC [Turbo PMAC User Manual, Reserved Variables, p. 261]; Q0 is an
-argument of its ATAN2.
+loaded, in mm and degrees; and the numbers of the programs' working variables. Both controllers use the same numbers.
+Q1 to Q19 are reserved on the Turbo PMAC [Turbo PMAC User Manual, Reserved Variables, p. 261]; Q0 is an argument of its
+ATAN2.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from pkm_post.model import Machine
 
 
 class QVariable(NamedTuple):
-    """A variable that the programs read.
+    """A variable read by the programs.
 
     Attributes:
-        name: as the formulas call it.
+        name: name in the formulas.
         number: of the Q-variable.
         value: in mm or degrees.
         meaning: for the comment beside it.
@@ -33,7 +33,7 @@ class QVariable(NamedTuple):
 
 
 FIRST_NUMBER, LAST_NUMBER = 50, 511
-"""Q-variables from the first to the last of these belong to the programs; a Turbo PMAC with 16 coordinate systems has
+"""First and last Q-variable of the programs; a Turbo PMAC with 16 coordinate systems has
 Q0 to Q511 in each."""
 _FIRST_STRUT, _PER_STRUT = 100, 20
 _FIRST_OF_INVERSE, _FIRST_OF_FORWARD = 220, 300
@@ -47,13 +47,13 @@ _LEAST_PIVOT = 1e-9
 
 
 def parameters(machine: Machine, tool_length: float, tolerance: float, most_steps: int) -> list[QVariable]:
-    """The variables that are set when the programs are loaded, in the order of their numbers.
+    """The variables set when the programs are loaded, in the order of their numbers.
 
     Args:
         machine: geometry, screw and counts.
-        tool_length: gauge length of the tool that is set at first, mm.
+        tool_length: initial gauge length, mm.
         tolerance: strut error at which the forward program ends, mm.
-        most_steps: of the forward program.
+        most_steps: largest number of steps of the forward program.
     """
     return [*_of_machine(machine, tool_length, tolerance, most_steps), *_of_struts(machine)]
 
@@ -110,20 +110,20 @@ _MEANINGS = {
 }
 
 OUTCOMES = ("outcome", "steps")
-"""Of the forward program: 0 for a pose that was found and 1 otherwise, and the steps it took."""
+"""Results of the forward program: 0 if a pose was found, else 1; and the number of steps."""
 
 
 def work_numbers(names: Iterable[str], forward: bool) -> dict[str, int]:
-    """Q-variables that a program computes with, by name; the two programs share none of them.
+    """Working Q-variables of a program, by name; the two programs share none.
 
     A query of axis positions may start the forward program while the inverse program runs.
 
     Args:
-        names: in the order of their first assignment; again is no matter.
+        names: in the order of their first assignment; repetitions are ignored.
         forward: whether it is the forward program, whose outcomes come first.
 
     Raises:
-        ValueError: there are more of them than numbers.
+        ValueError: there are more names than variables.
     """
     first, last = (_FIRST_OF_FORWARD, LAST_NUMBER) if forward else (_FIRST_OF_INVERSE, _FIRST_OF_FORWARD - 1)
     numbers = {name: first + place for place, name in enumerate(dict.fromkeys([*OUTCOMES * forward, *names]))}

@@ -8,7 +8,7 @@ of blocks. With them, the pose at a share u of the segment, from 0 to 1, is
     axis = cos(u angle) start_axis + sin(u angle) axis_quarter
     spin = start_spin + u (spin - start_spin)
 
-for lines, arcs and helices alike, from a single record. [paper section 5.1: what interpolation needs is computed in
+for lines, arcs and helices alike, from a single record. [paper section 5.1: data for interpolation is computed in
 advance]
 """
 
@@ -25,7 +25,7 @@ TOLERANCE = 1e-6
 _RELATIVE_TOLERANCE = 1e-9
 """The same relative to the value, for arcs of very large radius."""
 _NO_RADIUS = 1e-9
-"""mm: an arc that begins on its axis has no radius to grow."""
+"""mm: an arc that starts on its axis has no radius to grow."""
 
 
 def interpolation(trajectory: Trajectory) -> dict[str, Array]:
@@ -42,7 +42,7 @@ def interpolation(trajectory: Trajectory) -> dict[str, Array]:
 
 
 def _axis_quarter(trajectory: Trajectory, start: Array) -> Array:
-    """The axis after a quarter turn, (N, 3); zero where it stands still."""
+    """The axis after a quarter turn, (N, 3); zero where it does not turn."""
     quarter = np.zeros_like(start)
     turns = np.flatnonzero(trajectory.angle > 0)
     quarter[turns] = _directions(towards(start[turns], trajectory.axis[turns]))
@@ -65,7 +65,7 @@ def _turning(trajectory: Trajectory, start: Array, way: Array) -> dict[str, Arra
 
 
 def _directions(vectors: Array) -> Array:
-    """(N, 3) vectors normalized to unit length; those of length 0 stay."""
+    """(N, 3) vectors normalized to unit length; zero vectors are unchanged."""
     length = norm(vectors)[:, None]
     return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
 
@@ -82,7 +82,7 @@ def deviating_columns(trajectory: Trajectory, segments: Records) -> dict[str, Ar
     radius = np.where(trajectory.kind == Kind.ARC, norm(columns["radius"]), 1.0)
     turns = np.where(trajectory.angle > 0, trajectory.angle, 1.0)
     weights = {"growth": radius, "axis_quarter": turns}
-    with np.errstate(all="ignore"):  # the file may hold any numbers
+    with np.errstate(all="ignore"):  # the file may contain any numbers
         found = {name: _apart(segments[name], column, weights.get(name, 1.0)) for name, column in columns.items()}
     return found | missed_ends(trajectory, columns)
 

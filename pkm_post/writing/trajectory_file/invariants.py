@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Invariants of a trajectory, which both the writer and the reader of trajectory files check.
+"""Invariants of a trajectory, checked by both the writer and the reader of trajectory files.
 
-Input: a ``model.Trajectory`` with any values. Output: in words, each violation of a rule for single values, and then
-each contradiction between data that are stated twice, with the first record (counted from 0) where it occurs. A player
-of the file would make a wrong motion of either. The tool of a segment also follows from the instructions, a rest from
-the instructions executed there, and a smooth joint from the directions of its two segments.
+Input: a ``model.Trajectory`` with any values. Output: as text, each violation of a rule for single values, then each
+contradiction between redundant data, with the first record (counted from 0) where it occurs. Either would make a player
+of the file move wrongly. The tool of a segment also follows from the instructions, a rest from the instructions run
+there, and a smooth joint from the directions of its two segments.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ FULL_TURN = 2 * math.pi + 1e-8
 FARTHEST = 1e9
 """mm: no machine has coordinates beyond this, and their squares would exhaust the digits of a double."""
 LONGEST = 86_400.0
-"""s: longest segment; a lower feed is a slip, and its motion has more points than fit into memory."""
+"""s: longest segment; a lower feed is a typing error, and its points would not fit into memory."""
 _LARGEST_NUMBER = 2**31 - 1
 _FINGERPRINT = re.compile(r"[0-9a-f]{64}")
 
@@ -155,7 +155,7 @@ def _segment_violations(trajectory: Trajectory) -> Iterator[str]:
 
 def _rules_of_chunk(chunk: Chunk) -> tuple[int, dict[str, Array]]:
     begin, part = chunk
-    with np.errstate(all="ignore"):  # any numbers may occur, and threads have states of their own
+    with np.errstate(all="ignore"):  # any numbers may occur, and NumPy keeps this state per thread
         return begin, _segment_rules(part)
 
 
@@ -179,7 +179,7 @@ def first_segments(found: Iterable[tuple[int, dict[str, Array]]]) -> Iterator[st
 
 
 def _segment_rules(trajectory: Trajectory) -> dict[str, Array]:
-    """For each rule, in words, the segments that break it, (N,)."""
+    """The segments that break each rule, (N,), by the text of the rule."""
     arc = trajectory.kind == Kind.ARC
     sweep, length, angle = trajectory.sweep, trajectory.length, trajectory.angle
     tip_tolerance = trajectory.tip_tolerance

@@ -89,7 +89,7 @@ SEGMENT = np.dtype(
 )
 """A motion instruction: one row of the columns of ``model.Trajectory`` and of ``interpolation``.
 
-Five cache lines of 64 bytes: the first has what a scan of all segments reads.
+Five cache lines of 64 bytes: the first has the fields for a scan of all segments.
 """
 
 BLOCK = np.dtype([("operation", "<i4"), ("line", "<i4"), ("segment", "<u8")], align=True)

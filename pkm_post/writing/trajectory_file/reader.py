@@ -64,7 +64,7 @@ _BYTES_AT_ONCE = 1 << 24
 
 
 class DamageError(Exception):
-    """The file cannot be read; holds the code and the text of the diagnostic. It is not raised outside this room."""
+    """The file cannot be read; holds the code and the text of the diagnostic. Internal to this package."""
 
     def __init__(self, found: str, code: str = "T103") -> None:
         self.code = code

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Thread rules: what a trajectory has to keep where the spindle is an axis.
+"""Thread rules: rules of a trajectory where the spindle is an axis.
 
-Input: a ``model.Trajectory`` whose single values are valid. Output: in words, what contradicts its threads.
+Input: a ``model.Trajectory`` whose single values are valid. Output: contradictions of its threads as text.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from pkm_post.geometry import Array, dot, norm
 from pkm_post.model import EventKind, Kind, Trajectory, threads
 
 MIN_LEAD = 1e-3
-"""mm: no thread has a smaller lead."""
+"""mm: smallest lead of a thread."""
 _ASIDE = 1e-5
-"""mm, and rad: how far a move of a thread may leave the tool axis."""
+"""mm and rad: allowed deviation of a thread's moves from the tool axis."""
 
 
 def thread_contradictions(trajectory: Trajectory) -> Iterator[str]:
-    """Threads end one by one; they are straight along the tool axis, and at rest where the tool turns round."""
+    """Each thread ends before the next; it is straight along the tool axis, and at rest where the tool reverses."""
     try:
         found = threads(trajectory.events)
     except ValueError:
@@ -35,7 +35,7 @@ def thread_contradictions(trajectory: Trajectory) -> Iterator[str]:
 
 
 def _leaves_the_axis(trajectory: Trajectory, first: int, end: int) -> Array:
-    """Segments that are no feed moves along the tool axis, or do not end at rest, (end - first,)."""
+    """Whether segments are not feed moves along the tool axis, or do not end at rest, (end - first,)."""
     rows = slice(first, end)
     way, axis = trajectory.tip[rows] - trajectory.tip_before()[rows], trajectory.axis[rows]
     aside = norm(way - dot(way, axis)[:, None] * axis)

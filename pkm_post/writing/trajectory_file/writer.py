@@ -54,7 +54,7 @@ def write(trajectory: Trajectory, path: Path) -> None:
 
 
 def write_in_private(trajectory: Trajectory, path: Path) -> None:
-    """The same in a private folder, which its maker writes through to the disk: no other process sees the file.
+    """The same in a private folder, whose owner flushes it to disk: no other process sees the file.
 
     Args:
         trajectory: the trajectory to write.

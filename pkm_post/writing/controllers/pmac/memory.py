@@ -27,7 +27,7 @@ WORDS_OF_FRAME = 20
 """ABS, FRAX with six letters, LINEAR, TA, TS, F, two DWELL0, LINEAR, with margin."""
 
 _GOOD_FOR_A_CUT = {EventKind.TOOL_CHANGE: 2, EventKind.STOP: 1}
-"""Merit of events at which the machine waits for the next part: the higher, the better; 0 for any other rest."""
+"""Merit of cutting at an event, where the machine waits anyway; 0 for any other rest."""
 
 
 def _words_by_knot(motion: StrutMotion) -> Array:
@@ -42,7 +42,7 @@ def _words_by_knot(motion: StrutMotion) -> Array:
 def memory_cuts(motion: StrutMotion, settings: PmacSettings) -> tuple[int, ...]:
     """The knots where a motion is cut for each part to fit into the controller.
 
-    Each part is cut at the best rest within the memory, and at the last of equally good ones.
+    Each part ends at the best rest within the memory, at the last of equals.
 
     Raises:
         ValueError: there is no rest within the memory; ``memory_faults`` reports this beforehand.
@@ -75,7 +75,7 @@ def memory_faults(motion: StrutMotion, settings: PmacSettings, file: str) -> tup
 
 
 def _cuts(motion: StrutMotion, settings: PmacSettings) -> tuple[tuple[int, ...], int | None]:
-    """The cuts, and the knot after which no rest is within the memory, if any."""
+    """The cuts, and the knot after which no rest fits into the memory, if any."""
     own = _words_by_knot(motion)
     if own.sum() <= _room(settings, 0):
         return (), None
@@ -94,7 +94,7 @@ def _cuts(motion: StrutMotion, settings: PmacSettings) -> tuple[tuple[int, ...],
 
 
 def _cut_candidates(motion: StrutMotion, settings: PmacSettings) -> Array:
-    """Knots at which the motion rests, but in a thread: the next part would begin with a spindle that is an axis."""
+    """Knots at rest outside threads: no part may start with the spindle as an axis."""
     resting = rest_knots(motion, settings)
     return resting[~is_among(resting, motion.turns.knot)]
 

@@ -42,7 +42,7 @@ def program_parts(motion: StrutMotion, settings: PmacSettings, heading: Sequence
 
 
 def buffer_opening(settings: PmacSettings) -> str:
-    """The lines that open and clear the program buffer: all that precedes its modes and moves."""
+    """The lines that open and clear the program buffer: everything before its modes and moves."""
     return f"CLOSE\nDELETE GATHER\nOPEN PROG {settings.program}\nCLEAR\n"
 
 

@@ -78,7 +78,7 @@ def _axis_lines(settings: PmacSettings) -> list[str]:
 
 
 def _spindle_definition(settings: PmacSettings) -> list[str]:
-    """The axis of the spindle, in turns; it has no offset, as the code that makes it an axis sets it to 0."""
+    """The axis of the spindle, in turns; no offset, since the code that makes it an axis zeroes it."""
     axis = settings.spindle_axis
     if axis is None:
         return []

@@ -2,7 +2,7 @@
 """Codes: a machine's program text for its events, such as ``T3 M6`` for a tool change.
 
 Input: an event and the machine's table of codes. Output: the program line that executes it. The table must be
-invertible: no text may stand for two events, so that a program can be read back and compared with its job. Values are
+invertible: no text may mean two events, so that a program can be read back and compared with its job. Values are
 in the units of the event, except the dwell: s inside, ms in the program. A code may call a subprogram of the machine
 (M, T, S words) or set an output with a synchronous assignment, ``M60==1 DWELL0``.
 """
@@ -55,7 +55,7 @@ EVENT_CODES: dict[str, EventCode] = {
 its own definition of what each code does (``syntax.effect``)."""
 
 OF_THREADS = frozenset({"spindle_axis", "spindle_speed"})
-"""Codes of machines whose spindle is an axis, where programs have threads; others need none."""
+"""Codes for threads; only machines whose spindle can be an axis need them."""
 
 FUNCTION_NAME = re.compile(r"M[0-9]+")
 """Name of the code of a function of the machine: the M code of part programs."""
@@ -96,7 +96,7 @@ def check_codes(codes: Mapping[str, str], letters: Sequence[str]) -> None:
 
     Raises:
         ValueError: a name is missing or unknown, a text is malformed, changes modes or moves an axis, or some text
-            would stand for two events.
+            would mean two events.
     """
     names = {name for name in codes if not FUNCTION_NAME.fullmatch(name)}
     if names not in (set(EVENT_CODES), set(EVENT_CODES) - OF_THREADS):
@@ -118,13 +118,13 @@ def check_codes(codes: Mapping[str, str], letters: Sequence[str]) -> None:
 
 
 def _check_synchronous(name: str, template: str) -> None:
-    """Require a dwell after a synchronous assignment: it waits for the next move or dwell, and might never execute."""
+    """Require a dwell after a synchronous assignment, which waits for the next move or dwell and may never run."""
     if _SYNCHRONOUS.search(template) and not _WITH_DWELL.fullmatch(template):
         raise ValueError(f"codes.{name}: expected DWELL0 behind a synchronous assignment, got {template!r}")
 
 
 def _check_no_motion(name: str, template: str, letters: Sequence[str]) -> None:
-    """Refuse codes with moves and modes: the certificate only knows those of the program itself."""
+    """Refuse codes with moves and modes: the certificate covers only those of the program itself."""
     moves = re.compile(rf"(?<![A-Z])({'|'.join(map(re.escape, letters))})\s*[-+.(0-9{{]", re.IGNORECASE)
     found = _MODES.search(template) or moves.search(template)
     if found:

@@ -102,7 +102,7 @@ def join_motions(
 
 
 def _joined_turns(parts: Sequence[SpindleTurns], shift: Array) -> SpindleTurns:
-    """The turns of all parts, whose knots are counted from those given, (P,)."""
+    """The turns of all parts, with their knots shifted by (P,) given numbers."""
     knots = [part.knot + first for part, first in zip(parts, shift, strict=True)]
     return SpindleTurns(
         np.concatenate(knots),

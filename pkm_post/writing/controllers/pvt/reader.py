@@ -73,7 +73,7 @@ class LineReader:
 
     def lines_of(self, text: str) -> TextLines:
         """The lines of a text, with moves and intervals already found."""
-        # one byte per character: one that is not Latin-1 becomes a question mark, which no line of these forms has
+        # one byte per character: others than Latin-1 become question marks, which match no form
         return lines_of(text.encode("latin-1", "replace"), self.forms["move"], self.forms["interval"], _INTERVAL_MS)
 
     def take(self, number: int, text: str, lines: TextLines) -> None:
@@ -166,7 +166,7 @@ class LineReader:
         self._moves(np.array(struts).reshape(1, 6, 2), np.array([self._interval]))
 
     def _move(self, number: int, line: str, numbers: Sequence[str]) -> None:
-        # every change between the two kinds of move is read here: a run of moves begins with a line of its own
+        # the first line of a run of moves is read here, and with it any change between the two kinds of move
         if self._in_thread:
             self._fault(number, 0, line, self.forms[IN_THREAD].name)
         self._moves(np.array([[float(number) for number in numbers]]).reshape(1, 6, 2), np.array([self._interval]))

@@ -2,9 +2,9 @@
 """Settings: wiring and communication of one machine's controller, as far as common to the family.
 
 Input: the ``[controller]`` table of a machine, whose entries the reader of machine files has checked one by one.
-Output: settings that the writer, the reader and the set-up file share as data. Checks here are those that the reader of
-machine files cannot make: the kind of controller, whether the codes are distinguishable, and a program number that no
-file states. With them come the axis definitions of set-up files, which make axis values true strut lengths:
+Output: settings that the writer, the reader and the set-up file share as data. The checks here are those that the
+reader of machine files cannot make: the kind of controller, distinguishable codes, and a program number chosen at run
+time. The axis definitions of set-up files, which make axis values true strut lengths, are also here:
 
     counts = counts_per_mm * (strut length - zero_length)
 
@@ -44,7 +44,7 @@ class PvtSettings:
         speed_decimals: digits after the point of a speed in mm/s.
         line_limit: longest line that the controller accepts, in characters.
         codes: text of each event, by the names of ``codes.EVENT_CODES``.
-        spindle_axis: the spindle where it is an axis; None where it is none.
+        spindle_axis: the spindle as an axis; None if it cannot be one.
 
     Raises:
         ValueError: the codes are not distinguishable, or the program number is not valid.
@@ -73,7 +73,7 @@ class PvtSettings:
 
     @property
     def all_letters(self) -> tuple[str, ...]:
-        """Letters of all axes that a program moves: the struts, and the spindle where it is an axis."""
+        """Letters of all axes that a program moves: the struts, and a spindle that can be an axis."""
         return self.letters if self.spindle_axis is None else (*self.letters, self.spindle_axis.letter)
 
     @classmethod
@@ -114,7 +114,7 @@ def check_stroke(stroke: tuple[float, float]) -> None:
     """Check that the stroke is two increasing lengths.
 
     Raises:
-        ValueError: it is not.
+        ValueError: otherwise.
     """
     shortest, longest = stroke
     if not (math.isfinite(shortest) and math.isfinite(longest) and shortest < longest):

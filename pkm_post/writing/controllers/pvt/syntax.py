@@ -30,7 +30,7 @@ class LinePiece:
 Parts = tuple[str | LinePiece, ...]
 
 IN_THREAD = "move in a thread"
-"""Kind of a line of moves in which the spindle is an axis. Where it may stand is that of any move."""
+"""Kind of a line of moves with the spindle as an axis; it is valid wherever a move is."""
 
 WHOLE = LinePiece(r"(0|[1-9][0-9]{0,14})", "a whole number")
 POSITIVE = LinePiece(r"([1-9][0-9]{0,14})", "a whole number above zero")
@@ -63,7 +63,7 @@ class LineForm:
         return "".join(piece.fixed or number for piece in self.pieces)
 
     def agreement(self, line: str) -> tuple[int, str]:
-        """The number of characters in which a line agrees with this form, and what is expected there."""
+        """The number of characters in which a line agrees with this form, and the expected text there."""
         position = 0
         for piece in (*self.pieces, END):
             match = re.compile(piece.pattern).match(line, position)

@@ -123,7 +123,7 @@ def _lines(intervals: Array, letters: Sequence[str], length: Array, speed: Array
         letters: letters of the axes.
         length: printed, (N, 6, W).
         speed: printed, (N, 6, V).
-        turns: words of the spindle where it is an axis, or nothing, (N,).
+        turns: words of the spindle in threads, or nothing, (N,).
         ends: the character after each line, (N,).
     """
     columns = [("letter", 1), ("length", length.shape[-1]), ("colon", 1), ("speed", speed.shape[-1]), ("behind", 1)]
@@ -215,7 +215,7 @@ def _check(motion: StrutMotion, settings: PvtSettings) -> None:
 
 
 def _check_turns(motion: StrutMotion, settings: PvtSettings, resting: Sequence[int]) -> None:
-    """Check that the spindle is an axis at the knots of threads, and there alone, and rests where the struts do."""
+    """Check that the spindle is an axis only at the knots of threads, and rests where the struts do."""
     inside = [np.arange(thread.first + 1, thread.end + 1) for thread in threads(motion.events)]
     expected = np.concatenate([np.zeros(0, dtype=np.int64), *inside])
     if not np.array_equal(motion.turns.knot, expected):
