@@ -46,7 +46,7 @@ class Certified:
     Attributes:
         text: text of the file, with LF line ends.
         digest: SHA-256 of the text.
-        verified_now: whether it was verified just now, as the accompanying files did not agree.
+        verified_now: whether it was verified now because the accompanying files did not agree.
     """
 
     text: str
@@ -77,7 +77,7 @@ def job_to_load(
         program: the file of a motion program, or of one of its parts.
         machine: the machine to run it on.
         settings: settings of its controller.
-        uncertified: accept it without proof of certification; this is logged with the reasons.
+        uncertified: accept an uncertified program; this is logged with the reasons.
     """
     text, faults = read_text(program)
     if text is None:
@@ -96,9 +96,9 @@ def job_to_load(
 def program_to_load(
     program: Path, machine: Machine, settings: PmacSettings | PowerPmacSettings, uncertified: bool = False
 ) -> tuple[tuple[PmacProgram, bool] | None, Findings]:
-    """The lines of a program file for the controller, and whether it is one of strut lengths; else as ``job_to_load``.
+    """The lines of a program file for the controller, and whether it is of strut lengths; otherwise as ``job_to_load``.
 
-    A program of tip and axis is certified by ``verify`` alone, against a trajectory file in its folder, or refused.
+    A program of tip and axis is certified only by ``verify``, against a trajectory file in its folder.
     """
     text, faults = read_text(program)
     if text is None or not program_files.is_of_tip_and_axis(text):
@@ -113,7 +113,7 @@ def program_to_load(
 
 
 def _trajectory_of(first: Path, text: str) -> Path:
-    """The trajectory file of a program: of its name, or the one in its folder that its heading names by SHA-256."""
+    """The trajectory file of a program: by name, or by the SHA-256 in its heading."""
     named = first.with_suffix(result_files.TRAJECTORY)
     if named.is_file():
         return named
@@ -164,7 +164,7 @@ def _first_part(program: Path, number: int) -> Path:
 
 
 def _reasons(program: Path, text: str, machine: Machine, first: Path, part: tuple[int, int]) -> Iterator[str]:
-    """Reasons why the files alone do not prove that a program is certified."""
+    """Reasons why the files by themselves do not prove that a program is certified."""
     seal = program_files.own_hash_matches(text)
     if not seal:
         yield "its heading states no SHA-256" if seal is None else "its heading states another SHA-256"

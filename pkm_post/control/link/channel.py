@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Command channel: a link, a protocol and a clock. A command goes out, its outcome comes back, or the timeout ends it.
+"""Command channel: a link, a protocol and a clock. A command goes out; its outcome comes back, or it times out.
 
-A controller may be in any state when the link connects. A program buffer may be open, and then an assignment would
-become a line of the program. So the handshake queries ``SIZE`` first, whose sign reveals an open buffer, and sets no
-value that is already right.
+A controller may be in any state when the link connects. If a program buffer is open, an assignment would become a line
+of the program. So the handshake starts with the query ``SIZE``, whose sign reveals an open buffer, and sets only values
+that are wrong.
 
 Input: commands. Output: the outcome of each; exceptions of the link propagate.
 """
@@ -19,18 +19,18 @@ from pkm_post.control.link.ports import PortInterface
 from pkm_post.control.link.protocol import Answer, CommandKind, ControllerCommand, Lost, Message, Refusal
 
 LONG_QUERY_S = 0.5
-"""A query that takes longer may be dropped for something more urgent; reconnecting takes about as long."""
+"""A longer query may be preempted by something more urgent; reconnecting takes about as long."""
 
 _Outcome = Answer | Refusal | Lost
 
 
 class CommandChannel:
-    """Executes commands one after the other.
+    """Executes commands in sequence.
 
     Attributes:
         messages: unsolicited messages from programs in the controller.
-        answer_timeout: seconds without a byte before an answer is given up.
-        is_preempted: called during a long query: whether something more urgent waits.
+        answer_timeout: timeout of an answer: seconds without a byte.
+        is_preempted: polled during a long query: whether something more urgent is waiting.
     """
 
     def __init__(self, port: PortInterface, answer_timeout: float, clock: Callable[[], float]) -> None:
@@ -38,7 +38,7 @@ class CommandChannel:
 
         Args:
             port: of the controller.
-            answer_timeout: seconds without a byte before an answer is given up.
+            answer_timeout: timeout of an answer: seconds without a byte.
             clock: monotonic clock, s.
         """
         self._port, self._clock = port, clock
@@ -57,10 +57,10 @@ class CommandChannel:
         return self._protocol.lines_at_once(lines)
 
     def restart(self, control: int | None = None) -> None:
-        """Reconnect; controller and protocol drop whatever was outstanding.
+        """Reconnect; controller and protocol drop all outstanding work.
 
         Args:
-            control: code of a control character sent before anything else.
+            control: code of a control character to send first.
 
         Raises:
             LinkLostError: the controller does not answer.
@@ -87,11 +87,11 @@ class CommandChannel:
         return "\n".join(outcome.lines) if isinstance(outcome, Answer) else ""
 
     def run(self, command: ControllerCommand | None, control: int | None = None) -> _Outcome:
-        """Run one exchange, or a reset with an optional control character; return the event that outcome it.
+        """Run one exchange, or a reset with an optional control character; return the event that ends it.
 
         Raises:
             LinkLostError: the link is cut.
-            CancelledError: a query took long while something more urgent waits.
+            CancelledError: something more urgent preempts a long query.
         """
         protocol, began = self._protocol, self._clock()
         if command is None:
@@ -131,12 +131,12 @@ class CommandChannel:
 
 
 class OpenBufferPolicy(Enum):
-    """What to do with a program buffer that is open when connecting."""
+    """Treatment of a program buffer that is open when connecting."""
 
     LEAVE = "leave"
-    """Leave it: a client that only monitors disturbs no one, and loading checks its owner first (``ownership``)."""
+    """Leave it: monitoring must not disturb its owner, and loading checks for one first (``ownership``)."""
     STOP = "stop"
-    """Leave it if the handshake is as required, else close it: a stop takes precedence over a download."""
+    """Leave it if the handshake is correct, else close it: a stop takes precedence over a download."""
     CLOSE = "close"
     """Close it: its owner reconnects and queries its contents."""
 
@@ -158,7 +158,7 @@ def establish_handshake(channel: CommandChannel, open_buffer: OpenBufferPolicy) 
     if open_buffer is OpenBufferPolicy.CLOSE:
         channel.blind("CLOSE")
     if _has_handshake(channel):
-        return  # an assignment might become a line of a download that another client is starting
+        return  # an assignment might end up in another client's download
     if is_open and open_buffer is OpenBufferPolicy.LEAVE:
         raise LinkLostError("a program buffer is open, and the handshake differs: abort closes the buffer")
     channel.blind("CLOSE")

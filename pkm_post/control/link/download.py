@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Download: load a program into the controller and verify its listing.
 
-First the existing program of that number is deleted, and the controller must show that it is gone. Then the lines are
+First the existing program of that number is deleted, which the controller must confirm. Then the lines are
 sent, the buffer is closed, and the program is listed and compared. If the link fails in between, the controller's
-listing decides: if it consists of complete lines from the first on, the download continues after them, else it starts
-again. Every exception leaves nothing under the number, or states that this could not be verified.
+listing decides: if it has complete lines from the first on, the download continues after them, else it starts
+over. After any exception the number is empty, or the exception states that this could not be verified.
 
-Input: a session and a program. Output: a record of what was loaded.
+Input: a session and a program. Output: a record of the loaded program.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from pkm_post.control.link.program_memory import memory_of
 from pkm_post.control.link.session import Session
 
 ATTEMPTS = 5
-"""How often a download is tried before it is given up."""
+"""Attempts of a download."""
 CLEAR_S = 20.0
 CLEAR_ROUNDS = 12
 """Seconds, and attempts, to clear a program number."""
@@ -35,7 +35,7 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class DownloadResult:
-    """A program whose listing matched what was sent.
+    """A program whose listing matched the lines sent.
 
     Attributes:
         program: its number.
@@ -65,14 +65,14 @@ def download(
 
     Args:
         session: an open session.
-        program: what to load.
+        program: the program to load.
         progress: called with the lines loaded and the total.
         is_cancelled: polled between lines.
 
     Raises:
-        RefusedError: the buffer could not be opened, as a program runs or another buffer is open; nothing changed.
-        DownloadError: it failed; states whether anything is left under the number.
-        CancelledError: it was cancelled, and nothing is left under the number.
+        RefusedError: the buffer could not be opened, since a program runs or another buffer is open; nothing changed.
+        DownloadError: it failed; states whether the number is empty.
+        CancelledError: it was cancelled, and the number is empty.
         NotOwnerError: another client owns the machine; nothing changed.
     """
     with owned(session, "download"):
@@ -151,7 +151,7 @@ def _fill(session: Session, program: PmacProgram, progress: Progress, is_cancell
         except LinkLostError as lost:
             _log.warning("the link failed: %s", lost)
         is_closed = memory.is_closed(session)
-        there = verify_listing(session, program)  # asked last, so that it reveals a reset in between
+        there = verify_listing(session, program)  # queried last, to reveal a reset in between
         if there.same and is_closed:
             return attempt
         _log.warning("the listing differs, or the buffer is still open: %s", there.difference)
@@ -162,7 +162,7 @@ def _fill(session: Session, program: PmacProgram, progress: Progress, is_cancell
 def _send(
     session: Session, program: PmacProgram, held: int, progress: Progress, is_cancelled: Callable[[], bool]
 ) -> None:
-    """Send the lines after those that the controller holds."""
+    """Send the lines after those that the controller has."""
     lines, memory = program.lines, memory_of(session)
     memory.open(session, program.number)
     if not held:

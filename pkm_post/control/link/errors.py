@@ -2,7 +2,7 @@
 """Faults: the exceptions of communication with a controller.
 
 A refusal carries the controller's number and its meaning. A lost link is a separate case, and a set command with an
-unknown outcome is a third: it must never be resent without querying the state.
+unknown outcome is a third: never resend it without querying the state.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class RefusedError(PmacError):
     """The controller refused a command and did not execute it.
 
     Attributes:
-        command: what was sent.
+        command: the command sent.
         number: of the error, None if the controller gave none.
     """
 
@@ -62,7 +62,7 @@ class RefusedError(PmacError):
 
 
 class LinkLostError(PmacError):
-    """The link was cut, or the answer made no sense even after retries."""
+    """The link was cut, or the answer was invalid even after retries."""
 
 
 class NoAccessError(PmacError):
@@ -73,7 +73,7 @@ class OutcomeUnknownError(LinkLostError):
     """The link failed after a set command was sent: whether it was executed is unknown.
 
     Attributes:
-        command: what was sent.
+        command: the command sent.
     """
 
     def __init__(self, command: str, why: str) -> None:
@@ -121,7 +121,7 @@ class DownloadError(PmacError):
     """A program could not be loaded into the controller.
 
     Attributes:
-        cleared: whether the controller has since shown that nothing is left under the program number.
+        cleared: whether the controller has confirmed that the program number is empty.
     """
 
     def __init__(self, why: str, cleared: bool) -> None:
@@ -138,9 +138,9 @@ class StreamError(PmacError):
     """A program could not be streamed to its end.
 
     Attributes:
-        line: of the program, from 1, after which the machine rests or comes to rest by itself; 0 before the first
+        line: of the program, from 1, after which the machine is or comes to rest by itself; 0 before the first
             line.
-        cleared: whether the controller has since shown that nothing is left in its rotary buffer.
+        cleared: whether the controller has confirmed that its rotary buffer is empty.
     """
 
     def __init__(self, why: str, line: int, cleared: bool) -> None:

@@ -11,7 +11,7 @@ Every packet has a header of eight bytes: request type, request, and value, inde
 | FLUSH B3 | 40 | everything outstanding to be dropped | 1 byte |
 | CTRL_RESPONSE C4 | C0 | a control character, in the value | its answer |
 
-TCP neither loses nor corrupts data, so there are no checksums (I4=0), and invalid bytes mean that the connection is
+TCP neither loses nor corrupts data, so there are no checksums (I4=0), and on invalid bytes the connection is
 unusable: the protocol ends with ``Lost``, and its caller reconnects.
 [UMACEthernet, Ethernet Protocol]
 

@@ -40,14 +40,14 @@ class Link(Protocol):
         """
 
     def restart(self) -> None:
-        """Reconnect where that makes sense, and discard received bytes.
+        """Reconnect if that makes sense, and discard received bytes.
 
         Raises:
             LinkLostError: reconnecting failed.
         """
 
     def close(self) -> None:
-        """Close it; repeated calls do no harm."""
+        """Close it; may be called repeatedly."""
 
 
 class SocketLink(abc.ABC):
@@ -214,7 +214,7 @@ class SerialLink:
 
 
 def _terminal_error() -> type[Exception]:
-    """The exception of the system for a line that is gone; OSError on Windows."""
+    """The exception of the system for a lost line; OSError on Windows."""
     try:
         import termios
     except ImportError:

@@ -20,7 +20,7 @@ RECORD = f"P{VARIABLES[0]}..{VARIABLES[-1]}"
 OPERATIONS = ("download", "run", "stream", "jog", "home", "resume", "override", "terminal", "play")
 """Operations of an owner; the controller stores the index in this list, from 1. Append new ones at its end."""
 RESUMED_BY_ALL = ("stream", "play")
-"""What another client may resume after a hold, while its owner goes on feeding it."""
+"""Operations that another client may resume after a hold, while the owner keeps feeding them."""
 
 
 @dataclass(frozen=True)
@@ -57,8 +57,8 @@ def read_record(session: Session) -> Owner:
     """Read the owner's record from the controller.
 
     Raises:
-        DiagnosedError: the variables hold values that no client writes.
-        LinkLostError: the answer makes no sense.
+        DiagnosedError: the variables have values that no client writes.
+        LinkLostError: the answer is invalid.
     """
     answer = session.query(RECORD)
     try:
@@ -73,7 +73,7 @@ def read_record(session: Session) -> Owner:
 
 
 def exchange_owner(old: int, new: int) -> str:
-    """Replace the owner if it is the expected one: INT is 1 then, and else 0."""
+    """Replace the owner if it is the expected one: INT is then 1, else 0."""
     return f"P{OWNER}=P{OWNER}+({new}-{old})*INT(1/(ABS(P{OWNER}-{old})+1))"
 
 
@@ -83,7 +83,7 @@ def owner_diagnostic(session: Session, code: str, found: str) -> Diagnostic:
 
 
 def time_text(seconds: object) -> str:
-    """Local date and time of seconds since 1970, for people."""
+    """Local date and time of seconds since 1970, as text."""
     try:
         return time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(float(str(seconds))))
     except (ValueError, OverflowError, OSError):

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Ownership: one client at a time may move a machine or load its controller; all others may monitor and stop it.
 
-Two clients that load or start at the same time close each other's buffers, or move the struts to unwanted places. So a
-client first claims ownership for a block: with a lock file among the clients of this computer, and with five
-P-variables of the controller among all computers. They record owner, operation, start time and a heartbeat count. One
-assignment in the controller claims it atomically: it changes the variable only if that still has the value read
-before, so of two simultaneous clients one finds the other. A killed owner leaves its number behind; it is overridden
-if it shows no sign of life for a while and the machine rests. An owner that was silent for long verifies that it still
-is the owner before it sends anything.
+Two clients that load or start at the same time close each other's buffers, or move the struts to the wrong place. So a
+client first claims ownership for a block of work: with a lock file among the clients of this computer, and with five
+P-variables of the controller among all computers. They record owner, operation, start time and a heartbeat count. The
+claim is atomic: one assignment in the controller changes the variable only if it still has the value just read, so of
+two simultaneous clients one sees the other. A killed owner leaves its number behind; it is overridden if it is silent
+for a while and the machine is at rest. An owner that was silent for long verifies its ownership before it sends
+anything.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from pkm_post.system import Lock, OwnerRecord, lock_owner, try_lock
 BEAT_S = 1.0
 """Heartbeat period of the owner, s."""
 SILENCE_S = 5.0
-"""Seconds without a sign of life after which an owner is overridden."""
+"""Silence in s after which an owner is overridden."""
 POLL_S = 0.5
 ATTEMPTS = 3
 _ERR_NOT_OPEN = 5
@@ -63,7 +63,7 @@ class Ownership:
         self._verified_at, self._connections, self._is_querying = session.now(), session.connections, False
 
     def answered(self) -> None:
-        """Send a due heartbeat, unless a program buffer is open: the assignment would become a line of it."""
+        """Send a due heartbeat, unless a program buffer is open, which would take the assignment as a line."""
         if self._is_querying or not self._owner or self._session.has_open_buffer or not self._is_older_than(BEAT_S):
             return
         self._is_querying = True
@@ -76,9 +76,9 @@ class Ownership:
             self._is_querying = False
 
     def check(self) -> None:
-        """Verify ownership, if it was not seen recently or the link was lost meanwhile.
+        """Verify ownership, unless it was verified recently and the link was up since.
 
-        A Power PMAC answers no question to a thread that has a program open; the next check is after it is closed.
+        A Power PMAC answers no query of a thread with an open program; the next check is after closing it.
 
         Raises:
             NotOwnerError: another client has claimed it.
@@ -94,7 +94,7 @@ class Ownership:
             self._is_querying = False
 
     def is_certain(self) -> bool:
-        """Whether ownership was seen so recently that no other client can have claimed it since."""
+        """Whether ownership was verified so recently that no other client can have claimed it since."""
         is_same_link = self._connections == self._session.connections
         return is_same_link and not self._is_older_than(SILENCE_S / 2)
 
@@ -114,7 +114,7 @@ class Ownership:
     def _verify(self) -> None:
         there = read_record(self._session)
         if not there.owner and not there.since and not _has_abandoned_buffer(self._session):
-            self._session.query(exchange_owner(0, self._owner))  # a controller that was reset has lost all of it
+            self._session.query(exchange_owner(0, self._owner))  # after a reset of the controller the record is gone
             there = read_record(self._session)
         if there.owner != self._owner:
             raise NotOwnerError(owner_diagnostic(self._session, "C211", str(there)), there.action)
@@ -126,12 +126,12 @@ class Ownership:
 
 @contextmanager
 def owned(session: Session, what: str, concurrent: tuple[str, ...] = ()) -> Iterator[None]:
-    """Hold ownership for a block; a session that already has it keeps it.
+    """Own the machine for a block; a session that already owns it keeps it.
 
     Args:
         session: an open session.
         what: the operation, one of ``OPERATIONS``.
-        concurrent: operations of another client that are allowed meanwhile; a silent client's program may continue.
+        concurrent: operations of another client allowed meanwhile; a silent client's program may continue.
 
     Raises:
         NotOwnerError: another client has it.
@@ -154,7 +154,7 @@ def owned(session: Session, what: str, concurrent: tuple[str, ...] = ()) -> Iter
 
 
 def claim(session: Session, what: str, concurrent: tuple[str, ...] = ()) -> Ownership:
-    """Claim ownership; clear and close a program buffer that is no longer being filled.
+    """Claim ownership; clear and close an abandoned program buffer.
 
     Args:
         session: an open session without ownership.
@@ -163,7 +163,7 @@ def claim(session: Session, what: str, concurrent: tuple[str, ...] = ()) -> Owne
 
     Raises:
         NotOwnerError: another client has it, or its operation still moves the machine.
-        DiagnosedError: the lock file cannot be kept.
+        DiagnosedError: the lock file cannot be used.
         LinkLostError: the controller cannot be queried.
         CancelledError: a stop came first.
     """
@@ -208,11 +208,11 @@ def _claim_in_controller(session: Session, what: str, concurrent: tuple[str, ...
         _close_abandoned_buffer(session)
     owner, seen = random.SystemRandom().randrange(1, 1 << 30), before.owner
     for _ in range(ATTEMPTS):
-        session.query(exchange_owner(seen, owner))  # safe to repeat: it may arrive twice
+        session.query(exchange_owner(seen, owner))  # idempotent, as it may arrive twice
         there = read_record(session)
         if there.owner not in (0, seen):
             break
-        seen = there.owner  # a controller that was reset has lost it
+        seen = there.owner  # 0 after a reset of the controller
     if there.owner != owner:
         raise NotOwnerError(owner_diagnostic(session, "C210", str(there)), there.action)
     words = (1, own_address(session.port_name), int(time.time()), OPERATIONS.index(what) + 1)
@@ -221,13 +221,13 @@ def _claim_in_controller(session: Session, what: str, concurrent: tuple[str, ...
 
 
 def _wait_for_silence(session: Session, record: Owner, concurrent: tuple[str, ...]) -> None:
-    """Wait until an owner has shown no sign of life for so long that it counts as gone.
+    """Wait until an owner has been silent long enough to count as gone.
 
-    An owner whose machine moves or is held may be busy with a buffer, so it keeps ownership. A client that resumes such
-    a program checks its count alone, which would grow while a program runs, except for programs it may resume.
+    An owner whose machine moves or is held may be busy with a buffer, so it keeps ownership. A client that resumes a
+    program checks only the owner's count, which would grow while a program runs, except for programs it may resume.
 
     Raises:
-        NotOwnerError: it shows a sign of life, or the machine is busy.
+        NotOwnerError: the owner is alive, or the machine is busy.
     """
     known = str(record)
     signs, until = _signs_of_life(session, record), session.now() + SILENCE_S
@@ -256,10 +256,10 @@ def _has_abandoned_buffer(session: Session) -> bool:
 
 
 def _close_abandoned_buffer(session: Session) -> None:
-    """Clear and close a program buffer that is no longer being filled."""
+    """Clear and close an abandoned program buffer."""
     try:
         session.command("CLEAR")
-    except RefusedError as refused:  # it belongs to another port; the check below shows whether CLOSE works
+    except RefusedError as refused:  # another port opened it; the check below shows whether CLOSE works
         if refused.number != _ERR_NOT_OPEN:
             raise
     session.command("CLOSE")
@@ -269,7 +269,7 @@ def _close_abandoned_buffer(session: Session) -> None:
 
 
 def _process(record: OwnerRecord) -> str:
-    """The process that holds the lock on this computer, in plain text."""
+    """The process with the lock on this computer, as text."""
     if not {"user", "process", "what", "since"} <= record.keys():
         return "an unidentified process of this computer"
     return f"process {record['process']} of {record['user']}, {record['what']}, since {time_text(record['since'])}"

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Power set-up: whether a Power PMAC is set up as programs of the machine rely on.
+"""Power set-up: compare a Power PMAC with the set-up that programs of the machine rely on.
 
 A motor with a linear axis definition has no kinematics, so only the definitions are compared [PowerPMAC, Axis
 Definition Statements]. They are reported with the coordinate system in front, ``&1#1->10000A-500`` [gpascii;
-dls_powerpmacanalyse]; whether values of ``echo 7`` have it is open, so both are read. Soft limits act while
+dls_powerpmacanalyse]; whether answers of ``echo 7`` have it is unknown, so both are read. Soft limits act while
 ``MaxPos`` is above ``MinPos`` [PowerPMAC, Overtravel Limits].
 
-Input: a session, settings, the stroke in mm. Output: every difference in words.
+Input: a session, settings, the stroke in mm. Output: every difference as text.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _ROTARY = "ABC"
 
 
 def setup_faults(session: Session, settings: PowerPmacSettings, stroke: tuple[float, float]) -> Iterator[str]:
-    """Every difference between the controller and the set-up of the machine, in words.
+    """Every difference between the controller and the set-up of the machine, as text.
 
     Args:
         session: an open session.

@@ -2,12 +2,12 @@
 """Program: a motion program as lines for the controller, and the comparison of a listing with it.
 
 A controller does not list the original text: it stores numbers, not digits, so ``A512.062500`` is listed as
-``A512.0625``, and it sets its own blanks. So each line is split into words, signs and numbers. Words and signs must be
-equal, and so must the lines: half a line is a different move. A number must match to a hundredth of its last
-written digit, or to the precision of the controller's numbers.
+``A512.0625``, with its own blanks. So each line is split into words, signs and numbers. Words, signs and line breaks
+must be equal, since half a line is a different move. A number must match to a hundredth of its last written digit, or
+to the precision of the controller's numbers.
 
 Input: the text of a program or of one part of it, with the settings it was written for; the lines of a listing.
-Output: a job (lines and motion in mm) or its faults; how many lines match, and where they differ.
+Output: a job (lines and motion in mm) or its faults; the number of matching lines, and the first difference.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ class ListingComparison:
     """The result of comparing a listing with a program.
 
     Attributes:
-        lines: how many lines of the program, from the first on, are listed whole.
+        lines: number of lines of the program, from the first on, that are listed in full.
         all_there: whether these are all lines of the program.
         nothing_else: whether the listing ends after them.
         difference: the first difference in plain text; empty if they match.
@@ -103,7 +103,7 @@ class ListingComparison:
 
     @property
     def same(self) -> bool:
-        """Whether the controller holds exactly the program."""
+        """Whether the controller has exactly this program."""
         return self.all_there and self.nothing_else
 
 

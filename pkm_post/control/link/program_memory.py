@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Program memory: how a Turbo PMAC and a Power PMAC take a program, list it back, and forget it.
+"""Program memory: load, list and delete a program in a Turbo PMAC or a Power PMAC.
 
 A Turbo PMAC appends to an open program until ``CLEAR``, and ``SIZE`` gives its free words, negative while a buffer is
-open [TurboPMAC, OPEN, SIZE]. A Power PMAC erases a program when it is opened, a program that is closed without lines
-ceases to exist, and one that does not exist is error #22 [PowerPMAC, open prog; Error Codes]. ``list prog`` lists it:
-Diamond Light Source's backup of programs rests on that [dls_powerpmacanalyse]. Its free memory is not asked: a line
-without room is error #34.
+open [TurboPMAC, OPEN, SIZE]. A Power PMAC erases a program on opening it; a program closed without lines ceases to
+exist, and listing it gives error #22 [PowerPMAC, open prog; Error Codes]. ``list prog`` lists it, as Diamond Light
+Source's program backup relies on [dls_powerpmacanalyse]. Its free memory is not queried: a line without room gives
+error #34.
 
 Input: a session and a program number. Output: commands, and the lines of a listing.
 """
@@ -32,7 +32,7 @@ class ProgramMemory:
         emptying: the line that empties an open program; empty if opening does so.
         closing: the line that closes it.
         listing: the query that lists it.
-        absent: errors by which a listing shows that there is no program of this number.
+        absent: errors of a listing if there is no program of this number.
         has_size: whether ``SIZE`` gives the free memory.
     """
 
@@ -45,11 +45,11 @@ class ProgramMemory:
 
     @property
     def goes_on(self) -> bool:
-        """Whether lines can be appended to a program that was opened again."""
+        """Whether lines can be appended to a reopened program."""
         return bool(self.emptying)
 
     def open(self, session: Session, number: int) -> None:
-        """Open a program, and close what this session may have left open."""
+        """Open a program, after closing one that this session may have left open."""
         if not self.has_size and session.has_open_buffer:
             session.command(self.closing)
         for line in self.opening:
@@ -65,7 +65,7 @@ class ProgramMemory:
         session.command(self.closing)
 
     def listed(self, session: Session, program: PmacProgram) -> tuple[str, ...]:
-        """The lines that the controller lists under the number of a program; none if there is no such program."""
+        """The lines that the controller lists under the number of a program; empty if there is no such program."""
         most = 3 * sum(map(len, program.lines)) + (1 << 16)
         try:
             lines = session.query(self.listing.format(program.number), most)
@@ -76,11 +76,11 @@ class ProgramMemory:
         return lines if self.has_size else _body(lines)
 
     def is_closed(self, session: Session) -> bool:
-        """Whether no program buffer is open: a Power PMAC's is open to its own thread alone."""
+        """Whether no program buffer is open; on a Power PMAC, none of this thread."""
         return free_memory(session) >= 0 if self.has_size else not session.has_open_buffer
 
     def check_room(self, session: Session, program: PmacProgram) -> None:
-        """Compare the size of a program with the free memory, where the controller says it beforehand.
+        """Compare the size of a program with the free memory, if the controller reports it.
 
         Raises:
             PmacError: it is too large.
@@ -101,7 +101,7 @@ def memory_of(session: Session) -> ProgramMemory:
 
 
 def _body(lines: tuple[str, ...]) -> tuple[str, ...]:
-    """The lines of a listing without the frame of a program, which some tools show and some do not, and ``;``.
+    """The lines of a listing without ``;`` and without the frame of a program, which is optional.
 
     Raises:
         LinkLostError: the listing is cut inside the frame.

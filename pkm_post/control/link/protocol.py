@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Protocol: commands, events, and the base of all protocols of a controller.
 
-A command enters; bytes go out and come in; one event ends it. A protocol does no I/O and has no clock: its caller
+A command starts an exchange of bytes; one event ends it. A protocol does no I/O and has no clock: its caller
 passes the bytes and the time in seconds, from any monotonic clock.
 """
 
@@ -14,14 +14,14 @@ from typing import Protocol
 
 
 class CommandKind(Enum):
-    """The effect of a command, which decides whether it may be resent."""
+    """The effect of a command, which determines whether it may be resent."""
 
     QUERY = "query"
     """Reads only; may be repeated."""
     SET = "set"
     """Changes something; never resent unless it certainly was not executed."""
     BUFFER = "buffer"
-    """Lines for an open program buffer; the rule for a set applies."""
+    """Lines for an open program buffer; resent like a set."""
     BLIND = "blind"
     """Its answer cannot be parsed, as the handshake is unknown: it ends when the controller falls silent."""
 
@@ -33,7 +33,7 @@ class ControllerCommand:
     Attributes:
         text: without its terminator. Printable ASCII; the lines of a ``CommandKind.BUFFER`` are separated by ``\n``.
         kind: its effect.
-        answer_timeout: seconds without a byte before the answer is given up.
+        answer_timeout: timeout of the answer: seconds without a byte.
         most: maximum bytes of an answer; a longer one is invalid.
 
     Raises:
@@ -66,7 +66,7 @@ class Refusal:
     Attributes:
         number: of the error, None if it gave none.
         line: index of the refused line, for lines of a buffer.
-        words: number and meaning, if the controller states them itself.
+        words: number and meaning, if the controller gives them.
     """
 
     number: int | None
@@ -76,10 +76,10 @@ class Refusal:
 
 @dataclass(frozen=True)
 class Lost:
-    """The answer made no sense, or did not arrive.
+    """The answer was invalid, or did not arrive.
 
     Attributes:
-        why: in plain text.
+        why: the reason as text.
         untouched: whether the controller certainly did not execute the command.
     """
 
@@ -116,7 +116,7 @@ class CommandProtocol(Protocol):
         """
 
     def reset(self, now: float, control: int | None = None) -> None:
-        """Drop what is outstanding, here and in the controller; ends with an ``Answer``, or with ``Lost``.
+        """Drop outstanding work, here and in the controller; ends with an ``Answer``, or with ``Lost``.
 
         Args:
             now: current time.
@@ -146,7 +146,7 @@ _Timeout = Callable[[float], None]
 
 
 class ByteProtocol:
-    """A protocol without a protocol.
+    """Common base of the protocols.
 
     Attributes:
         deadline: when ``expire`` is due.
@@ -229,7 +229,7 @@ class ByteProtocol:
         self._wait(step, self._no_answer, now + self._command.answer_timeout)
 
     def _wait_for_silence(self, now: float) -> None:
-        # A controller thinks before it answers: the first byte may take longer than those after it.
+        # The first byte of an answer may take longer than the others.
         self._collected.clear()
         self._wait(self._collect, self._silent, now + self._command.answer_timeout)
 
@@ -244,7 +244,7 @@ class ByteProtocol:
         self._end(Lost(f"no answer for {self._command.answer_timeout:g} s"))
 
     def _take_text(self, data: bytes, now: float) -> int:
-        """Take at once what is text inside a line of an answer; how many bytes, 0 if the first one is to be stepped."""
+        """Take the leading text inside a line of an answer; return its number of bytes, 0 if the first needs a step."""
         return 0
 
     def _is_untouched(self) -> bool:

@@ -15,10 +15,10 @@ _REAL = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 
 def query_line(session: Session, query: str) -> str:
-    """The one line of an answer.
+    """The answer of a query, which must be one line.
 
     Raises:
-        PmacError: it has more lines, or none.
+        PmacError: the answer has more lines, or none.
     """
     answer = session.query(query)
     if len(answer) != 1:

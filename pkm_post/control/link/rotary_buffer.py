@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rotary buffer: cut a program into segments for it, load their lines and track what it holds.
+"""Rotary buffer: split a program into segments, load their lines and track the contents of the buffer.
 
-A controller executes a rotary buffer as long as it holds lines. If they run out within a move because the link was cut,
-the struts stop abruptly, or do something undocumented. So each segment ends with STOP where the struts rest anyway, and
-all its lines are loaded before R releases the first of them: whatever happens to the link, the controller holds all
-lines up to a place where it stops by itself.
+A controller executes a rotary buffer while it has lines. If they run out within a move because the link was cut, the
+struts stop abruptly, or do something undocumented. So each segment ends with STOP where the struts are at rest anyway,
+and all its lines are loaded before R releases the first: whatever happens to the link, the controller has all lines up
+to a place where it stops by itself.
 
 Lines are counted from the first one sent: some are certainly in the controller, some after them may be. The controller
-reports how many it has not begun, which shows how many of the last ones arrived.
+reports the number not yet begun, which shows how many of the last ones arrived.
 
 Input: a session, a program, the size of the buffer in 48-bit words. Output: segments, and lines in the buffer.
 """
@@ -29,22 +29,22 @@ from pkm_post.control.link.status import Array
 from pkm_post.writing import PmacSettings, rotary_opening
 
 ATTEMPTS = 5
-"""How often an operation is tried before it is given up."""
+"""Attempts of an operation."""
 _MARGIN = 2
-"""Lines no longer ahead that may still occupy the buffer: the running one, and the one after it."""
+"""Started lines that may still occupy the buffer: the running one, and the one after it."""
 _log = logging.getLogger(__name__)
 
 STOP = "STOP"
 _DWELL_AT_REST = "DWELL0"
 _DWELL, _INTERVAL = re.compile(r"DWELL"), re.compile(r"PVT\d+")
 _SEGMENT_END_WORDS = 34
-"""More than the words of DWELL0, STOP, the repeated interval, and two executed lines that may still be there."""
+"""Upper bound for DWELL0, STOP, the repeated interval, and two executed lines that may still be there."""
 _VALUE = r"(-?\d+\.\d+)"
 
 
 @dataclass(frozen=True)
 class Segment:
-    """Lines that are executed in one run.
+    """Lines executed in one run.
 
     Attributes:
         lines: as sent; the last is STOP.
@@ -59,7 +59,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class _Rest:
-    """A place where the struts stand: after how many lines, their lengths, the interval to repeat."""
+    """A rest of the struts: number of lines before it, strut lengths, and the interval to repeat."""
 
     behind: int
     length: Array
@@ -67,7 +67,7 @@ class _Rest:
 
 
 def split_into_segments(program: PmacProgram, settings: PmacSettings, words: int) -> tuple[Segment, ...]:
-    """Cut a program where it rests, as rarely as half the buffer allows, so that one part runs while the next is sent.
+    """Cut a program at rests into the longest segments within half the buffer: one runs while the next is sent.
 
     Args:
         program: as written for a fixed buffer.
@@ -75,7 +75,7 @@ def split_into_segments(program: PmacProgram, settings: PmacSettings, words: int
         words: size of the rotary buffer in 48-bit words.
 
     Raises:
-        NotReadyError: it does not end at rest, or the lines between two rests exceed the buffer.
+        NotReadyError: the program does not end at rest, or the lines between two rests exceed the buffer.
     """
     rests = list(_rests(program.lines, settings))
     if not rests or rests[-1].behind != len(program.lines):
@@ -110,7 +110,7 @@ def _next(rests: list[_Rest], start: int, filled: list[int], words: int) -> _Res
 
 
 def _rests(lines: tuple[str, ...], settings: PmacSettings) -> Iterator[_Rest]:
-    """Where the struts stand: after a dwell, after a knot with zero speed, and after the last line."""
+    """The rests: after a dwell, after a knot with zero speed, and after the last line."""
     knot = re.compile(" ".join(rf"{letter}{_VALUE}(?::{_VALUE})?" for letter in settings.letters))
     length: Array | None = None
     stands, interval = False, ""
@@ -137,7 +137,7 @@ class RotaryBuffer:
 
     Attributes:
         loaded: lines that certainly arrived, executed or not.
-        uncertain: lines after those that may have arrived.
+        uncertain: further lines that may have arrived.
     """
 
     def __init__(self, session: Session, settings: PmacSettings, lines: Sequence[str], words: int) -> None:
@@ -149,8 +149,8 @@ class RotaryBuffer:
         self._connections = session.connections
 
     def open(self) -> None:
-        """Open it empty and point the coordinate system to it."""
-        # A retry of the whole sequence is safe: nothing has been released.
+        """Open the buffer empty and point the coordinate system to it."""
+        # Retrying the whole sequence is safe: nothing is released yet.
         if ahead := self._execute_all(*self._opening):
             raise PmacError(f"{ahead} lines are in the rotary buffer after CLEAR")
 
@@ -159,14 +159,14 @@ class RotaryBuffer:
         return self._execute_all("CLOSE", self._system, "OPEN ROT", "CLEAR", "CLOSE") == 0
 
     def lines_ahead(self) -> int:
-        """Lines in it that have not begun."""
+        """Lines in the buffer that have not begun."""
         answer = self._session.query(f"{self._system}PR")
         if len(answer) != 1 or not re.fullmatch(r"\d{1,9}", answer[0].strip()):
             raise LinkLostError(f"PR: expected a number of lines, got {answer}")
         return int(answer[0])
 
     def send(self, end: int) -> bool:
-        """Send as many of the lines up to ``end`` as fit; return whether any did.
+        """Send as many of the lines up to ``end`` as fit; return whether any line fitted.
 
         Raises:
             RefusedError: a line was refused; those before it may be in the buffer.
@@ -184,7 +184,7 @@ class RotaryBuffer:
         return True
 
     def recount(self, begun: int) -> None:
-        """After a failure, at rest after line ``begun``: count the loaded lines and reopen the buffer.
+        """After a failure, at rest after line ``begun``, count the loaded lines and reopen the buffer.
 
         Raises:
             PmacError: the controller's count is inconsistent.
@@ -197,7 +197,7 @@ class RotaryBuffer:
         self.loaded, self.uncertain, self._room = there, 0, 0
 
     def _execute_all(self, *lines: str) -> int:
-        """Execute lines, all again when the link fails; return how many lines lie ahead then."""
+        """Execute lines, retrying all if the link fails; return the number of lines ahead."""
         for attempt in range(ATTEMPTS):
             self._connections = self._session.connections
             try:
@@ -214,11 +214,11 @@ class RotaryBuffer:
         raise LinkLostError("the link fails repeatedly")
 
     def _is_still_open(self) -> bool:
-        """Whether it is still open: a reconnect closes it, and a line would then be executed at once, not stored."""
+        """Whether the buffer is still open: a reconnect closes it, and a line would then be executed at once."""
         return self._connections == self._session.connections
 
     def _fitting(self, end: int) -> int:
-        """How many of the next lines fit."""
+        """Number of the next lines that fit."""
         if self._filled[self.loaded + 1] - self._filled[self.loaded] > self._room:
             oldest = max(self.loaded - self.lines_ahead() - _MARGIN, 0)
             self._room = self._words - (self._filled[self.loaded] - self._filled[oldest])

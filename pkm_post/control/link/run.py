@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Run: check, start and resume a program, and set its override. Each command is sent once; then the state is read.
+"""Run: check, start and resume a program, and set its override. Each command is sent once, then the state is read.
 
 Hold and abort are in ``stopping``. ``Q`` is not offered: it would end a program at a knot where the struts are moving.
-The controller's state shows a command with a short delay, so the state is polled until it does. Preconditions in
+The controller's state reflects a command with a short delay, so it is polled. Preconditions in
 controller and machine are queried, never assumed.
 
 Input: a session, settings, a program, strut lengths in mm. Output: the resulting state, or ``NotReadyError``
@@ -37,7 +37,7 @@ _ROTARY = "ABC"
 
 
 def check_setup(session: Session, settings: AnySettings, stroke: tuple[float, float]) -> None:
-    """Compare the controller with the setup that programs of this machine rely on.
+    """Compare the controller with the set-up that programs of this machine rely on.
 
     Args:
         session: an open session.
@@ -62,7 +62,7 @@ def check_setup(session: Session, settings: AnySettings, stroke: tuple[float, fl
 def check_start(
     status: Status, first: Array, start_tolerance: float = START_TOLERANCE_MM, machine: Machine | None = None
 ) -> None:
-    """Check that a program may start: struts homed, in closed loop, without faults, standing near its first point.
+    """Check that a program may start: struts homed, in closed loop, without faults, at rest near its first point.
 
     Args:
         status: of the struts.
@@ -105,7 +105,7 @@ def _motor_faults(status: Status) -> Iterator[str]:
 
 
 def _axis_faults(session: Session, settings: PmacSettings) -> Iterator[str]:
-    """Compare ``#n->`` with the axis definitions of the setup file; an axis of the spindle begins at zero."""
+    """Compare ``#n->`` with the axis definitions of the setup file; an axis of the spindle has no offset."""
     scale, spindle = Decimal(repr(float(settings.counts_per_mm))), settings.spindle_axis
     expected = [
         (motor, (scale, letter, -scale * Decimal(repr(float(zero)))))
@@ -155,7 +155,7 @@ def _limit_faults(session: Session, settings: PmacSettings, stroke: tuple[float,
 OVERRIDE_S = 5.0
 """Seconds for the time base to reach an override."""
 SHOWN_S = 0.5
-"""Seconds for the state to show that a start was accepted."""
+"""Seconds for the state to reflect a start."""
 _OVERRIDE_REACHED = 0.1
 """%"""
 _POLL_S = 0.02
@@ -174,14 +174,14 @@ def start_program(
     Args:
         session: an open session.
         settings: of the machine's controller.
-        program: what the controller must hold; its listing is verified again.
+        program: the program in the controller; its listing is verified again.
         first: (6,) strut lengths of its first point, mm.
         start_tolerance: largest distance of each strut from it, mm.
         machine: its geometry, to compare the tool pose as well.
 
     Raises:
         NotReadyError: the controller's program differs, or the machine is not ready.
-        OutcomeUnknownError: the link failed at the start, and the state does not show a running program.
+        OutcomeUnknownError: the link failed at the start, and no program is seen running.
         CancelledError: a stop came first; nothing was started.
         NotOwnerError: another client owns the machine; nothing was started.
     """
@@ -198,7 +198,7 @@ def resume_program(session: Session, settings: AnySettings) -> Status:
 
     Raises:
         NotReadyError: no program is held, or there is a fault.
-        OutcomeUnknownError: the link failed, and the state does not show that the program has resumed.
+        OutcomeUnknownError: the link failed, and the program is not seen to resume.
         CancelledError: a stop came first; the program is still held.
         NotOwnerError: the program belongs to another client; it is still held.
     """
@@ -228,7 +228,7 @@ def set_feed_override(
         meanwhile: called after each reading.
 
     Raises:
-        ValueError: the percentage is out of range; use a hold to stop.
+        ValueError: the percentage is out of range; to stop, use a hold.
         NotReadyError: a program is held; its time base is at 0.
         PmacError: the time base does not reach it.
         CancelledError: a stop came first.
@@ -261,7 +261,7 @@ def _override(session: Session, settings: AnySettings, percent: float, meanwhile
 
 
 def _start_motion(session: Session, settings: AnySettings, order: str, goes: Callable[[Status], bool]) -> Status:
-    """Send a command that moves the machine, once, unless a stop waits; if its answer is lost, the state decides."""
+    """Send a motion command once, unless a stop is waiting; if its answer is lost, the state decides."""
     session.check_preemption()
     try:
         session.command(f"&{settings.coordinate_system}{order}")

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Serial protocol: commands over a line that may lose, duplicate or corrupt bytes.
 
-No line is executed before the controller has confirmed its checksum: the line is sent without CR, then ^N; the
-controller returns one byte, the sum of what it holds. If it matches, CR follows; if not, ^X discards the line, and it
-is resent. So resending is safe: a line not confirmed was not executed. After CR a line is resent in one case only: if
-the controller refuses it with ERR004. That is noise, as lines contain printable characters only; a byte above 127 or a
-framing error does not count in the checksum, but the controller does not execute a line that has one.
+A line is executed only after the controller has confirmed its checksum: the line is sent without CR, then ^N; the
+controller returns one byte, the sum of the line as received. If it matches, CR follows; if not, ^X discards the line,
+and it is resent. So resending is safe: an unconfirmed line was not executed. After CR a line is resent only if the
+controller refuses it with ERR004. That is noise, as lines have printable characters only; the checksum ignores a byte
+above 127 or a framing error, but the controller does not execute a line with one.
 [TurboPMAC, <CTRL-N>, <CTRL-X>, I6]
 
 Input: commands, bytes and times. Output: bytes and events.
@@ -79,7 +79,7 @@ class ResponseParser:
         return self._steps[self._state](byte)
 
     def take_text(self, data: bytes) -> int:
-        """Take the printable bytes at the beginning, inside a line of the answer; return how many they are."""
+        """Take the leading printable bytes inside a line of the answer; return their number."""
         if self._state is not _State.DATA:
             return 0
         text = _PRINTABLE.match(data)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Session: a controller that answers. Queries are retried, sets are not.
+"""Session: a reliable dialogue with a controller. Queries are retried, sets are not.
 
 Input: the text of commands. Output: the lines of the answers, or an exception: ``RefusedError`` with the controller's
 number, ``OutcomeUnknownError`` for a set that may or may not have been executed, ``LinkLostError``, and
@@ -22,15 +22,15 @@ from pkm_post.control.link.protocol import Answer, CommandKind, ControllerComman
 __all__ = ["OpenBufferPolicy", "Session"]
 
 QUERY_ATTEMPTS = 5
-"""How often a query is sent."""
+"""Attempts of a query."""
 CONNECT_ATTEMPTS = 3
-"""How many reconnects are tried in a row."""
+"""Consecutive attempts to reconnect."""
 SHORT_TIMEOUT_S = 0.4
-"""Longest silence while a stop is sent, which is retried soon."""
+"""Timeout while a stop is sent, which is soon retried."""
 
 
 class OwnershipKeeper(Protocol):
-    """Holds ownership of the machine; the session calls it (``ownership``)."""
+    """Keeps ownership of the machine; called by the session (``ownership``)."""
 
     def answered(self) -> None:
         """A query was answered."""
@@ -43,18 +43,18 @@ class OwnershipKeeper(Protocol):
         """
 
     def is_certain(self) -> bool:
-        """Whether ownership was seen so recently that no other client can have taken it since."""
+        """Whether ownership was verified so recently that no other client can have taken it since."""
 
     def release(self) -> None:
         """Release ownership."""
 
 
 class Session:
-    """A controller that answers.
+    """A dialogue with a controller.
 
     Attributes:
-        connections: how often it has connected; a reconnect closes the owner's program buffer.
-        keeper: holds ownership of the machine; None without it.
+        connections: number of connects; a reconnect closes the owner's program buffer.
+        keeper: keeps ownership of the machine; None without ownership.
         has_open_buffer: whether lines may go into a program buffer opened by this session.
     """
 
@@ -71,11 +71,11 @@ class Session:
 
         Args:
             port: of the controller.
-            answer_timeout: seconds without a byte before an answer is given up.
+            answer_timeout: timeout of an answer: seconds without a byte.
             pause: seconds before a reconnect, longer each time.
-            open_buffer: what to do with a program buffer that is open when connecting without ownership.
+            open_buffer: treatment of a program buffer that is open when connecting without ownership.
             clock: monotonic clock, s.
-            sleep: waits that many seconds of the clock.
+            sleep: waits for seconds of the clock.
         """
         self._answer_timeout, self._pause, self._open_buffer = answer_timeout, pause, open_buffer
         self._clock, self._sleep = clock, sleep
@@ -139,7 +139,7 @@ class Session:
         """Check that no stop is waiting to be sent.
 
         Raises:
-            CancelledError: one is.
+            CancelledError: a stop is waiting.
         """
         if self.stop_pending():
             raise CancelledError("not executed, or not completed: a stop came first")
@@ -154,7 +154,7 @@ class Session:
         Raises:
             RefusedError: the controller refuses it.
             LinkLostError: no answer to ``QUERY_ATTEMPTS`` attempts.
-            CancelledError: it takes long, and something more urgent waits.
+            CancelledError: something more urgent preempts a long query.
         """
         answer = self._query_with_retries(ControllerCommand(text, CommandKind.QUERY, self._answer_timeout, most))
         if self.keeper is not None and not self._is_short:
@@ -162,7 +162,7 @@ class Session:
         return answer
 
     def command(self, text: str) -> tuple[str, ...]:
-        """Execute a command, sent once; return its answer.
+        """Send a command once; return its answer.
 
         Raises:
             RefusedError: the controller refused it.
@@ -190,13 +190,13 @@ class Session:
             self._channel.answer_timeout = self._answer_timeout
 
     def interrupt(self, control: int) -> None:
-        """Send a control character, which the controller obeys in any state; it is not acknowledged.
+        """Send a control character, which the controller obeys in any state without acknowledging it.
 
         Args:
             control: its code.
 
         Raises:
-            LinkLostError: it could not be sent, or later answers make no sense.
+            LinkLostError: it could not be sent, or later answers are invalid.
         """
         if not self._is_synchronized:
             self._channel.restart(control)
@@ -226,7 +226,7 @@ class Session:
         return count
 
     def lines_at_once(self, lines: Sequence[str]) -> int:
-        """How many of these lines ``load`` sends in one exchange."""
+        """Number of these lines that ``load`` sends in one exchange."""
         return self._channel.lines_at_once(lines)
 
     def _check(self) -> None:
@@ -282,7 +282,7 @@ def free_memory(session: Session) -> int:
     """Words of free memory; negative while a buffer is open.
 
     Raises:
-        LinkLostError: the answer makes no sense.
+        LinkLostError: the answer is invalid.
     """
     (answer,) = session.query("SIZE")[:1] or ("",)
     try:

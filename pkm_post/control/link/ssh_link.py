@@ -142,7 +142,7 @@ class SshLink(SocketLink):
             ) from fault
 
     def _asked_password(self) -> bool:
-        """Request a password from the user once; return whether there is one to try now."""
+        """Ask the user for a password once; return whether there is one to try."""
         if self._password is not None or not _has_listener():
             return False
         self._password = getpass.getpass(f"password of {self._user} at {self.host}: ")
@@ -150,7 +150,7 @@ class SshLink(SocketLink):
 
 
 def _bad_line(file: Path, ssh: ModuleType) -> int:
-    """Number of the first line that is not a host key; 0 if each line on its own is one."""
+    """Number of the first line that is not a host key; 0 if each line is valid by itself."""
     for number, line in enumerate(file.read_bytes().splitlines(), 1):
         try:
             ssh.hostkeys.HostKeyEntry.from_line(line.decode(), number)
@@ -174,16 +174,16 @@ class _Socket(socket.socket):
 
 
 def _has_listener() -> bool:
-    """Whether a user sits at a terminal; behind a window there is none, and its thread would block forever."""
+    """Whether a user is at a terminal; in a GUI there is none, and its thread would block forever."""
     here = threading.current_thread() is threading.main_thread()
     return here and sys.stdin is not None and sys.stdin.isatty()
 
 
 def ssh_package() -> ModuleType:
-    """paramiko, for whoever speaks ssh.
+    """Import paramiko.
 
     Raises:
-        ImportError: it is not installed; the text says how to get it.
+        ImportError: it is not installed; the text tells how to install it.
     """
     try:
         import paramiko

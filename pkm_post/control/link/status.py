@@ -6,7 +6,7 @@ of 24 bits [TurboPMAC, #n?, &n??]. On a Power PMAC they are two words of 32 bits
 its data structure show whether a program runs [EPICSpmac, pmacHardwarePower].
 
 A motor may move without a program: when another client jogs it, during homing, under a PLC program, or after losing
-power. And a strut that reverses in the middle of a move stands for a moment. So ``settled_status`` reads twice.
+power. And a strut that reverses within a move is at rest for a moment. So ``settled_status`` reads twice.
 
 Input: a session, the settings of its controller. Output: lengths in mm, bits and their meanings.
 """
@@ -30,7 +30,7 @@ MOTORS = range(1, 7)
 SETTLING_S = 0.1
 """Seconds between the two readings."""
 REST_TOLERANCE_MM = 0.01
-"""A standing strut moves less than this between the readings: a hundred counts of a common encoder."""
+"""A strut at rest moves less than this between readings: a hundred counts of a common encoder."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class MotorBits(Bits):
     """Two words of 24 bits: ``#n?``."""
 
     def moving(self) -> MotorBits:
-        """A copy with the standing bit cleared."""
+        """A copy with the bit for rest cleared."""
         return type(self)(self.value & ~(1 << self.BIT_NUMBERS["standing"]))
 
     DIGITS = 12
@@ -103,7 +103,7 @@ class Status:
     """The state of the six struts and of their coordinate system.
 
     Attributes:
-        motors: for each strut its bits.
+        motors: bits of each strut.
         system: bits of the coordinate system.
         override: time base in %; 0 while held.
         length: (6,) strut lengths, mm.
@@ -135,7 +135,7 @@ class Status:
 
     @property
     def held(self) -> bool:
-        """Whether a program is in a feed hold, or slows down to it."""
+        """Whether a program is in a feed hold, or decelerating into one."""
         return self.running and (self.system.has("held") or self.override == 0)
 
     @property
@@ -179,7 +179,7 @@ class PowerMotorBits(MotorBits):
 
 
 class PowerSystemBits(SystemBits):
-    """Two words of 32 bits: ``&n?``; above them one bit for each of three elements, set if it is not 0."""
+    """Two words of 32 bits: ``&n?``; above them one bit for each of three elements, set if it is nonzero."""
 
     DIGITS = 16
     BIT_NUMBERS = {
@@ -196,7 +196,7 @@ def read_status(session: Session, settings: AnySettings) -> Status:
     """Query everything in one line, so that it is consistent.
 
     Raises:
-        LinkLostError: the answer makes no sense.
+        LinkLostError: the answer is invalid.
     """
     query = _power_query(settings) if isinstance(settings, PowerPmacSettings) else _turbo_query(settings)
     answer = session.query(query)
@@ -237,7 +237,7 @@ def _power_status(answer: tuple[str, ...], settings: PowerPmacSettings) -> Statu
     """Parse the lines of the answer.
 
     Raises:
-        ValueError: they make no sense.
+        ValueError: they are invalid.
     """
     expected = 3 * len(MOTORS) + 2 + len(_ELEMENTS)
     if len(answer) != expected:
@@ -284,7 +284,7 @@ def _parse_bits(text: str, digits: int) -> int:
 
 
 def settled_status(session: Session, settings: AnySettings) -> Status:
-    """The state after a second reading: a strut stands if both readings command it to stand and it has not moved."""
+    """The state after a second reading: a strut is at rest if commanded so in both, and it has not moved."""
     before = read_status(session, settings)
     session.sleep(SETTLING_S)
     status = read_status(session, settings)
@@ -301,7 +301,7 @@ def is_busy(session: Session) -> bool:
     It sends no coordinate system address: lines for a rotary buffer go to the last one addressed.
 
     Raises:
-        LinkLostError: the answer makes no sense.
+        LinkLostError: the answer is invalid.
     """
     kind: type[MotorBits] = MotorBits if session.has_handshake else PowerMotorBits
     motors = " ".join(f"#{motor}?" for motor in MOTORS)
@@ -325,7 +325,7 @@ def _runs_in_power_pmac(session: Session) -> bool:
     """Whether a program runs in any coordinate system of a Power PMAC.
 
     Raises:
-        ValueError: the answer makes no sense.
+        ValueError: the answer is invalid.
     """
     (most,) = session.query("Sys.MaxCoords")
     for first in range(1, int(float(most)), _SYSTEMS_AT_ONCE):

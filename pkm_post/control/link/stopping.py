@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stopping: a hold or an abort, resent until the machine is at rest, and instructions for the operator meanwhile.
+"""Stopping: a hold or an abort, resent until the machine is at rest, with instructions for the operator meanwhile.
 
-A stop never gives up. It is a ladder: a hold slows the program down along its path; an abort stops each strut on its
-own ramp; a control character aborts everything in the controller and does not depend on a line arriving intact; the
-last one cuts motor power. Each rung has a timeout. A failing link does not stop the climb, except for the last rung:
-struts without power may sink, so power is cut only while they are seen to move after everything else was sent.
+A stop never gives up. It climbs a ladder: a hold slows the program down along its path; an abort stops each strut on
+its own ramp; a control character aborts everything in the controller and does not need an intact line; the last rung
+cuts motor power. Each rung has a timeout. A bad link does not stop the climb, except to the last rung: struts without
+power may sink, so power is cut only while they are seen to move after everything else was sent.
 
-A computer without a link stops nothing: then, and after a stop that is not confirmed in time, the operator gets
-instructions.
+A computer without a link stops nothing: then, and after a stop not confirmed in time, the operator gets instructions.
 
 Input: a session, settings. Output: the state of a machine at rest. Only another waiting stop ends it earlier.
 """
@@ -25,7 +24,7 @@ from pkm_post.control.link.status import MOTORS, AnySettings, Status, read_statu
 from pkm_post.writing import PowerPmacSettings
 
 SHOWN_S = 0.5
-"""Seconds for the state to show that a stop was accepted; then it is resent."""
+"""Seconds for the state to reflect a stop, before it is resent."""
 POLL_S = 0.02
 NEXT_SEGMENT_S = 1.0
 """Seconds within which a stream with a working link releases its next segment."""
@@ -58,10 +57,10 @@ class Rung:
     Attributes:
         name: in plain text.
         send: sends it.
-        is_obeyed: whether a state shows that the controller obeys it.
-        unseen_s: seconds for which it is resent while no state shows that.
-        rest_s: seconds for the struts to come to rest once a state has shown it.
-        blindly: whether it is sent even if the machine is not known to move.
+        is_obeyed: whether a state shows that the controller obeys.
+        unseen_s: seconds of resending until a state shows that.
+        rest_s: seconds from then for the struts to come to rest.
+        blindly: whether to send it even if the machine is not known to move.
     """
 
     name: str
@@ -89,7 +88,7 @@ def _is_held(status: Status) -> bool:
 
 
 def _is_held_or_ended(status: Status) -> bool:
-    """Held means that the time base is at 0: during deceleration, struts that reverse stand for a moment."""
+    """Held means a time base of 0: during deceleration, reversing struts are at rest for a moment."""
     return not status.running or (status.held and (status.override == 0 or not status.slows_in_a_hold))
 
 
@@ -113,10 +112,10 @@ POWER_LADDER = (HOLD, ABORT, KILL_EACH)
 
 
 def hold(session: Session, settings: AnySettings) -> Status:
-    """Slow the program down to rest on its path; if it does not obey, the rungs above stop it.
+    """Slow the program down to rest on its path; if the machine does not obey, the higher rungs stop it.
 
     Raises:
-        CancelledError: another stop waits.
+        CancelledError: another stop is waiting.
         NoAccessError: the controller's computer denies this user access.
     """
     return _climb(session, settings, _ladder(settings), _is_held_or_ended)
@@ -131,7 +130,7 @@ def abort(session: Session, settings: AnySettings, at_once: bool = False) -> Sta
         at_once: skip the hold: each strut stops on its own ramp, off the path.
 
     Raises:
-        CancelledError: another stop waits; the abort was sent.
+        CancelledError: another stop is waiting; the abort was sent.
         NoAccessError: the controller's computer denies this user access.
     """
     _, *rungs = _ladder(settings)
@@ -151,7 +150,7 @@ def _ladder(settings: AnySettings) -> tuple[Rung, ...]:
 def _climb(
     session: Session, settings: AnySettings, rungs: tuple[Rung, ...], is_stopped: Callable[[Status], bool]
 ) -> Status:
-    """Climb until a state shows the machine at rest; from the top on, repeat the upper two rungs."""
+    """Climb until a state shows the machine at rest; at the top, repeat the upper two rungs."""
     seen: Status | None = None
     with session.short_timeouts():
         for rung in _endless(rungs):
@@ -167,7 +166,7 @@ def _climb(
 
 
 def _is_continued(session: Session, settings: AnySettings, status: Status) -> bool:
-    """Whether another client's stream releases its next segment: between segments the machine rests by itself."""
+    """Whether another client's stream releases its next segment: between segments the machine is at rest anyway."""
     if status.held or session.keeper is not None or not _is_streamed(session):
         return False
     until = session.now() + NEXT_SEGMENT_S
@@ -201,12 +200,12 @@ def _endless(rungs: tuple[Rung, ...]) -> Iterator[Rung]:
 
 
 def _rests(status: Status, is_stopped: Callable[[Status], bool]) -> bool:
-    """Motors without power follow no program, whatever its state."""
+    """Whether the machine is at rest; motors without power follow no program, whatever its state."""
     return status.standing and (is_stopped(status) or not status.powered)
 
 
 def _try(session: Session, settings: AnySettings, rung: Rung, is_stopped: Callable[[Status], bool]) -> Status | None:
-    """Send one rung until it shows, and wait for rest; return the last state read, None if none could be read."""
+    """Send one rung until obeyed, and wait for rest; return the last state read, or None."""
     until, is_obeyed, seen = session.now() + rung.unseen_s, False, None
     while session.now() < until:
         _send(session, settings, rung)
@@ -223,7 +222,7 @@ def _try(session: Session, settings: AnySettings, rung: Rung, is_stopped: Callab
 
 
 def _send(session: Session, settings: AnySettings, rung: Rung) -> None:
-    """Send it; the state shows whether it arrived."""
+    """Send a rung; the state will show whether it arrived."""
     try:
         rung.send(session, settings)
     except (CancelledError, NoAccessError):
@@ -245,7 +244,7 @@ def emergency_text(last: Status | None) -> tuple[str, ...]:
     """The instructions, or nothing if the last state read shows a machine at rest without a program.
 
     Args:
-        last: None if no state was ever read.
+        last: None if no state was read.
     """
     if last is not None and not last.running and last.standing:
         return ()

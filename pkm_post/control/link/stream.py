@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Stream: run a program that exceeds the controller's memory from its rotary buffer while it is being sent.
 
-The program is sent in segments that end with STOP at rest (``gates``). R releases a segment once it is completely in
-the buffer and the previous one has ended; while it runs, the next one is sent. So a cut link ends at rest without any
-help. When the link is back, the stream waits until the controller rests and queries how many lines lie ahead: that
-number shows which of the last lines arrived. If it is inconsistent, or the machine is not where the segment ends, the
-stream does not continue.
+The program is sent in segments that end with STOP at rest (``rotary_buffer``). R releases a segment once it is complete
+in the buffer and the previous one has ended; while it runs, the next one is sent. So a cut link ends at rest without
+any help. When the link is back, the stream waits until the controller is at rest and queries the number of lines ahead,
+which shows how many of the last lines arrived. If the number is inconsistent, or the machine is not at the end of the
+segment, the stream does not continue.
 
-Input: a session, settings, a program, the size of the rotary buffer. Output: a record of what was executed.
+Input: a session, settings, a program, the size of the rotary buffer. Output: a record of the executed program.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from pkm_post.writing import PmacSettings
 _NOT_OPEN, _NO_ROOM = 5, 6
 _POLL_S = 0.05
 _QUIET_POLLS = 20
-"""Consecutive readings that must show the machine at rest where it should not be."""
+"""Consecutive readings of the machine at rest in the wrong place before the stream fails."""
 
 Progress = Callable[[int, int, int], None]
 """Called with the numbers of program lines released, loaded, and in total."""
@@ -43,9 +43,9 @@ class RotaryStream:
 
     Attributes:
         segments: of the program.
-        rest: (6,) strut lengths where the machine rests once all released lines are done, mm.
-        line: of the program after which that is.
-        resumptions: how often the stream was resumed.
+        rest: (6,) strut lengths at rest after all released lines, mm.
+        line: program line after which that is.
+        resumptions: number of resumptions.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class RotaryStream:
         progress(total, total, total)
 
     def end(self, at_once: bool) -> bool:
-        """Come to rest, empty the buffer and close it; return whether the controller has confirmed both."""
+        """Come to rest, empty and close the buffer; return whether the controller confirmed both."""
         try:
             self._come_to_rest(at_once)
             return self._buffer.empty()
@@ -100,7 +100,7 @@ class RotaryStream:
                 self._wait(lambda: None)
                 return
         except KeyboardInterrupt:
-            pass  # the user wants it to end now
+            pass  # the user wants to end now
         stopping.abort(self._session, self._settings)
         self._wait(lambda: None)
 
@@ -126,12 +126,12 @@ class RotaryStream:
                 self._settle(check)
 
     def _wait(self, check: Callable[[], None]) -> Status:
-        """Wait until the controller has finished the released lines, or was stopped, and the struts stand."""
+        """Wait until the controller has finished the released lines, or was stopped, and the struts are at rest."""
         quiet = 0
         while True:
             status = read_status(self._session, self._settings)
             quiet = 0 if status.running or not status.standing else quiet + 1
-            # The state may show R with a delay.
+            # The state reflects R with a delay.
             if quiet and (quiet >= _QUIET_POLLS or self._is_done()):
                 return status
             check()
@@ -162,7 +162,7 @@ class RotaryStream:
         for attempt in range(ATTEMPTS):
             self._check(read_status(self._session, self._settings))
             rest, line, before = self.rest, self.line, self._let_go
-            # From here on the machine may move as far as this, whatever the answer.
+            # From now on the machine may move this far, whatever the answer.
             self.rest, self.line, self._let_go = segment.rest, segment.last, end
             try:
                 self._session.command(f"&{self._settings.coordinate_system}R")
@@ -192,13 +192,13 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class StreamResult:
-    """A program that was executed to its end.
+    """A completed program.
 
     Attributes:
         lines: of the program.
         digest: SHA-256 of its lines.
         segments: number of segments.
-        resumptions: how often the link failed and the stream continued.
+        resumptions: number of link failures after which the stream continued.
     """
 
     lines: int
@@ -223,18 +223,18 @@ def stream(
     Args:
         session: an open session.
         settings: of the machine's controller.
-        program: what to run.
+        program: the program to run.
         first: (6,) strut lengths of its first point, mm.
         words: size of the rotary buffer, as defined.
-        start_tolerance: largest distance of each strut from the first point, and from each rest it continues from, mm.
+        start_tolerance: largest distance of each strut from the first point, and from each rest where it resumes, mm.
         progress: called with the lines released, loaded, and in total.
-        is_cancelled: polled; the machine then rests at the end of the running segment.
+        is_cancelled: polled; the machine then stops at the end of the running segment.
         machine: its geometry, to compare the tool pose with the first point as well.
 
     Raises:
         NotReadyError: the program cannot be streamed, or the machine is not ready; nothing was sent.
-        StreamError: it failed; states where the machine rests and whether anything is left in the buffer.
-        CancelledError: it was cancelled; the machine rests and nothing is left in the buffer.
+        StreamError: it failed; states where the machine stopped and whether the buffer is empty.
+        CancelledError: it was cancelled; the machine is at rest and the buffer is empty.
         NotOwnerError: another client owns the machine; nothing was sent.
     """
     streaming = RotaryStream(session, settings, split_into_segments(program, settings, words), words, start_tolerance)
@@ -266,7 +266,7 @@ def _streamed(
 
 
 def _ended(streaming: RotaryStream, fault: PmacError | KeyboardInterrupt) -> PmacError:
-    """End an incomplete stream; return the exception that describes how it was left."""
+    """End an incomplete stream; return the exception that describes its state."""
     is_empty = streaming.end(at_once=isinstance(fault, KeyboardInterrupt))
     if isinstance(fault, CancelledError | KeyboardInterrupt) and is_empty:
         return CancelledError("the stream was stopped; the machine rests, the rotary buffer is empty")

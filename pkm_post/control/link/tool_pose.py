@@ -21,7 +21,7 @@ from pkm_post.toolpath import ToolPose
 
 _STEPS_FROM_HOME = 128
 _FIRST_STEPS = (8, _STEPS_FROM_HOME)
-"""Steps that are made one after the other: few where all of them turn out to lead from one to the next, else all."""
+"""Steps solved in sequence: few, or all if some do not connect."""
 
 
 class ToolPoseReadout:
@@ -64,8 +64,8 @@ def spin_of(rotation: Array) -> Array:
 def pose_from_home(machine: Machine, length: Array, tool_length: float) -> ToolPose | None:
     """The pose for strut lengths, given only that the machine reached them from its home.
 
-    A single Newton solve may converge to another pose with the same lengths. So the lengths are stepped from home in
-    small increments: the result is the pose that the platform can reach without being taken apart.
+    A single Newton solve may converge to another pose with the same lengths. So the lengths step from home in
+    small increments: the result is the pose in the assembly mode of home.
 
     Args:
         machine: the geometry.
@@ -154,13 +154,13 @@ def deviation_from_start(machine: Machine, length: Array, first: Array) -> PoseD
 
 
 def start_faults(machine: Machine, length: Array, first: Array, start_tolerance: float) -> tuple[str, ...]:
-    """Why a program may not start from the current pose, in plain text; empty if it may.
+    """The reasons why a program may not start from the current pose, as text; empty if it may.
 
     Args:
         machine: the geometry.
         length: (6,) current strut lengths, mm.
         first: (6,) strut lengths of the first point, mm.
-        start_tolerance: largest distance of the tip, and, by its turns, of a point at the characteristic length, mm.
+        start_tolerance: largest distance of the tip and, due to turns, of a point at the characteristic length, mm.
     """
     deviation = deviation_from_start(machine, length, first) if np.isfinite([length, first]).all() else None
     if deviation is None:

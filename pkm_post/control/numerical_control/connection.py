@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Connection: turn a port and a machine file into a worker that operates the machine, and into what must be closed.
+"""Connection: a worker that operates the machine of a port and a machine file, and its shutdown.
 
-Input: the name of a port and of a machine, or a machine alone for simulation. Output: a connection, or what is wrong
-with the names. Connecting blocks until the controller answers, so windows connect in a thread.
+Input: the name of a port and of a machine, or only a machine for simulation. Output: a connection, or the faults
+of the names. Connecting blocks until the controller answers, so the GUI connects in a thread.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ SIMULATED_HOMING = " ".join(f"#{motor}HM" for motor in range(1, 7))
 """The line that homes a simulated machine; the order of its motors does not matter."""
 
 _TICK_MS = 4.0
-"""Coarser than the simulator's default: it shares the processor with a window."""
+"""Coarser than the simulator's default, as it shares the processor with the GUI."""
 _FLAG_MM = 5.0
 """Distance from a motor's position at power-up to its flag."""
 _DRIVES = "I{0}11={1:.0f} I{0}15={2:.6f} I{0}16={3:.6f} I{0}17={4:.6f} I{0}19={5:.6f} I{0}22={6:.6f} I{0}23={7:.6f}"
@@ -50,7 +50,7 @@ class SimulatedMachine:
     """The simulated machine, with the controller that its machine file names.
 
     Attributes:
-        port: where it is served.
+        port: its port.
     """
 
     def __init__(self, machine: Machine, settings: AnySettings, tool_length: float, speed: float = 1.0) -> None:
@@ -91,7 +91,7 @@ class SimulatedMachine:
             self._server.close()
 
     def _turn(self) -> bool:
-        """The server thread calls this as a controller runs its PLC programs; return whether to end."""
+        """Called by the server thread like the PLC programs of a controller; return whether to end."""
         motors = self._controller.motors
         if not motors.homed.all():
             self._is_homed = False
@@ -113,7 +113,7 @@ def _home_jogs(machine: Machine, settings: AnySettings, tool_length: float) -> l
 
 
 def _controller(settings: AnySettings, machine: Machine) -> Controller | PowerPmac:
-    """A controller set up for the machine with its M codes, with drives that are fast enough."""
+    """A controller set up for the machine with its M codes, with fast enough drives."""
     scale = settings.counts_per_mm
     motors = SimulatorSettings(tick_ms=_TICK_MS, home_flag=_FLAG_MM * scale)
     is_power = isinstance(settings, PowerPmacSettings)
@@ -146,10 +146,10 @@ class ConnectionTarget:
 
 @dataclass(frozen=True)
 class Connection:
-    """A machine that responded.
+    """A connected machine.
 
     Attributes:
-        target: where the connection leads.
+        target: the controller and machine connected to.
         worker: executes orders.
     """
 
@@ -160,7 +160,7 @@ class Connection:
 
     @property
     def session(self) -> Session:
-        """To the controller; for the thread of the worker alone."""
+        """The session with the controller; only for the worker's thread."""
         return self._session
 
     @property
@@ -169,7 +169,7 @@ class Connection:
         return self._simulated is not None
 
     def close(self) -> None:
-        """Close worker, link and simulation; the machine is not stopped.
+        """Close worker, link and simulation; this does not stop the machine.
 
         Raises:
             RuntimeError: the worker does not end, or has crashed.

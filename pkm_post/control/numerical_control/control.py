@@ -2,7 +2,7 @@
 """Control: one machine behind one session, for the command line and for a panel.
 
 Every method talks to the controller, returns within its deadlines, and must be called from one thread; ``worker``
-provides a dedicated one. Plans are made first and executed later: a move that fails its checks never becomes a plan.
+provides one. Plans are made first and executed later: a move that fails its checks never becomes a plan.
 
 Input: a session, a machine and its gauge length. Output: states and plans, frozen.
 """
@@ -82,11 +82,11 @@ class NumericalControl:
         self.tool_length = tool_length
 
     def preempt_when(self, stop_pending: Callable[[], bool]) -> None:
-        """Abandon long operations and start none while ``stop_pending`` reports a waiting stop."""
+        """Abandon long operations and start none while ``stop_pending`` is true."""
         self._session.preempt_when(stop_pending)
 
     def attended_while(self, is_attended: Callable[[], bool]) -> None:
-        """Renew the watchdog of a jog only while ``is_attended`` reports that the operator is watching."""
+        """Renew the watchdog of a jog only while ``is_attended`` is true, that is, the operator is watching."""
         self._is_operator_present = is_attended
 
     @property
@@ -128,7 +128,7 @@ class NumericalControl:
         return self._last
 
     def see(self, status: Status) -> ControlState:
-        """The state by a status that an order in progress has read, such as a play."""
+        """The state from a status read by an order in progress, such as a play."""
         self._last = replace(self._last, status=status, pose=self._readout.pose(status), lost="", emergency=())
         return self._last
 
@@ -162,9 +162,9 @@ class NumericalControl:
 
         Args:
             job: the program.
-            feed: mm/s; while the tip stands, degrees per second.
-            free: z in {M} above which the approach crosses, mm; by default nothing is known of it.
-            check: what the approach would touch, where that is known; an error is no plan.
+            feed: mm/s; for a turn in place, degrees per second.
+            free: z in {M} above which the approach may cross, mm; unknown by default.
+            check: collision check of the approach; an error prevents the plan.
 
         Raises:
             NotReadyError: the tool pose is unknown, the machine moves, or the start has no pose.
@@ -180,7 +180,7 @@ class NumericalControl:
     def execute(self, plan: MovePlan, start_tolerance: float = START_TOLERANCE_MM) -> Status:
         """Load a plan, verify its listing and start it; as ``execute.execute``.
 
-        The controller holds a jog by itself once ``poll``, ``renew`` and ``wait_for_rest`` are no longer called.
+        The controller holds a jog by itself unless ``poll``, ``renew`` or ``wait_for_rest`` are called.
         """
         order = self._session, self._machine, self._settings, plan.job
         if plan.is_jog:
@@ -194,11 +194,11 @@ class NumericalControl:
 
     @property
     def silence_s(self) -> float | None:
-        """Longest time from silence to standstill at 100 %, s; None when no jog is active."""
+        """Longest time from silence to standstill at 100 %, s; None if no jog is active."""
         return None if self._watchdog is None else self._watchdog.silence_s
 
     def longest_silence_s(self) -> float:
-        """Longest time from silence to standstill of a jog, s; a Power PMAC is tried out, as ``longest_silence``."""
+        """Longest time from silence to standstill of a jog, s; measured on a Power PMAC, as in ``longest_silence``."""
         order = self._session, self._machine, self._settings, self._number, self._silence
         self._silence = self._with_ownership("jog", lambda: longest_silence(*order))
         return self._silence.seconds
@@ -217,7 +217,7 @@ class NumericalControl:
     def load(self, job: PmacJob, progress: Progress, is_cancelled: Callable[[], bool]) -> DownloadResult:
         """Check the controller's setup, load a program and verify its listing; as ``download.download``.
 
-        A waiting stop ends the download as ``is_cancelled`` does.
+        A waiting stop cancels the download.
         """
         check_setup(self._session, self._settings, self._machine.strut_stroke)
         return download(self._session, job.program, progress, lambda: is_cancelled() or self._session.stop_pending())
@@ -228,7 +228,7 @@ class NumericalControl:
         return self._with_ownership("run", lambda: run.start_program(*order))
 
     def continue_after_stop(self, job: PmacJob, stop: int, start_tolerance: float = START_TOLERANCE_MM) -> Status:
-        """Continue a program after its stop (M0, M1), from 1, where it stands; as ``execute.continue_after_stop``."""
+        """Continue a program after its stop (M0, M1) of this number, from 1; as ``execute.continue_after_stop``."""
         order = self._session, self._machine, self._settings, job, stop, start_tolerance
         return self._with_ownership("run", lambda: execute.continue_after_stop(*order))
 
@@ -265,7 +265,7 @@ class NumericalControl:
         return stopping.hold(self._session, self._settings)
 
     def resume(self) -> Status:
-        """Resume after a hold; a jog held by its watchdog resumes as well."""
+        """Resume after a hold; also a jog held by its watchdog."""
         self.renew()
         return self._execute_motion(lambda: run.resume_program(self._session, self._settings))
 
@@ -293,7 +293,7 @@ class NumericalControl:
         self._blocks, self._block = (blocks, number), blocks.shown(number)
 
     def _emergency(self) -> tuple[str, ...]:
-        """Instructions after the link is lost; none if it was never up."""
+        """Instructions after the link is lost; none before the first connection."""
         if self._may_move:
             return emergency_text(None)
         return () if self._last.status is None else emergency_text(self._last.status)
@@ -315,7 +315,7 @@ class NumericalControl:
             self._session.keeper.release()
 
     def _execute_motion(self, order: Callable[[], Done]) -> Done:
-        """Execute an order that may move the machine; until the next reading it may be moving."""
+        """Execute an order that may move the machine; it counts as moving until the next reading."""
         try:
             done = order()
         except LinkLostError:

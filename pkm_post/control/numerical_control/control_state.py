@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a display shows of a controlled machine."""
+"""State of a controlled machine, for display."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ class ControlState:
     """A snapshot for display.
 
     Attributes:
-        status: of struts and program; the last one read when the link is lost, None before the first reading.
+        status: of struts and program; the last one if the link is lost, None before the first reading.
         pose: of the tool at the actual strut lengths; None if no pose fits, or before the first reading.
-        lost: why the link is lost; empty while it is up.
-        emergency: instructions for the operator when the link was lost while the machine may move.
+        lost: the reason of a lost link; empty while it is up.
+        emergency: instructions for the operator if the link is lost while the machine may move.
         homing: of a homing started here; None otherwise.
         block: the next block; None outside single block mode.
     """

@@ -41,7 +41,7 @@ def execute(
         start_tolerance: largest distance of each strut from its first point, mm.
 
     Raises:
-        NotReadyError: setup or machine are not ready; nothing was loaded, or nothing was started.
+        NotReadyError: setup or machine are not ready; nothing was loaded or started.
         DownloadError: the download failed; nothing was started.
         CancelledError: a stop came first; nothing was started.
         NotOwnerError: another client owns the machine; nothing was loaded.
@@ -72,7 +72,7 @@ def execute_watched(
 def wait_for_rest(
     session: Session, settings: AnySettings, seconds: float, meanwhile: Callable[[], None] = lambda: None
 ) -> Status:
-    """Poll until no program runs and the struts stand.
+    """Poll until no program runs and the struts are at rest.
 
     Args:
         session: an open session.
@@ -108,12 +108,12 @@ def target_deviation(status: Status, lengths: Array) -> float:
 
 @dataclass(frozen=True)
 class ProgramStop:
-    """An M0 or M1 with moves after it.
+    """An M0 or M1 that moves follow.
 
     Attributes:
         number: of the stop in its program, from 1.
         event: index among the events of the motion.
-        length: (6,) strut lengths at it, mm.
+        length: (6,) strut lengths at the stop, mm.
     """
 
     number: int
@@ -122,7 +122,7 @@ class ProgramStop:
 
 
 def program_stops(job: PmacJob) -> tuple[ProgramStop, ...]:
-    """The stops of a program; one at its very end does not count, as no move follows."""
+    """The stops of a program; one at the end does not count, as no move follows."""
     events, last = job.motion.events, len(job.motion) - 1
     places = [index for index, each in enumerate(events) if each.kind is EventKind.STOP and each.row < last]
     return tuple(
@@ -184,12 +184,12 @@ def continue_after_stop(
         machine: the machine.
         settings: of its controller.
         job: the program that has stopped.
-        number: of the stop, from 1. It is stated, not inferred from the strut lengths: several stops may share a
-            position, and a program that was never started may begin there.
-        start_tolerance: largest distance of each strut from it, mm.
+        number: of the stop, from 1. It cannot be inferred from the strut lengths: several stops may share a
+            position, and the program may start there.
+        start_tolerance: largest distance of each strut from the stop, mm.
 
     Raises:
-        NotReadyError: the stop does not exist, or the struts do not stand at it; or as ``execute.execute``.
+        NotReadyError: the stop does not exist, or the struts are not at it; or as ``execute.execute``.
         DownloadError: the download failed; nothing was started.
     """
     stops = program_stops(job)

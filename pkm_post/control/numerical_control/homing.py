@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Homing: triggered here, carried out by the machine, monitored here.
 
-Only the machine builder knows in which order the struts may search for their homes, and how far each may travel with
+Only the machine builder knows the order in which the struts may search for home, and how far each may travel with
 the platform attached. Homing is therefore a program in the controller, usually a PLC program. This module sends the
-line that the builder specifies, if it has one of the forms below, and then watches the home-complete bits of all six
-struts, with a deadline.
+line that the builder specifies, in one of the forms below, then watches the home-complete bits of all six struts, with
+a deadline.
 
 Input: the line, states of the controller and the time in s. Output: the progress of the homing.
 """
@@ -26,11 +26,11 @@ _FORMS = {
     "&nBnR": re.compile(r"&\d{1,2} ?B\d{1,5} ?R", re.IGNORECASE),
     "#nHM": re.compile(r"#[1-6](?:HM|HOME)(?: #[1-6](?:HM|HOME))*", re.IGNORECASE),
 }
-"""What may start a homing: a PLC program, a variable that one polls, a motion program, motors."""
+"""Permitted triggers: a PLC program, a variable polled by one, a motion program, motors."""
 HOMING_S = 600.0
 """Seconds within which all struts must find their homes."""
 _NOTHING_S = 5.0
-"""Seconds within which the homing must show in the state."""
+"""Seconds for the state to reflect the homing."""
 _QUIET_S = 2.0
 """Seconds of rest that count as the end: a PLC program may pause between struts."""
 _STOPS_IT = ("amplifier_fault", "fatal_following_error")
@@ -69,7 +69,7 @@ def check_trigger(trigger: str) -> None:
     """Check that a line has a form that may start a homing.
 
     Raises:
-        ValueError: it has none of these forms.
+        ValueError: it has another form.
     """
     if not any(form.fullmatch(trigger) for form in _FORMS.values()):
         raise ValueError(f"trigger: expected {' or '.join(_FORMS)}, got {trigger!r}")
@@ -79,7 +79,7 @@ def start_homing(session: Session, settings: AnySettings, trigger: str) -> Homin
     """Send the line that starts the homing of the machine.
 
     Raises:
-        ValueError: the line has none of the accepted forms.
+        ValueError: the line has another form.
         NotReadyError: a program runs, a strut moves, or a motor has a fault; nothing was sent.
         OutcomeUnknownError: the controller may or may not have executed it; the machine may move.
         NotOwnerError: another client owns the machine; nothing was sent.
@@ -140,7 +140,7 @@ class HomingWatch:
 
 
 def _faults(status: Status) -> tuple[str, ...]:
-    """Faults that end a homing; limits are not among them, as homes may lie there."""
+    """Faults that end a homing; limits are excluded, as homes may be there."""
     return tuple(
         f"strut {number}: {motor.FAULT_TEXTS[name]}"
         for number, motor in zip(MOTORS, status.motors, strict=True)

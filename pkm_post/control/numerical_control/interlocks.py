@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Interlocks: the commands an operator can give, and why one is not allowed in a state of the machine.
+"""Interlocks: the commands of the operator, and the reasons that block each in the current state.
 
-Input: the state of a machine and of a panel. Output: for each command the active interlocks, the most important
-first. This only saves the operator commands that would be refused; the checks of the control and of the controller
-alone decide what may move the machine.
+Input: the state of a machine and of a panel. Output: for each command the active interlocks, the most important first.
+This only spares the operator refused commands; only the checks of the control and the controller decide what may move
+the machine.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class OperatorCommand(enum.Enum):
 
 
 class Interlock(enum.Enum):
-    """Why a command is not allowed."""
+    """Reason why a command is blocked."""
 
     NOT_CONNECTED = "there is no connection"
     NO_ANSWER = "the controller does not answer"
@@ -81,23 +81,23 @@ INTERLOCKS_OF: dict[OperatorCommand, tuple[Interlock, ...]] = {
     OperatorCommand.RETRACT: (Interlock.NOT_CONNECTED, Interlock.NOT_PLAYING, Interlock.NOT_WAITING),
     OperatorCommand.PLAY_END: (Interlock.NOT_CONNECTED, Interlock.NOT_PLAYING),
 }
-"""The last reading never blocks a stop: it may be stale."""
+"""A stop is never blocked by the last reading, which may be stale."""
 
 
 @dataclass(frozen=True)
 class PanelState:
-    """What a panel knows besides the machine state.
+    """State of a panel besides that of the machine.
 
     Attributes:
         connected: whether a connection is open.
         busy: whether a command is in progress.
         has_job: whether a program is open.
-        loaded: whether it is in the controller, as far as known here.
+        loaded: whether it is known to be in the controller.
         has_stops: whether it has stops (M0, M1) to continue after.
-        has_trajectory: whether a trajectory is open, to be played.
-        playing: whether one is played.
-        waiting: whether that waits for the operator.
-        held_back: whether it waits to be resumed, at rest between two pieces.
+        has_trajectory: whether a trajectory is open for playing.
+        playing: whether it is being played.
+        waiting: whether the play waits for the operator.
+        held_back: whether the play is at rest between two pieces until it is resumed.
         stepping: whether its blocks are open in single block mode.
         homing: whether a homing started here is being monitored.
     """
@@ -148,7 +148,7 @@ def blocking_interlock(command: OperatorCommand, active: frozenset[Interlock]) -
 
 
 def may_move(state: ControlState) -> bool:
-    """Whether the machine moves, or may move as far as known: it must not be left unattended then."""
+    """Whether the machine moves or may move, and must be attended."""
     if state.emergency:
         return True
     status = state.status

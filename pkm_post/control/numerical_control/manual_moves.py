@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Moves: manual jogs as trajectories from the current pose.
+"""Manual moves: jogs, approaches and lines of G-code as trajectories from the current pose.
 
 A Cartesian jog is one straight segment: the tip moves along a line, the tool axis along a great circle, the spin
 linearly. A jog of one strut moves all six degrees of freedom: forward kinematics gives its poses while one strut length
@@ -29,8 +29,7 @@ _STEP_MM = 0.5
 """Step of a single-strut jog between poses: straight segments deviate from its path by less than a micron."""
 _SMALLEST_MOVE = 1e-9
 _MEASURABLE = 1e-6
-"""mm: a machine code alone would give the plan an empty path, so the tip rises by this much, a hundredth of an encoder
-count."""
+"""mm: an M code alone would give the plan an empty path, so the tip rises by this, a hundredth of an encoder count."""
 
 
 @dataclass(frozen=True)
@@ -71,14 +70,14 @@ Jog = CartesianJog | StrutJog
 def jog_trajectory(
     jog: Jog, machine: Machine, pose: ToolPose, tool_length: float, feed: float
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
-    """The trajectory of a jog, or why there is none.
+    """The trajectory of a jog, or the reasons against it.
 
     Args:
-        jog: the move requested.
+        jog: the requested move.
         machine: its geometry and highest feed.
         pose: current pose of the tool.
         tool_length: gauge length of the tool in the spindle, mm.
-        feed: of the tip, mm/s; while the tip stands, degrees per second, as in programs.
+        feed: of the tip, mm/s; for a turn in place, degrees per second, as in programs.
 
     Raises:
         ValueError: a number is not finite, or the feed is not positive.
@@ -99,15 +98,15 @@ def approach_trajectory(
 ) -> tuple[Trajectory | None, tuple[Diagnostic, ...]]:
     """The safe approach to the start of a program: up along the tool axis, across, down along the axis of the start.
 
-    It crosses at the highest of the height of the start, the machine file's safe height, and the height that is free.
+    It crosses at the highest of the start, the machine file's safe height, and ``free``.
 
     Args:
         machine: its geometry, safe height and highest feed.
         pose: current pose of the tool.
         start: target pose.
         tool_length: gauge length of the tool in the spindle, mm.
-        feed: of the tip, mm/s; while the tip stands, degrees per second.
-        free: z in {M} above which nothing is known to stand, mm; by default nothing is known of it.
+        feed: of the tip, mm/s; for a turn in place, degrees per second.
+        free: z in {M} above which there are no obstacles, mm; unknown by default.
     """
     height = max(float(start.tip[2]), free)
     if machine.tool_change is not None:
@@ -132,7 +131,7 @@ def straight_trajectory(
 def stationary_trajectory(
     machine: Machine, pose: ToolPose, tool_length: float, events: tuple[Event, ...]
 ) -> Trajectory:
-    """Events at standstill, with the minimal path that planning needs.
+    """Events at standstill, with the minimal path for planning.
 
     Args:
         machine: its geometry and highest feed.
@@ -242,13 +241,13 @@ Findings = tuple[Diagnostic, ...]
 
 @dataclass(frozen=True)
 class MdiSettings:
-    """How to read a line.
+    """Reading options of a line.
 
     Attributes:
         work_offset: name of a work offset in the machine file: the frame of the coordinates.
-        axis_words: how the line states the tool axis, a key of ``gcode.options.AXIS_WORDS``; with ``"none"`` the axis
-            stays as it is.
-        functions: numbers of the M codes that the machine file has a code for, whatever is given.
+        axis_words: notation of the tool axis, a key of ``gcode.options.AXIS_WORDS``; with ``"none"`` the axis
+            is unchanged.
+        functions: M codes with a code in the machine file; always taken from it.
     """
 
     work_offset: str = "G54"
@@ -266,7 +265,7 @@ def mdi_trajectory(
         machine: its work offsets and limits apply.
         pose: current pose of the tool.
         tool_length: gauge length of the tool in the spindle, mm.
-        reading: how to read the line.
+        reading: reading options of the line.
 
     Raises:
         ValueError: the text has more than one line.
@@ -284,8 +283,7 @@ def mdi_trajectory(
     diagnostics += faults
     if program is None or errors(diagnostics):
         return None, diagnostics
-    # A trajectory starts at the home of its machine. Here that is the current pose, so that the line leads straight
-    # from it.
+    # A trajectory starts at the home of its machine. Here that is the current pose, so the line leads straight from it.
     standing = replace(machine, home_tip=pose.tip, home_axis=pose.axis, home_spin=pose.spin, tool_change=None)
     standing = replace(standing, largest_tool_diameter=math.inf)  # diameter of the tool in the spindle is unknown
     trajectory, faults = trajectory_of(program, standing, options)

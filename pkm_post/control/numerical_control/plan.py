@@ -36,19 +36,19 @@ from pkm_post.writing import PmacSettings, PowerPmacSettings, pmac, power_pmac
 Findings = tuple[Diagnostic, ...]
 
 LONGEST_MOVE_MS = 128
-"""Longest interval of a manual move: a watchdog counts them, so they add to the time from silence to standstill."""
+"""Longest interval of a manual move; a watchdog counts intervals, so they add to the time to standstill."""
 _SHARES = np.linspace(0.0, 1.0, 9)[1:]
 
 
 @dataclass(frozen=True)
 class MovePlan:
-    """A move that is cleared to be sent.
+    """A move cleared for execution.
 
     Attributes:
         job: its program and motion, as read back.
         certificate: its measurements.
         end: final pose of the tool, by forward kinematics of the last lengths.
-        is_jog: whether it may continue only while the operator is watching.
+        is_jog: whether it runs only while the operator is watching.
         block: number of its block in a program, from 1; 0 for other moves.
     """
 
@@ -76,7 +76,7 @@ def planned(
     tolerances: Tolerances,
     number: int = MANUAL_MOVE_PROGRAM,
 ) -> tuple[MovePlan | None, Findings]:
-    """Plan a trajectory, or return every obstacle.
+    """Plan a trajectory, or return the reasons against it.
 
     Args:
         trajectory: from the current pose.
@@ -86,7 +86,7 @@ def planned(
         number: of the program.
 
     Raises:
-        ValueError: the number belongs to the jobs, or is no program number.
+        ValueError: the number belongs to the jobs, or is not a program number.
     """
     if number == settings.program:
         raise ValueError(f"number: expected another one than that of the jobs, got {number}")
@@ -125,7 +125,7 @@ def _program(
 
 
 def _end_pose(played: StrutMotion, trajectory: Trajectory, machine: Machine) -> tuple[ToolPose | None, Findings]:
-    """The end pose of the lengths, followed from the start pose, if the whole path is within reach."""
+    """The end pose, tracked from the start pose, if the whole path is within reach."""
     lengths = _lengths(played)
     tool = np.full(len(lengths), trajectory.tool_length()[0])
     rotation = platform_rotation(trajectory.start_axis[None], np.array([trajectory.start_spin]))[0]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Probed features: a face, a bore or a boss, measured in a work frame, and the work offset that follows.
+"""Probed features: a face, a bore or a boss measured in a work frame, and the resulting work offset.
 
-The ball meets a face at half its diameter, so a face is one half of the ball beyond the contact. A bore and a boss are
-touched on both sides along X, through the middle of that along Y, and again along X: the first chord along X need not
-go through the centre, and its middle does.
+The ball touches a face at half its diameter, so a face is one ball radius beyond the contact. A bore or boss is touched
+on both sides along X, along Y through the middle of that chord, and along X again: the first chord along X need not go
+through the centre, but its middle is level with it.
 
 Input: a probe, a work frame. Output: coordinates in the frame in mm, and the origin of the frame in {M}.
 """
@@ -26,12 +26,12 @@ _X, _Y, _Z = np.eye(3)
 
 @dataclass(frozen=True)
 class Feature:
-    """What was measured.
+    """Result of a measurement.
 
     Attributes:
         position: (3,) in the work frame, mm; NaN in directions that were not measured.
-        diameters: along X and along Y, mm; none of a face.
-        half_width: how far a contact may be off by the width of the last trial, mm; the largest of all contacts.
+        diameters: along X and along Y, mm; empty for a face.
+        half_width: largest uncertainty of a contact due to the width of the last trial, mm.
     """
 
     position: Array
@@ -39,7 +39,7 @@ class Feature:
     half_width: float
 
     def shift(self, nominal: Array) -> Array:
-        """(3,) how far, in the work frame, its origin has to go for the feature to have nominal coordinates."""
+        """(3,) shift of the origin, in the work frame, that gives the feature its nominal coordinates."""
         return np.where(np.isnan(self.position), 0.0, self.position - nominal)
 
 
@@ -49,20 +49,20 @@ def origin_for(feature: Feature, machine_from_work: Array, nominal: Array) -> Ar
     Args:
         feature: measured in the frame.
         machine_from_work: (4, 4) pose of the frame.
-        nominal: (3,) coordinates that the feature is to have; those not measured do not count.
+        nominal: (3,) required coordinates; unmeasured ones are ignored.
     """
     origin: Array = machine_from_work[:3, 3] + machine_from_work[:3, :3] @ feature.shift(nominal)
     return origin
 
 
 def measure_face(probe: Probe, machine_from_work: Array, along: str, within: float) -> Feature:
-    """The coordinate of a face that is square to an axis of the frame.
+    """Measure the coordinate of a face square to an axis of the frame.
 
     Args:
-        probe: before the face.
+        probe: in front of the face.
         machine_from_work: (4, 4) pose of the frame.
         along: direction towards the face, one of ``ALONG``.
-        within: longest way to the contact, mm.
+        within: longest travel to the contact, mm.
 
     Raises:
         DiagnosedError, Refused, PmacError: as ``Probe.touch``.
@@ -75,12 +75,12 @@ def measure_face(probe: Probe, machine_from_work: Array, along: str, within: flo
 
 
 def measure_bore(probe: Probe, machine_from_work: Array, within: float) -> Feature:
-    """Centre and diameters of a bore along Z of the frame; the probe ends at its centre.
+    """Measure centre and diameters of a bore along Z of the frame; the probe ends at its centre.
 
     Args:
         probe: in the bore.
         machine_from_work: (4, 4) pose of the frame.
-        within: longest way from the centre line to a contact, mm.
+        within: longest travel from the centre line to a contact, mm.
 
     Raises:
         DiagnosedError, Refused, PmacError: as ``Probe.touch``.
@@ -93,14 +93,14 @@ def measure_bore(probe: Probe, machine_from_work: Array, within: float) -> Featu
 
 
 def measure_boss(probe: Probe, machine_from_work: Array, diameter: float, depth: float, clearance: float) -> Feature:
-    """Centre and diameters of a boss along Z of the frame; the probe ends above its centre.
+    """Measure centre and diameters of a boss along Z of the frame; the probe ends above its centre.
 
     Args:
         probe: above the boss, near its centre.
         machine_from_work: (4, 4) pose of the frame.
-        diameter: of the boss, as far as it is known, mm.
-        depth: how far below the present place it is touched, mm.
-        clearance: how far beside the boss the ball goes down, and how far it may be off, mm.
+        diameter: approximate diameter of the boss, mm.
+        depth: depth of the contacts below the current position, mm.
+        clearance: distance from the boss at which the ball descends, and tolerance of its position, mm.
 
     Raises:
         DiagnosedError, Refused, PmacError: as ``Probe.go`` and ``Probe.touch``.
@@ -122,7 +122,7 @@ def measure_boss(probe: Probe, machine_from_work: Array, diameter: float, depth:
 
 
 def _round(probe: Probe, machine_from_work: Array, touch: Callable[[Array], Contact], ball: float) -> Feature:
-    """Chords along X, Y and X again, each through the middle of the one before."""
+    """Measure chords along X, Y and X again, each through the middle of the previous one."""
     half_width, chords = 0.0, []
     for side in (_X, _Y, _X):
         ends = [touch(-side), touch(side)]

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Probing: where a touch probe meets a surface, by moves by hand.
+"""Probing: find the contact of a touch probe with a surface, by manual moves.
 
-A controller that knows nothing of the tool cannot catch its pose in the instant of contact. So a touch has three parts.
-A search goes along a line until the input of the probe is seen, and is held there: it passes the surface by less than
-the probe allows, since its feed is that way divided by the longest time to standstill of a jog. A second, slower search
-finds the place better. Then trials halve what is left between a place where the probe is free and one where it is
-touched. Each trial starts where the probe is free and ends at rest, where the actual lengths of the struts have to show
-it within the resolution, so neither the link nor the feed has a part in the result.
+A controller without kinematics cannot latch the tool pose at the instant of contact. So a touch has three parts. A
+search moves along a line until the probe input is seen, and is held: it overshoots the surface by less than the probe
+allows, since its feed is that overtravel divided by the longest time to standstill of a jog. A second, slower search
+refines the position. Then trials bisect between a free and a touched position. Each trial starts where the probe is
+free and ends at rest, where the actual strut lengths must confirm it within the resolution, so neither link nor feed
+affects the result.
 
 Input: numerical control, the input of the probe. Output: contacts, tips in {M} in mm.
 """
@@ -29,19 +29,19 @@ from pkm_post.model import Diagnostic, Place, Refused
 _INPUT = re.compile(r"([MP]\d{1,4})(?:=([01]))?", re.IGNORECASE)
 _POLL_S = 0.05
 _CLEAR_MM = 0.05
-"""How far before the last free place the trials start: more than a probe needs to release."""
+"""Distance of the start of trials from the last free position: more than a probe needs to release."""
 _SLOWER = 10.0
-"""The second search is so much slower than the first, and what it leaves so much less."""
+"""Ratio of the feeds of the first and the second search, and of their uncertainties."""
 _PLACE = Place("touch probe")
 
 
 @dataclass(frozen=True)
 class ProbeInput:
-    """The variable of the controller that has the state of the probe.
+    """The controller variable with the state of the probe.
 
     Attributes:
         variable: an M- or P-variable, such as M1000.
-        touched: its value while the probe is touched, 0 or 1; it is the other one while the probe is free.
+        touched: its value while the probe is touched, 0 or 1.
     """
 
     variable: str
@@ -49,10 +49,10 @@ class ProbeInput:
 
     @classmethod
     def from_text(cls, text: str) -> ProbeInput:
-        """The input that ``M1000`` or ``M1000=0`` states.
+        """Parse ``M1000`` or ``M1000=0``.
 
         Raises:
-            ValueError: it states none.
+            ValueError: the text has another form.
         """
         found = _INPUT.fullmatch(text)
         if found is None:
@@ -77,10 +77,10 @@ class ProbeSettings:
     """A touch probe.
 
     Attributes:
-        input: where its state is read.
+        input: source of its state.
         ball: diameter of its ball, mm.
-        overtravel: how far it may be pushed beyond a contact, mm.
-        resolution: width within which a contact is found, mm.
+        overtravel: travel allowed beyond a contact, mm.
+        resolution: resolution of a contact, mm.
     """
 
     input: ProbeInput
@@ -91,11 +91,11 @@ class ProbeSettings:
 
 @dataclass(frozen=True)
 class Contact:
-    """Where the probe was touched.
+    """A contact of the probe.
 
     Attributes:
         tip: (3,) centre of the ball in {M}, mm.
-        half_width: how far along the touch the tip may be off by the width of the last trial, mm.
+        half_width: uncertainty along the touch due to the width of the last trial, mm.
     """
 
     tip: Array
@@ -104,7 +104,7 @@ class Contact:
 
 @dataclass(frozen=True)
 class _Line:
-    """The line of a touch, by the way from its start in mm."""
+    """The line of a touch, by the distance from its start in mm."""
 
     start: Array
     direction: Array
@@ -120,7 +120,7 @@ class _Line:
 
 @dataclass(frozen=True)
 class _Found:
-    """Tips of a search, (3,) each: the last that was free, the first that was touched, and where it rests."""
+    """Tips of a search, (3,) each: the last free one, the first touched one, and the final one at rest."""
 
     free: Array
     touched: Array
@@ -135,7 +135,7 @@ class Probe:
 
         Args:
             session: that of the control.
-            control: its ``tool_length`` is that to the centre of the ball.
+            control: its ``tool_length`` extends to the centre of the ball.
             settings: of the probe.
             silence_s: longest time from silence to standstill of a jog, s, as ``control.longest_silence_s``.
         """
@@ -156,11 +156,11 @@ class Probe:
         return self.settings.input.is_touched(self._session)
 
     def go(self, target: Array) -> None:
-        """Move the ball to a place, (3,) in {M}, where nothing is expected.
+        """Move the ball to a position, (3,) in {M}, without expecting contact.
 
         Raises:
-            DiagnosedError: the probe was touched; it stands there.
-            Refused: the way is not certified.
+            DiagnosedError: the probe was touched; it stays there.
+            Refused: the move is not certified.
             PmacError: machine or link are not ready.
         """
         self._check_free()
@@ -168,11 +168,11 @@ class Probe:
             raise DiagnosedError(Diagnostic("C223", _PLACE, f"at {_text(self.tip)}"))
 
     def touch(self, direction: Array, within: float) -> Contact:
-        """Touch what lies in a direction and come back to the start.
+        """Touch a surface in a direction and return to the start.
 
         Args:
             direction: (3,) unit vector in {M}.
-            within: longest way to the contact, mm.
+            within: longest travel to the contact, mm.
 
         Raises:
             DiagnosedError: the probe is touched at the start, touches nothing, or stays touched.
@@ -191,7 +191,7 @@ class Probe:
         return Contact(line.at((near + far) / 2), (far - near) / 2)
 
     def _release(self, line: _Line, near: float) -> float:
-        """Back off to a place, and further until the probe is free; the place, mm from the start."""
+        """Back off to a position, and further until the probe is free; return it, mm from the start."""
         while True:
             near = max(near, 0.0)
             self._stop_at(line.at(near))
@@ -202,7 +202,7 @@ class Probe:
             near -= self.settings.overtravel
 
     def _narrow(self, line: _Line, near: float, guess: float, far: float) -> tuple[float, float]:
-        """Places free and touched, mm from the start, no further apart than the resolution; a guess is tried first."""
+        """A free and a touched position, mm from the start, within the resolution; a guess is tried first."""
         trial = guess if near < guess < far else (near + far) / 2
         while far - near > self.settings.resolution:
             self._stop_at(line.at(trial))
@@ -219,7 +219,7 @@ class Probe:
             raise DiagnosedError(Diagnostic("C220", _PLACE, f"{self.settings.input.variable} at {_text(self.tip)}"))
 
     def _stop_at(self, target: Array) -> None:
-        """Move whatever the probe says; where it is already, do nothing."""
+        """Move regardless of the probe; do nothing if already there."""
         here = self.tip
         if np.abs(target - here).max() > self.settings.resolution / 100:
             self._run(here, target, self.feed)
@@ -228,13 +228,13 @@ class Probe:
             self._check_arrived(target)
 
     def _search(self, target: Array, feed: float) -> _Found | None:
-        """Move until the probe is touched, and rest; None if it is not."""
+        """Move until the probe is touched, then stop; None if it is not."""
         free = self.tip
         self._run(free, target, feed)
         while True:
-            tip, rests = self._is_at_rest()  # read before the input: free then, so free here
+            tip, rests = self._is_at_rest()  # read before the input: if free then, free here
             if self.is_touched():
-                touched = self._is_at_rest()[0]  # and after it: touched then, so touched here
+                touched = self._is_at_rest()[0]  # read after it: if touched then, touched here
                 self._control.abort()
                 return _Found(free, touched, self.tip)
             free = tip
@@ -244,7 +244,7 @@ class Probe:
             self._session.sleep(_POLL_S)
 
     def _check_arrived(self, target: Array) -> None:
-        """Refuse a place that is not where the move led to, by the actual lengths of the struts."""
+        """Check by the actual strut lengths that the move arrived."""
         off = float(np.abs(self._is_at_rest()[0] - target).max())
         if off > self.settings.resolution:
             reason = f"a move of the probe ended {off:.4f} mm from where it leads to: it was stopped, or the resolution"
@@ -258,7 +258,7 @@ class Probe:
         self._control.execute(plan)
 
     def _is_at_rest(self) -> tuple[Array, bool]:
-        """Where the ball is, (3,) in {M}, and whether the move has ended; renews the watchdog of the move."""
+        """Position of the ball, (3,) in {M}, and whether the move has ended; renews its watchdog."""
         state = self._control.poll()
         if state.lost or state.status is None:
             raise LinkLostError(state.lost)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rehearsal: how long a watched program of a Power PMAC takes from silence to standstill, found out while it stands.
+"""Rehearsal: measure the time from silence to standstill of a watched program on a Power PMAC, without motion.
 
-``Coord[].FeedHoldSlew`` sets how fast a hold slows down, but its unit is in no source that was at hand. So before the
-first jog a program with a watchdog runs in which the struts stand where they are; it is renewed once and then left
-alone, until ``Coord[].FeedHold`` says that the time base is at zero (1; 3 while it slows down) [Power PMAC User's
-Manual, p. 693]. That proves on this controller all that a jog relies on: that the program counts, that a renewal gets
-through, that it holds itself, and within which time. It is done again when the element has another value.
+``Coord[].FeedHoldSlew`` sets the deceleration of a hold, but no available source gives its unit. So before the first
+jog a program with a watchdog runs with the struts at rest; it is renewed once and then left alone until
+``Coord[].FeedHold`` shows a time base of zero (1; 3 while slowing down) [Power PMAC User's Manual, p. 693]. That proves
+on this controller everything a jog relies on: the program counts, a renewal gets through, it holds itself, and in what
+time. It is repeated when the element changes.
 
 Input: a machine at standstill. Output: a time, for this session.
 """
@@ -28,9 +28,9 @@ from pkm_post.model import Machine, StrutMotion, read_only
 from pkm_post.writing import PowerPmacSettings
 
 _LONGEST_S = 30.0
-"""Of a rehearsal; a hold that takes longer is no protection."""
+"""Longest rehearsal; a slower hold is no protection."""
 _MOVES = 80
-"""Of its program, 10 s at 100 %: more than its count, and half of any hold that is short enough."""
+"""Moves of its program, 10 s at 100 %: more than its count, plus half of any acceptable hold."""
 _STOPPED = 1
 _POLL_S = 0.02
 _FULL_OVERRIDE = 100.0
@@ -38,11 +38,11 @@ _FULL_OVERRIDE = 100.0
 
 @dataclass(frozen=True)
 class Silence:
-    """What was found out.
+    """Result of a rehearsal.
 
     Attributes:
         seconds: longest time from silence to standstill, at an override of 100 %.
-        slew: value of ``Coord[].FeedHoldSlew`` it was found at; 0 on a Turbo PMAC, which is asked each time.
+        slew: value of ``Coord[].FeedHoldSlew`` at that time; 0 on a Turbo PMAC, which is queried each time.
     """
 
     seconds: float
@@ -58,8 +58,8 @@ def longest_silence(
         session: an open session; on a Power PMAC with ownership of the machine.
         machine: the machine, at standstill.
         settings: of its controller.
-        number: of the program that may be used, and of its P-variable.
-        known: what was found out before, in the same session.
+        number: of the program to use, and of its P-variable.
+        known: earlier result of the same session.
 
     Raises:
         NotReadyError: a hold would not stop this machine, or as ``execute.execute``.
@@ -89,12 +89,12 @@ def _rehearsed(session: Session, machine: Machine, settings: PowerPmacSettings, 
         )
     count, slowing = found
     share = status.override / _FULL_OVERRIDE
-    # The count is in time of the program. Slowing down from a lower override takes no less than that share.
+    # The count is in program time. Slowing down from a lower override takes at least that share.
     return count * share + slowing / share + LONGEST_MOVE_MS / 1000
 
 
 def _times(session: Session, settings: PowerPmacSettings, watchdog: Watchdog) -> tuple[float, float] | None:
-    """Seconds from the last renewal until it slows down, and then until the time base is at zero; None without that."""
+    """Seconds from the last renewal to deceleration, and from there to a time base of zero; None if not seen."""
     element, variable = f"Coord[{settings.coordinate_system}].FeedHold", f"P{watchdog.variable}"
     until, renewed, slows = session.now() + _LONGEST_S, None, None
     while session.now() < until:
@@ -113,7 +113,7 @@ def _times(session: Session, settings: PowerPmacSettings, watchdog: Watchdog) ->
 
 
 def _standing(lengths: Array, settings: PowerPmacSettings) -> StrutMotion:
-    """Struts that stand for the time of the rehearsal, at lengths as a program has them."""
+    """Struts at rest for the rehearsal, at lengths rounded as in a program."""
     printed = np.array([float(f"{length:.{settings.length_decimals}f}") for length in lengths])
     time_ms = LONGEST_MOVE_MS * np.arange(_MOVES + 1, dtype=np.int64)
     length = np.tile(printed, (len(time_ms), 1))

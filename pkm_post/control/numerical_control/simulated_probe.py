@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Simulated probe: the input of a touch probe on a simulated controller, from where its struts are.
+"""Simulated probe: the input of a touch probe on a simulated controller, from its strut lengths.
 
-Bodies are signed distances, mm, negative inside: a lower bound beside their edges, exact beside their faces.
+Bodies are signed distances, mm, negative inside: a lower bound near their edges, exact near their faces.
 """
 
 from __future__ import annotations
@@ -42,10 +42,10 @@ _BODIES: dict[str, tuple[int, Callable[..., Body]]] = {
 
 
 def body_of(text: str) -> Body:
-    """The body that ``plane:Z``, ``bore:X,Y,Z,DIAMETER`` or ``boss:X,Y,Z,DIAMETER`` states, in {M} and mm.
+    """Parse ``plane:Z``, ``bore:X,Y,Z,DIAMETER`` or ``boss:X,Y,Z,DIAMETER``, in {M} and mm.
 
     Raises:
-        ValueError: it states none.
+        ValueError: the text has another form.
     """
     name, _, rest = text.partition(":")
     count, made = _BODIES.get(name, (0, plane))
@@ -64,14 +64,14 @@ def _from_axis(point: Array, centre: tuple[float, float, float]) -> float:
 
 @dataclass(frozen=True)
 class SimulatedProbe:
-    """A probe without a mass and without a way to its contact.
+    """A probe without mass and pretravel.
 
     Attributes:
-        controller: whose motors carry it.
+        controller: its motors carry the probe.
         settings: of the controller.
-        readout: of the tip, which is the centre of the ball.
+        readout: readout of the tip, the centre of the ball.
         ball: its diameter, mm.
-        body: what it may touch.
+        body: the body to touch.
     """
 
     controller: Controller
@@ -81,11 +81,11 @@ class SimulatedProbe:
     body: Body
 
     def connect(self, variable: int) -> None:
-        """Give the state to an M-variable: 1 while the ball is in the body."""
+        """Connect the state to an M-variable: 1 while the ball is in the body."""
         self.controller.inputs[variable] = self.value
 
     def value(self) -> float:
-        """1 while the ball is in the body, else 0; 0 where the struts have no pose, as before a homing."""
+        """1 while the ball is in the body, else 0; 0 if the struts have no pose, as before homing."""
         counts = np.array([self.controller.motors.actual[motor - 1] for motor in MOTORS])
         length = counts / self.settings.counts_per_mm + np.array(self.settings.zero_length)
         pose = self.readout.pose_of(length)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Single block: run a posted program line by line of its source, each line to rest.
+"""Single block: run a posted program by lines of its source, stopping after each.
 
 A posted motion program blends corners and runs through line ends at speed, and the controller's own single step ends
 after one PVT move, at speed. Single block therefore steps through the trajectory posted with the program: the segments
@@ -100,7 +100,7 @@ class ProgramBlocks:
         return len(self.begins)
 
     def shown(self, number: int) -> BlockDisplay:
-        """A block for display, numbered from 1; one past the last is the end."""
+        """A block for display, numbered from 1; one past the last for the end."""
         if number > len(self):
             return BlockDisplay(number, len(self))
         first, end = self._rows(number)
@@ -210,4 +210,4 @@ def _content(file: Path) -> bytes:
         with file.open("rb") as stream:
             return stream.read(_MOST_SOURCE)
     except OSError:
-        return b""  # an unavailable source is not shown
+        return b""  # without a source, none is shown

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Watchdog: a program that counts its own time down and holds itself, unless this computer renews the count.
+"""Watchdog: a program counts down its own time and holds itself unless this computer renews the count.
 
-Input: the lines of a program whose moves are no longer than ``plan.LONGEST_MOVE_MS``. Output: the same lines with
-those of the watchdog, and how long silence may last until standstill. What a hold takes is an I-variable of a Turbo
-PMAC with a documented unit; a Power PMAC is asked by a rehearsal (``rehearsal``).
+Input: the lines of a program whose moves are no longer than ``plan.LONGEST_MOVE_MS``. Output: the same lines with those
+of the watchdog, and the longest time from silence to standstill. The deceleration of a hold is an I-variable with a
+documented unit on a Turbo PMAC; on a Power PMAC it is measured (``rehearsal``).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pkm_post.writing import PmacSettings, PowerPmacSettings
 CREDIT_MS = 600
 """Time a program may run after a renewal: several readings over a serial line."""
 _AHEAD_MS = 2 * LONGEST_MOVE_MS
-"""Moves beyond the credit: those the controller computes ahead, and those that one watchdog line covers."""
+"""Time beyond the credit: moves computed ahead, and moves covered by one watchdog line."""
 _FULL_SLEW = 1644.0
 """Isx95 at which a hold takes one second [TurboPMAC, Isx95]."""
 _INTERVAL, _MOVE = re.compile(r"PVT(\d+)", re.IGNORECASE), re.compile(r"[A-Z]\S+:\S+ .*")
@@ -44,7 +44,7 @@ class Watchdog:
     silence_s: float
 
     def renew(self, session: Session) -> None:
-        """Let the program continue; retried when the link fails, as a repeated renewal does no harm.
+        """Let the program continue; retried if the link fails, since a repeated renewal is harmless.
 
         Raises:
             PmacError: the controller is unreachable, or refuses.
@@ -57,7 +57,7 @@ def watchdog_of(settings: AnySettings, program: PmacProgram, silence_s: float) -
 
     Args:
         settings: of the controller.
-        program: as it was certified.
+        program: as certified.
         silence_s: longest time from silence to standstill, s.
     """
     lines = with_watchdog(program.lines, program.number, settings)
@@ -68,7 +68,7 @@ def silence_s(session: Session, settings: PmacSettings) -> float:
     """Longest time from silence to standstill of a watched program on a Turbo PMAC, s, at an override of 100 %.
 
     Raises:
-        NotReadyError: a hold would never finish on this controller.
+        NotReadyError: a hold on this controller would never finish.
     """
     name = f"I{50 + settings.coordinate_system}95"
     slew = abs(read_number(session, name))
@@ -80,7 +80,7 @@ def silence_s(session: Session, settings: PmacSettings) -> float:
 
 
 def with_watchdog(lines: Sequence[str], variable: int, settings: AnySettings) -> tuple[str, ...]:
-    """Insert the lines of a watchdog into those of a program.
+    """Insert the lines of a watchdog into a program.
 
     Args:
         lines: of a program whose moves are no longer than ``plan.LONGEST_MOVE_MS``.
@@ -106,7 +106,7 @@ def _credit(variable: int) -> str:
 
 
 def _groups(lines: Sequence[str]) -> Iterator[tuple[int, list[str]]]:
-    """Groups of lines with their total ms, none longer than the longest single move may be."""
+    """Groups of lines with their total ms, each within the longest single move."""
     interval, total, group = 0, 0, list[str]()
     for line in lines:
         stated = _INTERVAL.fullmatch(line)

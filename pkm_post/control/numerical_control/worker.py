@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Worker: the one thread that talks to the controller, for windows that must not block.
+"""Worker: the only thread that talks to the controller, since the GUI must not block.
 
 Orders are functions of the control; states and results come back. A stop precedes all waiting orders and preempts the
 current one: a download between its lines, a slow answer, a wait. Between orders the worker reads the state, ten times a
@@ -29,21 +29,21 @@ POLL_S = 0.1
 ATTENDED_S = 0.5
 """Seconds for which ``attend`` counts as attendance: a frozen window does not attend."""
 _CLOSE_S = 30.0
-"""Seconds for the current order to end; it gives way, and every order has its own deadlines."""
+"""Seconds for the current order to end; it yields to this, and every order has its own deadlines."""
 
 
 class Worker:
-    """Executes orders one after the other.
+    """Executes orders in sequence.
 
     Attributes:
-        failure: the exception that ended the thread, a bug in this program; None otherwise.
+        failure: the exception, a bug, that ended the thread; else None.
     """
 
     def __init__(self, control: NumericalControl, period: float = POLL_S, attended: float = ATTENDED_S) -> None:
         """Start the thread.
 
         Args:
-            control: from now on used by this thread only.
+            control: from now on only for this thread.
             period: seconds between readings.
             attended: seconds for which ``attend`` counts as attendance.
         """
@@ -62,13 +62,13 @@ class Worker:
 
     @property
     def state(self) -> ControlState:
-        """The latest state, empty before the first reading; a stop not confirmed in time is an emergency."""
+        """The latest state, empty before the first reading; a stop not confirmed in time becomes an emergency."""
         if self._is_stop_overdue() and not self._state.emergency:
             return replace(self._state, emergency=NOT_AT_REST)
         return self._state
 
     def attend(self) -> None:
-        """Report that the operator is watching: a jog continues for half a second; without attendance it is held."""
+        """Report that the operator is watching: a jog continues for half a second, then it is held."""
         self._attended_at = time.monotonic()
 
     def submit(self, order: Callable[[NumericalControl], Done], urgent: bool = False) -> Future[Done]:
@@ -97,21 +97,21 @@ class Worker:
         return future
 
     def give_way(self) -> bool:
-        """Carry out the stops that wait, for an order in progress that goes on behind them; in the worker's thread.
+        """Execute waiting stops within an order that continues afterwards; in the worker's thread.
 
         Returns:
-            Whether it may go on; False when the worker is being closed.
+            Whether the order may continue; False when the worker is closing.
         """
         while self._stops:
             self._carry_out(self._stops)
         return not self._ended
 
     def see(self, status: Status) -> None:
-        """Show a status that an order in progress has read; in the worker's thread."""
+        """Publish a status read by an order in progress; in the worker's thread."""
         self._state = self._control.see(status)
 
     def close(self) -> None:
-        """End the thread after the current order; cancel waiting orders. The machine is not stopped.
+        """End the thread after the current order; cancel waiting orders. This does not stop the machine.
 
         Raises:
             RuntimeError: the thread does not end, or has crashed.
@@ -129,7 +129,7 @@ class Worker:
         return time.monotonic() - self._attended_at < self._attended
 
     def _stop_pending(self) -> bool:
-        """Whether a stop or the shutdown waits; the shutdown waits for a stop in progress, but not forever."""
+        """Whether a stop or the shutdown is waiting; the shutdown waits for a stop in progress, but not forever."""
         return bool(self._stops) or (self._ended and (not self._stopping or self._is_stop_overdue()))
 
     def _is_stop_overdue(self) -> bool:
@@ -143,7 +143,7 @@ class Worker:
                     self._state = self._control.poll()
                     due = time.monotonic() + self._period
                 self._execute_next(due)
-        except BaseException as failure:  # ``submit`` and ``close`` raise it: a thread has no caller
+        except BaseException as failure:  # re-raised by ``submit`` and ``close``, as a thread has no caller
             self.failure = failure
         with self._change:
             self._ended = True
@@ -160,7 +160,7 @@ class Worker:
         self._carry_out(waits)
 
     def _carry_out(self, waits: deque[_Order]) -> None:
-        """Carry out the first order of a queue, unless it was cancelled meanwhile."""
+        """Execute the first order of a queue, unless it was cancelled meanwhile."""
         with self._change:
             if not waits:
                 return

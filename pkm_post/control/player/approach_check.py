@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Approach check: whether the approach to a row is clear of part, stock and fixtures, where these are known.
+"""Approach check: check the approach to a row for collisions with part, stock and fixtures, where these are known.
 
-The stock is what the rows before have left of it, so the approach is checked as the end of a trajectory with these
-rows. From their end it goes on above everything to where the approach begins, with a tool that has no cutter: there it
-cuts and touches nothing.
+The stock is what the earlier rows have left, so the approach is checked as the end of a trajectory with these rows.
+From their end it continues above everything to the start of the approach, with a tool without a cutter, which neither
+cuts nor touches anything.
 
-Input: a program, an approach to one of its rows. Output: what the approach would touch. Units: mm.
+Input: a program, an approach to one of its rows. Output: the collisions of the approach. Units: mm.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ _APPROACH, _BETWEEN = "approach", "between"
 
 
 def approach_faults(task: PlayContext, row: int, approach: Trajectory) -> tuple[Diagnostic, ...]:
-    """What the approach to a row would touch, errors and warnings; nothing where no set-up is known.
+    """Collisions of the approach to a row, errors and warnings; none if the set-up is unknown.
 
     Args:
         task: the program, with its set-up.
-        row: where the approach ends.
+        row: row at which the approach ends.
         approach: straight moves, with the tool of the row.
     """
     if task.setup.is_empty:
@@ -42,15 +42,15 @@ def approach_faults(task: PlayContext, row: int, approach: Trajectory) -> tuple[
 
 
 def check_start(task: PlayContext, first: Array, tool_length: float | None) -> None:
-    """Check that a trajectory is that of a program in the controller, as far as its start tells.
+    """Check that the start of a trajectory matches the program in the controller.
 
     Args:
         task: the trajectory.
-        first: (6,) strut lengths with which the program begins, mm.
+        first: (6,) strut lengths at the start of the program, mm.
         tool_length: gauge length of the tool in the spindle, mm; None for that of the trajectory.
 
     Raises:
-        NotReadyError: the trajectory begins elsewhere, or with a tool of another length.
+        NotReadyError: the trajectory starts elsewhere, or with a tool of another length.
     """
     made = task.trajectory
     length = float(made.tool_length()[0])
@@ -63,7 +63,7 @@ def check_start(task: PlayContext, first: Array, tool_length: float | None) -> N
 
 
 def _with_rows_before(task: PlayContext, row: int, approach: Trajectory) -> Trajectory:
-    """The rows before a row, and the approach to it; up and down along the axis it may cut as the row does."""
+    """The rows before a row, and the approach to it, which may cut along the axis if the row does."""
     program = task.trajectory
     cuts = Kind.RAPID if program.kind[row] == Kind.RAPID else Kind.LINE
     number = np.arange(len(approach))
@@ -107,7 +107,7 @@ def _through(approach: Trajectory, poses: list[ToolPose]) -> Trajectory:
 
 
 def _moves(program: Trajectory, row: int, approach: Trajectory, kinds: Array, operation: int) -> Trajectory:
-    """Moves with the tool and line of a row of the program, in an operation of their own."""
+    """Moves with the tool and line of a row of the program, in a separate operation."""
     count = len(approach)
     return replace(
         approach,
@@ -126,7 +126,7 @@ def _extents(made: Trajectory) -> dict[str, Any]:
 
 
 def _height(task: PlayContext, approach: Trajectory) -> float:
-    """Z in {M} above everything that is known."""
+    """Z in {M} above all known obstacles."""
     tops = [_top(mesh, task.trajectory) for mesh in _meshes(task.setup)]
     return max(float(approach.tip[:, 2].max()), float(task.trajectory.tip[:, 2].max()), *tops)
 

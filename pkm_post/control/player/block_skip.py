@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Block skip: a program that was posted with its blocks behind ``/`` and without them, joined where both differ.
+"""Block skip: a program posted with and without its ``/`` blocks, switched where the two differ.
 
-A block that is skipped changes what the blocks behind it mean, so no rows can be left out of a trajectory: what is
-played is the one posting or the other. Both are the same up to a block behind ``/`` and, as a rule, again behind it.
-At these places the machine comes to rest, and the operator's switch decides which of both goes on.
+A skipped block changes the meaning of later blocks, so rows cannot simply be dropped from a trajectory: one posting or
+the other is played. Both are equal up to a ``/`` block and usually again after it. At these places the machine comes to
+rest, and the operator's switch selects the posting to continue with.
 
-Input: two trajectories. Output: stretches of rows, in order; and the parts of one.
+Input: two trajectories. Output: stretches of rows, in order; and the parts to play.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from pkm_post.control.player.sections import TrajectoryPart, parts_of
 from pkm_post.model import TRAJECTORY_COLUMNS, Trajectory
 
 _BY_NEIGHBOURS = {"smooth", "exact_stop", "operation", "tool"}
-"""Columns that depend on rows beside, or number what has a name."""
+"""Columns that depend on neighbouring rows, or number named items."""
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """Rows that both postings have, or in which they differ.
+    """Rows common to both postings, or rows in which they differ.
 
     Attributes:
-        rows: first row and row behind the last one of the whole program; a row behind its end is for its last events.
-        skipped: the same of the program without its blocks behind ``/``.
-        is_choice: whether they differ.
+        rows: first row, and the row after the last, of the whole program; the row after its end has its last events.
+        skipped: the same for the program without its ``/`` blocks.
+        is_choice: whether the postings differ.
     """
 
     rows: tuple[int, int]
@@ -40,7 +40,7 @@ class Stretch:
 
 
 def stretches(whole: Trajectory, skipped: Trajectory) -> tuple[Stretch, ...]:
-    """Where two postings of a program are the same, and where they differ."""
+    """The stretches in which two postings of a program agree or differ."""
     matcher = SequenceMatcher(None, _keys(whole), _keys(skipped), autojunk=False)
     return tuple(
         Stretch((first, end), (begin, last), kind != "equal") for kind, first, end, begin, last in matcher.get_opcodes()
@@ -50,13 +50,13 @@ def stretches(whole: Trajectory, skipped: Trajectory) -> tuple[Stretch, ...]:
 def chosen_parts(
     whole: Trajectory, skipped: Trajectory | None, first: int, skips: Callable[[], bool]
 ) -> Iterator[tuple[Trajectory, TrajectoryPart]]:
-    """The parts to play, one after the other, each with the posting that it belongs to.
+    """Yield the parts to play, in order, each with its posting.
 
     Args:
-        whole: the program with its blocks behind ``/``.
-        skipped: the same without them; None where there is none.
-        first: row of the whole program to begin with.
-        skips: asked at each stretch in which both differ, when the motion has come there.
+        whole: the program with its ``/`` blocks.
+        skipped: the same without them; None if there is none.
+        first: row of the whole program to start with.
+        skips: queried at each stretch that differs, when the motion gets there.
     """
     if skipped is None:
         yield from ((whole, part) for part in parts_of(whole, first))
@@ -75,7 +75,7 @@ def chosen_parts(
 
 
 def _keys(trajectory: Trajectory) -> list[bytes]:
-    """What each row does, from where, and what happens before it; the last one is what happens at the end."""
+    """Key of each row: its motion with start, and the events before it; the last key has the final events."""
     count = len(trajectory)
     events = defaultdict[int, list[tuple[int, float]]](list)
     for each in trajectory.events:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Certificate log: the worst of each quantity of all motions that were played, with time and place.
+"""Certificate log: the worst of each quantity over all played motions, with time and place.
 
-What a certificate measures of a motion by itself is the same in the whole, but for the blocks in a second: these are
-counted over the ends of motions.
+The certificates of single motions hold for the whole, except for the blocks in a second, which are counted across the
+ends of motions.
 
-Input: motions with their certificates, in the order in which they were played. Output: findings as of one certificate.
+Input: motions with their certificates, in order of play. Output: findings as in one certificate.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _SECOND_MS = 1000
 
 
 class CertificateLog:
-    """What was played.
+    """The log of a play.
 
     Attributes:
         motions: number of motions.
@@ -60,7 +60,7 @@ class CertificateLog:
 
     @property
     def holds(self) -> bool:
-        """Whether everything holds."""
+        """Whether all findings hold."""
         return all(finding.holds for finding in self.findings)
 
     def _blocks(self, motion: CertifiedMotion) -> int:
@@ -72,7 +72,7 @@ class CertificateLog:
 
 
 def _use(finding: Finding) -> float:
-    """What grows as a value becomes worse: its share of the limit, or the value itself if that is 0."""
+    """Measure of how bad a value is: its share of the limit, or the value itself if the limit is 0."""
     if finding.is_least:
         return -finding.value
     return finding.value / finding.limit if finding.limit else finding.value

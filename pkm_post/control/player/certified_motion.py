@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Certified motions: between two points, rounded as the controller gets them, each with its own certificate.
+"""Certified motions: motions between two points, rounded as sent, each with its own certificate.
 
 The certificate compares with the programmed trajectory between the two points, and with the limits of the machine.
 
-Input: a schedule along a section, and where the motion before it ends. Output: points with a certificate.
+Input: a schedule along a section, and the end of the previous motion. Output: points with a certificate.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from pkm_post.model import Certificate, Kind, Machine, Motion, Refused, StrutMot
 from pkm_post.planning import PathState, Schedule, WindowPlanner, strut_motion
 
 LONGEST_MS = 128
-"""Longest interval: the controller computes two moves ahead, and a new way on has to come before."""
+"""Longest interval: the controller computes two moves ahead, and a continuation must arrive before that."""
 _SAME_MM = 1e-6
-"""A place so near the end of a row belongs to the next one."""
+"""A place this close to the end of a row belongs to the next row."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class MotionState:
         state: place, speed and override on its path.
         length: (6,) strut lengths, as sent, mm.
         speed: (6,) strut speeds, as sent, mm/s.
-        beside: the last interval of the motion that ends there, and that it goes on.
+        beside: the last interval of the motion that ends there, for a motion that continues.
     """
 
     section: int
@@ -46,14 +46,14 @@ class MotionState:
 
 @dataclass(frozen=True)
 class CertifiedMotion:
-    """A motion between two points, as the controller gets it.
+    """A motion between two points, as sent to the controller.
 
     Attributes:
-        struts: its points, the first one that of the motion before.
+        struts: its points, starting with the last one of the previous motion.
         row: (M,) row of the trajectory at each point.
-        share: (M,) share of that row that is behind it.
+        share: (M,) completed share of that row.
         certificate: of its motion.
-        end: where it ends.
+        end: its end state.
     """
 
     struts: StrutMotion
@@ -69,7 +69,7 @@ class MotionCertifier:
 
     Attributes:
         machine: geometry and limits.
-        settings: of its controller; decimals of what is sent.
+        settings: of its controller; for the decimals sent.
         tolerances: limits for the certificate.
     """
 
@@ -91,9 +91,9 @@ class MotionCertifier:
         Args:
             section: of the trajectory.
             windows: plans along its path.
-            at: where the motion before it ends.
+            at: end of the previous motion.
             schedule: from there to a rest.
-            until_ms: whole ms that are sent of it.
+            until_ms: whole ms of it to send.
             override: factor of the feed.
 
         Raises:
@@ -119,7 +119,7 @@ class MotionCertifier:
         return CertifiedMotion(struts, section.first + row, share, certificate, end)
 
     def _as_sent(self, struts: StrutMotion, at: MotionState) -> StrutMotion:
-        """The motion with the decimals that are sent, from the point that was sent before."""
+        """The motion rounded as sent, starting from the point sent before."""
         length = np.round(struts.length, self.settings.length_decimals)
         speed = np.round(struts.speed, self.settings.speed_decimals) + 0.0
         length[0], speed[0] = at.length, at.speed
@@ -155,7 +155,7 @@ class MotionCertifier:
 
 
 def _last(struts: StrutMotion, motion: Motion) -> AdjacentMotion:
-    """The last interval of a motion; speeds of struts are those that are sent, those of the tip the planned ones."""
+    """The last interval of a motion; with strut speeds as sent and tip speeds as planned."""
     seconds = float(struts.time_ms[-1] - struts.time_ms[-2]) / 1000
     speed, tip = struts.speed[-1] - struts.speed[-2], motion.tip_rate[-1] - motion.tip_rate[-2]
     return AdjacentMotion(seconds, speed / seconds, tip / seconds)

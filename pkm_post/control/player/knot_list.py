@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Knot list: the points of a motion as a linked list in P-variables of the controller, and the program that runs it.
 
-A rotary buffer keeps what was sent: the stop at its end could not be replaced by more motion. So the points stand in
-P-variables, each with the variable of the point after it, and a resident program goes from point to point:
+A rotary buffer cannot replace the stop at its end by more motion once it is sent. So the points are stored in
+P-variables, each with the variable of the next point, and a resident program goes from point to point:
 
     P(a) variable of the next point, 0 at the end     P(a+1) interval, ms
     P(a+2..7) strut lengths, mm                       P(a+8..13) strut speeds, mm/s
 
-The program reads P(a) when it computes the move after that point. So one assignment to P(a) replaces the way on from
-it, as a whole or not at all: until then the list leads through a stop to rest. Diamond Light Source feeds trajectories
-to Turbo PMACs in a similar way, from a resident program and two buffers of points [EPICSpmac, trajectory scan].
+The program reads P(a) when it computes the move after that point. So one assignment to P(a) replaces the continuation,
+completely or not at all: until then the list ends in a stop. Diamond Light Source feeds trajectories to Turbo PMACs in
+a similar way, with a resident program and two buffers of points [EPICSpmac, trajectory scan].
 
-Input: points in mm, mm/s and whole ms. Output: lines for the controller, and the points that lines state.
+Input: points in mm, mm/s and whole ms. Output: lines for the controller, and points parsed from lines.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from pkm_post.writing import PowerPmacSettings
 
 POINT_VARIABLES = 14
 FIRST_VARIABLE, LAST_VARIABLE = 1000, 8186
-"""The variables behind them keep the owner of the machine (``ownership``)."""
+"""The variables after them record the owner of the machine (``ownership``)."""
 _HEAD_VARIABLES = 2
 _LEAST_POINTS = 32
 """Points of two short pieces with their stops."""
@@ -40,11 +40,11 @@ _ASSIGNMENT = re.compile(r"P(\d+)=(-?\d+(?:\.\d+)?)")
 
 @dataclass(frozen=True)
 class Layout:
-    """Where the list stands.
+    """The variables of the list.
 
     Attributes:
-        first: number of its first P-variable: that of the point to go to next.
-        last: number of the last one that may be used.
+        first: number of its first P-variable: the next point to go to.
+        last: number of the last usable one.
     """
 
     first: int = FIRST_VARIABLE
@@ -56,12 +56,12 @@ class Layout:
 
     @property
     def next(self) -> int:
-        """The variable with the point to go to next."""
+        """The variable of the next point to go to."""
         return self.first
 
     @property
     def current(self) -> int:
-        """The variable with the point whose move was computed last."""
+        """The variable of the point whose move was computed last."""
         return self.first + 1
 
     def points(self) -> range:
@@ -73,7 +73,7 @@ class Layout:
 def resident_program(layout: Layout, settings: AnySettings, number: int) -> PmacProgram:
     """The program that runs the list: one PVT move for each point, to its end.
 
-    A Power PMAC has braces for the loop, and reads and writes the same variables [PowerPMAC, Script Language].
+    A Power PMAC uses braces for the loop, and the same variables [PowerPMAC, Script Language].
     """
     current = f"P{layout.current}"
     axes = " ".join(
@@ -96,12 +96,12 @@ def resident_program(layout: Layout, settings: AnySettings, number: int) -> Pmac
 
 
 def point_assignments(motion: StrutMotion, places: Sequence[int], settings: AnySettings) -> list[str]:
-    """The assignments that write the points after the first one of a motion, the last one as the end of the list.
+    """Assignments for the points of a motion after its first, with the last one as the end of the list.
 
     Args:
         motion: M points.
         places: (M - 1,) the first variable of each point but the first.
-        settings: say how many decimals.
+        settings: state the decimals.
     """
     found = []
     following = [*places[1:], 0]
@@ -131,10 +131,10 @@ def assignment_lines(assignments: Iterable[str]) -> Iterator[str]:
 
 
 def read_assignments(lines: Iterable[str]) -> dict[int, str]:
-    """The value of each P-variable that lines assign, as written.
+    """The values that lines assign to P-variables, as written.
 
     Raises:
-        ValueError: a line has something else.
+        ValueError: a line is not a list of assignments.
     """
     found: dict[int, str] = {}
     for line in lines:

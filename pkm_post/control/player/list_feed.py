@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""List feed: keeps the knot list of a controller filled, and knows from it where the motion is.
+"""List feed: keeps the knot list of a controller filled, and tracks the motion along it.
 
-A piece is written behind what is there, read back and compared, and only then taken into the list by one assignment.
-Before it the list leads through the stop of the piece before; the controller may have taken that already, if the
-assignment came too late. Which of both it does, it says itself: the variable with the current point.
+A piece is written after the current end, read back and compared, and only then linked by one assignment. Until then the
+list leads into the stop of the previous piece; if the assignment comes too late, the controller may already have taken
+that stop. The variable of the current point tells which.
 
 Every step may be repeated: after a lost link the same values are written to the same variables.
 """
@@ -28,11 +28,11 @@ from pkm_post.control.player.knot_list import (
 from pkm_post.control.player.pieces import PlayedPiece
 
 _KEPT = 2
-"""Points before the current one that are not written over."""
+"""Points before the current one that are not overwritten."""
 _READ_AT_ONCE = 448
 """Variables in one answer: about 6 KB."""
 _SAME = 1e-9
-"""Difference of a value that is read back, by its size: 36 bits, as the controller keeps it."""
+"""Relative tolerance of a value read back: the controller stores 36 bits."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class ListPoint:
         place: its first variable.
         ms: interval to it.
         motion: the motion it belongs to.
-        knot: its number in that.
+        knot: its index in the motion.
     """
 
     place: int
@@ -57,7 +57,7 @@ class _Branch:
     """A stop in the list.
 
     Attributes:
-        after: number of the point after which it begins.
+        after: number of the point after which it starts.
         points: its points.
     """
 
@@ -67,7 +67,7 @@ class _Branch:
 
 @dataclass(frozen=True)
 class _Entry:
-    """A piece that is being taken in: its points, its stop, and the lines that write them."""
+    """A piece being appended: its points, its stop, and the lines that write them."""
 
     points: tuple[ListPoint, ...]
     stop: tuple[ListPoint, ...]
@@ -80,7 +80,7 @@ class ListFeed:
 
     Attributes:
         current: the point whose move the controller computed last; None before the first one.
-        stopped_at: the motion to rest that the controller has taken instead of what was planned; None otherwise.
+        stopped_at: the stop that the controller took instead of the planned motion; else None.
     """
 
     def __init__(self, session: Session, settings: AnySettings, layout: Layout) -> None:
@@ -88,7 +88,7 @@ class ListFeed:
         self._free: deque[int] = deque()
         self._points: deque[ListPoint] = deque()
         self._branches: deque[_Branch] = deque()
-        self._first = 0  # number of the first one of _points
+        self._first = 0  # number of the first of _points
         self._entry: _Entry | None = None
         self._at = -1
         self._early: _Branch | None = None
@@ -96,7 +96,7 @@ class ListFeed:
         self.stopped_at: CertifiedMotion | None = None
 
     def clear(self) -> None:
-        """Empty the list; no program runs that reads it."""
+        """Empty the list; the resident program must not run."""
         self._set(f"P{self._layout.next}=0 P{self._layout.current}=0")
         self._free = deque(self._layout.points())
         self._points.clear()
@@ -106,37 +106,37 @@ class ListFeed:
 
     @property
     def capacity(self) -> int:
-        """Points of the longest piece, with its stop."""
+        """Most points of a piece with its stop."""
         return len(self._layout.points())
 
     @property
     def ahead_ms(self) -> int:
-        """Time until the last stop begins, from the end of the move that was computed last; 0 within a stop."""
+        """Time from the end of the last computed move to the start of the last stop; 0 within a stop."""
         if self.stopped_at is not None:
             return 0
         return sum(point.ms for point in islice(self._points, self._at + 1 - self._first, None))
 
     @property
     def last(self) -> ListPoint | None:
-        """The point where the last stop begins; within a stop the current one, and None in an empty list."""
+        """The point where the last stop starts; within a stop the current one; None if the list is empty."""
         return self._points[-1] if self._points and self.stopped_at is None else self.current
 
     @property
     def is_taking_in(self) -> bool:
-        """Whether a piece may be in the list, or not: its answers got lost."""
+        """Whether it is unknown if a piece is in the list, as answers got lost."""
         return self._entry is not None
 
     def has_room(self, piece: PlayedPiece) -> bool:
-        """Whether a piece fits, besides what is ahead."""
+        """Whether a piece fits, in addition to the points ahead."""
         return self._entry is not None or piece.size <= len(self._free)
 
     def append(self, piece: PlayedPiece) -> None:
-        """Take a piece in; after a lost link or a stop, again with the same piece.
+        """Append a piece; after a lost link or a stop, call again with the same piece.
 
         Raises:
-            LinkLostError: it may be in the list or not.
-            CancelledError: a stop waits; it is not in the list.
-            PmacError: what is read back differs; it is not in the list.
+            LinkLostError: it may or may not be in the list.
+            CancelledError: a stop is waiting; the piece is not in the list.
+            PmacError: the values read back differ; the piece is not in the list.
         """
         entry = self._entry = self._entry or self._prepared(piece)
         for line in entry.lines:
@@ -152,10 +152,10 @@ class ListFeed:
         return self._early is not None
 
     def end_soon(self) -> None:
-        """Lead the list into its next stop; where the controller was faster, into the one after it, when called again.
+        """Lead the list into its next stop; if the controller is already past it, call again for the one after.
 
         Raises:
-            LinkLostError: it leads there or not.
+            LinkLostError: it may or may not lead there.
         """
         branch = next((each for each in self._branches if each.after > self._at), None)
         if branch is not None and branch is not self._early and self.stopped_at is None:
@@ -163,10 +163,10 @@ class ListFeed:
             self._early = branch
 
     def end_at_its_end(self) -> None:
-        """Take ``end_soon`` back, unless the controller has gone there already.
+        """Undo ``end_soon``, unless the controller is already in that stop.
 
         Raises:
-            LinkLostError: it was taken back or not.
+            LinkLostError: it may or may not be undone.
         """
         if self._early is None or self.stopped_at is not None:
             return
@@ -176,7 +176,7 @@ class ListFeed:
         self._early = None
 
     def poll(self) -> Iterator[CertifiedMotion]:
-        """Ask where the motion is; the motions that it has begun since.
+        """Query the current point; yield the motions begun since.
 
         Raises:
             LinkLostError: no answer.
@@ -188,7 +188,7 @@ class ListFeed:
         yield from self._arrived(int(place))
 
     def is_at_its_end(self) -> bool:
-        """Whether the point computed last is one at rest, behind which there is nothing."""
+        """Whether the last computed point is at rest at the end of its motion."""
         return (
             self.current is not None
             and self.current.knot == len(self.current.motion.struts) - 1
@@ -219,7 +219,7 @@ class ListFeed:
         )
 
     def _compare(self, entry: _Entry) -> None:
-        """Read back what was written."""
+        """Read back and compare the written values."""
         wanted = read_assignments(entry.lines)
         numbers = sorted(wanted)
         begin = 0
@@ -236,7 +236,7 @@ class ListFeed:
     def _arrived(self, place: int) -> Iterator[CertifiedMotion]:
         entry = self._entry
         if entry is not None and any(point.place == place for point in (*entry.points, *entry.stop)):
-            self._take_in(entry)  # it was taken in, and the answer got lost
+            self._take_in(entry)  # it was linked, but the answer got lost
         for branch in self._branches:
             for point in branch.points:
                 if point.place == place:
@@ -254,7 +254,7 @@ class ListFeed:
         raise PmacError(f"P{self._layout.current}: the controller is at {place}, which is no point of the list")
 
     def _passed(self, number: int) -> Iterator[CertifiedMotion]:
-        """The motions that begin up to a point."""
+        """The motions that start up to a point."""
         for at in range(self._at + 1, number + 1):
             point = self._points[at - self._first]
             if point.knot == 1:
@@ -263,7 +263,7 @@ class ListFeed:
             self._at, self.current = number, self._points[number - self._first]
 
     def _forget(self, number: int) -> None:
-        """Free the variables of what lies behind a point."""
+        """Free the variables of the points before a point."""
         while self._branches and self._branches[0].after < number:
             self._free.extend(point.place for point in self._branches.popleft().points)
         while self._first < number - _KEPT:
@@ -281,7 +281,7 @@ class ListFeed:
         return values
 
     def _set(self, line: str) -> None:
-        """Assign, again after a lost answer: the same values."""
+        """Assign, retrying after a lost answer, which is harmless."""
         try:
             self._session.command(line)
         except OutcomeUnknownError:

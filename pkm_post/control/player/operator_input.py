@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Operator input: where the operator's orders arrive, from any thread, and what they have come to.
+"""Operator input: collects the operator's orders, from any thread, and applies them.
 
-Input: orders. Output: the override, single block, stops at M1, and whether to go on or to end; holds and resumes go
-to the controller at once.
+Input: orders. Output: the override, single block, stops at M1, and whether to continue or end; holds and resumes go to
+the controller at once.
 """
 
 from __future__ import annotations
@@ -22,20 +22,19 @@ class OperatorInput:
     Attributes:
         single_block: whether to rest at the end of each line.
         optional_stop: whether M1 stops.
-        block_skip: whether the blocks behind ``/`` that come next are skipped.
-        retract_mm: how far to go up along the tool axis, while the player waits; 0 for not at all.
+        block_skip: whether the next ``/`` blocks are skipped.
+        retract_mm: retract along the tool axis while the player waits, mm; 0 for none.
         is_over: whether to end at the next stop on the path.
         may_start: whether a start was ordered since this was cleared.
-        is_held_back: whether a hold is a stop that is planned, or found nothing that ran: nothing starts until it is
-            resumed.
+        is_held_back: whether a hold is a planned stop, or came when nothing ran: nothing starts until a resume.
     """
 
     def __init__(self, choices: PlayOptions, holds_on_path: bool = False) -> None:
         """Prepare.
 
         Args:
-            choices: at the beginning.
-            holds_on_path: whether a hold is a stop that is planned; by default it is that of the controller.
+            choices: initial settings.
+            holds_on_path: whether a hold is a planned stop; by default it is a feed hold of the controller.
         """
         self._asked, self._holds_on_path = choices.override, holds_on_path
         self.single_block = choices.single_block
@@ -54,7 +53,7 @@ class OperatorInput:
         self._orders.put(order)
 
     def carry_out(self, session: Session, settings: AnySettings) -> None:
-        """Carry out what was ordered.
+        """Execute the orders.
 
         Raises:
             PmacError: a hold or a resume failed.

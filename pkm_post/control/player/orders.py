@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Orders: what an operator may want of a player, before and while it plays, and what the player shows.
+"""Orders: settings and commands of the operator for a player, and the state it shows.
 
 Units: mm, mm/s, s; an override of 1 is 100 %.
 """
@@ -18,9 +18,9 @@ from pkm_post.model import EMPTY_SETUP, EventKind, Kind, Setup, Trajectory
 from pkm_post.options import PLAYER_PROGRAM
 
 WAITS = "waits: "
-"""Begins the phase of a player that waits for its operator; what for comes behind it."""
+"""Prefix of the phase of a player that waits for its operator; the reason follows."""
 HELD_BACK = "hold"
-"""What it waits for where a hold found nothing that ran: to be resumed."""
+"""Reason of the wait if a hold came when nothing ran."""
 OrderKind = Literal["override", "hold", "resume", "single", "optional", "retract", "skip", "start", "end"]
 
 
@@ -29,11 +29,11 @@ class Order:
     """An order.
 
     Attributes:
-        kind: ``override`` sets the factor of the feed; ``hold`` and ``resume`` are those of the controller, or with
-            limits of jerk a stop that is planned, and its end; ``single`` switches single block, ``optional`` whether
-            M1 stops; ``retract`` brings the tool up along its axis while the player waits; ``skip`` switches whether
-            the blocks behind ``/`` that come next are skipped; ``start`` goes on after a
-            stop of the program, a block or an override of 0; ``end`` ends at the next stop on the path.
+        kind: ``override`` sets the factor of the feed; ``hold`` and ``resume`` are those of the controller or, with
+            limits of jerk, a planned stop and its end; ``single`` switches single block, ``optional`` stops at M1, and
+            ``skip`` skipping of the next ``/`` blocks; ``retract`` lifts the tool along its axis while the player
+            waits; ``start`` continues after a program stop, a block or an override of 0; ``end`` ends at the next stop
+            on the path.
         value: of ``override``, a factor; of ``single``, ``optional`` and ``skip``, 0 or 1; of ``retract``, mm.
     """
 
@@ -43,22 +43,22 @@ class Order:
 
 @dataclass(frozen=True)
 class PlayOptions:
-    """How to play.
+    """Settings of a play.
 
     Attributes:
-        override: factor of the feed at the beginning.
-        single_block: whether to rest at the end of each line of the program.
-        optional_stop: whether M1 stops, at the beginning.
+        override: initial factor of the feed.
+        single_block: whether to stop at the end of each line of the program.
+        optional_stop: whether M1 stops initially.
         dry_feed: feed of all moves but rapid ones, mm/s, without spindle and coolant; None for the program's own.
-        skipped: the same program without its blocks behind ``/``, where they may be skipped; None otherwise.
-        block_skip: whether they are, at the beginning.
-        first_row: row of the trajectory to begin with.
-        approach: whether to go to that row first; to one inside the program always.
-        repeat_codes: whether the M codes of the machine before that row are repeated above it.
+        skipped: the same program without its ``/`` blocks, if they may be skipped; else None.
+        block_skip: whether they are skipped initially.
+        first_row: row of the trajectory to start with.
+        approach: whether to approach that row first; always true for a row inside the program.
+        repeat_codes: whether to repeat earlier machine-specific M codes above that row.
         first_variable: first P-variable of the knot list.
         program: number of the resident program.
-        patience_s: how long a lost link is waited for.
-        setup: part, stock and fixtures, which the way to the first row is checked against; by default none are known.
+        patience_s: timeout of a lost link.
+        setup: part, stock and fixtures for the collision check of the approach; unknown by default.
     """
 
     override: float = 1.0
@@ -76,7 +76,7 @@ class PlayOptions:
     setup: Setup = EMPTY_SETUP
 
     def applied_to(self, trajectory: Trajectory) -> Trajectory:
-        """The trajectory as it is to be played."""
+        """The trajectory with these settings applied."""
         out = set() if self.dry_feed is None else {EventKind.SPINDLE, EventKind.COOLANT, EventKind.DWELL}
         events = tuple(each for each in trajectory.events if each.kind not in out)
         if self.dry_feed is None:
@@ -87,20 +87,20 @@ class PlayOptions:
 
 @dataclass(frozen=True)
 class PlayState:
-    """For display.
+    """The state of a play, for display.
 
     Attributes:
-        phase: what the player does, in words.
-        operation: that is played.
+        phase: activity of the player, as text.
+        operation: current operation.
         line: of its source.
         row: of the trajectory.
-        feed: of the program there, mm/s; degrees a second where only the tool axis turns.
-        to_go: way of the tip to the end of the program, mm.
-        remaining: s to its end at this override: what is planned, and behind it the programmed times and dwells, the
-            former times what the pieces so far took longer. Without codes of the machine and waits for the operator.
-        override: that is asked for.
-        reached: mean speed of the last piece by that of the program.
-        ahead: s of motion that the controller has, without the stop behind it.
+        feed: of the program there, mm/s; degrees per second for a turn in place.
+        to_go: remaining distance of the tip, mm.
+        remaining: s to its end at this override, from the plan and then the programmed times and dwells, scaled by the
+            slowdown of the pieces so far; without machine-specific codes and waits for the operator.
+        override: the requested one.
+        reached: mean speed of the last piece relative to the program.
+        ahead: s of motion in the controller, without the final stop.
     """
 
     phase: str
@@ -116,7 +116,7 @@ class PlayState:
 
     @property
     def waits_for(self) -> str:
-        """What the player waits for its operator for; empty while it does not."""
+        """The reason why the player waits for its operator; empty if it does not."""
         return self.phase.removeprefix(WAITS) if self.phase.startswith(WAITS) else ""
 
     def __str__(self) -> str:
@@ -127,12 +127,12 @@ class PlayState:
 
 @dataclass(frozen=True)
 class Ahead:
-    """What is planned of the motion, and how it compares with the programmed feed.
+    """The planned motion ahead, and its speed relative to the program.
 
     Attributes:
-        ms: of motion that the controller has, without the stop behind it.
-        last: where that ends; None where it has none.
-        slower: time of what was planned by that of the programmed feed at its override.
+        ms: of motion in the controller, without the final stop.
+        last: end of that motion; None if there is none.
+        slower: planned time relative to that at the programmed feed and override.
     """
 
     ms: int = 0
@@ -141,7 +141,7 @@ class Ahead:
 
 
 class PathProgress:
-    """How far a point is along a trajectory, and what remains."""
+    """Progress of a point along a trajectory."""
 
     def __init__(self, trajectory: Trajectory) -> None:
         self._trajectory = trajectory
@@ -168,11 +168,11 @@ class PathProgress:
 
     @staticmethod
     def _left(way: Array, row: int, share: float) -> float:
-        """What is left of a way behind a place."""
+        """Remaining amount of a cumulative column after a place."""
         return float(way[row] + share * (way[row + 1] - way[row]))
 
     def text(self, point: ListPoint | None) -> str:
-        """Where a point is, in words."""
+        """The place of a point, as text."""
         if point is None:
             return "before the first point"
         place = self._trajectory.place(_place(point)[0])
@@ -180,5 +180,5 @@ class PathProgress:
 
 
 def _place(point: ListPoint) -> tuple[int, float]:
-    """The row of a point, and the share of it that is behind."""
+    """The row of a point, and its completed share."""
     return int(point.motion.row[point.knot]), float(point.motion.share[point.knot])

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pieces: what a player sends next, planned from where the motion before it is left, and certified.
+"""Pieces: plan and certify the next piece of motion from the end of the previous one.
 
-A piece is a fraction of a second of motion and the stop from its end, each a ``certified_motion``. A piece that is not
-certified is never sent: the controller executes the stop that it has already.
+A piece is a fraction of a second of motion and the stop from its end, each a ``certified_motion``. An uncertified piece
+is never sent: the controller then executes the stop that it already has.
 
-Input: a part of a trajectory, where the motion is, an override. Output: points with their certificates.
+Input: a part of a trajectory, the state of the motion, an override. Output: points with their certificates.
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ from pkm_post.planning import PathState, Schedule, WindowPlanner, window_planner
 
 HIGHEST_OVERRIDE = 1.5
 PIECE_MS = 250
-"""Duration of a piece where planning is quick."""
+"""Duration of a piece if planning is quick."""
 SHORTEST_PIECE_MS = 40
-"""Duration of a piece where the list of points is short."""
+"""Duration of a piece if the list of points is short."""
 _FOLLOWED_MS = 40
-"""Part of a stop that is followed before the wanted motion is tried again."""
+"""Part of a stop that is played before the requested motion is tried again."""
 _LEAST = 1e-6
-"""mm: places that are nearer are the same."""
+"""mm: closer places count as equal."""
 
 
 @dataclass(frozen=True)
 class PlayedPiece:
-    """What is sent next.
+    """The next piece to send.
 
     Attributes:
         motion: the motion.
-        stop: the stop from its end; None where it ends at rest.
-        reached: its mean speed by that of the program at an override of 1.
+        stop: the stop from its end; None if it ends at rest.
+        reached: its mean speed relative to the program at an override of 1.
         is_end: whether the part ends with it.
     """
 
@@ -50,12 +50,12 @@ class PlayedPiece:
 
     @property
     def size(self) -> int:
-        """Points that are sent."""
+        """Number of points to send."""
         return sum(len(motion.struts) - 1 for motion in (self.motion, self.stop) if motion is not None)
 
 
 class PiecePlanner:
-    """Plans the pieces of one part of a trajectory, one after the other."""
+    """Plans the pieces of one part of a trajectory, in sequence."""
 
     def __init__(
         self,
@@ -69,12 +69,12 @@ class PiecePlanner:
         """Prepare a part.
 
         Args:
-            trajectory: the whole.
+            trajectory: the whole trajectory.
             part: its rows; at least one.
             machine: geometry and limits.
-            settings: of its controller; decimals of what is sent.
+            settings: of its controller; for the decimals sent.
             tolerances: limits for the certificate.
-            planned_for: the machine with lower limits, such as the block rate of a link; by default the same.
+            planned_for: the machine with reduced limits, such as the block rate of a link; by default the same.
         """
         self._machine, self._tolerances = machine, tolerances
         self._certifier = MotionCertifier(machine, settings, tolerances)
@@ -86,7 +86,7 @@ class PiecePlanner:
         self._lock = threading.RLock()
 
     def start(self) -> MotionState:
-        """The beginning of the part, at rest.
+        """The start of the part, at rest.
 
         Raises:
             Refused: its first section is out of reach.
@@ -97,9 +97,9 @@ class PiecePlanner:
         return MotionState(0, PathState(0.0, 0.0, 1.0), strut_lengths(self._machine, *pose)[0], np.zeros(6))
 
     def prepare(self, number: int) -> None:
-        """Plan the path of the section after one of a number, if there is one; in a thread of its own.
+        """Plan the path of the section after this one, if any; runs in a separate thread.
 
-        What is out of reach is found again by the piece that needs it.
+        A pose out of reach is reported by the piece that needs it.
         """
         section, _ = self._section(number)
         if section.over is not None:
@@ -111,13 +111,13 @@ class PiecePlanner:
         """The next piece.
 
         Args:
-            at: where the motion before it ends.
+            at: end of the previous motion.
             override: factor of the feed; 0 for a stop.
-            single_block: whether to rest at the end of the next line of the program that can be rested at.
-            piece_ms: duration of the piece, if the motion does not rest before.
+            single_block: whether to stop at the end of the next program line that allows it.
+            piece_ms: duration of the piece, unless the motion stops earlier.
 
         Raises:
-            Refused: what is out of reach, or not certified.
+            Refused: the motion is out of reach, or not certified.
         """
         at = self._moved_on(at)
         section, windows = self._section(at.section)
@@ -146,7 +146,7 @@ class PiecePlanner:
     def _to_end_of_line(
         self, section: TrajectorySection, windows: WindowPlanner, state: PathState, override: float
     ) -> Schedule | None:
-        """The motion to the end of the first line that can be rested at; None if there is none up to the next rest."""
+        """The motion to the end of the first line that allows a stop; None if there is none before the next rest."""
         rest = windows.next_rest(state.s)
         line, operation = section.trajectory.line, section.trajectory.operation
         ends = np.append((np.diff(line) != 0) | (np.diff(operation) != 0), True)
@@ -158,7 +158,7 @@ class PiecePlanner:
         return None
 
     def _time_to_limit(self, section: TrajectorySection, windows: WindowPlanner, schedule: Schedule) -> int:
-        """Whole ms until the motion is so far in a section that the next one has to take over."""
+        """Whole ms until the next section must take over."""
         s = schedule.law.s
         if section.over is None:
             return int(schedule.rests_ms[-1])
@@ -183,12 +183,12 @@ class PiecePlanner:
         return programmed / (float(motion.struts.time_ms[-1]) / 1000)
 
     def is_end(self, at: MotionState) -> bool:
-        """Whether the part ends at a place."""
+        """Whether the part ends at a state."""
         section, windows = self._section(at.section)
         return section.over is None and at.state.s >= windows.length - _LEAST
 
     def _moved_on(self, at: MotionState) -> MotionState:
-        """The same place in the next section, where that takes over."""
+        """The same state in the next section, if that takes over here."""
         section, windows = self._section(at.section)
         if section.over is None:
             return at
@@ -198,17 +198,17 @@ class PiecePlanner:
             return at
         following, ahead = self._section(at.section + 1)
         s = at.state.s - starts[row] + ahead.path.starts[section.over - following.first]
-        self._sections.pop(at.section - 2, None)  # a stop that is still in the list may be in the one before
+        self._sections.pop(at.section - 2, None)  # a stop still in the list may be in the previous one
         return replace(at, section=at.section + 1, state=at.state.moved(float(s)))
 
     def _section(self, number: int) -> tuple[TrajectorySection, WindowPlanner]:
-        """A section and its window planner, made once; another thread may be making it.
+        """A section and its window planner, created once, possibly by another thread.
 
         Raises:
-            Refused: it is out of reach.
+            Refused: the section is out of reach.
         """
         if (ready := self._sections.get(number)) is not None:
-            return ready  # a piece does not wait for the section that is being prepared
+            return ready  # a piece does not wait for a section in preparation
         with self._lock:
             while number not in self._sections:
                 if self._next is None:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Play: run a trajectory on a controller while it is planned piece by piece.
 
-A thread plans the next piece while the controller runs the ones before; this side keeps the knot list ahead of it
-(``run_to_rest``). The list always ends in a stop on the path. So a computer that is too late, a dead link, a piece that
-its certificate refuses and an override of 0 all end the same way: in that stop, from which the motion can go on.
+A thread plans the next piece while the controller runs the earlier ones; the caller keeps the knot list ahead of it
+(``run_to_rest``). The list always ends in a stop on the path. So a late computer, a dead link, an uncertified piece and
+an override of 0 all end in that stop, from which the motion can continue.
 
 Input: a session, a machine, a trajectory, orders of an operator. Output: states for display, and a log.
 """
@@ -40,22 +40,22 @@ from pkm_post.planning import limits_jerk
 
 _POLL_S = 0.02
 _THREADS = 2
-"""One plans pieces, the other one the path of the next section."""
+"""One plans pieces, the other the path of the next section."""
 _MOST_RATE = 200.0
-"""1/s: points of the plan; the list has room for some seconds of them."""
+"""1/s: points of the plan; the list has room for some seconds."""
 
 _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
 class PlayResult:
-    """What was played.
+    """Result of a play.
 
     Attributes:
-        log: its certificate.
-        stops: how often the motion came to rest because nothing more had come in time.
-        losses: how often the link was lost and came back.
-        finished: whether the program has ended; an operator may have ended it before.
+        log: certificate of the played motion.
+        stops: number of stops because the next piece came too late.
+        losses: number of times the link was lost and came back.
+        finished: whether the program ran to its end; the operator may end it earlier.
     """
 
     log: CertificateLog
@@ -66,11 +66,11 @@ class PlayResult:
 
 @dataclass(frozen=True)
 class Host:
-    """What a thread that plays has beside it; by default nothing.
+    """Callbacks of the thread that plays; no-ops by default.
 
     Attributes:
-        see: called with each status that was read.
-        give_way: carries out the stops that wait (``Session.preempt_when``); whether to play on behind them.
+        see: called with each status read.
+        give_way: executes waiting stops (``Session.preempt_when``); returns whether to continue afterwards.
     """
 
     see: Callable[[Status], None] = lambda status: None
@@ -81,7 +81,7 @@ class Player:
     """Plays one trajectory.
 
     Attributes:
-        log: the certificate of what was played.
+        log: the certificate of the played motion.
     """
 
     def __init__(
@@ -96,18 +96,18 @@ class Player:
         planning: Executor | None = None,
         host: Host | None = None,
     ) -> None:
-        """Prepare; ``play`` connects nothing and moves the machine.
+        """Prepare; only ``play`` moves the machine.
 
         Args:
             session: an open session.
             machine: the machine.
             settings: of its controller.
-            trajectory: what to play.
+            trajectory: the trajectory to play.
             tolerances: limits for the certificate.
-            choices: how to play it.
-            show: called with the state some times a second.
-            planning: where pieces are planned; by default a thread of its own.
-            host: of the thread that plays.
+            choices: settings of the play.
+            show: called with the state several times a second.
+            planning: executor for planning; by default own threads.
+            host: callbacks of the thread that plays.
         """
         self._session, self._machine, self._settings = session, machine, settings
         self._choices = choices or PlayOptions()
@@ -133,13 +133,13 @@ class Player:
         self._operator.order(order)
 
     def play(self) -> PlayResult:
-        """Play the trajectory to its end, or to where an operator ends it.
+        """Play the trajectory to its end, or until the operator ends it.
 
         Raises:
-            NotReadyError: the machine is not ready, or not where the trajectory begins.
-            Refused: a piece is not certified; the machine rests on the path.
-            CancelledError: a stop came first while the tool went to the beginning or codes were carried out, or the
-                host wants it to end; the list ends in a stop.
+            NotReadyError: the machine is not ready, or not at the start of the trajectory.
+            Refused: a piece is not certified; the machine stops on the path.
+            CancelledError: a stop came during the approach or the execution of codes, or the
+                host ends the play; the list ends in a stop.
             PmacError: the controller or the link failed; the list ends in a stop.
         """
         session, settings = self._session, self._settings
@@ -160,16 +160,16 @@ class Player:
                         self._play_part(part, own)
             finally:
                 if self._planning is None:
-                    own.shutdown(wait=False, cancel_futures=True)  # a stop does not wait for a plan
+                    own.shutdown(wait=False, cancel_futures=True)  # a stop must not wait for a plan
         return PlayResult(self.log, self._stops, self._losses, not self._operator.is_over)
 
     def _follow(self, trajectory: Trajectory) -> None:
-        """The posting whose rows count from now on."""
+        """Switch to the rows of another posting."""
         self._trajectory, self._way = trajectory, PathProgress(trajectory)
         self._task = PlayContext(self._session, self._machine, self._settings, trajectory, self._choices.setup)
 
     def _begin(self) -> None:
-        """Where the program is not played from its beginning, go there, when the operator has put the tool in."""
+        """For a start inside the program, go there once the operator has loaded the tool."""
         row = self._choices.first_row
         if row or self._choices.approach:
             tool = self._trajectory.tools[int(self._trajectory.tool[row])]
@@ -178,7 +178,7 @@ class Player:
                 go_to_row(self._task, row, repeat_codes=self._choices.repeat_codes)
 
     def _between(self, part: TrajectoryPart) -> None:
-        """Carry out the events before a part; its stops wait for the operator."""
+        """Execute the events before a part; stops wait for the operator."""
         events = list(part.events)
         while events and not self._operator.is_over:
             at = next((n for n, each in enumerate(events) if each.kind is EventKind.STOP), len(events))
@@ -209,7 +209,7 @@ class Player:
                 at, is_end = self._run_to_rest(self._run)
 
     def _run_to_rest(self, run: RunToRest) -> tuple[MotionState, bool]:
-        """Where the run has come to rest, and whether the part ends there."""
+        """Run to the next rest; return its state, and whether the part ends there."""
         while True:
             status = self._look(run.is_started)
             if run.is_started and status is not None and not status.running and status.standing:
@@ -229,20 +229,20 @@ class Player:
             except LinkLostError as lost:
                 self._lose(lost)
             except CancelledError:
-                continue  # a stop waits: it is carried out first
+                continue  # a waiting stop is executed first
             self._session.sleep(_POLL_S)
 
     def _start(self, run: RunToRest) -> None:
-        """Start the resident program where the run begins."""
+        """Start the resident program at the start of the run."""
         order = self._session, self._settings, self._program, run.begin.length
         start_program(*order, START_TOLERANCE_MM, self._machine)
         run.is_started = True
 
     def _look(self, is_started: bool) -> Status | None:
-        """Carry out stops and orders, and read where the machine is; None if nothing could be read.
+        """Execute stops and orders, and read the state of the machine; None if unreadable.
 
         Raises:
-            CancelledError: the host wants the play to end.
+            CancelledError: the host ends the play.
         """
         was_stopped = self._session.stop_pending()
         if was_stopped and not self._host.give_way():
@@ -272,7 +272,7 @@ class Player:
         """Note that the link is lost.
 
         Raises:
-            LinkLostError: it has been for too long.
+            LinkLostError: the loss lasts too long.
         """
         now = self._session.now()
         if self._lost_at is None:
@@ -284,7 +284,7 @@ class Player:
         self._session.sleep(_POLL_S)
 
     def _wait(self, what: str, row: int | None = None, until: Callable[[], bool] = lambda: False) -> None:
-        """Wait until an operator starts again, or ends, or something holds."""
+        """Wait until the operator starts or ends, or a condition holds."""
         operator = self._operator
         operator.may_start, operator.retract_mm, self._is_waiting = False, 0.0, True
         while not (operator.may_start or operator.is_over or until()):
@@ -300,20 +300,20 @@ class Player:
         operator.is_held_back &= not operator.may_start
 
     def _tool_length(self, row: int | None) -> float:
-        """Gauge length of the tool in the spindle before a row, or where the motion is, mm."""
+        """Gauge length of the tool in the spindle before a row, or at the current point, mm."""
         if row is None:
             row = self._choices.first_row if self._point is None else int(self._point.motion.row[self._point.knot])
         return float(self._trajectory.tool_length()[min(row, len(self._trajectory) - 1)])
 
     def _wait_if_held_back(self, row: int | None = None) -> None:
-        """Where a hold found nothing that ran, wait until it is resumed."""
+        """If a hold came when nothing ran, wait for the resume."""
         operator = self._operator
         if operator.is_held_back:
             self._wait(HELD_BACK, row, lambda: not operator.is_held_back)
 
     def _state(self, phase: str, row: int | None = None) -> PlayState:
         reached = 0.0 if self._run is None else self._run.reached
-        self._point = self._feed.current or self._point  # an empty list says nothing of the place
+        self._point = self._feed.current or self._point  # an empty list has no position
         if row is None and self._point is None:
             row = self._choices.first_row
         ahead = Ahead(self._feed.ahead_ms, self._feed.last, self._timing.slower)

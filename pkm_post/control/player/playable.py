@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Playable: a trajectory file that can be played on a machine, and where in it to begin.
+"""Playable: read a trajectory file to play on a machine, and find the row to start at.
 
-Input: a file, a machine, a line. Output: the trajectory, its tolerances and a row; or what is against it.
+Input: a file, a machine, a line. Output: the trajectory, its tolerances and a row; or the reasons against it.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ Findings = tuple[Diagnostic, ...]
 def read_playable(
     file: Path, machine: Machine, offsets: MachineOffsets | None = None
 ) -> tuple[Trajectory | None, Tolerances | None, Findings]:
-    """A trajectory and the tolerances it was made for, or what is against playing it.
+    """Read a trajectory and the tolerances it was made for, or the reasons against playing it.
 
     Args:
         file: a trajectory file.
         machine: the machine to play it on.
-        offsets: what was changed at the machine since the posting; nothing by default.
+        offsets: changes at the machine since the posting; none by default.
     """
     trajectory, faults = trajectory_file.read(file)
     if trajectory is None or errors(faults):
@@ -43,7 +43,7 @@ def read_playable(
 
 
 def thread_faults(trajectory: Trajectory, file: Path) -> Findings:
-    """C208 for a trajectory with threads: what it is sent by has no axis for the spindle."""
+    """C208 for a trajectory with threads: the player has no axis for the spindle."""
     found = threads(trajectory.events)
     return (Diagnostic("C208", Place(str(file)), f"{len(found)} of them"),) if found else ()
 
@@ -51,14 +51,14 @@ def thread_faults(trajectory: Trajectory, file: Path) -> Findings:
 def first_row(
     trajectory: Trajectory, line: int, operation: str, file: Path, repeat_codes: bool = False
 ) -> tuple[int | None, Findings]:
-    """The row to begin with for a line of the source, and what is not repeated (K152); or that there is none.
+    """The row at which to start for a line of the source, with codes not repeated (K152); or None with the reason.
 
     Args:
         trajectory: the program.
         line: line, or number of the command, in the source.
         operation: its name; empty for the first one with such a line.
         file: of the trajectory, for the diagnostic.
-        repeat_codes: whether the M codes of the machine before it are repeated.
+        repeat_codes: whether earlier machine-specific M codes are repeated.
     """
     row = row_of_line(trajectory, StartLine(line, operation))
     if row is not None:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Retract: while a play rests, the tool goes up along its axis, and comes back before the play goes on.
+"""Retract: lift the tool along its axis while a play is stopped, and return before the play continues.
 
-Both are moves by hand, planned, certified and checked for reach. The way back is straight down the axis; where somebody
-has moved the tool meanwhile, it is that of an approach.
+Both are manual moves, planned, certified and checked for reach. The return is straight down the axis or, if the tool
+was moved meanwhile, an approach.
 
-Input: a machine at rest, mm. Output: the machine at rest above its path, and later on it again.
+Input: a machine at rest, mm. Output: the machine at rest above its path, and later back on it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from pkm_post.options import APPROACH_MM_S, START_TOLERANCE_MM
 from pkm_post.toolpath import ToolPose
 
 _SLOWEST, _MORE_S = 0.05, 30.0
-"""A move may take as long as at this override, and so much longer."""
+"""Timeout of a move: its time at this override, plus this margin."""
 
 _UNKNOWN = Phrase("no pose of the platform reachable in small steps from home has these strut lengths")
 Findings = tuple[Diagnostic, ...]
@@ -38,14 +38,14 @@ _log = logging.getLogger(__name__)
 
 
 class Retract:
-    """The way off the path and back."""
+    """A retract from the path and the return to it."""
 
     def __init__(self, task: PlayContext) -> None:
         self._task = task
         self._from: ToolPose | None = None
 
     def lift(self, distance: float, tool_length: float) -> None:
-        """Go up along the tool axis; what cannot be is logged, and nothing moves.
+        """Lift the tool along its axis; if that is impossible, log it without moving.
 
         Args:
             distance: mm.
@@ -71,10 +71,10 @@ class Retract:
             _log.info("%s", above)
 
     def back(self, tool_length: float) -> None:
-        """Go back to the path, where the tool is above it.
+        """Return to the path, if the tool is off it.
 
         Raises:
-            Refused: the way cannot be planned; the tool stays where it is.
+            Refused: the return cannot be planned; the tool stays in place.
             PmacError: as ``lift``.
         """
         if self._from is None:
@@ -95,7 +95,7 @@ class Retract:
         return pose_from_home(task.machine, settled_status(task.session, task.settings).commanded, tool_length)
 
     def _done(self, way: Trajectory | None, diagnostics: Findings) -> Findings:
-        """Plan and carry out a move; what is against it."""
+        """Plan and execute a move; return the reasons against it."""
         task, plan = self._task, None
         if way is not None:
             plan, found = planned(way, task.machine, task.settings, TOLERANCES)

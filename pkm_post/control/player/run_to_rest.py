@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Run to rest: keep the list of the controller ahead of it, from one rest to the next.
+"""Run to rest: keep the controller's list filled ahead of the motion, from one rest to the next.
 
-The list reaches at least so far ahead of the point that was computed last, when the next piece is asked for:
+When the next piece is requested, the list extends ahead of the last computed point by at least
 
     lead = 2 (longest planning + longest sending of the last pieces) + 2 longest intervals, at least half a second
 
-Planning counts from asking for a piece until it is there: what the computer does besides counts as well. A piece
-lasts longer than planning and sending it takes, so the list is as far ahead after it as before. The second planning
-and sending are for one short piece, at the end of a section: it takes as long and adds next to nothing. The intervals
-are for the controller, which computes two moves ahead, and for the 20 ms between two looks. The list has room for two
-pieces with their stops at least, so pieces with many points are shorter; where it has no room for all of the lead, it
-starts when it is full.
+Planning is timed from the request of a piece until it is ready, including the other work of the computer. A piece lasts
+longer than planning and sending it, so the list stays as far ahead. The second planning and sending are for a short
+piece at the end of a section, which takes as long and adds next to nothing. The intervals are for the controller, which
+computes two moves ahead, and for the 20 ms between two polls. The list has room for at least two pieces with their
+stops, so pieces with many points are shorter; if it has no room for the whole lead, the motion starts when it is full.
 
-Input: a planner, a place at rest, the operator's input. Output: the place at rest where the motion has ended.
+Input: a planner, a state at rest, the operator's input. Output: the state at rest in which the motion has ended.
 """
 
 from __future__ import annotations
@@ -34,17 +33,17 @@ from pkm_post.model import Refused
 
 LEAST_LEAD_S = 0.25
 _AHEAD = 2.5
-"""Duration of a piece by that of its planning, which hardly depends on it; to it comes that of sending the piece."""
+"""Duration of a piece relative to that of planning, which hardly depends on it; sending time is added."""
 _LONGEST_PIECE_MS = 2000
 _FITTING = 0.9
-"""Share of the room for a piece for which it is planned, by the points of the one before."""
+"""Share of the room that a piece should fill, judged by the points of the previous one."""
 _PIECES_IN_LIST = 2
-"""Pieces with their stops that fit into the list together: one runs while the other one is written."""
+"""Pieces with their stops that must fit into the list: one runs while the other is written."""
 _PIECES_TIMED = 64
-"""Last pieces of which the longest planning and sending count: what comes every half a minute is not forgotten."""
+"""Pieces over which the longest planning and sending are taken, to cover delays every half minute."""
 
 _Moment = tuple[float, int]
-"""s of the session's clock, and how often it had connected."""
+"""s of the session's clock, and its number of connections."""
 
 
 def _last_times() -> deque[float]:
@@ -53,12 +52,12 @@ def _last_times() -> deque[float]:
 
 @dataclass
 class Timing:
-    """What the last pieces took.
+    """Times of the last pieces.
 
     Attributes:
-        planning: s from asking for a piece until it was there; of one that came too late, until it was given up.
+        planning: s from the request of a piece until it was ready or, if too late, given up.
         sending: s of sending it.
-        planned, programmed: s of all pieces that were sent, and at the programmed feed and their override.
+        planned, programmed: s of all sent pieces, as planned and at the programmed feed and their override.
     """
 
     planning: deque[float] = field(default_factory=_last_times)
@@ -67,24 +66,24 @@ class Timing:
     programmed: float = 0.0
 
     def add(self, piece: PlayedPiece) -> None:
-        """Count the motion of a piece that was sent."""
+        """Count the motion of a sent piece."""
         seconds = float(piece.motion.struts.time_ms[-1]) / 1000
         self.planned += seconds
         self.programmed += seconds * piece.reached / piece.motion.end.state.override
 
     @property
     def slower(self) -> float:
-        """Time of what was planned by that of the programmed feed; 1 before the first piece."""
+        """Planned time relative to that at the programmed feed; 1 before the first piece."""
         return self.planned / self.programmed if self.programmed else 1.0
 
     @property
     def lead_s(self) -> float:
-        """How far the list has to reach ahead, s."""
+        """Required lead of the list, s."""
         return max(2 * (max(self.planning) + max(self.sending)), LEAST_LEAD_S) + 2 * LONGEST_MS / 1000
 
     @property
     def piece_ms(self) -> int:
-        """Duration of a piece, so that planning and sending keep ahead."""
+        """Duration of a piece such that planning and sending keep up."""
         wanted = 1000 * (_AHEAD * max(self.planning) + max(self.sending))
         return int(np.clip(wanted, PIECE_MS, _LONGEST_PIECE_MS))
 
@@ -93,8 +92,8 @@ class RunToRest:
     """One run of the list.
 
     Attributes:
-        reached: mean speed of the last piece by that of the program; 0 before the first one.
-        is_started: whether the resident program was started.
+        reached: mean speed of the last piece relative to the program; 0 before the first one.
+        is_started: whether the resident program has started.
     """
 
     def __init__(
@@ -110,11 +109,11 @@ class RunToRest:
 
         Args:
             session: its clock times the pieces.
-            feed: of the controller's list; the run begins with an empty one.
+            feed: feed of the controller's list, which is initially empty.
             planner: of the part.
-            at: where the machine rests.
-            operator: of the operator.
-            planning: where pieces are planned.
+            at: state of the machine at rest.
+            operator: input of the operator.
+            planning: executor for planning.
         """
         self._session, self._feed, self._planner, self._operator, self._planning = (
             session,
@@ -135,23 +134,23 @@ class RunToRest:
 
     @property
     def begin(self) -> MotionState:
-        """Where it begins."""
+        """The initial state."""
         return self._begin
 
     @property
     def is_wanted(self) -> bool:
-        """Whether more motion is wanted than the list has."""
+        """Whether more motion is requested than the list has."""
         is_complete = self._last is not None or self._is_block_end or self._fault or self._feed.stopped_at
         return self._operator.override > 0 and not (self._operator.is_over or is_complete)
 
     def plan(self, timing: Timing) -> None:
-        """Have the next piece planned when the list becomes short, and fetch it when it is."""
+        """Request the next piece when the list becomes short, and fetch it when ready."""
         is_short = self._feed.ahead_ms / 1000 < timing.lead_s
         if self._pending is None and self._planned is None and self.is_wanted and is_short:
             self._asked = self._now()
             self._pending = self._planning.submit(self._next_piece, self._ahead, timing.piece_ms)
         if self._operator.is_held_back:
-            self._asked = None  # the operator may be waited for meanwhile
+            self._asked = None  # there may be a wait for the operator meanwhile
         if self._pending is not None and self._pending.done():
             self._time(timing.planning, self._asked)
             try:
@@ -161,10 +160,10 @@ class RunToRest:
             self._pending = None
 
     def steer(self) -> None:
-        """Lead a list that runs into the next stop where nothing more is wanted, and back where it is.
+        """Lead a running list into the next stop if no more motion is requested, and undo that otherwise.
 
         Raises:
-            LinkLostError: to be tried again.
+            LinkLostError: retry.
         """
         if self.is_started and (self._operator.override == 0 or self._operator.is_over):
             self._feed.end_soon()
@@ -172,10 +171,10 @@ class RunToRest:
             self._feed.end_at_its_end()
 
     def send(self, timing: Timing) -> None:
-        """Send the piece that is planned, unless the stop before it has begun, or it is not wanted any more.
+        """Send the planned piece, unless the stop before it has begun, or it is no longer requested.
 
         Raises:
-            LinkLostError: to be tried again with the same piece.
+            LinkLostError: retry with the same piece.
         """
         if self._planned is None:
             return
@@ -199,7 +198,7 @@ class RunToRest:
             self.reached = piece.reached
 
     def may_start(self, lead_s: float) -> bool:
-        """Whether the list is long enough to be started, complete, or full."""
+        """Whether the list is long enough to start, complete, or full."""
         ahead = self._feed.ahead_ms / 1000
         is_full = self._planned is not None and not self._feed.has_room(self._planned)
         if self.is_started or self._operator.is_over:
@@ -207,10 +206,10 @@ class RunToRest:
         return ahead >= lead_s or (ahead > 0 and (is_full or not self.is_wanted))
 
     def is_void(self) -> bool:
-        """Whether it ends before it has begun, because nothing is wanted any more.
+        """Whether the run ends before its start, as no more motion is requested.
 
         Raises:
-            Refused, PmacError: its first piece is not certified, or does not fit.
+            Refused, PmacError: the first piece is not certified, or does not fit.
         """
         if not self.is_started and self._operator.is_over:
             return True
@@ -221,29 +220,29 @@ class RunToRest:
         return True
 
     def rest(self, where: Callable[[], str]) -> tuple[MotionState, bool]:
-        """Where the machine has come to rest, and whether the part ends there.
+        """The state in which the machine came to rest, and whether the part ends there.
 
         Args:
-            where: says the place in words.
+            where: returns the place as text.
 
         Raises:
-            Refused: a piece was not certified; the machine rests before it.
-            PmacError: the program was ended at another place than a stop of its list.
+            Refused: a piece was not certified; the machine is at rest before it.
+            PmacError: the program ended elsewhere than in a stop of its list.
         """
         point = self._feed.current
         if point is None or not self._feed.is_at_its_end():
             raise PmacError(f"the program was ended from elsewhere {where()}; go on with --from-line")
         if self._fault is not None:
             raise self._fault
-        return point.motion.end, self._planner.is_end(point.motion.end)  # a stop may lead there as well
+        return point.motion.end, self._planner.is_end(point.motion.end)  # a stop may also lead there
 
     def time_late_piece(self, timing: Timing) -> None:
-        """Count the time of a piece that is still planned, now that the list has run out: the lead becomes longer."""
+        """Count the time of a piece still in planning after the list ran out, to lengthen the lead."""
         if self._pending is not None:
             self._time(timing.planning, self._asked)
 
     def was_late(self) -> bool:
-        """Whether it has come to rest although more motion was wanted."""
+        """Whether the run came to rest although more motion was requested."""
         was_stopped = self._feed.stopped_at is not None and not self._feed.ends_early
         return was_stopped and self._operator.override > 0 and not self._operator.is_over
 
@@ -251,13 +250,13 @@ class RunToRest:
         return self._session.now(), self._session.connections
 
     def _time(self, times: deque[float], since: _Moment | None) -> None:
-        """Note what something took; where the link was lost meanwhile, that says nothing."""
+        """Record a duration, unless the link was lost meanwhile."""
         now, connections = self._now()
         if since is not None and since[1] == connections:
             times.append(now - since[0])
 
     def _next_piece(self, at: MotionState, piece_ms: int) -> PlayedPiece:
-        """Plan a piece that leaves room for another one in the list; in a thread that plans.
+        """Plan a piece that leaves room for another one in the list; runs in a planning thread.
 
         Raises:
             PmacError: the list is too short for the shortest piece and its stop.

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Sections: a long trajectory in overlapping pieces of bounded size whose paths are the same where they overlap.
+"""Sections: a long trajectory in overlapping pieces of bounded size, with equal paths in the overlap.
 
-Rounded corners depend on two segments, but a smooth curve on all short lines of its run. So one line of every thousand
-stays a line: runs end there, and a curve is the same in every section that has all of its run. A section has two blocks
-between such lines, and some rows more on both sides; from the middle of the line between its blocks on, the motion may
-go over to the next section. The last rows of a section are its reserve for stopping.
+A rounded corner depends on two segments, but a smooth curve on all short lines of its run. So one line of every
+thousand stays a line: runs end there, and a curve is the same in every section that has its whole run. A section has
+two blocks between such lines, plus some rows on both sides; from the middle of the line between its blocks on, the
+motion may switch to the next section. The last rows of a section are its reserve for stopping.
 
-The subpath between two points is what a motion between them is certified against: a line becomes a shorter line, an arc
-an arc of the same circle or helix, and the tool axis stays on its great circle.
+A motion is certified against the subpath between its two points: a part of a line, an arc of the same circle or helix,
+with the tool axis on its great circle.
 
-Input: a trajectory. Output: its parts, from one event to the next, their sections, and subpaths, as trajectories.
+Input: a trajectory. Output: its parts between events, their sections, and subpaths, as trajectories.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from pkm_post.toolpath import Segments
 
 BLOCK_ROWS = 1024
 _CHOICE = 64
-"""Rows of which the longest one stays a line."""
+"""Rows among which the longest stays a line."""
 _BESIDE = 4
-"""Rows on either side of a section by which the end of a run is the same: it depends on two neighbours."""
+"""Extra rows on either side of a section, so that the ends of runs agree: they depend on two neighbours."""
 _LESS = 1 - 1e-9
 """Factor of a stated tolerance: another tolerance ends a run."""
 
@@ -39,7 +39,7 @@ class TrajectoryPart:
     Attributes:
         first: its first row.
         end: the row after its last.
-        events: that take place before it.
+        events: events before it.
     """
 
     first: int
@@ -53,8 +53,8 @@ class TrajectorySection:
 
     Attributes:
         trajectory: these rows, from rest to rest.
-        first: row of the whole trajectory with which it begins.
-        over: row from whose middle on the next section takes over; None in the last one.
+        first: its first row in the whole trajectory.
+        over: row in whose middle the next section takes over; None in the last section.
     """
 
     trajectory: Trajectory
@@ -65,14 +65,14 @@ class TrajectorySection:
 def parts_of(
     trajectory: Trajectory, first: int = 0, end: int | None = None, has_events: bool | None = None
 ) -> tuple[TrajectoryPart, ...]:
-    """The parts of some rows of a trajectory; the last one may have no rows, but events.
+    """The parts of some rows of a trajectory; the last one may have only events.
 
     Args:
         trajectory: the program.
         first: its first row.
-        end: the row behind the last one; behind that of all rows, the default, comes what takes place at the end.
-        has_events: whether what takes place before the first row belongs to them; by default that is so for row 0, and
-            with a row inside the trajectory it belongs to the way there.
+        end: the row after the last; by default that of the whole program, whose final events are included.
+        has_events: whether the events before the first row are included; by default only for row 0, since otherwise the
+            approach to the row executes them.
     """
     count = len(trajectory)
     end = count + 1 if end is None else end
@@ -89,7 +89,7 @@ def parts_of(
 
 
 def sections_of(trajectory: Trajectory, part: TrajectoryPart, tolerances: Tolerances) -> Iterator[TrajectorySection]:
-    """The sections of a part with rows, one after the other."""
+    """Yield the sections of a part with rows, in order."""
     lines = [part.first, *_lines(trajectory, part), part.end]
     for number in range(max(len(lines) - 2, 1)):
         is_last = number >= len(lines) - 3
@@ -117,14 +117,14 @@ def rows_of(trajectory: Trajectory, first: int, end: int) -> Trajectory:
 
 
 def _lines(trajectory: Trajectory, part: TrajectoryPart) -> list[int]:
-    """The rows that stay lines, about every ``BLOCK_ROWS``."""
+    """The rows that stay lines, about one in ``BLOCK_ROWS``."""
     length = trajectory.length
     ends = range(part.first + BLOCK_ROWS, part.end - BLOCK_ROWS, BLOCK_ROWS)
     return [end - _CHOICE + int(np.argmax(length[end - _CHOICE : end])) for end in ends]
 
 
 def _kept_lines(rows: Trajectory, kept: list[int], tolerances: Tolerances) -> Trajectory:
-    """The rows with some that are in no run: a tolerance of their own ends it."""
+    """Exclude some rows from runs, by a different tolerance."""
     if not kept:
         return rows
     tolerance: Array = np.array(rows.tip_tolerance)
@@ -150,8 +150,8 @@ def subpath(trajectory: Trajectory, start: PathPoint, end: PathPoint) -> Traject
 
     Args:
         trajectory: one without events.
-        start: where it begins.
-        end: a place behind it.
+        start: its start.
+        end: a later place.
     """
     rows = rows_of(trajectory, start.row, end.row + 1)
     share = np.ones(len(rows))

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Start line: begin a trajectory at a line of its source, after an abort or a loss of power.
 
-What the rows before the line have switched on is found, spindle, coolant and tool; the path to the line is that of an
-approach: up along the tool axis, across above everything that the program reaches to, and down along the axis of the
-start, planned, certified and checked for reach like any move by hand, and against part, stock and fixtures where these
-are known. Spindle and coolant are switched on above the start, before the last move down.
+The modal state before the line is restored: spindle, coolant and tool. The approach goes up along the tool axis, across
+above everything that the program reaches, and down along the axis of the start; it is planned, certified and checked
+for reach like any manual move, and for collisions with part, stock and fixtures where these are known. Spindle and
+coolant are switched on above the start, before the last move down.
 
-Input: a trajectory, a line, a machine that stands anywhere with the tool of that line in its spindle. Output: the row,
-and a machine at its beginning.
+Input: a trajectory, a line, a machine anywhere with the tool of that line in its spindle. Output: the row, and a
+machine at its start.
 """
 
 from __future__ import annotations
@@ -32,25 +32,25 @@ from pkm_post.toolpath import modal_events
 _log = logging.getLogger(__name__)
 
 _THERE = "C201"
-"""The tool stands where the approach leads to."""
+"""The tool is already at the end of the approach."""
 _SLOWEST = 0.05
-"""Override at which a move may still end in time, as for moves by hand."""
+"""Override at which a move may still end in time, as for manual moves."""
 _MORE_S = 30.0
 
 
 def go_to_row(task: PlayContext, row: int, feed: float = APPROACH_MM_S, repeat_codes: bool = False) -> None:
-    """Bring the tool to the start of a row, with what has to be switched on.
+    """Move the tool to the start of a row, with its modal state.
 
     Args:
         task: the program and the machine.
-        row: where to begin.
-        feed: of the tip, mm/s; while the tip stands, degrees per second.
-        repeat_codes: whether M codes of the machine are switched on as well.
+        row: the row to start at.
+        feed: of the tip, mm/s; for a turn in place, degrees per second.
+        repeat_codes: whether to repeat machine-specific M codes.
 
     Raises:
         NotReadyError: the pose of the tool is unknown, or the machine is not ready.
         Refused: the approach is not certified.
-        PmacError: it did not arrive.
+        PmacError: the tool did not arrive.
     """
     events = modal_events(task.trajectory, row, repeat_codes)
     plan = approach_to_row(task, row, events, feed)
@@ -65,7 +65,7 @@ def go_to_row(task: PlayContext, row: int, feed: float = APPROACH_MM_S, repeat_c
 
 
 def approach_to_row(task: PlayContext, row: int, events: tuple[Event, ...], feed: float) -> MovePlan | None:
-    """The approach to the start of a row, with events above it; None where the tool is there.
+    """The approach to the start of a row, with events above it; None if the tool is there.
 
     Raises:
         NotReadyError, Refused: as ``go_to_row``.

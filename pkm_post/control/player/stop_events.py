@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Stop events: tool change, spindle, coolant and dwell between two parts of a program, while the machine rests.
 
-The codes are those of posted programs, and so is their way into the controller: as a program of their own that moves
-the tip by a millionth of a millimetre, so that there is something to be certified, listed back and started.
+The codes are those of posted programs, and are sent the same way: as a program that moves the tip by a millionth of a
+millimetre, so that it can be certified, listed and started.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pkm_post.toolpath import ToolPose
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 _LONGEST_S = 120.0
-"""Longest time of the machine's own codes: a tool change."""
+"""Longest time of a code of the machine: a tool change."""
 
 
 def pose_before(trajectory: Trajectory, row: int) -> tuple[ToolPose, float]:
@@ -37,7 +37,7 @@ def pose_before(trajectory: Trajectory, row: int) -> tuple[ToolPose, float]:
 
 @dataclass(frozen=True)
 class PlayContext:
-    """What is played, and where.
+    """The program being played, and its machine.
 
     Attributes:
         session: an open session.
@@ -55,11 +55,11 @@ class PlayContext:
 
 
 def run_events(task: PlayContext, row: int, events: tuple[Event, ...]) -> None:
-    """Carry out events before a row, and wait until they are done.
+    """Execute the events before a row, and wait for their end.
 
     Raises:
-        Refused: they cannot be planned.
-        PmacError: machine or link are not ready, or it takes too long.
+        Refused: the events cannot be planned.
+        PmacError: machine or link are not ready, or the events take too long.
     """
     session, machine, settings = task.session, task.machine, task.settings
     here, length = pose_before(task.trajectory, row)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Window play: a trajectory played by the worker of a connection, for windows that must not block.
+"""Window play: a trajectory played by the worker of a connection, since the GUI must not block.
 
-The worker reads nothing else meanwhile; what the player reads is its state. Stops that are ordered of the worker come
-first, and the play goes on behind a hold. When the worker is closed, the play ends, and the machine rests on the path.
+Meanwhile the worker reads nothing else; its state is the one read by the player. Stops ordered from the worker come
+first; after a hold the play continues. Closing the worker ends the play, and the machine stops on the path.
 
-Input: a connection, a trajectory, orders from the thread of the window. Output: the newest state, notes, and a result.
+Input: a connection, a trajectory, orders from the GUI thread. Output: the newest state, notes, and a result.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pkm_post.control.player.play import Host, Player, PlayResult
 from pkm_post.model import Tolerances, Trajectory
 
 _log = logging.getLogger(__package__)
-"""All modules of the player write to loggers below this one."""
+"""All modules of the player log below this one."""
 
 
 class _Notes(logging.Handler):
@@ -39,8 +39,8 @@ class WindowPlay:
 
     Attributes:
         state: the newest state; None before the first one.
-        notes: what the player has noted beside its states, such as a retract that cannot be.
-        done: the result, or why it ended.
+        notes: messages of the player, such as an impossible retract.
+        done: the result, or the exception that ended it.
     """
 
     def __init__(
@@ -50,9 +50,9 @@ class WindowPlay:
 
         Args:
             connection: to a Turbo PMAC.
-            trajectory: what to play.
+            trajectory: the trajectory to play.
             tolerances: limits for the certificate.
-            choices: how to play it.
+            choices: settings of the play.
         """
         worker, target = connection.worker, connection.target
         self.state: PlayState | None = None
@@ -72,12 +72,12 @@ class WindowPlay:
 
     @property
     def waits_for(self) -> str:
-        """What it waits for the operator for; empty while it does not."""
+        """The reason why it waits for the operator; empty if it does not."""
         return "" if self.state is None else self.state.waits_for
 
     @property
     def is_held_back(self) -> bool:
-        """Whether it waits to be resumed, since a hold found nothing that ran."""
+        """Whether it waits for a resume, since a hold came when nothing ran."""
         return self.waits_for == HELD_BACK
 
     def order(self, order: Order) -> None:
@@ -85,7 +85,7 @@ class WindowPlay:
         self._player.order(order)
 
     def _played(self) -> PlayResult:
-        """Called in the worker's thread: play, with the notes of the player kept meanwhile."""
+        """Play, and collect the notes of the player; called in the worker's thread."""
         handler = _Notes(self.notes)
         _log.setLevel(logging.INFO)
         _log.addHandler(handler)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A simulated PMAC with six motors, Turbo or Power, for tests and training.
 
-It is written from the manuals and imports no other room: its verdict on a program must not rest on the code that wrote
-the program.
+It is written from the manuals and imports no other package: its verdict on a program must not rest on the code that
+wrote the program.
 """
 
 from pkm_post.control.simulator.controller import LEAST_MEMORY, Controller, SimulatorSettings, function_programs

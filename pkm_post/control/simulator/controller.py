@@ -51,10 +51,10 @@ M9 write 1, 2 and 0 to P7002; M0 and M1 stop until R; T accepts any tool from 0 
 
 
 def function_programs(numbers: Iterable[int]) -> list[str]:
-    """Lines that add programs behind M codes of a machine, such as 21: they leave their number in P7004.
+    """Lines that add programs behind M codes of a machine, such as 21: they write their number to P7004.
 
     Args:
-        numbers: of codes that have no program yet.
+        numbers: of codes without a program.
     """
     lines = []
     for number in sorted(set(numbers)):
@@ -83,7 +83,7 @@ class SimulatorSettings:
         identity: answer to CID.
         password: protects programs from 1000 on; empty for none.
         machine_codes: lines loaded at a reset: the programs behind G, M, T and D codes.
-        numbers: how numbers are kept.
+        numbers: number format.
     """
 
     memory_words: int = 237_568
@@ -153,7 +153,7 @@ class Controller:
             system.axes.definitions = kept
 
     def load(self, lines: list[str] | tuple[str, ...]) -> None:
-        """Execute lines as if they came in through a port.
+        """Execute lines as if received by a port.
 
         Raises:
             CommandError: a line is refused; those before it were executed.
@@ -190,7 +190,7 @@ class Controller:
         return self._full[system - 1]
 
     def forget_pointers(self) -> None:
-        """Clear all program pointers, as a fixed buffer was opened."""
+        """Clear all program pointers, as on opening a fixed buffer."""
         for system in self.systems:
             system.interpreter.point(None)
 
@@ -217,7 +217,7 @@ class Controller:
         self._full = [False] * SYSTEMS
 
     def _output_of(self, number: int) -> Callable[[str, str], None]:
-        """A callback for what a program of this coordinate system sends to ports, or commands as if by a port."""
+        """A callback for text that a program of this coordinate system sends to ports, or executes as a command."""
         return partial(
             self._send_output, PortSession(self, system=number)
         )  # no closure: it is copied along with the controller
@@ -244,12 +244,12 @@ class Controller:
         self.time += ms
 
     def _rests(self, commanded: Array, actual: Array) -> bool:
-        """Whether the ticks up to the next command change nothing but the time, given where the motors were."""
+        """Whether ticks up to the next command change only the time, given the previous motor positions."""
         moves_none = all(system.rests() for system in self.systems if system.axes.definitions)
         return moves_none and self.motors.rest(commanded, actual)
 
     def _stand(self, ms: float, count: int) -> None:
-        """Advance by ticks in which nothing happens; times are summed as by ticks, to the last bit."""
+        """Advance by ticks in which nothing happens; times are summed tick by tick, for the same bits."""
         for system in self.systems:
             if system.axes.definitions:
                 for _ in range(count):
@@ -258,7 +258,7 @@ class Controller:
             self.time += ms
 
     def _guard(self) -> None:
-        """Stop motors that have failed, and all motors that move together with them."""
+        """Stop failed motors, and all motors that move with them."""
         if self.motors.are_sound():
             return
         self.motors.fatal |= self.motors.fatal_following_errors()

@@ -25,7 +25,7 @@ HIGHEST_OVERRIDE = 225.0
 """%; the servo rate in kHz times 100 %."""
 MOVES_AT_ONCE = 1000
 SAME_PLACE = 0.5
-"""counts: beyond this, a motor counts as moved away from where its program stopped."""
+"""counts: largest distance of a motor from the place where its program stopped."""
 
 
 class CoordinateSystem:
@@ -86,7 +86,7 @@ class CoordinateSystem:
         self.forget()
 
     def forget(self) -> None:
-        """End the program at once, without a command to the motors."""
+        """End the program at once, without commanding the motors."""
         self.running = self.holding = self.stepping = False
         self._stopped_at = None
         self.path.clear()
@@ -104,7 +104,7 @@ class CoordinateSystem:
     def advance(self, ms: float) -> None:
         """Advance time."""
         if not self.running:
-            self.path.clear()  # the last move stays for one tick, so that the motors reach its end exactly
+            self.path.clear()  # the last move is kept for one tick, so that the motors reach its end exactly
         self._slew(ms)
         for _ in range(MOVES_AT_ONCE):
             if self.running:
@@ -114,7 +114,7 @@ class CoordinateSystem:
                 return
 
     def rests(self) -> bool:
-        """Whether no tick changes anything before the next command, but the program time."""
+        """Whether ticks change only the program time until the next command."""
         return not self.running and self.path.last() is None and self.override == self.override_wanted
 
     def commanded(self) -> Array:
@@ -146,7 +146,7 @@ class CoordinateSystem:
             raise CommandError(errors.MOVING)
 
     def _check_place(self) -> None:
-        """Refuse an unsound program, and motors that are not where it stopped."""
+        """Refuse an unsound program, and motors away from the place where it stopped."""
         program = self.interpreter.counter.program()
         if program is not None and not program.sound:
             raise CommandError(errors.BAD_PROGRAM)
@@ -164,7 +164,7 @@ class CoordinateSystem:
         self._resuming = self._resuming and self.override != wanted
 
     def _standing(self) -> Array:
-        """Where the program commands the motors, or has left them, counts, (6,)."""
+        """Positions to which the program commands the motors, or last did, counts, (6,)."""
         position = self.path.position()
         return self._motors.commanded.copy() if position is None else self.axes.counts(position)
 

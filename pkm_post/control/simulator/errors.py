@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Errors: the numbers with which a PMAC refuses commands, and their meanings [TurboPMAC, PMAC error table].
 
-A refusal is a normal answer of the controller, so it is an exception inside this room only: the port turns it into
+A refusal is a normal answer of the controller, so it is an exception only inside this package: the port turns it into
 ``BEL ERRnnn``.
 """
 

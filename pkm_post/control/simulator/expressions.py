@@ -30,7 +30,7 @@ class Scanner:
     Attributes:
         text: the line.
         position: of the next token.
-        numbers: how the controller keeps the numbers in it.
+        numbers: number format of the controller.
     """
 
     def __init__(self, text: str, numbers: FloatFormat = WORDS) -> None:
@@ -56,11 +56,11 @@ class Scanner:
         return match
 
     def at_end(self) -> bool:
-        """Whether only spaces and a comment are left."""
+        """Whether only spaces and a comment remain."""
         return self.take(r"(?:;.*)?$") is not None
 
     def rest(self) -> str:
-        """Read everything that is left."""
+        """Read the rest of the line."""
         text, self.position = self.text[self.position :], len(self.text)
         return text
 
@@ -109,7 +109,7 @@ COMPARISONS: dict[str, Comparison] = {
 
 
 def safely(compute: Callable[[], float], numbers: FloatFormat) -> float:
-    """A result as it is kept; an undefined one (division by zero, root of a negative number) is refused."""
+    """A result as stored; an undefined one (division by zero, root of a negative number) is refused."""
     try:
         return numbers.stored(float(compute()))
     except (ArithmeticError, ValueError):
@@ -118,7 +118,7 @@ def safely(compute: Callable[[], float], numbers: FloatFormat) -> float:
 
 DEEPEST_NESTING = 15
 CONSTANTS_KEPT = 4096
-"""Numbers of variables, intervals and codes come again and again."""
+"""Numbers of variables, intervals and codes recur often."""
 
 
 class Scope(Protocol):
@@ -151,7 +151,7 @@ class Expression:
     constant: bool = False
 
     def bracketed(self) -> str:
-        """The text after a letter: a constant as it is, anything else in brackets."""
+        """The text after a letter: a constant unchanged, anything else in brackets."""
         return self.text if self.constant else f"({self.text})"
 
 
@@ -170,7 +170,7 @@ def expression(scanner: Scanner, depth: int = 0) -> Expression:
 
 
 def argument(scanner: Scanner) -> Expression:
-    """Read what follows the letter of a word: a signed or unsigned number, or an expression in brackets."""
+    """Read the value after the letter of a word: a signed or unsigned number, or an expression in brackets."""
     if scanner.take(r"\("):
         return _closed(scanner, 0)
     return constant(scanner.expect(rf"(?P<number>[+-]?(?:{scanner.numbers.constant}))")["number"], scanner.numbers)

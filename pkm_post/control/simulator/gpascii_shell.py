@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Gpascii shell: the shell of a Power PMAC's computer, in which ``gpascii -2`` may be started.
 
-A line that is sent comes back as the terminal's echo, then the data, then ACK CR LF. An error is a line of data,
+A line sent returns as the terminal's echo, followed by the data and ACK CR LF. An error is a line of data,
 ``stdin:LINE:COLUMN: error #20: ILLEGAL CMD: text`` [gpascii].
 
 Input and output: bytes. Only LF ends a line.
@@ -39,7 +39,7 @@ POWER_ERRORS = {
     errors.BAD_PROGRAM: (39, "NOT READY TO RUN"),
     errors.DISPLACED: (46, "COORD JOGGED OUT OF POSITION"),
 }
-"""Number and words of a Power PMAC for each error of the simulator [PowerPMAC, Error Codes]."""
+"""Number and text of a Power PMAC for each error of the simulator [PowerPMAC, Error Codes]."""
 _COMPILE_ERROR = (31, "invalid data")
 
 
@@ -52,7 +52,7 @@ class GpasciiShell:
         self._in_gpascii = False
 
     def greeting(self) -> bytes:
-        """What the log-in prints."""
+        """The output of the log-in."""
         return b"Power PMAC\r\n" + PROMPT
 
     def receive(self, data: bytes) -> bytes:
@@ -88,7 +88,7 @@ class GpasciiShell:
 
 
 def refused_line(machine: Controller | PowerPmac, lines: Sequence[str]) -> tuple[int, str] | None:
-    """Carry out lines until one is refused; return its index and why, or None.
+    """Execute lines until one is refused; return its index and the reason, or None.
 
     Args:
         machine: a Turbo PMAC or a Power PMAC.

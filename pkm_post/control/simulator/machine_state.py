@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine state: what on-line commands read and change of a controller."""
+"""Machine state: the parts of a controller that on-line commands read and change."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class MachineState(Protocol):
 
 
 Handler = Callable[["PortSession", re.Match[str], "Scanner"], list[str]]
-"""Carries out a command; its answer."""
+"""Executes a command; returns its answer."""
 
 
 @dataclass(eq=False)

@@ -15,7 +15,7 @@ from pkm_post.control.simulator.programs import FixedProgram, Rotary, Statement,
 HIGHEST_PROGRAM = 32_767
 MOST_PROGRAMS = 224
 BRANCHES = {"N", "GOTO", "GOSUB", "CALL", "RETURN", "IF", "ELSE", "ENDIF", "WHILE", "ENDWHILE"}
-"""What a rotary buffer refuses, as it discards executed lines [TurboPMAC, rotary buffers]."""
+"""Statements that a rotary buffer refuses, as it discards executed lines [TurboPMAC, rotary buffers]."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Memory:
         return self.size - self.gather - used - sum(rotary.size for rotary in self.rotaries.values())
 
     def open_program(self, number: int, port: object) -> None:
-        """Open a fixed program; its contents stay.
+        """Open a fixed program; its contents are kept.
 
         Raises:
             CommandError: another buffer is open, or the program number is invalid.
@@ -119,7 +119,7 @@ class Memory:
         """Append the statements of a line to the open buffer.
 
         Raises:
-            CommandError: there is no room for them, or they do not belong into it.
+            CommandError: there is no room for them, or the buffer does not accept them.
         """
         if not line:
             return
@@ -154,7 +154,7 @@ class Memory:
 
 
 ROTARY = 0
-"""Stands for the rotary buffer in place of a program number."""
+"""The rotary buffer, in place of a program number."""
 DEEPEST_CALLS = 15
 
 

@@ -39,7 +39,7 @@ class AxisDefinition:
 
 
 def parse_axis_definition(scanner: Scanner) -> AxisDefinition | None:
-    """Read what follows ``#n->``; None for ``0``, which removes the motor from its coordinate system.
+    """Parse the text after ``#n->``; None for ``0``, which removes the motor from its coordinate system.
 
     Raises:
         CommandError: it does not define a single axis.

@@ -212,7 +212,7 @@ class Motors:
             ms: elapsed time.
             commanded: (6,) positions commanded by programs at its end, counts; NaN for a motor without a program.
         """
-        # Six numbers: plain floats take a tenth of what columns do.
+        # For six numbers, plain floats take a tenth of the time of columns.
         wanted = self.commanded.tolist()
         if commanded is not NO_COMMAND:
             wanted = [
@@ -253,7 +253,7 @@ class Motors:
         return self.closed & (np.abs(self.following_error) > self._fatal_error)
 
     def are_sound(self) -> bool:
-        """Whether no motor has failed, is beyond a limit or on a switch: the usual case, which is found quickly."""
+        """Whether no motor has failed, is beyond a limit or on a switch: the usual case, checked quickly."""
         faults = (self.fatal, self.amplifier_fault, self.high_switch, self.low_switch)
         if any(True in fault.tolist() for fault in faults):
             return False
@@ -264,21 +264,21 @@ class Motors:
         )
 
     def rest(self, commanded: Array, actual: Array) -> bool:
-        """Whether they are sound and rest where they were a tick ago, so that the next tick changes nothing either."""
+        """Whether they are sound and at rest since the last tick, so that the next tick changes nothing."""
         if any(jog is not None for jog in self.jogs):
             return False
         is_same = self.commanded.tolist() == commanded.tolist() and self.actual.tolist() == actual.tolist()
         return is_same and self.are_sound()
 
     def _limits(self) -> Array:
-        """The highest and the lowest position of each motor, (2, 6) counts; infinite where there is none."""
+        """The highest and the lowest position of each motor, (2, 6) counts; infinite for none."""
         high, low = self.variables.column(13), self.variables.column(14)
         heeded = (np.abs(self.variables.column(24)) % WORD).astype(np.int64) & LIMITS_DISABLED == 0
         return np.stack([np.where(heeded & (high != 0), high, np.inf), np.where(heeded & (low != 0), low, -np.inf)])
 
     @property
     def _fatal_error(self) -> Array:
-        """The following error that is fatal, (6,) counts; infinite where there is none."""
+        """The fatal following error, (6,) counts; infinite for none."""
         return self.variables.made_of("fatal", self._largest_error)
 
     def _largest_error(self) -> Array:
@@ -306,7 +306,7 @@ class Motors:
         return position
 
     def _searched(self, index: int, jog: Jog, position: float) -> float:
-        """The flag sets the zero; after it the motor turns back to its home."""
+        """Set the zero at the flag; the motor then returns to its home."""
         flag, before = self.home_flag[index], self.commanded[index]
         if position == before or (before - flag) * (position - flag) > 0:
             return position  # the flag was not passed

@@ -132,7 +132,7 @@ class Dwell:
     Attributes:
         start: ms.
         end: ms.
-        target: where the axes rest.
+        target: position of the axes.
         fixed: whether its duration ignores the override, and nothing is computed ahead meanwhile.
     """
 
@@ -212,7 +212,7 @@ class MoveQueue:
         return self._moves[-1] if self._moves else None
 
     def has_enough(self) -> bool:
-        """Whether to compute no further: a move lies ahead, or a dwell must be waited for."""
+        """Whether enough is computed: a move is ahead, or a dwell must end first."""
         return any(move.start > self.time or self._dwells(move) for move in self._moves)
 
     def done(self) -> bool:
@@ -259,7 +259,7 @@ class MoveQueue:
         return max(left, 0.0)
 
     def _pass(self) -> None:
-        """Start due moves and drop completed ones; the last one stays, as it holds the current position."""
+        """Start due moves and drop completed ones; the last one is kept for the current position."""
         due = [pending for move, pending in self._pending if move.start <= self.time]
         self._pending = self._pending[len(due) :]
         for write in (write for pending in due for write in pending):

@@ -71,7 +71,7 @@ def system_status(controller: MachineState, number: int) -> str:
 
 
 def global_status(controller: MachineState) -> str:
-    """The answer to ``???``: two words. None of the faults they report can occur in a simulation."""
+    """The answer to ``???``: two words. Their faults cannot occur in a simulation."""
     return hexadecimal(0, 0)
 
 

@@ -69,7 +69,7 @@ def jog(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[st
 
 
 def home(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """HM searches home, HMZ makes the present position home."""
+    """HM searches home, HMZ makes the current position home."""
     index = _free_motor(session)
     if match["here"]:
         session.controller.motors.home_here(index)
@@ -79,7 +79,7 @@ def home(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[s
 
 
 def kill(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """K is refused while a program moves the motor; it takes an A first [TurboPMAC, K]."""
+    """K is refused while a program moves the motor; A must come first [TurboPMAC, K]."""
     system = session.controller.system_of(session.motor)
     if system is not None and system.running:
         raise CommandError(RUNNING)
@@ -89,7 +89,7 @@ def kill(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[s
 
 
 def open_loop(session: PortSession, match: re.Match[str], scanner: Scanner) -> list[str]:
-    """O0 opens the loop; the output level itself moves nothing here."""
+    """O0 opens the loop; the output level moves nothing here."""
     if abs(constant(match["percent"]).value(SystemScope(session.controller.variables, session.system))) > 100:
         raise CommandError(DATA)
     session.controller.motors.open_loop(_free_motor(session))

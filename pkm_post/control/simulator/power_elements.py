@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Power elements: the data structure of a Power PMAC, as far as this simulator has something behind it.
+"""Power elements: the data structure of a Power PMAC, as far as it is simulated.
 
-``Motor[1].MaxPos`` and ``Coord[1].FeedTime`` take the place of I-variables. An element that the simulator computes with
-is one of these, converted; an element of the status is read from motors and coordinate systems. Motor units are counts,
-times are in ms [PowerPMAC, Saved Data Structure Elements].
+``Motor[1].MaxPos`` and ``Coord[1].FeedTime`` replace I-variables. The elements that the simulator uses are converted
+I-variables; status elements are read from motors and coordinate systems. Motor units are counts, times are in ms
+[PowerPMAC, Saved Data Structure Elements].
 
-Input: names and values. Output: values, or a refusal of what does not exist here.
+Input: names and values. Output: values, or a refusal of unknown elements.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ from pkm_post.control.simulator.variables import ELEMENT, SIMULATED_MOTORS, SYST
 _ROLLOVER = re.compile(r"posrollover\[([0-9]|1[0-9]|2[0-9]|3[01])\]")
 _FACTOR = re.compile(r"coordsf\[([0-9]|[12][0-9]|3[01])\]")
 _SLEW = 2.0**23
-"""Of ms per servo cycle, the unit of Isx94 and Isx95; no manual that was at hand has that of the elements."""
+"""Isx94 and Isx95 count 2^-23 ms per servo cycle; no available manual gives the unit of the elements."""
 _LEAST_LIMIT = 1e-6
-"""counts: stands for a soft limit at 0, which is none for an I-variable."""
+"""counts: used for a soft limit at 0, which means none for an I-variable."""
 
 Conversion = Callable[[float], float]
 
 
 @dataclass(frozen=True)
 class Converted:
-    """An element behind which an I-variable stands.
+    """An element backed by an I-variable.
 
     Attributes:
         which: last two digits of the I-variable.
-        of_variable: the value of the element for that of the variable.
-        to_variable: the reverse; None for a value that the simulator does not take.
+        of_variable: converts a value of the variable to one of the element.
+        to_variable: the reverse; None for a value not simulated.
     """
 
     which: int
@@ -53,7 +53,7 @@ def _inverse_of_positive(value: float) -> float | None:
 
 
 def _inverse_of_negative(value: float) -> float | None:
-    """Ramps by a negative number: its inverse is an acceleration; times above 0 are not simulated."""
+    """Ramp from a negative number, whose inverse is an acceleration; positive numbers, times, are not simulated."""
     return -1 / value if value < 0 else None
 
 
@@ -95,7 +95,7 @@ class PowerElements:
         """The value of an element.
 
         Raises:
-            CommandError: there is none of this name.
+            CommandError: the element does not exist.
         """
         kind, index, element = _split(name)
         if kind == "sys":
@@ -116,7 +116,7 @@ class PowerElements:
         """Set an element.
 
         Raises:
-            CommandError: it is a status, there is none of this name, or the simulator has nothing for this value.
+            CommandError: the element is a status or does not exist, or its value is not simulated.
         """
         kind, index, element = _split(name)
         if _ROLLOVER.fullmatch(element) and kind == "coord" and value == 0:

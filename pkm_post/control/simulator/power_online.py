@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Power on-line commands: a line for a Power PMAC, carried out command by command.
+"""Power on-line commands: a line for a Power PMAC, executed command by command.
 
 Input: a line without its terminator, and its thread. Output: lines of data, or the error that refuses the line;
-commands ahead of the faulty one were executed. While a thread has a buffer open, everything that is no ``close`` goes
+commands ahead of the faulty one were executed. While a thread has a buffer open, everything except ``close`` goes
 into it, or is refused. Answers come as ``name=value`` and, after ``echo 7``, as values [gpascii].
 """
 
@@ -26,11 +26,11 @@ from pkm_post.control.simulator.programs import FixedProgram
 from pkm_post.control.simulator.variables import DOUBLES, ELEMENT, MOTORS, SIMULATED_MOTORS, SYSTEMS, SystemScope
 
 HIGHEST_VARIABLE = 8191
-"""The P-variables of a Power PMAC go to 65535; those of this simulator to this one."""
+"""The P-variables of a Power PMAC go to 65535; this simulator has fewer."""
 DEFAULT_WORDS = 1 << 21
 """ProgramBufSize=16777216 of published projects, in words of 8 bytes."""
 VALUES_ALONE = 4
-"""Bit of ``echo`` that leaves the names away: 7 has it, 3 has not."""
+"""Bit of ``echo`` that suppresses the names: set in 7, not in 3."""
 
 
 class PowerPmac:
@@ -50,9 +50,9 @@ class PowerPmac:
         """Create one, as after a reset.
 
         Args:
-            memory_words: program memory in words of 8 bytes; 16 MiB by default, as projects have it.
-            form: of motors and programs; one that records them, for instance.
-            motors: settings of its motors and of the period; other settings have no meaning here.
+            memory_words: program memory in words of 8 bytes; 16 MiB by default, as in projects.
+            form: class of the controller, for instance one that records.
+            motors: settings of its motors and of the period; other settings are ignored.
         """
         words = DEFAULT_WORDS if memory_words is None else memory_words
         settings = replace(
@@ -70,8 +70,8 @@ class GpasciiThread:
     Attributes:
         machine: the controller.
         session: the motor and coordinate system that it addresses.
-        echo: how its answers look.
-        reader: of the program that it has open.
+        echo: format of its answers.
+        reader: reader of its open program.
     """
 
     machine: PowerPmac
@@ -87,7 +87,7 @@ class GpasciiThread:
         return self.machine.controller.memory.is_open_by(self.session)
 
     def execute(self, line: str) -> list[str]:
-        """Carry out a line.
+        """Execute a line.
 
         Raises:
             CommandError: one of its commands is refused.
@@ -102,11 +102,11 @@ class GpasciiThread:
         return answer
 
     def end(self) -> None:
-        """The thread ends: what it had open is closed."""
+        """End the thread and close its open buffer."""
         try:
             self._close()
         except CommandError:
-            return  # a program whose braces do not match stays, and does not run
+            return  # a program with unmatched braces is kept but does not run
 
     def _one(self, scanner: Scanner) -> list[str]:
         for pattern, act in COMMANDS:
@@ -128,7 +128,7 @@ class GpasciiThread:
             reader.finish()
 
     def named(self, name: str, value: str) -> list[str]:
-        """An answer as ``echo`` has it."""
+        """An answer in the format of ``echo``."""
         return [value if self.echo & VALUES_ALONE else f"{name}={value}"]
 
 
@@ -266,7 +266,7 @@ def _system_status(thread: GpasciiThread, match: re.Match[str], scanner: Scanner
 
 
 def _hexadecimal(bits: Mapping[int, object]) -> str:
-    """64 bits as 16 digits; places as the EPICS driver has them [EPICSpmac, pmacHardwarePower]."""
+    """64 bits as 16 digits; positions as in the EPICS driver [EPICSpmac, pmacHardwarePower]."""
     return f"${sum(1 << bit for bit, is_set in bits.items() if is_set):016X}"
 
 
@@ -324,4 +324,4 @@ COMMANDS: tuple[tuple[str, Act], ...] = (
     (rf"(?:kill|k){_ALONE}", _as_turbo(online_motion.kill)),
     (rf"(?P<what>[pvf]){_ALONE}", _report),
 )
-"""Command patterns and what carries them out; the first match wins [PowerPMAC, Command Syntax Summary]."""
+"""Command patterns and their handlers; the first match wins [PowerPMAC, Command Syntax Summary]."""

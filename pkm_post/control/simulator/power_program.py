@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Power programs: lines of a Power PMAC's script language as statements of this simulator, and as the lines of a list.
 
-The language is free of case; ``//`` begins a comment, ``;`` ends a statement, ``N10:`` is a label, braces hold the
-statements of ``if``, ``else`` and ``while`` [PowerPMAC, Command Syntax Summary]. What the Turbo PMAC has under the same
-word means the same here, so a line is brought into its spelling, and one interpreter carries out both.
+The language ignores case; ``//`` starts a comment, ``;`` ends a statement, ``N10:`` is a label, braces hold the
+statements of ``if``, ``else`` and ``while`` [PowerPMAC, Command Syntax Summary]. Equal words mean the same on a Turbo
+PMAC, so a line is converted to its spelling, and one interpreter executes both.
 
 Input: lines in order. Output: statements, and for each line the text that ``list`` shows.
 """
@@ -22,7 +22,7 @@ _LABEL = re.compile(r"^ *N *([0-9]+) *:", re.IGNORECASE)
 _CONDITION = re.compile(r" *(?P<word>if|while) *\(", re.IGNORECASE)
 _BLOCK = re.compile(r"\}|(?<![A-Z])(?:if|while) *\(", re.IGNORECASE)
 _OF_CONDITIONS = (("&&", " AND "), ("||", " OR "), ("<>", "!="), (">=", "!<"), ("<=", "!>"), ("==", "="))
-"""Operators of conditions, and those of the Turbo PMAC; the comparison with one sign comes last."""
+"""Operators of conditions, and those of the Turbo PMAC; the one-character operator is last."""
 _HOLD = re.compile(r"(?<![A-Z])hold([0-9]{1,3})(?![0-9])", re.IGNORECASE)
 _ENDS = {"IF": "ENDIF", "WHILE": "ENDWHILE"}
 
@@ -33,7 +33,7 @@ def without_comment(line: str) -> str:
 
 
 def listed_line(line: str) -> str:
-    """The text of a line in a listing: words in small letters, axes in capitals, numbers as they are kept."""
+    """The text of a line in a listing: words in small letters, axes in capitals, numbers as stored."""
     text = without_comment(line)
     if '"' in text:
         return text
@@ -43,7 +43,7 @@ def listed_line(line: str) -> str:
 
 
 class BlockReader:
-    """Reads the lines of one program, whose braces go over lines."""
+    """Reads the lines of one program, whose braces may span lines."""
 
     def __init__(self) -> None:
         self._open: list[str] = []
@@ -63,7 +63,7 @@ class BlockReader:
         return tuple(found)
 
     def finish(self) -> None:
-        """The program is closed.
+        """Close the program.
 
         Raises:
             CommandError: a brace is open.
@@ -79,7 +79,7 @@ class BlockReader:
         return text[end:]
 
     def _block(self, text: str, found: list[Statement]) -> str:
-        """Take the beginning or the end of a block; nothing if the text has none of them here."""
+        """Take the beginning or the end of a block; nothing if there is none."""
         if text[0] == "}":
             return self._ended(text[1:].lstrip(), found)
         match = _CONDITION.match(text)
@@ -109,10 +109,10 @@ class BlockReader:
 
 
 def _closing(text: str, opening: int) -> int:
-    """The place of the bracket that closes the one at ``opening``.
+    """The position of the bracket that closes the one at ``opening``.
 
     Raises:
-        CommandError: there is none.
+        CommandError: it is missing.
     """
     depth = 0
     for place in range(opening, len(text)):

@@ -62,7 +62,7 @@ WITH_AXES = {"ABS": "ABS", "INC": "INC", "FRAX": "FRAX"}
 WITH_CONDITION = {"IF": "IF", "WHILE": "WHILE"}
 WITH_TEXT = {"COMMAND": "CMD", "SEND": "SEND"}
 LINES_KEPT = 4096
-"""Parsed lines that are kept: a program is often sent again, and statements never change."""
+"""Cached parsed lines: programs are often sent again, and statements never change."""
 
 
 @lru_cache(LINES_KEPT)
@@ -71,7 +71,7 @@ def parse_statements(line: str, numbers: FloatFormat = WORDS) -> tuple[Statement
 
     Args:
         line: its text.
-        numbers: how the controller keeps the numbers in it.
+        numbers: number format of the controller.
 
     Raises:
         CommandError: part of the line is not a statement, or a comment has no end.
@@ -268,7 +268,7 @@ class FixedProgram:
         Args:
             long: whether keywords are spelled in full.
             first: word offset at which the listing starts.
-            words: how many words to list; None for all.
+            words: number of words to list; None for all.
         """
         ends = [*self.line_starts, len(self.statements)][1:]
         lines, place = [], 0

@@ -221,7 +221,7 @@ class SerialPort:
         return b""
 
     def _end_of_line(self) -> bytes:
-        """A line with a faulty character is not executed, whenever I4 would have the error reported."""
+        """Execute a line, unless it has a faulty character, whenever I4 reports the error."""
         text, error = self._text.decode("ascii"), self._error
         self._text, self._error = bytearray(), 0
         return self.refused(error) if error else self.command(text)

@@ -102,16 +102,16 @@ class Server:
         return self._add_listener(port, lambda connection: self._attach(connection, EthernetPort(self._ethernet)))
 
     def add_shell(self, machine: PowerPmac) -> int:
-        """Offer the shell of a Power PMAC's computer at a free local TCP port, without ssh: for who started it.
+        """Offer the shell of a Power PMAC's computer at a free local TCP port, without ssh, for the own process.
 
         Args:
-            machine: the Power PMAC, whose controller is the one that is served.
+            machine: the Power PMAC, whose controller this server serves.
 
         Returns:
             The port.
 
         Raises:
-            OSError: there is none.
+            OSError: there is no free port.
         """
         return self._add_listener(0, lambda connection: self._log_ins.append((connection, GpasciiShell(machine))))
 
@@ -129,7 +129,7 @@ class Server:
             The path for clients to open as a serial port.
 
         Raises:
-            OSError: the system has none.
+            OSError: the system has no pseudo terminals.
         """
         if not hasattr(os, "openpty"):
             raise OSError("this system has no pseudo terminals")
@@ -138,7 +138,7 @@ class Server:
         ours, theirs = os.openpty()
         tty.setraw(theirs)
         os.set_blocking(ours, False)
-        # The client end stays open here: otherwise a client that disconnects would look like a broken device.
+        # The client end stays open here: otherwise a disconnecting client would look like a broken device.
         self._closers += [lambda: os.close(ours), lambda: os.close(theirs)]
         line = SerialPort(self._controller)
         line.attend()
@@ -148,10 +148,10 @@ class Server:
         return os.ttyname(theirs)
 
     def add_ssh(self, machine: PowerPmac, ssh: ModuleType, port: int, password: str) -> SshServer:
-        """Let users log in to the computer of a Power PMAC, whose controller is the one that is served.
+        """Let users log in to the computer of a Power PMAC.
 
         Args:
-            machine: the Power PMAC.
+            machine: the Power PMAC, whose controller this server serves.
             ssh: paramiko.
             port: local TCP port; 0 selects a free one.
             password: of the one user.
@@ -178,7 +178,7 @@ class Server:
             self._serve(ready)
 
     def serve(self) -> None:
-        """Serve what has come from clients, once and without waiting; simulated time stands."""
+        """Process received bytes of all clients once, without waiting; simulated time does not advance."""
         self._serve(self._selector.select(0))
 
     def _serve(self, ready: list[tuple[selectors.SelectorKey, int]]) -> None:
@@ -195,7 +195,7 @@ class Server:
         self._listen_again(time.monotonic())
 
     def _pass(self, ms: float) -> None:
-        """Advance simulated time; what does not fit into a turn is lost."""
+        """Advance simulated time; time that does not fit into a turn is lost."""
         end = time.monotonic() + LONGEST_TURN_S
         while ms > 0.0 and time.monotonic() < end:
             self._controller.advance(min(ms, SLICE_MS))
@@ -250,7 +250,7 @@ class Server:
     def _hear(self, source: int | socket.socket, channel: Channel) -> None:
         """Read from a client while it reads its answers and its previous bytes are processed."""
         if source not in self._channels:
-            return  # it was dropped
+            return  # dropped before
         is_watched = source in self._selector.get_map()
         wants = channel.is_heard and not channel.untaken
         if wants and not is_watched:

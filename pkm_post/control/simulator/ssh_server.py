@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ssh server: log-ins to the computer of a simulated Power PMAC, from this computer alone.
+"""Ssh server: log-ins to the computer of a simulated Power PMAC, from this computer only.
 
 Each log-in gets a shell. Its bytes go through a pair of sockets to the one thread that serves the controller, so access
-to the controller is serialized. Whoever says nothing, or does not get through the log-in, is cut after a time.
+to the controller is serialized. Silent clients and failing log-ins are disconnected after a timeout.
 
-Input and output: bytes. paramiko is handed in by its one door.
+Input and output: bytes. paramiko is passed in by its only importer.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ LOG_IN_S = 10.0
 """Seconds for a log-in and for its shell."""
 MOST_LOG_INS = 32
 _LOG = logging.getLogger("pkm_post.simulator.ssh")
-_LOG.setLevel(logging.CRITICAL)  # a log-in that fails is the client's affair
+_LOG.setLevel(logging.CRITICAL)  # a failed log-in is the client's problem
 _POLL_S = 0.1
 _PIECE = 4096
 
@@ -37,14 +37,14 @@ class SshServer:
 
     Attributes:
         number: of its TCP port.
-        user: who may log in.
-        host_key: name and text of its public key, as a file of known hosts has them.
+        user: user allowed to log in.
+        host_key: name and text of its public key, as in a file of known hosts.
     """
 
     user = "root"
 
     def __init__(self, ssh: ModuleType, port: int, password: str, attach: Attach) -> None:
-        """Begin to listen.
+        """Start listening.
 
         Args:
             ssh: paramiko.
@@ -113,7 +113,7 @@ class SshServer:
             transport.close()
 
     def _shell_of(self, transport: Any) -> Any:
-        """The channel of the shell; None when none was asked for in time."""
+        """The channel of the shell; None if none was requested in time."""
         until = time.monotonic() + LOG_IN_S
         while transport.is_active() and time.monotonic() < until and not self._is_closed.is_set():
             channel = transport.accept(_POLL_S)
@@ -137,7 +137,7 @@ class SshServer:
                 ours.sendall(data)
 
     def _bring_back(self, ours: socket.socket, channel: Any) -> None:
-        """Bytes of the shell to the client, until the shell ends."""
+        """Send bytes of the shell to the client, until the shell ends."""
         with contextlib.suppress(OSError, EOFError):  # the client is gone
             while data := ours.recv(_PIECE):
                 channel.sendall(data)
@@ -145,7 +145,7 @@ class SshServer:
 
 
 def _guard(ssh: ModuleType, password: str) -> Any:
-    """Who is let in, and to what."""
+    """The access rules: user, password and shell."""
 
     class Guard(ssh.ServerInterface):  # type: ignore[misc,name-defined]
         def get_allowed_auths(self, username: str) -> str:

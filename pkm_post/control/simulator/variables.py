@@ -28,11 +28,11 @@ LARGEST_EXPONENT = 1023
 
 @dataclass(frozen=True)
 class FloatFormat:
-    """How a controller keeps numbers.
+    """Number format of a controller.
 
     Attributes:
         bits: of the mantissa, without the sign.
-        digits: significant decimals that tell any two numbers apart.
+        digits: significant decimals that distinguish any two numbers.
         constant: pattern of an unsigned constant.
     """
 
@@ -71,9 +71,9 @@ class FloatFormat:
 
 _DECIMAL = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
 WORDS = FloatFormat(MANTISSA_BITS, 16, rf"\$[0-9A-F]{{1,12}}|{_DECIMAL}")
-"""Of a Turbo PMAC: words of 48 bits."""
+"""For a Turbo PMAC: words of 48 bits."""
 DOUBLES = FloatFormat(DOUBLE_BITS, 17, rf"\$[0-9A-F]{{1,16}}|{_DECIMAL}(?:E[-+]?[0-9]+)?")
-"""Of a Power PMAC [PowerPMAC, Computational Features]."""
+"""For a Power PMAC [PowerPMAC, Computational Features]."""
 stored, printed = WORDS.stored, WORDS.printed
 
 
@@ -94,8 +94,8 @@ GLOBAL_DEFAULTS: dict[int, float] = {
 MOTOR_DEFAULTS: dict[int, float] = {
     11: 32_000,  # fatal following error, 1/16 count
     12: 16_000,  # warning following error, 1/16 count
-    13: 0,  # positive limit, counts; 0 is none
-    14: 0,  # positive limit, counts; 0 means none
+    13: 0,  # positive limit, counts; 0 means none
+    14: 0,  # negative limit, counts; 0 means none
     15: 0.25,  # deceleration of an abort, counts/ms^2
     16: 32,  # highest speed in a program, counts/ms
     17: 0.5,  # highest acceleration in a program, counts/ms^2
@@ -138,7 +138,7 @@ ELEMENT = r"(?P<element>(?:Sys|(?P<kind>Motor|Coord)\[(?P<index>[0-9]{1,3})\])\.
 
 
 class Inputs(dict[int, Callable[[], float]]):
-    """What inputs of the machine read, by number of their M-variable. They belong to no saved state.
+    """Readers of machine inputs, by number of their M-variable; not part of the saved state.
 
     Attributes:
         element: the value of an element of the data structure, by its name; a Turbo PMAC has none.
@@ -154,7 +154,7 @@ class Variables:
     """All variables of a controller. Those never written are zero, or the default.
 
     Attributes:
-        numbers: how they are kept.
+        numbers: number format.
         definitions: text after ``Mn->``, by number.
         inputs: M-variables that are inputs of the machine.
     """
@@ -169,7 +169,7 @@ class Variables:
         self.inputs = Inputs()
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Variables:
-        """Copy the tables at once: what they hold is never changed."""
+        """Copy the tables only: their items never change."""
         made = memo[id(self)] = copy.copy(self)
         made._columns, made._made = {}, {}
         made._values = {letter: dict(table) for letter, table in self._values.items()}
@@ -192,7 +192,7 @@ class Variables:
         """The value of an element of the data structure.
 
         Raises:
-            CommandError: there is none of this name.
+            CommandError: the element does not exist.
         """
         if self.inputs.element is None:
             raise CommandError(DATA)
@@ -227,7 +227,7 @@ class Variables:
         return self._columns[which]
 
     def made_of(self, name: str, make: Callable[[], Array]) -> Array:
-        """What is computed of I-variables only: once, until one of them is written."""
+        """Cache an array computed from I-variables only, until one of them is written."""
         if name not in self._made:
             self._made[name] = make()
         return self._made[name]
