@@ -46,7 +46,7 @@ class Size:
 
 @dataclass(frozen=True)
 class CheckedFile:
-    """Result for one file; ``size`` is None when it could not be read, ``reading`` is as in ``model.Program``."""
+    """Result for one file; ``size`` is None when it could not be read, ``reading`` as in ``model.Program``."""
 
     file: Path
     size: Size | None
@@ -107,14 +107,14 @@ def _extreme_points(start: Array, end: Array, centre: Array, axis: Array) -> Arr
 
 
 def checks_as_text(results: Iterable[CheckedFile]) -> str:
-    """Format diagnostics with their source lines and how files were interpreted, then one row per file."""
+    """Format diagnostics with their source lines and the interpretation of the files, then one row per file."""
     results = tuple(results)
     faults = [text for result in results for text in _diagnostic_lines(result)]
     return "\n".join([*faults, *_table(results)])
 
 
 def _diagnostic_lines(result: CheckedFile) -> list[str]:
-    """The diagnostics of a file with their source lines, and how it was interpreted."""
+    """The diagnostics of a file with their source lines, and its interpretation."""
     files = {fault.place.file for fault in result.diagnostics if fault.place.line}
     lines = {file: _lines_of(result.file if file == name_of(result.file) else Path(file)) for file in files}
     faults = [
@@ -129,7 +129,7 @@ def _lines_of(file: Path) -> list[bytes]:
     try:
         return file.read_bytes().splitlines()
     except OSError:
-        return []  # it has gone since it was read: its diagnostics are shown without it
+        return []  # deleted since it was read: show diagnostics without it
 
 
 def _source_line(diagnostic: Diagnostic, lines: list[bytes]) -> list[str]:

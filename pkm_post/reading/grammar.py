@@ -25,7 +25,7 @@ class Grammar:
     Attributes:
         file: the grammar, in the EBNF of lark.
         start: the rule of a whole line.
-        reads: what cannot be read without lark, in words.
+        reads: description of the input that needs lark.
         empty_parts: whether a missing optional part leaves None in the tree.
     """
 
@@ -65,7 +65,7 @@ class LineFault:
     Attributes:
         code: key into the table of diagnostics.
         offset: index of its character or byte in the line.
-        found: what was found, as written.
+        found: the offending text.
     """
 
     code: str
@@ -96,11 +96,11 @@ def parser_of(grammar: Grammar) -> Lark:
 
 
 def in_words(terminals: set[str], words: Mapping[str, tuple[str, ...]]) -> str:
-    """List terminals in words.
+    """List terminals by description.
 
     Args:
         terminals: names of terminals.
-        words: the terminals of each word, in the order of the list.
+        words: the terminals of each description, in the order of the list.
     """
     named = [word for word, names in words.items() if terminals.intersection(names)]
     return " or ".join(filter(None, (", ".join(named[:-1]), *named[-1:])))

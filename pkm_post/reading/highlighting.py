@@ -5,7 +5,7 @@ Input: a line, and the column of a diagnostic. Output: classified spans. The tab
 corresponding terminals of the grammars of record (``gcode/block.lark``, ``cldata/statement.lark``). One regular
 expression splits a line instead of the grammar: an editor colours the visible lines at every keystroke, including
 faulty ones. Valid lines are coloured as the grammar reads them; tests keep the two consistent. One exception: where the
-word A has the value of a sine, cosine or tangent, as in Asin[30], asin is taken for the function.
+word A has the value of a sine, cosine or tangent, as in Asin[30], asin is coloured as the function.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class HighlightRule:
     """One row of a table of colours.
 
     Attributes:
-        colour: what it is.
+        colour: kind of the part.
         terminals: corresponding terminals of the grammar; none for text removed before parsing.
         pattern: regular expression; a row takes precedence over the rows below it.
         rest: kind of the rest of the line, if it is known.
@@ -116,7 +116,7 @@ _SIEMENS_FLOW = (
     r"|DEF|PROC|RET|MCALL"
 )
 _SIEMENS_FUNCTIONS = (
-    r"A?SIN|A?COS|TAN|ATAN2|SQRT|ABS|POT|TRUNC|ROUND(?:UP)?|LN|EXP|MINVAL|MAXVAL|BOUND|[AID]C|AC[NP]"  # AC(1) as well
+    r"A?SIN|A?COS|TAN|ATAN2|SQRT|ABS|POT|TRUNC|ROUND(?:UP)?|LN|EXP|MINVAL|MAXVAL|BOUND|[AID]C|AC[NP]"  # also AC(1)
 )
 SIEMENS: tuple[HighlightRule, ...] = (
     HighlightRule(Colour.TEXT, ("text",), r"\"[^\"]*\"?"),
@@ -135,7 +135,7 @@ SIEMENS: tuple[HighlightRule, ...] = (
     HighlightRule(Colour.NUMBER, ("number",), r"'[HB][0-9A-F]+'|(?:\d+\.?\d*|\.\d+)(?:EX[+-]?\d+)?"),
     HighlightRule(Colour.OPERATOR, ("sign",), r"<<|<>|[<>=]=|[-+*/(),\[\]=<>:%.]"),
 )
-"""Colour table of Siemens's language; its terminals are the kinds of ``siemens.tokens``, and several rows have one."""
+"""Colour table of Siemens's language; its terminals are kinds of ``siemens.tokens``, some in several rows."""
 
 TABLES: dict[Language, tuple[HighlightRule, ...]] = {
     Language.GCODE: GCODE,
@@ -150,11 +150,11 @@ _COMPILED = {
 
 
 def shown_language(file: str, content: bytes, flavour: str | None) -> Language:
-    """The language in whose colours a text is shown.
+    """The language whose colours a text gets.
 
     Args:
         file: name, with a known suffix.
-        content: of the file, or as much as its language is recognised by.
+        content: of the file, or enough of it to recognise the language.
         flavour: as chosen, None to guess it.
     """
     from pkm_post.reading.siemens import siemens_evidence

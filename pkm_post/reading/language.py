@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Language of a part program, G-code or CL data: by its name, and by the first line where the name does not say.
+"""Language of a part program, G-code or CL data: by its name or, if that is ambiguous, by the first line.
 
-Input: the name of a file. Output: its language, and the stem that its results take. Creo counts the versions of a file
-behind its suffix, ``part.ncl.3``. Text files (``.txt``) are of either language: CL data begin with a word of APT and
-a slash, or with a comment of APT.
+Input: the name of a file. Output: its language, and the stem of its results. Creo appends a version number to the
+suffix, ``part.ncl.3``. Text files (``.txt``) may be of either language: CL data start with an APT word and a slash, or
+with an APT comment.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ class Language(enum.Enum):
     GCODE = "G-code"
     CLDATA = "CL data"
     SIEMENS = "Siemens's language"
-    """Counts as G-code by its name and among options; the content decides."""
+    """Counts as G-code by suffix and in options; the content decides."""
 
 
 SUFFIXES: dict[str, Language | None] = {
@@ -27,15 +27,15 @@ SUFFIXES: dict[str, Language | None] = {
     **dict.fromkeys((".cls", ".clsf", ".ncl", ".cl", ".apt", ".aptsource", ".cldata", ".as", ".clt"), Language.CLDATA),
     ".txt": None,
 }
-"""Languages by file suffix in lower case; None where the content decides."""
+"""Languages by file suffix in lower case; None if the content decides."""
 VERSIONED = ".ncl"
-"""Suffix behind which Creo counts versions."""
+"""Suffix to which Creo appends a version."""
 
 _VERSION = re.compile(r"\.[0-9]{1,6}")
 _HEAD = 65536
-"""Bytes of a text file within which its first statement is."""
+"""Bytes of a text file that must contain its first statement."""
 _NO_STATEMENT = re.compile(r"(?:[\s\ufeff%]*|[ \t]*[(;][^\n]*)")
-"""Lines of either language that do not show which it is: empty ones, and comments of G-code."""
+"""Lines that do not show the language: empty ones, and comments of G-code."""
 _APT = re.compile(
     r"\s*(?:N[0-9]+[ \t]+)?(?:\$\$|(?:PARTNO|PPRINT|REMARK|MACHIN)\b|[A-Z]{2}[A-Z_, \t-]*+/)", re.IGNORECASE
 )
@@ -48,7 +48,7 @@ def is_part_program(file: Path) -> bool:
 
 
 def program_stem(file: Path) -> str:
-    """The name of a file without its suffix, and without the version behind it: the stem of its results."""
+    """The name of a file without its suffix, and without a version: the stem of its results."""
     return Path(file.stem).stem if _is_versioned(file) else file.stem
 
 
@@ -57,7 +57,7 @@ def language_of(file: str | Path, content: bytes | None = None) -> Language:
 
     Args:
         file: its name.
-        content: of the file; if None it is read where the suffix does not say. A file that cannot be read counts as
+        content: of the file; if None, it is read if the suffix is ambiguous. An unreadable file counts as
             G-code.
 
     Raises:
@@ -71,7 +71,7 @@ def language_of(file: str | Path, content: bytes | None = None) -> Language:
 
 
 def _suffix(file: Path) -> str:
-    """The suffix in lower case, without a version behind it."""
+    """The suffix in lower case, without a version."""
     return VERSIONED if _is_versioned(file) else file.suffix.lower()
 
 
@@ -80,7 +80,7 @@ def _is_versioned(file: Path) -> bool:
 
 
 def _head(file: Path) -> bytes:
-    """The first bytes of a file; none if it cannot be read, which whoever reads all of it reports."""
+    """The first bytes of a file; none if it cannot be read, which the full read reports."""
     try:
         with file.open("rb") as stream:
             return stream.read(_HEAD)
@@ -89,7 +89,7 @@ def _head(file: Path) -> bytes:
 
 
 def _language_of_content(head: bytes) -> Language:
-    """The language of the first line that belongs to one."""
+    """The language of the first conclusive line."""
     lines = head.decode("utf-8", "replace").splitlines()
     first = next((line for line in lines if not _NO_STATEMENT.fullmatch(line)), "")
     return Language.CLDATA if _APT.match(first) else Language.GCODE

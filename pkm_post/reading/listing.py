@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Listing: the lines of a part program with its diagnostics beneath, as a compiler lists its source.
+"""Listing: the lines of a part program with its diagnostics beneath, like a compiler listing.
 
-Input: a file and what was found in it. Output: lines of text, one by one: the file is read again, and no more than one
-of its lines is in memory.
+Input: a file and its diagnostics. Output: lines of text, one by one: the file is read again, with only one
+line in memory.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ _DIGITS = 8
 
 
 def listing_lines(result: CheckedFile) -> Iterator[str]:
-    """List a file: each line with its number, and beneath it what was found there, at its column.
+    """List a file: each line with its number, and beneath it its diagnostics, at their columns.
 
-    What has no line in this file comes after the last one, then how the file was interpreted, and the counts.
+    Diagnostics without a line follow after the last one, then the interpretation of the file, and the counts.
     """
     by_line, others = _by_line(result)
     number = 0
@@ -48,7 +48,7 @@ def _by_line(result: CheckedFile) -> tuple[dict[int, list[Diagnostic]], list[Dia
 
 
 def _beneath(diagnostic: Diagnostic) -> Iterator[str]:
-    """A caret below the column, where it is shown, and the text of a diagnostic."""
+    """A caret below the column, if it is shown, and the text of a diagnostic."""
     margin, column = " " * (_DIGITS + 2), diagnostic.place.column
     if 0 < column <= _LONGEST_LINE:
         yield f"{margin}{' ' * (column - 1)}^"
@@ -58,7 +58,7 @@ def _beneath(diagnostic: Diagnostic) -> Iterator[str]:
 
 
 def _printable(line: str) -> str:
-    """A line as shown: columns are kept, and what cannot be printed becomes a question mark."""
+    """A line as shown: columns are kept, and unprintable characters become question marks."""
     shown = line.rstrip("\n")[:_LONGEST_LINE].replace("\t", " ")
     if not shown.isprintable():
         shown = "".join(character if character.isprintable() else "?" for character in shown)
@@ -66,7 +66,7 @@ def _printable(line: str) -> str:
 
 
 def _counts(diagnostics: Sequence[Diagnostic]) -> str:
-    """How many errors and warnings are listed."""
+    """The counts of errors and warnings."""
     found = [sum(each.severity is severity for each in diagnostics) for severity in (Severity.ERROR, Severity.WARNING)]
     return ", ".join(f"{count} {name}{'' if count == 1 else 's'}" for count, name in zip(found, _NAMES, strict=True))
 

@@ -43,7 +43,7 @@ def read_mesh(file: str | Path) -> Result:
     """Read the solid of a file.
 
     Args:
-        file: an STL file with coordinates in mm in the work frame {C}; inside FreeCAD, a STEP file as well.
+        file: an STL file with coordinates in mm in the work frame {C}; inside FreeCAD, also a STEP file.
     """
     path = Path(file)
     name = os.fsencode(path).decode("utf-8", "replace")
@@ -89,7 +89,7 @@ def mesh_of_triangles(triangles: Array, name: str) -> Result:
 
 
 def _ascii(content: bytes) -> tuple[Array, int, str]:
-    """Triangles of ASCII STL; on a mismatch its line, and what was found."""
+    """Triangles of ASCII STL; on a mismatch its line and finding."""
     words = np.array(_NAME_LINE.sub(b"", content).lower().split())
     facets, rest = divmod(len(words), len(_FACET))
     table = words[: facets * len(_FACET)].reshape(facets, len(_FACET))
@@ -109,7 +109,7 @@ def _ascii(content: bytes) -> tuple[Array, int, str]:
 
 
 def _location(content: bytes, number: int, expected: str) -> tuple[int, str]:
-    """The line of the token with a number, and what was found there."""
+    """The line of the token with a number, and the finding there."""
     before = 0
     for line, text in enumerate(content.split(b"\n"), start=1):
         words = _NAME_LINE.sub(b"", text).split()

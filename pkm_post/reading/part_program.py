@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Part program: read a file of G-code or CL data, and check the state in which it leaves the machine.
+"""Part program: read a file of G-code or CL data, and check the state of the machine at its end.
 
 Input: a path and the tool data of the user. Output: a ``Program`` in {C}, mm, or the faults of the file, and warnings
-about a spindle left running and a tool left low. Truncated programs end like this, and so do programs that leave both
+about a spindle left running and a tool left low. Truncated programs end like this, as do programs that leave both
 to the operator.
 
 G-code rarely contains tool dimensions. That is a fault only if cutter compensation needs a diameter. At the end the
@@ -29,7 +29,7 @@ from pkm_post.reading.language import Language, language_of
 _Result = tuple[Program | None, tuple[Diagnostic, ...]]
 
 SIEMENS = "siemens"
-"""Flavour of Siemens's language, which a reader of its own reads."""
+"""Flavour of Siemens's language, which has its own reader."""
 _HEIGHT = 1e-3
 """mm; smaller height differences are rounding errors."""
 _SAME_AXIS = 1 - 1e-9
@@ -50,22 +50,22 @@ class ReadingOptions:
         cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; detected if None.
         cycle_values: meaning of the numbers of CYCLE statements without words, out of ``cldata.CYCLE_VALUES``.
         cycle_kinds: strokes of kinds of cycles in CL data, out of ``cldata.CYCLE_STROKES``.
-        flavour: whose G-code it is, one of ``FLAVOUR_NAMES``; guessed if None.
+        flavour: one of ``FLAVOUR_NAMES``; guessed if None.
         dwell_unit: unit of P of G4 and of cycles in G-code, a key of ``DWELL_UNITS``; that of the flavour if None.
-        machine_zero: where G53 X0 Y0 Z0, and G28 and G30, and GOHOME of CL data, bring the tool tip in {C}, mm.
-        left_out: codes of G-code, such as "M21", to leave out where they are not understood.
-        goto_values: meanings of the values of those GOTO statements of CL data that have as many, as in
+        machine_zero: tip position in {C} at G53 X0 Y0 Z0, G28, G30, and GOHOME of CL data, mm.
+        left_out: unsupported codes of G-code to skip, such as "M21".
+        goto_values: meanings of the values of GOTO statements in CL data with as many values, as in
             ``cldata.ReadOptions``.
-        functions: numbers of M codes of G-code that the machine has for purposes of its own: they become events.
-        spindle_axis: whether the spindle of the machine is an axis: without one tapping in G-code is refused.
+        functions: numbers of machine-specific M codes of G-code, which become events.
+        spindle_axis: whether the spindle can be an axis; otherwise tapping in G-code is refused.
         feed: speed of cutting moves before the first feed of the file, mm/s; None refuses such moves.
         lengths: gauge lengths of tools, and values of length offsets (H), by number, mm.
         work_offsets: by name, such as "G54" and "G54.1P7", origin in mm and rotation about z in degrees in {C}.
-        machine_offsets: those of the machine, likewise, for a program that uses several.
-        block_delete: whether what stands behind / in blocks of G-code is left out.
-        subprograms: folders where files of subprograms of G-code are looked for before that of the program.
-        tool_table: path of a tool table, with its unit behind a comma, as ``read_tool_table`` takes it; ``tools`` and
-            ``lengths`` go before what it states. None for none.
+        machine_offsets: offsets of the machine, likewise, for a program with several.
+        block_delete: whether to skip ``/`` blocks of G-code.
+        subprograms: folders searched for subprogram files of G-code before that of the program.
+        tool_table: path of a tool table, optionally with a comma and its unit, as in ``read_tool_table``; ``tools`` and
+            ``lengths`` take precedence. None for none.
         allow_open_end: whether a file may lack an end statement, such as M2 or FINI.
     """
 
@@ -131,7 +131,7 @@ def read_content(content: bytes, name: str, reading: ReadingOptions, folder: Pat
         content: of the whole file.
         name: file name in Unicode, with a known suffix.
         reading: settings that the file does not contain.
-        folder: of the file; that of its name, where this is absolute, if None.
+        folder: of the file; if None, that of its name, if absolute.
 
     Raises:
         ValueError: the suffix is not known.
@@ -150,9 +150,9 @@ def read_content(content: bytes, name: str, reading: ReadingOptions, folder: Pat
 
 
 def with_tool_table(reading: ReadingOptions, language: Language) -> tuple[ReadingOptions, tuple[Diagnostic, ...]]:
-    """Reading options with the tools of their table, below those that are given one by one; or its faults.
+    """Reading options with the tools of their table added, unless given individually; or its faults.
 
-    CL data state the cutters that they were made for: there the table gives gauge lengths alone.
+    CL data state the cutters they were made for: there the table only gives gauge lengths.
     """
     if reading.tool_table is None:
         return reading, ()
@@ -167,11 +167,11 @@ def with_tool_table(reading: ReadingOptions, language: Language) -> tuple[Readin
 
 
 FLAVOUR_NAMES = (*gcode.FLAVOUR_NAMES, SIEMENS)
-"""Whose G-code a part program may be."""
+"""Flavours of part programs in G-code."""
 
 
 def _read_flavour(content: bytes, file: str, options: gcode.ReadOptions, flavour: str | None) -> _Result:
-    """Read G-code of the flavour that is chosen or guessed, and say why it is that."""
+    """Read G-code of the chosen or guessed flavour, and give the reason for it."""
     if flavour not in (None, SIEMENS):
         return gcode.read(content, file, replace(options, flavour=flavour))
     why = f"flavour {SIEMENS}, as chosen" if flavour else siemens.siemens_evidence(content, file)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Preview: diagnostics, size and tip path of the text of an unsaved part program.
 
-Input: the text in an editor. Output: what the editor shows of it, mm in {C}.
+Input: the text in an editor. Output: the data shown by the editor, mm in {C}.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def check_text(text: str, name: str, reading: ReadingOptions = AS_WRITTEN) -> Ch
 
 
 def _of_text(diagnostic: Diagnostic, name: str) -> Diagnostic:
-    """A diagnostic of another file without a line, which the text has not."""
+    """Drop the line from a diagnostic of another file."""
     place = diagnostic.place
     if place.file == name:
         return diagnostic

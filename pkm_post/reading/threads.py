@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Threads: what readers have in common of them.
+"""Threads: common part of the readers.
 
-After each thread the spindle turns again as before, where it did. Between the holes of a series that would be for
-nothing: the next thread stops it, so such a start is left out.
+After each thread the spindle is restarted if it was running. Between the holes of a series that is pointless, as the
+next thread stops it, so such a start is dropped.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pkm_post.model import Array, Event, EventKind
 
 
 def without_idle_starts(events: tuple[Event, ...], cuts: Array) -> tuple[Event, ...]:
-    """The events without the starts of the spindle after a thread before another one.
+    """Drop spindle starts between one thread and the next.
 
     Args:
         events: of a program, in order.

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tool table: cutters and gauge lengths of a magazine, from the file that a shop keeps them in.
+"""Tool table: cutters and gauge lengths of a magazine, from a file of the shop.
 
 Input: a tool table of LinuxCNC (.tbl), a table with headings (.csv), or a tool library of FreeCAD (.fctl with its
-.fctb). Output: cutters and gauge lengths by number, mm, or the faults of the file. Neither of the first two states its
-unit, which is therefore given with the name of the file. FreeCAD keeps no gauge lengths. [LinuxCNC, tool table]
+.fctb). Output: cutters and gauge lengths by number, mm, or the faults of the file. The first two do not state their
+unit, so it is given with the file name. FreeCAD stores no gauge lengths. [LinuxCNC, tool table]
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pkm_post.model import Diagnostic, Place, Tool
 from pkm_post.reading.units import UNITS
 
 MOST_BYTES = 10_000_000
-"""Size of a table. A row has about fifty bytes."""
+"""Largest size of a table; a row has about fifty bytes."""
 _MOST_NUMBER = 99_999_999
 
 
@@ -30,8 +30,8 @@ class ToolTable:
     """A tool table.
 
     Attributes:
-        tools: cutters by number; those whose diameter is stated.
-        lengths: gauge lengths by number, mm; those that are stated.
+        tools: cutters by number; only those with a stated diameter.
+        lengths: gauge lengths by number, mm; only stated ones.
     """
 
     tools: dict[int, Tool] = field(default_factory=dict)
@@ -39,7 +39,7 @@ class ToolTable:
 
 
 class _TableError(ValueError):
-    """What is wrong with a line."""
+    """A fault of a line."""
 
     def __init__(self, found: str, line: int = 0) -> None:
         super().__init__(found)
@@ -48,7 +48,7 @@ class _TableError(ValueError):
 
 @dataclass(frozen=True)
 class _ToolEntry:
-    """A tool as its file states it; lengths in mm, None where they are not stated."""
+    """A tool as stated in its file; lengths in mm, None if not stated."""
 
     line: int
     number: int
@@ -62,7 +62,7 @@ def read_tool_table(named: str) -> tuple[ToolTable | None, tuple[Diagnostic, ...
     """Read a tool table.
 
     Args:
-        named: its path; behind a comma the unit, a key of ``UNITS``, of a table that does not state it.
+        named: its path; after a comma the unit, a key of ``UNITS``, for a table that does not state it.
     """
     file, unit = split_unit(named)
     suffix = Path(file).suffix.lower()
@@ -77,7 +77,7 @@ def read_tool_table(named: str) -> tuple[ToolTable | None, tuple[Diagnostic, ...
 
 
 def split_unit(named: str) -> tuple[str, str]:
-    """The path of a table, and the unit behind its last comma, empty if there is none."""
+    """The path of a table, and the unit after its last comma, empty if there is none."""
     file, comma, unit = named.rpartition(",")
     return (file, unit) if comma and unit in UNITS else (named, "")
 
@@ -139,13 +139,13 @@ def _tool_number(text: str, line: int) -> int:
 
 _WORD = re.compile(r"([A-Z])([-+.\d]*)$", re.IGNORECASE)
 _OFFSETS = "XYABCUVW"
-"""Offsets that G43 would apply as well, which no tool has that turns about its own axis."""
+"""Offsets that G43 would also apply; a rotating tool has none."""
 _OF_LINUXCNC = f"TPZD{_OFFSETS}IJQ"
 """Words of a row: tool, pocket, length, diameter, offsets, angles of turning tools and their orientation."""
 
 
 def _linuxcnc(text: str, _: Path, unit: str) -> Iterator[_ToolEntry]:
-    """``T1 P1 Z50 D6 ;remark``: Z is the length, D the diameter; 0 stands for what was not measured."""
+    """``T1 P1 Z50 D6 ;remark``: Z is the length, D the diameter; 0 means not measured."""
     scale = _scale(unit, "a tool table of LinuxCNC")
     for line, content in enumerate(text.splitlines(), 1):
         words, _semicolon, remark = content.partition(";")
@@ -167,7 +167,7 @@ _COLUMNS = ("number", "name", "diameter", "corner_radius", "length")
 
 
 def _csv(text: str, _: Path, unit: str) -> Iterator[_ToolEntry]:
-    """Columns by their headings; others than ``_COLUMNS`` are remarks. An empty cell states nothing."""
+    """Columns by their headings; others than ``_COLUMNS`` are remarks. An empty cell means not stated."""
     scale = _scale(unit, "a table")
     lines = text.splitlines()
     heading = lines[0] if lines else ""
@@ -192,7 +192,7 @@ _OF_FREECAD = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, '"': 25.4}
 
 
 def _freecad(text: str, file: Path, unit: str) -> Iterator[_ToolEntry]:
-    """The numbers of a library, and the diameter and corner of each bit, which is in a file of its own."""
+    """The numbers of a library, and the diameter and corner of each bit, which has its own file."""
     if unit:
         raise _TableError(f"a library of FreeCAD states its units: leave out {unit}")
     entries = _json(text, file).get("tools")
@@ -226,9 +226,9 @@ def _bit_file(library: Path, path: str) -> Path:
 
 
 def _sizes(content: dict[str, Any], bit: Path) -> tuple[float | None, float | None]:
-    """Diameter and corner radius in mm, None where they are not stated or the shape has another bottom.
+    """Diameter and corner radius in mm, None if not stated or if the shape has another bottom.
 
-    FreeCAD 1.0 keeps the radius of the flat of a bull nose, newer versions that of its corner.
+    FreeCAD 1.0 stores the radius of the flat of a bull nose, newer versions that of its corner.
     """
     stated = content.get("parameter")
     parameters = stated if isinstance(stated, dict) else {}

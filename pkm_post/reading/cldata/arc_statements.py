@@ -23,7 +23,7 @@ MAX_TURNS = 10000
 WARNED_DEVIATION = 5e-4
 """mm by which start and end radius may differ without a warning: files have at least four decimals."""
 MAX_DEVIATION = 0.05
-"""mm by which they may differ at all."""
+"""mm by which they may differ with a warning."""
 COINCIDENT = 1e-3
 """mm below which two points of a circle coincide: one digit above the rounding of files with four decimals."""
 

@@ -4,9 +4,9 @@
 Input: the table of statements. Output: a table in which each COPY is replaced by its copies; a statement ``_COPY``
 with a matrix, three rows of four as written, precedes each of them, and one with the unit matrix ends them.
 
-COPY/n,...,k stands behind a path that INDEX/n begins and that has been made once. It makes k copies, the last one moved
-by the k-th power of its matrix [aptos]. A path with copies in it is repeated with them; where their matrices do not
-commute the order in which they apply differs between CAM systems [ICAM], and the COPY is refused.
+COPY/n,...,k follows a path that starts at INDEX/n and has been run once. It makes k copies, the last one moved by the
+k-th power of its matrix [aptos]. A path that contains copies is repeated with them; if their matrices do not commute,
+CAM systems differ in the order of application [ICAM], and the COPY is refused.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ MOST_STATEMENTS = 10_000_000
 """Statements of a file with all its copies."""
 
 _SAME = 1e-6
-"""Difference of matrices that are taken as equal: lengths as written."""
+"""Tolerance of equal matrices, in units of the file."""
 _PLANES = {"XYROT": (0, 1), "YZROT": (1, 2), "ZXROT": (2, 0)}
-"""Rotations, and the axes that they turn one to the other."""
+"""Rotations, each with the axis it turns and the axis it turns that to."""
 _FORMS = "n,SAME,k, n,TRANSL,x,y,z,k, n,XYROT, YZROT or ZXROT,degrees,k, or n,MODIFY,three rows of four,k"
 _VALUES = {"SAME": 0, "TRANSL": 3, "MODIFY": 12, **dict.fromkeys(_PLANES, 1)}
 """Number of values between the word and the number of copies."""
@@ -39,7 +39,7 @@ def with_copies(statements: Statements, faults: StatementDiagnostics) -> Stateme
 
     Args:
         statements: of the file.
-        faults: collects the COPY statements that are not understood, which are dropped.
+        faults: collects COPY statements that are not understood; these are dropped.
     """
     copies = _rows(statements, "COPY")
     if not copies:
@@ -54,7 +54,7 @@ def with_copies(statements: Statements, faults: StatementDiagnostics) -> Stateme
 
 
 _Part = Array | tuple[int, Array]
-"""Rows of the file, or a matrix (4, 4) with the row that states it."""
+"""Rows of the file, or a matrix (4, 4) with the row of its statement."""
 
 
 def _rows(statements: Statements, word: str) -> list[int]:
@@ -111,7 +111,7 @@ def _begins_of(statements: Statements, row: int, begins: list[int]) -> list[int]
 
 
 def _path_after(parts: list[_Part], begin: int) -> list[_Part]:
-    """The parts after an INDEX where it stands in the file."""
+    """The parts after an INDEX."""
     at = next(index for index, part in enumerate(parts) if isinstance(part, np.ndarray) and begin in part)
     first = parts[at]
     return [first[first > begin], *parts[at + 1 :]] if isinstance(first, np.ndarray) else []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""CUTCOM: start and end of cutter compensation, and what the file states about its points there.
+"""CUTCOM: start and end of cutter compensation, and the meaning of the points there according to the file.
 
 Input: statements and comments. Output: records in the state, evaluated once all points are known: see
 ``contour_data``.
@@ -21,7 +21,7 @@ from pkm_post.reading.cldata.statements import Statement
 _CENTRE, _CONTOUR = "centre", "contour"
 _IN_WORDS = {_CENTRE: "the centre of the tool", _CONTOUR: "the contour of the part"}
 _TIGHTER = 0.01
-"""mm by which an arc radius must be below the tool radius to count: arcs of equal radius prove nothing."""
+"""mm by which an arc radius must be below the tool radius to count: arcs of equal radius are no evidence."""
 
 _SIDES = {"LEFT": 1.0, "RIGHT": -1.0}
 _PLANES = {"XYPLAN": 2, "ZXPLAN": 1, "YZPLAN": 0}
@@ -83,7 +83,7 @@ class Offset:
 
 @dataclass(frozen=True)
 class _Interpretation:
-    """Meaning of the points of a CUTCOM, empty if unknown, its evidence, and whether that is the arcs alone."""
+    """Meaning of the points of a CUTCOM, empty if unknown, its evidence, and whether that is only the arcs."""
 
     points: str = ""
     evidence: str = ""
@@ -103,7 +103,7 @@ class _TightArcs:
 
 
 def cutcom_offsets(state: ReaderState, points: Points, frames: Array, arcs: Arcs) -> tuple[list[Offset], list[str]]:
-    """The offset of each CUTCOM, and a description of how its points were interpreted.
+    """The offset of each CUTCOM, and a description of the interpretation of its points.
 
     Args:
         state: has the CUTCOMs; collects the faults.
@@ -193,7 +193,7 @@ def _distance(state: ReaderState, cutcom: Cutcom, interpretation: _Interpretatio
 
 
 def _descriptions(state: ReaderState, interpretations: list[_Interpretation]) -> list[str]:
-    """Describe how points were interpreted; a guess also gives a warning."""
+    """Describe the interpretation of the points; a guess also gives a warning."""
     rows: dict[_Interpretation, list[int]] = {}
     for cutcom, interpretation in zip(state.cutcoms, interpretations, strict=True):
         if interpretation.points:

@@ -2,7 +2,7 @@
 """CYCLE statements of any CAM system.
 
 Input: a statement. Output: the active cycle, in mm and mm/s. Each number of a CYCLE is identified by its preceding
-word. For numbers without a word before the first one an option gives the meaning, or the CAM system: CATIA writes them
+word. For numbers before the first word an option gives the meaning, or the CAM system: CATIA writes them
 according to the post-processor table, Creo always in one order.
 """
 
@@ -45,7 +45,7 @@ _Item = float | str | Statement | None
 
 
 class _CycleError(Exception):
-    """A CYCLE statement is rejected, with a code and what was found."""
+    """A CYCLE statement is rejected, with a code and a finding."""
 
     def __init__(self, code: str, found: str) -> None:
         super().__init__(found)
@@ -71,7 +71,7 @@ def cycle(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 def cycle_descriptions(state: ReaderState) -> list[str]:
-    """Describe how the cycles of a file were interpreted: one line per CAM system."""
+    """Describe the interpretation of the cycles of a file: one line per CAM system."""
     descriptions = []
     for interpretation, rows in state.cycle_interpretations.items():
         more = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
@@ -100,7 +100,7 @@ def _interpret(state: ReaderState, statement: Statement) -> tuple[Cycle, str]:
 
 
 def _evidence(state: ReaderState, guessed: bool, items: _CycleItems) -> str:
-    """Why the words of a cycle are attributed to a CAM system."""
+    """The reason for attributing the words of a cycle to a CAM system."""
     by = "by themselves" if guessed else "as the option says" if state.options.dialect else "by the dialect"
     if items.kind in state.options.cycle_kinds:
         by = f"{by}; {items.kind} is {state.options.cycle_kinds[items.kind]}, as the option says"
@@ -139,7 +139,7 @@ def _kind(statement: Statement, notation: CycleNotation, kinds: Mapping[str, Cyc
 
 
 def _check_signs(items: _CycleItems) -> None:
-    """Make the depth positive; reject a bottom that is not below the point, and other heights that are."""
+    """Make the depth positive; reject a bottom that is not below the point, and other heights below it."""
     values = items.values
     written = values.get("depth", items.notation.down)
     values["depth"] = written * items.notation.down if "depth" in values else math.nan
@@ -190,7 +190,7 @@ def _feed(state: ReaderState, given: tuple[str, float] | None) -> float:
 
 
 def _fault_of(cycle: Cycle, notation: CycleNotation) -> str:
-    """Why the cycle cannot be executed, empty if it can."""
+    """The reason why the cycle cannot be executed; empty if it can."""
     missing = [notation.words_for(name) for name in ("depth", "clearance", "step") if math.isnan(getattr(cycle, name))]
     if missing:
         return f"{', '.join(missing)} is missing"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Diagnostics of CL data: line and column, what was found and what was expected, in words.
+"""Diagnostics of CL data: line and column, with the found and the expected text.
 
-Input: lark errors, or invalid statements. Output: diagnostics in file order. Equal faults are one with their number
-and the first of their lines. At most a hundred errors are reported; the last one states the number of the others.
+Input: lark errors, or invalid statements. Output: diagnostics in file order. Equal faults are merged into one with the
+count and the first of their lines. At most a hundred errors are reported; the last one states the count of the rest.
 """
 
 from __future__ import annotations
@@ -33,18 +33,18 @@ EXPECTED: dict[str, tuple[str, ...]] = {
     "')'": ("RPAR",),
     "the end of the statement": ("$END",),
 }
-"""The terminals of the grammar in words, in reporting order."""
+"""Descriptions of the terminals of the grammar, in reporting order."""
 
 _RUN = re.compile(r"[\w.+-]+")
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?", re.IGNORECASE)
 _MOST_EQUAL = 3
-"""Equal faults that are reported each by itself."""
+"""Equal faults reported individually."""
 _LINES_SHOWN = 5
 
 
 @dataclass
 class _Equal:
-    """Faults of a code that differ in their numbers alone: the first ones, the lines of some, and their number."""
+    """Faults of a code that differ only in their numbers: the first ones, some of their lines, and their count."""
 
     kept: list[Diagnostic] = field(default_factory=list)
     lines: list[int] = field(default_factory=list)
@@ -57,7 +57,7 @@ class _Equal:
             self.lines.append(line)
 
     def reported(self) -> list[Diagnostic]:
-        """Each by itself if they are few, otherwise the first one with their number."""
+        """Each of them if there are few, otherwise the first one with their count."""
         if self.count <= _MOST_EQUAL:
             return self.kept
         lines = f"lines {', '.join(map(str, self.lines))}" + " and others" * (self.count > len(self.lines))
@@ -65,7 +65,7 @@ class _Equal:
 
 
 class StatementDiagnostics:
-    """Collects the faults of a file. Many equal ones become one."""
+    """Collects the faults of a file. Many equal ones are merged."""
 
     def __init__(self, file: str) -> None:
         self._file = file
@@ -82,7 +82,7 @@ class StatementDiagnostics:
             self._lines.add(place[0])
 
     def add_lines(self, lines: LogicalLines, indices: Sequence[int], explain: Callable[[str], LineFault]) -> None:
-        """Add the fault of lines that differ in their numbers alone; few of them are explained each."""
+        """Add the fault of lines that differ only in their numbers; a few are explained individually."""
         for index in indices[: 1 if len(indices) > _MOST_EQUAL else None]:
             fault = explain(lines.text[index])
             place = lines.place(index, fault.offset)

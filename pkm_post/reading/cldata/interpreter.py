@@ -73,13 +73,13 @@ def _tlcomp(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 def _rotary(state: ReaderState, row: int, statement: Statement) -> None:
-    """ROTABL, ROTHED and ROTATE: a table or head that turns by nothing leaves the motion alone; no hexapod has one."""
+    """ROTABL, ROTHED and ROTATE: a zero rotation does not affect the motion; a hexapod has no table or head to turn."""
     if not statement.numbers or any(statement.numbers):
         state.report("L401", row, f"{statement.word}/{statement.items_text()}, a rotary axis")
 
 
 def _syn(state: ReaderState, row: int, statement: Statement) -> None:
-    """SYN/'new','old',... redefines words: refused where such a word follows."""
+    """SYN/'new','old',... redefines words; refused if such a word follows."""
     words = [item.strip("'\"") for item in statement.words[::2]]
     later = "\n".join(state.statements.lines.text[state.statements.index[row] + 1 :])
     renamed = [word for word in words if re.search(rf"(?<![\w-]){re.escape(word)}(?![\w-])", later, re.IGNORECASE)]
@@ -169,7 +169,7 @@ def interpret(state: ReaderState, bulk: Array) -> Array:
 
 
 def _handler(state: ReaderState, word: str) -> _Handler | None:
-    """The handler of a word, None if it has no meaning here."""
+    """The handler of a word, None if it is unknown."""
     # An INSERT that does not name a tool is text for the NC program, which a motion cannot represent.
     return HANDLERS.get(word) if word != "INSERT" or state.dialect.insert_is_tool else None
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""NURBS motion of Creo: curves that MOVNRB statements give, in place of the points that pace them.
+"""NURBS motion of Creo: curves of MOVNRB statements, in place of the points that pace them.
 
 Input: MOVNRB statements and the points of the file. Output: the points, with chords of the curves in place of those
 between MOVNRB/NEXT and OFF. Creo writes both, the curve and its points; a feed between two points applies on the curve
@@ -32,11 +32,11 @@ _MOST_CHORDS = 1_000_000
 _KNOTS, _LOW, _HIGH = 1.0, 2.0, 3.0
 """First numbers of the statements with data."""
 _SAME = 1e-7
-"""Difference of parameters, as a part of the range, below which a chord is left out."""
+"""Difference of parameters, as a part of the range, below which a chord is dropped."""
 
 
 class _CurveError(Exception):
-    """A curve cannot be followed; the message says why."""
+    """A curve cannot be followed; the message is the reason."""
 
 
 def movnrb(state: ReaderState, row: int, statement: Statement) -> None:
@@ -84,7 +84,7 @@ def _chords(state: ReaderState, motion: NurbsMotion, points: Points, mine: Array
     """The points of the chords, each with the row of the written point that it leads to.
 
     Raises:
-        _CurveError: the curve is not complete, or leads not through the points.
+        _CurveError: the curve is incomplete, or does not pass through the points.
     """
     knots, degree, curves = _curves(motion)
     if not motion.points[1]:
@@ -112,7 +112,7 @@ def _curves(motion: NurbsMotion) -> tuple[Array, int, list[Array]]:
     """Knots from 0 to 1, degree, and control points of the curves, (n, 3) each.
 
     Raises:
-        _CurveError: the numbers are not those of a curve.
+        _CurveError: the numbers do not define a curve.
     """
     order, knot_count, weights, count = motion.counts
     knots = np.array(motion.values[_KNOTS])
@@ -194,7 +194,7 @@ def _point_parameters(
 
 
 def _foot(curve: Array, at: Array, place: int, point: Array) -> tuple[float, float]:
-    """Parameter of the nearest place on the chords beside a point of the curve, and the distance."""
+    """Parameter of the nearest place on the chords next to a point of the curve, and the distance."""
     best = (float(at[place]), float(norm(curve[place] - point)))
     for first in (place - 1, place):
         if 0 <= first < len(at) - 1:

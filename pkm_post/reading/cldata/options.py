@@ -98,8 +98,8 @@ class ReadOptions:
         hand: "right", "left" or "vote": sense of rotation of arcs about their axis; overrides the dialect. "vote"
             selects for the whole file the sense under which most arcs are shorter than half a turn.
         goto_values: for GOTO with other than 3 or 6 values the meaning of each value: "x y z", "i j k" the tool axis,
-            "nx ny nz" the surface normal, "px py pz" the contact point. Beside "x y z", the tool tip, the contact point
-            is ignored; without it compensation makes the tip of contact point and normal.
+            "nx ny nz" the surface normal, "px py pz" the contact point. With "x y z", the tool tip, the contact point
+            is ignored; without it, compensation computes the tip from contact point and normal.
         cycle_values: meanings of the numbers that follow the kind of a CYCLE statement without words, in order, out of
             ``CYCLE_VALUES``: depth down from the point, clearance and return height up from it.
         cycle_kinds: strokes, out of ``CYCLE_STROKES``, of kinds of cycles by their words, such as "BORE"; they override
@@ -108,9 +108,9 @@ class ReadOptions:
         machine_zero: home position of the tool tip in the work frame, mm, for GOHOME without a point; None if unknown.
         frame: "first": the work frame is the first machining frame of the file; "absolute": the frame those are defined
             in.
-        tools: by number; they override the tool data of the file, except for a name and a length that they lack.
+        tools: by number; they override the tool data of the file, except for a missing name or length.
         contour_data: "centre" or "contour": meaning of the points under CUTCOM; overrides the file.
-        wear: mm by tool number, the path offset of CUTCOM in addition to the tool radius, or on its own where the
+        wear: mm by tool number, added to the tool radius as the path offset of CUTCOM, or the whole offset where the
             points are the tool centre; negative for a smaller cutter.
         default_tool: supplies the gauge length of tools for which neither the file nor ``tools`` has one.
         needs_end: whether the text is a complete file, which must end with FINI, or END-OF-PATH or similar.

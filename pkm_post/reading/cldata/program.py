@@ -47,7 +47,7 @@ def build_program(
         arcs: with their end points.
         source: name of the file.
         offsets: of the contours.
-        reading: description of how the file was interpreted.
+        reading: description of the interpretation of the file.
     """
     holes = drilling_moves(state, points, arcs)
     rows = _rows(state, points, arcs, holes)

@@ -88,7 +88,7 @@ def _program(state: ReaderState, bulk: Array, names: ValueNames, file: str) -> P
 
 
 def _describe_unit(state: ReaderState, points: Points) -> list[str]:
-    """Describe how the length unit was determined without UNITS; report a doubtful or missing unit."""
+    """Describe the source of the length unit without UNITS; report a doubtful or missing unit."""
     if state.options.units is not None:
         return [f"lengths are in {state.options.units}, as the option says"]
     unit, size, first = state.file_unit, float(np.ptp(points.position, axis=0).max()), int(points.row[0])
@@ -112,13 +112,13 @@ def _describe_feed(state: ReaderState) -> list[str]:
 
 
 def _describe_contact(points: Points) -> list[str]:
-    """Describe how many positions the options make contact points."""
+    """Describe the number of positions that options turn into contact points."""
     count = int(points.contact.sum())
     return [f"{count} points are contact points, as the option says"] if count else []
 
 
 def _check_tool_lengths(state: ReaderState, points: Points) -> None:
-    """Report tools of unknown length, and of several: none of these is taken, as the place of the tip depends on it."""
+    """Report tools with an unknown or ambiguous length, on which the position of the tip depends."""
     record_tool(state)
     given = state.options.tools
     for number, tool in sorted(state.tools.items()):

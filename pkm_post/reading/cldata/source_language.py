@@ -2,7 +2,7 @@
 """Source language: variables, arithmetic, points and macros of APT part programs, resolved to plain statements.
 
 Input: logical lines. Output: logical lines without them. A statement of a macro keeps its line number in each call.
-Angles of functions are in degrees. Only files that assign or call anything take this way, line by line.
+Angles of functions are in degrees. Only files with assignments or calls are processed this way, line by line.
 
     A = 10.                    HOLE = MACRO/X,Y,DEPTH=-5
     P = POINT/A,A*2,0          GOTO/X,Y,DEPTH
@@ -30,7 +30,7 @@ from pkm_post.reading.cldata.interpreter import HANDLERS, IGNORED, UNSUPPORTED
 from pkm_post.reading.cldata.logical_lines import LogicalLines
 
 MOST_LINES = 1_000_000
-"""Statements of a file with those of all calls."""
+"""Most statements of a file, including all calls."""
 _DEEPEST_CALL = 20
 _LONGEST_EXPRESSION = 500
 _VOCABULARY = frozenset({*HANDLERS, *IGNORED, *UNSUPPORTED, *words_of_cycles(), *FEED_WORDS})
@@ -66,7 +66,7 @@ _Value = float | str | tuple[float, ...]
 
 
 class _NoValueError(Exception):
-    """A text is no expression of numbers and known names; the message says why."""
+    """A text is not an expression of numbers and known names; the message is the reason."""
 
 
 @dataclass(frozen=True)
@@ -78,11 +78,11 @@ class _Macro:
 
 
 def expanded(lines: LogicalLines, faults: StatementDiagnostics) -> LogicalLines:
-    """Resolve variables, points and macros; the lines themselves if there are none.
+    """Resolve variables, points and macros; without any, return the lines themselves.
 
     Args:
         lines: of the file.
-        faults: collects what is not understood; such lines become empty.
+        faults: collects lines that are not understood; these become empty.
     """
     if not _SOURCE.search("\n".join(lines.text)):
         return lines
@@ -168,7 +168,7 @@ class _Expander:
             self._report("L402", index, f"{name} = {fault}")
 
     def _define(self, index: int, name: str, parameters: str, stop: int) -> int:
-        """NAME = MACRO/parameters up to TERMAC; return the line behind it."""
+        """NAME = MACRO/parameters up to TERMAC; return the line after it."""
         self._write(index, "")
         end = next((at for at in range(index + 1, stop) if _TERMAC.fullmatch(self.lines.text[at])), None)
         pairs = [_PARAMETER.fullmatch(item) for item in _items(parameters)]
@@ -179,7 +179,7 @@ class _Expander:
         return end + 1
 
     def _call(self, index: int, match: re.Match[str]) -> None:
-        """CALL/NAME,parameter=value,...: the body with these values; the parameters lose them at its end."""
+        """CALL/NAME,parameter=value,...: the body with these values, which the parameters lose at its end."""
         self._write(index, "")
         macro = self.macros.get(match[1].upper())
         pairs = [_PARAMETER.fullmatch(item) for item in _items(match[2] or "")]
@@ -212,7 +212,7 @@ class _Expander:
         return "*" in text or "(" in text or any(name.upper() in self.values for name in _NAME.findall(text))
 
     def _item(self, item: str) -> str:
-        """An item with numbers in place of names and expressions; other items as they are."""
+        """An item with numbers in place of names and expressions; other items unchanged."""
         if not self._has_expression(item):
             return item
         try:
@@ -221,7 +221,7 @@ class _Expander:
             return _NAME.sub(lambda name: _written(self.values.get(name[0].upper(), name[0])), item)
 
     def _value(self, text: str) -> _Value:
-        """The number of an expression, the point of a name, or a word as it is."""
+        """The number of an expression, the point of a name, or a word unchanged."""
         name = text.strip().upper()
         value = self.values.get(name)
         if value is not None:
@@ -232,7 +232,7 @@ class _Expander:
         """The number of an expression.
 
         Raises:
-            _NoValueError: it has none.
+            _NoValueError: the expression has none.
         """
         shown = text.strip()[:40]
         if len(text) > _LONGEST_EXPRESSION:
@@ -269,7 +269,7 @@ class _Expander:
 
 
 def _written(value: _Value) -> str:
-    """A value as an item, or several."""
+    """A value as one or several items."""
     if isinstance(value, tuple):
         return ",".join(map(_written, value))
     return f"{value:.17g}" if isinstance(value, float) else value

@@ -25,7 +25,7 @@ class LengthUnit:
 
     Attributes:
         name: a key of ``options.UNITS``; empty if the file does not define it.
-        evidence: the defining words and their location; or why there is no unit.
+        evidence: the defining words and their location; or the reason why there is no unit.
         stated: whether UNITS defines it.
         contradiction: a feed of the other unit, empty if there is none.
     """
@@ -185,7 +185,7 @@ class ReaderState:
         cycle: last cycle, also after CYCLE/OFF.
         cycle_return: INIT or CLEAR, the return height of the next cycles; empty before.
         machining_frame: (4, 4) active frame of the points, mm.
-        transforms: (4, 4) by word, those in force of ORIGIN, TRANS, TRACUT, TRACUT/LAST and COPY, mm.
+        transforms: (4, 4) by word, active ones of ORIGIN, TRANS, TRACUT, TRACUT/LAST and COPY, mm.
         work_from_file: (4, 4) from the frame in which machining frames are defined to the work frame, mm.
         tangent: start direction of the next TLON,GOFWD.
         part_surface: of PSIS; None for the tool position.

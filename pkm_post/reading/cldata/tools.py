@@ -20,7 +20,7 @@ _TANGENT_TOLERANCE = 2e-3
 
 def cutter(state: ReaderState, row: int, statement: Statement) -> None:
     """CUTTER/d[,r[,e,f,a,b,h]], angles in degrees; e and f follow from the others."""
-    if statement.items[:1] == ("DISPLY",):  # how NCL draws the cutter
+    if statement.items[:1] == ("DISPLY",):  # display setting of NCL
         return
     numbers = statement.numbers
     if not numbers or statement.words:
@@ -128,7 +128,7 @@ def record_tool_if_used(state: ReaderState, row: int) -> None:
 
 
 def record_tool(state: ReaderState) -> None:
-    """Record the tool as currently known; a tool change without a length keeps the one that the tool had."""
+    """Record the tool as currently known; a tool change without a length keeps the previous one of the tool."""
     default = state.options.default_tool
     given = state.options.tools.get(state.tool)
     stated = state.stated_lengths.setdefault(state.tool, [])

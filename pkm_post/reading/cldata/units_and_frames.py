@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Length unit and frames: UNITS, MSYS, CSYS, CATIA's matrix, ORIGIN, TRANS and TRACUT.
 
-UNITS decides on the length unit. Without it the unit of the feeds applies, or a comment that names the units; if these
+UNITS defines the length unit. Without it the unit of the feeds applies, or a comment that names the units; if these
 disagree or are absent, the unit is unknown.
 
-Input: statements. Output: 4 x 4 matrices that transform points of the file, in mm, to the work frame. That is the
+Input: statements. Output: 4 x 4 matrices that transform points of the file, in mm, to the work frame, which is the
 first machining frame of the file, or the frame those are defined in: matrix = TRANS @ ORIGIN @ inverse(first) @ active
 @ LAST @ COPY @ TRACUT. TRACUT and COPY change the path before a post-processor reads it, in the order of ANSI APT, or
 of CATIA, where the copies come first [ICAM]; ORIGIN and TRANS are words for the post-processor.
@@ -152,7 +152,7 @@ def path_index(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 def copy_matrix(state: ReaderState, row: int, statement: Statement) -> None:
-    """The matrix of a copy, three rows of four; a file may have the word as well."""
+    """The matrix of a copy, three rows of four; the word may also occur in a file."""
     if len(statement.values) != _IN_MATRIX:
         state.report_items(row, statement, "three rows of four numbers")
         return

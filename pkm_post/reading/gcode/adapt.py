@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Adapt: blocks of a flavour to blocks that mean the same in RS274NGC, before they are resolved.
+"""Adapt: convert blocks of a flavour to equivalent blocks of RS274NGC, before they are resolved.
 
-Input: plain blocks. Output: as many blocks, with other codes: G80 as the motion that is in force after it, codes
-without an effect here and codes that the user leaves out gone together with their words; and what was left out, as
-text for the report. A program in which nothing of this occurs comes out as it went in, without a copy.
+Input: plain blocks. Output: as many blocks: G80 replaced by the motion that is active after it, codes without effect
+here and codes that the user skips dropped with their words; and a list of the skipped codes for the report. A program
+without any of these is returned without a copy.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from pkm_post.reading.gcode.codes import (
 from pkm_post.reading.gcode.flavours import Flavour
 
 _NEVER_DROPPED = frozenset("FSTXYZABCIJK")
-"""Words that mean something without a code of their own block."""
+"""Words that have a meaning without a code in their block."""
 _LINES_SHOWN = 3
 _HERE = ": here the tolerances of planning decide"
 _OF_GROUP_1 = (0, 10, *ARCS)
@@ -38,11 +38,11 @@ def adapted(blocks: Blocks, flavour: Flavour, left_out: Collection[str]) -> tupl
 
     Args:
         blocks: with codes as written.
-        flavour: whose meaning they have.
-        left_out: codes, such as "M21", that the user wants to be left out.
+        flavour: flavour of the codes.
+        left_out: codes to skip, such as "M21".
 
     Returns:
-        The adapted blocks, and what was left out, as lines of text.
+        The adapted blocks, and the skipped codes as lines of text.
     """
     blocks = _with_equivalents(blocks, flavour)
     g, m = np.zeros(len(blocks.g), np.bool_), np.zeros(len(blocks.m), np.bool_)
@@ -62,10 +62,10 @@ def adapted(blocks: Blocks, flavour: Flavour, left_out: Collection[str]) -> tupl
 
 
 def _left_out(blocks: Blocks, flavour: Flavour, names: Collection[str]) -> tuple[Array, Array]:
-    """Which G and M codes are left out as chosen: none that is understood, and no G code that may move the tool.
+    """Mark the G and M codes to skip: only codes not understood here, and no G code that may move the tool.
 
-    A G code may do so where its block has X, Y or Z, and where it is known and refused: then it says what the words of
-    other blocks mean, as G16 does.
+    A G code may move it if its block has X, Y or Z, or if it is known and refused: it may then change the meaning of
+    words in other blocks, as G16 does.
     """
     g, m = (is_among(codes, _named(codes, names, letter)) for letter, codes in (("G", blocks.g), ("M", blocks.m)))
     refused = {*flavour.unsupported, *SPINDLE_SYNCHRONISED}
@@ -75,12 +75,12 @@ def _left_out(blocks: Blocks, flavour: Flavour, names: Collection[str]) -> tuple
 
 
 def _named(codes: Array, names: Collection[str], letter: str) -> list[int]:
-    """The codes that some names stand for."""
+    """The codes with these names."""
     return [code for code in distinct(codes).tolist() if name_of(code, letter) in names]
 
 
 def _with_equivalents(blocks: Blocks, flavour: Flavour) -> Blocks:
-    """Replace codes that mean the same as another one."""
+    """Replace codes by their equivalents."""
     found = is_among(blocks.g, flavour.equivalents)
     if not found.any():
         return blocks
@@ -90,7 +90,7 @@ def _with_equivalents(blocks: Blocks, flavour: Flavour) -> Blocks:
 
 
 def _notes(blocks: Blocks, letter: str, found: Array, text: Callable[[int], str]) -> list[str]:
-    """A line for each code that is left out: why, and where it stands."""
+    """A line for each skipped code, with reason and places."""
     codes, rows = (blocks.g, blocks.g_row) if letter == "G" else (blocks.m, blocks.m_row)
     return [
         f"{name_of(code, letter)}{text(code)} ({_lines(blocks, distinct(blocks.line[rows[found & (codes == code)]]))})"
@@ -99,7 +99,7 @@ def _notes(blocks: Blocks, letter: str, found: Array, text: Callable[[int], str]
 
 
 def _lines(blocks: Blocks, lines: Array) -> str:
-    """The first lines of some, and how many more there are."""
+    """The first of some line numbers, and the count of the rest."""
     first = ", ".join(_shown(*located(blocks.files, line)) for line in lines[:_LINES_SHOWN].tolist())
     more = f" and {len(lines) - _LINES_SHOWN} more" if len(lines) > _LINES_SHOWN else ""
     return f"line{'s' * (len(lines) > 1)} {first}{more}"
@@ -110,7 +110,7 @@ def _shown(file: SubprogramFile | None, line: int) -> str:
 
 
 def _without(blocks: Blocks, g: Array, m: Array, flavour: Flavour) -> Blocks:
-    """Drop codes, and the words of their blocks that no other code there takes."""
+    """Drop codes, and words of their blocks that no other code there uses."""
     if not (g.any() or m.any()):
         return blocks
     rows = distinct(np.concatenate([blocks.g_row[g], blocks.m_row[m]])).tolist()
@@ -127,14 +127,14 @@ def _without(blocks: Blocks, g: Array, m: Array, flavour: Flavour) -> Blocks:
 
 
 def _taken(blocks: Blocks, row: int, flavour: Flavour) -> Iterable[str]:
-    """The words that the codes of a block take."""
+    """The words used by the codes of a block."""
     codes = [flavour.g_codes.get(code) for code in blocks.g_of(row).tolist()]
     codes += [flavour.m_codes.get(code) for code in blocks.m_of(row).tolist()]
     return "".join(code.letters for code in codes if code is not None)
 
 
 def _with_further_offsets(blocks: Blocks) -> Blocks:
-    """Give each work offset of G54.1 P a code of its own, and G54.1 with a P that does not exist its own code."""
+    """Give each work offset of G54.1 P its own code; G54.1 with an invalid P keeps its code."""
     found = np.flatnonzero(blocks.g == 541)
     if not len(found):
         return blocks
@@ -149,7 +149,7 @@ def _with_further_offsets(blocks: Blocks) -> Blocks:
 
 
 def without_idle_g80(blocks: Blocks) -> Blocks:
-    """Drop G80 beside G0 to G3, which end a cycle themselves, as in ``G0 G80 G90`` [LinuxCNC]."""
+    """Drop G80 in blocks with G0 to G3, which end a cycle anyway, as in ``G0 G80 G90`` [LinuxCNC]."""
     ends = np.flatnonzero(blocks.g == CANCEL_CYCLE)
     if not len(ends):
         return blocks
@@ -158,7 +158,7 @@ def without_idle_g80(blocks: Blocks) -> Blocks:
 
 
 def _with_restored_motions(blocks: Blocks) -> Blocks:
-    """Replace G80 by the last of G0 to G3, which the cycles, in a group of their own, have left in force [Fanuc]."""
+    """Replace G80 by the last of G0 to G3, which stay active as cycles are a separate group [Fanuc]."""
     ends, motions = np.flatnonzero(blocks.g == CANCEL_CYCLE), np.flatnonzero(np.isin(blocks.g, _OF_GROUP_1))
     before = np.searchsorted(motions, ends) - 1
     g = blocks.g.copy()

@@ -70,7 +70,7 @@ def centres(words: ArcWords) -> tuple[Array, list[tuple[int, str, Found]]]:
     """Centres of arcs, at the height of their start points.
 
     Returns:
-        (n, 3) centres, and for each invalid arc its index, the fault code and what was found.
+        (n, 3) centres, and for each invalid arc its index, fault code and finding.
     """
     axes = plane_axes(words.plane)
     start, end = (np.take_along_axis(points, axes, axis=1) for points in (words.start, words.end))
@@ -170,7 +170,7 @@ def full_turns(words: ArcWords, centre: Array, turns: Array) -> tuple[Array, Arr
 
 
 MOST_TURNS = 10_000
-"""An arc of more turns than this is taken for a programming error."""
+"""More turns in one arc count as a programming error."""
 
 
 def arc_geometry(blocks: Blocks, modal: Modal, motions: Motions, faults: BlockDiagnostics) -> tuple[Array, Array]:

@@ -25,7 +25,7 @@ SUBPROGRAM_CODES = (98, 99)
 """M codes that call a subprogram, and that return from it."""
 LARGEST_CODE = 9999.0
 MACRO_CALLS = (65.0, 66.0)
-"""G codes that call a macro, and that make every move call one."""
+"""G codes that call a macro, and that call one after every move."""
 LONGEST_LINE = 10_000
 """Bytes. Longer lines are always rejected."""
 
@@ -39,7 +39,7 @@ class Block:
         g: G codes in tenths.
         m: M codes.
         deleted: whether the block begins with the block delete character.
-        tree: the parse tree if the block holds more than plain words; it then has no words and codes.
+        tree: the parse tree if the block has more than plain words; it then has no words and codes.
     """
 
     words: dict[str, float] = field(default_factory=dict)
@@ -56,9 +56,9 @@ class SubprogramFile(NamedTuple):
     """A file that was added to a program for a call.
 
     Attributes:
-        label: number or name that is called.
+        label: number or name of the call.
         path: of the file.
-        row: an empty row before its first one, which no program runs into.
+        row: an empty row before its first one, which is never executed.
         before: lines before its first one; the lines of all files are counted together.
     """
 
@@ -81,12 +81,12 @@ class Blocks:
         m: (L,) M codes, integers.
         m_row: (L,) row of each M code, non-decreasing.
         deleted: (N,) whether the block begins with the block delete character ``/``.
-        special: by row, the parsed block of rows whose values are known only at execution or that hold more than plain
+        special: by row, the parsed block of rows whose values are known only at execution or that have more than plain
             words: parameters, expressions, assignments, O words. Such a row has no words and codes in the columns.
         comments: line and text of operator messages and of tool descriptions.
         source: name of the file.
         closed: whether a percent sign, or M99 of the main program, closes the file.
-        restarts: whether M99 ends the main program, which a control begins again.
+        restarts: whether M99 ends the main program, which a control would restart.
         files: of subprograms, in order; their rows and lines follow those of the program.
     """
 
@@ -123,7 +123,7 @@ class Blocks:
 
     @property
     def is_plain(self) -> bool:
-        """Whether execution leaves the blocks as they are: every value is a number, and nothing is called."""
+        """Whether execution leaves the blocks unchanged: every value is a number, and there are no calls."""
         return not self.special and not np.isin(self.m, SUBPROGRAM_CODES).any()
 
     def word(self, letter: str) -> Array:
@@ -139,7 +139,7 @@ class Blocks:
     def words_of(self, row: int) -> dict[str, float]:
         """The words of a row, by letter."""
         values = {letter: float(column[row]) for letter, column in self.words.items()}
-        return {letter: value for letter, value in values.items() if value == value}  # NaN is not itself
+        return {letter: value for letter, value in values.items() if value == value}  # skips NaN
 
     def g_of(self, row: int) -> Array:
         """G codes of a row, in tenths, in block order."""
@@ -186,7 +186,7 @@ class Blocks:
 
 
 def located(files: tuple[SubprogramFile, ...], line: int) -> tuple[SubprogramFile | None, int]:
-    """The subprogram file that has a line, None for the program itself, and the number of the line there."""
+    """The subprogram file of a line, None for the program itself, and the line number within it."""
     for file in reversed(files):
         if line >= file.before:
             return file, line - file.before

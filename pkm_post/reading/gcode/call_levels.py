@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Call levels: the subprograms that run, those that are missing, and the rows that jumps go to.
+"""Call levels: running and missing subprograms, and the rows of jump targets.
 
-Input: what the interpreter knows of a call. Output: the state of one level, for it to keep on its stack.
+Input: a call. Output: the state of one call level, for the interpreter's stack.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def rows_of_sequence_numbers(text: bytes, line: Array) -> dict[str, list[int]]:
 
 
 class MissingProgram(ExecutionFault):  # noqa: N818 - it is no error of the program
-    """A call of a subprogram that is not there, so far.
+    """A call of a missing subprogram, which may be added.
 
     Attributes:
         labels: number or name, in all readings of the call.
@@ -56,7 +56,7 @@ class Level:
         first_row: first row, for the next pass.
         passes: remaining passes after this one; only M98 has more than one.
         by_m98: whether M98 or a macro call called it, so M99 ends it rather than ``endsub``.
-        call: the macro call, whose arguments each pass gets.
+        call: the macro call, with the arguments of each pass.
         repeats: remaining passes of every active ``repeat``.
     """
 

@@ -100,7 +100,7 @@ def _codes_of_one_group(blocks: Blocks, flavour: Flavour, faults: BlockDiagnosti
 
 
 def _functions(modal: Modal, faults: BlockDiagnostics) -> None:
-    """Report functions of the machine beside a move: when they act is a matter of the control."""
+    """Report machine functions in a block with a move: controls differ in their timing."""
     codes = functions_of(modal)
     beside = (codes != NONE) & (modal.moves | (modal.takes_axes != NONE))
     faults.add_where("G437", beside, lambda row: word_of(int(codes[row]), "M"))
@@ -115,7 +115,7 @@ def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
             if unused.any():
                 unused[_rows_that_use(letter, blocks, modal.flavour)] = False
                 useless[letter] = unused
-    # A rotary axis at zero leaves the tool upright, whatever carries it.
+    # A rotary axis at zero leaves the tool upright on any machine.
     turned = {name: blocks.has(name) & (word != 0) for name, word in blocks.words.items() if name in rotary}
     _report_words("G414", turned, blocks, faults)
     _report_words("G404", useless, blocks, faults, _vector_hint if options.axis_words != "vector" else None)
@@ -128,7 +128,7 @@ def _used_by_motion(letter: str, modal: Modal, options: ReadOptions) -> Array:
         if meaning.group is Group.MOTION:
             turns = letter in axis_names(options.axis_words)
             takes[code] = code == 800 or letter in meaning.letters or turns or letter in NORMAL_WORDS
-            if code not in (0, 10, 800) and letter in VECTOR_WORDS:  # on an arc they are its centre, or meaningless
+            if code not in (0, 10, 800) and letter in VECTOR_WORDS:  # on an arc they are its centre or invalid
                 takes[code] = letter in meaning.letters
     return modal.moves & map_rows(takes.__getitem__, modal.active[Group.MOTION])
 
@@ -164,7 +164,7 @@ def _report_words(
 
 
 def _vector_hint(words: Sequence[Word]) -> str:
-    """What makes I, J and K a tool axis."""
+    """Hint at the code that makes I, J and K a tool axis."""
     vector = {word.name for word in words} & set(VECTOR_WORDS)
     return ", which are a tool axis after G43.5 with --axis-words vector" if vector else ""
 

@@ -64,7 +64,7 @@ _DRILL = "XYZ@^RLK"
 WORK_OFFSETS = (540, 550, 560, 570, 580, 590, 591, 592, 593)
 """In order of the P word of G10."""
 FURTHER_OFFSET, MOST_FURTHER_OFFSETS = -1000, 300
-"""G54.1 P1 has the code below the first number; how many there are."""
+"""Code of G54.1 P0, from which later ones count down; and the number of these offsets."""
 
 G_CODES: dict[int, Code] = {
     0: Code(Group.MOTION, "XYZ@^"),
@@ -148,20 +148,20 @@ UNSUPPORTED: dict[str, str] = {
     **{f"M{code}": "digital and analogue outputs" for code in (62, 63, 64, 65, 66, 67, 68)},
     **{f"M{code}": "saving and restoring modal states" for code in (70, 71, 72, 73)},
 }
-"""Purpose of well-known codes that this machine does not support."""
+"""Purpose of well-known unsupported codes."""
 
 ORIENTED_STOP = 19
-"""M19 stops the spindle at an angle, on machines whose file has it: a function of the machine in the group of the
+"""M19 stops the spindle at an angle, if the machine file has it: a machine function in the group of the
 spindle [LinuxCNC, M19]."""
 SPINDLE_SYNCHRONISED = ("G33", "G33.1", "G74", "G84")
 """Threading codes: thread cutting, rigid tapping, and left-hand and right-hand tapping."""
 
 DRILLING = (730, 810, 820, 830, 850, 860, 890)
 TAPPING = (740, 840)
-"""Left-hand and right-hand tapping, on machines whose spindle is an axis."""
+"""Left-hand and right-hand tapping, on machines with the spindle as an axis."""
 CYCLES = (*DRILLING, *TAPPING)
 RIGID_TAP = 331
-"""G33.1 of LinuxCNC: to a point and back, with a spindle that is an axis."""
+"""G33.1 of LinuxCNC: to a point and back, with the spindle as an axis."""
 STROKES = (*CYCLES, RIGID_TAP)
 """Codes of more than one move."""
 CANCEL_CYCLE = 800

@@ -2,7 +2,7 @@
 """Cycle tracker: the words of canned cycles from block to block, and their strokes.
 
 Input: blocks with their modal codes, and the tool position before each cycle block. Output: the strokes of the block.
-R, Q, P and the depth hold as long as the flavour says; the initial level until another motion intervenes.
+The flavour defines how long R, Q, P and the depth are active; the initial level lasts until another motion.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ class CycleTracker:
         return cycle_strokes(series.cycle, hole, centres, axes, position, spindle, self._modal.flavour)
 
     def _rigid_tap(self, row: int, position: Array, known: Array) -> Strokes | None:
-        """To the point of the block and back, by the lead K [LinuxCNC, G33.1]."""
+        """Tap to the point of the block and back, with lead K [LinuxCNC, G33.1]."""
         words, lead, spindle = self._words.at(row), float(self._cycle_words["K"][row]), float(self._spindle[row])
         relative = bool(self._modal.active[Group.DISTANCE][row] == 910)
         name = word_of(RIGID_TAP)
@@ -106,7 +106,7 @@ class CycleTracker:
         return None
 
     def _stored(self, row: int, position: Array) -> Strokes | None:
-        """A cycle that only stores its words; whether it goes to a place of its own, controls do not agree."""
+        """A cycle that only stores its words; controls disagree on whether it also moves to its own position."""
         axes = PLANES[int(self._modal.active[Group.PLANE][row])]
         if np.isnan(self._words.at(row)[list(axes[:2])]).all():
             return Strokes(position)
@@ -132,7 +132,7 @@ class CycleTracker:
         return self._series
 
     def _shrinks(self, row: int) -> bool:
-        """Whether I of a block is the first of pecks that grow smaller: J is by how much, K the smallest [Haas]."""
+        """Whether the block has decreasing pecks: I is the first peck, J the reduction, K the smallest peck [Haas]."""
         return self._modal.flavour.pecks_by_i and not math.isnan(self._cycle_words["I"][row])
 
     def _with_smaller_pecks(self, row: int, series: CycleSeries) -> CycleSeries:
@@ -144,7 +144,7 @@ class CycleTracker:
         return replace(series, cycle=replace(series.cycle, peck=first, reduction=reduction, least=least))
 
     def _mode_conflict(self, row: int, series: CycleSeries, needs_level: bool, frame: ProgramFrame) -> Found:
-        """What has changed since the modal words were programmed and may alter their meaning."""
+        """Changes since the modal words were programmed that may alter their meaning."""
         name, plane = word_of(series.cycle.code), int(self._modal.active[Group.PLANE][row])
         distance, scale = int(self._modal.active[Group.DISTANCE][row]), float(self._modal.scale[row])
         if plane != self._plane:

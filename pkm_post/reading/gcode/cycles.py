@@ -4,7 +4,7 @@
 Input: cycle blocks and the tool position, in mm and program coordinates. Output: rapid and linear moves, with the
 events between them. R, Q, P and the depth are modal as long as the cycle is active, the initial level until another
 motion intervenes. L, or K on Fanuc, repeats the hole, with G91 at the same increment each time [LinuxCNC; Fanuc, canned
-cycles]. The flavour says where controls differ.
+cycles]. The flavour covers differences between controls.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from pkm_post.reading.gcode.flavours import RS274, Flavour
 PECK_CLEARANCE = 0.254
 """Clearance above the depth reached at which a peck resumes feed, and retract distance of G73, mm."""
 MOST_STROKES = 10_000
-"""A block with more pecks or holes than this is taken for a programming error."""
+"""More pecks or holes in one block count as a programming error."""
 
 _PECKS = (730, 830)
 _STOPS_SPINDLE = 860
 
 
 HANDS = {840: 1.0, 740: -1.0}
-"""Of threads: 1 for right-hand ones, -1 for left-hand ones."""
+"""Hand of the thread: 1 right, -1 left."""
 
 WordBlock = tuple[float, float, float, float]
 """R, depth, Q and P of a block, NaN where absent."""
@@ -52,9 +52,9 @@ class Cycle:
         code: 810 for G81.
         retract: R, the height at which the feed starts.
         bottom: word of the coordinate normal to the plane.
-        peck: Q, or I where pecks grow smaller.
+        peck: Q, or I for decreasing pecks.
         dwell: P, s.
-        reduction: J, by how much each peck is smaller than the one before.
+        reduction: J, reduction from peck to peck.
         least: K, the smallest peck.
     """
 
@@ -82,7 +82,7 @@ class CycleSeries:
     still relative to it [LinuxCNC; PUMOTIX].
 
     Attributes:
-        cycle: the last one, with the words in force.
+        cycle: the last one, with the active words.
         initial: the initial level: the tool height at the start of the first cycle.
     """
 
@@ -100,7 +100,7 @@ class CycleSeries:
             code: code of the cycle.
             height: of the tool.
             words: R, depth, Q and P of its block, NaN where absent.
-            flavour: whose cycles they are.
+            flavour: flavour of the cycles.
         """
         if before is None:
             return cls(Cycle(code).with_words(*words), height)
@@ -146,7 +146,7 @@ class Strokes:
 def cycle_fault(
     cycle: Cycle, hole: Hole, repeats: float, spindle: float, flavour: Flavour = RS274
 ) -> tuple[str, tuple[str | Word, ...]] | None:
-    """The fault that prevents a cycle from being executed: code and what was found."""
+    """The fault that prevents a cycle from being executed: code and finding."""
     name = word_of(cycle.code)
     dwells = set(flavour.cycle_dwells) - set(TAPPING) if flavour.needs_dwell else ()
     for letter, value, codes in (("Q", cycle.peck, _PECKS), ("P", cycle.dwell, dwells)):
@@ -197,7 +197,7 @@ def cycle_strokes(
         axes: first, second and normal coordinate of the plane.
         position: (3,) of the tool.
         spindle: signed spindle speed, 1/min.
-        flavour: whose cycle it is.
+        flavour: flavour of the cycle.
     """
     strokes = Strokes(position)
     normal = axes[2]
@@ -215,7 +215,7 @@ def cycle_strokes(
 
 
 def _tap(cycle: Cycle, hole: Hole, normal: int, strokes: Strokes, spindle: float) -> None:
-    """Down and up to R with a spindle that is an axis, which then turns as before. Its lead is not known here."""
+    """Down and up to R with the spindle as an axis, which then turns as before. The lead is set later."""
     if hole.bottom < hole.top:
         strokes.add_event(EventKind.SPINDLE_AXIS, HANDS[cycle.code])
         strokes.move(Kind.LINE, normal, hole.bottom)
@@ -229,7 +229,7 @@ def _tap(cycle: Cycle, hole: Hole, normal: int, strokes: Strokes, spindle: float
 
 
 def rigid_tap(position: Array, end: Array, spindle: float) -> Strokes:
-    """To a point and back, both (3,), with a spindle that is an axis, which then turns as before."""
+    """To a point and back, both (3,), with the spindle as an axis, which then turns as before."""
     strokes = Strokes(position)
     if not np.array_equal(position, end):
         strokes.add_event(EventKind.SPINDLE_AXIS, math.copysign(1.0, spindle))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Diagnostics of blocks: collected by row while a program is resolved, and located in its text.
 
-Input: rows of blocks, and what was found there. Output: diagnostics in line order, with the columns of the words they
+Input: rows of blocks, and findings. Output: diagnostics in line order, with the columns of the words they
 name. Every faulty block counts, but only the first ones of each code are reported individually: a program of a million
 blocks may have the same fault in each.
 """
@@ -27,7 +27,7 @@ _COMMENT = re.compile(r"\([^)]*\)?|;.*")
 
 
 Found = str | Word | tuple[str | Word, ...]
-"""What was found in a block: text, and the words that are at fault, the most important first."""
+"""Finding in a block: text, and the faulty words, the most important first."""
 
 
 @dataclass
@@ -37,7 +37,7 @@ class BlockDiagnostics:
     Attributes:
         blocks: the program.
         text: its source text, empty if unknown: without it diagnostics have no columns.
-        most: faults of a kind that are reported with their own place.
+        most: most faults of a kind reported individually.
         faulty: rows with an error.
     """
 
@@ -67,7 +67,7 @@ class BlockDiagnostics:
         Args:
             code: diagnostic code.
             wrong: (N,) mask of faulty blocks.
-            found: returns what was found in a row.
+            found: returns the finding of a row.
         """
         rows = np.flatnonzero(wrong)
         if not len(rows):
@@ -103,18 +103,18 @@ class BlockDiagnostics:
         return self._log.has_errors()
 
     def in_order(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics in line order; the last one of a kind states how many more there are."""
+        """The diagnostics in line order; the last one of a kind states the count of the rest."""
         return self._log.in_order(lambda fault: (fault.place.line, fault.code))
 
 
 def never_given(known: Array) -> str:
-    """Which of X, Y and Z have no value, by a (3,) mask of those that have one, in words."""
+    """Those of X, Y and Z without a value, as text, from a (3,) mask of those with one."""
     names = [name for name, has_value in zip("XYZ", known.tolist(), strict=True) if not has_value]
     return f"{' and '.join(names)} {'was' if len(names) == 1 else 'were'} never given"
 
 
 def column_of(words: Iterable[Word], line: str) -> int:
-    """Column, from 1, of the first of some words that a line has, or else of its first character.
+    """Column, from 1, of the first of some words found in a line, or else of its first character.
 
     Blanks, case and leading zeros do not matter: G1 is found in ``g 01``.
 

@@ -2,9 +2,9 @@
 """Events: M codes, S and dwells between motions.
 
 Input: columns of codes, and P of G4 and of the cycles that dwell at the bottom. Output: events, and warnings about
-doubtful dwells. Order within a block: tool change, spindle and coolant, functions of the machine, dwell, motion,
+doubtful dwells. Order within a block: tool change, spindle and coolant, machine functions, dwell, motion,
 program stop [LinuxCNC, order of execution]. P is in seconds on LinuxCNC and in milliseconds, without a decimal point,
-on Fanuc-style controls [LinuxCNC; Weihong]. With a point some of these read seconds [Haas], so it is refused there.
+on Fanuc-style controls [LinuxCNC; Weihong]. Some of these read seconds if P has a point [Haas]: refused.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ CycleEvent = tuple[int, int, EventKind, float]
 
 
 def functions_of(modal: Modal) -> Array:
-    """The M code of the machine in each block, (N,), ``NONE`` without one; an oriented stop is one."""
+    """The machine function in each block, (N,), ``NONE`` without one; includes oriented stops."""
     spindle, function = modal.programmed[Group.SPINDLE], modal.programmed[Group.FUNCTION]
     oriented = map_rows(lambda codes: codes == ORIENTED_STOP, spindle)
     return np.where(oriented, ORIENTED_STOP, function) if oriented.any() else function
@@ -114,7 +114,7 @@ def dwell_unit(modal: Modal, options: ReadOptions) -> str:
 
 
 def check_dwells(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> None:
-    """Report dwells that may be meant in the other unit.
+    """Report dwells that may be intended in the other unit.
 
     Args:
         blocks: plain blocks.

@@ -37,7 +37,7 @@ def execute(
         blocks: the scanned blocks; returned unchanged when there is nothing to execute.
         limits: bounds of the execution.
         block_delete: whether to skip blocks that begin with ``/``.
-        flavour: whose subprogram calls they are.
+        flavour: flavour of the subprogram calls.
 
     Returns:
         Plain blocks, or None if there are faults; and the faults: all those found before execution, or else the one
@@ -63,18 +63,18 @@ def execute_as_far_as_possible(
         blocks: the scanned blocks.
         limits: bounds of the execution.
         block_delete: whether to skip blocks that begin with ``/``.
-        flavour: whose subprogram calls they are.
+        flavour: flavour of the subprogram calls.
         text: of the program, where GOTO finds sequence numbers.
         is_whole: whether no block is missing; otherwise nothing is executed, and only invalid blocks are reported.
-        where: the state after some executed blocks, which parameters may ask for.
-        may_add: whether a subprogram that is missing may be added, and the program be executed once more.
+        where: returns the state after some executed blocks, for system variables.
+        may_add: whether a missing subprogram may be added and the program executed again.
 
     Returns:
         Plain blocks and the faults. If there are any: the blocks before the one that stopped the execution, or all
         plain blocks of a program that cannot be executed.
 
     Raises:
-        MissingProgram: a subprogram is missing that may be added.
+        MissingProgram: a missing subprogram may be added.
     """
     if blocks.is_plain:
         return blocks, ()
@@ -101,7 +101,7 @@ def execute_as_far_as_possible(
 
 
 def _add_files_by_number(blocks: Blocks, jumps: JumpTargets) -> None:
-    """Let M98 call the files that have a number in their names and none within."""
+    """Let M98 call files with a number in their names but none inside."""
     ends = [*(file.row for file in blocks.files), len(blocks)]
     for file, end in zip(blocks.files, ends[1:], strict=True):
         has_number = any(file.row < row < end for row in jumps.programs.values())
@@ -110,7 +110,7 @@ def _add_files_by_number(blocks: Blocks, jumps: JumpTargets) -> None:
 
 
 def _ended(blocks: Blocks, interpreter: Interpreter) -> Blocks:
-    """The executed blocks; where M99 ends the main program, it has come to its end."""
+    """The executed blocks; M99 in the main program counts as its end."""
     return replace(blocks, closed=True, restarts=True) if interpreter.restarts else blocks
 
 

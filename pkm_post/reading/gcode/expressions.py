@@ -280,7 +280,7 @@ def _combine(function: Callable[[float, float], float], name: str, column: int) 
 
 
 def _or_zero(value: float) -> float:
-    """A value, or 0 of a vacant variable (NaN), as arithmetic takes it [Fanuc, custom macro, undefined variables]."""
+    """A value, or 0 for a vacant variable (NaN), as in arithmetic [Fanuc, custom macro, undefined variables]."""
     return value if value == value else 0.0
 
 

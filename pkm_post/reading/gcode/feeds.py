@@ -5,7 +5,7 @@ Input: F by block, in the unit of its mode: units per minute (G94), units per re
 1/min (G93); and the path control codes. Output: speeds of the tool tip in mm/s, by motion; and by block whether the
 motion stops at its end (exact stop), whether corners are followed rather than rounded (exact path), and the permitted
 deviation of the tip from the path (G64 P), mm. A change of feed mode cancels F: the next cutting move needs a new one.
-Which of G61 and G61.1 is which depends on the flavour. Q of G64, which merges nearly collinear moves, is not needed: no
+The flavour defines which of G61 and G61.1 is which. Q of G64, which merges nearly collinear moves, is ignored: no
 moves are merged.
 """
 
@@ -127,7 +127,7 @@ def _tolerances(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> Array
 
 
 def _p_of_another_code(blocks: Blocks, modal: Modal) -> Array:
-    """Whether another code of each block uses its P: a dwell, a cycle, the rotates of an arc, (N,)."""
+    """Whether another code of each block uses its P: a dwell, a cycle, the turns of an arc, (N,)."""
     codes = modal.flavour.g_codes.items()
     takes_p = [code for code, meaning in codes if "P" in meaning.letters and code != _TOLERANCE]
     elsewhere: Array = modal.moves & np.isin(modal.active[Group.MOTION], takes_p)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Flavours: what controls of two families mean by the same G-code, in one table.
+"""Flavours: differences in meaning of G-code between two families of controls, in one table.
 
 Input: nothing. Output: ``FLAVOURS``; its rows are the differences, with their sources in docs/g-code.md. The reader
-asks the flavour for what it needs to know and never for its name, so that another family is another row.
+queries properties of the flavour, never its name, so that a further family is just another row.
 """
 
 from __future__ import annotations
@@ -28,34 +28,34 @@ from pkm_post.reading.gcode.codes import (
 
 @dataclass(frozen=True)
 class Flavour:
-    """What a family of controls means by codes and words that others take otherwise.
+    """Meaning of codes and words in a family of controls, where families differ.
 
     Attributes:
         name: as given by the user.
-        title: whose language it is.
+        title: title of the language.
         dwell_unit: unit of P of G4 and of cycles, a key of ``DWELL_UNITS``.
-        exact_stop: code, in tenths, under which the motion rests at the end of every block.
-        exact_path: code, in tenths, under which corners are followed; NONE where there is none.
-        g80_restores_motion: whether G0 to G3 before a cycle are in force again after G80, rather than no motion.
-        keeps_cycle_words: whether R, depth, Q and P hold until the series ends, rather than for one cycle.
+        exact_stop: code, in tenths, under which the motion stops at the end of every block.
+        exact_path: code, in tenths, under which corners are followed exactly; NONE if there is none.
+        g80_restores_motion: whether G80 restores G0 to G3 from before the cycle, rather than no motion.
+        keeps_cycle_words: whether R, depth, Q and P last until the series ends, rather than one cycle.
         cycle_dwells: cycles that dwell at the bottom.
-        needs_dwell: whether these need P, but those that tap.
-        feeds_to_r: cycles that come out with feed as far as R, and rapidly from there; other ones go on with feed.
+        needs_dwell: whether these need P, except tapping cycles.
+        feeds_to_r: cycles that retract at feed to R, then at rapid; others continue at feed.
         stores_cycle: whether a cycle repeated 0 times only stores its words.
-        pecks_by_i: whether I, J and K of G73 and G83 are the first peck, how much smaller the next is, and the least.
-        moves_beside_reference: whether G0 or G1 may stand beside G28 and G30, which take the axis words.
-        g53_is_rapid: whether G53 moves rapidly whatever motion is in force.
-        counts_in_p: whether P of M98 above four digits begins with how often the subprogram runs.
-        programs_apart: whether an O number begins another program, which only a call enters.
-        counts_thousandths: whether some controls take lengths without a point for thousandths.
-        restarts: whether M99 ends the main program, to begin it again, and M99 P goes on at a sequence number.
+        pecks_by_i: whether I, J and K of G73 and G83 are the first peck, the reduction, and the smallest.
+        moves_beside_reference: whether G0 or G1 may share a block with G28 and G30, which take the axis words.
+        g53_is_rapid: whether G53 moves at rapid whatever the active motion.
+        counts_in_p: whether P of M98 with more than four digits starts with the number of passes.
+        programs_apart: whether an O number starts another program, entered only by a call.
+        counts_thousandths: whether some controls read lengths without a point as thousandths.
+        restarts: whether M99 restarts the main program, and M99 P jumps to a sequence number.
         macros: whether G65 and G66 call programs with arguments, and variables may be vacant.
-        equivalents: codes, in tenths, that mean the same as another one.
-        without_motion: codes that change nothing here: switches of what this reader never switches on.
-        requests: codes that ask the control for smoothing, by what they ask for.
-        silent_m: M codes that change nothing here.
-        g_codes, m_codes: all codes that are understood.
-        unsupported: codes that are known and refused, with the reason.
+        equivalents: codes, in tenths, with the same meaning as another one.
+        without_motion: codes without effect here: they cancel modes that this reader never activates.
+        requests: codes that request smoothing from the control, with its description.
+        silent_m: M codes without effect here.
+        g_codes, m_codes: all supported codes.
+        unsupported: known but refused codes, with the reason.
     """
 
     name: str
@@ -196,7 +196,7 @@ FANUC = replace(
 
 
 def with_functions(flavour: Flavour, functions: tuple[int, ...]) -> Flavour:
-    """A flavour on a machine with M codes of its own, which no flavour understands."""
+    """A flavour plus machine-specific M codes."""
     if not functions:
         return flavour
     groups = {code: Group.SPINDLE if code == ORIENTED_STOP else Group.FUNCTION for code in functions}
@@ -204,7 +204,7 @@ def with_functions(flavour: Flavour, functions: tuple[int, ...]) -> Flavour:
 
 
 def with_threads(flavour: Flavour, is_axis: bool) -> Flavour:
-    """A flavour on a machine whose spindle is an axis, or is none: tapping is rigid, or refused."""
+    """A flavour with rigid tapping if the spindle can be an axis; otherwise tapping is refused."""
     if not is_axis:
         return flavour
     words = flavour.g_codes[820].letters.replace("Q", "")
@@ -215,4 +215,4 @@ def with_threads(flavour: Flavour, is_axis: bool) -> Flavour:
 
 
 FLAVOURS: dict[str, Flavour] = {flavour.name: flavour for flavour in (RS274, FANUC)}
-"""By name."""
+"""Flavours by name."""

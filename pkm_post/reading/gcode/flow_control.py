@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Flow control: branches and loops of O words, and WHILE DO of Fanuc's macros.
+"""Flow control: branches and loops of O words, and WHILE DO of Fanuc macros.
 
-Input: a row with such a word, and where the linked words of a program are. Output: the row that is carried out next.
+Input: a row with such a word, and the linked words of a program. Output: the row to execute next.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pkm_post.reading.gcode.statements import OWord, Statement
 
 
 class FlowControl(ABC):
-    """The steps of an interpreter that need no more than the linked words and the parameters."""
+    """The steps of an interpreter that need only the linked words and the parameters."""
 
     row: int
     _jumps: JumpTargets

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Foreign languages: part programs that are not G-code of RS274NGC or ISO, recognised by what they alone have.
+"""Foreign languages: part programs that are not G-code of RS274NGC or ISO, recognised by their unique constructs.
 
-Input: the text of a program. Output: the name of its language and where it shows, or nothing. Two
-kinds of evidence are needed: one may be a slip of the pen.
+Input: the text of a program. Output: the name of its language and the place of the evidence, or nothing. Two kinds of
+evidence are needed, as one may be a typing error.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ LANGUAGES: dict[str, dict[str, str]] = {
         "names such as ORIWKS": r"\b(?:ORIWKS|ORIAXES|ORIMKS|STOPRE|SUPA|FFWON|SOFT|COMPCAD|CUT2D|WORKPIECE)\b",
     },
 }
-"""By language, what only its programs have, as regular expressions."""
+"""By language, regular expressions of constructs unique to it."""
 
 _COMPILED = {
     name: {what: re.compile(pattern.encode(), re.MULTILINE | re.IGNORECASE) for what, pattern in evidence.items()}
@@ -45,7 +45,7 @@ _COMPILED = {
 
 
 def foreign_language(text: bytes) -> tuple[str, int] | None:
-    """The language of a program with its evidence, and the line where that begins; None if it is no other one.
+    """The foreign language of a program with its evidence, and the first line of that; None if it is G-code.
 
     Args:
         text: with a line feed at the end of each line.

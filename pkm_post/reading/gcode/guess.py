@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Guess: the flavour of a program, by what only one family of controls would take.
+"""Guess: the flavour of a program, from constructs that only one family of controls accepts.
 
-Input: scanned blocks. Output: the flavour and the evidence for it, for the report. Evidence is a code, word or order
-of blocks that the other flavour does not have or refuses; one kind of it counts once, wherever it stands. Without any
-the program is RS274NGC, which is the stricter of the two: what means something else there is an error, or the same
-motion.
+Input: scanned blocks. Output: the flavour and its evidence, for the report. Evidence is a code, word or order of blocks
+that the other flavour lacks or refuses; each kind counts once, wherever it occurs. Without evidence the program is
+RS274NGC, the stricter of the two: constructs with another meaning there are errors, or give the same motion.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from pkm_post.reading.gcode.flavours import FANUC, RS274, Flavour
 from pkm_post.reading.gcode.modal import forward_fill
 
 _MOST_SHOWN = 4
-"""Pieces of evidence in a line of the report."""
+"""Most pieces of evidence in a line of the report."""
 
 _FANUC_G = (80, 150, 160, 500, 510, 531, 541, 650, 660, 670, 682, 1870, 2340, 2550)
 _WITHOUT_PLACE = (50, 51)
@@ -36,7 +35,7 @@ _Found = Iterator[tuple[str, int]]
 
 @dataclass(frozen=True)
 class FlavourGuess:
-    """A flavour, and the evidence for it and against it, as text with lines."""
+    """A flavour, with the evidence for and against it, as text with lines."""
 
     flavour: Flavour
     evidence: tuple[str, ...]
@@ -121,7 +120,7 @@ def _after_g80(blocks: Blocks) -> _Found:
 
 
 def _o_words(blocks: Blocks, wanted: Callable[[str], bool]) -> _Found:
-    """The first O word whose keyword, empty for a number alone, is wanted."""
+    """The first O word with a wanted keyword, which is empty for a bare number."""
     for row, tree in sorted(blocks.special.items()):
         for child in tree.children:
             if not isinstance(child, str) and child.data == "o_word":

@@ -2,7 +2,7 @@
 """Interpreter: one execution of a program, from block to block.
 
 Input: scanned blocks with their compiled statements. Output: the executed blocks in a builder. Calls, loops, jumps and
-conditions decide which row comes next; parameters keep their values on the way.
+conditions determine the next row; parameters keep their values.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _CALL, _ = SUBPROGRAM_CODES
 _END_OF_MODAL_CALL, _DWELL = 670, 40
 _MOVING = frozenset("XYZABCUVW")
 _COUNTED = 10_000
-"""P of M98 from here on is the number of passes and the last four digits of the program [Fanuc]."""
+"""From this value on, P of M98 is the number of passes followed by four digits of the program [Fanuc]."""
 
 
 class Interpreter(FlowControl):
@@ -43,9 +43,9 @@ class Interpreter(FlowControl):
         skipped: (N,) mask of skipped blocks.
         limits: bounds of the execution.
         executed: collects the executed blocks.
-        flavour: whose subprogram calls they are.
+        flavour: flavour of the subprogram calls.
         text: of the program, where GOTO finds sequence numbers.
-        where: the state after some executed blocks, where parameters may ask for it.
+        where: returns the state after some executed blocks, for system variables.
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class Interpreter(FlowControl):
         if where is not None:
             self._parameters.where = lambda: where(self._so_far())
         self._after_moves: Call | None = None
-        """The macro that follows every move, since G66."""
+        """The macro to call after every move (G66)."""
         self._levels = [Level(return_row=len(blocks), first_row=0)]
 
     def run(self, special: list[int]) -> None:
@@ -98,7 +98,7 @@ class Interpreter(FlowControl):
         self._refuse_open_subprogram()
 
     def _so_far(self) -> Blocks:
-        """The blocks executed so far; to look at them counts as executing them once more."""
+        """The blocks executed so far; reading them costs as much as executing them again."""
         self._spend(len(self._executed), 0)
         return self._executed.blocks()
 
@@ -139,7 +139,7 @@ class Interpreter(FlowControl):
         return row + 1 if self._skipped[row] else self._finish(row, self._plain(row))
 
     def _macro(self, row: int, statement: MacroCall) -> int:
-        """G65 calls a macro, G66 one after every move that follows."""
+        """G65 calls a macro, G66 calls one after every following move."""
         if not self._flavour.macros:
             codes = [round(10 * value.value(self._parameters)) for letter, value in statement.words if letter == "G"]
             return self._finish(row, Block(g=codes))
@@ -161,7 +161,7 @@ class Interpreter(FlowControl):
         return first_row
 
     def _after_move(self, row: int, block: Block) -> int:
-        """The next row while G66 is in force; within its macro it is not."""
+        """The next row while G66 is active, which it is not within its macro."""
         call = self._after_moves
         if call is None or self._levels[-1].call is call:
             return row + 1
@@ -247,7 +247,7 @@ class Interpreter(FlowControl):
         self._parameters.enter(arguments)
 
     def _program(self, row: int, _: OWord) -> int:
-        """A number alone: where it begins another program, the one before it has no further blocks."""
+        """A bare number; if it starts another program, the previous one ends."""
         return len(self._blocks) if self._flavour.programs_apart and row > 0 else row + 1
 
     def _call(self, row: int, word: OWord) -> int:
@@ -268,7 +268,7 @@ class Interpreter(FlowControl):
         return self._levels.pop().return_row
 
     def _goto(self, row: int, word: OWord) -> int:
-        """To the next block with that sequence number, or else the first one of the same program [Fanuc]."""
+        """Jump to the next block with that sequence number, or else the first one of the same program [Fanuc]."""
         if word.values and self._value(word) == 0:
             return row + 1
         label = word.label
@@ -277,7 +277,7 @@ class Interpreter(FlowControl):
         return self._sequence(label, row, f"GOTO {label}")
 
     def _sequence(self, label: str, row: int, text: str) -> int:
-        """The row of a sequence number in the program of a row: the next one behind it, or else the first."""
+        """The row of a sequence number in the program of a row: the next one, or else the first."""
         first, end = self._program_of(row)
         targets = [target for target in self._labels().get(label, []) if first <= target < end]
         if not targets:
@@ -293,13 +293,13 @@ class Interpreter(FlowControl):
         return row + 1
 
     def _program_of(self, row: int) -> tuple[int, int]:
-        """The first row of the program that a row belongs to, and the row after its last."""
+        """The first row of the program of a row, and the row after its last."""
         begins = sorted(self._jumps.programs.values())
         index = bisect_left(begins, row + 1)
         return begins[index - 1] if index else 0, begins[index] if index < len(begins) else len(self._blocks)
 
     def _labels(self) -> dict[str, list[int]]:
-        """Rows by sequence number, from the text: a block does not keep its own."""
+        """Rows by sequence number, from the text, as blocks do not store it."""
         if self._rows_of_label is None:
             self._rows_of_label = rows_of_sequence_numbers(self._text, self._blocks.line)
         return self._rows_of_label

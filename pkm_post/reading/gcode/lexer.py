@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Lexer: the patterns and numbers of many lines at once, and the blocks that the patterns stand for.
+"""Lexer: the patterns and numbers of many lines at once, and the block layout of each pattern.
 
 Input: the bytes of whole lines, comments blanked. Output: the pattern of each line: the line with a marker for each
 number, and the offsets of the numbers. Work is done per byte with tables and per number with numpy, not per line.
 Real programs have some ten to hundred patterns, so a million blocks take some hundred parses. Patterns of plain words
 are parsed here: importing lark and making its tables take longer than a short program. Lark parses all others.
 
-In a pattern letters are upper case and blanks are removed. The digits of G and M codes stay, because they determine the
+In a pattern letters are upper case and blanks are removed. The digits of G and M codes are kept: they determine the
 meaning of a block, as do those before an equals sign, as in A3=0.5; these and line numbers do not count as numbers.
 """
 
@@ -45,7 +45,7 @@ _PATTERN = _byte_table(_in_pattern)
 _IS_NUMERIC = _byte_table(lambda byte: byte in _NUMERIC)
 _STAYS = _byte_table(lambda byte: byte not in _NUMERIC + _BLANKS)
 _KEYWORDS = (b"LN", b"TRA")
-"""Prefixes of multi-letter words. Where one occurs, blanks after letters stay: L N is not LN."""
+"""Prefixes of multi-letter words. Where one occurs, blanks after letters are kept: L N is not LN."""
 _IS_CODE, _IS_LINE_NUMBER = (np.isin(np.arange(256), [ord(letter) for letter in letters]) for letters in ("GM", "N"))
 
 
@@ -172,11 +172,11 @@ _PLAIN = re.compile(rb"%|(/?)(?:N\x01)?((?:" + _WORD.pattern + rb")*)")
 
 
 _MACRO_CALLS = {round(10 * code) for code in MACRO_CALLS}
-"""Beside them words are arguments."""
+"""In blocks with these, words are arguments."""
 
 
 def plain_block(pattern: bytes) -> Block | None:
-    """The block of a pattern of plain words, as lark parses it; None of all others, and of what may be a fault."""
+    """The block of a pattern of plain words, as lark parses it; None for all others, and for possible faults."""
     found = _PLAIN.fullmatch(pattern)
     if found is None:
         return None
@@ -205,7 +205,7 @@ class Patterns(dict[bytes, int]):
 
     def __missing__(self, pattern: bytes) -> int:
         number = PARSED_ALONE
-        if b"[" not in pattern:  # a code in brackets contains a marker, and a lone number there counts as plain
+        if b"[" not in pattern:  # a code in brackets contains a marker, and a lone number in brackets counts as plain
             plain = plain_block(pattern)
             block = plain if plain is not None else _parsed(pattern)
             if block is not None and block.tree is None:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Macro calls: the program, the passes and the local variables that G65 and G66 give.
+"""Macro calls: the program, the passes and the local variables of G65 and G66.
 
 Input: the words of the block, in their order. Output: the arguments by the letters of specification I, or I, J and K
-of specification II, which may stand ten times each: the first ones are #4 to #6, the second ones #7 to #9 and so on.
-The control knows them by the words, and of two for the same variable the later one holds [Fanuc, custom macro, argument
-specification; B-63684EN, 16.7.1].
+of specification II, which may occur ten times each: the first ones are #4 to #6, the second ones #7 to #9 and so on.
+The control distinguishes them by the words used; of two values for a variable the later one counts [Fanuc, custom
+macro, argument specification; B-63684EN, 16.7.1].
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pkm_post.reading.gcode.statements import MacroCall
 
 _FIRST = {"A": 1, "B": 2, "C": 3, "D": 7, "E": 8, "F": 9, "H": 11, "M": 13, "Q": 17, "R": 18, "S": 19, "T": 20,
           "U": 21, "V": 22, "W": 23, "X": 24, "Y": 25, "Z": 26}  # fmt: skip
-"""Variables of specification I, but for I, J and K, which both have."""
+"""Variables of specification I, except I, J and K, which both specifications have."""
 _REPEATED, _FIRST_OF_REPEATED, _SETS = "IJK", 4, 10
 
 
@@ -29,7 +29,7 @@ class Call:
 
     Attributes:
         label: number of the program.
-        passes: how often it runs.
+        passes: number of passes.
         arguments: (33,) values of the local variables, NaN where vacant.
         modal: whether it follows every move (G66).
         text: for diagnostics.
@@ -46,7 +46,7 @@ def call_of(statement: MacroCall, parameters: Parameters) -> Call:
     """Compute a call.
 
     Raises:
-        ExecutionFault: its words make no sense, or cannot be computed.
+        ExecutionFault: its words are invalid, or cannot be computed.
     """
     values = [(letter, value.value(parameters), value.column) for letter, value in statement.words]
     code = next(value for letter, value, _ in values if letter == "G" and value in (65, 66))

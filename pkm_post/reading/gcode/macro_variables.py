@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Macro variables: the memory of custom macro B of Fanuc's controls.
+"""Macro variables: the memory of custom macro B on Fanuc controls.
 
 Input: numbers of variables and values. Output: values, in the unit of the program; NaN is a vacant variable, which
-arithmetic takes as 0 and for which a word is left out. #0 is always vacant, #1 to #33 belong to a level of
-macro calls and are vacant where it begins, #100 to #199 and #500 to #999 are common to all levels [Fanuc, custom macro,
-variables]. What #500 to #999 hold when a program begins is not known: reading one before it is assigned is a fault.
+counts as 0 in arithmetic and drops its word. #0 is always vacant, #1 to #33 belong to a level of
+macro calls and initially vacant, #100 to #199 and #500 to #999 are common to all levels [Fanuc, custom macro,
+variables]. The initial values of #500 to #999 are unknown: reading one before it is assigned is a fault.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _KEPT = range(500, 1000)
 """Common variables that keep their values from other programs."""
 _ALARM = 3000
 _PANEL = (3003, 3004)
-"""Switches of single block and feed hold: they change nothing about the motion."""
+"""Switches of single block and feed hold: they do not affect the motion."""
 _CODES = range(4001, 4131)
 _BLOCK_END, _IN_MACHINE, _CURRENT = range(5001, 5004), range(5021, 5024), range(5041, 5044)
 _FULL_TURN = 360.0
@@ -53,7 +53,7 @@ class MacroVariables(Parameters):
         "atan": lambda y, x: _positive(arc_tangent(y, x)),
         "asin": lambda value: _positive(FUNCTIONS["asin"](value)),
     }
-    """FIX cuts off and FUP rounds away from 0; AND, OR and XOR go bit by bit, which is the same for conditions; ATAN
+    """FIX truncates and FUP rounds away from 0; AND, OR and XOR are bitwise, which is the same for conditions; ATAN
     and ASIN are from 0 to 360 degrees [Fanuc, custom macro, arithmetic; parameter 6004#0 at 0]."""
 
     def __init__(self) -> None:
@@ -61,7 +61,7 @@ class MacroVariables(Parameters):
         self._common: dict[int, float] = {}
         self._local: list[dict[int, float]] = [{}]
         self._calls: list[bool] = []
-        """For each call, whether it began a level of its own."""
+        """For each call, whether it started its own level."""
 
     @property
     def depth(self) -> int:
@@ -69,10 +69,10 @@ class MacroVariables(Parameters):
         return len(self._calls)
 
     def value(self, name: Name) -> float:
-        """The value of a variable, NaN of a vacant one.
+        """The value of a variable, NaN for a vacant one.
 
         Raises:
-            ExecutionFault: it is not known.
+            ExecutionFault: the value is unknown.
         """
         if isinstance(name, str):
             raise ExecutionFault("G302", f"#<{name}>")
@@ -99,7 +99,7 @@ class MacroVariables(Parameters):
         """Assign a value to a variable; NaN makes it vacant.
 
         Raises:
-            ExecutionFault: it is no variable of the program, or an alarm.
+            ExecutionFault: the variable is not writable, or raises an alarm.
         """
         if isinstance(name, str):
             raise ExecutionFault("G302", f"#<{name}>")
@@ -120,7 +120,7 @@ class MacroVariables(Parameters):
         """Enter a program.
 
         Args:
-            arguments: values of #1 and up, NaN where vacant; None when it shares them with its caller, as after M98.
+            arguments: values of #1 and up, NaN where vacant; None if it shares them with its caller, as after M98.
         """
         self._calls.append(arguments is not None)
         if arguments is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Modal state: the active code of each group, and the coordinates that absolute and incremental words add up to.
+"""Modal state: the active code of each group, and coordinates accumulated from absolute and incremental words.
 
 Input: blocks. Output: columns of codes, in tenths for G (434 is G43.4), and of coordinates in mm. A modal code stays
 active until another code of its group. A coordinate word sets the coordinate in absolute mode and adds to it in
@@ -74,7 +74,7 @@ class Modal:
         scale: (N,) mm per length unit.
         moves: (N,) whether the block moves the tool by the active motion code.
         takes_axes: (N,) the non-motion G code that consumes the axis words, ``NONE`` where absent.
-        flavour: what the codes mean.
+        flavour: flavour of the codes.
     """
 
     programmed: dict[Group, Array]
@@ -96,7 +96,7 @@ def modal_state(blocks: Blocks, unit: float, axis_words: Iterable[str], flavour:
         blocks: plain blocks; codes missing from the tables are ignored.
         unit: mm per length unit before G20 or G21.
         axis_words: words that move the tool axis.
-        flavour: what the codes mean.
+        flavour: flavour of the codes.
     """
     count = len(blocks)
     by_group = _by_group(blocks, flavour)

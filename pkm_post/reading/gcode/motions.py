@@ -130,4 +130,4 @@ def _joined(columns: list[Array]) -> Array:
 
 
 KEPT, OTHERS_LOST, LOST = 0, 1, 2
-"""What a block leaves known of the place of the tip: all, the coordinates that it gives, nothing."""
+"""Knowledge of the tip position after a block: all coordinates, only those it gives, none."""

@@ -101,7 +101,7 @@ class _Linker:
             _BEGIN.get(keyword, _Linker._begin)(self, row, keyword, word.label)
 
     def _link_macro_loop(self, row: int, keyword: str, label: str) -> None:
-        """WHILE DO n and END n, which may stand within each other."""
+        """Link WHILE DO n and END n, which may be nested."""
         if keyword == "macro while":
             self.macro_loops.append((row, label))
             return
@@ -154,7 +154,7 @@ class _Linker:
         self.open[min(loops)].jumps.append(row)
 
     def _return(self, row: int, keyword: str, label: str) -> None:
-        """Any label: it is the subprogram that runs that ends [LinuxCNC, rs274]."""
+        """Link a return with any label: it ends the running subprogram [LinuxCNC, rs274]."""
         if not self._subs:
             raise ExecutionFault("G312", f"O{_shown(label)} {keyword} outside of a sub")
 

@@ -54,8 +54,8 @@ class ReadOptions:
             G43.4, "RPY" those of LinuxCNC's hexapod: k = Rz(C) Ry(B) Rx(A) e_z.
         work_offsets: by name, "G54" to "G59.3" or "G54.1P1" to "G54.1P300", origin in mm and angle about Z in degrees,
             in {C}. If empty, {C} is the frame of the only work offset that the program uses.
-        machine_offsets: those of the machine, likewise, for a program that uses several; the first one that it uses
-            has to be 0.
+        machine_offsets: offsets of the machine, likewise, for a program with several; the first one that it uses
+            must be 0.
         machine_zero: tool tip position in {C}, mm, where X, Y and Z of G53 are zero: with ``work_offsets`` {C}'s own
             zero.
         home: target of G28, in {C}, mm; ``machine_zero`` if None.
@@ -63,19 +63,19 @@ class ReadOptions:
         start: initial tool tip position in {C}; without it motion starts once X, Y and Z are programmed.
         block_delete: whether to skip blocks that begin with ``/``.
         unit: length unit before G20 or G21, a key of ``UNITS``.
-        flavour: whose G-code it is, one of ``FLAVOUR_NAMES``; guessed from the program if None.
+        flavour: one of ``FLAVOUR_NAMES``; guessed from the program if None.
         dwell_unit: unit of P of G4 and of cycles, a key of ``DWELL_UNITS``; that of the flavour if None.
-        left_out: codes, such as "M21", that are left out where the reader does not understand them.
-        functions: numbers of M codes that the machine has for purposes of its own, such as 21: they become events.
-        spindle_axis: whether the spindle of the machine is an axis: without one tapping is refused.
+        left_out: unsupported codes to skip, such as "M21".
+        functions: numbers of machine-specific M codes, such as 21, which become events.
+        spindle_axis: whether the spindle can be an axis; otherwise tapping is refused.
         feed: speed of cutting moves before the first F, mm/s, where F is per minute; None if unknown: such moves are
             refused.
-        folders: where files of subprograms that a program calls are looked for, in this order.
+        folders: folders searched for subprogram files, in this order.
         needs_end: whether the text is a complete program, which must end with M2, M30 or a percent sign; an MDI line is
             not.
-        needs_motion: whether a program without motion is refused.
+        needs_motion: whether to refuse a program without motion.
         feed_time: s in the unit of time of F per minute (G94).
-        most_reported: faults of a kind that are reported with their own place.
+        most_reported: most faults of a kind reported individually.
     """
 
     tools: Mapping[int, Tool] = field(default_factory=dict)

@@ -34,7 +34,7 @@ _OF_THE_MACHINE: tuple[tuple[int, int, str], ...] = (
     (5420, 5428, "the current position"),
     (5599, 5601, "a setting of the control"),
 )
-"""First and last number, and what the control stores there."""
+"""First and last number, and their content in the control."""
 
 # fmt: off
 _NAMES_OF_THE_MACHINE = frozenset((
@@ -67,8 +67,8 @@ class ExecutionFault(Exception):  # noqa: N818 - it is no error of the program
 
     Attributes:
         code: key into the table of diagnostics.
-        found: what was found.
-        column: where in the block, from 1; 0 when it concerns the whole block.
+        found: the finding.
+        column: place in the block, from 1; 0 for the whole block.
     """
 
     def __init__(self, code: str, found: str, column: int = 0) -> None:
@@ -86,7 +86,7 @@ class SystemVariables(Protocol):
         """A coordinate of the tool from the zero of the machine."""
 
     def code(self, number: int) -> float:
-        """The code or word in force that a variable from #4001 to #4130 has."""
+        """The active code or word of a variable from #4001 to #4130."""
 
 
 @dataclass
@@ -101,7 +101,7 @@ class Parameters:
     """All parameters of a running program."""
 
     functions: ClassVar[Mapping[str, Callable[..., float]]] = {}
-    """Functions and operators that mean something else than in RS274NGC."""
+    """Functions and operators that differ from RS274NGC."""
 
     def __init__(self) -> None:
         self.where: Callable[[], SystemVariables] | None = None
@@ -148,7 +148,7 @@ class Parameters:
         """Whether a parameter can be read.
 
         Raises:
-            ExecutionFault: only the control knows, or there is none of that number.
+            ExecutionFault: only the control knows it, or the number does not exist.
         """
         if isinstance(name, int) and not 1 <= name <= HIGHEST:
             raise ExecutionFault("G302", f"#{name}")
@@ -160,7 +160,7 @@ class Parameters:
         """Enter a subprogram.
 
         Args:
-            arguments: values of #1 and up; None when the subprogram shares #1 to #30 with its caller, as after M98.
+            arguments: values of #1 and up; None if the subprogram shares #1 to #30 with its caller, as after M98.
         """
         saved = None
         if arguments is not None:
@@ -200,7 +200,7 @@ def in_range(value: float) -> int:
     """Convert a value to a parameter number.
 
     Raises:
-        ExecutionFault: it is no whole number, or below 0.
+        ExecutionFault: the value is not a whole number, or below 0.
     """
     number = whole_number(value)
     if number is None or number < 0:

@@ -21,7 +21,7 @@ _DEEPEST_TREE = 100
 """Levels of an expression, so recursive tree traversal is safe."""
 
 MAY_BE_REPEATED = "IJK"
-"""Arguments of a macro that may stand several times in a block."""
+"""Arguments of a macro that may be repeated in a block."""
 
 DIALECT_CODES: dict[str, tuple[int, ...]] = {"LN": (435, 10), "TRAORI": (435,), "TRAFOOF": (430,)}
 """Words of other dialects and the equivalent G codes, in tenths: G43.5 G1, G43.5 and G43."""
@@ -80,7 +80,7 @@ def dialect_codes(word: str) -> tuple[int, ...]:
 
 
 def is_macro_call(tree: Tree[Token]) -> bool:
-    """Whether a block has G65 or G66, beside which words are arguments."""
+    """Whether a block has G65 or G66, which make its words arguments."""
     words = (child.children for child in tree.children if not isinstance(child, str) and child.data == "word")
     return any(str(name) in "Gg" and isinstance(value, str) and float(value) in MACRO_CALLS for name, value in words)
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Polar coordinates: distance and angle as words X and Y of the same place.
+"""Polar coordinates: distance and angle converted to words X and Y.
 
-Input: @ and ^ of LinuxCNC, or the words of the plane under G16 of Fanuc's controls, which are a radius and an angle in
-degrees about the origin of the program. Output: the coordinates of that place. A word that is not given keeps its
-value, so the place depends on where the tool is: such blocks are resolved one by one.
+Input: @ and ^ of LinuxCNC, or the words of the plane under G16 on Fanuc controls, which are a radius and an angle in
+degrees about the program origin. Output: the coordinates. A missing word keeps its value, so the result depends on the
+tool position: such blocks are resolved one by one.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class PolarWords:
     """Replaces polar words by coordinates.
 
     Attributes:
-        words: the coordinates of all blocks; those of polar blocks are set when the tool comes to them.
+        words: the coordinates of all blocks; those of polar blocks are set when the tool gets there.
     """
 
     def __init__(self, blocks: Blocks, modal: Modal, words: PositionWords, faults: BlockDiagnostics) -> None:
@@ -70,12 +70,12 @@ class PolarWords:
             self.words.columns[axis][row] = target
 
     def repeated(self, row: int, here: Array, count: int) -> Array | None:
-        """Places of a block that is repeated under G91: each as far from the one before, in radius and angle.
+        """Positions of a block repeated under G91, with equal increments in radius and angle.
 
         Args:
             row: the block.
             here: (2,) X and Y of the tool.
-            count: how often it is carried out.
+            count: number of repetitions.
 
         Returns:
             (count, 2) places, or None where the block has no polar words.
@@ -101,7 +101,7 @@ class PolarWords:
     def _fault(
         self, row: int, from_tool: bool, by_mode: bool, from_here: bool, known: Array, here: Array
     ) -> tuple[str, int, Found] | None:
-        """What prevents a place from being computed."""
+        """The fault that prevents a position from being computed."""
         letter = POLAR_WORDS[0] if self._blocks.has(POLAR_WORDS[0])[row] else POLAR_WORDS[1]
         name = Word("G", _ON / 10) if by_mode else Word(letter)
         if from_tool:
@@ -116,7 +116,7 @@ class PolarWords:
 
 
 def _place(radius: float, angle: float, here: Array, relative: bool) -> Array:
-    """The (2,) place of a radius and an angle in degrees; those of ``here`` where absent, or that are added to."""
+    """The (2,) place of a radius and an angle in degrees; relative to, or completed from, those of ``here``."""
     before = (math.hypot(*here), math.degrees(math.atan2(here[1], here[0])))
     length, degrees = (
         old if math.isnan(word) else word + (old if relative else 0.0)

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from pkm_post.reading.gcode.cycle_tracker import CycleTracker
 
 _ROTARY = "ABC"
-"""Axes of other machines: G28 with them alone moves no other one."""
+"""Axes of other machines; G28 with only these moves no other axis."""
 _SECOND = 2
-"""P of G30 for the second reference point; those beyond are not known."""
+"""P of G30 for the second reference point; higher ones are unknown."""
 _SPECIAL_CODES = (280, 281, 300, 301, 530, TURN_TO_PLANE, *SETS_OFFSETS)
 
 
@@ -149,7 +149,7 @@ class PositionTracker:
             if was_tilted and not self.offset_codes.offsets.tilted:
                 self.known = np.zeros(3, np.bool_)
         if self.modal.programmed[Group.ONCE][row] == TURN_TO_PLANE:
-            # Rotary axes turn the tool, and the tip goes where a machine brings it that is not this one.
+            # Rotary axes turn the tool, and the tip position then depends on the original machine.
             self.known = np.zeros(3, np.bool_)
 
     def _rebase(self, point: Array) -> None:
@@ -170,7 +170,7 @@ class PositionTracker:
             self.frames.append(frame)
 
     def _lose_place(self, row: int) -> None:
-        """A rapid block that turns the tool: of its tip only coordinates given to the upright tool are known."""
+        """A rapid block that turns the tool: only tip coordinates given while upright are known."""
         words, upright = self.words.at(row), self.lost[row] == OTHERS_LOST
         given = ~np.isnan(words) & upright & (not self.relative[row])
         self.position = np.where(given, words, self.position)
@@ -201,7 +201,7 @@ class PositionTracker:
             self._add(rows, np.array(motions, np.int16), np.array(points), unknown, known)
 
     def _machine_move(self, row: int) -> None:
-        """G53: words in machine coordinates, those of the spindle nose while a length offset is in force.
+        """G53: words in machine coordinates, those of the spindle nose while a length offset is active.
 
         With ``machine_zero`` they are those of the tip, whatever the tool.
         """

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Read: convert the text of a G-code program to motions, in three independent steps.
 
-Input: the content of a file, in its own units. Output: a ``Program`` in mm, rad and mm/s, or all faults. Where a step
-fails, the next ones look at what is left of the program for faults that are not consequences of the first.
+Input: the content of a file, in its own units. Output: a ``Program`` in mm, rad and mm/s, or all faults. If a step
+fails, the later ones check the rest of the program for independent faults.
 """
 
 from __future__ import annotations
@@ -70,9 +70,9 @@ def read(
 def _executed(
     source: Source, options: ReadOptions, limits: ExecutionLimits, is_whole: bool
 ) -> tuple[Source, Blocks, tuple[Diagnostic, ...]]:
-    """Execute a program, with the files of the subprograms that it calls: each is added when it is found missing.
+    """Execute a program with the files of its subprograms; each file is added when found missing.
 
-    What executes is imported for programs with something to execute.
+    The interpreter is only imported for programs that need it.
     """
     if source.blocks.is_plain:
         return source, source.blocks, ()
@@ -117,7 +117,7 @@ def _lengths_without_a_point(text: bytes | str, file: str) -> tuple[Diagnostic, 
 def _all_faults(
     text: bytes | str, file: str, blocks: Blocks, faults: tuple[Diagnostic, ...], options: ReadOptions
 ) -> tuple[Diagnostic, ...]:
-    """The faults of a text that cannot be executed as a whole, and those of its blocks behind them; or its language."""
+    """The faults of a text that cannot be executed, then those of its blocks; or its foreign language."""
     language = foreign_language(with_line_feeds(text))
     if language is not None:
         return (Diagnostic("G213", Place(file, line=language[1]), language[0]),)
@@ -128,7 +128,7 @@ def _all_faults(
 
 
 def _flavour(blocks: Blocks, options: ReadOptions) -> tuple[Flavour, str]:
-    """The flavour as chosen or guessed, and why, for the report."""
+    """The chosen or guessed flavour, with the reason for the report."""
     if options.flavour is not None:
         return FLAVOURS[options.flavour], f"flavour {options.flavour}, as chosen"
     guess = guessed_flavour(blocks)

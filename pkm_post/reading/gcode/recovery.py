@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Recovery: which faults stand behind another one, and which of them are its consequences.
+"""Recovery: filter out faults that are consequences of others.
 
-Input: diagnostics found in a program from which faulty blocks were left out. Output: those that are faults of their
-own: all before the first faulty block, and behind it those that a block shows by itself, whatever came before. Equal
-faults become one with their number and the first of their lines.
+Input: diagnostics of a program without its faulty blocks. Output: the independent ones: all before the first faulty
+block, and after it those that depend only on their own block. Equal faults are merged into one with their count and the
+first of their lines.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from pkm_post.reading.gcode.options import ReadOptions
 _BY_ITSELF = frozenset(["G401", "G402", "G403", "G406", "G411", "G413", "G417", "G422", "G423", "G425", "G427", "G428"])
 """Faults of a block that no other block can cause."""
 _OF_THE_WHOLE = ("G420", "G430", "G436")
-"""Faults of a program as a whole, of which a part says nothing: no motion, no end, and no place."""
+"""Faults of a program as a whole, meaningless for a part: no motion, no end, and no position."""
 _MOST_EQUAL = 3
-"""Equal faults that are reported each by itself."""
+"""Equal faults reported individually."""
 _MOST_OF_A_CODE, _MOST_SHOWN = 10, 5
-"""Faults of a code that are reported each by itself, and how many if there are more."""
+"""Faults of a code reported individually, and the number reported if there are more."""
 _LINES_SHOWN = 5
 _LAST = 1 << 60
-"""Behind every line."""
+"""After every line."""
 _MORE = re.compile(r", and (\d+) more like it$")
 
 
@@ -34,10 +34,10 @@ def own_faults(found: Iterable[Diagnostic], first: int, options: ReadOptions) ->
 
     Args:
         found: in a program without its faulty blocks.
-        first: line of the first of these.
+        first: line of the first faulty block.
         options: read options.
     """
-    # Without a notation of the tool axis a rotary word is a fault wherever it stands.
+    # Without a tool axis notation a rotary word is a fault anywhere.
     by_itself = _BY_ITSELF | ({"G414"} if options.axis_words == "none" else set())
     kept = (fault for fault in found if fault.code not in _OF_THE_WHOLE)
     return tuple(fault for fault in kept if fault.place.line < first or fault.code in by_itself)
@@ -49,7 +49,7 @@ def first_line(found: Iterable[Diagnostic]) -> int:
 
 
 def merged(found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Diagnostics by line, each once; many equal ones, and many of a code, as one with their number."""
+    """Diagnostics by line, each once; many equal ones, and many of a code, merged with their count."""
     equal: dict[tuple[str, str, str], list[Diagnostic]] = {}
     for fault in dict.fromkeys(found):
         equal.setdefault((fault.place.file, fault.code, _MORE.sub("", fault.found)), []).append(fault)
@@ -66,11 +66,11 @@ def _place_of(fault: Diagnostic, files: list[str]) -> tuple[int, int, int]:
 
 
 _Counted = tuple[Diagnostic, int]
-"""A diagnostic, and how many it stands for."""
+"""A diagnostic, and the number of faults it represents."""
 
 
 def _counted(group: list[Diagnostic]) -> list[_Counted]:
-    """Equal faults: each by itself if they are few, otherwise as one."""
+    """Equal faults: individually if there are few, else merged."""
     each = [(fault, 1 + int(more[1]) if (more := _MORE.search(fault.found)) else 1) for fault in group]
     number = sum(count for _, count in each)
     if len(group) == 1 or number <= _MOST_EQUAL:
@@ -80,7 +80,7 @@ def _counted(group: list[Diagnostic]) -> list[_Counted]:
 
 
 def _first_of_many(group: list[_Counted]) -> list[Diagnostic]:
-    """The faults of a code; if they are many the first ones, of which the last says how many more there are."""
+    """The faults of a code; if there are many, the first ones, with the count of the rest in the last."""
     if len(group) <= _MOST_OF_A_CODE:
         return [fault for fault, _ in group]
     shown, rest = [fault for fault, _ in group[:_MOST_SHOWN]], group[_MOST_SHOWN:]

@@ -99,9 +99,9 @@ def resolve(
 def _faults_behind(
     blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics
 ) -> tuple[Diagnostic, ...]:
-    """Faults of the motions of a program, without its faulty blocks, that are not consequences of these.
+    """Independent faults of the motions of a program, from its blocks without faults.
 
-    Nothing if the rest is faulty for want of them, or has no motion.
+    Empty if the rest has no motion, or is faulty only because blocks are missing.
     """
     rest = np.setdiff1d(np.arange(len(blocks)), [*faults.faulty])
     if len(rest) in (0, len(blocks)):
@@ -129,7 +129,7 @@ def _up_to_end(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:
 
 
 def _report_no_motion(blocks: Blocks, first: list[int], known: Array, faults: BlockDiagnostics) -> None:
-    """Report a program without moves, or the first of moves none of which has a known place."""
+    """Report a program without moves, or the first move if none has a known position."""
     if first:
         faults.add("G436", first[0], never_given(known))
     else:
@@ -145,7 +145,7 @@ class BlockStates:
         spindle: (N,) signed spindle speed, 1/min.
         sides: (N,) radius of the 2D compensation, mm.
         axes: (N, 3) unit tool axis in program coordinates.
-        lost: (N,) what is known of the place of the tip after each block, as of ``tool_axes``.
+        lost: (N,) knowledge of the tip position after each block, as in ``tool_axes``.
         normals: (N, 3) unit surface normal likewise, or NaN.
         spins: (N,) rotation of the platform about the tool axis, rad, or NaN.
     """
@@ -227,7 +227,7 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
 
 
 def _check_unknown_positions(motions: Motions, lost: Array, faults: BlockDiagnostics) -> None:
-    """Report cuts to places that are not known again after the tool was turned where its tip is not known."""
+    """Report cuts to positions still unknown after a turn of the tool without tip control."""
     if not lost.any():
         return
     first = int(np.flatnonzero(lost)[0])

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Scaling: G51 and G50 of Fanuc's controls, as words of other size.
+"""Scaling: G51 and G50 of Fanuc controls, applied to the words.
 
 Input: plain blocks with their codes. Output: blocks with scaled words, and G51.1 and G50.1 in place of G51 and G50
-where factors below 0 mirror: all later steps see a program without scaling. A place x becomes c + s (x - c), with the
-centre c and the factor s of its coordinate; distances of G91, I, J and K, and R of arcs are multiplied by s. Offsets
+with negative factors: all later steps see a program without scaling. A coordinate x becomes c + s (x - c), with the
+centre c and the factor s; distances of G91, I, J and K, and R of arcs are multiplied by s. Offsets
 and cutter compensation are not scaled [Fanuc, scaling; B-63944EN-2, 6.9].
 """
 
@@ -26,7 +26,7 @@ _MIRROR, _END_OF_MIRROR = 511, 501
 _AXES, _CENTRE = "XYZ", "IJK"
 _POINT = re.compile(r"([PIJK])[ \t]*[+-]?(\d+(?:\.\d*)?|\.\d+)", re.IGNORECASE)
 _NOT_SCALED = (40, 280, 300, 530)
-"""Codes beside which words keep their size."""
+"""Codes whose blocks are not scaled."""
 
 
 def scaled(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> Blocks:
@@ -87,7 +87,7 @@ def _centre_and_factor(blocks: Blocks, modal: Modal, row: int, faults: BlockDiag
 
 
 def _check(blocks: Blocks, modal: Modal, rows: slice, factor: Array, faults: BlockDiagnostics) -> None:
-    """Report blocks within a stretch whose scaling is not the same on all controls."""
+    """Report blocks within a stretch that controls scale differently."""
     size = np.abs(factor)
     inside = np.zeros(len(blocks), np.bool_)
     inside[rows] = True
@@ -131,7 +131,7 @@ def _scale(words: dict[str, Array], blocks: Blocks, modal: Modal, rows: slice, c
 
 
 def _with_codes(blocks: Blocks, mirrors: dict[int, int]) -> Blocks:
-    """Replace G51 and G50 by the codes of mirror images, or by nothing."""
+    """Replace G51 and G50 by the codes of mirror images, or drop them."""
     at = np.isin(blocks.g, (SCALING, END))
     g = blocks.g.copy()
     g[at] = [mirrors[row] for row in blocks.g_row[at].tolist()]

@@ -26,7 +26,7 @@ from pkm_post.reading.gcode.syntax_faults import SyntaxFaults, readable
 from pkm_post.system import DecimalReader
 
 PIECE = 128 * 1024
-"""Bytes. The columns of a piece fit in the CPU cache: larger and smaller _pieces are both slower."""
+"""Bytes. The columns of a piece fit in the CPU cache: larger and smaller pieces are both slower."""
 
 _SHOWN = 40
 """Characters of a line shown in a message."""
@@ -34,7 +34,7 @@ _SHOWN = 40
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _COMMENT = re.compile(rb"\([^()\n]*\)|;[^\n]*")
 _MESSAGE = re.compile(rb"[(;]\s*(?:(?:MSG|PRINT|DEBUG)\s*,|TOOL\b|T\s*\d)", re.IGNORECASE)
-"""The start of a comment that is kept: a message to the operator, or the description of a tool."""
+"""Start of a comment to keep: an operator message or a tool description."""
 _NOTHING = rb"(?:[ \t\f\v]|\([^()\n]*\))*+"
 _PERCENT = re.compile(_NOTHING + b"%" + _NOTHING + rb"(?:;[^\n]*)?")
 _BLOCK = re.compile(b"^" + _NOTHING + rb"[^\s;%]", re.MULTILINE)
@@ -167,7 +167,7 @@ def _lines_at(offsets: Array, line_start: Array) -> Array:
 def _scanned(
     whole: bytes, part: _Extent, builder: BlocksBuilder, faults: SyntaxFaults, file: str
 ) -> tuple[Blocks, tuple[Diagnostic, ...]]:
-    """The blocks and the faults; report any block after the end of the file as well."""
+    """The blocks and the faults; also report a block after the end of the file."""
     diagnostics = faults.diagnostics()
     blocks = builder.blocks(file, part.closed)
     if part.after >= 0:
@@ -222,7 +222,7 @@ def with_line_feeds(text: bytes | str) -> bytes:
 
 
 def _pieces(text: bytes) -> Iterator[bytes]:
-    """Split a file into _pieces of whole lines of at most ``PIECE`` bytes, or of one longer line.
+    """Split a file into pieces of whole lines of at most ``PIECE`` bytes, or of one longer line.
 
     Args:
         text: the cleaned bytes of a file.

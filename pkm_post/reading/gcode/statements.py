@@ -41,7 +41,7 @@ class WordBlock:
         g: G codes as written, not in tenths.
         m: M codes.
         codes: G codes in tenths that replace words of other dialects.
-        assignments: carried out after all values of the block are computed.
+        assignments: executed after all values of the block are computed.
     """
 
     values: list[tuple[str, Expression]] = field(default_factory=list)
@@ -52,7 +52,7 @@ class WordBlock:
 
     @property
     def cost(self) -> int:
-        """How many operations it takes to execute the block."""
+        """Number of operations to execute the block."""
         values = [*(value for _, value in self.values), *self.g, *self.m, *(value for _, value in self.assignments)]
         targets = [target.number for target, _ in self.assignments if target.number is not None]
         return sum(len(value.steps) for value in (*values, *targets))
@@ -67,7 +67,7 @@ class WordBlock:
             ExecutionFault: a value cannot be computed or is invalid for its word.
         """
         computed_words = {letter: value.value(parameters) for letter, value in self.values}
-        values = {letter: value for letter, value in computed_words.items() if value == value}  # a vacant one is none
+        values = {letter: value for letter, value in computed_words.items() if value == value}  # drops vacant ones
         g = [*self.codes, *(_code("G", code, 10, parameters) for code in self.g)]
         m = [_code("M", code, 1, parameters) for code in self.m]
         computed = [(target.resolved(parameters), value.value(parameters)) for target, value in self.assignments]
@@ -87,7 +87,7 @@ class OWord:
         keyword: in lower case; ``program`` for a bare label.
         label: number or name, or an expression that gives the number at execution.
         values: operands after the keyword.
-        target: of the assignment behind ``then``.
+        target: target of the assignment after ``then``.
     """
 
     keyword: str
@@ -97,7 +97,7 @@ class OWord:
 
     @property
     def cost(self) -> int:
-        """How many operations it takes to execute the block."""
+        """Number of operations to execute the block."""
         label = () if isinstance(self.label, str) else (self.label,)
         return sum(len(value.steps) for value in (*label, *self.values))
 
@@ -114,7 +114,7 @@ class MacroCall:
 
     @property
     def cost(self) -> int:
-        """How many operations it takes to execute the block."""
+        """Number of operations to execute the block."""
         return sum(len(value.steps) for _, value in self.words)
 
 
@@ -126,7 +126,7 @@ def statement_of(tree: Tree[Token], block_delete: bool = False) -> Statement:
 
     Args:
         tree: parse tree of the block.
-        block_delete: whether to skip what follows a ``/`` within the block.
+        block_delete: whether to skip the part after a ``/`` within the block.
 
     Raises:
         ExecutionFault: the block is invalid.
@@ -178,7 +178,7 @@ _ADD: dict[str, Callable[[WordBlock, Tree[Token]], None]] = {
 
 
 MACRO_JUMPS = ("goto", "macro while", "macro end")
-"""Keywords of the jumps of Fanuc's macros, whose labels are sequence numbers and numbers of loops."""
+"""Keywords of the jumps of Fanuc macros, whose labels are sequence numbers and numbers of loops."""
 
 
 def _macro_of(tree: Tree[Token]) -> OWord:

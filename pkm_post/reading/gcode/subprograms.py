@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Subprograms in other files: found by the number or name of a call, and added to the program that calls them.
 
-Input: a call whose subprogram is missing, and folders. Output: the program with the blocks of the file behind its own,
-lines counted on, so that all later steps see one program. On a control of Fanuc's kind M98 P1234 calls O1234, in a file
-O1234.nc or the like; on LinuxCNC ``o<name> call`` looks for name.ngc in the folder of the program and in those of
+Input: a call whose subprogram is missing, and folders. Output: the program with the blocks of the file appended and
+lines numbered on, so that all later steps see one program. On Fanuc-style controls M98 P1234 calls O1234, in a file
+O1234.nc or similar; on LinuxCNC ``o<name> call`` searches for name.ngc in the folder of the program and in those of
 ``SUBROUTINE_PATH`` [LinuxCNC, O codes, calling files].
 """
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _SUFFIXES = r"\.(?:ngc|nc|cnc|tap|gcode|mpf|spf|sub|eia|iso|txt)"
 _BYTES = 256 * 1024 * 1024
-"""The longest file that is read."""
+"""Size of the largest file to read."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Source:
 
     Attributes:
         blocks: of all files.
-        text: of all files, lines ended by line feeds; that of the program as it is while it is alone.
+        text: of all files, lines ended by line feeds; the unchanged text of a program without files.
         notes: the files, for the report.
         warnings: of scanning them.
     """
@@ -50,7 +50,7 @@ class Source:
         """Add the file of a missing subprogram.
 
         Returns:
-            This source with the file, or as it is where there is none; and the faults of finding and scanning it.
+            This source with the file, or unchanged if there is none; and the faults of finding and scanning it.
         """
         label, paths = _files_of(missing.labels, folders)
         if not paths or any(file.label == label for file in self.blocks.files):
@@ -80,7 +80,7 @@ class Source:
 
 
 def _files_of(labels: Iterable[str], folders: Sequence[Path]) -> tuple[str, list[Path]]:
-    """The first label that has files in a folder, and these."""
+    """The first label with files in a folder, and these files."""
     for label in labels:
         number = f"[O:]?0*{int(label)}" if label.isdigit() else re.escape(label)
         name = re.compile(f"{number}(?:{_SUFFIXES})?", re.IGNORECASE)
@@ -92,7 +92,7 @@ def _files_of(labels: Iterable[str], folders: Sequence[Path]) -> tuple[str, list
 
 
 def _listed(folder: Path) -> list[Path]:
-    """The entries of a folder; none where it cannot be read: then the call has no subprogram."""
+    """The entries of a folder; none if it cannot be read: then the call has no subprogram."""
     try:
         return sorted(folder.iterdir())
     except OSError:
@@ -100,7 +100,7 @@ def _listed(folder: Path) -> list[Path]:
 
 
 def _joined(blocks: Blocks, more: Blocks, file: SubprogramFile) -> Blocks:
-    """Blocks with those of a file behind them, and an empty row between."""
+    """Append the blocks of a file, with an empty row between."""
     rows = file.row + 1
 
     def column(one: Array, between: float, other: Array) -> Array:
@@ -123,7 +123,7 @@ def _joined(blocks: Blocks, more: Blocks, file: SubprogramFile) -> Blocks:
 
 
 def with_places(found: Iterable[Diagnostic], files: tuple[SubprogramFile, ...]) -> tuple[Diagnostic, ...]:
-    """Diagnostics with the file and the line there, in place of the line of all files together."""
+    """Diagnostics with file and line, in place of the line number across all files."""
     return tuple(_with_place(fault, files) for fault in found)
 
 
@@ -135,7 +135,7 @@ def _with_place(fault: Diagnostic, files: tuple[SubprogramFile, ...]) -> Diagnos
 
 
 def with_operations(program: Program, files: tuple[SubprogramFile, ...]) -> Program:
-    """A program whose rows name their file as the operation, and count lines within it."""
+    """Set the file as the operation of its rows, with line numbers within the file."""
     if not files:
         return program
     before = np.array([0, *(file.before for file in files)])

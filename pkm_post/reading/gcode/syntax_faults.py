@@ -2,7 +2,7 @@
 """Syntax faults: turn lark errors into readable diagnostics.
 
 Input: the bytes of a line and lark's report of unexpected input. Output: a lexical fault (G1xx: an invalid character
-or number) or a syntax fault (G2xx), with its location, what was found and what was expected, in words.
+or number) or a syntax fault (G2xx), with its location, and the found and the expected text.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from lark import UnexpectedInput, UnexpectedToken
 
 MOST_SHAPES = 100
-"""Faulty lines that differ in more than their numbers whose faults are explained; the others are only counted."""
+"""Faulty line shapes that are explained; further ones are only counted."""
 MOST_OF_A_SHAPE = 6
-"""Lines of one shape whose fault is explained each by itself, since that takes lark time; the others are counted with
-it. One more than the lines that a merged fault names, so that it says when there are others."""
+"""Lines of one shape explained individually, since that takes lark time; the rest are counted. One more than a merged
+fault names, so that it states whether there are others."""
 
 LONGEST_TO_TRY = 200
 """Characters. To list the acceptable tokens, lark before 1.2 copies its parser state recursively."""
@@ -45,7 +45,7 @@ EXPECTED: dict[str, tuple[str, ...]] = {
     "a keyword such as sub, call, if or while": ("O_PLAIN", "O_CONDITION", "O_RESULT", "O_CALL"),
     "the end of the block": ("$END", "<END-OF-FILE>"),
 }
-"""The terminals of the grammar in words, in reporting order."""
+"""Descriptions of the terminals of the grammar, in reporting order."""
 
 _COMMENT = re.compile(r"\([^()]*\)|;.*")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
@@ -54,7 +54,7 @@ _NUMERIC = "+-.0123456789"
 
 
 class SyntaxFaults:
-    """The faults of a file, collected in line order; lines that differ in their numbers alone have one shape."""
+    """The faults of a file, collected in line order; lines that differ only in their numbers have one shape."""
 
     def __init__(self, file: str) -> None:
         self._file = file
@@ -85,7 +85,7 @@ class SyntaxFaults:
         self._log.add(Diagnostic(fault.code, place, fault.found), shape)
 
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics of the file; the last one of a shape says how many more there are."""
+        """The diagnostics of the file; the last one of a shape states the count of the rest."""
         rest = [Diagnostic("G199", Place(self._file), f"and {self._others} more")] if self._others else []
         return (*self._log.in_order(lambda fault: (fault.place.line, fault.place.column)), *rest)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""System variables: the tool position and the modal codes that the blocks executed so far lead to.
+"""System variables: the tool position and the modal codes after the blocks executed so far.
 
 Input: the executed blocks. Output: values of the variables that a program can read, in the program's units: #5420 to
 #5422 of LinuxCNC, #5001 to #5043 and #4001 to #4130 of Fanuc controls. The blocks are resolved by the same functions as
@@ -38,17 +38,17 @@ _GROUPS = {
     4010: Group.RETRACT,
     4014: Group.SYSTEM,
 }
-"""Variables with the codes of the block before [Fanuc, custom macro, modal information]."""
+"""Variables with the codes of the previous block [Fanuc, custom macro, modal information]."""
 _WORDS = {4107: "D", 4109: "F", 4111: "H", 4119: "S", 4120: "T"}
 """Variables with the last words."""
 _OFFSET_INCLUDED = 5021
-"""From this number on coordinates are those of the spindle nose where an offset is in force."""
+"""From this number on, coordinates refer to the spindle nose while an offset is active."""
 _NO_OFFSETS = {Group.LENGTH: 490, Group.SIDE: 400}
 
 
 @dataclass(frozen=True)
 class ExecutedBlocks:
-    """The blocks executed so far, and the options that they are read with."""
+    """The blocks executed so far, and their read options."""
 
     blocks: Blocks
     options: ReadOptions
@@ -57,7 +57,7 @@ class ExecutedBlocks:
         """A coordinate of the tool in the work frame of the program.
 
         Raises:
-            ExecutionFault: it is not known.
+            ExecutionFault: the coordinate is unknown.
         """
         position, known, modal, _ = self._state_for(number)
         if not known[axis] or (number in range(_OFFSET_INCLUDED, 5100) and self._has_offsets(modal)):
@@ -68,7 +68,7 @@ class ExecutedBlocks:
         """A coordinate of the tool from the zero of the machine.
 
         Raises:
-            ExecutionFault: it is not known.
+            ExecutionFault: the coordinate is unknown.
         """
         _, known, modal, work = self._state_for(number)
         zero = self.options.machine_zero
@@ -106,7 +106,7 @@ class ExecutedBlocks:
 
     @cached_property
     def _state(self) -> tuple[Array, Array, Modal, Array]:
-        """Coordinates of the tool, which are known, the codes, and the place in {C}."""
+        """Coordinates of the tool, a mask of the known ones, the codes, and the position in {C}."""
         options = self.options
         flavour = with_functions(FLAVOURS[options.flavour or RS274.name], options.functions)
         flavour = with_threads(flavour, options.spindle_axis)

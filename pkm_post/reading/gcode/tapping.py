@@ -21,7 +21,7 @@ from pkm_post.reading.gcode.tools import modal_word
 from pkm_post.reading.threads import without_idle_starts
 
 _DECIMALS = 9
-"""Of a lead, mm: those of a product and a quotient are not the program's."""
+"""Decimals of a lead in mm, to remove rounding of the arithmetic."""
 _BY_HAND = {1.0: 840, -1.0: 740}
 
 
@@ -31,7 +31,7 @@ def with_leads(
     """The events of a program with the leads of its threads.
 
     Args:
-        events: a thread has its hand, 1 or -1, as its lead.
+        events: threads have their hand, 1 or -1, in place of the lead.
         blocks: the program.
         motions: of the program.
         feed: (n,) mm/s.

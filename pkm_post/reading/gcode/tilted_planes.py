@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tilted planes: the blocks of a program in a plane of G68.2, to which G53.1 turns the tool.
 
-Input: plain blocks with their codes. Output: faults where it is not clear how the tool stands. On a control the tool
-keeps its direction from G68.2 to G53.1, and from G69 until words for the rotary axes turn it back; X, Y and Z are not
-those of its tip meanwhile [Fanuc, tilted working plane command]. Here cuts are refused there, and where the turning
-brings the tip is not known: the next places with X, Y and Z are those of the tip again.
+Input: plain blocks with their codes. Output: faults where the tool orientation is ambiguous. A control keeps the tool
+direction from G68.2 to G53.1, and from G69 until rotary words turn it back; meanwhile X, Y and Z are not those of the
+tip [Fanuc, tilted working plane command]. Here cuts are refused meanwhile, and the tip position after the turn is
+unknown: the next positions with X, Y and Z are those of the tip again.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from pkm_post.reading.gcode.work_offsets import SETS_OFFSETS, TILTED_PLANE
 
 TURN_TO_PLANE, _END = 531, 690
 _UPRIGHT, _CHOSEN, _TURNED, _LEFT = range(4)
-"""The tool is upright; a plane is chosen, the tool is turned to it, it has been left with the tool turned."""
+"""The tool is upright; a plane is selected; the tool is turned to it; the plane is cancelled with the tool turned."""
 _TILTED = 1e-9
 
 
 def check_tilted_planes(blocks: Blocks, modal: Modal, axes: Array, faults: BlockDiagnostics) -> None:
-    """Report blocks that mean something else on a control than the program with an upright or a turned tool.
+    """Report blocks whose meaning on a control depends on the tool orientation.
 
     Args:
         blocks: plain blocks.
         modal: their codes.
-        axes: (N, 3) tool axis in program coordinates, by words of their own.
+        axes: (N, 3) tool axis in program coordinates, from their own words.
         faults: collects the faults.
     """
     if TILTED_PLANE not in blocks.g:
@@ -66,13 +66,13 @@ _REFUSED = {
     3.0: "a plane by two vectors",
     4.0: "a plane by projection angles",
 }
-"""By P [Fanuc, tilted working plane command; Mazak]."""
+"""Refused kinds by P [Fanuc, tilted working plane command; Mazak]."""
 
 
 def _check_words(blocks: Blocks, row: int, faults: BlockDiagnostics) -> None:
-    """Report words of G68.2 that are missing or of no use, and planes of another kind than Euler's angles.
+    """Report missing or useless words of G68.2, and planes not given by Euler angles.
 
-    Roll, pitch and yaw stand in the order of Q; one of them alone is a turn about its axis, in any order.
+    Roll, pitch and yaw apply in the order of Q; a single one is a turn about its axis, in any order.
     """
     words = {letter: float(blocks.word(letter)[row]) for letter in "XYZIJKPQR"}
     given = {letter for letter, value in words.items() if value == value}
@@ -90,7 +90,7 @@ def _check_words(blocks: Blocks, row: int, faults: BlockDiagnostics) -> None:
 
 
 def check_cuts_from_turns(blocks: Blocks, motions: Motions, faults: BlockDiagnostics) -> None:
-    """Report cuts that begin where the tip is not known since the tool was turned to a plane."""
+    """Report cuts that start at an unknown tip position after the tool was turned to a plane."""
     turns = blocks.g_row[blocks.g == TURN_TO_PLANE]
     if not len(turns):
         return
@@ -101,7 +101,7 @@ def check_cuts_from_turns(blocks: Blocks, motions: Motions, faults: BlockDiagnos
 
 
 def _states(blocks: Blocks) -> Array:
-    """How the tool stands in each block, (N,): its codes act before its motion."""
+    """The tool state in each block, (N,); codes act before the motion."""
     codes = np.isin(blocks.g, (TILTED_PLANE, TURN_TO_PLANE, _END))
     upright = np.flatnonzero(np.any([blocks.word(letter) == 0 for letter in "ABC"], axis=0))
     rows = np.concatenate([upright, blocks.g_row[codes]])
@@ -121,7 +121,7 @@ _AFTER = {
     (_TURNED, _END): _LEFT,
     (_LEFT, 0): _UPRIGHT,
 }
-"""By state and code, 0 for rotary words of 0. A plane after another one begins with the tool turned to that."""
+"""The next state by state and code, 0 for rotary words of 0. A further plane starts from the tool in this one."""
 
 
 def _report(faults: BlockDiagnostics, rows: Array, what: str) -> None:

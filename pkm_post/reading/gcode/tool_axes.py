@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Axes: convert tool axis words to unit vectors.
+"""Tool axes: convert tool axis words to unit vectors.
 
 Input: columns of I J K after G43.5, of its equivalents on other controls, or of rotary words in degrees under a
 declared kinematic. Output: unit tool axes in program coordinates, from the tip towards the spindle, and unit surface
@@ -32,7 +32,7 @@ _LENGTH_ERROR = 1e-3
 
 
 def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> tuple[Array, Array]:
-    """Tool axes, and blocks that turn the tool where X, Y and Z are places of slides rather than of the tip.
+    """Tool axes, and blocks that turn the tool while X, Y and Z are slide positions rather than the tip.
 
     Returns:
         (N, 3) unit tool axis at the end of each block, and (N,) ``KEPT``, ``OTHERS_LOST`` or ``LOST``.
@@ -55,7 +55,7 @@ def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockD
 
 
 def _tilted(axes: Array) -> Array:
-    """Whether each tool axis is other than upright, (N,)."""
+    """Whether each tool axis is tilted, (N,)."""
     tilted: Array = (np.abs(axes[:, 0]) > _TILTED) | (np.abs(axes[:, 1]) > _TILTED) | (axes[:, 2] < 0)
     return tilted
 
@@ -65,14 +65,14 @@ def _shown(axis: Array) -> str:
 
 
 def _unknown_positions(modal: Modal, axes: Array, given: Array, idle: Array, faults: BlockDiagnostics) -> Array:
-    """What rapid moves without tip control leave known, (N,): where they tilt the tool, or bring it upright again.
+    """Knowledge of the tip position after rapid moves without tip control that tilt the tool or bring it upright, (N,).
 
-    A head turns about its own axes then, and the tip goes where a machine brings it that is not this one. The next
-    places with tip control are those of the tip again.
+    A head then turns about its own axes, and the tip position depends on the original machine. The next positions with
+    tip control are those of the tip again.
     """
     tilted = _tilted(axes)
     before = np.append(False, tilted[:-1])[: len(tilted)]
-    # A tool that was tilted with tip control and moves on without it is another fault: its place was known.
+    # A tool tilted with tip control that continues without it is another fault: its position was known.
     words = np.flatnonzero(given)
     by_idle = forward_fill(words, idle[words].astype(np.uint8), 0, len(given)) == 1
     turns = idle & (modal.active[Group.MOTION] == 0) & (modal.programmed[Group.ONCE] == NONE) & by_idle

@@ -32,7 +32,7 @@ TIP_CONTROL = (434, 435)
 
 TILTED_PLANE = 682
 EULER, ABOUT_AXES = (170, 190, 170), (190, 180, 170)
-"""Planes that I, J and K of G68.2 turn in: about Z, X and Z, and with P1 about X, Y and Z."""
+"""Planes of the rotations I, J and K of G68.2: about Z, X and Z, and with P1 about X, Y and Z."""
 """Its Z is the tool axis from G53.1 on."""
 
 IN_ORDER = (Group.LENGTH, Group.SYSTEM, Group.ROTATION, Group.MIRROR)
@@ -122,7 +122,7 @@ class _Offsets:
 
 
 def _code_of(name: str) -> int:
-    """The code of a work offset: 540 of G54, and that of G54.1P7."""
+    """The code of a work offset, such as 540 for G54; also of G54.1P7."""
     number, _, further = name.removeprefix("G").partition("P")
     return FURTHER_OFFSET - int(further) if further else round(10 * float(number))
 
@@ -235,7 +235,7 @@ class OffsetCodes:
         offsets.system = code
 
     def _take_those_of_the_machine(self) -> None:
-        """A second work offset: take those of the machine file, where the first one is the {C} that they refer to."""
+        """On a second work offset, take those of the machine file, if the first one is the {C} they refer to."""
         offsets, machine = self.offsets, self._options.machine_offsets
         chosen = {_code_of(name) for name, pose in machine.items() if not any(pose)}
         if offsets.system in chosen and not self._options.work_offsets and {*offsets.origins} <= {offsets.system}:
@@ -259,7 +259,7 @@ class OffsetCodes:
     def _tilt(self, row: int) -> None:
         """G68.2: X Y Z are the origin of the plane, I J K the Euler angles about Z, the new X and the new Z.
 
-        With P1 they are those about X, Y and Z, of which one is not 0 alone.
+        With P1 they are angles about X, Y and Z, at most one of them nonzero.
         """
         offsets = self.offsets
         if offsets.length is not None and not np.allclose(offsets.length, (0.0, 0.0, offsets.own_length)):

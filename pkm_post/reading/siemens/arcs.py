@@ -3,7 +3,7 @@
 
 Input: columns of points and words in coordinates of the program, mm. Output: centres at the height of the start
 points, and unit axes of right-handed rotation. G2 and G3 share their geometry and its limits with G-code; AR= is the
-opening angle, CIP goes through I1= J1= K1=, CT leaves the motion before it along its tangent [SiemensNC, circular
+opening angle, CIP goes through I1= J1= K1=, CT continues along the tangent of the previous motion [SiemensNC, circular
 interpolation].
 """
 
@@ -24,8 +24,8 @@ from pkm_post.reading.siemens.state import CLOCKWISE
 CENTRE = ("I", "J", "K")
 POINT = ("I1", "J1", "K1")
 _STRAIGHT = 1e-9
-"""Sine of the angle between chord and tangent below which CT is a line; and share of a chord that three points on
-a line are from it."""
+"""Sine of the angle between chord and tangent below which CT is a line; and largest distance of three points on a line
+from it, as a share of the chord."""
 
 Words = Mapping[str, Array]
 Geometry = tuple[Array, Array]
@@ -35,7 +35,7 @@ Geometry = tuple[Array, Array]
 def plane_arcs(
     motion: Array, start: Array, end: Array, words: Words, absolute: Array, plane: int, unit: float
 ) -> tuple[Array, Array, list[tuple[int, str, str]]]:
-    """Centres and axes of G2 and G3, and for each faulty one its index, the code and what was found.
+    """Centres and axes of G2 and G3, and for each faulty one its index, code and finding.
 
     Args:
         motion: (n,) motion codes.
@@ -85,7 +85,7 @@ def by_opening_angle(start: Array, end: Array, centre: Array, degrees: float, pl
         motion: code of the motion.
 
     Raises:
-        BlockFault: there is no such arc.
+        BlockFault: the arc does not exist.
     """
     first, second, _ = PLANES[plane]
     if not 0 < degrees < 360:  # noqa: PLR2004 - a full turn

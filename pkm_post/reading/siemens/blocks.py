@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Blocks: one block with its values computed, and the notes that a program leaves in the report.
+"""Blocks: one block with its values computed, and the notes of a program for the report.
 
 Input: compiled items and the variables of the running program. Output: codes, words, names and calls.
 """
@@ -31,10 +31,10 @@ class Call:
 
         Args:
             index: of the argument, from 0.
-            default: its value where it is left out; without one it must be there.
+            default: its value if omitted; without one the argument is required.
 
         Raises:
-            BlockFault: it is a text, or left out.
+            BlockFault: it is a text, or missing.
         """
         value = self.arguments[index] if self.arguments is not None and index < len(self.arguments) else None
         if value is None and default is None:
@@ -44,7 +44,7 @@ class Call:
         return float(default if value is None and default is not None else value or 0.0)
 
     def gives(self, index: int) -> bool:
-        """Whether an argument is there."""
+        """Whether an argument is given."""
         return self.arguments is not None and index < len(self.arguments) and self.arguments[index] is not None
 
 
@@ -57,9 +57,9 @@ class Block:
         g: G codes.
         m: M codes.
         words: values of all other words.
-        modes: by word, AC or IC, and other ways to an angle.
+        modes: by word, AC or IC, and directions to an angle.
         names: names and calls.
-        columns: by word, where it stands.
+        columns: column by word.
     """
 
     row: int
@@ -83,10 +83,10 @@ class Block:
 
 
 def block_of(row: int, items: Sequence[Item], variables: Variables) -> Block:
-    """Compute a block; its assignments are carried out on the way, from left to right.
+    """Compute a block; its assignments are executed from left to right.
 
     Raises:
-        BlockFault: a value cannot be computed, or a word stands twice.
+        BlockFault: a value cannot be computed, or a word occurs twice.
     """
     block = Block(row)
     for item in items:
@@ -102,7 +102,7 @@ def block_of(row: int, items: Sequence[Item], variables: Variables) -> Block:
 
 
 def computed(value: Expression | None, variables: Variables) -> Value | None:
-    """The value of an expression that may be left out."""
+    """The value of an optional expression."""
     return None if value is None else value.value(variables)
 
 
@@ -139,7 +139,7 @@ def _add_word(block: Block, word: Word, variables: Variables) -> None:
 
 
 class Notes:
-    """What is read and has no effect, by name, with the first lines."""
+    """Accepted items without effect, by name, with the first lines."""
 
     def __init__(self) -> None:
         self._rows: dict[str, list[int]] = {}

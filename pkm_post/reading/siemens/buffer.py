@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Buffer: blocks of moves between two changes of the modal state, gathered to be computed as columns.
+"""Buffer: blocks of moves between two changes of the modal state, collected for column arithmetic.
 
-Input: ranges of plain lines, and computed blocks. Output: ``Columns`` of all of them in their order. A loop that
+Input: ranges of plain lines, and computed blocks. Output: ``Columns`` of all of them in order. A loop that
 computes its points costs a list entry for each word, and no array.
 """
 
@@ -51,7 +51,7 @@ class Columns:
 
 @dataclass
 class _Computed:
-    """Computed blocks, one after the other."""
+    """Computed blocks in order."""
 
     row: list[int] = field(default_factory=list)
     motion: list[int] = field(default_factory=list)
@@ -110,7 +110,7 @@ class Buffer:
                 values.append(value)
 
     def taken(self) -> Columns | None:
-        """All blocks in their order, which leave the buffer; None if there are none."""
+        """Take all blocks in order out of the buffer; None if there are none."""
         parts = [part.columns() if isinstance(part, _Computed) else part for part in self._parts]
         self._parts = []
         return _joined(parts) if parts else None
@@ -138,5 +138,5 @@ def _concatenated(columns: list[Array | None], parts: list[Columns]) -> Array:
 
 
 def motion_given(motion: Array) -> Array:
-    """The blocks with a motion code of their own, as indices."""
+    """Indices of the blocks with their own motion code."""
     return np.flatnonzero(motion != NO_MOTION)

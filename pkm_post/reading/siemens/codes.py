@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Codes: the G codes and names of Siemens's language that are read, noted or refused, with what they mean here.
+"""Codes: the G codes and names of Siemens's language that are read, noted or refused, with their meaning here.
 
 Tables only. Sources: [SiemensNC], lists of G commands and of predefined procedures; a section in brackets otherwise.
 """
@@ -25,12 +25,12 @@ PLANES = {17: 170, 18: 180, 19: 190}
 FEED_MODES = (93, 94, 95)
 SIDES = {40: 0.0, 41: 1.0, 42: -1.0}
 UNITS: dict[int, tuple[float, float | None]] = {70: (25.4, None), 71: (1.0, None), 700: (25.4, 25.4), 710: (1.0, 1.0)}
-"""mm for each unit of lengths and of feeds; None leaves that of feeds [SiemensNC, inch or metric dimensions]."""
+"""mm for each unit of lengths and of feeds; None keeps that of feeds [SiemensNC, inch or metric dimensions]."""
 WORK_OFFSETS = frozenset({500, 54, 55, 56, 57, *range(505, 600)})
 SUPPRESSED = frozenset({53, 153})
 """Codes that, like SUPA, suppress offsets in their block."""
 SMOOTHING = (642, 643, 645)
-"""Rounding with the contour tolerance CTOL [SiemensNC, CTOL]; G641 goes by a distance, G644 by the dynamics."""
+"""Rounding with the contour tolerance CTOL [SiemensNC, CTOL]; G641 uses a distance, G644 the dynamics."""
 CONTINUOUS = (64, 641, *SMOOTHING, 644)
 EXACT_STOP, EXACT_STOP_ONCE = 60, 9
 
@@ -90,10 +90,10 @@ _SILENT = """
     COMPOF TCOFR NEWCONF CLEARM GETT ACTBLOCNO
 """
 SILENT = frozenset(_SILENT.split())
-"""Names that change nothing on the way of the tool, on no control."""
+"""Names that do not affect the tool path on any control."""
 
 NOTED_ELEMENTS = frozenset({*NOTED, *SILENT})
-"""Names whose arguments or elements are passed over."""
+"""Names whose arguments or elements are skipped."""
 
 _MILLING = "milling cycles; let the CAM system write the moves"
 REFUSED = _reasons({
@@ -123,7 +123,7 @@ REFUSED = _reasons({
     " POCKET1 POCKET2 POCKET3 POCKET4 SLOT1 SLOT2 LONGHOLE",
     "this pattern of holes; HOLES1 and HOLES2 are read": "CYCLE801 CYCLE802 CYCLE60",
 })  # fmt: skip
-"""Names that change the motion and are not read, with the reason."""
+"""Unsupported names that change the motion, with the reason."""
 
 TAPPING = frozenset({"CYCLE840", "CYCLE97", "CYCLE98", "CYCLE99"})
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Diagnostics of Siemens programs: collected by row, and located in their lines.
 
-Input: codes and what was found, by row. Output: diagnostics in line order.
+Input: codes and findings, by row. Output: diagnostics in line order.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import replace
 from pkm_post.model import Diagnostic, DiagnosticLog, Place
 
 _MOST_REPORTED = 50
-"""Faults of a kind that are reported with their own place."""
+"""Most faults of a kind reported individually."""
 
 
 _NAME = re.compile(r"[A-Z$_][A-Z0-9$_]*")
@@ -21,10 +21,10 @@ _FIRST_WORD = re.compile(r"[\s/0-9]*(?:N[0-9]+)?\s*(?=\S)", re.IGNORECASE)
 
 
 def with_column(fault: Diagnostic, text: str) -> Diagnostic:
-    """A diagnostic of a line with its column: that of the word which it names, of the arc, or of the first word.
+    """A diagnostic of a line with its column: that of the word it names, of the arc, or of the first word.
 
     Args:
-        fault: without a column where only the line was known.
+        fault: without a column if only the line is known.
         text: of the line, without comments.
     """
     if fault.place.column or not fault.place.line or not text.strip():
@@ -39,11 +39,11 @@ def with_column(fault: Diagnostic, text: str) -> Diagnostic:
 
 
 class BlockFault(Exception):  # noqa: N818 - a fault of the input
-    """A block that cannot be carried out.
+    """A block that cannot be executed.
 
     Attributes:
         code: of the diagnostic.
-        found: what was found.
+        found: the finding.
         column: in the block, from 1; 0 for the whole block.
     """
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Drilling: CYCLE81, 82, 83, 84, 85 and 89 at the place of the tool, and rows and circles of holes.
+"""Drilling: CYCLE81, 82, 83, 84, 85 and 89 at the tool position, and rows and circles of holes.
 
-Input: calls with their arguments, in the unit in force. Output: moves and dwells [SiemensCycles, drilling cycles]. All
-come from RFP + SDIS and go back to RTP; the depth is DP, or RFP - DPR where DPR is given. Motion code and feed are as
-before behind a cycle.
+Input: calls with their arguments, in the active unit. Output: moves and dwells [SiemensCycles, drilling cycles]. All
+start at RFP + SDIS and return to RTP; the depth is DP, or RFP - DPR if DPR is given. Motion code and feed are restored
+after a cycle.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ from pkm_post.reading.siemens.tapping import MODES, check_tapping, tap
 
 _ALONG = 1 - 1e-12
 _CHIP_RETRACT = 1.0
-"""mm that CYCLE83 goes back to break a chip, where _VRT is 0 [SiemensCycles, CYCLE83]."""
+"""Retract of CYCLE83 to break a chip if _VRT is 0, mm [SiemensCycles, CYCLE83]."""
 _LEAST_GAP, _MOST_GAP, _GAP_PER_DEPTH, _SHALLOW = 0.6, 7.0, 50.0, 30.0
-"""mm that CYCLE83 stops before the depth reached: 0.6 up to 30 mm of depth, then a fiftieth, up to 7."""
+"""Distance of CYCLE83 before the depth reached, mm: 0.6 up to 30 mm of depth, then a fiftieth, up to 7."""
 _INVERSE_TIME = 93
 
 
 def drill(machine: SiemensMachine, row: int, call: Call) -> None:
-    """Carry out a drilling cycle at the place of the tool.
+    """Execute a drilling cycle at the tool position.
 
     Raises:
-        BlockFault: its arguments have no meaning.
+        BlockFault: its arguments are invalid.
     """
     check_tapping(machine, call)
     state = machine.state
@@ -63,7 +63,7 @@ def drill(machine: SiemensMachine, row: int, call: Call) -> None:
 
 
 def _checked_modes(machine: SiemensMachine, call: Call, first: int) -> bool:
-    """Check _GMODE, _DMODE and _AMODE behind the arguments of a cycle; whether dwells are in turns."""
+    """Check _GMODE, _DMODE and _AMODE after the arguments of a cycle; return whether dwells are in turns."""
     if call.arguments is not None and len(call.arguments) > first + 3:
         raise BlockFault("G418", f"{call.name} with {len(call.arguments)} arguments", call.column)
     geometry, plane, alternative = (int(call.number(first + place, 0.0)) for place in range(3))
@@ -78,7 +78,7 @@ def _checked_modes(machine: SiemensMachine, call: Call, first: int) -> bool:
 
 
 def _hole(call: Call, modes: int) -> Hole:
-    """The heights, of which _AMODE says whether the depth is absolute or relative."""
+    """The heights; _AMODE defines whether the depth is absolute or relative."""
     retract, reference, clearance = call.number(0), call.number(1), abs(call.number(2, 0.0))
     alternative = int(call.number(modes + 2, 0.0)) % 10
     if alternative != 1 and call.gives(4) and (call.number(4) or not call.gives(3) or alternative):
@@ -116,7 +116,7 @@ def _bore(one: Drill, hole: Hole, in_turns: bool) -> None:
 
 
 def _depths(call: Call, hole: Hole) -> Iterator[float]:
-    """The depths of CYCLE83: the first one, then strokes that grow smaller by DAM down to DAM, the last two alike."""
+    """The depths of CYCLE83: the first one, then strokes decreasing by DAM down to DAM, the last two equal."""
     amount = call.number(7, 0.0)
     first = _first_depth(call, hole)
     stroke, depth = hole.reference - first, first
@@ -178,10 +178,10 @@ PATTERNS = ("HOLES1", "HOLES2")
 
 
 def holes(machine: SiemensMachine, row: int, call: Call) -> None:
-    """Carry out the modal cycle at the holes of a pattern.
+    """Execute the modal cycle at the holes of a pattern.
 
     Raises:
-        BlockFault: no cycle is modal, or the arguments have no meaning.
+        BlockFault: no cycle is modal, or the arguments are invalid.
     """
     if machine.modal_call is None:
         raise BlockFault("G418", f"{call.name} without MCALL of a drilling cycle before it", call.column)
@@ -203,7 +203,7 @@ def _count(call: Call, index: int) -> int:
 
 
 def _row(call: Call, here: Array) -> Array:
-    """HOLES1(SPCA, SPCO, STA1, FDIS, DBH, NUM), from the end that is nearer to the tool, (n, 2)."""
+    """HOLES1(SPCA, SPCO, STA1, FDIS, DBH, NUM), from the end nearer to the tool, (n, 2)."""
     angle = math.radians(call.number(2, 0.0))
     along = call.number(3, 0.0) + call.number(4, 0.0) * np.arange(_count(call, 5))
     places = np.array([call.number(0), call.number(1)]) + along[:, None] * [math.cos(angle), math.sin(angle)]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Execution: carries out computed blocks, one after the other.
+"""Execution: execute computed blocks in sequence.
 
-Input: blocks in the order of execution. Output: what they do to the machine. Within a block come first the modal
-codes, then tool, spindle and coolant, a dwell, the motion, and a stop at last.
+Input: blocks in the order of execution. Output: their actions on the machine. Within a block the order is: modal codes,
+tool, spindle and coolant, dwell, motion, stop.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _SUPA = "SUPA"
 
 
 def run_lines(machine: SiemensMachine, first: int, stop: int) -> None:
-    """Carry out the plain lines of a range of rows."""
+    """Execute the plain lines of a range of rows."""
     if machine.modal_call is None:
         machine.path.buffer.add_lines(first, stop)
         return
@@ -54,10 +54,10 @@ def run_lines(machine: SiemensMachine, first: int, stop: int) -> None:
 
 
 def carry_out(machine: SiemensMachine, block: Block) -> None:
-    """Carry out a block.
+    """Execute a block.
 
     Raises:
-        BlockFault: it has no meaning here.
+        BlockFault: it is not supported.
     """
     for name, value in block.words.items():
         if not isinstance(value, str) and abs(value) > LARGEST:
@@ -76,14 +76,14 @@ def carry_out(machine: SiemensMachine, block: Block) -> None:
 
 
 def _refuse_others(block: Block, statement: Call) -> None:
-    """Frames, cycles and the like have a block of their own: words of frames and the cycle of MCALL belong to them."""
+    """Refuse other items in blocks of frames, cycles and the like, except words of frames and the cycle of MCALL."""
     names = len(block.names) > (2 if statement.name == "MCALL" else 1)
     if names or block.g or block.m or (block.words and statement.name not in FRAMES):
         raise BlockFault("G601", f"{statement.name} beside other words", statement.column)
 
 
 def _is_plain(machine: SiemensMachine, block: Block) -> bool:
-    """Whether a block has only words of a move, which wait in the buffer."""
+    """Whether a block has only words of a move, which go to the buffer."""
     return (
         not block.m
         and block.words.keys() <= BUFFERED
@@ -103,7 +103,7 @@ def _add_motion(machine: SiemensMachine, block: Block) -> None:
 
 
 def _call_modal(machine: SiemensMachine, row: int, has_place: bool) -> None:
-    """Carry out the cycle of MCALL behind a block that moves."""
+    """Execute the cycle of MCALL after a block with motion."""
     if machine.modal_call is not None and has_place:
         machine.path.flush()
         drill(machine, row, machine.modal_call)
@@ -160,7 +160,7 @@ def _dwell_block(machine: SiemensMachine, block: Block) -> None:
 
 
 def _in_machine(machine: SiemensMachine, block: Block) -> None:
-    """SUPA, G53 and G153: words are coordinates of the machine, in this block alone."""
+    """SUPA, G53 and G153: words are machine coordinates, only in this block."""
     words = {name: block.number(name) for name in block.words if name in PLACES}
     zero, state = machine.options.machine_zero, machine.state
     if words and zero is None:
@@ -207,7 +207,7 @@ def _holes(machine: SiemensMachine, block: Block, call: Call) -> None:
 
 
 def _modal(machine: SiemensMachine, block: Block, call: Call) -> None:
-    """MCALL alone ends the modal call."""
+    """MCALL without a cycle ends the modal call."""
     others = [other for other in block.names if other is not call]
     for other in others:
         if other.name in codes.TAPPING:
@@ -244,8 +244,8 @@ _STATEMENTS: dict[str, Callable[[SiemensMachine, Block, Call], None]] = {
     "CYCLE800": _swivel,
     "CYCLE832": _high_speed,
 }
-"""Names of statements that have a block of their own."""
+"""Names of statements that need a separate block."""
 BUILT_IN = frozenset(
     {*_STATEMENTS, *_MOTION_NAMES, _SUPA, *NAMES, *codes.NOTED, *codes.SILENT, *codes.REFUSED, *codes.TAPPING}
 )
-"""Names of the language, which no subprogram has."""
+"""Names of the language, which subprograms cannot have."""

@@ -3,8 +3,8 @@
 
 Input: tokens. Output: numbers and texts, in the units as written; angles are in degrees, true is 1 and false is 0. The
 priorities are those of the manual, in which comparisons bind last [SiemensNC, operator priorities]: AND, OR and XOR
-beside a comparison without brackets are refused, since most readers take them the other way. An expression is a list
-of operations on a stack, so that its length does not matter to Python's recursion.
+with a comparison without brackets are refused, since most people read them the other way. An expression is a list of
+operations on a stack, so its length does not affect Python's recursion.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from pkm_post.reading.siemens.tokens import Cursor, Token
 from pkm_post.reading.siemens.variables import Value, Variables
 
 DEEPEST = 50
-"""Brackets within brackets."""
+"""Nesting depth of brackets."""
 Step = Callable[[list[Value], Variables], None]
 
 
@@ -71,14 +71,14 @@ def expression(cursor: Cursor, depth: int = 0) -> Expression:
     """Compile the expression that begins at a cursor.
 
     Raises:
-        BlockFault: there is none, or it is malformed.
+        BlockFault: it is missing or malformed.
     """
     column = cursor.peek().column
     return Expression(tuple(_binary(cursor, 0, depth)[0]), column)
 
 
 _Compiled = tuple[list[Step], str]
-"""Steps, and the operator that is applied last and has no brackets."""
+"""Steps, and the operator applied last without brackets."""
 
 
 def _binary(cursor: Cursor, least: int, depth: int) -> _Compiled:
@@ -202,10 +202,10 @@ def _element(name: str, count: int, column: int) -> Step:
 
 
 def index_of(values: list[Value], column: int) -> tuple[int, ...]:
-    """Whole numbers that are not negative, as the place in an array.
+    """Non-negative whole numbers as an array index.
 
     Raises:
-        BlockFault: a value is something else.
+        BlockFault: a value is not one.
     """
     whole = [round(value) for value in values if not isinstance(value, str) and value >= 0 and value == round(value)]
     if len(whole) < len(values):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Flow: jumps, branches, loops, repeated sections and definitions, compiled.
 
-Input: tokens behind a keyword. Output: ``Flow`` [SiemensNC, program jumps, program section repetitions, control
+Input: tokens after a keyword. Output: ``Flow`` [SiemensNC, program jumps, program section repetitions, control
 structures, user data, subprograms].
 """
 
@@ -35,8 +35,8 @@ class Flow:
         keyword: such as IF, GOTOF, FOR or DEF; "IF GOTO" for conditional jumps, "REPEAT LABEL" for repeated sections.
         column: from 1.
         values: conditions and counts.
-        targets: labels and block numbers as text; of a jump each with its keyword, "GOTOF LABEL".
-        names: what is defined, or counted by FOR.
+        targets: labels and block numbers as text; for jumps each with its keyword, "GOTOF LABEL".
+        names: names defined, or counted by FOR.
     """
 
     keyword: str
@@ -98,7 +98,7 @@ def _for(cursor: Cursor, first: Token) -> Flow:
 
 
 def _repeat(cursor: Cursor, first: Token) -> Flow:
-    """REPEAT alone begins a loop; with labels it repeats the section between them: REPEAT A B P=3."""
+    """REPEAT without labels starts a loop; with labels it repeats the section between them: REPEAT A B P=3."""
     targets = []
     while cursor.peek().kind == "name":
         targets.append(cursor.next().text)
@@ -154,7 +154,7 @@ def _defined(cursor: Cursor, kind: str) -> VariableDefinition:
 
 
 def _procedure(cursor: Cursor, first: Token) -> Flow:
-    """PROC NAME(REAL A, VAR INT B=1) with attributes behind it, or EXTERN NAME(REAL)."""
+    """PROC NAME(REAL A, VAR INT B=1) with attributes, or EXTERN NAME(REAL)."""
     name = cursor.next().text
     names: list[VariableDefinition] = []
     if cursor.takes("(") and not cursor.takes(")"):

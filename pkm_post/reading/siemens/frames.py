@@ -3,7 +3,7 @@
 
 Input: words of frame statements, mm and degrees. Output: points and directions of the program in {C}:
 {C} = matrix @ program + shift. A frame without the prefix A replaces the programmable frame with all its parts, one
-with it is chained behind it [SiemensNC, programmable coordinate transformations].
+with A is chained after it [SiemensNC, programmable coordinate transformations].
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class ProgrammableFrame:
     Attributes:
         matrix: (3, 3) with scale factors.
         shift: (3,) mm.
-        turn: (3, 3) without them: a rotation, possibly with a reflection.
+        turn: (3, 3) without scale factors: a rotation, possibly with a reflection.
     """
 
     matrix: Array = field(default_factory=lambda: np.eye(3))
@@ -61,11 +61,11 @@ class ProgrammableFrame:
         return back
 
     def is_plain(self) -> bool:
-        """Whether it changes nothing."""
+        """Whether it is the identity."""
         return bool((self.matrix == np.eye(3)).all() and not self.shift.any())
 
     def is_unturned(self) -> bool:
-        """Whether it leaves all directions as they are."""
+        """Whether it preserves all directions."""
         return bool((self.turn == np.eye(3)).all())
 
     def hand(self) -> float:
@@ -101,7 +101,7 @@ def _translation(words: Mapping[str, float], plane: int) -> ProgrammableFrame:
 
 
 def _rotation(words: Mapping[str, float], plane: int) -> ProgrammableFrame:
-    """About Z, the new Y and the new X, in this order [SiemensNC, ROT: RPY notation Z, Y', X'']; or in the plane."""
+    """Rotate about Z, new Y and new X, in this order [SiemensNC, ROT: RPY notation Z, Y', X'']; or in the plane."""
     if "RPL" in words:
         if len(words) > 1:
             raise BlockFault("G601", "RPL beside X, Y or Z")
@@ -118,7 +118,7 @@ def _scaling(words: Mapping[str, float], plane: int) -> ProgrammableFrame:
 
 
 def _mirroring(words: Mapping[str, float], plane: int) -> ProgrammableFrame:
-    """The values of the words mean nothing [SiemensNC, MIRROR]."""
+    """Mirror image; the values of the words are ignored [SiemensNC, MIRROR]."""
     return turned(np.diag([-1.0 if axis in words else 1.0 for axis in _AXES]))
 
 
@@ -126,7 +126,7 @@ MAKERS = {"TRANS": _translation, "ROT": _rotation, "SCALE": _scaling, "MIRROR": 
 FRAMES = frozenset([*MAKERS, *(f"A{name}" for name in MAKERS)])
 """Names of frame statements."""
 LENGTHS = frozenset({"TRANS", "ATRANS"})
-"""Those whose words are lengths."""
+"""Frame statements whose words are lengths."""
 
 
 def frame_of(name: str, words: Mapping[str, float], plane: int, before: ProgrammableFrame) -> ProgrammableFrame:
@@ -139,7 +139,7 @@ def frame_of(name: str, words: Mapping[str, float], plane: int, before: Programm
         before: the programmable frame so far.
 
     Raises:
-        BlockFault: a word is not one of these, or has no meaning.
+        BlockFault: a word is unknown or invalid.
     """
     for word in words:
         if word not in _AXES and word != "RPL":

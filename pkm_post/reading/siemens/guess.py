@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Guess: whether a program is in Siemens's language, by what only that has.
+"""Guess: detect Siemens's language by constructs unique to it.
 
-Input: name and content of a file. Output: the evidence, for the report. Two kinds of it are needed, or one in a file
-whose suffix is Siemens's; without any such a file is Siemens's where nothing in it belongs to G-code alone.
+Input: name and content of a file. Output: the evidence, for the report. Two kinds are needed, or one in a file with a
+Siemens suffix; without evidence such a file is Siemens's unless it has constructs unique to G-code.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pkm_post.reading.gcode.scan import with_line_feeds
 LANGUAGE = "Siemens's language (Sinumerik)"
 SUFFIXES = (".mpf", ".spf", ".arc")
 _HEAD = 64 * 1024
-"""Bytes in which evidence is looked for."""
+"""Bytes searched for evidence."""
 _LEAST = 2
 _MOST_SHOWN = 3
 _GCODE = re.compile(

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Interpreter: one execution of a Siemens program, from block to block.
 
-Input: the structure of a file. Output: all blocks carried out by the machine in the order of execution. Every
-execution ends: blocks, and levels of calls, are bounded.
+Input: the structure of a file. Output: all blocks run on the machine in the order of execution. Every
+execution ends: blocks and call levels are bounded.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _MOST_PASSES = 9999
 
 @dataclass
 class _Section:
-    """A section that REPEAT repeats: rows from first to before stop, passes that are left, and where it goes on."""
+    """A section that REPEAT repeats: rows from first to before stop, remaining passes, and the row to continue at."""
 
     first: int
     stop: int
@@ -42,7 +42,7 @@ class _Section:
 
 @dataclass
 class _Level:
-    """A running program: passes that are left, the row behind its call, and its arguments for further passes."""
+    """A running program: remaining passes, the row after its call, and its arguments for further passes."""
 
     program: ProgramRows
     passes: int
@@ -56,7 +56,7 @@ class Interpreter:
 
     Args:
         structure: of the file.
-        machine: that carries out the blocks.
+        machine: that executes the blocks.
         limits: bounds of the execution.
         faults: collects the faults.
         elsewhere: names of subprograms in other files.
@@ -79,13 +79,13 @@ class Interpreter:
         self._left = limits.blocks
         self.row = structure.main.first
         self.has_ended = False
-        """Whether the main program came to M2, M30, M17 or RET."""
+        """Whether the main program reached M2, M30, M17 or RET."""
 
     def run(self) -> None:
         """Execute the main program; a fault of a jump or call ends it.
 
         Raises:
-            MissingProgram: it calls a program that is in another file.
+            MissingProgram: it calls a program in another file.
         """
         try:
             while self._levels:
@@ -95,7 +95,7 @@ class Interpreter:
         self._machine.finish(self.row)
 
     def _next(self) -> None:
-        """Carry out the next statement, or the lines up to it."""
+        """Execute the next statement, or the lines up to it."""
         level = self._levels[-1]
         while level.sections and not level.sections[-1].first <= self.row < level.sections[-1].stop:
             self._leave_section(level)
@@ -121,7 +121,7 @@ class Interpreter:
             checkpoint()
 
     def _leave_section(self, level: _Level) -> None:
-        """At the end of a repeated section: once more, or go on; a jump out of it has ended it."""
+        """At the end of a repeated section, repeat it or continue; a jump out of it ends it."""
         section = level.sections[-1]
         if self.row == section.stop and section.passes:
             section.passes -= 1
@@ -163,7 +163,7 @@ class Interpreter:
             return False
 
     def _returned(self) -> int:
-        """The row behind the end of a program; another pass of it if there is one."""
+        """The row to continue at after a program ends, or its first row for another pass."""
         level = self._levels[-1]
         if len(self._levels) == 1:
             self.has_ended = True
@@ -181,7 +181,7 @@ class Interpreter:
     # calls
 
     def _call(self, statement: Statement) -> bool:
-        """Carry out a call of a subprogram: a name, or L with a number, each with P for the number of passes."""
+        """Execute a subprogram call: a name, or L with a number, each with P for the number of passes."""
         items = statement.items
         programs = self._structure.programs
         names = [

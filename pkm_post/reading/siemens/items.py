@@ -14,12 +14,12 @@ from pkm_post.reading.siemens.expressions import Expression, expression
 from pkm_post.reading.siemens.tokens import Cursor, Token
 
 MODES = ("AC", "IC", "DC", "ACP", "ACN")
-"""Absolute and incremental words, and ways to an angle of a rotary axis."""
+"""Absolute and incremental words, and directions to an angle of a rotary axis."""
 
 
 @dataclass(frozen=True)
 class Word:
-    """An address with a value, such as X=IC(5); letters with digits stay together, as in A3."""
+    """An address with a value, such as X=IC(5); letters and digits form one name, as in A3."""
 
     name: str
     value: Expression
@@ -29,7 +29,7 @@ class Word:
 
 @dataclass(frozen=True)
 class Name:
-    """A name alone or a call of it, with None for an argument that is left out."""
+    """A bare name or a call, with None for an omitted argument."""
 
     name: str
     arguments: tuple[Expression | None, ...] | None
@@ -106,7 +106,7 @@ def _signed_number(cursor: Cursor, token: Token) -> Expression:
 
 
 def _valued(cursor: Cursor, token: Token, name: str) -> Word:
-    """The value behind an equals sign, absolute or incremental by AC() or IC()."""
+    """The value after an equals sign, absolute or incremental by AC() or IC()."""
     mode = cursor.peek().text
     if mode in MODES and cursor.peek(1).text == "(":
         cursor.next()
@@ -118,7 +118,7 @@ def _valued(cursor: Cursor, token: Token, name: str) -> Word:
 
 
 def _element(cursor: Cursor, token: Token) -> Item:
-    """An element of an array with its new value; an element of a list that has no effect here is a name."""
+    """An element of an array with its new value; an element of a list without effect here is a name."""
     cursor.expect("[")
     if token.text in NOTED_ELEMENTS:
         while not (cursor.at_end() or cursor.takes("]")):
@@ -135,7 +135,7 @@ def _element(cursor: Cursor, token: Token) -> Item:
 
 
 def _arguments(cursor: Cursor, token: Token) -> tuple[Expression | None, ...]:
-    """Arguments in brackets; those of names whose arguments have no effect here are passed over."""
+    """Arguments in brackets; skipped for names without effect here."""
     cursor.expect("(")
     if token.text in NOTED_ELEMENTS:
         depth = 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine: what carries out blocks: the path, the tools, the options and the state, with the elementary actions.
+"""Machine: path, tools, options and state of a running program, with the elementary actions of blocks.
 
 Input: moves and dwells of blocks and cycles. Output: motions and events in ``path``, and notes for the report.
 """
@@ -18,7 +18,7 @@ from pkm_post.reading.siemens.tools import Tools
 
 
 class SiemensMachine:
-    """The machine that carries out a program.
+    """The machine that runs a program.
 
     Args:
         lines: of the program.
@@ -39,11 +39,11 @@ class SiemensMachine:
         self.modal_call: Call | None = None
 
     def move(self, row: int, motion: int, words: dict[str, float]) -> None:
-        """A move of a cycle to absolute coordinates in the unit in force; F among the words holds from here on."""
+        """Move of a cycle to absolute coordinates in the active unit; an F word stays active."""
         self.path.buffer.add_block(row, motion, words, dict.fromkeys(words, ABSOLUTE))
 
     def dwell(self, row: int, seconds: float) -> None:
-        """A dwell.
+        """Add a dwell.
 
         Raises:
             BlockFault: it is below zero.
@@ -58,23 +58,23 @@ class SiemensMachine:
         """The time of some turns of the spindle.
 
         Raises:
-            BlockFault: it stands still.
+            BlockFault: the spindle is stopped.
         """
         if not self.state.spindle():
             raise BlockFault("G606", f"a dwell of {turns:g} turns while the spindle stands still")
         return turns * 60 / abs(self.state.spindle())
 
     def scratch(self) -> tuple[int, float]:
-        """Motion code and feed, which a cycle leaves as they were."""
+        """Motion code and feed, to restore after a cycle."""
         return self.state.motion, self.state.feed
 
     def restore(self, before: tuple[int, float]) -> None:
-        """Compute what a cycle has done, and put motion code and feed in force again."""
+        """Flush the moves of a cycle, and restore motion code and feed."""
         self.path.flush()
         self.state.motion, self.state.feed = before
 
     def finish(self, row: int) -> None:
-        """Carry out what is still waiting, and stop spindle and coolant."""
+        """Flush pending moves, and stop spindle and coolant."""
         self.path.flush()
         if self.state.spindle():
             self.path.add_event(EventKind.SPINDLE, 0.0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Modal codes: what G and M codes, words and names put in force.
+"""Modal codes: effects of G and M codes, words and names.
 
 Input: codes and words of a block. Output: the state of the machine, and events of tool, spindle and coolant.
 """
@@ -27,15 +27,15 @@ ENDS, RETURNS = (2, 30), 17
 _COOLANT = {7: 2.0, 8: 1.0, 9: 0.0}
 _SPINDLE = {3: 1.0, 4: -1.0, 5: 0.0}
 ORIENTED_STOP = 19
-"""M19 stops the spindle at an angle, on machines whose file has it."""
+"""M19 stops the spindle at an angle, if the machine file has it."""
 _METRIC_ISO = 21
 
 
 def words(machine: SiemensMachine, block: Block) -> None:
-    """Carry out the words of a block that are not those of a move, and refuse those without a meaning.
+    """Execute the words of a block that are not part of a move; refuse unknown ones.
 
     Raises:
-        BlockFault: a word has none, or its value has none.
+        BlockFault: a word is unknown or its value invalid.
     """
     for name in block.words:
         if name in codes.REFUSED:
@@ -51,7 +51,7 @@ def words(machine: SiemensMachine, block: Block) -> None:
 
 
 def _contour_tolerance(machine: SiemensMachine, block: Block) -> None:
-    """CTOL= in the unit in force; below zero it is the one of the machine again [SiemensNC, CTOL]."""
+    """CTOL= in the active unit; a negative value restores that of the machine [SiemensNC, CTOL]."""
     machine.state.contour_tolerance = max(block.number("CTOL"), 0.0) * machine.state.scale
 
 
@@ -73,10 +73,10 @@ def _tool(machine: SiemensMachine, block: Block) -> None:
 
 
 def tool_offset(machine: SiemensMachine, block: Block) -> None:
-    """D0 takes the offset of the tool away, any other D brings it.
+    """D0 cancels the tool offset, any other D activates it.
 
     Raises:
-        BlockFault: D is no number of a cutting edge.
+        BlockFault: D is not the number of a cutting edge.
     """
     value = block.number("D")
     if value < 0 or value != round(value):
@@ -98,10 +98,10 @@ def _change_tool(machine: SiemensMachine) -> None:
 
 
 def m_code(machine: SiemensMachine, block: Block, code: int) -> None:
-    """Carry out an M code.
+    """Execute an M code.
 
     Raises:
-        BlockFault: it is not known, or lacks a word.
+        BlockFault: it is unknown, or lacks a word.
     """
     if code == 6:  # noqa: PLR2004 - M6
         _change_tool(machine)
@@ -125,7 +125,7 @@ def m_code(machine: SiemensMachine, block: Block, code: int) -> None:
 
 
 def _leave_out(machine: SiemensMachine, block: Block, word: str, why: str | None) -> None:
-    """Leave a code out where the user has named it, or refuse it."""
+    """Skip a code that the user has named, or refuse it."""
     column = block.columns.get(word, 0)
     if why is not None:
         raise BlockFault("G602", f"{word}: {why}", column)
@@ -135,10 +135,10 @@ def _leave_out(machine: SiemensMachine, block: Block, word: str, why: str | None
 
 
 def g_code(machine: SiemensMachine, block: Block, code: int) -> None:
-    """Put a G code in force.
+    """Activate a G code.
 
     Raises:
-        BlockFault: it is not known, or not allowed here.
+        BlockFault: it is unknown, or not allowed here.
     """
     state = machine.state
     if code in codes.PLANES:
@@ -180,7 +180,7 @@ def _compensate(machine: SiemensMachine, block: Block, code: int) -> None:
     state = machine.state
     state.side = codes.SIDES[code]
     if not state.side:
-        machine.path.radius = 0.0  # the diameter of a tool that is not compensated may be unknown
+        machine.path.radius = 0.0  # an uncompensated tool may have an unknown diameter
         return
     tool = machine.tools.tool(state.tool)
     if tool is None:
@@ -189,9 +189,9 @@ def _compensate(machine: SiemensMachine, block: Block, code: int) -> None:
 
 
 def _work_offset(machine: SiemensMachine, _: Block, code: int) -> None:
-    """Without places of settable offsets, the only one in which a program moves is {C} itself.
+    """Activate a settable offset; without known offsets, the only one with motion in a program is {C} itself.
 
-    One whose place is not known is a fault where the program moves in it: many programs end with G500.
+    An unknown offset is a fault only if the program moves in it, since many programs end with G500.
     """
     state, places = machine.state, machine.options.work_offsets
     if places and f"G{code}" not in places:
@@ -207,10 +207,10 @@ def _work_offset(machine: SiemensMachine, _: Block, code: int) -> None:
 
 
 def name_alone(machine: SiemensMachine, block: Block, call: Call) -> None:
-    """Put a name in force, or note that it has no effect.
+    """Activate a name, or note that it has no effect.
 
     Raises:
-        BlockFault: it is not known, or not read.
+        BlockFault: it is unknown or unsupported.
     """
     state, name = machine.state, call.name
     if name in NAMES:
@@ -229,7 +229,7 @@ def name_alone(machine: SiemensMachine, block: Block, call: Call) -> None:
 
 
 def _traori(machine: SiemensMachine, block: Block, call: Call) -> None:
-    """The first transformation; with a tilted tool the place of its tip is known after X, Y and Z."""
+    """The first transformation; with a tilted tool the tip position is known only after X, Y and Z."""
     if machine.state.swivelled:
         raise BlockFault("G602", "TRAORI after CYCLE800: write CYCLE800() first", call.column)
     if call.number(0, 1.0) != 1:
@@ -246,7 +246,7 @@ def _angles(machine: SiemensMachine, block: Block, call: Call) -> None:
 
 
 def _reference(machine: SiemensMachine, block: Block, call: Call) -> None:
-    """ORIWKS and ORIMKS: the frame of the tool axis and of its way."""
+    """ORIWKS and ORIMKS: the frame of the tool axis and of its interpolation."""
     machine.state.in_machine_frame = call.name == "ORIMKS"
     machine.notes.add(f"{call.name}: {codes.NOTED[call.name]}", block.row)
 
@@ -264,4 +264,4 @@ NAMES: dict[str, Callable[[SiemensMachine, Block, Call], None]] = {
     "ORIWKS": _reference,
     "ORIMKS": _reference,
 }
-"""Names that put something in force."""
+"""Names that activate a mode."""

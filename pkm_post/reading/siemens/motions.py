@@ -31,12 +31,12 @@ class Motions:
 
     Attributes:
         row: (n,) row in the file.
-        motion: (n,) motion code; CT that is a line becomes G1.
+        motion: (n,) motion code; a straight CT becomes G1.
         start: (n, 3).
         end: (n, 3).
         known: (n,) whether the end is known.
         start_known: (n,) whether the start is known.
-        known_at_end: (3,) which coordinates are known behind the last motion.
+        known_at_end: (3,) which coordinates are known after the last motion.
         centre: (n, 3) of arcs, NaN elsewhere.
         axis: (n, 3) unit axis of arcs, NaN elsewhere.
         turns: (n,) full turns before the arc.
@@ -54,7 +54,7 @@ class Motions:
     turns: Array
 
     def tangents(self, rows: slice) -> Array:
-        """Directions at the ends of some motions, (m, 3) of any length; zero where nothing moves."""
+        """Directions at the ends of some motions, (m, 3) of any length; zero without motion."""
         on_arc = cross(self.axis[rows], self.end[rows] - self.centre[rows])
         return np.where(np.isnan(self.axis[rows, :1]), self.end[rows] - self.start[rows], on_arc)
 
@@ -67,7 +67,7 @@ class Motions:
         return np.where(self.start_known & self.known, way, 0.0)
 
     def split_at_turns(self) -> Array:
-        """Split arcs at full turns; return the index of the motion that each piece belongs to."""
+        """Split arcs at full turns; return the motion index of each piece."""
         index = np.repeat(np.arange(len(self.row)), self.turns + 1)
         if len(index) == len(self.row):
             return index
@@ -96,7 +96,7 @@ def motions_of(columns: Columns, motion: Array, state: State, faults: LineDiagno
         faults: collects arcs that do not fit.
 
     Raises:
-        BlockFault: a word has no meaning; the state is as it was.
+        BlockFault: a word is invalid; the state is unchanged.
     """
     lengths = {name: columns.words[name] * state.scale for name in LENGTHS if name in columns.words}
     end, known, known_at_end = _ends(columns, lengths, state)
@@ -120,7 +120,7 @@ def motions_of(columns: Columns, motion: Array, state: State, faults: LineDiagno
 
 
 def _ends(columns: Columns, lengths: dict[str, Array], state: State) -> tuple[Array, Array, Array]:
-    """End points, (n, 3), which are known, (n,), and which coordinates are known behind the last, (3,)."""
+    """End points, (n, 3), which are known, (n,), and which coordinates are known after the last, (3,)."""
     count = len(columns)
     end, known_from = np.empty((count, 3)), np.zeros(3, np.int64)
     for k, name in enumerate(AXES):
@@ -148,7 +148,7 @@ class _Arcs:
         """Fill in centres, axes and turns.
 
         Raises:
-            BlockFault: an arc has no meaning; of several blocks together it may be any of them.
+            BlockFault: an arc is invalid; with several blocks, any of them.
         """
         moves = self.moves
         if not self.state.frame.keeps_circles(self.state.plane):
@@ -171,7 +171,7 @@ class _Arcs:
         if angle is None or np.isnan(angle).all():
             return
         if len(self.columns) > 1:
-            raise BlockFault("G601", "AR= with others")  # its end is the start of the next one: carried out one by one
+            raise BlockFault("G601", "AR= with others")  # its end is the start of the next one: executed one by one
         centre = np.array([self.lengths[name][0] if name in self.lengths else np.nan for name in arcs.CENTRE])
         points = arcs.by_opening_angle(
             moves.start[0], moves.end[0], centre, float(angle[0]), self.state.plane, int(moves.motion[0])

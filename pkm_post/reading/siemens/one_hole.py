@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One hole: what the cycles have in common, its heights and the moves along the normal of the plane."""
+"""One hole: common parts of the cycles: heights, and moves along the normal of the plane."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ NAMES = ("X", "Y", "Z")
 
 @dataclass(frozen=True)
 class Hole:
-    """Heights of a cycle, in the unit in force: retraction plane, reference plane, start of the feed, bottom."""
+    """Heights of a cycle, in the active unit: retraction plane, reference plane, start of the feed, bottom."""
 
     retract: float
     reference: float
@@ -24,7 +24,7 @@ class Hole:
 
 
 class Drill:
-    """One hole at the place of the tool."""
+    """One hole at the tool position."""
 
     def __init__(self, machine: SiemensMachine, row: int, call: Call) -> None:
         self.machine, self.row, self.call = machine, row, call
@@ -36,7 +36,7 @@ class Drill:
         self.machine.move(self.row, motion, words)
 
     def dwell(self, value: float, in_turns: bool = False) -> None:
-        """Wait some seconds, or turns of the spindle by a value below zero [SiemensCycles, DTB]."""
+        """Wait some seconds or, for a negative value, spindle turns [SiemensCycles, DTB]."""
         if value < 0 or (in_turns and value):
             self.machine.dwell(self.row, self.machine.seconds_of_turns(abs(value)))
         elif value:

@@ -2,7 +2,7 @@
 """Orientation: the words of the tool axis after TRAORI as unit vectors.
 
 Input: columns of A3= B3= C3=, of A2= B2= C2= after ORIEULER or ORIRPY, or of rotary axes under a declared notation.
-Output: unit tool axes in {C}, from the tip towards the spindle. A component of the vector that is not written is zero
+Output: unit tool axes in {C}, from the tip towards the spindle. A missing component of the vector is zero
 [SiemensNC, direction vector]; vectors and angles turn with the frame (ORIWKS), rotary axes are those of the machine.
 """
 
@@ -44,7 +44,7 @@ def tool_axes(words: Words, relative: Array, state: State, notation: str) -> Arr
         notation: of the rotary axes, a key of ``AXIS_WORDS``.
 
     Raises:
-        BlockFault: the words have no meaning, or several.
+        BlockFault: the words are invalid or ambiguous.
     """
     count = len(relative)
     by_vector, by_angles, by_rotary = (has_any(words, names, count) for names in (VECTOR, ANGLES, ROTARY))
@@ -111,7 +111,7 @@ def axes_of_rotary(angles: Array, notation: str) -> Array:
     """Tool axes of rotary axes, (n, 3) degrees to (n, 3).
 
     Raises:
-        BlockFault: an axis is turned that the notation does not have.
+        BlockFault: an axis outside the notation is turned.
     """
     letters = AXIS_WORDS[notation] if notation in ("AC", "BC", "AB") else ""
     for k, name in enumerate(ROTARY):

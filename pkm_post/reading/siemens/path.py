@@ -2,8 +2,8 @@
 """Path: the motions of a program in {C}, from blocks of moves under one modal state.
 
 Input: columns of blocks and the state before them. Output: the state after them, and sections of motions in mm, mm/s
-and unit vectors in {C}. Blocks before X, Y and Z are all known have no end point and are left out, as in G-code. Where
-X Y Z are not those of the tip, a rapid block loses the place of the tip, and a cut is a fault.
+and unit vectors in {C}. Blocks before X, Y and Z are all known have no end point and are dropped, as in G-code. Where
+X Y Z are not those of the tip, a rapid block loses the tip position, and a cut is a fault.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class _Blocks:
         return int(self.columns.row[index])
 
     def each(self) -> list[_Blocks]:
-        """Each block by itself."""
+        """The blocks one by one."""
         here = [np.array([index]) for index in range(len(self))]
         return [_Blocks(self.columns.selected(one), self.motion[one], self.feed[one]) for one in here]
 
@@ -86,12 +86,12 @@ class Path:
         self.state.motion = int(motion[-1])
 
     def add_event(self, kind: EventKind, value: float) -> None:
-        """Compute the blocks in the buffer, and add an event behind them."""
+        """Compute the blocks in the buffer, then add an event."""
         self.flush()
         self.sections.add_event(kind, value)
 
     def _feeds(self, columns: Columns) -> Array:
-        """F of each block as written, (n,): modal but for inverse time."""
+        """F of each block as written, (n,): modal except for inverse time."""
         word = columns.words.get("F")
         by_time = self.state.feed_mode == _INVERSE_TIME
         if word is None:
@@ -104,7 +104,7 @@ class Path:
         return filled
 
     def _carry_out(self, blocks: _Blocks, stops: bool) -> None:
-        """Carry out blocks together where that is possible, and else one by one, to find the faulty one."""
+        """Execute blocks together if possible, else one by one, to find the faulty one."""
         without = np.flatnonzero(blocks.motion == NO_MOTION)
         if len(without):
             self._faults.add(blocks.row(int(without[0])), "G407", "axis words while no motion is in force")
@@ -145,7 +145,7 @@ class Path:
         return upright and not (turns or others or state.rotary.any())
 
     def _without_control(self, block: _Blocks, stops: bool) -> None:
-        """One block whose X Y Z may be places of slides."""
+        """Execute one block whose X Y Z may be slide positions."""
         state, words = self.state, block.columns.words
         for name in (*orientation.VECTOR, *orientation.ANGLES):
             if name in words and not np.isnan(words[name][0]):
@@ -160,7 +160,7 @@ class Path:
             state.lose_position()
 
     def _turn_rotary(self, columns: Columns) -> None:
-        """Rotary axes without TRAORI: the tip goes somewhere, unless the tool was and stays upright."""
+        """Rotary axes without TRAORI: the tip position is lost, unless the tool was and stays upright."""
         state = self.state
         before = state.is_tilted() or state.swivelled
         angles = orientation.rotary_angles(columns.words, self._relative(columns), state)
@@ -178,7 +178,7 @@ class Path:
     # motions
 
     def _move(self, blocks: _Blocks, stops: bool) -> None:
-        """Carry out blocks whose X Y Z are those of the tip."""
+        """Execute blocks whose X Y Z are those of the tip."""
         state = self.state
         moves = motions_of(blocks.columns, blocks.motion, state, self._faults)
         axes = np.broadcast_to(state.axis, (len(blocks), 3))
@@ -238,7 +238,7 @@ class Path:
         return nearest, float(normal[nearest])
 
     def _check_lost(self, moves: Motions) -> None:
-        """Report cuts while the place of the tip is not known again."""
+        """Report cuts while the tip position is still unknown."""
         if self.state.has_moved:
             for index in np.flatnonzero(~moves.known & (moves.motion != RAPID)).tolist():
                 self._faults.add(int(moves.row[index]), "G416", "a cut after the place of the tip was lost")

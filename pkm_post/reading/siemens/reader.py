@@ -2,8 +2,8 @@
 """Read: convert the text of a Siemens program to motions.
 
 Input: the content of a file, in its own units. Output: a ``Program`` in mm, rad and mm/s, or the faults: of malformed
-blocks, of jumps and calls, and of what blocks mean. Behind the first fault only those are reported that a block shows
-by itself.
+blocks, of jumps and calls, and of the meaning of blocks. After the first fault, only faults that depend on their own
+block are reported.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ from pkm_post.reading.siemens.tools import Tools
 from pkm_post.reading.threads import without_idle_starts
 
 _CONSEQUENCES = ("G301", "G407", "G408", "G416", "G420", "G424", "G430", "G436", "G604", "G605")
-"""Faults that another one before them may cause."""
+"""Faults that may be consequences of earlier ones."""
 
 
 def read(
     text: bytes | str, file: str, options: ReadOptions = DEFAULT_OPTIONS, limits: ExecutionLimits = DEFAULT_LIMITS
 ) -> ReadResult:
-    """Read a program in Siemens's language, as ``gcode.read`` reads G-code; flavours and dwell units mean nothing."""
+    """Read a program in Siemens's language, as ``gcode.read`` reads G-code; flavours and dwell units are ignored."""
     source, added = Source(with_line_feeds(text)), files_by_name(options.folders)
     while True:
         try:
@@ -55,7 +55,7 @@ def _read(
     """Read a program with the files of its subprograms.
 
     Raises:
-        MissingProgram: it calls another one, of which there is a file.
+        MissingProgram: it calls another program that has a file.
     """
     faults = LineDiagnostics(file)
     lines = scan(source.text)
@@ -78,7 +78,7 @@ def _read(
 
 
 def _report_no_motion(path: Path, lines: int, faults: LineDiagnostics) -> None:
-    """Report a program without moves, or the first of moves none of which has a known place; nothing after a fault."""
+    """Report a program without moves, or the first move if none has a known position; nothing after a fault."""
     if faults.has_errors():
         return
     if path.waiting_row >= 0:
@@ -92,7 +92,7 @@ def _text_of(lines: ScannedLines, fault: Diagnostic) -> str:
 
 
 def _own(found: tuple[Diagnostic, ...]) -> list[Diagnostic]:
-    """The faults that are no consequences of the first one."""
+    """The faults that are not consequences of the first one."""
     first = next((fault for fault in found if fault.severity is Severity.ERROR), None)
     if first is None:
         return list(found)

@@ -2,8 +2,8 @@
 """Scan: the text of a Siemens program to columns, one row for each line.
 
 Input: the bytes of a file, lines ended by line feeds. Output: ``ScannedLines``: the numbers of plain lines in columns,
-and which lines are statements. A plain line has G0 to G3 and words of a move with numbers; CAM systems write little
-else. One line of each pattern is looked at, and the numbers of all lines of that pattern are read at once.
+and the kind of each line. A plain line has G0 to G3 and words of a move with numbers; CAM systems write little
+else. One line of each pattern is parsed, and the numbers of all lines of that pattern are read at once.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ LONGEST_LINE = 10_000
 LARGEST = 1e9
 """Upper bound of lengths, angles, times and numbers of a program; beyond it decimals are lost."""
 _PIECE = 256 * 1024
-"""Bytes that are scanned together."""
+"""Bytes per pass."""
 
 _COMMENT = re.compile(rb"\"[^\"\n]*\"|;[^\n]*")
 _ABSOLUTE = re.compile(rb"(?<=[XYZABC])=[ \t]*(?:AC|DC)\(([-+]?[0-9.]+)\)", re.IGNORECASE)
-"""AC() and DC() of a number, which say nothing more where all words are absolute."""
+"""AC() and DC() of a number, which are redundant where all words are absolute."""
 _INCREMENTS = re.compile(rb"G0*91(?![0-9])", re.IGNORECASE)
 _PLAIN = re.compile(rb"(?:N\x01)?((?:G0*[0-3]|(?:[XYZABCIJKF]=?|(?:[ABC]3|CR)=)\x01)*)")
 _WORD = re.compile(rb"G0*([0-3])|([A-Z][A-Z0-9]*)=?\x01")
@@ -69,19 +69,19 @@ class ScannedLines:
 
 
 def without_comments(text: bytes) -> bytes:
-    """Replace comments by blanks; a semicolon within a string begins none."""
+    """Replace comments by blanks; a semicolon within a string starts none."""
     if b";" not in text:
         return text
     return _COMMENT.sub(lambda found: found[0] if found[0].startswith(b'"') else b" " * len(found[0]), text)
 
 
 class _Layouts(dict[bytes, int]):
-    """Numbers of patterns: 0 for an empty line, 1 for a statement, from 2 on plain lines."""
+    """Numbers of patterns: 0 for an empty line, 1 for a statement, 2 and up for plain lines."""
 
     def __init__(self) -> None:
         super().__init__()
         self.of: list[tuple[tuple[str, ...], int]] = [((), NONE), ((), NONE)]
-        """Words in their order, and the motion code."""
+        """Words in order, and the motion code."""
 
     def __missing__(self, pattern: bytes) -> int:
         self[pattern] = number = self._number(pattern.replace(b" ", b""))
@@ -126,7 +126,7 @@ def scan(text: bytes) -> ScannedLines:
 def _scan_piece(
     piece: bytes, first: int, layouts: _Layouts, kind: Array, motion: Array, words: dict[str, Array]
 ) -> int:
-    """Fill the rows of the lines of a piece without comments; return how many there are."""
+    """Fill the rows of the lines of a piece without comments; return their number."""
     line_start = np.concatenate([[0], np.flatnonzero(np.frombuffer(piece, np.uint8) == ord("\n")) + 1])
     lexed = lex(piece)
     layout = np.fromiter(map(layouts.__getitem__, lexed.patterns), np.intp, len(lexed.patterns))

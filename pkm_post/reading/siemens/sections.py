@@ -51,7 +51,7 @@ class Sections:
     """All motions and events of a program.
 
     Attributes:
-        events: in their order.
+        events: in order.
     """
 
     events: list[Event] = field(default_factory=list)
@@ -67,7 +67,7 @@ class Sections:
         self._count += len(section.row)
 
     def add_event(self, kind: EventKind, value: float) -> None:
-        """Add an event behind the last motion."""
+        """Add an event after the last motion."""
         self.events.append(Event(self._count, kind, value))
 
     def columns(self) -> dict[str, Array]:

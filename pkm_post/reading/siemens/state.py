@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""State: what is in force between two blocks of a Siemens program.
+"""State: the modal state between two blocks of a Siemens program.
 
-Input and output: nothing; ``machine`` and its neighbours change it. Lengths in mm, angles in degrees, positions in
+Input and output: none; ``machine`` and related modules change it. Lengths in mm, angles in degrees, positions in
 coordinates of the program, directions in {C}.
 """
 
@@ -33,12 +33,12 @@ class State:
         scale: mm per unit of lengths.
         feed_scale: mm per unit of feeds.
         feed_mode: 93, 94 or 95.
-        feed: F as written, NaN where none is in force.
+        feed: F as written, NaN if none is active.
         speed: S, 1/min, NaN before the first.
         sense: 1 for M3, -1 for M4, 0.
         coolant: value of the last coolant event.
         tool: number of the tool in the spindle, -1 before the first change.
-        selected: number of the tool that M6 brings.
+        selected: number of the tool that M6 will load.
         has_offset: whether X Y Z are those of the tip: not after D0.
         side: 1 for G41, -1 for G42, 0.
         stops: whether each block ends at rest (G60).
@@ -47,19 +47,19 @@ class State:
         contour_tolerance: CTOL or that of CYCLE832; 0 for none.
         high_speed: whether CYCLE832 is on.
         traori: whether TRAORI is on.
-        angles: "ORIEULER", "ORIRPY", or empty while the program has named neither.
+        angles: "ORIEULER", "ORIRPY", or empty before either is programmed.
         rotary: (3,) A, B, C.
         axis: (3,) unit tool axis in {C}.
         swivelled: whether CYCLE800 has set the tool along Z of its plane.
         system: the settable offset in which the program moves, None before the first.
-        unplaced: another one that is in force, whose place is not known; empty if there is none.
+        unplaced: an active one with unknown origin; empty if there is none.
         in_machine_frame: whether ORIMKS is on.
         offset: frame of the settable offset.
         swivel: frame of CYCLE800.
         programmed: programmable frame.
         position: (3,) of the tool tip.
         known: (3,) which coordinates are known.
-        has_moved: whether it was known once.
+        has_moved: whether it was known before.
         tangent: (3,) direction of the last motion at its end in {C}; zero before the first.
         frame: from coordinates of the program to {C}.
     """
@@ -101,7 +101,7 @@ class State:
     frame: ProgrammableFrame = field(default_factory=ProgrammableFrame)
 
     def set_frames(self, offset: ProgrammableFrame, swivel: ProgrammableFrame, programmed: ProgrammableFrame) -> None:
-        """Change the frames; the tool stays where it is, and its coordinates change."""
+        """Change the frames; the tool stays in place, and its coordinates change."""
         mixed = self.frame.mixed()
         point = self.frame.points(self.position)
         self.offset, self.swivel, self.programmed = offset, swivel, programmed
@@ -112,11 +112,11 @@ class State:
             self.known = np.where(mixed, self.known[mixed].all(), self.known)
 
     def restore(self, before: State) -> None:
-        """Take back all changes since a copy was made."""
+        """Restore a copy made earlier."""
         self.__dict__.update(before.__dict__)
 
     def lose_position(self) -> None:
-        """The place of the tip hangs on another machine from here on."""
+        """Mark the tip position as unknown: it depends on the original machine."""
         self.known = np.zeros(3, dtype=np.bool_)
 
     def spindle(self) -> float:
@@ -124,10 +124,10 @@ class State:
         return 0.0 if not self.sense else self.sense * self.speed
 
     def is_tilted(self) -> bool:
-        """Whether the tool axis is other than upright in {C}."""
+        """Whether the tool axis is tilted in {C}."""
         return bool(abs(self.axis[0]) > _TILTED or abs(self.axis[1]) > _TILTED or self.axis[2] < 0)
 
     def tip_tolerance(self) -> float:
-        """The tolerance of the tip that is in force, mm; 0 for none."""
+        """The active tolerance of the tip, mm; 0 for none."""
         in_force = self.high_speed or self.compressor or self.smoothing in (642, 643, 645)
         return self.contour_tolerance if in_force and not self.stops else 0.0

@@ -2,7 +2,7 @@
 """Statements: one block of a Siemens program, compiled.
 
 Input: the tokens of a line. Output: a ``Statement``: its labels, and either one jump, branch or loop, or the words,
-names, calls and assignments of a block in their order. Nothing is computed here.
+names, calls and assignments of a block in order, not yet computed.
 """
 
 from __future__ import annotations

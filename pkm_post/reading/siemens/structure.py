@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Structure: the programs of a file, their labels, and which ends belong to which beginnings.
+"""Structure: the programs of a file, their labels, and matching starts and ends.
 
 Input: scanned lines and compiled statements. Output: programs by name as ranges of rows, the rows of labels and block
 numbers, and partners of loops and branches. An archive has a line %_N_NAME_MPF or %_N_NAME_SPF before each program.
@@ -26,7 +26,7 @@ _BEGINS = frozenset(_ENDS.values())
 
 @dataclass(frozen=True)
 class ProgramRows:
-    """A program or subprogram of the file: its name, the first of its rows and the one behind its last."""
+    """A program or subprogram of the file: its name, its first row, and the row after its last."""
 
     name: str
     first: int
@@ -35,13 +35,13 @@ class ProgramRows:
 
 @dataclass
 class Structure:
-    """What jumps and calls need to know.
+    """Data for jumps and calls.
 
     Attributes:
         statements: by row.
         programs: by name.
         main: the program that runs.
-        partners: by row, the end of a beginning and the beginning of an end; of IF its ELSE, and of ELSE its ENDIF.
+        partners: by row, the matching end or start; for IF its ELSE, and for ELSE its ENDIF.
         labels: rows of a label, in order.
     """
 
@@ -64,14 +64,14 @@ class Structure:
         return self._numbers.get(target[1:], [])
 
     def program_of(self, row: int) -> ProgramRows:
-        """The program that a row belongs to."""
+        """The program of a row."""
         return next((each for each in self.programs.values() if each.first <= row < each.end), self.main)
 
     def destination(self, program: ProgramRows, row: int, target: str) -> int:
-        """The row that a jump goes to [SiemensNC, program jumps].
+        """The target row of a jump [SiemensNC, program jumps].
 
         Args:
-            program: within which it looks.
+            program: in which to search.
             row: of the jump.
             target: its keyword and label.
 
@@ -92,9 +92,9 @@ class Structure:
         raise BlockFault("G604", target)
 
     def section(self, program: ProgramRows, row: int, flow: Flow) -> tuple[int, int]:
-        """The first row of a section that REPEAT repeats, and the row behind it [SiemensNC, section repetition].
+        """The first row of a section repeated by REPEAT, and the row after it [SiemensNC, section repetition].
 
-        It ends behind its second label or ENDLABEL, or else before REPEAT itself; that of REPEATB is one block.
+        It ends after its second label or ENDLABEL, or else before REPEAT itself; for REPEATB it is one block.
 
         Raises:
             BlockFault: a label is not in the program.
@@ -119,7 +119,7 @@ def structure_of(lines: ScannedLines, block_delete: bool, faults: LineDiagnostic
 
     Args:
         lines: of the file.
-        block_delete: whether blocks that begin with ``/`` are left out.
+        block_delete: whether to skip blocks that begin with ``/``.
         faults: collects malformed statements and unmatched ends.
     """
     structure = Structure(lines)

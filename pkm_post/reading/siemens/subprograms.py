@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Subprograms in other files: NAME.SPF or NAME.MPF in the folders of subprograms, for a call of NAME or L123.
 
-Input: folders, and the name of a call. Output: the text of the program with that of the file behind it, behind a line
+Input: folders, and the name of a call. Output: the text of the program with that of the file appended, after a line
 %_N_NAME_SPF as in an archive, so that all later steps see one file.
 """
 
@@ -18,14 +18,14 @@ from pkm_post.reading.gcode.scan import with_line_feeds
 
 SUFFIXES = (".spf", ".mpf")
 _BYTES = 256 * 1024 * 1024
-"""The longest file that is read."""
+"""Size of the largest file to read."""
 
 
-class MissingProgram(Exception):  # noqa: N818 - it is found, and the program begins again
-    """A call of a subprogram that is in another file.
+class MissingProgram(Exception):  # noqa: N818 - its file is found, and the program restarts
+    """A call of a subprogram in another file.
 
     Attributes:
-        name: that is called.
+        name: name of the call.
         row: of the call.
     """
 
@@ -41,7 +41,7 @@ class Source:
     Attributes:
         text: of all files, lines ended by line feeds.
         files: of subprograms.
-        notes: on them, for the report.
+        notes: about them, for the report.
     """
 
     text: bytes
@@ -69,7 +69,7 @@ class Source:
 
 
 def files_by_name(folders: Iterable[Path]) -> dict[str, list[Path]]:
-    """The files of subprograms by name in capitals, of each those in the first folder that has some."""
+    """The files of subprograms by name in capitals, for each those in the first folder with any."""
     found: dict[str, list[Path]] = {}
     for folder in folders:
         here: dict[str, list[Path]] = {}
@@ -81,7 +81,7 @@ def files_by_name(folders: Iterable[Path]) -> dict[str, list[Path]]:
 
 
 def _listed(folder: Path) -> list[Path]:
-    """The entries of a folder; none where it cannot be read: then the call has no subprogram."""
+    """The entries of a folder; none if it cannot be read: then the call has no subprogram."""
     try:
         return sorted(folder.iterdir())
     except OSError:

@@ -4,9 +4,9 @@
 Input: the arguments (_FR, _TC, _ST, _MODE, _X0, _Y0, _Z0, _A, _B, _C, _X1, _Y1, _Z1, _DIR, ...). Output: the frame of
 the plane in the state: shifted to X0 Y0 Z0, turned axis by axis about new axes, shifted to X1 Y1 Z1
 [SiemensCycles, CYCLE800]. The bits of _MODE name the axes: two each for _A, _B and _C, from the lowest, 1 X, 2 Y, 3 Z;
-the two above them are 0 for turns axis by axis, and other kinds are refused. The digits of _ST say, from the lowest,
-whether the plane adds to the one before, whether the tip follows, and whether the tool is aligned, which is refused.
-Without arguments, or with data set "0", the plane is the first again.
+the two above them are 0 for turns axis by axis; other kinds are refused. The digits of _ST define, from the lowest,
+whether the plane adds to the previous one, whether the tip follows, and whether the tool is aligned, which is refused.
+Without arguments, or with data set "0", the plane is reset.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ _EPSILON = 1e-12
 
 
 def swivel(state: State, call: Call) -> bool:
-    """Carry out CYCLE800.
+    """Execute CYCLE800.
 
     Args:
         state: is changed.
         call: with its arguments.
 
     Returns:
-        Whether the tool turns, so that the place of its tip is lost.
+        Whether the tool turns, so that its tip position is lost.
 
     Raises:
-        BlockFault: the call is of a kind that is not read.
+        BlockFault: this kind of call is not supported.
     """
     if resets(call):
         return _set(state, ProgrammableFrame(), turns=state.swivelled)
@@ -76,7 +76,7 @@ def _plane(state: State, call: Call) -> ProgrammableFrame:
 
 
 def _set(state: State, frame: ProgrammableFrame, turns: bool) -> bool:
-    """Put a plane in force; whether the tool turns with it."""
+    """Activate a plane; return whether the tool turns with it."""
     state.set_frames(state.offset, frame, state.programmed)
     if not turns:
         return False

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tapping: CYCLE84, with a spindle that is an axis.
+"""Tapping: CYCLE84, with the spindle as an axis.
 
-Input: the arguments of a call, in the unit in force. Output: feed moves down and up, at the speeds SST and SST1,
-between the events of a thread [SiemensCycles, CYCLE84]. The lead is PIT in the unit that _PTAB says, or that of the
-metric coarse thread MPIT [ISO 261]; its sign is the hand of the thread.
+Input: the arguments of a call, in the active unit. Output: feed moves down and up, at the speeds SST and SST1, between
+the events of a thread [SiemensCycles, CYCLE84]. The lead is PIT in the unit given by _PTAB, or that of the metric
+coarse thread MPIT [ISO 261]; its sign is the hand of the thread.
 """
 
 from __future__ import annotations
@@ -28,25 +28,25 @@ _INCH = 25.4
 _PER_MINUTE = 94
 _SENSES = {3: 1.0, 4: -1.0, 5: 0.0}
 _SAME = 1e-6
-"""mm: a lead by size and one by value that differ by more contradict each other."""
+"""mm: largest difference of a lead by size and a lead by value."""
 _DECIMALS = 9
 
 
 def check_tapping(machine: SiemensMachine, call: Call) -> None:
-    """Refuse the cycle on a machine whose spindle is no axis.
+    """Refuse the cycle if the spindle cannot be an axis.
 
     Raises:
-        BlockFault: it is none.
+        BlockFault: it cannot.
     """
     if call.name == CYCLE and not machine.options.spindle_axis:
         raise BlockFault("G425", call.name, call.column)
 
 
 def tap(one: Drill, hole: Hole, in_turns: bool) -> None:
-    """Down to the depth, dwell DTB, and up to RFP + SDIS; then the spindle turns as SDAC says.
+    """Down to the depth, dwell DTB, and up to RFP + SDIS; then set the spindle according to SDAC.
 
     Raises:
-        BlockFault: the arguments have no meaning.
+        BlockFault: the arguments are invalid.
     """
     machine, call = one.machine, one.call
     state = machine.state
@@ -70,7 +70,7 @@ def tap(one: Drill, hole: Hole, in_turns: bool) -> None:
 
 
 def _lead(call: Call, scale: float) -> float:
-    """The lead in mm, signed; ``scale`` is the unit in force, mm."""
+    """The lead in mm, signed; ``scale`` is the active unit, mm."""
     size, value, unit = call.number(_MPIT, 0.0), call.number(_PIT, 0.0), int(call.number(_PTAB, 0.0))
     if abs(size) not in (0, *_COARSE):
         raise BlockFault("G418", f"{CYCLE}: no metric coarse thread has the size MPIT {size:g}", call.column)
@@ -86,7 +86,7 @@ def _lead(call: Call, scale: float) -> float:
 
 
 def _turn_on(machine: SiemensMachine, call: Call) -> None:
-    """The spindle turns as before, or as SDAC says: 3 for M3, 4 for M4, 5 for M5."""
+    """Restore the spindle, or set it by SDAC: 3 for M3, 4 for M4, 5 for M5."""
     state, sense = machine.state, call.number(_SDAC, 0.0)
     if sense and sense not in _SENSES:
         raise BlockFault("G418", f"{CYCLE}: SDAC {sense:g}", call.column)

@@ -57,7 +57,7 @@ def tokens_of(line: str) -> list[Token]:
     """The tokens of a line without a comment.
 
     Raises:
-        BlockFault: a character begins no token.
+        BlockFault: a character starts no token.
     """
     found: list[Token] = []
     place = 0
@@ -82,7 +82,7 @@ class Cursor:
         self._place = 0
 
     def peek(self, ahead: int = 0) -> Token:
-        """A token that is still to come; an empty sign behind the last one."""
+        """A following token; an empty sign after the last one."""
         place = self._place + ahead
         if place < len(self._tokens):
             return self._tokens[place]
@@ -111,7 +111,7 @@ class Cursor:
         """Read a sign or name.
 
         Raises:
-            BlockFault: another token is there.
+            BlockFault: the next token is another.
         """
         token = self.peek()
         if not self.takes(text):

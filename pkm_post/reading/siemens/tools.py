@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tools: numbers for the tools of a program, which Siemens's language may call by name.
 
-Input: T words, numbers or texts. Output: tool numbers. A name stands for the tool of that name among the options, a
-text of digits for that number, and any other name for the lowest number that the program does not use.
+Input: T words, numbers or texts. Output: tool numbers. A name refers to the tool of that name in the options, a
+text of digits to that number, and any other name gets the lowest number unused in the program.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Tools:
         self._numbers = {tool.name.upper(): number for number, tool in options.tools.items() if tool.name}
         self._options = options
         self.named: dict[str, int] = {}
-        """Numbers that were given to names here."""
+        """Numbers assigned to names."""
         self.has_change = any(_CHANGE.search(line) for line in lines)
         """Whether the program has M6; without it T changes the tool at once."""
 
@@ -60,15 +60,15 @@ class Tools:
         return self._numbers[key]
 
     def tool(self, number: int) -> Tool | None:
-        """The tool with a number; that of number 0 before the first change."""
+        """The tool with a number; tool 0 before the first change."""
         return self._options.tool(max(number, 0))
 
     def named_tool(self, number: int) -> Tool | None:
-        """The tool with a number, with the name that the program calls it by."""
+        """The tool with a number, with the name used in the program."""
         tool = self.tool(number)
         name = next((name for name, given in self.named.items() if given == number), "")
         return tool and replace(tool, number=number, name=name or tool.name)
 
     def notes(self) -> tuple[str, ...]:
-        """How names were numbered, for the report."""
+        """The numbers of named tools, for the report."""
         return tuple(f'tool "{name}" is number {number} here' for name, number in self.named.items())

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Variables: R parameters of the program, and variables that DEF and PROC define for one program or subprogram.
+"""Variables: R parameters of the program, and variables of DEF and PROC, local to a program or subprogram.
 
-Input: names, indices and values. Output: values. Variables of DEF begin with 0 or an empty text; an R parameter
-without a value is a fault, since a control keeps that of the program before [SiemensNC, arithmetic parameters].
+Input: names, indices and values. Output: values. Variables of DEF start as 0 or an empty text; an R parameter
+without a value is a fault, since a control keeps that of the previous program [SiemensNC, arithmetic parameters].
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ Value = float | str
 Index = tuple[int, ...]
 
 R_PARAMETERS = 1000
-"""Most R parameters that a channel may have: more in number is a slip."""
+"""Most R parameters of a channel; a larger number is a typing error."""
 _MOST_ELEMENTS = 100_000
 TYPES = ("REAL", "INT", "BOOL", "CHAR", "STRING")
 
@@ -54,14 +54,14 @@ class Variables:
         self._levels.pop()
 
     def is_defined(self, name: str) -> bool:
-        """Whether DEF or PROC has defined a variable here or in a program that called this one."""
+        """Whether DEF or PROC has defined a variable here or in a calling program."""
         return self._find(name) is not None
 
     def define(self, name: str, kind: str, size: Index = (), start: Value | None = None) -> None:
         """Define a variable.
 
         Raises:
-            BlockFault: it is too large, or its first value does not have its type.
+            BlockFault: it is too large, or its initial value has the wrong type.
         """
         if math.prod(size) > _MOST_ELEMENTS:
             raise BlockFault("G606", f"{name} with more than {_MOST_ELEMENTS} elements")
@@ -85,7 +85,7 @@ class Variables:
         """Give a variable a value.
 
         Raises:
-            BlockFault: it does not exist, or the value does not have its type.
+            BlockFault: it does not exist, or the value has the wrong type.
         """
         if name == "R":
             if index[0] >= R_PARAMETERS:
@@ -109,12 +109,12 @@ class Variables:
         return variable
 
     def _find(self, name: str) -> _Variable | None:
-        """A local variable, or else one of the main program, which subprograms see [SiemensNC, program-global]."""
+        """A local variable, or else one of the main program, visible to subprograms [SiemensNC, program-global]."""
         return self._levels[-1].get(name) or self._levels[0].get(name)
 
 
 def _typed(kind: str, value: Value, name: str) -> Value:
-    """A value as a variable of a type keeps it."""
+    """Convert a value to the type of a variable."""
     if isinstance(value, str) is not (kind in ("STRING", "CHAR")):
         raise BlockFault("G606", f"{name}={value!r} of type {kind}")
     if isinstance(value, str) or kind == "REAL":
