@@ -2,8 +2,8 @@
 """Command line: ``python3 -m pkm_post post part.FCStd --machine example_6tps --out DIR`` and other commands.
 
 Exit code 0 on success, 1 when the input was refused, memory ran out, or the output pipe was closed, 2 for invalid
-arguments, 130 after Ctrl-C. Each module adds its commands to the parser and runs them; only that of the named command
-is imported.
+arguments, 130 after Ctrl-C. Each module adds its commands to the parser and runs them; only the module of the named
+command is imported.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _COMMANDS = {
     "batch": ("batch",),
     "install": ("install",),
 }
-"""Commands by the module that has them, in the order of the help text."""
+"""Commands by module, in the order of the help text."""
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -76,7 +76,7 @@ def _not_installed(fault: BaseException) -> str | None:
 
 
 def _prepare_streams() -> None:
-    """Open null streams for a service, which has none; make streams escape characters that they cannot encode."""
+    """Open null streams for a service, which has none; make streams escape unencodable characters."""
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         stream = getattr(sys, name)
         if stream is None:

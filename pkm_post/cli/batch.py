@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command ``batch``: post the files of a list, go on after an interruption, and leave a table of results.
+"""The command ``batch``: post the files of a list, resume after an interruption, and write a table of results.
 
-Input: a TOML file with jobs. Output: the results of each job, and a table. Each job is posted by the command line in a
-process of its own, so that any executor of ``concurrent.futures`` may run the jobs, on this computer or others that see
-the same folders, and the bytes are the same. A job whose inputs and results are as in the table is left.
+Input: a TOML file with jobs. Output: the results of each job, and a table. Each job is posted by the command line in
+its own process, so that any executor of ``concurrent.futures`` may run the jobs, on this computer or others with the
+same folders, and the bytes are the same. A job whose inputs and results match the table is skipped.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class BatchJob:
     """One file to post.
 
     Attributes:
-        file: as the list names it.
+        file: as named in the list.
         path: the file.
         out: folder for the results.
         words: arguments of ``post``.
@@ -56,7 +56,7 @@ class BatchJob:
     stems: tuple[str, ...]
 
     def fingerprint(self) -> str:
-        """SHA-256 of what decides the result: version, arguments, the file, and files that arguments name."""
+        """SHA-256 of all inputs: version, arguments, the file, and files named in arguments."""
         digest = hashlib.sha256("\0".join([pkm_post.__version__, self.file, self.job, *self.words]).encode())
         for path in (self.path, *(Path(word.partition("=")[2] or word) for word in self.words)):
             if path.is_file():
@@ -113,13 +113,13 @@ def _batch(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 def run_batch(
     batch_file: str | Path, executor: Executor, at_a_time: int = 1, progress: Any = lambda name, share: None
 ) -> list[BatchRow]:
-    """Post the jobs of a list that are not yet posted; return the rows of all, in the order of the list.
+    """Post the jobs of a list not yet posted; return the rows of all, in the order of the list.
 
     Args:
         batch_file: the list, TOML.
-        executor: runs the jobs; its workers see the same folders.
-        at_a_time: how many of its workers share a computer, and so its threads.
-        progress: called with a file and the share that is done.
+        executor: runs the jobs; its workers must see the same folders.
+        at_a_time: number of its workers that share a computer and its threads.
+        progress: called with a file and the completed share.
 
     Raises:
         Refused: F116, the list is not valid; or the table cannot be written.
@@ -186,10 +186,10 @@ def _text(table: dict[str, Any], key: str, default: str = "") -> str:
 
 
 def post_one(job: BatchJob, variables: dict[str, str]) -> BatchRow:
-    """Post one job in a process of its own; called by the executor.
+    """Post one job in a separate process; called by the executor.
 
     Args:
-        job: what to post.
+        job: the job to post.
         variables: environment variables that share the threads.
     """
     words = ["post", str(job.path), "--out", str(job.out), *(["--job", job.job] if job.job else []), *job.words]
@@ -213,7 +213,7 @@ def post_one(job: BatchJob, variables: dict[str, str]) -> BatchRow:
 
 
 def _row_before(job: BatchJob, rows: list[BatchRow]) -> BatchRow | None:
-    """The row of an earlier run, if inputs and results are still those."""
+    """The row of an earlier run, if inputs and results are unchanged."""
     from pkm_post.model import errors
     from pkm_post.writing import manifest
 
@@ -233,7 +233,7 @@ def _table_before(table: Path) -> list[BatchRow]:
     try:
         with table.open(encoding="utf-8", newline="") as stream:
             return [BatchRow(**row) for row in csv.DictReader(stream)]
-    except (OSError, TypeError, ValueError):  # none yet, or not ours: every job is posted
+    except (OSError, TypeError, ValueError):  # missing or not ours: post every job
         return []
 
 

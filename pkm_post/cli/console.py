@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Console: what Windows does otherwise with the processes of a program: windows that open, and Ctrl-C.
+"""Console: differences of Windows for processes started by a program: console windows, and Ctrl-C.
 
-A process of a program without a console opens a console window, unless it gets a hidden one, and Ctrl-C reaches the
-processes of one console only. In a process group of its own a process does not get Ctrl-C; its parent can send it a
-break, which Python takes for the end of the process unless a handler raises KeyboardInterrupt. Elsewhere there are no
-such flags, and process groups and signals do all of it. [Microsoft Learn, Process Creation Flags;
-GenerateConsoleCtrlEvent]
+A process started by a program without a console opens a console window, unless it gets a hidden one, and Ctrl-C only
+reaches the processes of one console. A process in its own process group gets no Ctrl-C; its parent can send it a break,
+which ends a Python process unless a handler raises KeyboardInterrupt. Other systems have no such flags; process groups
+and signals are enough there. [Microsoft Learn, Process Creation Flags; GenerateConsoleCtrlEvent]
 """
 
 from __future__ import annotations
@@ -31,21 +30,21 @@ else:
 
 
 BREAK: int | None = getattr(signal, "CTRL_BREAK_EVENT", None)
-"""Sent to a process in a group of its own as Ctrl-C; None where the system has no consoles of this kind."""
+"""Signal that replaces Ctrl-C for a process in its own group; None on systems other than Windows."""
 
 
 def flags_with_us() -> int:
-    """Creation flags of a process that Ctrl-C reaches as it reaches us."""
+    """Creation flags of a process that receives Ctrl-C as we do."""
     return 0 if has_console() else _NO_WINDOW
 
 
 def flags_by_us() -> int:
-    """Creation flags of a process that we interrupt when Ctrl-C has reached us."""
+    """Creation flags of a process that we interrupt after Ctrl-C."""
     return _NEW_GROUP if has_console() else _NO_WINDOW
 
 
 def interrupt_on_break() -> None:
-    """Let a break raise KeyboardInterrupt, as Ctrl-C does, so that what was begun is tidied up."""
+    """Let a break raise KeyboardInterrupt, like Ctrl-C, so that the process cleans up."""
     number = getattr(signal, "SIGBREAK", None)
     if number is not None and threading.current_thread() is threading.main_thread():
         signal.signal(number, signal.default_int_handler)

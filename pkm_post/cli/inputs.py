@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Inputs: the machine and the part programs that a command line names, and how to read them.
+"""Inputs: the machine and the part programs of a command line, and their reading options.
 
 Each function converts arguments of ``argparse``. NumPy is imported only where it is needed: a command that runs again
 inside FreeCAD starts without it.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parallel: commands in processes of their own, several at a time.
+"""Parallel: several commands at a time, each in its own process.
 
-Their output is printed in their order, that of each kept together. Ctrl-C ends them all.
+Their output is printed in order, not interleaved. Ctrl-C ends them all.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from pkm_post.model import Diagnostic
 
 _HIGHEST_PROGRAM = 999
-"""Numbers from 1000 on are the subprograms of the codes."""
+"""Numbers from 1000 are the subprograms of the codes."""
 _percent = above_zero(100)
 _jog_mm = between(-LONGEST_TOOL, LONGEST_TOOL)
 _turn = between(-360, 360)

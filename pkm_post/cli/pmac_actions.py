@@ -31,7 +31,7 @@ _STOP = r"(?:&\d+)?[HA]|#\d+K|P8187\.\.8191=0"
 _NEEDS_NO_OWNERSHIP = re.compile(
     rf"(?:{_QUESTION}|{_STOP})(?: (?:{_QUESTION}|{_STOP}))*|LIST .*|[\w.]+\[[\w.\[\]]+", re.IGNORECASE
 )
-"""Terminal lines that only query, stop, or clear the variables that hold the machine's owner."""
+"""Terminal lines that only query, stop, or clear the variables of the machine's owner."""
 
 
 def probe(session: Session, target: Target | None, namespace: argparse.Namespace) -> int:
@@ -62,7 +62,7 @@ def _print_motion(session: Session, target: Target | None) -> None:
 
 
 def download(session: Session, target: ProgramTarget, namespace: argparse.Namespace) -> int:
-    """Load the program, list it back and compare; one of tip and axis checks the set-up itself, by its guard."""
+    """Load the program, list it back and compare; a program of tip and axis checks the set-up itself by its guard."""
     from pkm_post.control.link import check_setup, download
 
     if target.is_of_struts:
@@ -79,7 +79,7 @@ def _show_progress(done: int, lines: int) -> None:
 
 
 def _no_progress(done: int, lines: int) -> None:
-    """Ignore progress where the output is not a terminal."""
+    """Ignore progress if the output is not a terminal."""
 
 
 def start(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
@@ -187,7 +187,7 @@ def _show_stream_progress(done: int, sent: int, lines: int) -> None:
 
 
 def _no_stream_progress(done: int, sent: int, lines: int) -> None:
-    """Ignore progress where the output is not a terminal."""
+    """Ignore progress if the output is not a terminal."""
 
 
 @contextmanager
@@ -223,4 +223,4 @@ ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {
 """For each action its description, and the inputs it needs: a named machine or program."""
 
 NOT_OF_POWER_PMAC = {"stream": "it is for the rotary buffer of a Turbo PMAC"}
-"""Why an action is not for a Power PMAC."""
+"""Reasons why actions do not apply to a Power PMAC."""

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from pkm_post.model import Diagnostic, Trajectory
 
 _SLOWEST_OVERRIDE = 0.05
-"""A move may take as long as at this override, which an operator may set meanwhile."""
+"""Override for the timeout of a move, which an operator may set meanwhile."""
 _START_S = 30.0
-"""Added to that: the approach, and the machine's own codes."""
+"""Added to the timeout for the approach and codes of the machine."""
 _HELD = "it is held, by an operator or, a jog, because this computer came too late to renew it; resume or abort it"
 
 
@@ -38,7 +38,7 @@ def control_of(session: Session, target: Target, namespace: argparse.Namespace) 
     """Numerical control of a machine with the given tool.
 
     Raises:
-        NotReadyError: the program number for moves by hand is that of the jobs.
+        NotReadyError: the program number for manual moves is that of the jobs.
     """
     from pkm_post.control.link import NotReadyError
     from pkm_post.control.numerical_control import NumericalControl
@@ -99,7 +99,7 @@ def ended_elsewhere(status: Status, lengths: Array) -> bool:
 
 _WATCH_S = 0.2
 _THERE_MM = 1e-3
-"""mm of a strut; closer to the start of a program no approach is planned."""
+"""mm of a strut: within this distance of the start of a program no approach is planned."""
 
 
 def home(session: Session, target: Target, namespace: argparse.Namespace) -> int:
@@ -150,7 +150,7 @@ def mdi(session: Session, target: Target, namespace: argparse.Namespace) -> int:
 
 
 def approach(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
-    """Move the tool to the start of a program; where part, stock or fixtures are named, clear of them."""
+    """Move the tool to the start of a program, clear of any named part, stock and fixtures."""
     from pkm_post.control.link import read_status
     from pkm_post.control.numerical_control import target_deviation
     from pkm_post.control.player import approach_faults
@@ -179,10 +179,10 @@ def approach(session: Session, target: JobTarget, namespace: argparse.Namespace)
 def _surroundings(
     session: Session, target: JobTarget, namespace: argparse.Namespace
 ) -> tuple[PlayContext | None, tuple[Diagnostic, ...]]:
-    """The program as a trajectory with part, stock and fixtures, where any of them is named, and faults of their files.
+    """The program as a trajectory with any named part, stock and fixtures; and faults of their files.
 
     Raises:
-        NotReadyError: the trajectory begins elsewhere than the program, or with a tool of another length.
+        NotReadyError: the trajectory starts elsewhere than the program, or with a tool of another length.
     """
     from pkm_post.cli.pmac_play import setup_of
     from pkm_post.control.player import PlayContext, check_start, read_playable
@@ -200,7 +200,7 @@ def _surroundings(
 
 
 def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
-    """Run a program line by line of its source; each line of the standard input starts one."""
+    """Run a program by lines of its source; each line of the standard input starts one."""
     from pkm_post.control.link import NotReadyError
     from pkm_post.control.numerical_control import read_blocks
 
@@ -217,7 +217,7 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
         print(f"{blocks.shown(number)}; Enter starts it, the end of the input ends here", flush=True)
         if not sys.stdin.readline():
             return 0
-        # Only the first line is approached by hand; the others begin where the previous one ended.
+        # Only the first line needs an approach; the others start where the previous one ended.
         start_tolerance = namespace.near if number == namespace.block else START_TOLERANCE_MM
         if execute_plan(session, target, namespace, control, *control.plan_step(), start_tolerance):
             return 1
@@ -262,11 +262,11 @@ _OF_WHAT_RUNS = ("hold", "resume", "abort", "override", "monitor")
 
 
 def print_emergency_steps(name: str, connected: bool) -> None:
-    """Print what to do when the link is lost and the machine may be moving.
+    """Print instructions for a lost link while the machine may be moving.
 
     Args:
         name: of the action.
-        connected: whether the controller had answered before.
+        connected: whether the controller answered before.
     """
     from pkm_post.control.link import EMERGENCY_STEPS
 

@@ -29,7 +29,7 @@ _OVERTRAVEL_MM, _RESOLUTION_MM, _WITHIN_MM, _CLEARANCE_MM = 2.0, 0.001, 10.0, 5.
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the action, but for those of any move by hand."""
+    """Add the arguments of the action, except those common to manual moves."""
     parser.add_argument("feature", choices=FEATURES, help="what is measured")
     help_text = "variable of the controller with the state of the probe, and its value while touched (M1000=1)"
     parser.add_argument("--input", required=True, type=_input, metavar="VARIABLE[=0|1]", help=help_text)
@@ -65,7 +65,7 @@ def _coordinates(text: str) -> tuple[float, ...]:
 
 
 def measure(session: Session, target: Target, namespace: argparse.Namespace) -> int:
-    """Measure a feature and print it, with the work offset that follows."""
+    """Measure a feature and print it, with the resulting work offset."""
     from pkm_post.control.numerical_control import Probe, ProbeSettings
     from pkm_post.model import Refused
     from pkm_post.options import Options
@@ -77,7 +77,7 @@ def measure(session: Session, target: Target, namespace: argparse.Namespace) -> 
         print(lacks, file=sys.stderr)
     if work is None or lacks:
         return _print_faults(faults)
-    logging.getLogger().setLevel(logging.WARNING)  # each of the many moves is loaded and listed
+    logging.getLogger().setLevel(logging.WARNING)  # each of the many moves would log its download
     control = control_of(session, target, namespace)
     settings = ProbeSettings(namespace.input, namespace.ball, namespace.overtravel, namespace.resolution)
     probe = Probe(session, control, settings, control.longest_silence_s())
@@ -95,7 +95,7 @@ def measure(session: Session, target: Target, namespace: argparse.Namespace) -> 
 
 
 def needs(namespace: argparse.Namespace) -> str:
-    """What the arguments of a feature lack, in words; empty if nothing."""
+    """Missing arguments of a feature, as text; empty if none."""
     feature = namespace.feature
     lacking = [name for name in _NEEDED[feature] if getattr(namespace, name) is None]
     foreign = [name for name in _UNKNOWN[feature] if getattr(namespace, name) is not None]

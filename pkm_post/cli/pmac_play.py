@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""PMAC play: the action play of the command ``pmac``, with orders from the standard input while it plays."""
+"""PMAC play: the action play of the command ``pmac``, with orders from the standard input."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def add_solids(parser: argparse.ArgumentParser) -> None:
-    """Add the options for what the way to a beginning is checked against."""
+    """Add the options for the collision check of the approach."""
     for name, what in _SOLIDS.items():
         help_text = (
             f"STL or STEP file of {what}, mm in the work frame, which the way to the beginning is checked against"
@@ -81,7 +81,7 @@ def add_solids(parser: argparse.ArgumentParser) -> None:
 
 
 def setup_of(namespace: argparse.Namespace) -> tuple[Setup, tuple[Diagnostic, ...]]:
-    """Part, stock and fixtures that were named, and what is wrong with their files."""
+    """The named part, stock and fixtures, and the faults of their files."""
     from pkm_post.options import MeshFiles, Options
     from pkm_post.posting import effective_setup
 
@@ -173,7 +173,7 @@ def _print_result(done: PlayResult) -> int:
 
 @dataclass
 class _Shown:
-    """What is printed of the states, and the orders that are read meanwhile."""
+    """Prints the states, and reads orders meanwhile."""
 
     now: Callable[[], float]
     due: float = 0.0
@@ -187,7 +187,7 @@ class _Shown:
         threading.Thread(target=self._read, daemon=True).start()
 
     def show(self, state: PlayState) -> None:
-        """Print a state where its phase is another, and every second; without input questions go unanswered."""
+        """Print a state on a new phase, and every second; after the end of input, a wait ends the play."""
         from pkm_post.control.player import Order
 
         if state.phase != self.phase or self.now() >= self.due:
@@ -212,7 +212,7 @@ class _Shown:
 
 
 def order_of(line: str) -> tuple[Any, float] | None:
-    """The order that a line gives, or None."""
+    """The order of a line, or None."""
     word, _, rest = line.strip().lower().partition(" ")
     if word in ("hold", "resume", "start", "end") and not rest:
         return word, 0.0

@@ -113,7 +113,7 @@ def _power_pmac(namespace: argparse.Namespace) -> PowerPmac:
 
 
 def _be_of_machine(controller: Controller, namespace: argparse.Namespace) -> bool:
-    """Give the M codes of its machine and a touch probe to the controller; False with faults, which are printed."""
+    """Add the M codes of the machine and a touch probe to the controller; False on faults, which are printed."""
     from pkm_post.control.simulator import function_programs
     from pkm_post.machine import machine_named
 
@@ -136,7 +136,7 @@ def _print_all(faults: Sequence[Diagnostic]) -> None:
 
 
 def _connect_probe(controller: Controller, machine: Machine, namespace: argparse.Namespace) -> bool:
-    """Give a simulated touch probe to the controller; False when its machine has faults, which are printed."""
+    """Add a simulated touch probe to the controller; False if its machine has faults, which are printed."""
     from pkm_post.control.link import ToolPoseReadout
     from pkm_post.control.numerical_control import SimulatedProbe
     from pkm_post.writing import pmac, power_pmac
@@ -153,7 +153,7 @@ def _connect_probe(controller: Controller, machine: Machine, namespace: argparse
 
 
 def _address(server: Server, machine: PowerPmac | None, namespace: argparse.Namespace) -> str:
-    """Open the port and return its name for clients; over ssh print what a client has to know of it.
+    """Open the port and return its name for clients; over ssh, print the data that a client needs.
 
     Raises:
         OSError: the port is taken, or no password is set.
@@ -181,9 +181,9 @@ def serve(server: Server, ended: Callable[[], bool]) -> None:
 
 
 def _set_up(machine: Controller | PowerPmac, file: Path) -> bool:
-    """Execute the lines of a file; print the first that is refused.
+    """Execute the lines of a file; print the first refused one.
 
-    A set-up from a posting is refused if it has changed since. Without a manifest it may be any other file of lines.
+    A set-up from a posting is refused if it was changed. Without a manifest, any file of lines is accepted.
     """
     from pkm_post.control.simulator import refused_line
     from pkm_post.model import errors

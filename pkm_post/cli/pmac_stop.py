@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """PMAC stops: the actions hold and abort, and the hold when a command that moves the machine ends.
 
-A stop is retried until the machine is at rest. After two seconds without that, a separate timer prints what to do: a
-blocking link delays no advice. Ctrl-C ends the retries.
+A stop is retried until the machine is at rest. After two seconds, a separate timer prints instructions: a
+blocking link must not delay them. Ctrl-C ends the retries.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pkm_post.writing import PmacSettings
 
 _SIGNALS = ("SIGTERM", "SIGHUP", "SIGBREAK")
-"""Termination of the process, of its terminal, and of its console on Windows; a system defines some of them."""
+"""Termination of the process, of its terminal, and of its console on Windows; systems define some of them."""
 
 
 @dataclass(frozen=True)
@@ -110,9 +110,9 @@ def _advise() -> None:
 
 @contextmanager
 def held_at_the_end(session: Session, settings: PmacSettings) -> Iterator[None]:
-    """Hold the machine when the command that moves it ends: by Ctrl-C, a signal, a closed terminal, any fault.
+    """Hold the machine when the command that moves it ends: by Ctrl-C, a signal, a closed terminal, or a fault.
 
-    A fault of the link or of the controller propagates unchanged: it has its own advice.
+    A fault of the link or of the controller propagates unchanged: it has its own instructions.
 
     Raises:
         CancelledError: it was interrupted; the machine is held.

@@ -92,7 +92,7 @@ def _post_files(files: Sequence[Path], namespace: argparse.Namespace, arguments:
 
 
 def _all_there(files: Sequence[Path], namespace: argparse.Namespace) -> int:
-    """Check that the promised results exist, whichever process wrote them; return the exit code."""
+    """Check that the expected results exist, whichever process wrote them; return the exit code."""
     items = [item for file in files for item in items_of(file, namespace.job, namespace.also)]
     missing = missing_results(items, namespace.out)
     print_diagnostics(
@@ -102,7 +102,7 @@ def _all_there(files: Sequence[Path], namespace: argparse.Namespace) -> int:
 
 
 def _faults(namespace: argparse.Namespace) -> list[str]:
-    """Messages on why these files cannot be posted in one call."""
+    """Reasons why these files cannot be posted in one call."""
     files = namespace.files
     if namespace.only is not None and namespace.only >= len(files):
         return [f"argument {_ONLY}: expected a number below {len(files)}, got {namespace.only}"]
@@ -125,7 +125,7 @@ def items_of(file: Path, job_name: str | None, also: tuple[str, ...]) -> list[Po
 
 
 def _jobs_in(document: Path) -> tuple[Job, ...]:
-    """CAM jobs of a document; none of an unreadable one, which is refused when posted."""
+    """CAM jobs of a document; none for an unreadable one, which is refused when posted."""
     from pkm_post.system import DamagedDocument, read_document
 
     try:
@@ -165,7 +165,7 @@ def _post_one(file: Path, namespace: argparse.Namespace) -> int:
 
 
 def _offer_place(file: Path, namespace: argparse.Namespace, refused: Refused, line: ProgressLine) -> None:
-    """Print where a refused program could be posted, if another place may mend that, or how to look for one."""
+    """Print a place for a refused program, if another place may cure that, or how to search for one."""
     from pkm_post.model import Refused, errors
     from pkm_post.posting import may_be_mended, place_found, place_offer, study
 
@@ -179,7 +179,7 @@ def _offer_place(file: Path, namespace: argparse.Namespace, refused: Refused, li
         try:
             with line:
                 _, faults = study(*program.sound, program.options)
-                if errors(faults):  # of several jobs in a document not every one is refused
+                if errors(faults):  # not all jobs of a document need be refused
                     text = place_found(*program.sound, program.options, program.places, line.show)
                     print_diagnostics([f"{subject}: place: {text}"])
         except Refused as fault:

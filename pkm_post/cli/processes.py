@@ -2,8 +2,8 @@
 """Processes: commands that run again inside FreeCADCmd.
 
 Only FreeCAD can read its documents, so outside of it a command runs again inside FreeCADCmd. FreeCAD's exit code 0 is
-unreliable: it also exits so without finding the script, as does a program that is not FreeCAD. The command therefore
-exits with codes of its own inside, and any other code means that it was not reached.
+unreliable: it also exits with 0 if the script is missing, as may a program that is not FreeCAD. The command therefore
+uses its own exit codes inside, and any other code means that it did not run.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def run_inside(arguments: Sequence[str]) -> int:
 
 
 def _run_with_us(command: Sequence[str]) -> int:
-    """Run a command that Ctrl-C reaches as well, and return its exit code; after Ctrl-C it gets time to clean up."""
+    """Run a command that also receives Ctrl-C; return its exit code. After Ctrl-C it gets time to clean up."""
     import subprocess
 
     process = subprocess.Popen(command, creationflags=console.flags_with_us())
@@ -92,7 +92,7 @@ def _run_with_us(command: Sequence[str]) -> int:
 def command_inside(arguments: Sequence[str]) -> list[str]:
     """Command line that runs a command inside FreeCADCmd; empty, after a message, if FreeCAD is missing.
 
-    FreeCAD loads an add-on as such. A wheel is not loaded: its folder contains packages for another Python.
+    FreeCAD loads an add-on itself. The folder of a wheel is not loaded, as it has packages for another Python.
     """
     freecad = _freecad_command()
     if not freecad.words:
@@ -132,9 +132,9 @@ def start_fault(command: Sequence[str], fault: OSError) -> str:
 
 
 def _freecad_command() -> FreeCADCommand:
-    """FreeCADCmd, by the finder of a checkout, which makes one where there is none, or where it is installed.
+    """FreeCADCmd, from the finder of a checkout, which creates one if missing, or from an installation.
 
-    The finder is a bash script. Windows cannot run it, and a bash on its path belongs to another system, WSL.
+    The finder is a bash script. Windows cannot run it; a bash on its path belongs to WSL.
     """
     has_finder = sys.platform != "win32" and _FINDER.exists() and shutil.which("bash") is not None
     if has_finder and not os.environ.get(FREECADCMD):
@@ -143,7 +143,7 @@ def _freecad_command() -> FreeCADCommand:
 
 
 def diagnostic_text(code: str, place: str, found: str) -> str:
-    """Format a diagnostic; in short without NumPy, which the rule table needs."""
+    """Format a diagnostic; abbreviated without NumPy, which the rule table needs."""
     try:
         from pkm_post.model import Diagnostic, Place
     except ImportError:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The commands ``reach`` and ``reach-map``: what a machine can reach.
+"""The commands ``reach`` and ``reach-map``: the reach of a machine.
 
-``reach`` says whether it can follow a program, and where on the machine it could do so better; ``reach-map`` gives the
-feasible tool tilt over the work volume.
+``reach`` checks whether it can follow a program, and finds a better place for it; ``reach-map`` gives the feasible tool
+tilt over the work volume.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from pkm_post.options import (
 _angle = validated(number, lambda degrees: 0 < degrees < 180, "an angle above 0 and below 180")
 
 _MAX_POINTS = 1_000_000
-"""A file with this many is some tens of megabytes."""
+"""A file with this many points has some tens of megabytes."""
 
 
 def add_commands(commands: Any) -> None:

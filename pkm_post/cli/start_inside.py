@@ -13,7 +13,7 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def _import_package() -> None:
-    """Import the package from its folder, and do what ``Init.py`` of the add-on does for the command line."""
+    """Import the package from its folder, and do the part of the add-on's ``Init.py`` that the command line needs."""
     spec = importlib.util.spec_from_file_location(
         "pkm_post", _PACKAGE / "__init__.py", submodule_search_locations=[str(_PACKAGE)]
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command ``stiffness``: how stiff the tool tip is held along programs, and all over the table."""
+"""The command ``stiffness``: stiffness of the tool tip along programs, and over the whole table."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def _stiffness(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
 
 
 def _studied(program: Prepared, namespace: argparse.Namespace) -> StiffnessStudy:
-    """The study of a program; it raises ``Refused`` when there is none."""
+    """The study of a program; raises ``Refused`` if there is none."""
     from pkm_post.model import Refused
     from pkm_post.posting import stiffness_study
 
@@ -74,7 +74,7 @@ def _studied(program: Prepared, namespace: argparse.Namespace) -> StiffnessStudy
 
 
 def _written(studies: Sequence[StiffnessStudy], out: Path) -> bool:
-    """Write the maps, print the names of the files, and return whether that was possible."""
+    """Write the maps, print the names of the files, and return whether that succeeded."""
     from pkm_post.options import job_stem
     from pkm_post.report import draw_levels
     from pkm_post.system import staged, write_fault

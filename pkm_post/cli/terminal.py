@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Terminal: diagnostics on stderr, and the progress line, the last line of a terminal.
 
-The line shows the current step and its share. It is overwritten, and cleared when there is something to print. Where
+The line shows the current step and its share. It is overwritten, and cleared before other output. If
 stderr is not a terminal there is no line.
 """
 

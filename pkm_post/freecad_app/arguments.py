@@ -56,7 +56,7 @@ _EXTRA_ARGUMENTS: dict[str, dict[str, dict[str, Any]]] = {
 
 
 def values_of(arguments: str | ArgumentValues) -> ArgumentValues:
-    """Parse a text into the options it sets, without defaults; already parsed options are returned unchanged.
+    """Parse a text into the options it sets, without defaults; parsed options are returned unchanged.
 
     Raises:
         Refused: as ``job_arguments``.
@@ -157,7 +157,7 @@ def store_in_job(job: Any, text: str, program: str) -> None:
         text: the arguments.
         program: path of the motion program.
     """
-    if PMAC not in job.getEnumerationsOfProperty("PostProcessor"):  # created where PKM Post is not installed
+    if PMAC not in job.getEnumerationsOfProperty("PostProcessor"):  # created without PKM Post installed
         job.PostProcessor = Path.Preferences.allEnabledPostProcessors([PMAC])
     for name, value in (("PostProcessor", PMAC), ("PostProcessorArgs", text), ("PostProcessorOutputFile", program)):
         if getattr(job, name) != value:

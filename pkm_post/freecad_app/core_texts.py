@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Core texts: causes, cures and phrases of the core in the language and the units of the user.
 
-The core is English and knows no Qt. What it says comes as ``Phrase``, or stands in its tables; here FreeCAD looks it up
-in the context ``Core``, and amounts get the units that the user chose. Without a translation, as in FreeCAD's
-console, all is English; files that are written are English always.
+The core is English and independent of Qt. Its messages are ``Phrase`` objects, or entries of its tables; FreeCAD
+translates them in the context ``Core``, and amounts get the units of the user. Without a translation, as in FreeCAD's
+console, all is English; written files are always English.
 """
 
 from __future__ import annotations
@@ -60,14 +60,14 @@ def place_text(place: Place) -> str:
 
 
 def finding_text(fault: Diagnostic) -> str:
-    """Code, cause, what was found, and the cure, without the place."""
+    """Code, cause, finding and cure, without the place."""
     pattern = translate("CoreTexts", "{code} {cause}: {found}; {cure}")
     cause, cure = cause_text(fault.code), cure_text(fault.code)
     return str(pattern.format(code=fault.code, cause=cause, found=_found_text(fault.found), cure=cure))
 
 
 def fault_text(fault: Diagnostic) -> str:
-    """All of a diagnostic in one line: as ``str`` of it, in the language of the user."""
+    """A diagnostic in one line, like its ``str``, in the language of the user."""
     severity = translate("CoreTexts", _SEVERITIES[fault.severity])
     pattern = translate("CoreTexts", "{place}: {severity} {code}: {cause}: {found}; {cure}")
     return str(
@@ -83,25 +83,25 @@ def fault_text(fault: Diagnostic) -> str:
 
 
 def _found_text(found: str) -> str:
-    """What was found; only phrases are translated, since other text may be words of the input."""
+    """The finding; only phrases are translated, since other text may come from the input."""
     return shown(found) if isinstance(found, Phrase) else found
 
 
 def faults_text(faults: Iterable[Diagnostic]) -> str:
-    """Diagnostics, a line each."""
+    """Diagnostics, one per line."""
     return "\n".join(map(fault_text, faults))
 
 
 def exception_text(fault: BaseException) -> str:
-    """The message of an exception; that of one with diagnostics in the language of the user."""
+    """The message of an exception; with diagnostics in the language of the user."""
     if isinstance(fault, Refused):
         return faults_text(fault.diagnostics)
-    diagnostic = getattr(fault, "diagnostic", None)  # of a DiagnosedError of the link to the controller
+    diagnostic = getattr(fault, "diagnostic", None)  # a DiagnosedError of the link
     return str(fault) if diagnostic is None else fault_text(diagnostic)
 
 
 def meaning_lines(coverage: Iterable[Mapping[str, str]]) -> list[str]:
-    """What certified means, from the coverage of a report: a line for each topic, its hazards by extent."""
+    """The scope of the certificate, from the coverage of a report: a line per topic, with its hazards by extent."""
     rows, lines = list(coverage), []
     for topic in dict.fromkeys(row["topic"] for row in rows):
         by_extent: dict[str, list[str]] = {extent.value: [] for extent in Extent}
@@ -114,7 +114,7 @@ def meaning_lines(coverage: Iterable[Mapping[str, str]]) -> list[str]:
 
 
 def stored_fault(text: str) -> Diagnostic | None:
-    """The diagnostic whose English line a document stores; None for a line with another cause or cure than today's."""
+    """The diagnostic of an English line stored in a document; None if its cause or cure has changed since."""
     match = _STORED.fullmatch(text)
     rule = RULES.get(match["code"]) if match else None
     if match is None or rule is None:

@@ -33,13 +33,13 @@ def is_simulation(item: Any) -> bool:
 
 
 def is_operation(item: Any) -> bool:
-    """Whether an object is an operation of a CAM job; tool controllers have paths as well."""
+    """Whether an object is an operation of a CAM job; tool controllers also have paths."""
     others = is_job(item) or is_program(item) or hasattr(item, "ToolNumber")
     return item.isDerivedFrom("Path::Feature") and not others
 
 
 def job_of(item: Any) -> Any:
-    """The CAM job that an object is or belongs to; None for none, or if there are several.
+    """The CAM job that an object is or belongs to; None if there is none, or more than one.
 
     An object belongs to a job as operation, tool controller, tool bit, stock or model, also as the original of these,
     and as a machine, reach or simulation of the job.
@@ -52,13 +52,13 @@ def job_of(item: Any) -> Any:
 
 
 def only_job(document: Any) -> Any:
-    """The CAM job of a document that has just one; else None."""
+    """The CAM job of a document with exactly one; else None."""
     jobs = [] if document is None else [item for item in document.Objects if is_job(item)]
     return jobs[0] if len(jobs) == 1 else None
 
 
 def job_for(items: Sequence[Any], document: Any) -> Any:
-    """The CAM job that a selection means.
+    """The CAM job of a selection.
 
     Args:
         items: the selected objects, none or several.
@@ -66,7 +66,7 @@ def job_for(items: Sequence[Any], document: Any) -> Any:
 
     Returns:
         The job of all objects that belong to one; the only one of the document if none does; None if objects belong to
-        several jobs, or if there is no telling.
+        several jobs, or if it is ambiguous.
     """
     jobs = {job.Name: job for job in map(job_of, items) if job is not None}
     if jobs:

@@ -4,10 +4,10 @@
 Takes a file, a document or an operation; returns its faults. FreeCAD opens a truncated or modified file without an
 error and replaces unreadable paths with empty ones. The file is therefore checked before it is opened, and again when a
 job of an open document is read: until it is saved, the file is still the one that was opened. Operations that FreeCAD
-could not read or compute it only marks.
+could not read or compute are only marked.
 
-Dress-ups, arrays and copies stand on an operation, linked by their ``Base``. Those of FreeCAD rebuild moves from X Y Z,
-and arrays rotate only these: I J K words below them are dropped or left unchanged.
+Dress-ups, arrays and copies derive from an operation, linked by their ``Base``. Those of FreeCAD rebuild moves from X Y
+Z, and arrays rotate only these: I J K words below them are dropped or left unchanged.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def file_faults(document: Any) -> tuple[Diagnostic, ...]:
 
 @lru_cache(maxsize=16)
 def _faults_of(file: FilePath, changed: int, size: int) -> tuple[Diagnostic, ...]:
-    """The same, cached by file state: document objects check at every recompute."""
+    """The same, cached by file state: document objects check on every recompute."""
     try:
         read_content(file)
     except Refused as refused:
@@ -81,8 +81,8 @@ def _faults_of(file: FilePath, changed: int, size: int) -> tuple[Diagnostic, ...
 def require_computed(document: Any) -> None:
     """Recompute a document whose paths are to be read.
 
-    A timer may fire inside a recompute, since its progress bar lets the window work. A second recompute does nothing
-    then, and operations that come later have old paths or none.
+    A timer may fire within a recompute, since its progress bar processes events of the window. A second recompute then
+    does nothing, and later operations have old paths or none.
 
     Raises:
         Refused: the document is being recomputed, J137.
@@ -146,7 +146,7 @@ _FAULTS: tuple[tuple[str, Callable[[Any], str]], ...] = (
     ("J133", _not_computed),
     ("J132", _empty),
 )
-"""Finding by code, empty if there is none, in this order: each test relies on those before it."""
+"""Finding by code, empty if there is none, in this order: each test relies on the previous ones."""
 
 
 def is_pkm_object(operation: Any) -> bool:

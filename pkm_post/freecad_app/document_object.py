@@ -2,12 +2,12 @@
 """Document object: base classes of our document objects' proxies, their properties, faults and warnings.
 
 Proxies keep all their state in properties, which come from tables. The properties are also added when a document is
-opened: one of an older version lacks later ones. Names, types and units are a file format: they can be extended, not
+opened, as one of an older version lacks later ones. Names, types and units are a file format: they can be extended, not
 changed. Saved documents store the module names of the subclasses, never this one.
 
-FreeCAD has one way to mark an object as failed: its ``execute`` raises. It then shows the text as the status of the
-object, and writes it to the Report view with the traceback. The traceback does not help the user who set a property,
-so it is removed where the input is at fault, and kept for errors of our own.
+The only way to mark an object as failed is an exception from its ``execute``. FreeCAD shows the text as the status of
+the object, and writes it to the Report view with the traceback. The traceback does not help the user who set a
+property, so it is removed for faults of the input, and kept for our own errors.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ Row = tuple[str, str, str, str, Any]
 """A property: its type, name, group, description, and its initial value or its choices."""
 
 EDITABLE, READ_ONLY, HIDDEN = 0, 1, 2
-"""Editor modes: whether the user can edit a property, only read it, or does not see it."""
+"""Editor modes: the user can edit a property, only read it, or not see it."""
 NO_RECOMPUTE = 16
 """Attribute of a property whose change does not recompute the object."""
 _NO_ATTRIBUTES: Mapping[str, int] = MappingProxyType({})
@@ -50,7 +50,7 @@ def add_missing(
         obj: the document object.
         rows: the table.
         mode: editor mode of all of them.
-        attributes: property attributes by name, where there are any.
+        attributes: property attributes by name, if any.
     """
     for kind, name, group, text, value in rows:
         if not hasattr(obj, name):
@@ -61,7 +61,7 @@ def add_missing(
 
 
 class PropertyProxy:
-    """A proxy that saves nothing but the properties of its object.
+    """A proxy that saves only the properties of its object.
 
     Attributes:
         properties: set by the user.
@@ -81,7 +81,7 @@ class PropertyProxy:
         add_missing(obj, self.results, READ_ONLY)
 
     def clear_results(self, obj: Any) -> None:
-        """Clear the results, so that none is outdated after an error."""
+        """Clear the results, so that none is stale after an error."""
         for _, name, _, _, value in self.results:
             setattr(obj, name, value)
 
@@ -90,7 +90,7 @@ class PropertyProxy:
         self.add_missing_properties(obj)
 
     def dumps(self) -> None:
-        """Save nothing but the properties."""
+        """Save only the properties."""
 
     def loads(self, state: object) -> None:
         """Restore nothing: nothing was saved."""
@@ -119,7 +119,7 @@ def value_of(result: tuple[Any, Iterable[Diagnostic]], about: str = "") -> Any:
 
     Args:
         result: the value, or None, and the diagnostics of the step.
-        about: what they are about, to precede each.
+        about: their subject, to precede each.
 
     Raises:
         Refused: there is no value.
@@ -156,7 +156,7 @@ class DerivedOperation(PropertyProxy, abc.ABC):
     @without_traceback
     def execute(self, obj: Any) -> None:
         """Recompute the path: FreeCAD calls this when the base or a property has changed."""
-        obj.Path = Path.Path()  # after an error no outdated path remains to be posted
+        obj.Path = Path.Path()  # after an error no stale path may be posted
         if not obj.Active:
             obj.Path = Path.Path("(inactive operation)")
         elif obj.Base is not None:

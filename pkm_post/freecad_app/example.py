@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Example: a document with a blade, and the CAM job that finishes its upper face on the example machine.
 
-It is the blade of docs/tutorial-blade.md. Lengths in mm, angles in degrees, as FreeCAD's properties have them.
+It is the blade of docs/tutorial-blade.md. Lengths in mm, angles in degrees, as in FreeCAD's properties.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _HEIGHT = 40
 
 
 def create_example() -> FreeCAD.Document:
-    """Make the document: the blade, a job for a hexapod with one tool, and Surface Finish on its upper face."""
+    """Create the document: the blade, a job for a hexapod with one tool, and Surface Finish on its upper face."""
     document = FreeCAD.newDocument(NAME)
     blade = _blade(document)
     job = _job(blade)
@@ -51,7 +51,7 @@ def _blade(document: FreeCAD.Document) -> Any:
 
 
 def _job(blade: Any) -> Any:
-    """A job with its tool; in a window with the views of CAM."""
+    """A job with its tool; in the GUI with the views of CAM."""
     if FreeCAD.GuiUp:
         from Path.Main.Gui.Job import Create
 

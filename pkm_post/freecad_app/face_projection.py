@@ -2,11 +2,11 @@
 """Face projection: the feet of points on the surface of a Part face, with outward normals.
 
 Takes a face and points near it; returns feet, unit normals and signed distances as arrays, in mm, in the frame of the
-shape. Normals point out of the material: they honour the orientation of the face in its solid, which the underlying
+shape. Normals point out of the material: they follow the orientation of the face in its solid, which the underlying
 surface does not have.
 
 Planes, cylinders, cones, spheres and tori use closed forms, B-spline surfaces their poles, and others the B-splines
-into which OpenCASCADE converts them. Rows without a result are projected by OpenCASCADE itself, at about half a
+into which OpenCASCADE converts them. Points without a result are projected by OpenCASCADE, at about half a
 millisecond each.
 """
 
@@ -45,9 +45,9 @@ _BATCH = 20_000
 _CHORDS = 32
 """Number of chords that approximate an edge in the parameter plane."""
 _SHARE = 1e-3
-"""Share of its greatest length that a derivative counts as having at least."""
+"""Least length of a derivative, as a share of its greatest length."""
 _SHORT = 1e-9
-"""Smallest length of a derivative by which parameters are divided, mm."""
+"""Least length of a derivative as a divisor, mm."""
 _EDGE = 1e-3
 """A foot this close to the edge of a face, in mm, counts as on the face."""
 
@@ -59,7 +59,7 @@ class FootPoints:
     Attributes:
         points: (N, 3) the feet, mm.
         normals: (N, 3) unit normals out of the material; NaN where the surface has none.
-        parameters: (N, 2) u and v of the feet; NaN where not known yet.
+        parameters: (N, 2) u and v of the feet; NaN where not yet known.
         by_occ: (N,) whether OpenCASCADE projected the point.
         face: the face to which the parameters of these rows belong.
         nurbs_face: the face to which the other parameters belong: the same one, or its B-spline form.
@@ -152,7 +152,7 @@ def _formula(surface: Any) -> Callable[[Array], tuple[Array, Array]] | None:
 
 
 def _by_formula(face: Any, formula: Callable[[Array], tuple[Array, Array]]) -> Callable[[Array], FootPoints]:
-    """The closed form, with normals oriented as the face is."""
+    """The closed form, with normals oriented like the face."""
     first_u, last_u, first_v, last_v = face.ParameterRange
     u, v = (first_u + last_u) / 2, (first_v + last_v) / 2
     _, own = formula(_vector(face.valueAt(u, v))[None])
@@ -167,7 +167,7 @@ def _by_formula(face: Any, formula: Callable[[Array], tuple[Array, Array]]) -> C
 
 
 def _by_poles(face: Any) -> Callable[[Array], FootPoints]:
-    """Newton's method on the poles; feet at the border of a patch of a larger surface are left to OpenCASCADE."""
+    """Newton's method on the poles; OpenCASCADE handles feet at the border of a patch of a larger surface."""
     own = face.Surface.TypeId == "Part::GeomBSplineSurface"
     nurbs_face = face if own else face.toNurbs().Faces[0]
     surface, closed = nurbs_of(nurbs_face)
@@ -240,7 +240,7 @@ def _on_face(feet: FootPoints) -> Array:
 
 
 def _in_domain(face: Any, at: Array) -> Array:
-    """Whether parameters (N, 2) are on the face, or almost."""
+    """Whether parameters (N, 2) are on or almost on the face."""
     first_u, _, first_v, _ = face.ParameterRange
     surface = face.Surface
     u, v = at.T
@@ -270,7 +270,7 @@ def _edges(face: Any) -> tuple[Array, Array]:
 def _micron(face: Any, at: Array) -> Array:
     """Upper bound of two microns in parameters, at each of some places on the face."""
     lengths = np.array([[derivative.Length for derivative in face.derivative1At(u, v)] for u, v in at.tolist()])
-    # At a pole one derivative is 0: the other one, and the neighbouring places, are used instead.
+    # At a pole one derivative is 0: use the other one, and the neighbouring places.
     least: Array = np.maximum(lengths, _SHARE * lengths.max(axis=0)).min(axis=1)
     return 2 * _EDGE / least
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Face surface: a Part face as the parametric surface on which passes are laid out.
+"""Face surface: a Part face as a parametric surface for passes.
 
 Takes a face, in the frame of its shape; returns functions of columns (u, v), or points and outward unit normals at
 them, in mm. B-spline faces are evaluated from their poles, all points at once. For others OpenCASCADE evaluates point
-by point, at some ten microseconds each; to say whether a point lies on a trimmed face takes it several times as long,
-so it is asked near the borders only.
+by point, at some ten microseconds each; the test whether a point is on a trimmed face takes several times as long, so
+it is only made near the borders.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ _SAME = 1e-6
 _SINGULAR = 1e-9
 """mm^2: cross product of both derivatives below which the normal is undefined."""
 _WHOLE = 1e-9
-"""Missing share of the area of its full parameter range up to which a face still counts as untrimmed."""
+"""Missing share of the full parameter area up to which a face counts as untrimmed."""
 _NEAR = 0.01
-"""Share of the ranges from a border within which OpenCASCADE says whether a point is on the face."""
+"""Distance from a border, as a share of the ranges, within which OpenCASCADE tests whether a point is on the face."""
 _OFF = _NEAR / 8
-"""Share of the ranges by which the polygon of a border may be off it."""
+"""Allowed deviation of a border polygon, as a share of the ranges."""
 _PARTS = (4, 16, 64)
-"""Pairs of segments of a polygon for each span of an edge: the first count that is close enough."""
+"""Pairs of segments of a polygon for each span of an edge: the first sufficient count is used."""
 _AT_ONCE = 1 << 20
 """Pairs of a point and a segment compared at a time."""
 
@@ -45,7 +45,7 @@ def face_surface(face: Any, flipped: bool = False) -> Surface:
 
     Args:
         face: a Part face. Normals point out of its solid.
-        flipped: whether the material is on the other side, which is possible for a face without a solid.
+        flipped: whether the material is on the other side, for a face without a solid.
     """
     first_u, last_u, first_v, last_v = face.ParameterRange
     u, v = np.linspace(first_u, last_u, 9), np.linspace(first_v, last_v, 9)
@@ -111,7 +111,7 @@ def _from_occ(face: Any) -> Evaluate:
 
 
 def _rows_from_occ(at: Callable[[float, float], Any], side: float = 1.0) -> Callable[[Array, Array], Array]:
-    """Points alone, or normals alone, multiplied by 1 or -1, from OpenCASCADE."""
+    """Only points, or only normals, multiplied by 1 or -1, from OpenCASCADE."""
     return lambda u, v: side * rows_of([at(*pair) for pair in zip(u.tolist(), v.tolist(), strict=True)])
 
 
@@ -165,9 +165,9 @@ def _trimmed(face: Any) -> Callable[[Array, Array], Array]:
 
 
 def _borders(face: Any, first: Array, width: Array) -> tuple[Array, Array] | None:
-    """Ends of the segments of all borders, (S, 2) each in shares of the ranges; None where they do not close there.
+    """Ends of the segments of all borders, (S, 2) each in shares of the ranges; None if they are not closed there.
 
-    A pole may have no line on the face, and the borders of a face that is not valid may enclose its outside.
+    A pole may have no line on the face, and the borders of an invalid face may enclose its outside.
     """
     if not face.isValid():
         return None

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Fixtures: a CAM job that is cut at several work offsets, G54 and G55 for instance.
+"""Fixtures: a CAM job at several work offsets, such as G54 and G55.
 
-Takes the fixtures of a job; returns the order in which CAM cuts its operations at them, and the place of each in the
-work frame {C}, which is the frame of the first one. All of them make one program with one certificate.
+Takes the fixtures of a job; returns the order in which CAM cuts its operations at them, and the pose of each in the
+work frame {C}, which is the frame of the first one. All of them are in one program with one certificate.
 
 The order is that of CAM's own posts, by the job's OrderOutputBy [FreeCAD 1.1, Path/Post/Processor.py,
-_buildPostList]. Between two fixtures CAM adds a move up at the old one; here the first move of the operation goes
-on from where the tool is, and the check of collisions sees the parts at all fixtures.
+_buildPostList]. Between two fixtures CAM adds a move up at the old one; here the first move of the operation
+starts at the current position, and the collision check includes the parts at all fixtures.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ DEFAULT = "G54"
 ONE_PLACE: Mapping[str, Array] = {}
 """No places: every operation is in {C}."""
 _SAME_PLACE = 1e-6
-"""mm and directions."""
+"""mm, and for directions."""
 
 
 def cutting_order(operations: Sequence[Any], fixtures: Sequence[str], order: str) -> list[tuple[str, Any]]:
@@ -47,17 +47,17 @@ def cutting_order(operations: Sequence[Any], fixtures: Sequence[str], order: str
 
 
 def files_of_split_output(operations: Sequence[Any], fixtures: Sequence[str], order: str) -> int:
-    """How many files CAM's own posts write of a job with SplitOutput; arguments as ``cutting_order``."""
+    """Number of files that CAM's own posts write for a job with SplitOutput; arguments as in ``cutting_order``."""
     return len(_groups(operations, order)) if order in _GROUPS else len(fixtures)
 
 
 def _groups(operations: Sequence[Any], order: str) -> list[list[Any]]:
-    """Operations that are cut at one fixture before the next one has its turn."""
+    """Groups of operations cut at one fixture before the next fixture."""
     return _GROUPS[order](operations) if order in _GROUPS else [list(operations)]
 
 
 def _by_tool(operations: Sequence[Any]) -> list[list[Any]]:
-    """Operations that follow each other with one tool and spindle speed; one without a tool controller goes along."""
+    """Groups of consecutive operations with one tool and spindle speed; those without a tool controller join them."""
     groups: list[list[Any]] = []
     loaded = None
     for operation in operations:
@@ -82,19 +82,19 @@ def fixture_places(
 ) -> tuple[dict[str, Array], tuple[Diagnostic, ...]]:
     """The pose in {C} of each fixture of a job.
 
-    The first one is where the work offset of the options puts it; the others are at ``--origin`` in {C}, or else where
-    the machine file has them in {M}.
+    The work offset of the options places the first one; the others are at ``--origin`` in {C}, or else as in the
+    machine file in {M}.
 
     Args:
         names: the fixtures, in the order of the job.
         machine: its work offsets.
         options: the work offset.
-        origins: those that the options give.
+        origins: those of the options.
         place: of the job, for diagnostics.
 
     Returns:
-        (4, 4) poses by name, without those that are unknown; K108 for these, J111 for two in one place, and J139 for
-        ``--copies``, of which it is not known about which of the fixtures they are.
+        (4, 4) poses by name, without unknown ones; K108 for these, J111 for two at one place, and J139 for
+        ``--copies``, since it is ambiguous which fixture they are about.
     """
     first, _ = work_offset(machine, options)
     places, faults = {names[0]: np.eye(4)}, list[Diagnostic]()
@@ -104,7 +104,7 @@ def fixture_places(
         elif name not in machine.work_offsets:
             known = ", ".join(sorted(machine.work_offsets))
             faults.append(Diagnostic("K108", place, Phrase("{}, the machine file has {}", name, known)))
-        elif first is not None:  # posting refuses the job without it
+        elif first is not None:  # without it, posting refuses the job
             places[name] = np.linalg.solve(first, machine.work_offsets[name])
     if len(names) > 1 and options.copies.moves:
         faults.append(Diagnostic("J139", place, ", ".join(names)))
@@ -128,12 +128,12 @@ def _coincident(places: Mapping[str, Array], place: Place) -> list[Diagnostic]:
 
 
 def unused_origins(origins: Origins, fixtures: Sequence[str], place: Place) -> list[Diagnostic]:
-    """J138 for each origin that is that of no fixture after the first."""
+    """J138 for each origin that does not belong to a fixture after the first."""
     return [Diagnostic("J138", place, f"--origin {name}") for name in origins if name not in fixtures[1:]]
 
 
 def at_fixtures(mesh: Mesh | None, places: Mapping[str, Array]) -> Mesh | None:
-    """A mesh of {C} once at each fixture, as one."""
+    """A mesh of {C}, repeated at each fixture, as one mesh."""
     if mesh is None or len(places) < 2:
         return mesh
     corners = mesh.triangles.reshape(-1, 3)
@@ -142,12 +142,12 @@ def at_fixtures(mesh: Mesh | None, places: Mapping[str, Array]) -> Mesh | None:
 
 
 def operation_name(label: str, fixture: str, fixtures: Sequence[str]) -> str:
-    """The name of an operation at a fixture in programs and reports; at the first one its label."""
+    """The name of an operation at a fixture in programs and reports; its label at the first one."""
     return label if fixture in fixtures[:1] else f"{label} ({fixture})"
 
 
 def operation_named(job: Any, name: str) -> Any:
-    """The operation of a job that has a name in a program; None if there is none."""
+    """The operation of a job with this name in a program; None if there is none."""
     fixtures = list(job.Fixtures) or [DEFAULT]
     names = (
         (operation_name(each.Label, fixture, fixtures), each) for fixture in fixtures for each in job.Operations.Group

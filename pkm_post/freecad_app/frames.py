@@ -56,7 +56,7 @@ def plane_of(link: Link) -> Placed:
         link: the object and the name of its face; no name for an object with a single face.
 
     Raises:
-        ValueError: the face is not flat, or there is none.
+        ValueError: the face is not flat or does not exist.
     """
     shape = _element(link, lambda whole: whole.Faces)
     plane = shape.findPlane() if shape is not None and shape.ShapeType == "Face" else None

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Gauge lengths: the gauge length of each tool of a job, where it is stored, and how it is typed.
+"""Gauge lengths: the gauge length of each tool of a job, its storage, and its input as text.
 
 Takes a job; returns a row for each of its tool controllers, in mm. Lengths that the user sets are stored in the
 document. A gauge length is never guessed: the row gives the length of the tool bit for comparison, but part of the bit
 is inside its holder, and the holder counts.
 
-Typed lengths are text with or without a unit. Inputs that FreeCAD's own fields accept and misread are refused here,
-since a wrong length does harm: their ``12,5 cm`` is 1250 mm, their ``4 1/2 in`` 4 mm, and for ``abc`` they keep the
-previous value. FreeCAD drops letters beyond ASCII.
+Typed lengths are text with or without a unit. Inputs that FreeCAD's own fields misread are refused here, since a wrong
+length does harm: their ``12,5 cm`` is 1250 mm, their ``4 1/2 in`` is 4 mm, and on ``abc`` they keep the previous value.
+FreeCAD drops non-ASCII letters.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _DIGITS = 9
 _MICRO = "µ"
 """The only non-ASCII letter in FreeCAD's units of length."""
 _USUAL = "100 mm"
-"""A length typical of a tool; a number without a unit is in the unit in which this one is displayed."""
+"""A length typical of a tool; a number without a unit is in the display unit of this length."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class ToolRow:
         number, label: of the tool controller.
         place: location stated in diagnostics.
         length: gauge length in mm; 0 if unknown.
-        bit_length: length of the tool bit alone in mm; 0 if not stated.
+        bit_length: length of the tool bit only, in mm; 0 if not stated.
         in_use: whether an active operation uses it.
     """
 

@@ -47,7 +47,7 @@ from pkm_post.toolpath import transform
 
 @dataclass(frozen=True)
 class Selection:
-    """The selected items; None means all.
+    """The selected items; None for all.
 
     Attributes:
         operations: some of the job's own.
@@ -95,8 +95,8 @@ def read_job(
         job: the job, a document object, recomputed.
         tool_lengths: gauge lengths by tool number that override those of the tool controllers, mm.
         selection: the part of the job to read.
-        places: (4, 4) pose in {C} of each of several fixtures, in which the operations are read one after the other.
-        spindle_axis: whether the spindle of the machine is an axis: without one tapping is refused.
+        places: (4, 4) pose in {C} of each of several fixtures, at which the operations are read in turn.
+        spindle_axis: whether the spindle can be an axis; otherwise tapping is refused.
 
     Returns:
         The program, or None if there are errors; and all diagnostics.
@@ -107,7 +107,7 @@ def read_job(
     for fixture, operation in cutting_order(active, fixtures, job.OrderOutputBy):
         name = operation_name(operation.Label, fixture, fixtures)
         found = state_faults(operation, builder.source) or builder.add(operation, places.get(fixture, _IN_PLACE), name)
-        faults += [each for each in found if each not in faults]  # once, and not at every fixture
+        faults += [each for each in found if each not in faults]  # once, not per fixture
     files = files_of_split_output(active, fixtures, job.OrderOutputBy) if job.SplitOutput else 1
     if files > 1:
         faults.append(Diagnostic("J140", Place(builder.source, job.Label), f"{files} files by {job.OrderOutputBy}"))
@@ -124,7 +124,7 @@ def read_job(
 
 @contextlib.contextmanager
 def _no_collections() -> Iterator[None]:
-    """No collections of garbage meanwhile: hundreds of thousands of commands come at once, and none of them is any."""
+    """Suspend garbage collection: hundreds of thousands of commands arrive at once, none of them garbage."""
     collects = gc.isenabled()
     gc.disable()
     try:

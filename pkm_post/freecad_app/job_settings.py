@@ -78,7 +78,7 @@ def settings_of(
     Args:
         job: the CAM job.
         given: options that override those of the job, one by one.
-        options: replace everything that ``Options`` holds.
+        options: override all settings that ``Options`` covers.
         post_processor: post-processor of the job's arguments, if the job's own property does not state it.
         selection: the part of the job to use.
         other_jobs: jobs to which the given options also apply.
@@ -108,9 +108,9 @@ def settings_of(
 
 
 def _in_units_of(document: Any, chosen: argparse.Namespace) -> Options:
-    """The chosen options; where none says otherwise, the page of the report has the units of the document.
+    """The chosen options; by default, the report page has the units of the document.
 
-    These are saved in the document, which takes those of its user when it is made, so all doors give the same page.
+    They are saved in the document, from those of its creator, so all entry points give the same page.
     """
     options = options_from(chosen)
     if "report_unit" in explicit_values(chosen):

@@ -3,11 +3,11 @@
 
 Takes a job with its settings, and optionally a machine object, whose machine file and work offset then override those
 of the settings. Returns the job before it is placed, with part, stock and tool shanks in the work frame {C}, or its
-trajectory in the machine frame {M}, or the study of its reach. Lengths are in mm. The document is not recomputed where
-document objects prepare and place a job during a recompute.
+trajectory in the machine frame {M}, or the study of its reach. Lengths are in mm. The document is not recomputed, since
+document objects prepare and place jobs during a recompute.
 
 A job has no data on clamps. The end of the cutting edges is known for tool bits with a CuttingEdgeHeight and a
-ShankDiameter, as end mills have. The box that CAM puts around the model of a new job counts as assumed: the user did
+ShankDiameter, such as end mills. The box that CAM puts around the model of a new job counts as assumed: the user did
 not choose it.
 """
 
@@ -51,12 +51,12 @@ from pkm_post.posting import (
 )
 
 _SAME_PLACE = 1e-6
-"""mm and directions: FreeCAD rounds placements when it stores them."""
+"""mm, and for directions: FreeCAD rounds stored placements."""
 
 
 @dataclass(frozen=True)
 class PlacedJob:
-    """A job on its machine. Of its warnings only replaced settings are shown; posting reports the others.
+    """A job on its machine. Only its warnings about replaced settings are shown; posting reports the others.
 
     Attributes:
         trajectory: of the job, in {M}, with its spin.
@@ -76,7 +76,7 @@ class PlacedJob:
         return placed_workpiece(self.setup, self.trajectory)
 
     def study(self) -> JobStudy:
-        """All checks of the job, shared by whatever shows it."""
+        """All checks of the job, shared by all displays."""
         return study_of(self.trajectory, self.machine, self.setup, self.tolerances)
 
 
@@ -108,7 +108,7 @@ def prepared_job(job: Any, settings: JobSettings, machine_object: Any = None) ->
 def places_of(
     job: Any, settings: JobSettings, machine: Machine | None, options: Options
 ) -> tuple[dict[str, Array], tuple[Diagnostic, ...]]:
-    """The pose in {C} of each fixture of a job, (4, 4) by name, as ``fixture_places``; none without a machine."""
+    """The pose in {C} of each fixture of a job, (4, 4) by name, as from ``fixture_places``; empty without a machine."""
     if machine is None:
         return {}, ()
     place = Place(document_name(job.Document), job.Label)
@@ -118,7 +118,7 @@ def places_of(
 def _machine_differences(
     job: Any, settings: JobSettings, machine_object: Any, machine: Machine, options: Options
 ) -> Iterator[Diagnostic]:
-    """Yield J125 where the machine object has another machine or placement than the job is posted for."""
+    """Yield J125 if the machine object differs in machine or placement from those the job is posted for."""
     place = Place(document_name(job.Document), machine_object.Label)
     if find_machine(machine_object.MachineFile) != find_machine(settings.machine):
         machines = Override(flag_of("machine"), settings.machine, machine_object.MachineFile)
@@ -163,7 +163,7 @@ def placed_job(job: Any, machine_object: Any = None) -> PlacedJob:
         Refused: the job cannot be read or placed.
     """
     prepared = prepared_job(job, settings_of(job), machine_object)
-    # with J125 the display differs from the job's settings, or from what is posted
+    # J125: the display differs from the job's settings, or from the posted program
     print_diagnostics(each for each in prepared.found if each.code == "J125")
     trajectory, _ = prepared.placed()
     program, machine = prepared.sound
@@ -174,7 +174,7 @@ def placed_job(job: Any, machine_object: Any = None) -> PlacedJob:
 
 
 def study_job(job: Any, free: str = "") -> Study:
-    """Check a job on its machine, as its arguments define it, with its model as the part.
+    """Check a job on its machine, with its arguments, and its model as the part.
 
     Args:
         job: the CAM job, a document object; its document is recomputed.
@@ -192,7 +192,7 @@ def study_job(job: Any, free: str = "") -> Study:
 
 
 def stiffness_of(job: Any, machine_object: Any = None) -> StiffnessStudy:
-    """How stiff the tool tip is held along a job, and over the table.
+    """Stiffness of the tool tip along a job, and over the table.
 
     Args:
         job: the CAM job, recomputed.
@@ -230,16 +230,16 @@ def set_best_work_offset(job: Any, free: str = "xyzc") -> Study:
 
 
 def place_search(job: Any, machine_object: Any = None) -> Callable[[Progress], FoundPlace]:
-    """Read a job, and return the search for a place at which the machine can follow it, which may run in any thread.
+    """Read a job; return the search for a place at which the machine can follow it, which may run in any thread.
 
-    The search takes what is called with its progress; an exception from that ends it.
+    The search takes a progress callback; an exception from it ends the search.
 
     Args:
         job: the CAM job, recomputed.
         machine_object: from ``create_machine``; without one the arguments of the job define the machine.
 
     Raises:
-        Refused: the job cannot be read, or placed at all; also by the search.
+        Refused: the job cannot be read or placed; also raised by the search.
     """
     prepared = prepared_job(job, settings_of(job), machine_object)
     program, machine = prepared.sound
@@ -254,12 +254,12 @@ def place_search(job: Any, machine_object: Any = None) -> Callable[[Progress], F
 
 
 def set_place(job: Any, found: FoundPlace, machine_object: Any = None) -> None:
-    """Set the arguments of a job, and the work offset of a machine that has no job, to a place that was found.
+    """Set the arguments of a job, and the work offset of a machine without a job, to a found place.
 
     Args:
         job: the CAM job, for a post-processor of PKM Post.
         found: the place.
-        machine_object: from ``create_machine``, on which it was found.
+        machine_object: from ``create_machine``, used for the search.
 
     Raises:
         ValueError: ``--work-offset`` cannot express the orientation of the part, or the job has another post-processor.
@@ -279,7 +279,7 @@ def set_place(job: Any, found: FoundPlace, machine_object: Any = None) -> None:
 
 
 def _origins(job: Any, machine_object: Any) -> list[str]:
-    """Where the fixtures after the first one are in {C}, as ``--origin`` states it."""
+    """The poses in {C} of the fixtures after the first one, as values of ``--origin``."""
     settings = settings_of(job)
     machine = machine_named(settings.machine)[0] if machine_object is None else machine_of(machine_object)
     options = settings.options

@@ -4,10 +4,10 @@
 Takes a job on its machine; returns the margins of reach along its path and all findings: reach, part, stock, holder,
 fixtures, gouges.
 
-A study is a function of trajectory, machine, set-up and tolerances, and it is kept by their content: whatever changes
-one of them makes another study, and what changes none, such as a colour, makes none. It lives as long as something
-shows it. Collisions are the part of it that posting needs as well: whichever comes first finds them, and the last ones
-are kept. What posting checks besides is of another path, the one with rounded corners, and of the written program.
+A study is a function of trajectory, machine, set-up and tolerances, and is cached by their content: a change of any of
+them gives a new study, while others, such as a colour, do not. It lives as long as it is displayed. Posting shares its
+collisions: whichever comes first finds them, and the last ones are cached. The further checks of posting concern the
+path with rounded corners, and the written program.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from pkm_post.model import RULES, Diagnostic, Machine, Place, Setup, Severity, T
 from pkm_post.posting import check_path_of
 
 _ROWS = 65536
-"""Rows of a column per step of the digest: some columns hold one row many times over in the memory of one."""
+"""Rows of a column per step of the digest: some columns repeat one row without using more memory."""
 _KEPT: WeakValueDictionary[bytes, JobStudy] = WeakValueDictionary()
 _COLLISIONS: OrderedDict[bytes, Collisions] = OrderedDict()
-"""By content, the last used at the end."""
+"""By content, the last used one at the end."""
 _MOST_COLLISIONS = 8
-"""Jobs whose collisions are kept: a few lines of text each."""
+"""Jobs whose collisions are cached: a few lines of text each."""
 
 
 @dataclass(frozen=True)
@@ -49,26 +49,26 @@ class JobStudy:
 
     @property
     def holds(self) -> bool:
-        """Whether nothing forbids posting."""
+        """Whether nothing prevents posting."""
         return not errors(self.findings)
 
     @property
     def margins(self) -> tuple[ReachFinding, ...]:
-        """The margins whose violation forbids posting; slower motion does not."""
+        """The margins whose violation prevents posting, which slower motion does not."""
         return tuple(each for each in self.reach.findings if RULES[each.subject.code].severity is Severity.ERROR)
 
     def worst_margin(self) -> Array:
-        """The least margin of all checks at each pose, (N,), as a share of the largest of its check; out below 0."""
+        """The least margin of all checks at each pose, (N,), as a share of its check's largest; violated below 0."""
         columns = [each.margin / max(float(each.margin.max(initial=0.0)), 1e-9) for each in self.margins]
         least: Array = np.min([np.where(column < 0.0, np.minimum(column, -1e-9), column) for column in columns], axis=0)
         return least
 
     def row_of(self, finding: Diagnostic) -> int:
-        """The pose of a finding, as ``row_at``; the first one if the path has no block at its place."""
+        """The pose of a finding, as ``row_at``; the first pose if the path has no block there."""
         return self.row_at(finding.place, finding.code) or 0
 
     def row_at(self, place: Place, code: str = "") -> int | None:
-        """The pose of a finding at a place: that of its worst margin in its block, else where the block ends.
+        """The pose of a finding at a place: that of the worst margin in the block, else the end of the block.
 
         Args:
             place: operation and line.
@@ -93,7 +93,7 @@ class JobStudy:
 
 
 def study_of(trajectory: Trajectory, machine: Machine, setup: Setup, tolerances: Tolerances) -> JobStudy:
-    """The checks of a trajectory, or the same ones from before if nothing that matters has changed.
+    """The checks of a trajectory, from the cache if the inputs are unchanged.
 
     Args:
         trajectory: in {M}, at least one segment.
@@ -110,9 +110,9 @@ def study_of(trajectory: Trajectory, machine: Machine, setup: Setup, tolerances:
 
 
 def collisions_of(trajectory: Trajectory, machine: Machine, setup: Setup, tolerances: Tolerances) -> Collisions:
-    """The collisions of a trajectory, as ``find_collisions``, or the same ones from before if nothing has changed.
+    """The collisions of a trajectory, as from ``find_collisions``, from the cache if the inputs are unchanged.
 
-    A trajectory that was read back from its file is the same as before, but for the tolerances that the file states.
+    A trajectory read back from its file is unchanged, except for the tolerances in the file.
     """
     if setup.is_empty:
         return find_collisions(trajectory, machine, setup, tolerances)
@@ -120,7 +120,7 @@ def collisions_of(trajectory: Trajectory, machine: Machine, setup: Setup, tolera
     found = _COLLISIONS.get(key)
     if found is None:
         found = find_collisions(trajectory, machine, setup, tolerances)
-    _COLLISIONS.pop(key, None)  # it becomes the newest
+    _COLLISIONS.pop(key, None)  # makes it the newest
     _COLLISIONS[key] = found
     while len(_COLLISIONS) > _MOST_COLLISIONS:
         _COLLISIONS.popitem(last=False)
@@ -154,7 +154,7 @@ def _add(found: Any, value: object) -> None:
 
 
 def _segments_at(trajectory: Trajectory, place: Place) -> Array:
-    """The segments of a place in the source."""
+    """The segments at a place in the source."""
     named = [number for number, name in enumerate(trajectory.operations) if name == place.operation]
     here: Array = np.flatnonzero(np.isin(trajectory.operation, named) & (trajectory.line == place.line))
     return here

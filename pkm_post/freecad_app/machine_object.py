@@ -4,7 +4,7 @@
 Takes a machine file, a work offset and a pose in program coordinates by properties; sets strut lengths, margins and
 limit violations in read-only properties. The document is in the frame of the part: program coordinates are those of
 the document, and the work offset places the machine. The work offset is that of a CAM job, if the object has one;
-otherwise a placement of its own, for the origin of the document or for an object of the model.
+otherwise its own placement, for the origin of the document or for an object of the model.
 Saved documents store the class as ``pkm_post.freecad_app.machine_object``: its module, its name and the names of its
 properties are a file format.
 """
@@ -72,7 +72,7 @@ RESULTS: tuple[Row, ...] = (
 
 
 class MachineObject(PropertyProxy):
-    """The proxy. Faults of the machine file are exceptions that FreeCAD shows at the object."""
+    """The proxy. Faults of the machine file raise exceptions, which FreeCAD shows at the object."""
 
     properties = PROPERTIES
     results = RESULTS
@@ -90,13 +90,13 @@ def create_machine(document: Any, machine: str = "", job: Any = None, label: str
     """Add a machine to a document, at its home pose.
 
     Args:
-        document: gets the object.
+        document: target of the object.
         machine: name or path of the machine file; empty for that of the job, or the example.
         job: CAM job that supplies the work offset.
         label: displayed name; empty for that of the machine.
 
     Raises:
-        Refused: the machine does not exist, or its file has faults; nothing was added.
+        Refused: the machine does not exist, or its file has faults; nothing is added.
     """
     name = machine or (_EXAMPLE if job is None else settings_of(job).machine)
     model = _machine_named(name)
@@ -145,7 +145,7 @@ def _machine_named(name: str) -> Machine:
 
 
 def _take_work_offset(obj: Any, machine: Machine) -> None:
-    """Take the work offset of the job, if there is one; it is read-only then."""
+    """Take the work offset of the job, if there is one, and make it read-only."""
     obj.setEditorMode("WorkOffset", EDITABLE if obj.Job is None else READ_ONLY)
     if obj.Job is None:
         return
@@ -186,7 +186,7 @@ def _set_results(obj: Any, machine: Machine, pose: ToolPoses) -> None:
 
 
 def violated_limits(machine: Machine, pose: ToolPoses) -> list[Phrase]:
-    """What is out of limits at a pose, one row for ``kinematics``, bodies that meet included; for any language."""
+    """Violated limits at a pose, one row for ``kinematics``, including colliding bodies; translatable."""
     findings = reach_findings(machine, PosePath.straight(*pose))
     return [
         Phrase("{}: {}", each.subject.name, each.subject.describe(int(each.part[0]), float(each.margin[0])))

@@ -2,7 +2,7 @@
 """Material: the stock of a simulated job at any time, cut by the cutters of its tools in the planned poses.
 
 Takes a simulation with its set-up; returns a replay in the work frame {C}, which is that of the document. Holder and
-shank take nothing: where they meet the stock, posting reports it.
+shank cut nothing: posting reports contact with the stock.
 """
 
 from __future__ import annotations
@@ -50,12 +50,12 @@ class Material:
         return None if self.part is None else part_distances(self.replay.stock, self.part.triangles)
 
     def compared(self) -> Comparison | None:
-        """The present stock against the part; None without a part."""
+        """The current stock against the part; None without a part."""
         return None if self.part_distances is None else compare(self.replay.stock, self.part_distances)
 
 
 def step_of(stock: Mesh, nodes: int) -> float:
-    """Distance of nodes, in mm with two significant digits, for a number of nodes in the box of a stock."""
+    """Node spacing in mm, with two significant digits, for a number of nodes in the box of a stock."""
     size = np.ptp(stock.triangles.reshape(-1, 3), axis=0)
     return float(f"{(float(size.prod()) / nodes) ** (1 / 3):.2g}")
 
@@ -70,7 +70,7 @@ def material_of(simulation: Simulation, step: float) -> Material:
 
     Args:
         simulation: a plan with a stock that can be cut.
-        step: distance of the nodes, mm.
+        step: node spacing, mm.
 
     Raises:
         ValueError: there is no stock, or its mesh is open.

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Model faces: the faces that an operation may touch, and the face and its normal under each point of a path.
+"""Model faces: the faces of an operation, and the face and normal at each point of a path.
 
 Takes the model of a job and a selection of faces, as FreeCAD links them; returns named Part faces, in the frame of the
 job, or the faults of the selection. A job works on clones of its original objects, which may have other placements: a
-face picked on the original stands for that of the clone.
+face picked on the original means that of the clone.
 
 For points near the faces it returns columns: for each point a normal, its face, and a second face where the choice is
 ambiguous. Nothing is guessed: a point beyond the tolerance is on no face, and one within it of two faces with different
@@ -112,7 +112,7 @@ def find_contacts(faces: Sequence[NamedFace], points: Array, tolerance: float, t
             distance, normal = _on_face(faces[index].face, points[rows], tolerance)
             on = distance <= tolerance
             rows, distance, normal = rows[on], distance[on], normal[on]
-            differs = dot(contacts.normal[rows], normal) < _SAME_NORMAL  # false until there is one
+            differs = dot(contacts.normal[rows], normal) < _SAME_NORMAL  # false before the first
             nearer = distance < nearest[rows]
             contacts.other[rows[differs]] = np.where(nearer, contacts.face[rows], index)[differs]
             chosen = rows[nearer]
@@ -130,7 +130,7 @@ def nearest_face(faces: Sequence[NamedFace], point: Array) -> tuple[str, float]:
 def _nearby_rows(face: Any, points: Array, tolerance: float) -> Iterator[Array]:
     """Yield the rows of the points in the bounding box of a face, in batches.
 
-    ``face.BoundBox`` would be that of the display triangles, which miss bulges of the face.
+    ``face.BoundBox`` is that of the display triangles, which miss bulges of the face.
     """
     with_triangles, with_tolerance = False, False
     box = face.optimalBoundingBox(with_triangles, with_tolerance)
@@ -144,6 +144,6 @@ def _on_face(face: Any, points: Array, tolerance: float) -> tuple[Array, Array]:
     """Distances of points from a face, (n,), and the surface normals at their feet, (n, 3)."""
     _, normals, signed, on_face = project(face, points, trimmed=True)
     distance = np.where(np.isfinite(normals).all(axis=1), np.abs(signed), np.inf)
-    for row in np.flatnonzero((distance <= tolerance) & ~on_face).tolist():  # beyond an edge, which may be close enough
+    for row in np.flatnonzero((distance <= tolerance) & ~on_face).tolist():  # beyond an edge, but maybe close enough
         distance[row] = face.distToShape(Part.Vertex(App.Vector(*points[row].tolist())))[0]
     return distance, normals

@@ -44,15 +44,15 @@ def post_job(
         job: the job, a document object; its document is recomputed.
         machine: name of a machine included in PKM Post, or path of a machine file.
         out: folder for the results, which take the name of the document as their stem.
-        options: replace everything that ``Options`` holds; a work offset ``"job"`` is the fixture of the job.
+        options: override all settings that ``Options`` covers; a work offset ``"job"`` is the fixture of the job.
         tool_lengths: gauge lengths by tool number that override those of the tool controllers, mm.
         log: callback for a line per step.
-        progress: callback, a few times a second; if it raises, the work ends and nothing is written.
+        progress: callback, a few times a second; an exception from it ends the work, and nothing is written.
         arguments: options that override those of the job one by one, as typed, or parsed.
         other_jobs: jobs to which the gauge lengths also apply.
 
     Raises:
-        Refused: the job, the machine file or the folder has faults; nothing was written.
+        Refused: the job, the machine file or the folder has faults; nothing is written.
         ValueError: both options and arguments are given.
     """
     if options is not None and arguments:
@@ -106,7 +106,7 @@ def post_document(
         arguments: options that override those of each job one by one.
 
     Raises:
-        Refused: as ``post_job``, and J101, J102 and J129 to J131 for the document. Jobs already posted stay posted.
+        Refused: as ``post_job``, and J101, J102 and J129 to J131 for the document. Jobs already posted remain.
     """
     with _opened(FilePath(file)) as document:
         jobs = _jobs_named(document, job_name)
@@ -138,7 +138,7 @@ def find_jobs(document: Any) -> list[Any]:
     """The CAM jobs of a document.
 
     Raises:
-        Refused: there is none, J102.
+        Refused: the document has no job, J102.
     """
     jobs = [item for item in document.Objects if is_job(item)]
     if not jobs:
@@ -147,10 +147,10 @@ def find_jobs(document: Any) -> list[Any]:
 
 
 def find_job(document: Any, name: str | None = None) -> Any:
-    """The CAM job with a name or label; without a name the only job.
+    """Find the CAM job with a name or label; without a name, the only job.
 
     Raises:
-        Refused: there is none, or more than one, J102.
+        Refused: no job matches, or more than one, J102.
     """
     jobs = find_jobs(document)
     matching = [job for job in jobs if name in (None, job.Name, job.Label)]
@@ -187,7 +187,7 @@ def post_to(
 
 
 def _judge(job: Any, settings: JobSettings, findings: Sequence[Diagnostic] | None) -> None:
-    """Show in the tree what was found, None at the beginning, if the whole job is posted with its own settings."""
+    """Show the findings in the tree, None at the start, if the whole job is posted with its own settings."""
     if settings.selection == EVERYTHING and not any(each.code == "J125" for each in settings.found):
         show_verdict(job, findings)
 

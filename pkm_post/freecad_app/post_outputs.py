@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post outputs: what the post-processors write for a CAM job.
+"""Post outputs: the texts and files of the post-processors for a CAM job.
 
 Takes a job, its settings and the path to which CAM will write; returns the text for that path, and the diagnostics.
-Binary files are written to the same folder, but not for the dialog of FreeCAD newer than 1.1, which saves texts later
+Binary files are written to the same folder, except for the dialog of FreeCAD newer than 1.1, which saves texts later
 and elsewhere. All faults are reported together, and then nothing is written.
 """
 
@@ -34,7 +34,7 @@ Findings = tuple[Diagnostic, ...]
 Written = tuple[str, Findings]
 """The text for CAM, and warnings."""
 _EXTRA_STEPS = 2
-"""Reading precedes the steps of the pipeline, and its end is reported as well."""
+"""Reading before the steps of the pipeline, and the end, which is reported, too."""
 _NO_PARENTHESES = str.maketrans("()", "[]")
 """G-code comments cannot be nested."""
 
@@ -42,7 +42,7 @@ _NO_PARENTHESES = str.maketrans("()", "[]")
 def _motion_program(job: Any, settings: JobSettings, path: FilePath) -> Written:
     """The motion program, or the first of its parts; all other files are written to the same folder.
 
-    CAM accepts several texts, but inserts its own number into every name after the first: a part would get a name that
+    CAM accepts several texts, but inserts a number into every name after the first: a part would get a name that
     no reader of the program expects. The other parts are therefore not passed to CAM.
     """
     posted = _posted(job, settings, path)
@@ -106,7 +106,7 @@ def _linuxcnc(job: Any, settings: JobSettings, path: FilePath) -> Written:
 def _gcode(job: Any, settings: JobSettings, path: FilePath) -> Written:
     """The program of the job as G-code."""
     require_computed(job.Document)
-    if len(settings.selection.fixtures_of(job)) > 1:  # the machine knows where they are
+    if len(settings.selection.fixtures_of(job)) > 1:  # only the machine knows their poses
         prepared = prepared_job(job, settings)
         program, diagnostics = prepared.program, prepared.found
     else:
@@ -117,7 +117,7 @@ def _gcode(job: Any, settings: JobSettings, path: FilePath) -> Written:
 
 
 def _trajectory_alone(job: Any, settings: JobSettings, path: FilePath) -> Written:
-    """Refuse: the dialog would save the text, and the trajectory it names is a file of bytes."""
+    """Refuse: the dialog would save the text, but the trajectory it names is a binary file."""
     found = f"it needs {path.with_suffix(result_files.TRAJECTORY).name} beside it"
     raise Refused([Diagnostic("F111", Place(path.name), found)])
 
@@ -132,7 +132,7 @@ _OUTPUTS: dict[str, Output] = {
 }
 """Output function by post-processor."""
 _IN_THE_DIALOG: dict[str, Output] = {PMAC: _program_alone, TRAJECTORY: _trajectory_alone}
-"""Those that differ where only texts are saved, after posting and in a folder that is not known then."""
+"""Variants for saving only texts, after posting, in a folder unknown at that time."""
 
 
 def output_of(post_processor: str, for_dialog: bool = False) -> Output:
@@ -140,7 +140,7 @@ def output_of(post_processor: str, for_dialog: bool = False) -> Output:
 
     Args:
         post_processor: its name.
-        for_dialog: whether the dialog of FreeCAD newer than 1.1 saves the text, where nothing else is written.
+        for_dialog: whether the dialog of FreeCAD newer than 1.1 saves the text, and no other file is written.
     """
     return _IN_THE_DIALOG.get(post_processor, _OUTPUTS[post_processor]) if for_dialog else _OUTPUTS[post_processor]
 
@@ -152,10 +152,10 @@ def _reachable(job: Any, settings: JobSettings) -> tuple[Trajectory, Findings]:
 
 
 def study_of_job(job: Any, settings: JobSettings) -> Findings:
-    """All that the checks of a job find, errors of its path included.
+    """All findings of the checks of a job, including errors of its path.
 
     Raises:
-        Refused: the job has no path that could be checked.
+        Refused: the job has no path to check.
     """
     _, study, found = _studied(job, settings)
     return (*found, *study.findings)

@@ -55,11 +55,11 @@ class HexapodPost(PostProcessor):
     def export(self) -> list[tuple[str, str]]:
         """The text for CAM to write; binary files are written to its folder. Empty if the user cancelled.
 
-        In a window a refusal is shown with its reasons as rows, and the list is empty as well: CAM then takes back its
-        transaction, where an exception would leave it open and a traceback in the Report view.
+        In the GUI a refusal is shown with its reasons as rows, and the list is empty, too: CAM then undoes its
+        transaction, while an exception would leave it open, with a traceback in the Report view.
 
         Raises:
-            Refused: without a window, or for the dialog of FreeCAD newer than 1.1, the job cannot be posted.
+            Refused: without a GUI, or for the dialog of FreeCAD newer than 1.1, the job cannot be posted.
         """
         from pkm_post.freecad_app.job_settings import settings_of
         from pkm_post.freecad_app.post_outputs import output_of
@@ -89,7 +89,7 @@ class HexapodPost(PostProcessor):
             return []
         for diagnostic in diagnostics:
             App.Console.PrintWarning(f"{fault_text(diagnostic)}\n")
-        if not getattr(self, "_dialog_handled", False):  # the dialog saves it elsewhere, or not at all
+        if not getattr(self, "_dialog_handled", False):  # the dialog saves it elsewhere or not
             remember_output(self._job, program)
         return [("allitems", text)]
 
@@ -102,12 +102,12 @@ class HexapodPost(PostProcessor):
         return self.export()
 
     def get_file_extension(self) -> str:
-        """The suffix of the text, which newer versions ask for when the job has a FreeCAD machine."""
+        """The suffix of the text, queried by newer versions if the job has a FreeCAD machine."""
         return program_path(self._job).suffix.lstrip(".")
 
     @classmethod
     def get_common_property_schema(cls) -> list[dict[str, Any]]:
-        """None of the properties that FreeCAD's own posts share, such as a preamble: they would change nothing."""
+        """No common properties of FreeCAD's own posts, such as a preamble: they would have no effect."""
         return []
 
     @classmethod
@@ -121,7 +121,7 @@ class HexapodPost(PostProcessor):
         """Take the fixtures and arguments chosen in the dialog of FreeCAD newer than 1.1.
 
         Args:
-            overrides: settings of the dialog, by name; its others are for FreeCAD's posts.
+            overrides: settings of the dialog, by name; others are for FreeCAD's posts.
         """
         self._entered = dict(overrides or {})
         self._chosen = replace(self._chosen, fixtures=self._entered.get("selected_fixtures") or None)

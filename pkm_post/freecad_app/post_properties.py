@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post properties: our arguments in the dialogs of FreeCAD newer than 1.1, and what was entered there.
+"""Post properties: our arguments in the dialogs of FreeCAD newer than 1.1, and their entered values.
 
 FreeCAD's machines store properties for their post-processor, a job overrides some of them, and CAM's Post Process
 dialog shows and overrides them again [FreeCAD, Path/Post/Processor.py, build_configuration_bundle]. Input: these
@@ -18,7 +18,7 @@ from pkm_post.model import Diagnostic, Place, Refused
 from pkm_post.options import ArgumentField, ArgumentValues, argument_fields, explicit_values, text_of_fields
 
 _PREFIX = "hexapod_"
-"""A machine of FreeCAD keeps the properties of every post-processor it ever had under their names alone."""
+"""Prefix: a FreeCAD machine keeps the properties of all post-processors it ever had in one namespace."""
 _ONLY_PMAC = "also"
 
 PropertySchema = list[dict[str, Any]]
@@ -26,7 +26,7 @@ Properties = Mapping[str, Any]
 
 
 def property_schema(post_processor: str) -> PropertySchema:
-    """The arguments of a post-processor, in the form that FreeCAD's dialogs show."""
+    """The arguments of a post-processor, in the form of FreeCAD's dialogs."""
     return [_row(field) for field in _fields(post_processor)]
 
 
@@ -51,7 +51,7 @@ def _row(field: ArgumentField) -> dict[str, Any]:
 
 
 def values_of_properties(job: Any, post_processor: str, machine: Any, entered: Properties) -> ArgumentValues:
-    """The options that properties set: those of the machine, overridden by the job's and by entered ones.
+    """The options set by properties of the machine, overridden by those of the job and by entered ones.
 
     Args:
         job: the CAM job.

@@ -52,7 +52,7 @@ CYCLE_ORDERS = ("depth,feed,clearance", "depth,feed,clearance,step", "depth,feed
 
 _TYPED = {"Origins": origin, "FirstFeed": above_zero(MOST_FEED), "GotoValues": goto_values,
           "CycleKinds": cycle_kinds}  # fmt: skip
-"""Properties that are typed as arguments are."""
+"""Properties typed like arguments."""
 _DWELL_CHOICES = [FROM_FILE, *DWELL_UNITS]
 _G = "Program"
 _PROPERTIES: tuple[Row, ...] = (
@@ -118,7 +118,7 @@ class PartProgram(PropertyProxy):
             obj.DwellUnit = chosen
 
     def execute(self, obj: Any) -> None:
-        """Read the file: FreeCAD calls this when a property has changed. A faulty file gives no path but its faults."""
+        """Read the file: FreeCAD calls this when a property has changed. A faulty file gives only its faults."""
         obj.Path = Path.Path()
         program, diagnostics = read_program(obj)
         obj.Found = [str(each) for each in diagnostics]
@@ -149,7 +149,7 @@ def create_program(
         contour_data: meaning of CL data points under CUTCOM, one of ``cldata.CONTOUR_DATA``; None for that of the file.
         cl_dialect: the CAM system that wrote CL data, a key of ``cldata.DIALECTS``; None to detect it from its words.
         allow_open_end: whether the end, such as M2 or FINI, may be missing.
-        flavour: whose G-code it is, one of ``FLAVOUR_NAMES``; None to guess it from its codes.
+        flavour: one of ``FLAVOUR_NAMES``; None to guess it from its codes.
     """
     path = FilePath(file).absolute()
     obj = document.addObject("Path::FeaturePython", "PkmProgram")
@@ -193,18 +193,18 @@ def reading_of(obj: Any) -> ReadingOptions:
 
 
 def _texts(obj: Any, name: str) -> list[str]:
-    """The texts of a property; none where it says nothing."""
+    """The texts of a property; none if it is empty."""
     value = getattr(obj, name)
     return [str(each) for each in (value if isinstance(value, list) else [value]) if each]
 
 
 def _typed(obj: Any, name: str) -> list[Any]:
-    """The values of a property that is typed as an argument is; those that are wrong are left to ``_wrong``."""
+    """The valid values of a property typed like an argument; ``_wrong`` reports the others."""
     return [value for text in _texts(obj, name) if (value := _converted(name, text)[0]) is not None]
 
 
 def _converted(name: str, text: str) -> tuple[Any, str]:
-    """A value, or None and what is wrong with its text."""
+    """A value, or None and the fault of its text."""
     try:
         return _TYPED[name](text), ""
     except ArgumentTypeError as fault:
@@ -212,7 +212,7 @@ def _converted(name: str, text: str) -> tuple[Any, str]:
 
 
 def _wrong(obj: Any) -> Findings:
-    """Properties whose text has no meaning."""
+    """Faults of properties with invalid text."""
     found = (
         f"{name}: {wrong}" for name in _TYPED for text in _texts(obj, name) if (wrong := _converted(name, text)[1])
     )
@@ -279,7 +279,7 @@ def decode(obj: Any, job: Any) -> Any:
     controller = _first_controller(program, job)
     commands = commands_of(program)
     first = next((index for index, each in enumerate(commands) if each.Name == "M6"), None)
-    if first is not None:  # the job itself calls the tool of the controller
+    if first is not None:  # the job already calls the tool of the controller
         del commands[first]
     print_diagnostics(_left_out(program))
     with preselected(controller):
@@ -303,7 +303,7 @@ def _first_controller(program: Program, job: Any) -> Any:
 
 
 def _left_out(program: Program) -> Findings:
-    """What CAM commands cannot express."""
+    """Warnings for data that CAM commands cannot express."""
     rows = {
         "exact stops": program.exact_stop,
         "exact paths": program.exact_path,

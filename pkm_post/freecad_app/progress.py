@@ -2,8 +2,8 @@
 """Progress: the progress display of a long computation, and its cancellation by the user.
 
 Takes a text and a number of steps; moves FreeCAD's progress bar, or prints percentages to the console, and raises
-``Stopped`` when the user pressed Escape. While a document recomputes, the bar belongs to the document, and FreeCAD
-ignores every other one. In a window the completed share therefore also appears in the status bar, and Escape is watched
+``Stopped`` if the user pressed Escape. While a document recomputes, the bar belongs to the document, and FreeCAD
+ignores every other one. In the GUI the completed share therefore also appears in the status bar, and Escape is watched
 here.
 """
 
@@ -21,7 +21,7 @@ translate = App.Qt.translate
 
 
 class Stopped(Exception):  # noqa: N818 - it is no error of the program
-    """The user cancelled the computation; its result does not exist."""
+    """The user cancelled the computation; there is no result."""
 
 
 class Progress:
@@ -59,7 +59,7 @@ class Progress:
         stopped = translate("Progress", "{}: stopped at {}").format(self._text, share)
         try:
             self._bar.next(True)
-        except RuntimeError as stop:  # FreeCAD reports by this that its own bar was cancelled
+        except RuntimeError as stop:  # raised by FreeCAD if its own bar was cancelled
             raise Stopped(stopped) from stop
         message = translate("Progress", "{}: {} done. Escape stops it.").format(self._text, share)
         if self._watch and self._watch.pressed(message):

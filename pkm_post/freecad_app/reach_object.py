@@ -41,7 +41,7 @@ _C, _R, _W = "Reach", "Result", "Way"
 WORST = "worst check"
 """The choice of colours by the least margin of all checks, each as a share of its largest."""
 POINTS_ONLY = "points only"
-"""A proven margin that there is none of between the points."""
+"""Text for a missing proven margin between the points."""
 
 PROPERTIES: tuple[Row, ...] = (
     ("App::PropertyLink", "Job", _C, QT_TRANSLATE_NOOP("App::Property", "The CAM job that is checked"), None),
@@ -89,7 +89,7 @@ PATH_PROPERTIES: tuple[Row, ...] = (
 
 
 class ReachObject(PropertyProxy):
-    """The proxy. A job that cannot be read or placed is an exception that FreeCAD shows at the object."""
+    """The proxy. A job that cannot be read or placed raises an exception, which FreeCAD shows at the object."""
 
     properties = PROPERTIES
     results = (*RESULTS, *PATH_PROPERTIES)
@@ -121,7 +121,7 @@ class ReachObject(PropertyProxy):
         _store_path(obj, found)
 
     def onChanged(self, obj: Any, name: str) -> None:
-        """Colour by another check, without a new check run."""
+        """Colour by another check, without running the checks."""
         if name != "ColourBy" or obj.ColourBy not in (WORST, *getattr(obj, "Checks", ())):
             return
         if self.study is not None:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Sanity: our checks in CAM's sanity report of a job, and what a job remembers of its last program.
+"""Sanity: our checks in CAM's sanity report of a job, and its record of the last posted program.
 
-CAM's report gathers remarks by subject. Those of its output get the findings of reach, part, stock, holder and
-fixtures, for jobs whose post-processor is one of ours and for a machine; other jobs are as CAM has them.
+CAM's report collects remarks by subject. The subject of output gets the findings of reach, part, stock, holder and
+fixtures, for jobs with one of our post-processors and a machine; other jobs are unchanged.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ translate = FreeCAD.Qt.translate
 
 _OPERATOR = "PKM Post"
 _KINDS = {Severity.ERROR: "WARNING", Severity.WARNING: "CAUTION"}
-"""CAM's kinds of remarks: a warning is its most serious one."""
+"""CAM's kinds of remarks: a warning is the most serious one."""
 
 
 def remember_output(job: Any, program: Path) -> None:
-    """Store in a job which program was written last, and when, as CAM's sanity report reads it; touches nothing.
+    """Store the last written program and its time in a job for CAM's sanity report, without touching the job.
 
     Args:
-        job: the job that was posted.
+        job: the posted job.
         program: the file.
     """
     was_touched = "Touched" in job.State
@@ -42,7 +42,7 @@ def remember_output(job: Any, program: Path) -> None:
 
 
 def add_checks(sanity: ModuleType) -> None:
-    """Let the reports of CAM's module have our checks, once."""
+    """Add our checks to the reports of CAM's module, once."""
     report = sanity.CAMSanity
     if hasattr(report._outputData, "__wrapped__"):
         return
@@ -63,7 +63,7 @@ def add_checks(sanity: ModuleType) -> None:
 
 
 def checked(job: Any) -> tuple[str, Iterable[Diagnostic]]:
-    """Machine of a job and what its checks find, as the post panel and Reach say it."""
+    """The machine of a job and the findings of its checks, as in the post panel and Reach."""
     from pkm_post.freecad_app.job_settings import settings_of
     from pkm_post.freecad_app.post_outputs import study_of_job
 

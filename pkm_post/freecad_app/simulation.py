@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Simulation: the planned motion of a CAM job, for display at any time, and where the machine cannot follow it.
+"""Simulation: the planned motion of a CAM job, for display at any time, and the places out of reach.
 
 Takes a job and its machine; returns a ``Simulation``, which gives poses, strut lengths and speeds, block and tool at
 times in s. These times exclude dwells. Nothing is written or certified: infeasible stretches are played as well, and
@@ -51,7 +51,7 @@ _SAMPLES = 200
 _MOMENT = 5e-4
 """s before and after an instant, for the speed."""
 _FIRST_INSTANT = 1e-3
-"""s: when the first block has begun; at 0 no motion has taken place that could be stopped."""
+"""s: just after the start of the first block; at 0 there is no motion to stop yet."""
 
 
 @dataclass(frozen=True)
@@ -60,13 +60,13 @@ class Problem:
 
     Attributes:
         time: start, s.
-        place: of its first block.
+        place: place of its first block.
         worst_time: time of the worst violation, s.
-        worst_place: of the block with the worst violation.
+        worst_place: place of the block with the worst violation.
         worst_tip: (3,) tool tip in {M} at that time.
         text: description of the worst violation.
         end: when the stretch ends, s.
-        bodies: the two bodies that come too close, if it is that.
+        bodies: the two bodies that come too close, for such a violation.
     """
 
     time: float
@@ -89,7 +89,7 @@ class Simulation:
         motion: poses by time.
         struts: lengths and speeds by time.
         problems: violations and collisions, by time.
-        study: the checks that found them; None until they have run.
+        study: the checks that found them; None before they ran.
         setup: part, stock and shanks, in {C}.
     """
 
@@ -117,7 +117,7 @@ class Simulation:
 
     @cached_property
     def greatest_speeds(self) -> Array:
-        """The greatest absolute speed of each strut, (6,) in mm/s, between the knots as well."""
+        """The greatest absolute speed of each strut, (6,) in mm/s, also between the knots."""
         greatest = np.abs(self.struts.speed).max(axis=0)
         last = len(self.struts) - 1
         for begin in range(0, last, _BATCH):
@@ -148,7 +148,7 @@ class Simulation:
         nose = hermite_lengths(*_noses(motion, start), *_noses(motion, end), duration, share[:, None])[:, 0]
         axis = unit(at(motion.axis, motion.axis_rate))
         spin = at(motion.spin[:, None], motion.spin_rate[:, None])[:, 0]
-        length = motion.tool_length[end]  # at a tool change the spindle stands still, and the tip jumps
+        length = motion.tool_length[end]  # at a tool change the spindle is at rest, and the tip jumps
         return ToolPoses(nose - length[:, None] * axis, axis, spin, length)
 
     def struts_at(self, seconds: Array) -> tuple[Array, Array]:
@@ -181,7 +181,7 @@ class Simulation:
         return float(before[-1]) if len(before) else 0.0
 
     def line_begins(self, operation: int, line: int) -> float:
-        """Start time of the first block of an operation at or behind one of its lines; its end if there is none, s."""
+        """Start time of an operation's first block at or after a line; the operation's end if there is none, s."""
         rows = np.flatnonzero(self.trajectory.operation == operation)
         lines = self.trajectory.line[rows]
         behind = rows[lines >= line]
@@ -192,11 +192,11 @@ class Simulation:
         """Speed of the tool tip at a time, mm/s."""
         ends = np.clip(seconds + np.array([-_MOMENT, _MOMENT]), 0.0, self.duration)
         nose, axis, _, length = self.pose_at(ends)
-        tip = nose + (length - length[1])[:, None] * axis  # of the same tool, also beside a tool change
+        tip = nose + (length - length[1])[:, None] * axis  # of the same tool, also near a tool change
         return float(norm(tip[1] - tip[0]) / max(ends[1] - ends[0], _MOMENT))
 
     def problems_at(self, seconds: float) -> list[Problem]:
-        """The problems whose stretch a time is in."""
+        """The problems whose stretch includes a time."""
         return [problem for problem in self.problems if problem.time <= seconds <= problem.end]
 
     def problem_between(self, start: float, end: float) -> Problem | None:
@@ -206,7 +206,7 @@ class Simulation:
     def envelope(self, columns: int) -> tuple[Array, Array]:
         """Least and largest of lengths and speeds, (2, columns, 6) each, over equal time intervals.
 
-        Uses the knots and the interval boundaries, so that long cubics are covered as well.
+        Uses the knots and the interval boundaries, so that long cubics are covered, too.
         """
         edges = np.linspace(0.0, self.duration, columns + 1)
         at_edges = self.struts_at(edges)
@@ -271,7 +271,7 @@ def simulation_of(placed: PlacedJob) -> Simulation:
 
 
 def _problems(study: JobStudy, planned: Simulation) -> tuple[Problem, ...]:
-    """One problem for each check and stretch of violating blocks, and one for each collision that no margin shows."""
+    """One problem for each check and stretch of violating blocks, and one for each collision without a margin."""
     problems = [problem for finding in study.margins for problem in _problem_ranges(finding, study.reach, planned)]
     shown = {finding.subject.code for finding in study.margins}
     problems += [_collision(each, study, planned) for each in errors(study.findings) if each.code not in shown]
@@ -323,7 +323,7 @@ _PAIRS = {
     "K117": ("{}", "part"),
     "K121": ("strut {}", "part"),
 }
-"""Names of the two bodies by the code of a check; one of its parts has a number or a name for each."""
+"""Names of the two bodies by the code of a check; each of its parts has a number or a name for each body."""
 
 
 def pair_of(finding: ReachFinding, part: int) -> tuple[str, ...]:

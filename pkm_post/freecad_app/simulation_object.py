@@ -73,7 +73,7 @@ RESULTS: tuple[Row, ...] = (
 
 
 class SimulationObject(PropertyProxy):
-    """The proxy. A job that cannot be read or placed is an exception that FreeCAD shows at the object.
+    """The proxy. A job that cannot be read or placed raises an exception, which FreeCAD shows at the object.
 
     Attributes:
         plan: the last plan; lost when the document is closed.
@@ -126,7 +126,7 @@ def plan_of(obj: Any) -> Simulation:
 
 
 def _set_results(obj: Any, plan: Simulation) -> None:
-    """Fill in the figures; the texts of the problems come last, as a signal that all are complete."""
+    """Fill in the figures; the texts of the problems come last, to signal that all are complete."""
     moving, dwelling = plan.operation_times()
     speeds = plan.greatest_speeds
     obj.Duration, obj.DwellTime = plan.duration, float(dwelling.sum())

@@ -2,8 +2,8 @@
 """Startup: what the add-on registers when FreeCAD starts, without importing CAM, numpy or OpenCASCADE.
 
 The post-processors are registered with CAM, and STEP with the mesh reader, each when its module is imported. Up to
-FreeCAD 1.1, CAM searches the folders that ``Path.Preferences.searchPathsPost`` lists, and cannot register another one;
-that function is extended here. Newer versions provide a call.
+FreeCAD 1.1, CAM searches the folders that ``Path.Preferences.searchPathsPost`` lists, without a call to register
+another one; that function is extended here. Newer versions provide a call.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Any
 
 FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "postprocessors")
 MACHINE_FOLDER = os.path.join(FOLDER, "machine")
-"""Post-processors for the machines of FreeCAD newer than 1.1; older versions would list them beside the others."""
+"""Post-processors for the machines of FreeCAD newer than 1.1; older versions would list them with the others."""
 _PREFERENCES = "Path.Preferences"
 _SANITY = "Path.Main.Sanity.Sanity"
 _MESH_FILE = "pkm_post.reading"
@@ -29,22 +29,22 @@ Then = Callable[[ModuleType], None]
 
 
 def install_post_processors() -> None:
-    """Register the post-processors, now if CAM is loaded and otherwise when it is."""
+    """Register the post-processors, now if CAM is loaded, otherwise on loading."""
     when_imported(_PREFERENCES, _add_folder)
 
 
 def install_step_reader() -> None:
-    """Let ``mesh_file`` read STEP, now if it is loaded and otherwise when it is."""
+    """Let ``mesh_file`` read STEP, now if it is loaded, otherwise on loading."""
     when_imported(_MESH_FILE, _add_step)
 
 
 def install_package_folder() -> None:
-    """Let ``system.packages`` install where FreeCAD looks, now if it is loaded and otherwise when it is."""
+    """Let ``system.packages`` install where FreeCAD looks, now if it is loaded, otherwise on loading."""
     when_imported(_SYSTEM, _use_package_folder)
 
 
 def install_sanity_checks() -> None:
-    """Let CAM's sanity report have our checks, now if it is loaded and otherwise when it is."""
+    """Add our checks to CAM's sanity report, now if it is loaded, otherwise on loading."""
     when_imported(_SANITY, _add_checks)
 
 
@@ -55,7 +55,7 @@ def _add_checks(sanity: ModuleType) -> None:
 
 
 def _use_package_folder(system: ModuleType) -> None:
-    """State the folder that FreeCAD's Addon Manager uses as well; a snap has none of its own."""
+    """Set the folder that FreeCAD's Addon Manager also uses; a snap has none of its own."""
     import FreeCAD
 
     if os.environ.get("SNAP_REVISION"):
@@ -76,7 +76,7 @@ def _add_folder(preferences: ModuleType) -> None:
         return
 
     def searchPathsPost() -> list[str]:
-        return [FOLDER, *search_paths()]  # first, to override an outdated copy in the macro folder
+        return [FOLDER, *search_paths()]  # first, to override an old copy in the macro folder
 
     preferences.searchPathsPost = searchPathsPost
 
@@ -109,7 +109,7 @@ class _Finder:
     """Finder placed before Python's importers until its module is imported.
 
     Attributes:
-        awaited: name of that module.
+        awaited: name of the module.
     """
 
     def __init__(self, name: str, then: Then) -> None:
@@ -122,7 +122,7 @@ class _Finder:
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Find the module as Python does, and call the function after its execution."""
+        """Find the module like Python, and call the function after its execution."""
         if name != self.awaited:
             return None
         sys.meta_path.remove(self)

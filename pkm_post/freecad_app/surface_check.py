@@ -5,11 +5,11 @@ Takes a program, a cutter and faces; returns the deepest gouge and the largest e
 are searched on all faces of the model, for all moves including rapids, and with the flank of the cutter: their depth is
 the largest distance of a point inside the cutter. Excess is measured along the normal, only on the faces to be covered.
 
-Everything is measured at points a given distance apart. Gouges are then searched at points close together in those
-cells of this grid that the cutter comes near: a distance changes by no more than the way between two points, so a cell
-whose corners are all farther from the cutter than from its middle has no gouge. How much deeper one may be between the
-close points follows from their distance: where all of the cutter's outline has at least the radius r of its corner, a
-gouge of depth d in a flat face is seen within sqrt(2 r d) of its deepest place.
+Everything is measured at points a given distance apart. Gouges are then searched at closely spaced points in the cells
+of this grid that the cutter comes near: a distance changes by no more than the distance between two points, so a cell
+whose corners are all farther from the cutter than from its centre has no gouge. The spacing of the close points bounds
+the depth of gouges between them: if the outline of the cutter nowhere has a radius below its corner radius r, a gouge
+of depth d in a flat face is detected within sqrt(2 r d) of its deepest place.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ _ACCURACY = 10.0
 """Share of the tolerance to which depths are measured."""
 _FEWEST = 3
 _SPREAD = (0.7548776662466927, 0.5698402909980532)
-"""Shares of a cell from one point to the next, whose multiples fill a square evenly [Roberts2018]."""
+"""Shares of a cell from one point to the next, multiples of which fill a square evenly [Roberts2018]."""
 _CUTOFF = 0.1
 """mm: points farther than this from the cutter are not gouged; their exact distance is irrelevant."""
 _DECIMALS = 9
-"""Of depths in mm, where the deepest is looked for: a cutter that only touches gouges by rounding, everywhere."""
+"""Decimals of depths in mm in the search for the deepest: mere contact is a gouge by rounding, everywhere."""
 _BEND = 1.1
-"""How much farther a point of a cell may be from its corners than half the diagonal between these, on a curved face."""
+"""Factor, on a curved face, from half the diagonal of a cell to the largest distance of a point from its corners."""
 _BORDER = 2.0 / 3.0
 """Distance of points along the borders of a trimmed face, as a share of the reach of the close points inside it."""
 _SHARP = 10.0
-"""Tolerances that may stay unseen of a sharp corner: its gouges are as narrow as they are deep."""
+"""Gouge depth, in tolerances, that may stay undetected with a sharp corner: its gouges are as narrow as deep."""
 _MOST_CLOSE = 150_000
-"""Close points of a check, about, which bounds its time; with more they are farther apart, and more may be unseen."""
+"""Approximate limit of close points, to bound the time; beyond it they are farther apart and detect less."""
 
 
 @dataclass(frozen=True)
@@ -50,14 +50,14 @@ class Checked:
     """The worst effects of a path on a model.
 
     Attributes:
-        gouge: depth of the deepest gouge that was found, 0 for none.
+        gouge: depth of the deepest gouge found, 0 for none.
         gouge_point: (3,) its place.
-        unseen: how much deeper a gouge between the points may be, mm.
-        excess: largest excess on the faces to be covered; ``reach`` where the cutter does not arrive at all.
+        unseen: bound of the additional depth of a gouge between the points, mm.
+        excess: largest excess on the faces to be covered; ``reach`` where the cutter does not get at all.
         excess_point: (3,) its place.
-        points: (N, 3) the points of the grid that were measured.
-        depth: (N,) how far each is inside what the cutter sweeps, mm; negative outside it.
-        left: (N,) what is left over each, mm; NaN on faces that are not to be covered.
+        points: (N, 3) the measured points of the grid.
+        depth: (N,) depth of each inside the swept volume of the cutter, mm; negative outside.
+        left: (N,) excess at each, mm; NaN on faces not to be covered.
         triangles: (T, 3) rows of neighbouring points, for a picture.
     """
 
@@ -92,7 +92,7 @@ def check_faces(
         others: the other faces of the model.
         flipped: whether the material of the covered faces is on the other side.
         spacing: largest distance of the points of the grid along u and v, mm.
-        tolerance: depth of a gouge that is still fine; measured to a tenth of it, mm.
+        tolerance: acceptable depth of a gouge, measured to a tenth of it, mm.
         reach: larger excess than this is not measured, mm.
         progress: callback with the completed share; it may raise to stop the work.
     """
@@ -104,7 +104,7 @@ def check_faces(
     sweep = SweptVolume.of(program.position, program.tool_axis, cutter, near, extent)
     away = _distances(sweep, points, accuracy, lambda share: progress(share / 3))
     close, unseen = _close_points(grids, away, cutter, tolerance)
-    inside = replace(sweep, within=accuracy)  # no distance matters but that of a gouge
+    inside = replace(sweep, within=accuracy)  # only distances of gouges are needed
     (closer,) = _distances(inside, [close], accuracy, lambda share: progress((1 + 2 * share) / 3))
     point, normal = (np.vstack([getattr(grid, name)[grid.held] for grid in grids]) for name in ("point", "normal"))
     depth = -np.concatenate([one[grid.held] for grid, one in zip(grids, away, strict=True)])
@@ -131,7 +131,7 @@ def check_faces(
 def _distances(
     sweep: SweptVolume, points: Sequence[Array], accuracy: float, progress: Callable[[float], None]
 ) -> list[Array]:
-    """The cutter's distances from points in groups, (N,) mm each, rounded to what a touch may be off by."""
+    """The cutter's distances from points in groups, (N,) mm each, rounded so that contact is no gouge."""
     away = np.round(sweep.distances(np.vstack(points), accuracy, progress)[0], _DECIMALS)
     return np.split(away, np.cumsum([len(each) for each in points[:-1]]))
 
@@ -146,7 +146,7 @@ class _Grid:
         face: the face.
         surface: its surface.
         counts: points along u and v.
-        point, normal: (N, 3) of all points, those beyond the borders of a trimmed face too.
+        point, normal: (N, 3) of all points, also those beyond the borders of a trimmed face.
         held: (N,) which are on the face.
     """
 
@@ -185,17 +185,17 @@ class _Grid:
         return np.array([each.reshape(-1, *values.shape[1:]) for each in around])
 
     def half_diagonals(self) -> Array:
-        """How far a point of each cell may be from the nearest corner, (C,) mm."""
+        """Largest distance of a point of each cell from the nearest corner, (C,) mm."""
         a, b, c, d = self._corners(self.point)
         half: Array = _BEND * np.maximum(norm(c - a), norm(d - b)) / 2.0
         return half
 
     def half_diagonal(self) -> float:
-        """The largest of them."""
+        """The largest half diagonal."""
         return float(self.half_diagonals().max())
 
     def near(self, away: Array) -> Array:
-        """Cells that the cutter may come into, (C,), by its distance from each point, (N,)."""
+        """Cells that the cutter may enter, (C,), by its distance from each point, (N,)."""
         found: Array = np.flatnonzero(self._corners(away).min(axis=0) <= self.half_diagonals())
         return found
 
@@ -211,7 +211,7 @@ class _Grid:
         return greatest
 
     def within(self, cells: Array, parts: int) -> Array:
-        """The middles of equal parts of some cells, as many along u as along v, those on the face, (K, 3)."""
+        """Centres, on the face, of equal parts of some cells, as many along u as along v, (K, 3)."""
         (rows, columns), surface = self.counts, self.surface
         share = (np.arange(parts) + 0.5) / parts
         row, column = np.divmod(cells, columns - 1)
@@ -238,21 +238,21 @@ class _Grid:
 def _close_points(
     grids: Sequence[_Grid], away: Sequence[Array], cutter: Cutter, tolerance: float
 ) -> tuple[Array, Callable[[float], float]]:
-    """Close points where the cutter comes near, and what they may not see.
+    """Close points where the cutter comes near, and the depth that they may miss.
 
     Every point of a near cell has a close point within a reach h, or the border of the face is between the two, and a
-    point of the border is so near. A ball of radius r that is d deep in a face of convex curvature k is as deep as in
-    a flat one if its radius were 1 / (1/r + k); at the distance h from its deepest place the depth is
-    r - sqrt((r - d)^2 + h^2) and more. A distance changes by no more than h in any case.
+    point of the border is that near. A ball of radius r, at depth d in a face of convex curvature k, is as deep as one
+    of radius 1 / (1/r + k) in a flat face; at the distance h from its deepest place the depth is at least
+    r - sqrt((r - d)^2 + h^2). A distance never changes by more than h.
 
     Args:
         grids: of the faces.
         away: the cutter's distances from their points.
         cutter: the cutter.
-        tolerance: what may stay unseen, mm.
+        tolerance: depth that may stay undetected, mm.
 
     Returns:
-        Points (K, 3), and a function from the depth that was found to how much deeper a gouge may be, mm.
+        Points (K, 3), and a function from the depth found to the possible additional depth, mm.
     """
     rows = [(grid, cells) for grid, one in zip(grids, away, strict=True) if len(cells := grid.near(one))]
     sharp = cutter.radial_offset < 0.0 or cutter.corner_radius == 0.0
@@ -272,7 +272,7 @@ def _close_points(
 
 
 def _unseen(depth: float, radius: float, reach: float) -> float:
-    """How much deeper a ball may be than at any point, if there is one within a reach of its deepest place, mm."""
+    """Possible additional depth of a ball, if there is a point within ``reach`` of its deepest place, mm."""
     room = (radius - depth) ** 2 - reach**2
     if depth >= radius or room <= 0.0:
         return reach
@@ -286,7 +286,7 @@ def _joined_triangles(grids: Sequence[_Grid]) -> Array:
 
 
 def _triangles(rows: int, columns: int, held: Array) -> Array:
-    """Four triangles for each cell, from its corners to the point inside, (T, 3), where all of them are on the face.
+    """Four triangles for each cell, from its corners to the point inside, (T, 3), if all of them are on the face.
 
     Args:
         rows: points of the grid along u.

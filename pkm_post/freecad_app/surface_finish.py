@@ -44,10 +44,10 @@ _FEATURES = (
 
 
 class SurfaceFinish(Path.Op.Base.ObjectOp):
-    """The operation. Faults are exceptions that FreeCAD shows at the object, and its path is then empty.
+    """The operation. Faults raise exceptions, which FreeCAD shows at the object, and its path is then empty.
 
     Attributes:
-        measured: the last measurement, point by point; None without one, and when the document was opened again.
+        measured: the last measurement, point by point; None without one, and after the document was reopened.
     """
 
     measured: Checked | None = None
@@ -71,7 +71,7 @@ class SurfaceFinish(Path.Op.Base.ObjectOp):
 
     @without_traceback
     def execute(self, obj: Any) -> Any:
-        """Recompute the path; after an error no outdated path remains to be posted."""
+        """Recompute the path; after an error no stale path may be posted."""
         obj.Path = Path.Path()
         self.measured = None
         if obj.Active and (obj.ToolController is None or obj.ToolController.Tool is None):
@@ -97,15 +97,15 @@ def create_surface_finish(
     controller: Any = None,
     fit: bool = False,
 ) -> Any:
-    """Add the operation to a job. It is not computed until the document is.
+    """Add the operation to a job. It is computed with the document.
 
     Args:
         job: the CAM job.
         faces: pairs of an object of the job's model and names of its faces, such as ``(clone, ["Face1"])``.
         label: displayed name.
-        controller: the tool controller; if None, the first one of the job whose tool the operation supports; if there
-            is none, CAM opens its dialog in a window, and without a window the first one is taken.
-        fit: whether to choose lead and cone limit by faces, tool and machine, as the button does.
+        controller: the tool controller; if None, the first one of the job with a supported tool; if there is none, CAM
+            opens its dialog in the GUI; without a GUI the first one is taken.
+        fit: whether to choose lead and cone limit by faces, tool and machine, like the button.
     """
     fitting = (each for each in job.Tools.Group if has_upright_side(each.Tool))
     controller = controller or next(fitting, None)
@@ -150,7 +150,7 @@ def _measured(obj: Any, program: Program, cutter: Cutter, faces: Sequence[NamedF
 
 
 def _judge(obj: Any, checked: Checked | None) -> None:
-    """Fill in what was measured; a gouge is a fault."""
+    """Fill in the measurement; a gouge is a fault."""
     if checked is None:
         return
     obj.MaximumGouge, obj.GougePoint = checked.gouge, App.Vector(*checked.gouge_point)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surface Finish choice: lead and cone limit of a new operation, so that its tool fits its faces at the first attempt.
+"""Surface Finish choice: lead and cone limit of a new operation, so that its tool fits its faces right away.
 
 Takes the operation with its faces and its tool controller; sets ``Lead`` and ``ConeLimit``, which the user can change.
-Where faces are hollow, the bottom of a flat or bull-nose mill would cut behind its contact point: a disc of radius e
-that leans by a lead stays clear of a hollow of curvature k if sin(lead) >= k e, since its heel then rises by as much as
-the hollow. Where faces are steep, the axis stays in a cone around upright that the machine of the job reaches all over
-the part, or a usual one if it cannot be asked.
+On concave faces, the bottom of a flat or bull-nose mill would cut behind its contact point: a disc of radius e with a
+lead stays clear of a concave curvature k if sin(lead) >= k e, since its heel then rises as fast as the surface. On
+steep faces, the axis stays in a cone around upright that the machine of the job reaches all over the part, or a usual
+one if that is unknown.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ from pkm_post.model import Place, Refused
 _SAMPLES = 13
 """Points of a face along u and along v."""
 _SPARE = 3.0
-"""degrees of lead beyond what the hollows need."""
+"""degrees of lead beyond the need of concave faces."""
 _STEEPEST_LEAD = 45.0
 _USUAL_CONE = 30.0
-"""degrees: half angle of the cone where no machine can be asked."""
+"""degrees: half angle of the cone without a known machine."""
 _FLAT = 1e-6
 """1/mm and rad: curvature and turn of normals of a plane."""
 
 
 def choose_lead_and_cone(obj: Any, job: Any) -> None:
-    """Set the lead and the cone limit of an operation that has faces and a tool; otherwise they stay as they are."""
+    """Set the lead and the cone limit of an operation with faces and a tool; otherwise leave them unchanged."""
     place = Place(document_name(obj.Document), obj.Label)
     if not obj.Base or obj.ToolController is None:
         return
@@ -84,7 +84,7 @@ def _lead(point: Array, normal: Array, flat: float) -> float:
 
 
 def _cone(obj: Any, job: Any, box: tuple[Array, Array], place: Place) -> float:
-    """Half angle in whole degrees that the machine of the job reaches at the part; the usual one if it is not known."""
+    """Half angle in whole degrees that the machine of the job reaches at the part; the usual one if it is unknown."""
     try:
         tilt, _ = reachable_tilt(settings_of(job).machine, job, obj.ToolController, box, place)
     except Refused:

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surface Finish settings: the properties of the operation, and the inputs that they and the document give.
+"""Surface Finish settings: the properties of the operation, and the inputs from them and the document.
 
 Takes the operation and its job; returns faces in the frame of the job, the cutter and the settings of the passes, in
 mm, mm/s and rad, or all their faults together. Documents store the names of the properties and of the choices: they are
 a file format.
 
-A machine limits the tilt of the tool from upright to what it reaches everywhere around the faces. Every direction is
-tried at the corners and the centre of their box; struts, joints and singular poses decide, as in the later check of the
-whole path, which is the binding one.
+A machine limits the tilt of the tool from upright to the tilt it reaches everywhere around the faces. All directions
+are tried at the corners and the centre of their box, against struts, joints and singular poses. The later check of the
+whole path is the binding one.
 """
 
 from __future__ import annotations
@@ -100,8 +100,8 @@ PROPERTIES: tuple[Row, ...] = (
                        "are measured; 0 to measure nothing"), 0.0),
 )  # fmt: skip
 CHECK_SPACING = 1.0
-"""mm, of new operations; gouges are searched at closer points where the cutter comes near. Operations of documents that
-have no spacing are not measured."""
+"""mm, for new operations; gouges are searched at closer points where the cutter comes near. Operations without a
+spacing, from older documents, are not measured."""
 
 RESULTS: tuple[Row, ...] = (
     ("App::PropertyInteger", "PassCount", _R, QT_TRANSLATE_NOOP("App::Property", "Number of passes"), 0),
@@ -153,7 +153,7 @@ def read_inputs(obj: Any, job: Any, place: Place) -> tuple[Inputs | None, tuple[
 
 
 def _cone(obj: Any, job: Any, faces: Sequence[NamedFace], place: Place) -> tuple[float, tuple[Diagnostic, ...]]:
-    """Half angle of the cone of the tool axis in rad: the user's, or the machine's where that is narrower."""
+    """Half angle of the cone of the tool axis in rad: that of the user or, if narrower, of the machine."""
     limit = math.radians(obj.ConeLimit.Value)
     if not obj.Machine or not faces:
         return limit, ()

@@ -104,7 +104,7 @@ _ROTATION_RESULTS: tuple[Row, ...] = (
 
 
 class _SymmetricOperation(DerivedOperation):
-    """Base class of the copies: a matrix maps the base to each of them."""
+    """Base class of the copies: each is the base mapped by a matrix."""
 
     @abc.abstractmethod
     def matrices(self, obj: Any) -> list[Array]:
@@ -166,7 +166,7 @@ class MirroredOperation(_SymmetricOperation):
             _set(obj, "Normal", *plane_of(obj.Plane))
 
     def in_cutting_order(self, obj: Any, program: Program) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-        """Reverse each pass, if climb milling is to be kept."""
+        """Reverse each pass, to keep climb milling."""
         return reversed_passes(program) if obj.KeepClimb else (program, ())
 
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Symmetry report: how copies cut, how they cover the part, and how they fit where they meet.
+"""Symmetry report: cut direction and coverage of copies, and their fit at joints.
 
 Takes programs or document objects; sets the read-only properties of a symmetric operation, and returns the totals of
 all copies of one operation in a job. Units: mm, rad; properties in mm and degrees.
 
-Copies mill climb or conventional depending on the side of the path on which the material is, and on the sense of the
+Copies mill climb or conventional depending on the side of the material, and on the sense of the
 spindle. An operation's properties state both: CAM defines climb milling for a spindle that turns clockwise (M3), the
 material is then to the right of the path. Sides are +1 (right), -1 (left) or 0 (unknown).
 """
@@ -55,7 +55,7 @@ def is_symmetric(obj: Any) -> bool:
 
 
 def material_side_of(obj: Any) -> int:
-    """The side on which an operation has the material, as far as its properties state it.
+    """The side on which an operation has the material, according to its properties.
 
     Args:
         obj: an operation; a mirrored or rotated one takes the side of its base, and so does a dress-up.
@@ -94,7 +94,7 @@ class Family:
         label: name of the operation.
         members: number of instances.
         coverage: covered angle about their axis, rad; None without an axis, or without a cut.
-        joints: where they meet.
+        joints: their joints.
     """
 
     label: str
@@ -190,7 +190,7 @@ def _is_valid(obj: Any) -> bool:
 
 
 def _images(obj: Any) -> list[Program]:
-    """The original, or each image of it that a copy contains; before any reversal of passes."""
+    """The original, or each image of it that a copy contains; before passes are reversed."""
     if not is_symmetric(obj):
         return [program_of(obj)]
     if obj.Base is None:

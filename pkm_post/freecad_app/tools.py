@@ -3,7 +3,7 @@
 
 Takes tool controllers; returns tools by number, or the cutter of one for compensation, in mm and rad. FreeCAD 1.0 and
 newer versions name the shape of a tool bit and the corner of a bull nose differently, and none of them stores the gauge
-length: that is a property of our own, ``GaugeLength``.
+length: that is our own property ``GaugeLength``.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def gauge_length(tool_controller: Any) -> float:
 
 
 def bit_length(tool_controller: Any) -> float:
-    """The length of the tool bit alone, mm; 0 if not stated. It is not a gauge length."""
+    """The length of the tool bit only, mm; 0 if not stated. It is not a gauge length."""
     return millimetres(tool_controller.Tool, "Length")
 
 
@@ -94,7 +94,7 @@ def _tool(controller: Any, number: int, length: float) -> Tool:
 
 
 def _shape(bit: Any) -> str:
-    """The name of the shape of a tool bit, which FreeCAD 1.0 keeps in another property."""
+    """The name of the shape of a tool bit, which FreeCAD 1.0 stores in another property."""
     return str(getattr(bit, "ShapeType", None) or getattr(bit, "ShapeName", ""))
 
 
@@ -191,7 +191,7 @@ def read_cutter(controller: Any, place: Place) -> tuple[Cutter | None, tuple[Dia
 
 @contextlib.contextmanager
 def preselected(controller: Any) -> Iterator[None]:
-    """Give new operations a tool controller: with several of them CAM opens a dialog, and without a window it fails.
+    """Give new operations a tool controller: with several of them CAM opens a dialog, which fails without a GUI.
 
     Args:
         controller: the tool controller; None leaves the question to the user.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """User units: amounts of the core, in mm, degrees and their rates, in the units that the user chose in FreeCAD.
 
-FreeCAD's own texts have a fixed number of decimals, which says nothing of a micrometre; here an amount has four digits.
+FreeCAD's own texts have a fixed number of decimals, too few for micrometres; here an amount has four digits.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from FreeCAD import Units
 _PARSED = {"mm": "mm", "um": "um", "degrees": "deg", "deg": "deg", "mm/s": "mm/s", "N/mm": "N/mm"}
 """Units of the core as FreeCAD writes them."""
 _AS_THEY_ARE = {"degrees/s": "°/s"}
-"""The same with signs that need no language."""
+"""The same with symbols that need no translation."""
 _BY_LENGTH = {"mm/s^2": "{}/s^2", "mm/s^3": "{}/s^3"}
-"""Units for which FreeCAD has none in most of its schemas: they go with that of lengths."""
+"""Units that most schemas of FreeCAD lack; derived from that of lengths."""
 _TYPICAL = "100 mm"
-"""Its unit is that of lengths in general; FreeCAD has others for small ones."""
+"""A length with the general unit of lengths; FreeCAD has others for small ones."""
 _FOUR_DIGITS, _LARGE = 1e4, 1e7
 
 
 def in_user_units(values: Sequence[float | None], unit: str) -> tuple[tuple[str, ...], str]:
-    """Numbers that are compared, in the one unit that FreeCAD has for the largest of them.
+    """Numbers for comparison, all in FreeCAD's unit for the largest of them.
 
     Args:
-        values: in the given unit; None and what is not finite is a dash.
-        unit: a unit of the core; amounts in one that FreeCAD does not know stay as they are.
+        values: in the given unit; None and non-finite values become a dash.
+        unit: a unit of the core; one unknown to FreeCAD is not converted.
 
     Returns:
         The numbers as texts, and the displayed unit.
@@ -38,13 +38,13 @@ def in_user_units(values: Sequence[float | None], unit: str) -> tuple[tuple[str,
 
 
 def amount_text(value: float, unit: str) -> str:
-    """A number with its unit as the user sees them."""
+    """A number with its unit, as displayed to the user."""
     (number,), shown = in_user_units([value], unit)
     return f"{number}{'' if shown == '°' else ' '}{shown}".rstrip()
 
 
 def scale_of(value: float, unit: str) -> tuple[float, str]:
-    """Units of the core in one of the user's, for amounts of this size, and the user's unit."""
+    """Size of the user's unit in units of the core, for amounts of this size, and the user's unit."""
     if unit in _PARSED:
         one = Units.Quantity(f"1 {_PARSED[unit]}").Value
         factor, shown = _preferred(f"{value:.12g} {_PARSED[unit]}")

@@ -2,7 +2,7 @@
 """Reading commands: converts the moves of one CAM operation to a program, with modal words resolved.
 
 Takes CAM commands, with lengths in mm and F in mm/s as FreeCAD stores them; returns columns in mm and mm/s. The
-commands become blocks of G-code, and these a program as those of a file do: modal words, cycles, arcs and events are
+commands become blocks of G-code, and these a program, as for a file: modal words, cycles, arcs and events are
 the same. Three things differ. The F of a G0 is the rapid rate and does not apply to cutting. The tool axis I J K of G0
 and G1 is modal; moves before the first such words take their axis, and an operation without them is cut with the tool
 upright. Arcs fit to the decimals that FreeCAD stores.
@@ -42,14 +42,14 @@ _SIX_DECIMALS = 1e-6
 """FreeCAD stores six decimals: a shorter vector has no direction, and a shorter radius counts as zero."""
 
 _CODES = (*MOVES, *CYCLES, *TAPPING, *EVENTS, "G80", "G98", "G99")
-"""The codes that do something; the others that are permitted name what holds anyway."""
+"""The codes with an effect; other permitted codes only confirm the default state."""
 _ANY_TOOL = Tool(number=0, name="", diameter=0.0, corner_radius=0.0, length=0.0)
 """The tools of a job are not read from its commands."""
 _OPTIONS = gcode.ReadOptions(default_tool=_ANY_TOOL, feed_time=1.0, needs_motion=False, most_reported=1)
 _CHECKED_BEFORE = {"G425", "G428"}
-"""Diagnostics of blocks that checks of the words give as well."""
+"""Diagnostics of blocks already covered by checks of the words."""
 _FAULTS = {"G408": "J105", "G409": "J107", "G410": "J107"}
-"""Diagnostics of blocks as those of commands; others are of cycles or arcs, or of words."""
+"""Diagnostics of commands by those of blocks; others concern cycles, arcs or words."""
 _TEXTS = {
     ("J107", "G410"): "no centre: neither I nor J",
     ("J107", "G416"): "its start is not known",
@@ -71,7 +71,7 @@ def read_commands(
         source: name of the document.
         operation: name of the operation.
         start: (3,) tool tip before the first command, mm; NaN if it is unknown.
-        spindle_axis: whether the spindle of the machine is an axis: without one tapping is refused.
+        spindle_axis: whether the spindle can be an axis; otherwise tapping is refused.
 
     Returns:
         The program, with command numbers from 1 as its lines; None if there are errors.
@@ -109,7 +109,7 @@ def _blocks(words: CommandWords, start: Array, source: str) -> gcode.Blocks:
     taps = words.among(*TAPPING)
     columns["F"][taps] *= columns["S"][taps] / 60  # from a lead in mm to mm/s
     for letter, before in zip("XYZ", start, strict=True):
-        # a move without any of them, which turns the tool or rests, is a move to where the tool is
+        # a move without coordinates, such as a turn of the tool, is a move to the current position
         idle = words.among(*MOVES) & (words.count("XYZ") == 0)
         columns[letter][idle] = forward_fill(columns[letter], before)[idle]
     name = np.array(words.codes)[words.code[rows]] if len(rows) else np.zeros(0, "U3")
@@ -130,12 +130,12 @@ def _blocks(words: CommandWords, start: Array, source: str) -> gcode.Blocks:
 
 
 def _takes(words: CommandWords, letter: str) -> Array:
-    """Which commands may have a letter, (n,); where others have it, that is reported."""
+    """Which commands may have a letter, (n,); other commands with it are reported."""
     return words.among(*(code for code, letters in LETTERS.items() if letter in letters))
 
 
 def _add(fault: Diagnostic, words: CommandWords, diagnostics: CommandDiagnostics) -> None:
-    """Add the diagnostic of a block as that of its command, unless other checks have found it."""
+    """Add the diagnostic of a block as one of its command, unless other checks found it."""
     row = fault.place.line - 1
     name, line = words.name(row), np.array([fault.place.line])
     code = _FAULTS.get(

@@ -3,7 +3,7 @@
 
 Takes a list of ``Path.Command``; returns for each command a code, and for each letter its numbers, NaN where a command
 does not have it; and diagnostics. Names and parameters are copied from FreeCAD once: each access makes a new
-dictionary. The table ``LETTERS`` defines which letters go with which code. An operation may have a hundred thousand
+dictionary. The table ``LETTERS`` defines the letters of each code. An operation may have a hundred thousand
 commands with the same fault, so a diagnostic names the first of them and counts the others.
 """
 
@@ -32,10 +32,10 @@ CYCLES: dict[str, str] = {
     "G85": "XYZRF",
     "G89": "XYZRPF",
 }
-"""The same for drilling cycles, except cycles that turn or has_errors the spindle."""
+"""The same for drilling cycles, except cycles that turn or stop the spindle."""
 TAPPING: dict[str, str] = dict.fromkeys(("G74", "G84"), "XYZRPSF")
-"""The same for tapping, on machines whose spindle is an axis. Their F is the lead in mm, as CAM of FreeCAD 1.1 writes
-it; that of 1.0 writes neither S nor F."""
+"""The same for tapping, with the spindle as an axis. F is the lead in mm, as CAM of FreeCAD 1.1 writes
+it; 1.0 writes neither S nor F."""
 _OTHERS: dict[str, str] = {
     "G4": "P",
     "M0": "",
@@ -66,7 +66,7 @@ EVENTS: dict[str, tuple[EventKind, str, float]] = {
     "M8": (EventKind.COOLANT, "", 1.0),
     "M9": (EventKind.COOLANT, "", 0.0),
 }
-"""For each code its event, and its value: that of the letter times the factor, or the factor alone."""
+"""For each code its event, and its value: that of the letter times the factor, or only the factor."""
 
 COMMENT = "()"
 """The code of comments and empty lines."""
@@ -223,7 +223,7 @@ def undecodable_command(fault: UnicodeDecodeError, source: str, operation: str) 
 
 
 def check_words(words: CommandWords, diagnostics: CommandDiagnostics, spindle_axis: bool = False) -> None:
-    """Report unsupported commands and words; tapping is supported where the spindle is an axis."""
+    """Report unsupported commands and words; tapping is supported if the spindle can be an axis."""
     for code in words.codes:
         if code not in LETTERS and code != COMMENT:
             diagnostics.add("J123" if code in SPINDLE_SYNCHRONISED else "J104", words.among(code), code)
@@ -249,7 +249,7 @@ def check_words(words: CommandWords, diagnostics: CommandDiagnostics, spindle_ax
 
 
 def _in_xy_plane(words: CommandWords) -> Array:
-    """Whether G17 is in force, (n,); an operation begins with it."""
+    """Whether G17 is active, (n,); an operation starts with it."""
     return ~words.among("G18", "G19")[last_row_of(words.among("G17", "G18", "G19"))]
 
 

@@ -3,7 +3,7 @@
 
 Takes a program in mm and mm/s; returns commands in the same units, as FreeCAD stores them. They are built from numbers,
 not from text, and keep all digits until the document is saved. Every move has X, Y and Z. Tool axes are written only
-where some are not upright, so that stock CAM can do with a copy whatever it can do with the original.
+if some are not upright, so that stock CAM can process a copy like the original.
 """
 
 from __future__ import annotations
