@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Simulation: the planned motion of a CAM job, for display at any time, and the places out of reach.
+"""Simulation: the planned motion of a CAM job, for display at any time, and the violations along it.
 
 Takes a job and its machine; returns a ``Simulation``, which gives poses, strut lengths and speeds, block and tool at
 times in s. These times exclude dwells. Nothing is written or certified: infeasible stretches are played as well, and

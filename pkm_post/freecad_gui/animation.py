@@ -35,13 +35,13 @@ class Animation:
     Attributes:
         view: the 3D view.
         show: shows an instant, s.
-        now: the instant shown before, s; it is shown again afterwards.
+        now: the instant to restore afterwards, s.
         duration: of the motion, s.
         time_scale: seconds of motion per second of the animation.
         per_second: pictures per second of the animation.
         width: of a picture, pixels.
         height: of a picture, pixels.
-        caption: the text for the instant that is shown, drawn along the lower edge.
+        caption: the text for the shown instant, drawn along the lower edge.
     """
 
     view: Any
@@ -55,7 +55,7 @@ class Animation:
     caption: Callable[[], str]
 
     def write_pictures(self, folder: Path) -> int:
-        """Write frame_00001.png and so on; return their number, which is smaller if the user cancelled."""
+        """Write frame_00001.png and so on; return their number, smaller after a cancel."""
         instants, written = np.arange(0.0, self.duration + 1e-9, self.time_scale / self.per_second), 0
         try:
             with Progress(translate("PKM_Simulate", "Pictures"), len(instants)) as bar:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Axis vectors: the tool axis at every nth block of a path with tilted tools, as lines in the 3D view.
 
-How many blocks lie between two of them is a preference (``preferences``), which the player and Reach share.
+The number n is a preference (``preferences``), shared by the player and Reach.
 """
 
 from __future__ import annotations
@@ -47,5 +47,5 @@ def tool_axes(trajectory: Trajectory, every: int, length: float) -> tuple[Array,
 
 
 def is_tilted(trajectory: Trajectory) -> bool:
-    """Whether the tool leans against another pose of it somewhere: a path of five axes."""
+    """Whether the tool axis varies along the path: five-axis motion."""
     return bool(np.ptp(trajectory.axis, axis=0).max() > 1e-9)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Background calls: run in another thread, one by one or from a queue; the value or exception is kept.
 
-Progress reports of the call reach the window as a signal. The window can request a stop, which takes effect at the next
+Progress reports of the call reach the GUI as a signal. The GUI can request a stop, which takes effect at the next
 progress report.
 """
 
@@ -18,7 +18,7 @@ from pkm_post.system import memory_guard
 
 
 class BackgroundCall(QtCore.QThread):
-    """One call. ``finished`` is emitted in the thread of the window."""
+    """One call. ``finished`` is emitted in the GUI thread."""
 
     progressed = QtCore.Signal(str, float)
     """The name of the step that begins, and the completed share of the work, 0 to 1."""
@@ -29,21 +29,21 @@ class BackgroundCall(QtCore.QThread):
         self._value: Any = None
         self._fault: BaseException | None = None
         self._is_wanted = True
-        # Qt ends the process when a running thread is destroyed
+        # Qt aborts the process when a running thread is destroyed
         QtCore.QCoreApplication.instance().aboutToQuit.connect(self.finish)
 
     def report(self, step: str, share: float) -> None:
         """Called in the other thread, as ``posting.Progress``.
 
         Raises:
-            Stopped: the window requested a stop.
+            Stopped: the GUI requested a stop.
         """
         if not self._is_wanted:
             raise Stopped(step)
         self.progressed.emit(step, share)
 
     def stop(self) -> None:
-        """Request the call to stop; ``finished`` is emitted when it has."""
+        """Request the call to stop; ``finished`` follows."""
         self._is_wanted = False
 
     def finish(self) -> None:
@@ -83,7 +83,7 @@ class CallQueue(QtCore.QObject):
         Args:
             parent: parent of the threads.
             notify: callback for faults to report to the user.
-            reported: types of these faults; others are our own errors and are raised.
+            reported: types of these faults; others are internal errors and are raised.
         """
         super().__init__(parent)
         self._notify, self._reported = notify, reported
@@ -101,7 +101,7 @@ class CallQueue(QtCore.QObject):
 
         Args:
             call: runs in a thread of its own.
-            then: gets its return value, in the window's thread.
+            then: gets its return value, in the GUI thread.
         """
         self._waiting.append((call, then))
         if self._task is None:

@@ -52,7 +52,7 @@ def exactly_one(accepts: Callable[[FreeCAD.DocumentObject], bool]) -> Subject:
 
 
 def job_or(accepts: Callable[[FreeCAD.DocumentObject], bool] = lambda item: False) -> Subject:
-    """A subject that is the only selected object, if the command accepts it, else the job that the selection means."""
+    """A subject that is the only selected object, if the command accepts it, else the job of the selection."""
     return lambda items: exactly_one(accepts)(items) or job_for(items, FreeCAD.ActiveDocument)
 
 
@@ -64,13 +64,13 @@ class Command:
         name: its name in FreeCAD.
         icon: file name in resources/icons.
         text: menu text.
-        tip: its function, in a sentence.
-        subject: what a selection means for the command, such as its job; None if it means nothing.
-        action: applies it to that object.
-        keys: keyboard shortcut; all begin with P, K, since CAM has P and one other key.
+        tip: its function in one sentence.
+        subject: maps a selection to the object to act on, such as its job; None if there is none.
+        action: applies the command to that object.
+        keys: keyboard shortcut; all begin with P, K, since CAM uses P and one more key.
         page: the file in docs that F1 opens.
-        alone: whether it also runs without any object; the action then gets None.
-        computes: whether the document is recomputed; an operation with a panel waits until the user applies it.
+        alone: whether it also runs without an object; the action then gets None.
+        computes: whether to recompute the document; an operation with a panel waits for the user's Apply.
     """
 
     name: str
@@ -96,13 +96,13 @@ class Command:
         }
 
     def IsActive(self) -> bool:
-        """Whether the selection means something for the command, or it needs nothing."""
+        """Whether the selection has a subject, or none is needed."""
         if FreeCAD.ActiveDocument is None:
             return False
         return self.alone or self._selected() is not None
 
     def _selected(self) -> FreeCAD.DocumentObject | None:
-        """What the selection means."""
+        """The subject of the selection."""
         return self.subject(FreeCADGui.Selection.getSelection())
 
     def Activated(self) -> None:
@@ -132,7 +132,7 @@ class WindowCommand(Command):
 
 @dataclass(frozen=True)
 class PanelCommand(Command):
-    """A command that opens a panel for its new object: the panel ends the transaction, so both are one undo step."""
+    """A command that opens a panel for its new object; the panel ends the transaction, so both are one undo step."""
 
     def Activated(self) -> None:
         """Add the object and open its panel; a fault restores the previous state."""

@@ -52,7 +52,7 @@ def finish(item: FreeCAD.DocumentObject) -> None:
 
 
 def _selected_faces(job: FreeCAD.DocumentObject) -> Iterator[tuple[str, list[str]]]:
-    """Yield each object of the job with selected faces, and their names; a body stands for its last feature."""
+    """Yield each object of the job with selected faces, and their names; for a body, its last feature."""
     for each in FreeCADGui.Selection.getSelectionEx():
         faces = [name for name in each.SubElementNames if name.startswith("Face")]
         bodies = [other for other in each.Object.InList if getattr(other, "Tip", None) == each.Object]
@@ -72,7 +72,7 @@ def machine(job: FreeCAD.DocumentObject | None) -> None:
 
 
 def _show_whole(name: str) -> None:
-    """Place the camera so that everything in a document is seen, the new machine as well."""
+    """Fit the whole document, with the new machine, into the view."""
     view = FreeCADGui.getDocument(name).activeView() if name in FreeCAD.listDocuments() else None
     if hasattr(view, "fitAll"):
         view.fitAll()
@@ -152,7 +152,7 @@ def install_packages(_item: FreeCAD.DocumentObject | None) -> None:
 
 
 def _when_computed(document: FreeCAD.Document, task: Callable[[], Any]) -> None:
-    """Run a task once window and document are idle: timers fire even during the progress bar of a recompute."""
+    """Run a task once GUI and document are idle: timers fire even during the progress bar of a recompute."""
 
     def try_it() -> None:
         if document.Recomputing:

@@ -155,7 +155,7 @@ GROUPS = (
     ("PKM_Editor", "PKM_Control"),
     ("PKM_Example", "PKM_InstallPackages"),
 )
-"""Names by what they are for: operations, one job, programs and the machine, the rest."""
+"""Names by purpose: operations, one job, programs and the machine, the rest."""
 
 
 def grouped(groups: Sequence[Sequence[str]] = GROUPS) -> list[str]:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Context menu: our entries in the menu of a tree object, beside FreeCAD's own.
 
-Takes a menu and adds entries. Commands of the workbench look and act like their buttons; for an object that belongs
-to a job, they apply to the job.
+Takes a menu and adds entries. Commands of the workbench look and act like their buttons; for an object of a job, they
+apply to the job.
 """
 
 from __future__ import annotations

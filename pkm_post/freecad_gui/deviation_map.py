@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Deviation map: a surface coloured by what is left over it, in blue, and how deep it is gouged, in red; with a legend.
+"""Deviation map: a surface coloured by excess material, in blue, and gouge depth, in red; with a legend.
 
-Takes points, triangles of them, and distances in mm; returns Coin nodes. The legend stays in the lower left corner of
+Takes points, their triangles, and distances in mm; returns Coin nodes. The legend stays in the lower left corner of
 the view; its numbers are in the units of the user.
 """
 
@@ -23,7 +23,7 @@ GOUGE, RIGHT, LEFT = np.array([0.85, 0.0, 0.0]), np.array([0.25, 0.7, 0.3]), np.
 _MARK_SIZE = 11.0
 _SHARES = np.linspace(-1.0, 1.0, 17)
 _SMALLEST = 1e-6
-"""mm: a scale is at least that."""
+"""mm: the least scale."""
 
 
 def deviation_colours(values: Array, gouge: float, left: float) -> Array:
@@ -40,7 +40,7 @@ def deviation_colours(values: Array, gouge: float, left: float) -> Array:
 
 
 def deviation_legend(gouge: float, left: float) -> coin.SoSeparator:
-    """The bar of these colours with its numbers, as texts of the user's units; scales in mm."""
+    """The bar of these colours, labelled in the user's units; scales in mm."""
     colours = deviation_colours(_SHARES, 1.0, 1.0)
     texts = (
         (1.0, translate("DeviationMap", "left: {}").format(amount_text(left, "mm"))),
@@ -51,11 +51,11 @@ def deviation_legend(gouge: float, left: float) -> coin.SoSeparator:
 
 
 def measured_map(measured: Checked, tolerance: float) -> coin.SoSeparator:
-    """What a path does to the faces of a model, with the deepest gouge marked, if it is deeper than a tolerance.
+    """The deviations of a path from the faces of a model, with the deepest gouge marked if it exceeds a tolerance.
 
     Args:
         measured: the points with their distances.
-        tolerance: depth, and height of what is left, that are still fine, mm.
+        tolerance: acceptable gouge depth and excess, mm.
     """
     values = np.where(measured.depth > 0.0, -measured.depth, np.nan_to_num(measured.left, nan=0.0))
     gouge, left = max(measured.gouge, tolerance, _SMALLEST), max(measured.excess, tolerance, _SMALLEST)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Fault links: the code of a fault in a row is a link to the list of all codes.
 
-Takes a list of rows whose texts have codes such as K102. A click on the code, or F1 on the row, opens the list at it;
-a click beside it does what the list does with its rows.
+Takes a list whose rows contain codes such as K102. A click on a code, or F1 on the row, opens the list there; a click
+elsewhere on the row acts as usual.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ translate = FreeCAD.Qt.translate
 NAME = "PkmFaultPage"
 _CODE = re.compile(r"(?<![\w.])[A-Z]\d{3}(?!\w)")
 _ROOM, _SIZE = 4, (620, 420)
-"""px: about the text of a row; of the window."""
+"""px: padding of a row's text; size of the window."""
 
 
 def codes_in(text: str) -> list[str]:
-    """The codes of faults in a text, in their order."""
+    """The fault codes in a text, in order."""
     return [code for code in _CODE.findall(text) if code in RULES]
 
 
 def link_codes(rows: QtWidgets.QListWidget) -> None:
-    """Make the codes in the rows of a list links."""
+    """Turn the codes in the rows of a list into links."""
     rows.setItemDelegate(_Delegate(rows))
     rows.setMouseTracking(True)
     rows.setResizeMode(QtWidgets.QListView.ResizeMode.Adjust)
@@ -49,7 +49,7 @@ def _open_row(rows: QtWidgets.QListWidget) -> None:
 
 
 def open_fault(code: str) -> QtWidgets.QDialog:
-    """Show what a code means, above the list of all codes, which is brought to it."""
+    """Show the meaning of a code, above the list of all codes scrolled to it."""
     for earlier in FreeCADGui.getMainWindow().findChildren(QtWidgets.QDialog, NAME):
         earlier.close()
     window = QtWidgets.QDialog(FreeCADGui.getMainWindow())
@@ -68,21 +68,21 @@ def open_fault(code: str) -> QtWidgets.QDialog:
     layout.addWidget(page, 1)
     window.show()
     page.scrollToAnchor(code)
-    QtCore.QTimer.singleShot(0, lambda: page.scrollToAnchor(code))  # again, with the width that the window has
+    QtCore.QTimer.singleShot(0, lambda: page.scrollToAnchor(code))  # again, at the final width of the window
     return window
 
 
 def _rule_row(code: str) -> str:
-    """A code, its cause and its cure as a row of a table, with the code as an anchor."""
+    """A code, its cause and its remedy as a table row, with the code as an anchor."""
     cause, cure = (html.escape(text) for text in (cause_text(code), cure_text(code)))
     return f'<tr><td><a name="{code}">{code}</a>&nbsp;</td><td>{cause}&nbsp;</td><td>{cure}</td></tr>'
 
 
 class _Delegate(QtWidgets.QStyledItemDelegate):
-    """Draws rows with their codes underlined, and takes clicks on these."""
+    """Draws rows with underlined codes, and handles clicks on them."""
 
     def paint(self, painter: Any, option: Any, index: Any) -> None:
-        """Draw the row as the style does, but for its text."""
+        """Draw the row in the style, with its text as HTML."""
         row = QtWidgets.QStyleOptionViewItem(option)
         self.initStyleOption(row, index)
         is_chosen = bool(row.state & QtWidgets.QStyle.StateFlag.State_Selected)
@@ -105,7 +105,7 @@ class _Delegate(QtWidgets.QStyledItemDelegate):
         return QtCore.QSize(self.parent().viewport().width(), round(height) + 2)
 
     def editorEvent(self, event: Any, _model: Any, option: Any, index: Any) -> bool:
-        """Open the code under the mouse; show by the pointer that there is one."""
+        """Open the code under the mouse; change the pointer over one."""
         if event.type() not in (QtCore.QEvent.Type.MouseMove, QtCore.QEvent.Type.MouseButtonRelease):
             return False
         row = QtWidgets.QStyleOptionViewItem(option)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Finding view: shows where a finding of a job is: operation, command, the point in the 3D view, and the machine there.
+"""Finding view: shows the place of a finding: operation, command, the point in the 3D view, and the machine there.
 
-Takes the place and the code of a finding; selects, marks, turns the camera, and draws the machine of the document in
-its pose, all from the one study of the job. Nothing in the document is changed.
+Takes the place and the code of a finding; selects, marks, moves the camera, and draws the machine of the document in
+its pose, all from the one study of the job. The document does not change.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _MARK_SIZE = 11.0
 
 
 class FindingView:
-    """What is shown of a job while a panel is open.
+    """The shown finding of a job, while a panel is open.
 
     Args:
         job: the CAM job.
@@ -64,14 +64,14 @@ class FindingView:
         self._pose.show(study, row)
 
     def end(self) -> None:
-        """Take the mark away, and draw the machine at its own pose again."""
+        """Remove the mark, and draw the machine at its own pose again."""
         self._strike()
         if is_shown(self._document):
             self._pose.end()
         self._study = None
 
     def _checked(self) -> JobStudy | None:
-        """The study of the job; None where the job cannot be placed on its machine, and has no poses."""
+        """The study of the job; None if the job cannot be placed on its machine."""
         QtWidgets.QApplication.setOverrideCursor(QtCore.Qt.CursorShape.WaitCursor)
         try:
             self._study = placed_job(self._job, machine_for(self._job)).study()

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Gauge table: the tool controllers of a job, each with a field for its gauge length.
 
-Takes a job; returns gauge lengths in mm for the tool controllers with edited fields. What posting would refuse is
-reported below the table in posting's own words. The table follows the document: changes there, including undo,
+Takes a job; returns gauge lengths in mm for the tool controllers with edited fields. Lengths that posting would refuse
+are reported below the table in posting's own words. The table follows the document: changes there, including undo,
 override unsaved input for the same tool.
 """
 
@@ -128,7 +128,7 @@ class GaugeTable(QtWidgets.QGroupBox):
         self._show_status()
 
     def _show_status(self, *_: Any) -> None:
-        """Report the fault of each row, or what overrides it."""
+        """Report the fault of each row, or the argument that overrides it."""
         notes = []
         for row in self._rows:
             fault = self._fault(row)
@@ -171,7 +171,7 @@ translate = FreeCAD.Qt.translate
 
 
 def decimal_point() -> str:
-    """The decimal separator in the language of the window."""
+    """The decimal separator of the GUI language."""
     return str(QtCore.QLocale().decimalPoint())
 
 
@@ -204,7 +204,7 @@ class LengthField(QtWidgets.QLineEdit):
         self._sign.setToolTip(text)
 
     def _tidy(self, *_: Any) -> None:
-        """Show the parsed value, above all its unit."""
+        """Show the parsed value with its unit."""
         mm = self.length()
         if mm is not None:
             self._show(mm)

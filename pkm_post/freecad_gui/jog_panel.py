@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jog panel: moves the machine of a document by hand, and says at once whether it can stand there.
+"""Jog panel: jogs the machine of a document, and shows at once whether the pose is in reach.
 
 Takes a machine object; changes its tip, tool axis and spin, by typed values or by steps. The pose is in the work frame.
-Accepting keeps it in one step of undo, cancelling takes it back.
+Accepting keeps it as one undo step, cancelling reverts it.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ AXES = (
     (QT_TRANSLATE_NOOP("JogPanel", "Tilt about Y"), "deg"),
     (QT_TRANSLATE_NOOP("JogPanel", "Spin"), "deg"),
 )
-"""Label and unit of each way in which the tool moves: of the tip, of the tool axis with the tip at rest, about it."""
+"""Label and unit of each axis: translation of the tip, tilt of the tool axis about the tip, spin."""
 _STEPS = {"mm": 10.0, "deg": 5.0}
-"""The steps at first."""
+"""Initial steps."""
 _MOST_TILT = 89.0
 NAME = "PkmJogPanel"
 
@@ -46,9 +46,9 @@ class JogPanel:
     """The task panel.
 
     Attributes:
-        verdict: whether the machine can stand at the pose.
-        fields: value of each of ``AXES``.
-        buttons: the two for each: back and forth.
+        verdict: whether the pose is in reach.
+        fields: the value of each of ``AXES``.
+        buttons: two for each: back and forth.
         steps: fields of the steps, by unit.
         home: moves to the home pose.
     """
@@ -96,7 +96,7 @@ class JogPanel:
         return np.array([*self.obj.Tip, *tilts_of(np.array(self.obj.ToolAxis)), self.obj.Spin.Value])
 
     def move_to(self, values: Array) -> None:
-        """Move to a pose in the order of ``AXES``; only the machine is computed, its job when the panel is accepted."""
+        """Move to a pose in the order of ``AXES``; recompute only the machine, and its job on acceptance."""
         obj = self.obj
         obj.Tip = FreeCAD.Vector(*values[:3].tolist())
         obj.ToolAxis = FreeCAD.Vector(*axis_of_tilts(*np.clip(values[3:5], -_MOST_TILT, _MOST_TILT)).tolist())
@@ -105,13 +105,13 @@ class JogPanel:
         self.show()
 
     def step(self, row: int, sign: float) -> None:
-        """Move along one of ``AXES`` by its step, forth or back."""
+        """Move along one of ``AXES`` by its step, with a sign."""
         values = self.values()
         values[row] += sign * float(self.steps[AXES[row][1]].property("rawValue"))
         self.move_to(values)
 
     def take(self) -> None:
-        """Move to what is typed; a value that was not changed keeps the digits that its field does not show."""
+        """Move to the typed values; an unedited value keeps the digits that its field hides."""
         typed = np.array([float(field.property("rawValue")) for field in self.fields])
         before = self.values()
         changed = np.abs(typed - self._shown) > 0.0
@@ -125,7 +125,7 @@ class JogPanel:
         self.show()
 
     def show(self) -> None:
-        """Show the pose, and what the machine says of it."""
+        """Show the pose, and the verdict of the machine on it."""
         for field, (_, unit), value in zip(self.fields, AXES, self.values(), strict=True):
             field.blockSignals(True)
             show_quantity(field, round(float(value), 6) + 0.0, unit)
@@ -145,14 +145,14 @@ class JogPanel:
         self.margins.setText(left.format(stroke, joint, struts))
 
     def accept(self) -> bool:
-        """Keep the pose; what stands on the machine is computed."""
+        """Keep the pose, and recompute the objects that depend on the machine."""
         self.obj.Document.commitTransaction()
         self.obj.Document.recompute()
         self._close()
         return True
 
     def reject(self) -> bool:
-        """Go back to the pose before."""
+        """Restore the previous pose."""
         self.obj.Document.abortTransaction()
         self.obj.Document.recompute()
         self._close()
@@ -166,13 +166,13 @@ _WAYS = (("−", -1.0), ("+", 1.0))
 
 
 def axis_of_tilts(about_x: float, about_y: float) -> Array:
-    """The tool axis, (3,), of an upright tool that is turned about x, then about y; degrees."""
+    """The axis, (3,), of an upright tool after rotations about x, then about y; degrees."""
     x, y = math.radians(about_x), math.radians(about_y)
     return np.array([math.cos(x) * math.sin(y), -math.sin(x), math.cos(x) * math.cos(y)])
 
 
 def tilts_of(axis: Array) -> tuple[float, float]:
-    """The turns about x, then about y, in degrees, that bring an upright tool to an axis of any length, (3,)."""
+    """The rotations about x, then about y, in degrees, from an upright tool to an axis of any length, (3,)."""
     x, y, z = axis / np.linalg.norm(axis)
     return math.degrees(math.asin(max(-1.0, min(1.0, -y)))), math.degrees(math.atan2(x, z))
 

@@ -27,7 +27,7 @@ GOLD: Colour = (0.85, 0.65, 0.2)
 BAD: Colour = (0.85, 0.1, 0.1)
 
 COMPONENTS = ("base", "struts", "platform", "tool")
-"""Parts of a machine that can be shown, faded and hidden each by itself."""
+"""Parts of a machine that can be shown, faded and hidden separately."""
 _TOOL_NAME = re.compile(r"\bT\d+\b")
 _TUBE_SHARE = 0.95
 """Share of the shortest strut: drawn length of its tube if the machine file does not state it."""
@@ -65,7 +65,7 @@ class MachineScene:
         self._put(cutter(diameter or 0.1 * self._size, corner_radius, length) if length > 0.0 else None, length)
 
     def take_mill(self, tool: Tool, shank: Shank | None) -> None:
-        """Put a tool with its own outline into the spindle, and with its shank, if that is known."""
+        """Put a tool with its own outline into the spindle, with its shank if known."""
         try:
             self._put(mill(tool, shank), tool.length)
         except ValueError:  # its size is unknown
@@ -99,7 +99,7 @@ class MachineScene:
             strut.reach(joint, bad=bool(margin < 0.0) or f"strut {number}" in self._marked)
 
     def mark(self, names: set[str]) -> None:
-        """Show the bodies of these names in red: struts by number, boxes and bodies of the machine file, the tool."""
+        """Show the named bodies in red: struts by number, boxes and bodies of the machine file, the tool."""
         self._marked = names
         self._gold.diffuseColor = BAD if any(_TOOL_NAME.search(name) for name in names) else GOLD
         for name, (look, colour) in self._bodies.items():
@@ -112,7 +112,7 @@ class MachineScene:
         return group(material(DARK), *beams, *boxes)
 
     def _named(self, name: str, colour: Colour) -> coin.SoMaterial:
-        """The material of a body that may be marked."""
+        """The material of a body that can be marked."""
         look, _ = self._bodies.setdefault(name, (material(colour), colour))
         return look
 
@@ -192,11 +192,11 @@ class MovingMachine:
 
     @property
     def scene(self) -> MachineScene:
-        """The scene that is moved."""
+        """The moved scene."""
         return self._scene
 
     def show(self, seconds: float, problem: Problem | None = None) -> None:
-        """Move the machine to its pose at a time; bodies that come too close there are red."""
+        """Move the machine to its pose at a time; bodies too close to each other are red."""
         at_hand = self._simulation.problems_at(seconds) if problem is None else [problem]
         self._scene.mark({body for each in at_hand for body in each.bodies})
         tool: Tool = self._simulation.tool_at(seconds)

@@ -90,7 +90,7 @@ class MachineView(DrawnView):
 
     def _follow(self, obj: Any, tool_too: bool) -> None:
         if not any(obj.ToolAxis):
-            return  # there is no such pose; the object reports it
+            return  # the pose does not exist; the object reports it
         self.scene.place(matrix_of(obj.Frame))
         if tool_too:
             self.scene.take_tool(obj.ToolDiameter.Value, obj.ToolCornerRadius.Value, obj.ToolLength.Value)

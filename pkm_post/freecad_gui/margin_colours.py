@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Margin colours: red out of limits, amber to green by margin; lines and surfaces of colours, and their legend.
+"""Margin colours: red out of limits, amber to green by margin; coloured lines and surfaces, and their legend.
 
 Takes margins; returns colours or Coin nodes. The legend has a camera of its own, so that it stays in its corner.
 """
@@ -23,17 +23,17 @@ translate = FreeCAD.Qt.translate
 
 _NEAR, _FAR = np.array([1.0, 0.65, 0.0]), np.array([0.1, 0.65, 0.2])
 _CORNER = (-0.97, -0.6, 0.0)
-"""Lower left corner of a bar in the view, whose sides are at -1 and 1."""
+"""Lower left corner of a bar; the sides of the view are at -1 and 1."""
 _LINES, _BAR_WIDTH, _ROOM = 12, 1.4, 0.6
-"""Height of the bar in lines of text; width of the bar, and free room about it, in heights of a line."""
+"""Height of the bar in lines of text; its width and padding, in line heights."""
 _STEPS = 20
 _BELOW = 0.1
-"""Share of the bar that is out of limits."""
+"""Share of the bar for violations."""
 _LINE_WIDTH = 3.0
 
 
 def colours_of(margin: Array, top: float = 0.0) -> Array:
-    """Colours (N, 3) of margins (N,): red below 0, then from amber at 0 to green at ``top``, or else at the largest."""
+    """Colours (N, 3) of margins (N,): red below 0, amber at 0 to green at ``top``, by default the largest."""
     top = top or largest(margin)
     share = np.clip(margin / top, 0.0, 1.0)[:, None]
     return np.where(margin[:, None] < 0.0, OUT, (1.0 - share) * _NEAR + share * _FAR)
@@ -48,7 +48,7 @@ def legend(title: str, top: str) -> coin.SoSeparator:
     """A bar from 0 to the largest margin with red below it, in the lower left corner.
 
     Args:
-        title: what the margins are of.
+        title: the quantity of the margins.
         top: the largest margin as text.
     """
     shares = np.linspace(-_BELOW, 1.0, _STEPS + 1)
@@ -57,7 +57,7 @@ def legend(title: str, top: str) -> coin.SoSeparator:
 
 
 def colour_bar(title: str, colours: Array, texts: Sequence[tuple[float, str]]) -> coin.SoSeparator:
-    """A bar of colours with texts beside it, in the lower left corner, as large as the font of FreeCAD.
+    """A bar of colours with texts beside it, in the lower left corner, sized by FreeCAD's font.
 
     Args:
         title: above the bar.
@@ -81,7 +81,7 @@ def coloured_path(points: Sequence[Sequence[float]], colours: Array) -> coin.SoS
     """A line through points, with a colour at each.
 
     Args:
-        points: N places.
+        points: N positions.
         colours: (N, 3).
     """
     light, style = coin.SoLightModel(), coin.SoDrawStyle()
@@ -96,7 +96,7 @@ def coloured_path(points: Sequence[Sequence[float]], colours: Array) -> coin.SoS
 
 
 def coloured_surface(points: Array, triangles: Array, colours: Array) -> coin.SoSeparator:
-    """Triangles with a colour at each point, drawn just before what lies in the same place.
+    """Triangles with a colour at each point, drawn just in front of coincident surfaces.
 
     Args:
         points: (N, 3).
@@ -105,7 +105,7 @@ def coloured_surface(points: Array, triangles: Array, colours: Array) -> coin.So
     """
     light, hints, offset = coin.SoLightModel(), coin.SoShapeHints(), coin.SoPolygonOffset()
     light.model = coin.SoLightModel.BASE_COLOR
-    hints.vertexOrdering = coin.SoShapeHints.UNKNOWN_ORDERING  # both sides are seen
+    hints.vertexOrdering = coin.SoShapeHints.UNKNOWN_ORDERING  # both sides are visible
     offset.factor, offset.units = -2.0, -2.0
     ink, binding = coin.SoBaseColor(), coin.SoMaterialBinding()
     ink.rgb.setValues(0, len(colours), colours.tolist())
@@ -119,7 +119,7 @@ def coloured_surface(points: Array, triangles: Array, colours: Array) -> coin.So
 
 
 def _drawn(title: str, colours: Array, texts: Sequence[tuple[float, str]]) -> QtGui.QImage:
-    """A bar with its texts, drawn by Qt: Coin's own fonts may have no Chinese."""
+    """A bar with its texts, drawn by Qt: Coin's own fonts may lack Chinese."""
     font, ratio = QtWidgets.QApplication.font(), FreeCADGui.getMainWindow().devicePixelRatioF()
     metrics, look = QtGui.QFontMetricsF(font), theme()
     line = metrics.height()
@@ -144,7 +144,7 @@ def _drawn(title: str, colours: Array, texts: Sequence[tuple[float, str]]) -> Qt
 
 
 def _gradient(area: QtCore.QRectF, colours: Array) -> QtGui.QLinearGradient:
-    """Colours from the lower end of an area to the upper one."""
+    """Colours from bottom to top of an area."""
     gradient = QtGui.QLinearGradient(area.bottomLeft(), area.topLeft())
     for share, colour in zip(np.linspace(0.0, 1.0, len(colours)).tolist(), colours.tolist(), strict=True):
         gradient.setColorAt(share, QtGui.QColor.fromRgbF(*colour))
@@ -152,6 +152,6 @@ def _gradient(area: QtCore.QRectF, colours: Array) -> QtGui.QLinearGradient:
 
 
 def _pixels(image: QtGui.QImage) -> Array:
-    """Pixels of an image, (height, width, 3), from below as Coin has them."""
+    """Pixels of an image, (height, width, 3), bottom row first, as in Coin."""
     rows = np.frombuffer(image.constBits(), dtype=np.uint8).reshape(image.height(), image.bytesPerLine())
     return np.ascontiguousarray(rows[::-1, : 3 * image.width()].reshape(image.height(), image.width(), 3))

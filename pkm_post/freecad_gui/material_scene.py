@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Material scene: the surface of a stock in the 3D view, brick by brick; only what was cut is drawn again.
+"""Material scene: the surface of a stock in the 3D view, brick by brick; only cut bricks are redrawn.
 
-Takes the stock and the numbers of changed bricks; keeps a Coin node. Colours: by what was cut, or by the distance from
-the part, from blue where material is left over green to red where the part is gouged.
+Takes the stock and the numbers of changed bricks; keeps a Coin node. Colours: by the cutting operation, or by distance
+from the part, from blue for excess over green to red for gouges.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class MaterialScene:
 
     Attributes:
         root: the node to add to a view.
-        scale: distance from the part that has full colour, mm; 0 shows the material without comparison.
+        scale: distance from the part for full colour, mm; 0 shows the material without comparison.
     """
 
     def __init__(self, material: Material) -> None:
@@ -43,7 +43,7 @@ class MaterialScene:
         self.show_all()
 
     def show_all(self) -> None:
-        """Draw all bricks that the surface passes, and the legend of their colours."""
+        """Draw all bricks on the surface, and the colour legend."""
         self._legend.removeAllChildren()
         if self.scale > 0.0:
             self._legend.addChild(deviation_legend(self.scale, self.scale))
@@ -53,7 +53,7 @@ class MaterialScene:
         self.show(np.concatenate([np.flatnonzero(passed), gone]))
 
     def show(self, bricks: Array) -> None:
-        """Draw some bricks, whose values have changed."""
+        """Redraw changed bricks."""
         compared = self.material.part_distances if self.scale > 0.0 else None
         for surface in brick_surfaces(self.material.replay.stock, bricks, compared):
             self._draw(surface)

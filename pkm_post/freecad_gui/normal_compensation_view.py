@@ -19,7 +19,7 @@ class NormalCompensationView(View):
     icon = "normal_compensation.svg"
 
     def claimChildren(self) -> list[Any]:
-        """The operation below."""
+        """The base operation."""
         return [] if self.Object.Base is None else [self.Object.Base]
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:

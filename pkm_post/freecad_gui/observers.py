@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Observers: Escape during a long computation; changes, recomputes and deletions in a document.
 
-Each takes a callback and calls it in the window's thread. While a computation runs, FreeCAD's progress bar blocks other
-keys and the mouse, so that nothing can be changed while events are processed.
+Each takes a callback and calls it in the GUI thread. During a computation FreeCAD's progress bar blocks other keys and
+the mouse, so that nothing can be changed while events are processed.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
 _CALM_MS = 700
-"""ms without Escape after which it has its usual meaning again: longer than the first pause of a key that repeats."""
+"""ms without Escape until it has its usual meaning again: longer than the initial delay of key repeat."""
 _LOOK_S = 0.2
-"""s between two looks at the keys: each draws the window, and may take longer than many steps of a computation."""
+"""s between two polls of the keys: each repaints the GUI, which may take longer than many steps."""
 
 
 _CALMING: list[EscapeWatch] = []
-"""Watches whose computation has ended; nothing else holds them."""
+"""Watches whose computation has ended; this is the only reference to them."""
 
 
 class EscapeWatch(QtCore.QObject):
@@ -39,13 +39,13 @@ class EscapeWatch(QtCore.QObject):
         QtWidgets.QApplication.instance().installEventFilter(self)
 
     def end(self) -> None:
-        """Stop filtering; after an Escape not before the key has been left alone for a moment.
+        """Stop filtering; after an Escape, only once the key has been idle for a moment.
 
         Pressed twice or held, it would otherwise close the panel of a new operation, which deletes the operation.
         """
         FreeCADGui.getMainWindow().statusBar().clearMessage()
         if self._skipped_last:
-            FreeCADGui.updateGui()  # an Escape since the last look is meant for the computation as well
+            FreeCADGui.updateGui()  # an Escape since the last poll is also for the computation
         if not self._was_pressed:
             self._remove()
             return
@@ -62,7 +62,7 @@ class EscapeWatch(QtCore.QObject):
             _CALMING.remove(self)
 
     def pressed(self, text: str) -> bool:
-        """Show a text in the status bar and process events, every now and then; whether Escape was pressed so far."""
+        """Show a text in the status bar and process events, at intervals; return whether Escape was pressed."""
         self._skipped_last = time.monotonic() - self._last_look < _LOOK_S
         if not self._skipped_last:
             FreeCADGui.getMainWindow().statusBar().showMessage(text)
@@ -91,7 +91,7 @@ class ChangeWatch:
     """A document observer, from its creation until ``end``; FreeCAD calls its slots.
 
     Args:
-        notify: callback when the window is idle again.
+        notify: callback when the GUI is idle again.
         document: name of the document.
         names: names of the properties.
     """

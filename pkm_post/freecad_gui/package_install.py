@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Package install: a question which optional packages to install, and from where.
+"""Package install: asks which optional packages to install, and from where.
 
-Nothing is downloaded before the user has asked for it. The work runs in the background; its end is shown in a message.
+Downloads nothing without the user's consent. The work runs in the background; a message shows the result.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _PURPOSES = {
 
 
 class PackageQuestion(QtWidgets.QMessageBox):
-    """The missing packages, with buttons for where to get them."""
+    """The missing packages, with a button for each source."""
 
     def __init__(self, modules: list[str]) -> None:
         super().__init__(FreeCADGui.getMainWindow())
@@ -69,11 +69,11 @@ def open_question() -> None:
 
 
 def begin(modules: list[str], folder: Path | None) -> BackgroundCall:
-    """Install in the background, and show how it ended.
+    """Install in the background, and show the result.
 
     Args:
         modules: keys of ``packages.OPTIONAL``.
-        folder: with wheels, instead of the package index.
+        folder: of wheels, instead of the package index.
     """
     window = FreeCADGui.getMainWindow()
     call = BackgroundCall(lambda: packages.install(modules, folder), window)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Place row: a button that looks for a place at which the machine can follow a job, and what it found.
+"""Place row: a button that searches for a place at which the machine can follow a job, and the result.
 
-Takes a job, and the machine object on which it is to be; emits the place when it is found, and when the user takes it.
-The search runs in the background and says how far it is; Escape and its button stop it, and so does closing the panel.
+Takes a job, and the machine object for it; emits a signal when a place is found, and when the user accepts it. The
+search runs in the background and shows its progress; Escape, its button, and closing the panel stop it.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ translate = FreeCAD.Qt.translate
 
 _PER_MILLE = 1000
 _STILL = 0.05
-"""mm and degrees: less is not shown."""
+"""mm and degrees: smaller amounts are not shown."""
 
 
 class PlaceRow(QtWidgets.QWidget):
-    """Button, result, and the button that takes it.
+    """Search button, result, and the button to accept it.
 
     Attributes:
-        found: the last place; None before.
+        found: the last place; None at first.
     """
 
     placed = QtCore.Signal()
-    """A place was found, whether it holds or not."""
+    """A place was found, feasible or not."""
     taken = QtCore.Signal()
-    """The user takes the place."""
+    """The user accepts the place."""
 
     def __init__(self, job: Any, machine_object: Any = None) -> None:
         super().__init__()
@@ -78,7 +78,7 @@ class PlaceRow(QtWidgets.QWidget):
             part.hide()
 
     def end(self) -> None:
-        """Stop a search that is running; its result is not shown."""
+        """Stop a running search, without showing a result."""
         if self._task is not None:
             self._task.finished.disconnect(self._done)
             self._task.finish()
@@ -136,7 +136,7 @@ def take_place(job: Any, found: FoundPlace) -> None:
 
 
 def place_text(found: FoundPlace) -> str:
-    """The amounts of a place and what comes of it, in the language and the units of the user."""
+    """The amounts of a place and its effect, in the user's language and units."""
     shifted = translate("PlaceRow", "shift {amount} in {axis}")
     turned = translate("PlaceRow", "turn {amount} about {axis}")
     moves = [

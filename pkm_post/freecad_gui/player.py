@@ -36,7 +36,7 @@ def status_text(simulation: Simulation, seconds: float, problem: Problem | None,
     Args:
         simulation: the simulation being played.
         seconds: the current time.
-        problem: the one at which the player has stopped, if any.
+        problem: the problem at which the player has stopped, if any.
         override: feed override as a share: 1 is as planned.
     """
     place = simulation.trajectory.place(simulation.block_at(seconds))
@@ -79,7 +79,7 @@ class PlayerDock(QtWidgets.QDockWidget):
         lists: problems and operations.
         simulation: its plan.
         seconds: the current time.
-        problem: the one at which the player has stopped, if any.
+        problem: the problem at which the player has stopped, if any.
     """
 
     def __init__(self, subject: Any, simulation: Simulation) -> None:
@@ -223,7 +223,7 @@ class PlayerDock(QtWidgets.QDockWidget):
         )
 
     def _show_finished(self, seconds: float) -> None:
-        """Show a time, with all that is cut until then."""
+        """Show a time, with the stock cut up to it."""
         self.go_to(seconds)
         self._content.material.finish()
 
@@ -267,7 +267,7 @@ def open_cam_simulator(job: Any) -> bool:
 
     It handles X, Y and Z only, and shows the tool upright.
     """
-    importlib.import_module("Path.GuiInit").Startup()  # registers the commands where CAM has not been opened yet
+    importlib.import_module("Path.GuiInit").Startup()  # registers the commands if CAM has not been opened yet
     FreeCAD.setActiveDocument(job.Document.Name)
     if FreeCADGui.Control.activeDialog():
         text = translate("PKM_Simulate", "CAM's simulator needs the task panel: close what is open there first")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Player content: controls, timeline, curves and pages of the player, beside or, in a narrow dock, below each other.
+"""Player content: controls, timeline, curves and pages of the player, side by side or, in a narrow dock, stacked.
 
-Takes a simulation and its job; emits the times that the user asks for.
+Takes a simulation and its job; emits the times that the user selects.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ translate = FreeCAD.Qt.translate
 _PER_SECOND = 1000
 """Slider steps per second: one per millisecond of motion."""
 _NARROW, _LEAST, _LEAST_NARROW = 760, (300, 170), (300, 360)
-"""Pixels: width below which rows stand below each other, and the least size."""
+"""Pixels: width below which rows are stacked, and the minimum sizes."""
 
 
 class PlayerContent(QtWidgets.QWidget):
@@ -84,7 +84,7 @@ class PlayerContent(QtWidgets.QWidget):
         self.lists.setCurrentIndex(number)
 
     def minimumSizeHint(self) -> QtCore.QSize:
-        """Small enough for a dock at the side of the window."""
+        """Small enough for a dock at the side of the main window."""
         return QtCore.QSize(*(_LEAST_NARROW if self._is_narrow() else _LEAST))
 
     def resizeEvent(self, event: Any) -> None:
@@ -97,7 +97,7 @@ class PlayerContent(QtWidgets.QWidget):
         super().resizeEvent(event)
 
     def _is_narrow(self) -> bool:
-        """Whether the parts stand below each other."""
+        """Whether the parts are stacked."""
         return bool(self.width() < _NARROW)
 
     def take(self, simulation: Simulation, scene: MachineScene) -> None:
@@ -124,13 +124,13 @@ class PlayerContent(QtWidgets.QWidget):
         self.slider.blockSignals(False)
 
     def end(self) -> None:
-        """Take out of the view what the pages put there."""
+        """Remove the drawings of the pages from the view."""
         self.material.strike()
         self.view.strike()
 
 
 def _scrolled(page: QtWidgets.QWidget) -> QtWidgets.QWidget:
-    """The page with bars to scroll by, so that a small dock hides nothing; lists have their own."""
+    """The page in a scroll area, so that a small dock hides nothing; lists have their own."""
     if isinstance(page, QtWidgets.QAbstractScrollArea):
         return page
     area = QtWidgets.QScrollArea()

@@ -53,7 +53,7 @@ class PlayerControls(QtWidgets.QWidget):
         self._rows.addWidget(self._message, 1)
 
     def _motion_row(self) -> QtWidgets.QHBoxLayout:
-        """What plays, and how fast."""
+        """Playback and speed."""
         row = QtWidgets.QHBoxLayout()
         self._play = _button(row, "SP_MediaPlay", translate("PKM_Simulate", "Play and pause"), self.play)
         back, on = (
@@ -68,7 +68,7 @@ class PlayerControls(QtWidgets.QWidget):
         return row
 
     def _file_row(self) -> QtWidgets.QHBoxLayout:
-        """Where it stops, and what is written."""
+        """Stops and output files."""
         row = QtWidgets.QHBoxLayout()
         row.addWidget(self.stops)
         save, record = (
@@ -83,7 +83,7 @@ class PlayerControls(QtWidgets.QWidget):
         return row
 
     def arrange(self, narrow: bool) -> None:
-        """Put the rows beside each other, or below each other where the dock is narrow."""
+        """Put the rows side by side, or stack them in a narrow dock."""
         ways = QtWidgets.QBoxLayout.Direction
         self._rows.setDirection(ways.TopToBottom if narrow else ways.LeftToRight)
 
@@ -137,7 +137,7 @@ _WIDTH = 380
 
 
 class PlayerLists(QtWidgets.QTabWidget):
-    """Two lists as tabs; other pages may follow."""
+    """Two lists as tabs; other pages can be added."""
 
     problem = QtCore.Signal(int)
     operation = QtCore.Signal(int)
@@ -154,7 +154,7 @@ class PlayerLists(QtWidgets.QTabWidget):
         return QtCore.QSize(_WIDTH, 120)
 
     def take(self, simulation: Simulation) -> None:
-        """Show another simulation; the tab of its problems if there are any."""
+        """Show another simulation, with the problems tab in front if there are any."""
         moving, dwelling = simulation.operation_times()
         times = (moving + dwelling).tolist()
         _fill(self.problems, [_problem_text(problem) for problem in simulation.problems[:_MOST_SHOWN]])

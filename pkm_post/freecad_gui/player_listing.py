@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Listing: the commands of a simulated job beside its motion: a click goes to a command, and playing marks it.
+"""Listing: the commands of a simulated job: a click goes to a command, and playing marks the active one.
 
-Takes a simulation and its job. The model holds CAM's commands and makes the text of a line only when it is seen.
+Takes a simulation and its job. The model holds CAM's commands and formats a line only when it is visible.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ translate = FreeCAD.Qt.translate
 
 
 class ProgramLines(QtCore.QAbstractListModel):
-    """One row for each command of each operation of the motion, in its order."""
+    """One row for each command of each operation, in order of motion."""
 
     def __init__(self, simulation: Simulation, job: Any, parent: QtCore.QObject) -> None:
         super().__init__(parent)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Material page: the player's tab for the stock: its resolution, its colours, and what differs from the part.
+"""Material page: the player's tab for the stock: resolution, colours, and differences from the part.
 
-Takes a simulation and times; shows the stock in the 3D view at the present time. Cutting never holds up the picture:
-while the stock is behind, the page says so, and a timer goes on.
+Takes a simulation and times; shows the stock in the 3D view at the present time. Cutting never delays the display:
+while the stock lags behind, the page shows it, and a timer continues.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ translate = FreeCAD.Qt.translate
 
 _TICK_MS = 15
 _BUDGET = 0.03
-"""s of cutting in a tick."""
+"""s of cutting per timer tick."""
 _POSES = 16
-"""Poses cut between two looks at the clock."""
+"""Poses cut between two readings of the clock."""
 _REST_MS = 400
-"""Time without a change after which the stock is measured."""
+"""Idle time before the stock is measured."""
 
 
 class MaterialPage(QtWidgets.QWidget):
     """The tab.
 
     Attributes:
-        resolution: choice of the grid; the first one shows no material.
+        resolution: choice of the grid; the first choice shows no material.
         compared: whether the colours show the distance from the part.
-        numbers: what was measured.
+        numbers: the measured values.
         material: the stock; None if none is shown.
     """
 
@@ -69,11 +69,11 @@ class MaterialPage(QtWidgets.QWidget):
 
     @property
     def is_current(self) -> bool:
-        """Whether the stock is that of the present time."""
+        """Whether the stock is up to date with the present time."""
         return self.material is None or self.material.replay.is_at(self._seconds)
 
     def take(self, simulation: Simulation) -> None:
-        """Show the stock of another simulation, at the resolution chosen before."""
+        """Show the stock of another simulation, at the chosen resolution."""
         self._simulation = simulation
         chosen = self.resolution.currentData()
         self.resolution.blockSignals(True)
@@ -88,18 +88,18 @@ class MaterialPage(QtWidgets.QWidget):
         self._choose()
 
     def show_time(self, seconds: float) -> None:
-        """Cut up to a time, or go back to it."""
+        """Cut up to a time, or rewind to it."""
         self._seconds = seconds
         if self.material is not None and not self.is_current:
             self._timer.start(_TICK_MS)
 
     def finish(self) -> None:
-        """Cut all that is due at once, for a picture."""
+        """Cut all pending motion at once, for a picture."""
         if self.material is not None and not self.is_current:
             self._scene.show(self.material.replay.go_to(self._seconds))
 
     def strike(self) -> None:
-        """Take the stock out of the view, and show the stock object again."""
+        """Remove the stock from the view, and show the stock object again."""
         self._timer.stop()
         self._rest.stop()
         if self._scene is not None:
@@ -142,14 +142,14 @@ class MaterialPage(QtWidgets.QWidget):
         self.show_time(self._seconds)
 
     def _hide_objects(self) -> None:
-        """Hide what the material covers: stock and model of the job, as in CAM's simulator."""
+        """Hide the objects that the material covers: stock and model of the job, as in CAM's simulator."""
         for item in self._objects(self._covered):
             if item.ViewObject.Visibility:
                 self._hidden.append(item.Name)
                 item.ViewObject.Visibility = False
 
     def _objects(self, names: list[str]) -> list[Any]:
-        """The objects of these names that are still there."""
+        """The objects of these names that still exist."""
         document = FreeCAD.listDocuments().get(self._document)
         found = [document.getObject(name) for name in names] if document is not None else []
         return [item for item in found if item is not None]
@@ -163,7 +163,7 @@ class MaterialPage(QtWidgets.QWidget):
         self.measure()
 
     def _cut(self) -> None:
-        """One portion of the work that is due."""
+        """Cut one portion of the pending motion."""
         if self.material is None:
             self._timer.stop()
             return
@@ -190,7 +190,7 @@ def _names() -> dict[str, str]:
 
 
 def _reason(simulation: Simulation) -> str:
-    """Why there is no material to show, if so."""
+    """The reason for showing no material, if any."""
     if simulation.setup.stock is None:
         return translate("PKM_Simulate", "The job has no stock: choose one in its Setup.")
     if not can_be_cut(simulation.setup.stock):
@@ -199,7 +199,7 @@ def _reason(simulation: Simulation) -> str:
 
 
 def difference_lines(found: Any) -> list[str]:
-    """A comparison in words, in the user's units."""
+    """A comparison as text, in the user's units."""
     rows = (
         (translate("PKM_Simulate", "Left over the part: {}, up to {} thick"), found.left, found.thickest),
         (translate("PKM_Simulate", "Missing of the part: {}, up to {} deep"), found.gouged, found.deepest),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Readout: numbers of a simulated motion at a time: pose, struts, feed, line and the time that is left.
+"""Readout: values of a simulated motion at a time: pose, struts, feed, line and time left.
 
-Positions are those of the tool tip in the work frame {C}, as the program has them, in the units of the user.
+Positions are of the tool tip in the work frame {C}, as in the program, in the user's units.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _STRUTS = 6
 
 @dataclass(frozen=True)
 class DroValues:
-    """What the readout shows at a time.
+    """The values of the readout at a time.
 
     Attributes:
         tip: (3,) tool tip in {C}, mm.
@@ -48,7 +48,7 @@ class DroValues:
 
 
 def dro_values_at(simulation: Simulation, seconds: float, override: float = 1.0) -> DroValues:
-    """What the readout shows at a time.
+    """The values of the readout at a time.
 
     Args:
         simulation: the motion.
@@ -73,7 +73,7 @@ def dro_values_at(simulation: Simulation, seconds: float, override: float = 1.0)
 
 
 class Readout(QtWidgets.QWidget):
-    """The tab: one line for each number."""
+    """The tab: one line per value."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -98,7 +98,7 @@ class Readout(QtWidgets.QWidget):
         grid.setColumnStretch(3, 1)
 
     def show_values(self, values: DroValues) -> None:
-        """Show other numbers."""
+        """Show other values."""
         texts = (
             *(length_text(value) for value in values.tip),
             *(f"{value:.5f}" for value in values.axis),

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""View page: the player's tab for what the 3D view shows: parts of the machine, section, camera, tool axes.
+"""View page: the player's tab for the 3D view: parts of the machine, section, camera, tool axes.
 
-Takes the player's machine scene and the tool tip; changes the view and no document. How many commands lie between two
-drawn tool axes is a preference.
+Takes the player's machine scene and the tool tip; changes the view and no document. The spacing of drawn tool axes, in
+commands, is a preference.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ class ViewPage(QtWidgets.QWidget):
 
     Attributes:
         components: a choice for each part of the machine: shown, transparent or hidden.
-        follows: whether the camera goes with the tool.
-        section: whether a plane cuts the view open.
+        follows: whether the camera follows the tool.
+        section: whether a section plane is active.
         every: commands from one drawn tool axis to the next; 0 draws none.
     """
 
@@ -75,7 +75,7 @@ class ViewPage(QtWidgets.QWidget):
         self._draw_axes()
 
     def show_tip(self, tip: Array) -> None:
-        """Move the camera by as much as the tool tip, (3,) in the document, has moved, if it follows."""
+        """Move a following camera with the tool tip, (3,) in the document."""
         if self.follows.isChecked() and self._tip is not None:
             camera = self._view().getCameraNode()
             moved = np.array(camera.position.getValue().getValue()) + tip - self._tip
@@ -83,7 +83,7 @@ class ViewPage(QtWidgets.QWidget):
         self._tip = tip
 
     def strike(self) -> None:
-        """Take axes and section out of the view, and show the whole machine."""
+        """Remove axes and section from the view, and show the whole machine."""
         if self._document in FreeCAD.listDocuments():
             self.section.setChecked(False)
         if self._scene is not None:

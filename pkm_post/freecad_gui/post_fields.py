@@ -47,9 +47,9 @@ def quantity_field(unit: str) -> Any:
 
 
 def show_quantity(field: Any, value: float, unit: str) -> None:
-    """Show a number with all of its decimals, at least those of the user: a field drops digits that it does not show.
+    """Show a number with all of its decimals, at least the user's: a field drops digits that it does not show.
 
-    The field's own unit is its display unit, which may be another unit of its kind.
+    The field's own unit is its display unit, which may differ from the given one.
     """
     quantity = FreeCAD.Units.Quantity(f"{value:.9g} {unit}")
     quantity.Format = {"Precision": _decimals(quantity)}
@@ -57,7 +57,7 @@ def show_quantity(field: Any, value: float, unit: str) -> None:
 
 
 def _decimals(quantity: Any) -> int:
-    """The fewest decimals that show a quantity as it is, in the unit that it will be shown in."""
+    """The fewest decimals that show a quantity exactly, in its display unit."""
     least = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Units").GetInt("Decimals", 2)
     shown = quantity.Value / quantity.getUserPreferred()[1]
     exact = (count for count in range(least, _DECIMALS) if math.isclose(round(shown, count), shown, rel_tol=_ROUNDING))
@@ -70,7 +70,7 @@ def number_text(field: Any) -> str:
 
 
 def tab_through(fields: Sequence[QtWidgets.QWidget]) -> None:
-    """Let Tab go from each field to the next one; what is between them comes behind the last one."""
+    """Make Tab go from each field to the next; widgets between them follow the last one."""
     for field, following in pairwise(fields):
         QtWidgets.QWidget.setTabOrder(field, following)
 
@@ -169,7 +169,7 @@ _ROWS = (
 )
 """Attribute, label and tooltip of each field, from top to bottom."""
 _BELOW_THEIR_LABELS = ("also_box",)
-"""Fields too wide to stand beside a label in a task panel of 380 pixels."""
+"""Fields too wide to fit beside a label in a task panel of 380 pixels."""
 
 
 class PostChoices(QtWidgets.QWidget):

@@ -33,10 +33,10 @@ _PLACE = QtCore.Qt.ItemDataRole.UserRole
 
 
 class PostOutcome(QtWidgets.QWidget):
-    """Verdict, findings, diagnostics and report; what does not apply is hidden."""
+    """Verdict, findings, diagnostics and report; parts that do not apply are hidden."""
 
     chosen = QtCore.Signal(str, int, str)
-    """A row that was clicked: label of its operation, number of the command, code of the diagnostic or nothing."""
+    """A clicked row: label of its operation, number of the command, code of the diagnostic or nothing."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -106,7 +106,7 @@ def _table() -> QtWidgets.QTableWidget:
     table.setHorizontalHeaderLabels([translate("PostOutcome", text) for text in _HEAD])
     table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
     table.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
-    table.setTabKeyNavigation(False)  # Tab leaves it: nothing is typed here
+    table.setTabKeyNavigation(False)  # Tab leaves the table: it is read-only
     table.verticalHeader().hide()
     return table
 

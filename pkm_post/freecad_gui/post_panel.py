@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post panel: converts a CAM job to a certified motion program, beside the window.
+"""Post panel: converts a CAM job to a certified motion program, in the background.
 
-Takes a job; stores the choices in the document. The job is read in the window's thread, as documents require, and
+Takes a job; stores the choices in the document. The job is read in the GUI thread, as documents require, and
 posted in another thread.
 """
 
@@ -176,7 +176,7 @@ class PostPanel:
             self.step.setText(step_text(step))
 
     def _take_place(self) -> None:
-        """Store the place that was found, and show it in the fields."""
+        """Store the found place, and show it in the fields."""
         assert self.place.found is not None
         take_place(self.job, self.place.found)
         self.choices.show_job()
@@ -187,7 +187,7 @@ class PostPanel:
         QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(str(self._target.parent)))
 
     def _simulate(self) -> None:
-        """Store the choices, and run the command, which itself reports why there is nothing to play."""
+        """Store the choices, and run the command, which reports on its own why there is nothing to play."""
         if not self._store_choices():
             return
         FreeCADGui.Selection.clearSelection()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Preferences: initial values of the post panel for a job that was never posted, how paths are drawn, and their page.
+"""Preferences: initial values of the post panel for a job never posted before, drawing of paths, and their page.
 
 Adds the page to FreeCAD's preferences. Only panels and views read them: the output depends on the job alone.
 """
@@ -19,7 +19,7 @@ PAGES = "PKM Post"
 """The group of pages in FreeCAD's preferences."""
 _ARGUMENTS, _FOLDER, _EVERY = "Arguments", "Folder", "ToolAxisEvery"
 _MOST = 100_000
-"""Blocks from one drawn tool axis to the next."""
+"""Most blocks from one drawn tool axis to the next."""
 
 
 def default_arguments() -> str:
@@ -35,7 +35,7 @@ def default_folder() -> str:
 
 
 class _Preference(QtCore.QObject):
-    """Emits the preference when it has changed, so that open fields follow, and with them what they draw."""
+    """Emits a changed preference, so that open fields and their drawings follow."""
 
     changed = QtCore.Signal(int)
 
@@ -50,7 +50,7 @@ class EveryField(QtWidgets.QSpinBox):
         """Create the field.
 
         Args:
-            keeps: whether a change is kept, and changes elsewhere are shown; otherwise its owner does so.
+            keeps: whether to store a change and show changes made elsewhere; otherwise the owner does.
         """
         super().__init__()
         self.setRange(0, _MOST)
@@ -67,7 +67,7 @@ def every_nth() -> int:
 
 
 def set_every_nth(value: int) -> None:
-    """Keep the preference, and draw by it what is drawn already."""
+    """Store the preference, and redraw existing axes by it."""
     if value == every_nth():
         return
     FreeCAD.ParamGet(GROUP).SetInt(_EVERY, value)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Quantities: numbers of our own, in mm, mm/s and degrees, as texts in the units that the user chose in FreeCAD."""
+"""Quantities: numbers in mm, mm/s and degrees, as texts in the units that the user chose in FreeCAD."""
 
 from __future__ import annotations
 

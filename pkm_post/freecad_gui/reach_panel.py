@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reach panel: verdict, findings and margins of a reach object; a click on one shows where it is.
+"""Reach panel: verdict, findings and margins of a reach object; a click on one shows its place.
 
-Takes the object; selects operation and command, marks the point, moves the machine there if the document has it, and
-colours the path by the clicked check. Colouring and a place that is taken are part of the document, so the panel is one
-undo step.
+Takes the object; selects operation and command, marks the point, moves the machine of the document there, and colours
+the path by the clicked check. Colouring and an accepted place change the document, so the panel is one undo step.
 """
 
 from __future__ import annotations
@@ -45,10 +44,10 @@ class ReachPanel:
     """The task panel.
 
     Attributes:
-        verdict: whether the machine can follow.
-        violations: what forbids it, and what is slower.
-        place: looks for another place.
-        table: margin of each check.
+        verdict: whether the machine can follow the job.
+        violations: errors, and warnings of slower motion.
+        place: searches for another place.
+        table: the margin of each check.
         every: blocks from one drawn tool axis to the next.
     """
 
@@ -77,20 +76,20 @@ class ReachPanel:
         self._fill()
 
     def _fill(self) -> None:
-        """Show what the object has."""
+        """Show the results of the object."""
         self.verdict.say(*_verdict(self.obj))
         self.violations.take(_violation_rows(self.obj))
         _fill_table(self.table, self.obj)
 
     def show_place_found(self) -> None:
-        """Draw the machine at the worst pose of the place that was found."""
+        """Draw the machine at the worst pose of the found place."""
         found = self.place.found
         assert found is not None
         study = JobStudy(found.reach, found.findings)
         self._pose.show(study, int(np.argmin(study.worst_margin())))
 
     def take_place(self) -> None:
-        """Set the place that was found in the job, and check it there."""
+        """Set the found place in the job, and check the job there."""
         found, obj = self.place.found, self.obj
         assert found is not None
         self.place.clear()
@@ -115,12 +114,12 @@ class ReachPanel:
         """Select the operation and the command of a violation, and move the machine there."""
         obj, study = self.obj, self.obj.Proxy.study
         if row >= len(obj.ViolationPoints):
-            return  # found by a version that stored no places
+            return  # found by a version that did not store places
         show_place(obj.Job, obj.ViolationOperations[row], obj.ViolationLines[row])
         self._look(obj.ViolationPoints[row], None if study is None else study.row_of(violations_of(study)[row]))
 
     def _look(self, point: Any, pose_row: int | None) -> None:
-        """Mark a point and turn the camera to it; the machine takes its pose if the job is still as it was checked."""
+        """Mark a point and move the camera to it; draw the machine there if the job is unchanged since its check."""
         self.obj.ViewObject.Proxy.mark(point)
         look_at(FreeCADGui.getDocument(self.obj.Document.Name), point)
         if pose_row is not None:
@@ -136,7 +135,7 @@ class ReachPanel:
         return QtWidgets.QDialogButtonBox.StandardButton.Close
 
     def reject(self) -> bool:
-        """Close the panel; the view provider calls ``end`` then."""
+        """Close the panel; the view provider then calls ``end``."""
         self.obj.Document.commitTransaction()
         FreeCADGui.getDocument(self.obj.Document.Name).resetEdit()
         return True
@@ -149,7 +148,7 @@ def _verdict(obj: Any) -> tuple[str, bool | None]:
 
 
 def _violation_rows(obj: Any) -> list[tuple[str, bool, str]]:
-    """Text, severity and cure of each violation; of those that only the document has, what their lines say."""
+    """Text, severity and remedy of each violation; those stored in the document are parsed from their lines."""
     study = obj.Proxy.study
     if study is not None:
         return [_row(each) for each in violations_of(study)]
@@ -179,7 +178,7 @@ def _table() -> QtWidgets.QTableWidget:
     table.setHorizontalHeaderLabels([translate("PKM_Reach", text) for text in HEAD])
     table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
     table.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
-    table.setTabKeyNavigation(False)  # Tab leaves it: nothing is typed here
+    table.setTabKeyNavigation(False)  # Tab leaves the table: it is read-only
     table.verticalHeader().hide()
     table.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarPolicy.ScrollBarAsNeeded)
     return table

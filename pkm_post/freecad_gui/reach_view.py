@@ -37,7 +37,7 @@ class ReachView(DrawnView):
     _axes: Any = None
 
     def updateData(self, _obj: Any, name: str) -> None:
-        """Redraw when the path has its margins: these are set last."""
+        """Redraw when the margins are set, which are the last property."""
         if name in ("Margins", "Points"):
             self.refresh()
 
@@ -61,7 +61,7 @@ class ReachView(DrawnView):
         self._root.addChild(corner)
 
     def show_axes(self) -> None:
-        """Draw the tool axes of a path of five axes, as often as the preference says."""
+        """Draw the tool axes of a five-axis path, at the preferred spacing."""
         if self._axes is None:
             return  # nothing is drawn
         self._axes.removeAllChildren()
@@ -70,7 +70,7 @@ class ReachView(DrawnView):
             self._axes.addChild(axis_vectors(study.reach.trajectory, every))
 
     def mark(self, point: Any) -> None:
-        """Mark another point than the worst one, until the path is drawn again."""
+        """Mark a point instead of the worst one, until the next redraw."""
         self.refresh()
         self._root.addChild(points_through([point], OUT, _MARK_SIZE))
 
@@ -93,7 +93,7 @@ class ReachView(DrawnView):
         return True
 
     def unsetEdit(self, _vobj: Any, _mode: int = 0) -> bool:
-        """Close the findings; the machine takes its own pose again."""
+        """Close the findings; draw the machine at its own pose again."""
         if self._panel is not None:
             self._panel.end()
             self._panel = None
@@ -102,14 +102,14 @@ class ReachView(DrawnView):
 
 
 def _legend_texts(obj: Any, top: float, unit: str) -> tuple[str, str]:
-    """Title and largest margin in the language and the units of the user."""
+    """Title and largest margin in the user's language and units."""
     if obj.ColourBy == WORST:
         return translate("PKM_Reach", "worst check"), translate("PKM_Reach", "{:.4g} of the largest").format(top)
     return check_names(obj)[list(obj.Checks).index(obj.ColourBy)], amount_text(top, unit)
 
 
 def _worst(obj: Any, points: list[tuple[float, ...]], margin: Any) -> tuple[Any, bool, str]:
-    """Point of the least margin that is shown, whether it is out of limits, and the unit of the margins."""
+    """Point of the least shown margin, whether it is violated, and the unit of the margins."""
     if obj.ColourBy == WORST:
         row = int(np.argmin(margin))
         return points[row], bool(margin[row] < 0.0), ""

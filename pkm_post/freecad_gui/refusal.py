@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Refusal: why CAM's Post Process wrote nothing, as rows in a window of their own.
+"""Refusal: a window that lists why CAM's Post Process wrote nothing.
 
 Takes a job and diagnostics. A click on a row selects the operation, shows its command, marks the point, and draws the
-machine there. Where another place of the workpiece may mend it, one can be looked for and taken. The window does not
-block FreeCAD, closes with its job, and is replaced by that of the next refusal.
+machine there. If another place of the workpiece may help, the window offers to search for one. It does not block
+FreeCAD, closes with its job, and is replaced by that of the next refusal.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class RefusalDialog(QtWidgets.QDialog):
 
 
 def show_refusal(job: Any, diagnostics: Sequence[Diagnostic]) -> None:
-    """Show the reasons; those of an earlier refusal go."""
+    """Show the reasons, in place of those of an earlier refusal."""
     for earlier in FreeCADGui.getMainWindow().findChildren(QtWidgets.QDialog, NAME):
         earlier.reject()
     RefusalDialog(job, diagnostics).show()

@@ -91,7 +91,7 @@ def mill(tool: Tool, shank: Shank | None) -> coin.SoSeparator:
     """A tool of known diameter with its tip at the origin: its cutting part, and its shank up to the gauge length.
 
     Args:
-        tool: with its angles and its corner.
+        tool: with its angles and corner radius.
         shank: None if it is unknown: the side then goes up to the gauge length.
     """
     outline = Cutter.of(tool)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Shown pose: a machine of the document, drawn at a pose of a checked path, and the camera on a point.
 
-Takes a study and a row of its path. The document is not changed: the machine object keeps its pose, and is drawn by it
+Takes a study and a row of its path. The document does not change: the machine object keeps its pose, and is drawn at it
 again at the end.
 """
 
@@ -17,14 +17,14 @@ from pivy import coin
 from pkm_post.freecad_app.job_study import JobStudy
 
 _CLOSE = 300.0
-"""mm: height of the view at a finding, if it was higher before."""
+"""mm: largest height of the view at a finding."""
 
 
 class ShownPose:
-    """The pose of a machine object while a panel is open.
+    """The displayed pose of a machine object while a panel is open.
 
     Args:
-        machine: the machine object; None if the document has none, and nothing is drawn.
+        machine: the machine object; None draws nothing.
     """
 
     def __init__(self, machine: Any) -> None:
@@ -50,7 +50,7 @@ class ShownPose:
 
 
 def is_shown(document: str) -> bool:
-    """Whether a document has its views: while it is closed they go first."""
+    """Whether a document still has its views, which close before it."""
     try:
         return FreeCADGui.getDocument(document) is not None
     except NameError:
@@ -58,7 +58,7 @@ def is_shown(document: str) -> bool:
 
 
 def look_at(document: Any, point: Any) -> None:
-    """Move the camera of the 3D view, without a turn, until a point of the document is in its middle and well seen."""
+    """Centre the 3D view on a point of the document and zoom in if needed; the orientation stays."""
     view = document.activeView()
     if not hasattr(view, "getCameraNode"):
         return

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Start page: a button for the example among those of FreeCAD that make new documents.
+"""Start page: a button for the example among FreeCAD's buttons for new documents.
 
-FreeCAD has no door for add-ons there. So the button goes into the row of these buttons, which has a name, whenever a
-start page comes to the front; where a future page has no such row, nothing is added.
+FreeCAD has no interface for add-ons there. So the button goes into the named row of these buttons whenever a start page
+comes to the front; if a future page has no such row, nothing is added.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ _ICON = 48
 
 
 def install() -> None:
-    """Add the button to the start page that is open, and to those that will be."""
+    """Add the button to the open start page, and to later ones."""
     (area,) = FreeCADGui.getMainWindow().findChildren(QtWidgets.QMdiArea)
     area.subWindowActivated.connect(lambda _window: QtCore.QTimer.singleShot(0, add_entries))
     QtCore.QTimer.singleShot(0, add_entries)
 
 
 def add_entries() -> None:
-    """Add the button to each start page that has none."""
+    """Add the button to each start page without it."""
     for row in FreeCADGui.getMainWindow().findChildren(QtWidgets.QWidget, _ROW):
         if row.layout() is not None and row.findChild(QtWidgets.QAbstractButton, NAME) is None:
             row.layout().addWidget(_button(row))

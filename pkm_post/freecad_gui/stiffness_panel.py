@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stiffness panel: how stiff the tool tip is held along a job and over the table, in the 3D view and in rows.
+"""Stiffness panel: stiffness at the tool tip along a job and over the table, in the 3D view and in rows.
 
-Takes a job; colours its path and, if wanted, the table from amber, the softest place, to green, the stiffest one. A
-click on a row shows where an operation is held least, with the machine there. The document is not changed.
+Takes a job; colours its path and, if wanted, the table from amber, the softest place, to green, the stiffest. A click
+on a row shows the softest place of an operation, with the machine there. The document does not change.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ translate = FreeCAD.Qt.translate
 NAME = "PkmStiffnessPanel"
 _SHARES = np.linspace(0.0, 1.0, 17)
 _ALIKE = 1e-6
-"""N/mm: a smaller range has one colour."""
+"""N/mm: a smaller range gets one colour."""
 
 
 class StiffnessPanel:
@@ -88,7 +88,7 @@ class StiffnessPanel:
         self.rows.take([(_row(each), None, "") for each in self.found.softest()])
 
     def _draw(self) -> None:
-        """The path of the job and the table in colours, with a legend for both."""
+        """Draw the path of the job and the table in colours, with one legend."""
         self._drawn.removeAllChildren()
         if self.found is None:
             return
@@ -109,17 +109,17 @@ class StiffnessPanel:
         self._view.show(softest.operation, softest.line)
 
     def _show_reach(self, on: bool) -> None:
-        """Hide the path in the colours of Reach, which has a legend in the same corner, or show it again."""
+        """Hide or show the coloured path of Reach, whose legend is in the same corner."""
         document = FreeCAD.getDocument(self._document)
         for item in filter(None, map(document.getObject, self._hidden)):
             item.Visibility = on
 
     def getStandardButtons(self) -> Any:
-        """Only Close: nothing is changed."""
+        """Only Close: the panel changes nothing."""
         return QtWidgets.QDialogButtonBox.StandardButton.Close
 
     def reject(self) -> bool:
-        """Close the panel, and take the colours out of the view."""
+        """Close the panel, and remove the colours from the view."""
         self._watch.end()
         self._view.end()
         self._graph.removeChild(self._drawn)
@@ -147,12 +147,12 @@ def _row(each: SoftestPlace) -> str:
 
 
 def _colours(stiffness: Array, low: float, top: float) -> Array:
-    """Colours (N, 3) from amber at the lowest to green at the highest stiffness; NaN is amber, and not drawn."""
+    """Colours (N, 3) from amber at the lowest to green at the highest stiffness; NaN is amber, but not drawn."""
     return colours_of(np.nan_to_num(stiffness, nan=low) - low, max(top - low, _ALIKE))
 
 
 def _surface(table: StiffnessMap, work_from_machine: Array, colours: Array) -> coin.SoSeparator:
-    """The cells of the table whose four corners are reached, in the work frame."""
+    """The table cells with all four corners in reach, in the work frame."""
     side = round(len(table.tip) ** 0.5)
     corner = np.arange(side * side).reshape(side, side)
     a, b, c, d = (each.ravel() for each in (corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]))

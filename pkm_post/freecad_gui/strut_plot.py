@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Strut plot: lengths and speeds of the six struts over time, with a cursor; a click selects a time.
 
-Takes a simulation. The curves are drawn once per widget size, from the smallest and largest value in each column of
-pixels, so that long motions cost no more than short ones; a cursor move repaints only the strips at its old and new
-positions.
+Takes a simulation. The curves are drawn once per widget size, from the minimum and maximum in each pixel column, so
+that long motions cost no more than short ones; a cursor move repaints only the strips at its old and new position.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ class StrutPlot(QtWidgets.QWidget):
 
     Args:
         simulation: the displayed simulation.
-        go_to: callback for the time in s at which the user clicks.
+        go_to: callback for the clicked time, s.
     """
 
     def __init__(self, simulation: Simulation, go_to: Callable[[float], None]) -> None:
@@ -72,7 +71,7 @@ class StrutPlot(QtWidgets.QWidget):
         self._curves = None
 
     def changeEvent(self, event: Any) -> None:
-        """Draw in the colours of another theme."""
+        """Redraw in the colours of another theme."""
         if event.type() == QtCore.QEvent.Type.StyleChange:
             self._redraw()
         super().changeEvent(event)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surface Finish outcome: what came of the operation, at the top of its page, and as a coloured map on the part.
+"""Surface Finish outcome: the result of the operation, at the top of its page, and as a coloured map on the part.
 
-Takes the operation; shows in green or red whether it gouges, then what the study of the whole job finds of it. The
-study runs in the background, and is that of Reach and Simulation. Documents keep the worst values, not the map: of an
-operation that was computed in another session a button computes it again.
+Takes the operation; shows in green or red whether it gouges, then its findings from the study of the whole job. The
+study runs in the background, and is shared with Reach and Simulation. Documents store the worst values, not the map: a
+button recomputes the map of an operation from an earlier session.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ translate = FreeCAD.Qt.translate
 
 
 class SurfaceFinishOutcome:
-    """What is shown of an operation while its page is open.
+    """The displayed result of an operation while its page is open.
 
     Args:
         obj: the operation.
         verdict: the line for it.
-        findings: the rows for what the job has of it.
-        again: the button that measures again where there is no map.
+        findings: the rows for its findings.
+        again: the button to recompute a missing map.
     """
 
     def __init__(self, obj: Any, verdict: Verdict, findings: FindingRows, again: Any) -> None:
@@ -53,7 +53,7 @@ class SurfaceFinishOutcome:
         again.clicked.connect(lambda: self._measure_again())
 
     def show(self) -> None:
-        """Show what the last computation gave, and begin to check the job."""
+        """Show the last result, and start checking the job."""
         self._strike()
         self._stop()
         self._rows.take(())
@@ -70,14 +70,14 @@ class SurfaceFinishOutcome:
             self._check()
 
     def end(self) -> None:
-        """Take the map away, and stop checking."""
+        """Remove the map, and stop checking."""
         self._watch.end()
         self._stop()
         self._view.end()
         self._strike()
 
     def _measure_again(self) -> None:
-        """Compute the operation once more: the watch of recomputes shows the result."""
+        """Recompute the operation: the watch of recomputes shows the result."""
         self._obj.touch()
         self._obj.Document.recompute()
 
@@ -100,7 +100,7 @@ class SurfaceFinishOutcome:
             self._take(violations_of(self._study))
 
     def _take(self, found: Any) -> None:
-        """Show what concerns this operation, and whether the machine can follow it."""
+        """Show the findings of this operation, and whether the machine can follow it."""
         job = job_of(self._obj)
         self._found = [each for each in found if operation_named(job, each.place.operation) in (None, self._obj)]
         self._rows.take([
@@ -117,7 +117,7 @@ class SurfaceFinishOutcome:
         self._view.show(found.place.operation, found.place.line, found.code)
 
     def _stop(self) -> None:
-        """Let a check that is running end by itself, unseen: the window does not wait for it."""
+        """Detach a running check, so that the GUI does not wait for it; its result is dropped."""
         if self._task is not None:
             self._task.finished.disconnect(self._checked)
             self._task = None
@@ -133,7 +133,7 @@ def _follows() -> str:
 
 
 def _verdict(obj: Any) -> tuple[str, bool | None]:
-    """What the operation says of itself."""
+    """The operation's own verdict."""
     if not obj.isValid():
         return obj.getStatusString(), False
     if not obj.Path.Size or "Touched" in obj.State:

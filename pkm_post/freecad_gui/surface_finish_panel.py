@@ -65,18 +65,18 @@ CHOICES: tuple[str, ...] = (
 
 
 class SurfaceFinishPage(CamGui.TaskPanelPage):
-    """The page: what came of the operation, tool controller, then a field per table row; and the map in the 3D view.
+    """The page: the outcome, the tool controller, a field per table row; and the map in the 3D view.
 
     The property view shows all other properties.
     """
 
     def initPage(self, obj: Any) -> None:
-        """Show what is known of the operation; after each computation it is shown again."""
+        """Show the outcome of the operation, again after each computation."""
         self._outcome = SurfaceFinishOutcome(obj, self.form.verdict, self.form.findings, self.form.again)
         self._outcome.show()
 
     def cleanupPage(self, _obj: Any) -> None:
-        """Take the map out of the view."""
+        """Remove the map from the view."""
         self._outcome.end()
 
     def getForm(self) -> Any:
@@ -145,7 +145,7 @@ class SurfaceFinishPage(CamGui.TaskPanelPage):
 
 
 def _show(box: Any, texts: list[str], words: list[str], current: str) -> None:
-    """Fill a box with choices, with signals blocked; each shows a text and stands for a word."""
+    """Fill a box with choices, with signals blocked; each shows a text for a word."""
     box.blockSignals(True)
     box.clear()
     for text, word in zip(texts, words, strict=True):

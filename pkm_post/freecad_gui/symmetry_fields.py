@@ -43,7 +43,7 @@ def quantity(unit: str, changed: Callable[..., None]) -> Any:
 
 
 _LEAST = 70
-"""px: what a field of a vector needs for most numbers; FreeCAD's own hint has room for many more digits."""
+"""px: least width of a vector field for most numbers; FreeCAD's own hint has room for many more digits."""
 
 
 class Three(QtWidgets.QWidget):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Symmetry placement: the fields for the plane of a mirror or the axis of a rotation.
 
-Takes the object; its point, its direction and the picked element follow the fields. The plane or axis is one of the
-document's, or picked in the 3D view, or typed in.
+Takes the object; its point, direction and picked element follow the fields. The plane or axis is one of the document's,
+picked in the 3D view, or typed in.
 """
 
 from __future__ import annotations
@@ -173,7 +173,7 @@ class SymmetryPlace:
         self.point.show_values(self._obj.Point, enabled=chosen != self._pick_index)
 
     def _show_status(self, text: str) -> None:
-        """Show the picked element, or what can be picked."""
+        """Show the picked element, or a hint on pickable ones."""
         self.picked.setText(text)
         self.picked.setVisible(bool(text))
 

@@ -22,7 +22,7 @@ translate = FreeCAD.Qt.translate
 
 
 class SymmetryView(View):
-    """The icon of a symmetric operation. The base keeps its place in the tree: the copy is beside it."""
+    """The icon of a symmetric operation. The base keeps its place in the tree, beside the copy."""
 
     def getIcon(self) -> Any:
         """A mirror icon for operations with a plane, a rotation icon for those with an angle; with the verdict."""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Theme: the colours of what we paint ourselves, for the light or dark look that the user chose.
+"""Theme: the colours of our own painting, for the user's light or dark theme.
 
-FreeCAD's themes are style sheets, which leave the palette of the application as it is. So the ground is asked of a text
-field, whose palette Qt sets by the sheet.
+FreeCAD's themes are style sheets, which do not change the application's palette. So the ground is read from a text
+field, whose palette Qt sets from the sheet.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from PySide import QtCore, QtGui, QtWidgets
 
 @dataclass(frozen=True)
 class Theme:
-    """Colours by their names in CSS.
+    """Colours as CSS names.
 
     Attributes:
         ground: behind diagrams.
         ink: texts.
         faint: frames and grids.
         bad: texts of errors, readable on the ground.
-        cursor: the present time.
+        cursor: cursor of the present time.
         limit: limits of a quantity.
         bands: backgrounds of operations, every other one.
         band_ink: texts on the bands.
-        struts: one for each strut.
-        axis: tool axes in the 3D view, whose ground the themes of FreeCAD set, too.
+        struts: one per strut.
+        axis: tool axes in the 3D view, whose ground also follows FreeCAD's theme.
         is_dark: whether the ground is dark.
     """
 
@@ -53,11 +53,11 @@ _DARK = Theme(
     ("#729fcf", "#ff6b6b", "#8ae234", "#fcaf3e", "#c99fd0", "#d9a55b"), "#d9a8e8", is_dark=True,
 )  # fmt: skip
 _DARK_BELOW = 128
-"""Lightness of the ground, of 255."""
+"""Lightness of the ground, out of 255."""
 
 
 def theme() -> Theme:
-    """The colours for the look that FreeCAD has now."""
+    """The colours for FreeCAD's current theme."""
     return _by_sheet(QtWidgets.QApplication.instance().styleSheet(), QtWidgets.QApplication.palette().cacheKey())
 
 
@@ -71,7 +71,7 @@ def _by_sheet(_sheet: str, _palette: int) -> Theme:
 
 
 def standard_icon(name: str) -> QtGui.QIcon:
-    """An icon of Qt, with ink instead of black where it has no colours of its own: Qt draws these for light grounds.
+    """An icon of Qt, in ink on dark themes if it is grey: Qt draws these for light grounds.
 
     Args:
         name: of a ``QStyle.StandardPixmap``.
@@ -84,7 +84,7 @@ def standard_icon(name: str) -> QtGui.QIcon:
 
 _ICON = 32
 _GREY = 24
-"""Saturation up to which a pixel counts as grey, of 255."""
+"""Saturation up to which a pixel counts as grey, out of 255."""
 
 
 def _is_grey(image: QtGui.QImage) -> bool:

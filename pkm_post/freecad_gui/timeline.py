@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Timeline: bands of operations, tool changes and findings over the time of a simulated motion; a click goes there."""
+"""Timeline: operations, tool changes and findings of a simulated motion as bands over time; a click goes there."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ translate = FreeCAD.Qt.translate
 
 _TOOL, _FINDING = "#ad7fa8", "#cc0000"
 _HEIGHT, _FINDINGS = 26, 8
-"""Pixels: of the widget, and of the band of findings at its lower end."""
+"""Pixels: height of the widget, and of the findings band at its lower edge."""
 
 
 @dataclass(frozen=True)
 class TimelineBand:
-    """A stretch of time.
+    """A time interval.
 
     Attributes:
         start: s.
         end: s.
-        text: what it is.
+        text: its label.
     """
 
     start: float
@@ -37,7 +37,7 @@ class TimelineBand:
 
 
 def operation_bands(simulation: Simulation) -> list[TimelineBand]:
-    """One band for each run of blocks of an operation."""
+    """One band per consecutive run of blocks of an operation."""
     operation, ends = simulation.trajectory.operation, simulation.motion.joint_time
     last = np.append(np.flatnonzero(np.diff(operation)), len(operation) - 1)
     starts = np.append(0.0, ends[last[:-1]])
@@ -49,7 +49,7 @@ def operation_bands(simulation: Simulation) -> list[TimelineBand]:
 
 
 def tool_changes(simulation: Simulation) -> list[TimelineBand]:
-    """The moments at which another tool comes into the spindle."""
+    """The times of tool changes."""
     tool = simulation.trajectory.tool
     rows = np.flatnonzero(np.diff(tool))
     times = simulation.motion.joint_time[rows].tolist()
@@ -57,7 +57,7 @@ def tool_changes(simulation: Simulation) -> list[TimelineBand]:
 
 
 def finding_bands(simulation: Simulation) -> list[TimelineBand]:
-    """What the machine cannot follow, each from its beginning to its worst moment."""
+    """The problems, each from its start to its worst moment."""
     return [TimelineBand(problem.time, problem.worst_time, shown(problem.text)) for problem in simulation.problems]
 
 
@@ -66,7 +66,7 @@ class Timeline(QtWidgets.QWidget):
 
     Attributes:
         operations: bands of the operations.
-        tools: moments of tool changes.
+        tools: times of tool changes.
         findings: bands of the problems.
     """
 
@@ -98,13 +98,13 @@ class Timeline(QtWidgets.QWidget):
         self.wanted.emit(self._time_at(event))
 
     def event(self, event: Any) -> bool:
-        """Say what is under the mouse."""
+        """Show a tooltip for the time under the mouse."""
         if event.type() == QtCore.QEvent.Type.ToolTip:
             self.setToolTip(self.text_at(event.pos().x() / max(self.width(), 1) * self._duration))
         return bool(super().event(event))
 
     def text_at(self, seconds: float) -> str:
-        """What there is at a time: the operation, and the findings and tool changes beside it."""
+        """The labels of the bands at or near a time, one per line."""
         room = 3.0 / max(self.width(), 1) * self._duration
         near = [
             band.text

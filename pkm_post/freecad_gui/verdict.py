@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Verdict: one line at the top of a panel, green or red, and the findings behind it as rows.
+"""Verdict: one line at the top of a panel, green or red, and its findings as rows.
 
-Takes texts with their places; a click on a row emits its number. The colours have enough contrast on light and dark
+Takes texts with their places; a click on a row emits its number. The colours have enough contrast in light and dark
 themes.
 """
 
@@ -33,7 +33,7 @@ class Verdict(QtWidgets.QLabel):
         """Show a text.
 
         Args:
-            text: nothing hides the line.
+            text: an empty one hides the line.
             holds: green if true, red if false; None for neither.
         """
         self.setText(text)
@@ -48,21 +48,21 @@ class Verdict(QtWidgets.QLabel):
 
 
 _MOST_LINES = 10
-"""Lines of text that the rows take at most of a panel."""
+"""Most lines of text that the rows take in a panel."""
 
 
 def followed(holds: bool) -> tuple[str, bool]:
-    """The verdict on a job: text and colour, wherever the job is shown."""
+    """The verdict on a job: text and colour for all panels."""
     if holds:
         return translate("PKM_Reach", "The machine can follow the job"), True
     return translate("PKM_Reach", "The machine cannot follow the job"), False
 
 
 class FindingRows(QtWidgets.QListWidget):
-    """Errors and warnings, a row each."""
+    """Errors and warnings, one per row."""
 
     picked = QtCore.Signal(int)
-    """The number of a row that was clicked or chosen by key."""
+    """The number of the row clicked or chosen by key."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -74,7 +74,7 @@ class FindingRows(QtWidgets.QListWidget):
         self.itemActivated.connect(lambda item: self.picked.emit(self.row(item)))
 
     def take(self, rows: Sequence[tuple[str, bool | None, str]]) -> None:
-        """Show rows: the text of each, whether it is an error or a warning, None for neither, and its cure.
+        """Show rows: text, whether it is an error (True), a warning (False) or neither (None), and remedy.
 
         No rows hide the list.
         """
@@ -91,13 +91,13 @@ class FindingRows(QtWidgets.QListWidget):
         self.updateGeometry()
 
     def sizeHint(self) -> QtCore.QSize:
-        """As high as its rows, up to a few: what is below them comes into sight."""
+        """The height of its rows, up to a limit, so that the parts below stay visible."""
         width, line = self.viewport().width(), self.fontMetrics().lineSpacing()
         rows = sum(max(self.sizeHintForRow(row), line) for row in range(self.count()))
         return QtCore.QSize(width, min(rows, _MOST_LINES * line) + 2 * self.frameWidth() + 4)
 
     def resizeEvent(self, event: Any) -> None:
-        """Another width has other heights of the rows."""
+        """Update the height: rows wrap at the new width."""
         super().resizeEvent(event)
         self.updateGeometry()
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Verdict icons: job and operations in the tree carry what Reach, Simulation or a post found, in green or red.
+"""Verdict icons: job and operations in the tree show the verdict of Reach, Simulation or a post, in green or red.
 
-Takes the reach and simulation objects of a document; gives icons with a sign in a corner. CAM's view providers for jobs
-and operations are extended before their first object exists, since FreeCAD keeps what their ``getIcon`` was then.
+Takes the reach and simulation objects of a document; returns icons with a sign in a corner. CAM's view providers for
+jobs and operations are extended before their first object exists: FreeCAD caches their ``getIcon`` at that time.
 """
 
 from __future__ import annotations
@@ -30,26 +30,26 @@ _STROKES = {
     True: ((0.25, 0.55), (0.43, 0.72), (0.76, 0.30)),
     False: ((0.30, 0.30), (0.70, 0.70), (0.50, 0.50), (0.30, 0.70), (0.70, 0.30)),
 }
-"""Lines of the tick and the cross, as shares of the sign: not everybody can distinguish the colours."""
+"""Lines of the tick and the cross, as shares of the sign, for users who cannot distinguish the colours."""
 _OWNERS = {"Path.Op.Gui.Base": "Object", "Path.Main.Gui.Job": "obj"}
-"""CAM's modules with a class ViewProvider, and its attribute with the displayed object."""
+"""CAM's modules with a class ViewProvider, and its attribute for the displayed object."""
 _ERROR = re.compile(r" error [A-Z]\d+: ")
-"""In the stored text of a finding that forbids posting."""
+"""Matches the stored text of a finding that prevents posting."""
 _SAYS = {"Violations": ("Reachable", "Checks"), "ProblemTimes": ("Followable", "Blocks")}
-"""Properties of Reach and of Simulation by one that none but them has: the verdict, and what is there once computed."""
+"""By a property unique to Reach or Simulation: the properties of its verdict, and of results once computed."""
 _ON_THE_MACHINE = ("K", "V")
-"""Families of errors that say something of the job; others are of files, arguments and operations without a path."""
+"""Families of errors in the job; others are in files, arguments and operations without a path."""
 _HARMLESS = ("Visibility", "LastPostProcessDate", "LastPostProcessOutput")
-"""Properties of job, operations, tools and models that change nothing of what was posted."""
+"""Properties of job, operations, tools and models that do not affect the posted program."""
 
 
 @dataclass(frozen=True)
 class _Post:
-    """The last post of a job; it is forgotten when something of the job changes.
+    """The last post of a job, dropped when the job changes.
 
     Attributes:
-        of: names of the job and all that it depends on.
-        holds: whether it was certified; None while it goes on.
+        of: names of the job and of all its dependencies.
+        holds: whether it was certified; None while it is running.
         faulty: names of operations with an error.
     """
 
@@ -73,11 +73,11 @@ def install() -> None:
 
 
 def keep_verdict(job: Any, findings: Iterable[Diagnostic] | None) -> None:
-    """Keep what a post found of a job, until something of the job changes.
+    """Store the verdict of a post on a job, until the job changes.
 
     Args:
         job: the job.
-        findings: of the post; None when it begins: if the job changes before its end, they are not of this job.
+        findings: of the post; None at its start: if the job changes before the end, they are discarded.
     """
     key = job.Document.Name, job.Name
     if findings is None:
@@ -94,9 +94,9 @@ def keep_verdict(job: Any, findings: Iterable[Diagnostic] | None) -> None:
 
 
 def verdict_of(item: Any) -> bool | None:
-    """What Reach, Simulation or a post says of a job, an operation or itself: whether the machine can follow, or None.
+    """Whether the machine can follow an item, by Reach, Simulation or a post; None if unknown.
 
-    It is unknown without any of them, and while one of them, the job, the operation or its base waits to be recomputed.
+    The item is a job, an operation, a Reach or a Simulation; unknown also while one of these waits for a recompute.
     """
     if item is None or not hasattr(item, "State") or _waits(item):
         return None
@@ -118,7 +118,7 @@ def verdict_of(item: Any) -> bool | None:
 
 
 def _waits(item: Any) -> bool:
-    """Whether an object, or the operation that it is made from, waits to be recomputed."""
+    """Whether an object, or its base operation, waits for a recompute."""
     while hasattr(item, "State"):
         if "Touched" in item.State:
             return True
@@ -132,7 +132,7 @@ def _knows(item: Any) -> bool:
 
 
 def _is_faulty(operation: Any, job: Any, known: Any) -> bool:
-    """Whether an error that Reach or Simulation found is in an operation."""
+    """Whether Reach or Simulation found an error in an operation."""
     if hasattr(known, "Violations"):
         found = zip(known.ViolationOperations, known.Violations, strict=False)
         names = {name for name, text in found if _ERROR.search(text)}
@@ -142,17 +142,17 @@ def _is_faulty(operation: Any, job: Any, known: Any) -> bool:
 
 
 def _is_named(operation: Any, job: Any, names: Iterable[str]) -> bool:
-    """Whether one of the names that operations have in programs is that of an operation."""
-    from pkm_post.freecad_app.fixtures import operation_named  # CAM is loaded by then, and not when FreeCAD starts
+    """Whether one of the operation names in programs is of this operation."""
+    from pkm_post.freecad_app.fixtures import operation_named  # CAM is loaded by now, but not when FreeCAD starts
 
     return any(operation_named(job, name) == operation for name in names)
 
 
 def with_verdict(icon: Any, item: Any) -> Any:
-    """An icon, with a sign if the verdict of its object is known.
+    """An icon, with a sign if the verdict on its object is known.
 
     Args:
-        icon: the name of a file or a resource; what is none stays as it is.
+        icon: the name of a file or a resource; other icons stay unchanged.
         item: the object.
     """
     verdict = verdict_of(item)
@@ -206,22 +206,22 @@ class _Watch:
         self._later.timeout.connect(self._refresh)
 
     def refresh_later(self, document: str) -> None:
-        """Refresh the icons of a document when FreeCAD comes to it."""
+        """Refresh the icons of a document once FreeCAD is idle."""
         self._documents.add(document)
         self._later.start(0)
 
     def slotRecomputedDocument(self, document: Any) -> None:
-        """What Reach says may be another thing."""
+        """The verdict may have changed."""
         if any(_knows(each) for each in document.Objects):
             self.refresh_later(document.Name)
 
     def slotDeletedDocument(self, document: Any) -> None:
-        """Another document may get the name."""
+        """Drop its posts: another document may get the name."""
         for key in [key for key in _POSTS if key[0] == document.Name]:
             del _POSTS[key]
 
     def slotChangedObject(self, item: Any, name: str) -> None:
-        """What Reach said is old, if the object waits to be recomputed; so is a post's verdict, if its job has it."""
+        """Drop posts that depend on the object; refresh, since a touched object has no verdict."""
         if name not in _HARMLESS:
             here = item.Document.Name
             for key in [key for key, post in _POSTS.items() if key[0] == here and item.Name in post.of]:
@@ -230,7 +230,7 @@ class _Watch:
             self._later.start(0)
 
     def slotDeletedObject(self, item: Any) -> None:
-        """A reach object goes, and with it what it says."""
+        """Treat a deletion as a change."""
         self.slotChangedObject(item, "")
 
     def _refresh(self) -> None:

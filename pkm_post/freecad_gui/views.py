@@ -35,7 +35,7 @@ class View:
         self.Object = vobj.Object
 
     def getIcon(self) -> Any:
-        """The icon in the tree, of operations and of Reach with the verdict."""
+        """The icon in the tree, with the verdict on operations and Reach."""
         return with_verdict(str(ICONS / self.icon), getattr(self, "Object", None))
 
     def claimChildren(self) -> list[Any]:

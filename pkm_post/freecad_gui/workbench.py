@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The PKM Post workbench, and its tool bar and menu in CAM as well."""
+"""The PKM Post workbench, and its tool bar and menu in CAM."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def _add_commands(workbench: Any) -> None:
 
 
 class CamBar:
-    """Adds tool bar and menu to CAM as soon as CAM is shown; earlier it has none to which they could be added."""
+    """Adds tool bar and menu to CAM when CAM is first shown: before that it has neither."""
 
     waits: ClassVar[bool] = True
 

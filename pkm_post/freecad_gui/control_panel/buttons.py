@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Buttons: buttons for orders, and other fields, which also state why they cannot be used; rows and lines of them."""
+"""Buttons: order buttons and fields that state why they are disabled; rows and lines of them."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from pkm_post.freecad_gui.control_panel.texts import why_text
 translate = FreeCAD.Qt.translate
 
 NARROW = "QPushButton { min-width: 0px; }"
-"""Themes of FreeCAD make all buttons so wide that three of them and their margins fill a dock of 380 px."""
+"""FreeCAD's themes make buttons so wide that three of them and their margins fill a dock of 380 px."""
 
 
 class OrderButton(QtWidgets.QPushButton):
-    """A button for an order; where the order is not possible it is disabled, and its tooltip states why."""
+    """A button for an order; while the order is blocked it is disabled, and its tooltip states why."""
 
     def __init__(self, text: str, tip: str, order: OperatorCommand, action: Callable[[], Any]) -> None:
         super().__init__(text)
@@ -46,7 +46,7 @@ def refresh_all(buttons: Iterable[OrderButton], found: frozenset[Interlock]) -> 
 
 
 def set_usable(parts: Iterable[QtWidgets.QWidget], tip: str, why: str = "") -> None:
-    """Enable fields, or disable them and state in their tooltip why; empty for no reason against them."""
+    """Enable fields, or disable them with the reason as tooltip; an empty reason enables them."""
     text = "\n".join(filter(None, (tip, why and f"({why})")))
     for part in parts:
         part.setEnabled(not why)
@@ -55,7 +55,7 @@ def set_usable(parts: Iterable[QtWidgets.QWidget], tip: str, why: str = "") -> N
 
 
 def plain_button(text: str, tip: str, action: Callable[[], Any]) -> QtWidgets.QPushButton:
-    """A button without an order to the machine."""
+    """A button that sends no order to the machine."""
     button = QtWidgets.QPushButton(text)
     button.setToolTip(tip)
     button.setAutoDefault(False)
@@ -73,7 +73,7 @@ def side_by_side(*widgets: QtWidgets.QWidget) -> QtWidgets.QHBoxLayout:
 
 
 def line_label() -> QtWidgets.QLabel:
-    """A label of one line that takes the width there is, and keeps its height."""
+    """A single-line label that fills the width and keeps its height."""
     label = QtWidgets.QLabel()
     label.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Fixed)
     label.setMinimumHeight(label.fontMetrics().height())
@@ -81,14 +81,14 @@ def line_label() -> QtWidgets.QLabel:
 
 
 def show_line(label: QtWidgets.QLabel, text: str, tip: str = "") -> None:
-    """Show a text, shortened to the width; the tip has all of it."""
+    """Show a text, elided to the width; the tooltip has the full text."""
     mode = QtCore.Qt.TextElideMode.ElideRight
     label.setText(label.fontMetrics().elidedText(text, mode, max(label.width(), 1)))
     label.setToolTip(tip or text)
 
 
 class FilesField(QtWidgets.QWidget):
-    """Names of files, a button to choose them, and one for none.
+    """File names, a button to choose them, and one to clear them.
 
     Attributes:
         files: their paths.
@@ -125,12 +125,12 @@ class FilesField(QtWidgets.QWidget):
         self.changed.emit()
 
     def refresh(self, tip: str, why: str) -> None:
-        """Enable the buttons, or disable them and say why; empty for no reason against them."""
+        """Enable the buttons, or disable them with the reason; an empty reason enables them."""
         set_usable((self.choose,), tip, why)
         set_usable((self.clear,), translate("ControlPanel", "No file"), why)
 
     def resizeEvent(self, event: Any) -> None:
-        """Called by Qt: another part of the names has room."""
+        """Called by Qt: elide the names to the new width."""
         super().resizeEvent(event)
         self._show()
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Connect page: selects controller, machine and tool; or a simulated machine for training.
+"""Connect page: selects controller, machine and tool, or a simulated machine for training.
 
-Takes names; makes a connection of the console, or reports what is wrong with them.
+Takes names; connects the console, or reports invalid names.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class ConnectPage(QtWidgets.QWidget):
 
     Attributes:
         port, machine, tool_length: the fields.
-        taken_length: length of the tool to which displayed poses refer, mm.
+        taken_length: tool length to which displayed poses refer, mm.
         connect, train, leave: the buttons.
     """
 
@@ -109,7 +109,7 @@ class ConnectPage(QtWidgets.QWidget):
         return True
 
     def _take_tool_length(self) -> None:
-        """Apply the length of another tool in the spindle: the tip is elsewhere then."""
+        """Apply the length of another tool in the spindle, which moves the tip."""
         length = self.tool_length.property("rawValue")
         if self._console.connection is not None and length not in (0.0, self.taken_length):
             self.taken_length = length

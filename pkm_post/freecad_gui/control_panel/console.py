@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Console: the connection of a panel and its pending orders, without a widget.
 
-Takes orders as functions of the control; returns their results as calls in the window's thread, from a timer that
-polls ten times a second. Nothing here blocks: long calls run in the worker thread, or beside the window.
+Takes orders as functions of the control; returns their results as calls in the GUI thread, from a timer that polls ten
+times a second. Nothing here blocks: long calls run in the worker thread, or in the background.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ Call = Callable[[NumericalControl], Any]
 
 _LOOK_MS = 100
 _REPORTED = (PmacError, OSError, UnicodeError, ImportError, Refused)
-"""Faults of machine, link and files, and missing packages: reported to the user. All others are our own errors."""
+"""Faults of machine, link and files, and missing packages: reported to the user. All others are internal errors."""
 
 
 class Console(QtCore.QObject):
@@ -51,13 +51,13 @@ class Console(QtCore.QObject):
         connection: to the machine; None if there is none.
         job: the opened program.
         loaded: whether this panel has loaded it.
-        stops: number of stops (M0, M1) after which it can continue.
-        stepping: whether its blocks are in use for single block.
-        has_trajectory: whether a trajectory is open, to be played.
-        play: the trajectory that is played; None if none is.
-        stop_count: how many stops were ordered; what is being prepared is not begun after one.
-        progress: its loaded lines, and the total.
-        calls: runs what needs no controller.
+        stops: number of stops (M0, M1) from which it can continue.
+        stepping: whether single block is running its blocks.
+        has_trajectory: whether a trajectory is open.
+        play: the running play; None if there is none.
+        stop_count: number of stops ordered; a stop cancels a start in preparation.
+        progress: loaded lines of the job, and their total.
+        calls: runs calls that need no controller.
     """
 
     refreshed = QtCore.Signal()
@@ -85,7 +85,7 @@ class Console(QtCore.QObject):
 
     @property
     def waits(self) -> bool:
-        """Whether a call is running beside the window: connecting, disconnecting, reading a file."""
+        """Whether a background call is running: connecting, disconnecting, reading a file."""
         return self.calls.is_busy
 
     @property
@@ -94,7 +94,7 @@ class Console(QtCore.QObject):
         return bool(self._under_way)
 
     def panel_state(self) -> PanelState:
-        """What the panel knows besides the state."""
+        """The panel's own part of the state."""
         return PanelState(
             connected=self.connection is not None,
             busy=self.has_orders or self.waits,
@@ -110,11 +110,11 @@ class Console(QtCore.QObject):
         )
 
     def found(self) -> frozenset[Interlock]:
-        """All current reasons against orders."""
+        """All current interlocks."""
         return active_interlocks(self.state, self.panel_state())
 
     def connect_to(self, target: ConnectionTarget, tool_length: float) -> None:
-        """Connect beside the window; mm."""
+        """Connect in the background; mm."""
         self._is_wanted = True
         self.calls.do(lambda: connect(target, tool_length), self._connected)
 
@@ -125,7 +125,7 @@ class Console(QtCore.QObject):
             self.leave()
 
     def leave(self) -> None:
-        """End the connection beside the window, as soon as it exists; nothing is stopped."""
+        """End the connection in the background, as soon as it exists; the machine is not stopped."""
         self._is_wanted = False
         self._cancelled.set()
         connection, self.connection = self.connection, None
@@ -143,7 +143,7 @@ class Console(QtCore.QObject):
         self.refreshed.emit()
 
     def stop(self, call: Call) -> None:
-        """Run a stop next: waiting orders are cancelled, and so are their continuations."""
+        """Run a stop next, and cancel waiting orders with their continuations."""
         assert self.connection is not None
         self.stop_count += 1
         self._cancelled.set()
@@ -152,21 +152,21 @@ class Console(QtCore.QObject):
         self.refreshed.emit()
 
     def abort(self, at_once: bool) -> None:
-        """Abort the program, and what is played; a homing is no longer monitored."""
+        """Abort the program and the play; a homing is no longer monitored."""
         self._homing = False
         self.stop(lambda control: control.abort(at_once))
         if self.play is not None:
             self.play.order(Order("end"))
 
     def resume(self) -> None:
-        """Go on after a hold."""
+        """Resume after a hold."""
         if self.play is not None:
             self.play.order(Order("resume"))
         else:
             self.order(lambda control: control.resume())
 
     def begin_play(self, play: WindowPlay) -> None:
-        """Show a play from now on, until it has ended."""
+        """Start a play, and show it until it ends."""
         self.play = play
         self.refreshed.emit()
 
@@ -187,7 +187,7 @@ class Console(QtCore.QObject):
         self._homing = True
 
     def move(self, planning: Callable[[NumericalControl], Any], then: Then, sends: bool = True) -> None:
-        """Plan a move and, unless something prevents it, execute it.
+        """Plan a move, and execute it if the plan is valid.
 
         Args:
             planning: returns the plan, or None, and the diagnostics.
@@ -204,7 +204,7 @@ class Console(QtCore.QObject):
             self.order(lambda control: control.execute(plan))
 
     def load(self) -> None:
-        """Load the opened program; ``cancel_load`` ends that."""
+        """Load the opened program, until done or ``cancel_load``."""
         assert self.job is not None
         job, self.loaded = self.job, False
         self._cancelled.clear()
@@ -224,13 +224,13 @@ class Console(QtCore.QObject):
         self.message.emit(text.format(loaded.program, loaded.lines), False)
 
     def take_job(self, job: PmacJob | None) -> None:
-        """Replace the opened program, or close it; blocks of the previous one are no longer next."""
+        """Replace or close the opened program, and forget the next block of the previous one."""
         self.job: PmacJob | None = job
         self.loaded, self.stepping, self.progress = False, False, (0, 0)
         self.stops = 0 if job is None else len(program_stops(job))
 
     def _look(self) -> None:
-        """Called by the timer; its calls confirm to the worker that the user can see what the machine does."""
+        """Called by the timer; its calls confirm to the worker that the display is live."""
         if self.connection is not None:
             self.connection.worker.attend()
         if self.connection is not None and self.connection.worker.failure is not None:
@@ -259,7 +259,7 @@ class Console(QtCore.QObject):
             then(future.result())
 
     def _quit(self) -> None:
-        """FreeCAD ends: close the link in order; any question to the user came before."""
+        """FreeCAD exits: close the link cleanly; the user was asked before."""
         connection, self.connection = self.connection, None
         self._timer.stop()
         if connection is not None:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Dock: numerical control as a docked window, one per main window.
+"""Dock: numerical control as a dock, one per main window.
 
-While a machine moves, neither the dock nor FreeCAD closes before the user has decided what happens to it.
+While a machine moves, neither the dock nor FreeCAD closes before the user decides what to do with it.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class ControlPanel(QtWidgets.QDockWidget):
             self.console.leave()
 
     def closeEvent(self, event: Any) -> None:
-        """Called by Qt: closing the window ends the connection."""
+        """Called by Qt: closing the dock ends the connection."""
         if not self._may_leave(self.close):
             event.ignore()
             return
@@ -55,7 +55,7 @@ class ControlPanel(QtWidgets.QDockWidget):
         super().closeEvent(event)
 
     def eventFilter(self, watched: QtCore.QObject, event: QtCore.QEvent) -> bool:
-        """Called by Qt: FreeCAD asks before it ends while a machine moves."""
+        """Called by Qt: ask the user before FreeCAD exits while a machine moves."""
         window = self.parent()
         if event.type() == QtCore.QEvent.Type.Close and watched is window and not self._may_leave(window.close):
             event.ignore()
@@ -63,7 +63,7 @@ class ControlPanel(QtWidgets.QDockWidget):
         return False
 
     def _may_leave(self, again: Callable[[], Any]) -> bool:
-        """Whether the connection may end now; ``again`` is called at standstill, if the user wishes that."""
+        """Whether the connection may end now; ``again`` is called at standstill, if the user chooses to wait."""
         if self.console.connection is None or not (may_move(self.console.state) or self.console.has_orders):
             return True
         box = QtWidgets.QMessageBox(self)
@@ -83,7 +83,7 @@ class ControlPanel(QtWidgets.QDockWidget):
         return box.clickedButton() is goes_on
 
     def _close_at_rest(self) -> None:
-        """Run what was deferred until standstill."""
+        """Run the action deferred until standstill."""
         again = self._when_at_rest
         if again is not None and not may_move(self.console.state) and not self.console.has_orders:
             self._when_at_rest = None

@@ -31,7 +31,7 @@ _TITLES = (
 )
 _NOTHING, _BETWEEN = "-", 12
 _FARTHEST, _AXIS = "-0000.000 mm", "I -0.000000  J 0.000000  K 0.000000"
-"""Texts for which there is room from the beginning."""
+"""The longest texts, for which room is reserved."""
 _MM_DECIMALS = 3
 
 
@@ -72,7 +72,7 @@ class PositionDisplay(QtWidgets.QWidget):
         layout.setVerticalSpacing(2)
 
     def refresh(self, pose: ToolPose | None, machine_from_work: Array) -> None:
-        """Show a pose, or that there is none."""
+        """Show a pose, or blanks for None."""
         if pose is None:
             for label in (*self.in_work.values(), *self.in_machine.values(), self.axis, self.tilt, self.spin):
                 label.setText(_NOTHING)
@@ -106,7 +106,7 @@ class StrutTable(QtWidgets.QTableWidget):
         self.setFixedHeight(6 * (self.fontMetrics().height() + 4) + self.horizontalHeader().sizeHint().height() + 4)
 
     def refresh(self, status: Status | None) -> None:
-        """Show a state, or that none was read."""
+        """Show a state, or blanks for None."""
         red = QtGui.QBrush(QtGui.QColor(theme().bad))
         for row in range(6):
             texts = (_NOTHING,) * 4 if status is None else _strut_row(status, row)
@@ -145,7 +145,7 @@ def _strut_row(status: Status, row: int) -> tuple[str, ...]:
 
 
 def _digits(room: str = "", large: bool = False) -> QtWidgets.QLabel:
-    """A label for a changing number, with room for a text, that does not shift its neighbours."""
+    """A label for a changing number, with room for a text so that its neighbours stay in place."""
     label, font = QtWidgets.QLabel(_NOTHING), QtGui.QFontDatabase.systemFont(QtGui.QFontDatabase.SystemFont.FixedFont)
     if large:
         font.setPointSizeF(1.8 * font.pointSizeF())

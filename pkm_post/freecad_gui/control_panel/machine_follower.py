@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Follower: the machine object of the document follows the machine.
 
-Takes a machine, poses and the tool length; moves the scene of the object. The document does not change, and at the end
-the object shows its own pose again.
+Takes a machine, poses and the tool length; moves the scene of the object. The document does not change; at the end the
+object shows its own pose again.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Follower:
         self._seen: Array | None = None
 
     def begin(self, document: Any, machine: Machine) -> bool:
-        """Follow with the object of a document that shows a machine; return whether there is one."""
+        """Attach to the object that shows the machine in a document; return whether there is one."""
         self.end()
         obj = None if document is None else _object_for(document, machine)
         if obj is None:
@@ -71,7 +71,7 @@ class Follower:
 
 
 def _object_for(document: Any, machine: Machine) -> Any:
-    """The first object that shows a machine and that nothing else moves."""
+    """The first object that shows the machine and is not moved by anything else."""
     for obj in document.Objects:
         if not (hasattr(obj, "MachineFile") and hasattr(obj, "OutOfLimits")):
             continue

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""MDI page: lines of G-code typed by hand, with a history.
+"""MDI page: typed lines of G-code, with a history.
 
 Takes a line; shows its end point and duration, and executes it on request.
 """
@@ -63,7 +63,7 @@ class MdiPage(QtWidgets.QWidget):
 
     Attributes:
         line: the input.
-        axis_words: form of the tool axis in it.
+        axis_words: form of the tool axis in the input.
         check, run: the buttons.
         outcome: end point of the line.
     """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Motion pages: jogging the tool or one strut by a step, and homing.
 
-Takes steps and speeds as quantities; a click plans a move of the console. Directions are those of {M}.
+Takes steps and speeds as quantities; a click plans a move of the console. Directions are in {M}.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ _FIELDS = (
     ("speed", QT_TRANSLATE_NOOP("ControlPanel", "Speed"), 5.0, "mm/s"),
 )
 _FIELD_WIDTH, _JOG_WIDTH = 92, 36
-"""px, at least: FreeCAD's own hints have room for many more digits."""
+"""Minimum, px: FreeCAD's own hints have room for many more digits."""
 _TURNING_AT_FIRST, _TURNING_MOST = 2.0, 90.0
 
 
@@ -66,7 +66,7 @@ class JogPage(QtWidgets.QWidget):
     """The page.
 
     Attributes:
-        step, turn, speed, turning: step of lengths and angles, speed of the tip and of rotations in place.
+        step, turn, speed, turning: step of lengths and of angles, speed of the tip and of rotations.
         strut: the number of the strut for single-strut jogs.
         buttons: by name and direction, such as ``("X", 1)`` and ``("strut", -1)``.
     """
@@ -87,7 +87,7 @@ class JogPage(QtWidgets.QWidget):
         both.addLayout(self._fields(), 1)
         both.addLayout(self._grid(), 1)
         layout.addLayout(both)
-        layout.addStretch(1)  # a higher page beside it does not pull the rows apart
+        layout.addStretch(1)  # a higher page in the stack must not pull the rows apart
 
     def _fields(self) -> QtWidgets.QFormLayout:
         form = QtWidgets.QFormLayout()
@@ -154,7 +154,7 @@ class HomingPage(QtWidgets.QWidget):
     """The page.
 
     Attributes:
-        trigger: the line.
+        trigger: the input line.
         home: the button.
         status: progress of the homing.
     """
@@ -182,7 +182,7 @@ class HomingPage(QtWidgets.QWidget):
         layout.addStretch(1)
 
     def refresh(self, state: ControlState, found: frozenset[Interlock]) -> None:
-        """Enable what is possible, and show the progress of a homing."""
+        """Enable what is possible, and show homing progress."""
         self.home.refresh(found)
         self.status.setText("" if state.homing is None else homing_text(state.homing))
         connection = self._console.connection
@@ -201,7 +201,7 @@ class HomingPage(QtWidgets.QWidget):
             self._console.message.emit(str(fault), True)
             return
         if not self._is_sure(trigger) or blocking_interlock(OperatorCommand.HOME, self._console.found()) is not None:
-            return  # the state may have changed during the question
+            return  # the state may have changed while the dialog was open
         if connection is not None and not connection.simulated:
             FreeCAD.ParamGet(GROUP).SetString(_ENTRY, trigger)
         self._console.home(trigger)

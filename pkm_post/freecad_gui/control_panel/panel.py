@@ -40,9 +40,9 @@ class PanelContent(QtWidgets.QWidget):
 
     Attributes:
         training: label of a simulated machine.
-        banner: fault of the link, and the action to take.
+        banner: fault of the link, and the action required.
         activity: current activity of the controller.
-        progress: line, feed, time left and operation of what is played, always in sight.
+        progress: line, feed, time left and operation of the play, always visible.
         dro, struts, stops: digital readout of the pose, struts, and the stop bar.
         connecting, homing, jog, mdi, program, play: the pages.
         follows: whether the machine object of the document follows the machine.
@@ -89,7 +89,7 @@ class PanelContent(QtWidgets.QWidget):
     def _set_up(self) -> None:
         for label in (self.training, self.banner, self.activity):
             label.setWordWrap(True)
-        self.activity.setFixedHeight(_ACTIVITY_LINES * self.fontMetrics().lineSpacing())  # what is below never moves
+        self.activity.setFixedHeight(_ACTIVITY_LINES * self.fontMetrics().lineSpacing())  # parts below stay in place
         self.activity.setAlignment(QtCore.Qt.AlignmentFlag.AlignTop)
         self.training.setStyleSheet(_YELLOW)
         self.messages.setWordWrap(True)
@@ -109,7 +109,7 @@ class PanelContent(QtWidgets.QWidget):
         layout = QtWidgets.QVBoxLayout(self)
         layout.addWidget(self.training)
         layout.addWidget(above, 1)
-        layout.addWidget(self.banner)  # above it nothing moves when it comes, and below it nothing does either
+        layout.addWidget(self.banner)  # only the scroll area shrinks when it appears
         layout.addWidget(self.progress)
         layout.addWidget(self.stops)
         layout.addWidget(self.messages)
@@ -143,7 +143,7 @@ class PanelContent(QtWidgets.QWidget):
         self._follower.show(state.pose, self.connecting.taken_length)
 
     def _take(self, connection: Connection | None) -> None:
-        """Switch to another machine, or none."""
+        """Switch to another machine, or to none."""
         self._connection = connection
         self.dro.work_offset.clear()
         if connection is not None:

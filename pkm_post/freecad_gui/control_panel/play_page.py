@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Play page: opens a trajectory and plays it while it is planned, with override, single block, block skip and retract.
 
-Takes a file, reads it beside the window, and gives the orders of the operator to the play of the console. Hold, Resume
-and Abort are those of the stop bar. All labels keep their height, so that nothing moves under the hand.
+Takes a file, reads it in the background, and passes the operator's orders to the play of the console. Hold, Resume and
+Abort are on the stop bar. All labels keep their height, so that no button moves under the pointer.
 """
 
 from __future__ import annotations
@@ -47,13 +47,13 @@ class PlayPage(QtWidgets.QWidget):
 
     Attributes:
         name: of the opened file.
-        open, play, go_on, end, retract: the buttons; ``retract_distance`` belongs to the last one.
-        line, operation: where to begin.
-        approach, repeat_codes, single_block, optional_stop, dry_run: the choices; ``dry_feed`` belongs to the last one.
-        skip: whether blocks behind ``/`` are skipped, and the posting without them.
-        setup: what has changed at the machine, and what the way to the beginning must not touch.
+        open, play, go_on, end, retract: the buttons; ``retract_distance`` is for the last one.
+        line, operation: the start.
+        approach, repeat_codes, single_block, optional_stop, dry_run: the options; ``dry_feed`` is for the last one.
+        skip: whether to skip ``/`` blocks, and the posting without them.
+        setup: changes at the machine, and solids that the approach must not touch.
         override: the slider, per cent of the feed.
-        place, speeds, bar: where the play is, how fast it is, and the share of its way.
+        place, speeds, bar: position, speed and completed share of the play.
     """
 
     def __init__(self, console: Console) -> None:
@@ -146,7 +146,7 @@ class PlayPage(QtWidgets.QWidget):
         layout = QtWidgets.QVBoxLayout(self)
         for row in above:
             layout.addLayout(side_by_side(*row))
-        for part in (self.place, self.speeds, self.bar):  # in sight where the panel is low
+        for part in (self.place, self.speeds, self.bar):  # visible in a low panel
             layout.addWidget(part)
         for row in below:
             layout.addLayout(side_by_side(*row))
@@ -155,7 +155,7 @@ class PlayPage(QtWidgets.QWidget):
         layout.addStretch(1)
 
     def refresh(self, _state: ControlState, found: frozenset[Interlock]) -> None:
-        """Enable what is possible, and show where the play is."""
+        """Enable what is possible, and show the position of the play."""
         console = self._console
         if console.connection is None and self._opened is not None:
             self._forget()
@@ -176,14 +176,14 @@ class PlayPage(QtWidgets.QWidget):
             self.bar.setValue(round(_SHARES * (1 - shown.to_go / self._way)))
 
     def _refresh_setup(self, found: frozenset[Interlock]) -> None:
-        """Enable what belongs to the trajectory and to the machine; while it plays, only the switch of block skip."""
+        """Enable the fields of the set-up; during a play, only the block-skip switch."""
         plays = next((why_text(why) for why in (Interlock.PLAYS, Interlock.BUSY) if why in found), "")
         closed = why_text(Interlock.NO_TRAJECTORY) if self._opened is None else ""
         self.setup.refresh(plays, closed)
         self.skip.refresh(plays, closed)
 
     def _forget(self) -> None:
-        """The connection has ended, and what was opened belongs to its machine."""
+        """Close the trajectory: it is for the machine of the ended connection."""
         self._opened = None
         self.skip.file.take(())
         self.setup.take(None)
@@ -200,7 +200,7 @@ class PlayPage(QtWidgets.QWidget):
             self.read(Path(name))
 
     def read(self, file: Path) -> None:
-        """Read a trajectory file beside the window."""
+        """Read a trajectory file in the background."""
         connection = self._console.connection
         assert connection is not None
         machine = connection.target.machine
@@ -230,7 +230,7 @@ class PlayPage(QtWidgets.QWidget):
         self._console.refreshed.emit()
 
     def _first_row(self, trajectory: Trajectory) -> int | None:
-        """The row to begin with; None if there is no such line."""
+        """The first row to play; None if there is no such line."""
         line, operation = self.line.value(), str(self.operation.currentData() or "")
         if line == 0 and not operation:
             return 0
@@ -250,7 +250,7 @@ class PlayPage(QtWidgets.QWidget):
         self._console.calls.do(ready, lambda made: self._begin(stops, row, made))
 
     def _choices(self, row: int) -> PlayOptions:
-        """How to play, without what has to be read."""
+        """The options, without those read from files."""
         dry = float(self.dry_feed.property("rawValue")) if self.dry_run.isChecked() else None
         return PlayOptions(
             override=self.override.value() / 100,
@@ -264,7 +264,7 @@ class PlayPage(QtWidgets.QWidget):
         )
 
     def _begin(self, stops: int, row: int, ready: Ready) -> None:
-        """Begin to play what was prepared, unless a stop came first."""
+        """Start the prepared play, unless a stop came first."""
         for each in ready.diagnostics:
             self._console.message.emit(fault_text(each), False)
         connection, opened = self._console.connection, self._opened
@@ -286,6 +286,6 @@ class PlayPage(QtWidgets.QWidget):
         self._order("override", percent / 100)
 
     def _order(self, kind: OrderKind, value: float = 0.0) -> None:
-        """Give an order, if something is played."""
+        """Pass an order to the play, if there is one."""
         if self._console.play is not None:
             self._console.play.order(Order(kind, value))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Play set-up: block skip, what has changed since the posting, and the solids that the way to a line must not touch.
+"""Play set-up: block skip, changes since posting, and the solids that the approach to a line must not touch.
 
 Takes an opened trajectory; gives the offsets and the set-up of its play, in mm, as ``pkm-post play`` takes them from
 ``--shift``, ``--tool-length``, ``--part``, ``--stock`` and ``--fixture``.
@@ -40,19 +40,19 @@ _SOLIDS = {
 }
 """Label and tooltip of each solid."""
 NUMBER_WIDTH = 80
-"""px, at least: FreeCAD's own hints have room for many more digits."""
+"""Minimum, px: FreeCAD's own hints have room for many more digits."""
 _SAME_MM = 1e-6
-"""A field shows no more decimals."""
+"""The resolution of a field."""
 
 
 @dataclass(frozen=True)
 class Ready:
-    """What a play takes.
+    """The inputs of a play.
 
     Attributes:
-        trajectory: with the offsets of the machine.
-        skipped: the same program without its blocks behind ``/``; None where there is none.
-        setup: the solids that are known.
+        trajectory: with the offsets applied.
+        skipped: the same program without its ``/`` blocks; None if there is none.
+        setup: the known solids.
         diagnostics: warnings.
     """
 
@@ -63,11 +63,11 @@ class Ready:
 
 
 class BlockSkip(QtWidgets.QWidget):
-    """The switch, and the posting without the blocks that it skips.
+    """The switch, and the posting without the skipped blocks.
 
     Attributes:
         box: the switch.
-        file: of the posting.
+        file: file of the posting.
         without: the posting; None if there is none.
     """
 
@@ -83,7 +83,7 @@ class BlockSkip(QtWidgets.QWidget):
         layout.addWidget(self.file, 1)
 
     def refresh(self, why: str, closed: str) -> None:
-        """Enable what is possible; the reasons against another file are empty for none."""
+        """Enable what is possible; empty reasons enable the choice of another file."""
         tip = translate("ControlPanel", "The same program posted with --block-delete")
         self.file.refresh(tip, why or closed)
         without = translate("ControlPanel", "no posting without the blocks behind / was opened")
@@ -91,7 +91,7 @@ class BlockSkip(QtWidgets.QWidget):
         set_usable((self.box,), tip, "" if self.without is not None else closed or without)
 
     def _read(self) -> None:
-        """Read the posting beside the window."""
+        """Read the posting in the background."""
         self.without, connection, files = None, self._console.connection, self.file.files
         if connection is None or not files:
             return
@@ -108,7 +108,7 @@ class BlockSkip(QtWidgets.QWidget):
         for each in diagnostics:
             self._console.message.emit(fault_text(each), trajectory is None)
         if files != self.file.files:
-            return  # another one was chosen meanwhile
+            return  # another file was chosen meanwhile
         if trajectory is None:
             self.file.take(())
         self.without = trajectory
@@ -119,8 +119,8 @@ class PlaySetup(QtWidgets.QGroupBox):
     """The fields, below those of the play.
 
     Attributes:
-        shift: fields of the way that the work offset has gone in {M}, by axis.
-        tool, length: a tool of the trajectory, and its gauge length as it is now.
+        shift: fields of the shift of the work offset in {M}, by axis.
+        tool, length: a tool of the trajectory, and its present gauge length.
         solids: fields of the files, by name.
     """
 
@@ -168,7 +168,7 @@ class PlaySetup(QtWidgets.QGroupBox):
         layout.addLayout(grid)
 
     def refresh(self, why: str, why_no_tools: str) -> None:
-        """Enable what is possible; the reasons against all, and against tool lengths, are empty for none."""
+        """Enable what is possible; the reasons, against all and against tool lengths, are empty for none."""
         tip = translate("ControlPanel", "How far the work offset has moved in the machine frame, as measure prints it")
         set_usable(self.shift.values(), tip, why)
         tip = translate("ControlPanel", "Gauge length of the tool as it is now, instead of that of the posting")
@@ -178,7 +178,7 @@ class PlaySetup(QtWidgets.QGroupBox):
             field.refresh(f"{translate('ControlPanel', _SOLIDS[name][1])}\n{ours}", why)
 
     def take(self, trajectory: Trajectory | None) -> None:
-        """Show the tools of a trajectory with their lengths; nothing has changed since its posting."""
+        """Show the tools of a trajectory with their posted lengths, and reset all offsets."""
         tools = () if trajectory is None else sorted(trajectory.tools.values(), key=lambda tool: tool.number)
         self._posted, self._lengths = {tool.number: tool.length for tool in tools}, {}
         for field in self.shift.values():
@@ -202,16 +202,16 @@ class PlaySetup(QtWidgets.QGroupBox):
         self._show_length()
 
     def offsets(self) -> MachineOffsets:
-        """What was changed since the posting."""
+        """The changes since posting."""
         x, y, z = (float(field.property("rawValue")) for field in self.shift.values())
         return MachineOffsets((x, y, z), dict(self._lengths))
 
     def preparation(self, trajectory: Trajectory, without: Trajectory | None, machine: Machine) -> Callable[[], Ready]:
-        """A call for any thread that reads the solids and applies the offsets, or raises what is against them.
+        """A call for any thread that reads the solids and applies the offsets, or raises why it cannot.
 
         Args:
-            trajectory: as it was posted.
-            without: the same program without its blocks behind ``/``; None where there is none.
+            trajectory: as posted.
+            without: the same program without its ``/`` blocks; None if there is none.
             machine: the machine.
         """
         one = {name: next(iter(self.solids[name].files), None) for name in ("part", "stock")}
@@ -230,6 +230,6 @@ class PlaySetup(QtWidgets.QGroupBox):
 
 
 def trajectory_kinds() -> str:
-    """Filter of dialogs for trajectories."""
+    """The dialog filter for trajectories."""
     kinds = translate("ControlPanel", "Trajectories")
     return f"{kinds} (*.pkmt)"

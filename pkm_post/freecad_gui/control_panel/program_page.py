@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Program page: opens, loads and starts a motion program, or runs it line by line of its source.
 
-Takes a file, reads it beside the window, and sends it to the controller on request.
+Takes a file, reads it in the background, and sends it to the controller on request.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class ProgramPage(QtWidgets.QWidget):
     Attributes:
         name: of the opened file.
         open, load, cancel, approach, start, begin_at, step, go_on: the buttons.
-        block, stop: numbers of the start block, and of the stop after which to continue.
+        block, stop: numbers of the start block, and of the stop to continue from.
         bar: loaded share.
     """
 
@@ -102,7 +102,7 @@ class ProgramPage(QtWidgets.QWidget):
             self.read(Path(name))
 
     def read(self, file: Path, uncertified: bool = False) -> None:
-        """Read a program file beside the window, certified or, if a macro requests it, ``uncertified``."""
+        """Read a program file in the background, certified or, on request of a macro, ``uncertified``."""
         connection = self._console.connection
         assert connection is not None
         target = connection.target

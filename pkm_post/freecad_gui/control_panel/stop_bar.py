@@ -84,7 +84,7 @@ class StopBar(QtWidgets.QWidget):
         self.override.valueChanged.connect(self._changed)
 
     def refresh(self, state: ControlState, found: frozenset[Interlock]) -> None:
-        """Enable what is possible, and show the controller's override unless the user is setting another one."""
+        """Enable what is possible, and show the controller's override unless the user is changing it."""
         refresh_all(self._buttons, found)
         against = blocking_interlock(OperatorCommand.OVERRIDE, found)
         self.override.setEnabled(against in (None, Interlock.BUSY))

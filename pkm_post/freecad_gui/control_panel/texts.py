@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Words: messages of numerical control and of the player in the user's language and units.
+"""Texts: messages of numerical control and of the player in the user's language and units.
 
-Takes names and texts of ``pmac_link`` and ``numerical_control``; returns translated text. The English matches theirs
-exactly: a test compares it. Refusals of the controller stay untranslated.
+Takes names and texts of ``control``; returns translated text. The English matches theirs exactly: a test compares it.
+Refusals of the controller stay untranslated.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ PLAY_PHASES = {
     "override 0": QT_TRANSLATE_NOOP("ControlPanel", "override 0"),
     "hold": QT_TRANSLATE_NOOP("ControlPanel", "hold"),
 }
-"""Phases of a player, and what it waits for; M0, M1 and tools are named as in the program."""
+"""Phases and waits of a player; M0, M1 and tools are named as in the program."""
 MOTOR = {
     "negative_limit": QT_TRANSLATE_NOOP("ControlPanel", "on its lower limit"),
     "positive_limit": QT_TRANSLATE_NOOP("ControlPanel", "on its upper limit"),
@@ -110,7 +110,7 @@ EMERGENCY = (
 
 
 def why_text(why: Interlock) -> str:
-    """The reason against an order."""
+    """The text of an interlock."""
     return translate("ControlPanel", WHY[why])
 
 
@@ -129,7 +129,7 @@ def activity_text(state: ControlState) -> str:
 
 
 def _block_text(block: BlockDisplay) -> str:
-    """A block with the job operation's own name."""
+    """A block, with the name of its operation in the job."""
     text = ": ".join(filter(None, (block.operation, block.text)))
     return translate("ControlPanel", "block {} of {} comes next, line {}: {}").format(
         block.number, block.count, block.line, text
@@ -160,27 +160,27 @@ def _texts_of_bits(bits: Bits, texts: dict[str, str]) -> list[str]:
 
 
 def play_phase_text(state: PlayState) -> str:
-    """What it does, or waits for."""
+    """The phase of the player, or what it waits for."""
     phase = state.waits_for or state.phase
     text = translate("ControlPanel", PLAY_PHASES[phase]) if phase in PLAY_PHASES else phase
     return translate("ControlPanel", "waits: {}").format(text) if state.waits_for else text
 
 
 def play_text(state: PlayState) -> str:
-    """What it does, and in which operation and line."""
+    """Phase, operation and line of the player."""
     line = translate("ControlPanel", "line {}").format(state.line)
     return ", ".join(filter(None, (play_phase_text(state), state.operation, line)))
 
 
 def note_text(record: logging.LogRecord) -> str:
-    """What a player has noted beside its states."""
+    """A log entry of the player."""
     arguments = record.args if isinstance(record.args, tuple) else ()
     texts = (fault_text(each) if isinstance(each, Diagnostic) else shown(each) for each in arguments)
     return str(record.msg) % tuple(texts)
 
 
 def progress_text(state: PlayState) -> str:
-    """Line, feed, time left and operation in one line, and before them what it does, unless it runs."""
+    """Line, feed, time left and operation in one line, after the phase unless it is running."""
     phase = play_phase_text(state) if state.waits_for or state.phase != "runs" else ""
     line = translate("ControlPanel", "line {}").format(state.line)
     feed = translate("ControlPanel", "feed {} ({:.0f} %)").format(speed_text(state.feed), 100 * state.reached)
@@ -191,14 +191,14 @@ def progress_text(state: PlayState) -> str:
 
 
 def speeds_text(state: PlayState) -> str:
-    """What is left, the feed of the program, and the share of it that is reached."""
+    """The distance and time to go, the feed, and the achieved share of it."""
     feed = translate("ControlPanel", "feed {}, {:.0f} % reached").format(speed_text(state.feed), 100 * state.reached)
     left = "-" if math.isinf(state.remaining) else time_text(state.remaining)
     return translate("ControlPanel", "{} and {} to go; {}").format(length_text(state.to_go), left, feed)
 
 
 def result_texts(result: PlayResult) -> list[tuple[str, bool]]:
-    """What was played, and the worst of each quantity with its limit; each with whether it is a fault."""
+    """The result of a play, and the worst of each quantity with its limit; each with whether it is a fault."""
     ended = translate("ControlPanel", "Ended by the operator")
     if result.finished:
         ended = translate("ControlPanel", "Played to the end")

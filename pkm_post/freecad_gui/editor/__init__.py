@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Editor: the dock to write, check, display, post and decode part programs.
+"""Editor: the dock that writes, checks, displays, posts and decodes part programs.
 
-Code that needs no window is in ``pkm_post.reading.program_text``.
+Code without a GUI is in ``pkm_post.reading``.
 """
 
 from pkm_post.freecad_gui.editor.dock import ProgramEditor, open_editor

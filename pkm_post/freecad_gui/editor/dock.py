@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Dock: the part program editor as a docked window, one per main window.
+"""Dock: the part program editor as a dock, one per main window.
 
 Takes a file, or that of a program object; saves the edited text, decodes it into a job, or posts it.
 """
@@ -51,7 +51,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
         self._document.modificationChanged.connect(self._name_window)
         window.installEventFilter(self)
         drop = FileDrop(self, self, self.widget.text, self.widget.text.viewport())
-        # children get drags first; queued, since a question to the user would block the source program
+        # children get drags first; queued, since a dialog would block the source of the drag
         drop.dropped.connect(self.open_file, QtCore.Qt.ConnectionType.QueuedConnection)
         self._name_window()
 
@@ -127,7 +127,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
             self.posting.ask_and_post(self.widget.file, self.widget.reading.chosen())
 
     def eventFilter(self, watched: QtCore.QObject, event: QtCore.QEvent) -> bool:
-        """Called by Qt: FreeCAD does not end while changes would be lost."""
+        """Called by Qt: FreeCAD does not exit while changes would be lost."""
         if event.type() == QtCore.QEvent.Type.Close and watched is self.parent() and not self._may_leave():
             event.ignore()
             return True

@@ -37,9 +37,9 @@ from pkm_post.reading import (
 translate = FreeCAD.Qt.translate
 
 _NEW = "new.ngc"
-"""The name of a text without a file: it counts as G-code."""
+"""The name of a text without a file, which makes it G-code."""
 _HEAD = 65536
-"""Characters of a text by which its language is recognised."""
+"""Number of leading characters from which to recognise the language."""
 _NUMBERED = re.compile(r"^[ \t]*/?[ \t]*N\d", re.M)
 """The start of a block that ``renumbered`` has numbered."""
 
@@ -49,7 +49,7 @@ class EditorWidget(QtWidgets.QWidget):
 
     Attributes:
         file: source of the text; None for a new one.
-        program: the parsed program, as long as it is up to date.
+        program: the parsed program while it is up to date.
     """
 
     def __init__(self, parent: QtWidgets.QWidget) -> None:
@@ -81,11 +81,11 @@ class EditorWidget(QtWidgets.QWidget):
         return str(self.file or _NEW)
 
     def language(self) -> Language:
-        """The language of the text by its name: Siemens's is G-code."""
+        """The language by the file name: Siemens counts as G-code."""
         return language_of(self.name())
 
     def _shown_language(self) -> Language:
-        """The language in whose colours the text is shown."""
+        """The language for syntax colours."""
         head = self.text.toPlainText()[:_HEAD].encode("utf-8", "surrogatepass")
         return shown_language(self.name(), head, self.reading.chosen().flavour)
 
@@ -109,7 +109,7 @@ class EditorWidget(QtWidgets.QWidget):
         self.checker.request()
 
     def follow(self) -> None:
-        """The file was saved: let its object read it again."""
+        """The file was saved: make its object read it again."""
         obj = program_link.object_of(self.file)
         if obj is not None:
             program_link.bring_up_to_date(obj, self.reading.chosen())
@@ -176,7 +176,7 @@ _DRAGGED = (QtCore.QEvent.Type.DragEnter, QtCore.QEvent.Type.DragMove)
 
 
 class FileDrop(QtCore.QObject):
-    """Accepts part programs dropped on widgets. Text is handled as usual, other files by the enclosing window."""
+    """Accepts part programs dropped on widgets. Dropped text is handled as usual, other files by the main window."""
 
     dropped = QtCore.Signal(object)
     """The path of the first file."""

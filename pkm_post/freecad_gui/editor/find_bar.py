@@ -73,7 +73,7 @@ class FindBar(QtWidgets.QWidget):
         return self._select(text, wanted.search(text, here) or wanted.search(text))
 
     def find_previous(self) -> bool:
-        """Select the previous match in the same manner."""
+        """Select the previous match likewise."""
         if not self.wanted.text():
             return False
         text, wanted = self._text.toPlainText(), self._wanted()

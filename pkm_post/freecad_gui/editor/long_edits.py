@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Long edits: loads a text, or changes all of its lines, in slices between which the window stays responsive.
+"""Long edits: loads a text, or changes all of its lines, in slices, so that the GUI stays responsive.
 
-An edit that is instantaneous in a short text takes a third of a second in one of 100,000 lines. During an edit the text
-is locked for other edits. Undo and redo treat it as one, again in slices.
+An edit that is instantaneous in a short text takes a third of a second in one of 100,000 lines. The text is locked
+during an edit. Undo and redo treat the edit as one, again in slices.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from PySide import QtCore, QtGui, QtWidgets
 _LINES = 1000
 """Lines per slice: some milliseconds of work."""
 _BUDGET = 0.02
-"""Seconds of work before control returns to the window."""
+"""Seconds of work before control returns to the GUI."""
 
 
 def _nothing() -> None:

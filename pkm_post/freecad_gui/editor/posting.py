@@ -160,7 +160,7 @@ class ReadingFields(QtWidgets.QWidget):
         self.unit, self.contour_data = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
         self.cl_dialect, self.flavour = QtWidgets.QComboBox(self), QtWidgets.QComboBox(self)
         self.allow_open_end = QtWidgets.QCheckBox(translate("PKM_Editor", "Open end allowed"), self)
-        # Some are seldom needed, and chosen in the properties of the program object: here only stored.
+        # Rare ones are set in the properties of the program object, and only stored here.
         self._shown = AS_WRITTEN
         self.axis_words.addItems(list(AXIS_WORDS))
         self.flavour.addItem(translate("PKM_Editor", "Flavour as the file says"), None)
@@ -219,7 +219,7 @@ class ReadingFields(QtWidgets.QWidget):
         )
 
     def show_reading(self, reading: ReadingOptions) -> None:
-        """Show a reading, which does not count as a change."""
+        """Show options, without counting it as a change."""
         blocker = QtCore.QSignalBlocker(self)
         self.axis_words.setCurrentText(reading.axis_words)
         self.flavour.setCurrentIndex(self.flavour.findData(reading.flavour))

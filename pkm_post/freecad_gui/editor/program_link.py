@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Program link: the program object for the file of an editor, in any open document, and its block at the cursor.
 
-It is looked up by file name at every use: documents are closed and objects deleted without notice.
+Looks it up by file name at every use: documents are closed and objects deleted without notice.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def object_of(file: Path | None) -> Any:
 
 
 def bring_up_to_date(obj: Any, reading: ReadingOptions) -> None:
-    """Let the object read its file again, with the editor's reading options."""
+    """Make the object read its file again, with the editor's reading options."""
     set_reading(obj, reading)
     obj.touch()
     obj.Document.recompute()

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Text view: the text of a part program with line numbers, colours and underlines.
 
-Only visible lines are coloured, when they become visible: a keystroke recolours one line, whatever the length of the
-text. The user state of a block stores the revision for which it was coloured.
+Lines are coloured only when they become visible: a keystroke recolours one line, whatever the length of the text. The
+user state of a block stores the revision for which it was coloured.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ class TextView(QtWidgets.QPlainTextEdit):
         self._select_extra()
 
     def viewportEvent(self, event: QtCore.QEvent) -> bool:
-        """Called by Qt: the mouse rests somewhere, among other things."""
+        """Called by Qt: show a tooltip, among other events."""
         if event.type() != QtCore.QEvent.Type.ToolTip:
             return bool(super().viewportEvent(event))
         text = self.text_at(event.pos())
@@ -151,7 +151,7 @@ class TextView(QtWidgets.QPlainTextEdit):
         self._margin.setGeometry(inside.left(), inside.top(), self._margin.wanted_width(), inside.height())
 
     def lines_in_sight(self) -> Iterator[tuple[QtGui.QTextBlock, float]]:
-        """The visible blocks, each with the height of its top."""
+        """The visible blocks, each with the y of its top edge."""
         block, offset = self.firstVisibleBlock(), self.contentOffset()
         while block.isValid():
             top = self.blockBoundingGeometry(block).translated(offset).top()
@@ -227,7 +227,7 @@ class LineNumbers(QtWidgets.QWidget):
         self._text = text
 
     def wanted_width(self) -> int:
-        """The width of the largest number."""
+        """The width of the widest number."""
         digits = len(str(self._text.blockCount()))
         return self._text.fontMetrics().horizontalAdvance("9") * (max(digits, 3) + 1) + 6
 
