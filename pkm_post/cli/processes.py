@@ -134,7 +134,7 @@ def start_fault(command: Sequence[str], fault: OSError) -> str:
 def _freecad_command() -> FreeCADCommand:
     """FreeCADCmd, from the finder of a checkout, which creates one if missing, or from an installation.
 
-    The finder is a bash script. Windows cannot run it; a bash on its path belongs to WSL.
+    The finder is a bash script. Windows cannot run it; a bash on its path is that of WSL.
     """
     has_finder = sys.platform != "win32" and _FINDER.exists() and shutil.which("bash") is not None
     if has_finder and not os.environ.get(FREECADCMD):

@@ -50,8 +50,8 @@ def guide_rows(program: Program, touching: Array, lead_length: float) -> tuple[A
     """Find the row that each row moves with.
 
     Touching rows are their own guides. A feed move between a rapid move and a cut, up to ``lead_length`` along the
-    path from it, is a lead and moves with the nearest row of that cut. Of the rapid moves after a cut the vertical
-    ones move with the cut, and so does the first in any direction if more follow; all others move with the next cut.
+    path from it, is a lead and moves with the nearest row of that cut. Vertical rapid moves after a cut move with the
+    cut, and so does the first in any direction if more follow; all others move with the next cut.
 
     Args:
         program: lines and rapid moves, N rows.

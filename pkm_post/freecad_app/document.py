@@ -39,9 +39,9 @@ def is_operation(item: Any) -> bool:
 
 
 def job_of(item: Any) -> Any:
-    """The CAM job that an object is or belongs to; None if there is none, or more than one.
+    """The CAM job that an object is or is part of; None if there is none, or more than one.
 
-    An object belongs to a job as operation, tool controller, tool bit, stock or model, also as the original of these,
+    An object is part of a job as operation, tool controller, tool bit, stock or model, also as the original of these,
     and as a machine, reach or simulation of the job.
     """
     if is_job(item):
@@ -65,7 +65,7 @@ def job_for(items: Sequence[Any], document: Any) -> Any:
         document: the active document; None for none.
 
     Returns:
-        The job of all objects that belong to one; the only one of the document if none does; None if objects belong to
+        The job of all objects that have one; the document's only one if none does; None if the objects have
         several jobs, or if it is ambiguous.
     """
     jobs = {job.Name: job for job in map(job_of, items) if job is not None}

@@ -53,7 +53,7 @@ class Checked:
         gouge: depth of the deepest gouge found, 0 for none.
         gouge_point: (3,) its place.
         unseen: bound of the additional depth of a gouge between the points, mm.
-        excess: largest excess on the faces to be covered; ``reach`` where the cutter does not get at all.
+        excess: largest excess on the faces to be covered, at most ``reach``.
         excess_point: (3,) its place.
         points: (N, 3) the measured points of the grid.
         depth: (N,) depth of each inside the swept volume of the cutter, mm; negative outside.
@@ -178,7 +178,7 @@ class _Grid:
         return cls(face, surface, (rows, columns), *surface.oriented_at(u, v), surface.contains(u, v))
 
     def _corners(self, values: Array) -> Array:
-        """Values of the grid at the four corners of each cell, (4, C, ...), in their order round it."""
+        """Values of the grid at the four corners of each cell, (4, C, ...), in cyclic order."""
         rows, columns = self.counts
         grid = values[: rows * columns].reshape(rows, columns, *values.shape[1:])
         around = (grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:])

@@ -73,7 +73,7 @@ def open_fault(code: str) -> QtWidgets.QDialog:
 
 
 def _rule_row(code: str) -> str:
-    """A code, its cause and its remedy as a table row, with the code as an anchor."""
+    """A code, its cause and its cure as a table row, with the code as an anchor."""
     cause, cure = (html.escape(text) for text in (cause_text(code), cure_text(code)))
     return f'<tr><td><a name="{code}">{code}</a>&nbsp;</td><td>{cause}&nbsp;</td><td>{cure}</td></tr>'
 

@@ -148,7 +148,7 @@ def _verdict(obj: Any) -> tuple[str, bool | None]:
 
 
 def _violation_rows(obj: Any) -> list[tuple[str, bool, str]]:
-    """Text, severity and remedy of each violation; those stored in the document are parsed from their lines."""
+    """Text, severity and cure of each violation; those stored in the document are parsed from their lines."""
     study = obj.Proxy.study
     if study is not None:
         return [_row(each) for each in violations_of(study)]

@@ -74,7 +74,7 @@ class FindingRows(QtWidgets.QListWidget):
         self.itemActivated.connect(lambda item: self.picked.emit(self.row(item)))
 
     def take(self, rows: Sequence[tuple[str, bool | None, str]]) -> None:
-        """Show rows: text, whether it is an error (True), a warning (False) or neither (None), and remedy.
+        """Show rows: text, whether it is an error (True), a warning (False) or neither (None), and cure.
 
         No rows hide the list.
         """

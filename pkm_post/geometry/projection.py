@@ -30,7 +30,7 @@ _ITERATIONS = 30
 _SMALL = 1e-5
 """Newton step in mm that is taken even if the distance grows: this close to the minimum, growth is rounding."""
 _ARRIVED = 1e-8
-"""Newton step in mm that is the last one: its error is of the order of its square."""
+"""Newton step in mm that ends the iteration: the error left is of the order of its square."""
 Closed = tuple[bool, bool]
 
 

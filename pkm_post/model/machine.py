@@ -170,7 +170,7 @@ class Machine:
         left_out: unsupported codes of G-code to skip, such as "M21".
         optional_stops: treatment of M1: "written", "stop" or "leave-out".
         spindle_axis: the spindle as an axis, for threads; None if it cannot be one.
-        tool_table: path of the tool table for part programs, with its unit behind a comma; None if not stated.
+        tool_table: path of the tool table for part programs, with its unit after a comma; None if not stated.
     """
 
     name: str

@@ -93,5 +93,5 @@ def _events(program: Program, begin: int, end: int) -> tuple[Event, ...]:
 
 
 def _ends_thread(event: Event) -> bool:
-    """Whether an event belongs to the row before it, like the end of a thread."""
+    """Whether an event goes with the row before it, like the end of a thread."""
     return event.kind is EventKind.SPINDLE_AXIS and event.value == 0

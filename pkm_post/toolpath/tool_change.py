@@ -99,7 +99,7 @@ class _Detour:
 
     Attributes:
         row: the row.
-        name: name of the operation they belong to.
+        name: name of their operation.
         there: moves that end at the tool-change pose; empty for an approach.
         back: moves from there to where the program continues.
     """

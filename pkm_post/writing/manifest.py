@@ -130,7 +130,7 @@ def _fingerprint(name: str, stream: BinaryIO) -> str:
 
 
 def _parts(stream: BinaryIO) -> Iterator[bytes]:
-    """Yield the bytes of a stream in parts; a CR stays with the LF behind it."""
+    """Yield the bytes of a stream in parts; a CR stays with the LF after it."""
     while part := stream.read(_AT_ONCE):
         checkpoint()
         while part.endswith(b"\r") and (more := stream.read(1)):

@@ -8,9 +8,9 @@ reduces its answers to values. From then on each line sent, terminated by one LF
     refusal  = the same with ``stdin:LINE:COLUMN: error #NUMBER: MEANING: text`` among the data
 
 The terminal's echo of the command proves that the answer belongs to it. Remains of the previous answer, such as a late
-The terminal's echo of the command proves that the answer belongs to it. Remains of the previous answer, such as a late
 CR LF, precede it and are skipped. Not every firmware is known to send ACK after a refusal: the wait for it ends with
 the silence. [gpascii]
+
 ssh neither loses nor corrupts data, so there are no checksums; invalid data ends with ``Lost``, and the caller
 reconnects.
 

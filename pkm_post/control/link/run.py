@@ -2,11 +2,11 @@
 """Run: check, start and resume a program, and set its override. Each command is sent once, then the state is read.
 
 Hold and abort are in ``stopping``. ``Q`` is not offered: it would end a program at a knot where the struts are moving.
-The controller's state reflects a command with a short delay, so it is polled. Preconditions in
-controller and machine are queried, never assumed.
+The controller's state reflects a command with a short delay, so it is polled. Preconditions in controller and machine
+are queried, never assumed.
 
-Input: a session, settings, a program, strut lengths in mm. Output: the resulting state, or ``NotReadyError``
-with every reason.
+Input: a session, settings, a program, strut lengths in mm. Output: the resulting state, or ``NotReadyError`` with every
+reason.
 """
 
 from __future__ import annotations
@@ -200,7 +200,7 @@ def resume_program(session: Session, settings: AnySettings) -> Status:
         NotReadyError: no program is held, or there is a fault.
         OutcomeUnknownError: the link failed, and the program is not seen to resume.
         CancelledError: a stop came first; the program is still held.
-        NotOwnerError: the program belongs to another client; it is still held.
+        NotOwnerError: another client owns the program; it is still held.
     """
     with owned(session, "resume", concurrent=RESUMED_BY_ALL):
         return _resume(session, settings)

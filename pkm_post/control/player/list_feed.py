@@ -42,7 +42,7 @@ class ListPoint:
     Attributes:
         place: its first variable.
         ms: interval to it.
-        motion: the motion it belongs to.
+        motion: its motion.
         knot: its index in the motion.
     """
 

@@ -46,12 +46,12 @@ MACHINE_CODES: tuple[str, ...] = (
     *(f"N{1000 * tool}" for tool in range(_TOOLS)),
     "CLOSE",
 )
-"""Programs behind M and T codes, for a machine without hardware: M3, M4 and M5 write 1, -1 and 0 to P7001, M8, M7 and
+"""Programs for M and T codes, for a machine without hardware: M3, M4 and M5 write 1, -1 and 0 to P7001, M8, M7 and
 M9 write 1, 2 and 0 to P7002; M0 and M1 stop until R; T accepts any tool from 0 to 99, and M6 changes it instantly."""
 
 
 def function_programs(numbers: Iterable[int]) -> list[str]:
-    """Lines that add programs behind M codes of a machine, such as 21: they write their number to P7004.
+    """Lines that add programs for M codes of a machine, such as 21: they write their number to P7004.
 
     Args:
         numbers: of codes without a program.
@@ -82,7 +82,7 @@ class SimulatorSettings:
         card: answer to TYPE.
         identity: answer to CID.
         password: protects programs from 1000 on; empty for none.
-        machine_codes: lines loaded at a reset: the programs behind G, M, T and D codes.
+        machine_codes: lines loaded at a reset: the programs for G, M, T and D codes.
         numbers: number format.
     """
 

@@ -25,7 +25,7 @@ HIGHEST_OVERRIDE = 225.0
 """%; the servo rate in kHz times 100 %."""
 MOVES_AT_ONCE = 1000
 SAME_PLACE = 0.5
-"""counts: largest distance of a motor from the place where its program stopped."""
+"""counts: largest distance of a motor from its position when the program stopped."""
 
 
 class CoordinateSystem:

@@ -56,7 +56,7 @@ RESULT_RULES: dict[str, Rule] = {
         "take a shorter one for --segment-time and SegMoveTime, or 0 for no segmentation, or post with more tolerance;"
         " the faults that follow are those of the motion in segments",
     ),
-    # C2: moves by hand, at the controller
+    # C2: manual moves at the controller
     "C201": error("the command moves nothing", "give a direction and a distance"),
     "C202": error("no pose of the platform belongs to the strut lengths on the way", "jog less far, or jog the tool"),
     "C203": error(

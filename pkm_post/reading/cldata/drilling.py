@@ -146,7 +146,7 @@ def _return_heights(holes: _Holes, follows_hole: Array, same_series: Array, cycl
     Args:
         holes: the holes; ``previous`` where no hole directly precedes.
         follows_hole: (H,) whether a hole directly precedes.
-        same_series: (H,) whether it belongs to the same series, which has one initial height.
+        same_series: (H,) whether it is in the same series, which has one initial height.
         cycles: by ``holes.cycle``.
     """
     back = np.array([cycle.height for cycle in cycles])[holes.cycle]

@@ -49,7 +49,7 @@ def tldata(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 def _check_corner(state: ReaderState, row: int, e: float, f: float) -> None:
-    """Report e or f that does not belong to the corner tangent to bottom and side."""
+    """Report e or f that does not match the corner tangent to bottom and side."""
     a, b, r = state.bottom_angle, state.side_angle, state.corner_radius
     tangent_e = state.diameter / 2 - r * corner_reach(a, b)
     tangent_f = tangent_e * math.tan(a) + r / math.cos(a)

@@ -86,7 +86,7 @@ class Cutter:
             h: height, mm.
 
         Raises:
-            ValueError: a value is out of its range, or a given e or f belongs to an arc that is not tangent.
+            ValueError: a value is out of its range, or a given e or f is of an arc that is not tangent.
         """
         if not (math.isfinite(d) and d > 0.0):
             raise ValueError(f"Cutter: expected a diameter above 0, got {d}")

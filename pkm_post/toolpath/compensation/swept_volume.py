@@ -35,7 +35,7 @@ from pkm_post.geometry import (
 from pkm_post.toolpath.compensation.cutter import Cutter, CutterProfile
 
 _BLOCK = 16
-"""Steps of the path that are skipped together when they are far away."""
+"""Steps of the path skipped together when far away."""
 _STEP = 0.25
 """Longest step between two poses, in radii of the cutter."""
 _POINTS_PER_CELL = 100
@@ -153,7 +153,7 @@ class SweptVolume:
     Attributes:
         tip: (M + 1, 3) tool tips at the ends of the steps, mm.
         axis: (M + 1, 3) unit tool axes there.
-        row: (M,) row of the path that the step belongs to.
+        row: (M,) row of the path of each step.
         travel: (M,) bound of the distance that any point of the cutter moves in the step, mm.
         bend: (M,) bound of the deviation of a point's path, in the frame of the cutter, from a straight line, mm.
         profile: outline of the cutter.
@@ -249,7 +249,7 @@ class SweptVolume:
 
     @cached_property
     def _blocks(self) -> tuple[Array, Array, Array]:
-        """Of blocks of steps the one in the middle, a bound of the cutter's travel from there, and their number."""
+        """The middle step of each block, a bound of the cutter's travel from there, and the number of its steps."""
         first = np.arange(0, len(self.travel), _BLOCK)
         last = np.minimum(first + _BLOCK, len(self.travel))
         half = (first + last) // 2
@@ -257,7 +257,7 @@ class SweptVolume:
         return half, np.maximum(way[last] - way[half], way[half] - way[first]), last - first
 
     def _step_distances(self, points: Array, steps: Array) -> tuple[Array, Array]:
-        """Distances of points where steps begin, and their lower bounds within the steps, (N, K) each."""
+        """Distances of points at the starts of steps, and their lower bounds within the steps, (N, K) each."""
         last = np.append(np.diff(steps) > 1, True)
         begin = self._to_poses(points, steps)
         end = np.empty_like(begin)
@@ -298,7 +298,7 @@ class SweptVolume:
         return best, row
 
     def _to_ends(self, points: Array, point: Array, step: Array) -> tuple[Array, Array]:
-        """Distances of points to the cutter where steps begin and where they end, (K,) each."""
+        """Distances of points to the cutter at the start and the end of steps, (K,) each."""
         begin = self._to_begin(take_rows(points, point), step)
         end = np.append(begin[1:], 0.0)
         follows = np.append((point[1:] == point[:-1]) & (step[1:] == step[:-1] + 1), False)
@@ -328,7 +328,7 @@ class SweptVolume:
         return self.profile.distance(np.sqrt(np.maximum(square - level**2, 0.0)), level)
 
     def _to_begin(self, points: Array, steps: Array) -> Array:
-        """Distances of points (N, 3), each to the cutter where its own step begins, (N,)."""
+        """Distances of points (N, 3), each to the cutter at the start of its own step, (N,)."""
         return self._to_placed(points, *(np.take(column, steps, axis=1) for column in self._columns))
 
     def _to_pose(self, points: Array, steps: Array, share: Array) -> Array:

@@ -26,7 +26,7 @@ class Splines:
     """The curves of some rows of a trajectory; M rows, K pieces, in order.
 
     Attributes:
-        row: (M,) rows that belong to runs, ascending.
+        row: (M,) rows in runs, ascending.
         place: (M,) parameter at the start of each row, along the curves of all runs.
         extent: (M,) parameter between start and end of each row.
         first: (M,) the first piece of the run of each row.

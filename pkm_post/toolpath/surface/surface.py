@@ -73,7 +73,7 @@ class Surface:
 
     Attributes:
         evaluate: from u (N,) and v (N,) to points, outward unit normals, derivatives by u and by v, (N, 3) each.
-        inside: from u (N,) and v (N,) to whether they belong to the face, (N,).
+        inside: from u (N,) and v (N,) to whether they are on the face, (N,).
         u: range of the first parameter.
         v: range of the second one.
         points: from u (N,) and v (N,) to points only, (N, 3), where that is cheaper.
@@ -107,12 +107,12 @@ class Surface:
         return (self.points(*pair), self.normals(*pair)) if self.points and self.normals else self.evaluate(*pair)[:2]
 
     def contains(self, u: Array, v: Array) -> Array:
-        """Pairs that belong to the face, (N,)."""
+        """Mask of the pairs on the face, (N,)."""
         found: Array = np.asarray(self.inside(self.u.normalise(u), self.v.normalise(v)), dtype=bool)
         return found
 
     def swapped(self) -> Surface:
-        """The same surface with u and v exchanged; the normals stay."""
+        """The same surface with u and v exchanged; the normals are unchanged."""
 
         def evaluate(u: Array, v: Array) -> tuple[Array, Array, Array, Array]:
             point, normal, along_u, along_v = self.evaluate(v, u)

@@ -43,7 +43,7 @@ def pass_rows(program: Program) -> Array:
 
 
 def cutting_rows(program: Program) -> Array:
-    """Rows that belong to a pass, (N,). A row without motion belongs with the row before."""
+    """Mask of the rows in a pass, (N,). A row without motion counts with the row before."""
     cuts = (program.kind != Kind.RAPID) & (axial_moves(program) == 0)
     known = moving_rows(program)
     known[:1], cuts[:1] = True, False

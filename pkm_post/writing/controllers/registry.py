@@ -111,7 +111,7 @@ class Table(Protocol):
         """The table, as one text or several; the heading is for the user."""
 
     def measured(self, texts: Sequence[tuple[str, str]], motion: StrutMotion) -> tuple[str, tuple[Diagnostic, ...]]:
-        """Read file names and texts back and compare them with the motion: the result in words, and the faults."""
+        """Read file names and texts back and compare them with the motion: the result as text, and the faults."""
 
 
 TABLES: Mapping[str, Table] = _Modules({"csv": "motion_csv", "halstreamer": "halstreamer"})

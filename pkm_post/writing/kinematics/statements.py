@@ -45,7 +45,7 @@ class While:
 
 @dataclass(frozen=True)
 class Fail:
-    """Report that there is no solution, in the way of the controller."""
+    """Report that there is no solution, as the controller expects."""
 
 
 Statement = Comment | Assign | If | While | Fail

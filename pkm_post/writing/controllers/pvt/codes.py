@@ -158,7 +158,7 @@ def _number_text(template: str, value: float) -> str:
 
 
 def reason_unwritable(event: Event, codes: Mapping[str, str]) -> str:
-    """The reason why ``event`` has no code, in words; empty if it has one."""
+    """The reason why ``event`` has no code, as text; empty if it has one."""
     if event.kind == EventKind.DWELL:
         return "" if 0 <= event.value <= LONGEST_DWELL else f"a dwell lasts 0 to {LONGEST_DWELL} s"
     name = _name(event)

@@ -2,7 +2,7 @@
 """Parts: split a motion into several programs that run in sequence, and join them again.
 
 Input: strut motion and the knots where it is cut, or the motions read from the parts. Output: a motion for each part,
-each starting at 0 ms, or one motion. Events at a cut belong to the part after it. Each part states its number in its
+each starting at 0 ms, or one motion. Events at a cut go to the part after it. Each part states its number in its
 heading, for the user and for the reader.
 """
 
