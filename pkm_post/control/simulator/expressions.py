@@ -20,8 +20,8 @@ from pkm_post.control.simulator.variables import DOUBLES, ELEMENT, WORDS, FloatF
 
 
 @cache
-def _compiled(pattern: str) -> re.Pattern[str]:
-    return re.compile(r" *(?:" + pattern + r")", re.IGNORECASE | re.ASCII)
+def _match_of(pattern: str) -> Callable[[str, int], re.Match[str] | None]:
+    return re.compile(r" *(?:" + pattern + r")", re.IGNORECASE | re.ASCII).match
 
 
 class Scanner:
@@ -39,7 +39,7 @@ class Scanner:
 
     def take(self, pattern: str) -> re.Match[str] | None:
         """Read a token if it comes next."""
-        match = _compiled(pattern).match(self.text, self.position)
+        match = _match_of(pattern)(self.text, self.position)
         if match is not None:
             self.position = match.end()
         return match

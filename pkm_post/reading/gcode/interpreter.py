@@ -86,15 +86,14 @@ class Interpreter(FlowControl):
         Raises:
             ExecutionFault: the program cannot continue at ``row``.
         """
-        end = len(self._blocks)
+        end, are_special, cost_of = len(self._blocks), frozenset(special), self._cost.get
         special = [*special, end]
-        while self.row < end:
-            stop = special[bisect_left(special, self.row)]
-            if stop > self.row and self._after_moves is None:
-                self._copy(stop)
+        while (row := self.row) < end:
+            if row not in are_special and self._after_moves is None:
+                self._copy(special[bisect_left(special, row)])
             else:
-                self._spend(1, self._cost.get(self.row, 1))
-                self.row = self._step(self.row)
+                self._spend(1, cost_of(row, 1))
+                self.row = self._step(row)
         self._refuse_open_subprogram()
 
     def _so_far(self) -> Blocks:

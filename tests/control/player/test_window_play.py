@@ -39,9 +39,9 @@ def connection():
     made.close()
 
 
-def playing(connection, trajectory=None, **choices):
+def playing(connection, trajectory=None, override=0.1, **choices):
     """A play of 100 mm, so slow that it has not ended when something comes first."""
-    options = PlayOptions(override=0.1, **choices)
+    options = PlayOptions(override=override, **choices)
     return WindowPlay(connection, trajectory or trajectory_of(RECTANGLE), TOLERANCES, options)
 
 
@@ -76,7 +76,7 @@ def test_a_hold_of_the_worker_comes_first_and_the_play_goes_on_behind_it(connect
 
 def test_a_hold_before_anything_runs_keeps_it_from_starting(connection):
     stopped = trajectory_of(RECTANGLE, events=(Event(1, EventKind.STOP, 0.0),))
-    play = playing(connection, stopped)
+    play = playing(connection, stopped, override=1.5)  # nothing comes first here: it rests, and it plays to its end
     until(lambda: play.waits_for == "M0")
     connection.worker.submit(lambda control: control.hold(), urgent=True).result(LONGEST_S)
     play.order(Order("resume"))

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Random programs with leads, tilted tools and retracts that turn the axis: a plunge keeps its feed, twice is once."""
 
+import functools
+
 import numpy as np
 import pytest
 from programs import program
@@ -142,6 +144,13 @@ def random_program(rng, kind):
     return program(tip, axis, kind=np.where(np.isnan(feed), Kind.RAPID, Kind.LINE), feed=feed)
 
 
+@functools.cache
+def reversed_program(kind, seed):
+    """A random program and what comes of it when its passes are reversed, once for all that is asked of them."""
+    made = random_program(np.random.default_rng([seed, list(KINDS).index(kind)]), kind)
+    return made, *reversed_passes(made)
+
+
 def mirrored_climbing(made, matrix):
     """A copy in a mirror with Keep climb."""
     turned, faults = reversed_passes(transform(made, matrix)[0])
@@ -163,8 +172,7 @@ def test_mirrored_twice_with_climb_kept_is_the_original(kind, seed):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(60))
 def test_what_comes_down_to_a_pass_has_the_feed_of_the_plunge(kind, seed):
-    made = random_program(np.random.default_rng([seed, list(KINDS).index(kind)]), kind)
-    once, faults = reversed_passes(made)
+    made, once, faults = reversed_program(kind, seed)
     assert once is not None, faults
     feeds = {PLUNGE, LIFT, LEAD, CUT}
     assert set(once.feed[np.isfinite(once.feed)].tolist()) <= feeds
@@ -180,8 +188,7 @@ def test_what_comes_down_to_a_pass_has_the_feed_of_the_plunge(kind, seed):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(60))
 def test_no_rapid_move_comes_nearer_to_a_pass_than_one_did(kind, seed):
-    made = random_program(np.random.default_rng([seed, list(KINDS).index(kind)]), kind)
-    once, _ = reversed_passes(made)
+    made, once, _ = reversed_program(kind, seed)
 
     def nearest(each):
         rapid = np.isnan(each.feed)
