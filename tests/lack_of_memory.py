@@ -3,6 +3,7 @@
 
 import os
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import CodeType, FrameType
@@ -16,6 +17,36 @@ WHAT = "Unable to allocate 7 GiB"
 @contextmanager
 def traced(call: Callable[[CodeType], bool]) -> Iterator[None]:
     """Have ``call`` look at functions of PKM Post when this thread enters them, again if it says so."""
+    with _monitored(call) if hasattr(sys, "monitoring") else _by_calls(call):
+        yield
+
+
+@contextmanager
+def _monitored(call: Callable[[CodeType], bool]) -> Iterator[None]:
+    """From Python 3.12 on: what was looked at runs as fast as ever."""
+    monitoring, thread = sys.monitoring, threading.get_ident()
+    tool, events = monitoring.PROFILER_ID, monitoring.events
+
+    def enter(code: CodeType, _: int) -> object:
+        if not code.co_filename.startswith(PACKAGE):
+            return monitoring.DISABLE
+        if threading.get_ident() != thread:
+            return None
+        return None if call(code) else monitoring.DISABLE
+
+    monitoring.use_tool_id(tool, __name__)
+    try:
+        for event in (events.PY_START, events.PY_RESUME):
+            monitoring.register_callback(tool, event, enter)
+        monitoring.set_events(tool, events.PY_START | events.PY_RESUME)
+        monitoring.restart_events()
+        yield
+    finally:
+        monitoring.free_tool_id(tool)
+
+
+@contextmanager
+def _by_calls(call: Callable[[CodeType], bool]) -> Iterator[None]:
     passed: dict[int, CodeType] = {}
 
     def trace(frame: FrameType, event: str, _: object) -> None:
