@@ -32,7 +32,7 @@ from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings, PowerPmacSettings
 
 _UNSIGNED = r"(?:\d+(?:\.\d*)?|\.\d+)"
-"""Digits belong to one part of it only, so that a long answer of nothing else is refused in time in proportion to it."""
+"""Digits belong to one part of it only: a long answer of nothing else is refused in time in proportion to it."""
 _DEFINITION = re.compile(rf"([-+]?{_UNSIGNED})?([A-Z])([-+]{_UNSIGNED})?")
 _ROTARY = "ABC"
 
