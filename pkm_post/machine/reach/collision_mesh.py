@@ -29,6 +29,8 @@ _BOX_FACES = np.array(
     ]
 )  # fmt: skip
 """Corners of the twelve triangles of a box, in the numbering of ``box_corners``."""
+_SPREAD: Array = np.sum([(np.arange(1024) >> bit & 1) << 3 * bit for bit in range(10)], axis=0)
+"""The bits of each number up to 1023, two zeros between each and the next."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,8 @@ class CollisionMesh:
         every = np.concatenate(pieces)
         if not len(every):
             raise ValueError("expected a part of at least one triangle, box or point, got none")
-        every = every[np.argsort(_along_a_curve(every.mean(axis=1)), kind="stable")]
+        middle = (every[:, 0] + every[:, 1] + every[:, 2]) / 3
+        every = every[np.argsort(_along_a_curve(middle), kind="stable")]
         edges = np.roll(every, -1, axis=1) - every
         normal = cross(edges[:, 0], edges[:, 1])[:, None]
         return cls(every, np.concatenate([normal, edges], axis=1), tuple(_bounding_balls(every)))
@@ -72,14 +75,15 @@ class CollisionMesh:
 
 def _bounding_balls(triangles: Array) -> Iterator[tuple[Array, Array]]:
     """Yield the balls of each level."""
-    points = triangles
+    points = np.ascontiguousarray(triangles.transpose(1, 0, 2))  # those of a ball in a column: NumPy runs along rows
     while True:
-        centre = (points.min(axis=1) + points.max(axis=1)) / 2
-        yield centre, norm(points - centre[:, None]).max(axis=1)
-        if len(points) <= _GROUP:
+        centre = (points.min(axis=0) + points.max(axis=0)) / 2
+        yield centre, norm(points - centre).max(axis=0)
+        count = points.shape[1]
+        if count <= _GROUP:
             return
-        groups = _members(np.arange(-(-len(points) // _GROUP)), len(points))
-        points = points[groups].reshape(len(groups), -1, 3)
+        groups = _members(np.arange(-(-count // _GROUP)), count)
+        points = points[:, groups.T].reshape(-1, len(groups), 3)
 
 
 def _members(ball: Array, count: int) -> Array:
@@ -91,11 +95,8 @@ def _along_a_curve(points: Array) -> Array:
     """Sort keys that keep neighbours in space close in order: interleaved bits of the coordinates (Morton order)."""
     low, size = points.min(axis=0), np.ptp(points, axis=0).max()
     cells = ((points - low) / max(size, 1e-300) * 1023).astype(np.int64)
-    order = np.zeros(len(points), dtype=np.int64)
-    for bit in range(10):
-        for coordinate in range(3):
-            order |= (cells[:, coordinate] >> bit & 1) << (3 * bit + coordinate)
-    return order
+    x, y, z = _SPREAD[cells].T
+    return np.asarray(x | y << 1 | z << 2)
 
 
 def distance_from_mesh(cylinders: Cylinders, part: CollisionMesh, far: float) -> Array:
