@@ -20,36 +20,9 @@ def step():
     return Part.makeBox(40, 20, 10).fuse(Part.makeBox(10, 20, 30)).removeSplitter()
 
 
-def test_gouge_and_material_left_are_reported_with_their_places(document):
-    # A ball of R 5, upright over a floor up to the wall beside it: its axis comes to the wall, and it cuts R deep.
-    floor = lambda face: face.BoundBox.XMin > 9.9 and abs(face.BoundBox.ZMax - 10) < 0.1 and face.normalAt(0, 0).z > 0.9  # noqa: E731,E501
-    job = job_on(document, step())
-    operation = finish(job, floor, Stepover=2.0, CheckSpacing=1.0)
-    assert "N311" in operation.getStatusString()
-    assert operation.MaximumGouge == pytest.approx(5.0, abs=0.01)
-    assert operation.GougePoint.x == pytest.approx(10.0)
-    assert operation.GougePoint.z > 10.0
-    assert operation.MaximumExcess < 5.0 - math.sqrt(5.0**2 - 1.0) + MICRON
-    assert operation.ExcessPoint.z == pytest.approx(10.0)
-    operation.CheckSpacing = 0
-    job.Document.recompute()
-    assert (valid(operation).MaximumGouge, operation.MaximumExcess) == (-1.0, -1.0)
-
-
-def test_every_measured_point_is_kept_for_the_map(document):
-    floor = lambda face: face.BoundBox.XMin > 9.9 and abs(face.BoundBox.ZMax - 10) < 0.1 and face.normalAt(0, 0).z > 0.9  # noqa: E731,E501
-    operation = finish(job_on(document, step()), floor, Stepover=2.0, CheckSpacing=1.0)
-    found = operation.Proxy.measured
-    assert found.depth.max() == operation.MaximumGouge == pytest.approx(5.0, abs=0.01)
-    ours = np.isfinite(found.left)
-    assert found.left[ours].max() == operation.MaximumExcess
-    np.testing.assert_allclose(found.points[ours][:, 2], 10.0)  # only the floor is to be covered
-    assert (found.points[~ours][:, 0] <= 10.0 + MICRON).any()  # the wall beside it is measured as well
-    # triangles cover the floor whole, and the other faces but for cells across the border of the L-shaped ones
-    a, b, c = (found.points[found.triangles[:, corner]] for corner in range(3))
-    area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-    assert area[ours[found.triangles].all(axis=1)].sum() == pytest.approx(30 * 20, rel=1e-6)
-    assert area.sum() == pytest.approx(sum(face.Area for face in step().Faces), rel=0.01)
+def floor(face):
+    """Whether it is that floor."""
+    return face.BoundBox.XMin > 9.9 and abs(face.BoundBox.ZMax - 10) < 0.1 and face.normalAt(0, 0).z > 0.9
 
 
 @pytest.mark.parametrize("spacing", [3.0, 1.5])
@@ -63,7 +36,6 @@ def test_ridges_are_found_where_the_spacing_fits_the_passes(document, spacing):
 
 def test_nothing_is_posted_over_a_gouge(document, tmp_path, monkeypatch):
     monkeypatch.setattr(surface_check, "_MOST_CLOSE", 1000)  # the grid finds it
-    floor = lambda face: face.BoundBox.XMin > 9.9 and abs(face.BoundBox.ZMax - 10) < 0.1 and face.normalAt(0, 0).z > 0.9  # noqa: E731,E501
     job = job_on(document, step())
     operation = finish(job, floor, Stepover=4.0, CheckSpacing=2.0)
     assert not operation.isValid()
@@ -73,6 +45,45 @@ def test_nothing_is_posted_over_a_gouge(document, tmp_path, monkeypatch):
         post_job(job, "example_6tps", tmp_path, AT_G54)
     assert "J116" in [fault.code for fault in refused.value.diagnostics]
     assert not any(tmp_path.iterdir())
+
+
+@pytest.fixture(scope="module")
+def gouging():
+    """A ball of R 5, upright over a floor up to the wall beside it: its axis comes to the wall, and it cuts R deep.
+
+    The operation, and what was measured as it was computed first.
+    """
+    document = App.newDocument("gouging")
+    operation = finish(job_on(document, step()), floor, Stepover=2.0, CheckSpacing=1.0)
+    yield operation, operation.Proxy.measured
+    App.closeDocument(document.Name)
+
+
+def test_every_measured_point_is_kept_for_the_map(gouging):
+    operation, found = gouging
+    assert found.depth.max() == operation.MaximumGouge == pytest.approx(5.0, abs=0.01)
+    ours = np.isfinite(found.left)
+    assert found.left[ours].max() == operation.MaximumExcess
+    np.testing.assert_allclose(found.points[ours][:, 2], 10.0)  # only the floor is to be covered
+    assert (found.points[~ours][:, 0] <= 10.0 + MICRON).any()  # the wall beside it is measured as well
+    # triangles cover the floor whole, and the other faces but for cells across the border of the L-shaped ones
+    a, b, c = (found.points[found.triangles[:, corner]] for corner in range(3))
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    assert area[ours[found.triangles].all(axis=1)].sum() == pytest.approx(30 * 20, rel=1e-6)
+    assert area.sum() == pytest.approx(sum(face.Area for face in step().Faces), rel=0.01)
+
+
+def test_gouge_and_material_left_are_reported_with_their_places(gouging):
+    operation, _ = gouging
+    assert "N311" in operation.getStatusString()
+    assert operation.MaximumGouge == pytest.approx(5.0, abs=0.01)
+    assert operation.GougePoint.x == pytest.approx(10.0)
+    assert operation.GougePoint.z > 10.0
+    assert operation.MaximumExcess < 5.0 - math.sqrt(5.0**2 - 1.0) + MICRON
+    assert operation.ExcessPoint.z == pytest.approx(10.0)
+    operation.CheckSpacing = 0
+    operation.Document.recompute()
+    assert (valid(operation).MaximumGouge, operation.MaximumExcess) == (-1.0, -1.0)
 
 
 @pytest.fixture(scope="module")
