@@ -59,14 +59,14 @@ def fast_poses_within(path: ToolPath, segment: Array, u: Array) -> FastPoses:
     seg, to_end = path.segments, path.segments.extent[segment] - u
     nearer_end = u > to_end
     joint = segment + nearer_end
-    side = np.where(nearer_end, 1.0, -1.0)
-    other = np.clip(np.where(nearer_end, joint, segment - 1), 0, len(seg) - 1)
     half, distance = path.blend[joint], np.maximum(np.where(nearer_end, to_end, u), 0.0)
     smooth = seg.is_curve(segment) & (distance >= half)
     if smooth.all():
         return _on_curves(path, segment, u)
     if smooth.any():
         return _merged(path, segment, u, smooth)
+    side = np.where(nearer_end, 1.0, -1.0)
+    other = np.clip(np.where(nearer_end, joint, segment - 1), 0, len(seg) - 1)
     curved = np.flatnonzero(_curved(path, segment, other, distance < half))
     if len(curved) == len(segment):
         exact = path.within(segment, u)
@@ -121,7 +121,7 @@ def _curved(path: ToolPath, segment: Array, other: Array, blended: Array) -> Arr
 def _on_curves(path: ToolPath, segment: Array, u: Array) -> FastPoses:
     """Places on smooth curves, outside of blends."""
     seg, splines = path.segments, path.segments.splines
-    _, row = splines.among(segment)
+    row = splines.number(segment)
     tip, tip_1 = splines.within(row, u, splines.tip)
     if splines.turns:
         vector, (spin,) = (splines.within(row, u, one)[0] for one in (splines.axis, splines.spin))

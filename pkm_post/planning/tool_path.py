@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array, along_rates, norm
-from pkm_post.model import Poses, Trajectory, pieces
+from pkm_post.model import Poses, Trajectory, pieces, read_only, select_rows
 from pkm_post.toolpath import Segments, direction
 
 OFFSET = 3 / 16
@@ -118,7 +118,8 @@ class ToolPath:
         rows = np.flatnonzero(np.abs(x) < _INSIDE * self.blend[joint])
         if len(rows):
             self._round(joint[rows], x[rows], rows, tip, axis, spin)
-        return Poses(*tip, *axis, spin[0], spin[1], spin[2], self.tool_length[segment], segment)
+        tip_0, tip_1, tip_2 = map(read_only, tip)  # so that no copies of them are made
+        return Poses(tip_0, tip_1, tip_2, *axis, *spin, select_rows(self.tool_length, segment), segment)
 
     def _round(self, joint: Array, x: Array, rows: Array, tip: Triple, axis: Triple, spin: Triple) -> None:
         """Overwrite the rows in blends, at distances x from the joints at the starts of segments ``joint``.
@@ -143,6 +144,8 @@ class ToolPath:
             change, (column, first, second) = rate_after - rate, (one[:, None] for one in (h, w, w1))
             tangent = x[:, None] * rate + column * change, rate + first * change, second * change
             _overwrite(axis, rows, along_rates(seg.axis[joint], *tangent))
+        if seg.never_spins:
+            return
         turn = seg.spin_rate[before]
         change = seg.spin_rate[joint] - turn
         _overwrite(spin, rows, (seg.spin[joint] + turn * x + change * h, turn + change * w, change * w1))

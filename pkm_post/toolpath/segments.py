@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pkm_post.geometry import Array, across, along_rates, cross, dot, norm, towards
-from pkm_post.model import Kind, Trajectory, find_rows, is_uniform, map_row_pairs, map_rows, select_rows
+from pkm_post.model import Kind, Trajectory, find_rows, is_uniform, map_row_pairs, map_rows, select_rows, uniform
 from pkm_post.toolpath.compressor.splines import Splines, direction
 
 _TURNING_IN_PLACE = 0.01
@@ -135,6 +135,20 @@ class Segments:
         """Which of the given segments, (M,), are part of a smooth curve."""
         return self.splines.number(segment) >= 0
 
+    @property
+    def never_turns(self) -> bool:
+        """Whether the tool axis is known to be the same everywhere."""
+        return self._stands(self.axis, self.axis_rate)
+
+    @property
+    def never_spins(self) -> bool:
+        """Whether the spin is known to be the same everywhere."""
+        return self._stands(self.spin, self.spin_rate)
+
+    def _stands(self, column: Array, rate: Array) -> bool:
+        known = is_uniform(column) and is_uniform(rate)
+        return known and not rate[:1].any() and not self.splines.turns
+
     def turn(self) -> Array:
         """The larger rate of turn of tool axis or arc, by path length, (N,)."""
         turn = np.array(map_rows(norm, self.axis_rate))
@@ -177,7 +191,9 @@ class Segments:
     def axis_at(self, segment: Array, u: Array) -> tuple[Array, Array, Array]:
         """Tool axis with first and second derivative, (M, 3) each."""
         axis, rate = select_rows(self.axis, segment), select_rows(self.axis_rate, segment)
-        if not rate.any():  # as in all three-axis work
+        if self.never_turns:  # as in all three-axis work
+            return axis, rate, rate
+        if not rate.any():
             return axis, rate, np.zeros_like(rate)
         rows, curves = self.splines.among(segment) if self.splines.turns else (segment[:0], segment[:0])
         if len(rows) < len(segment):
@@ -192,6 +208,9 @@ class Segments:
 
     def spin_at(self, segment: Array, u: Array) -> tuple[Array, Array, Array]:
         """Spin with first and second derivative, (M,) each."""
+        if self.never_spins:
+            still = uniform(0.0, len(segment))
+            return select_rows(self.spin, segment), still, still
         rate = np.take(self.spin_rate, segment)
         turned = np.take(self.spin, segment) + u * rate, rate, np.zeros_like(rate)
         if self.splines.turns:

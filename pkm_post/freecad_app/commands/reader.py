@@ -108,13 +108,13 @@ def _blocks(words: CommandWords, start: Array, source: str) -> gcode.Blocks:
     columns["F"][words.among("G0")] = np.nan
     taps = words.among(*TAPPING)
     columns["F"][taps] *= columns["S"][taps] / 60  # from a lead in mm to mm/s
-    for letter, before in zip("XYZ", start, strict=True):
-        # a move without coordinates, such as a turn of the tool, is a move to the current position
-        idle = words.among(*MOVES) & (words.count("XYZ") == 0)
+    # a move without coordinates, such as a turn of the tool, is a move to the current position
+    idle = words.among(*MOVES) & (words.count("XYZ") == 0)
+    for letter, before in zip("XYZ", start, strict=True) if idle.any() else ():
         columns[letter][idle] = forward_fill(columns[letter], before)[idle]
-    name = np.array(words.codes)[words.code[rows]] if len(rows) else np.zeros(0, "U3")
-    number = np.array([int(each[1:]) for each in name], dtype=np.int32)
-    is_g = np.char.startswith(name, "G")
+    meant = [code if code in _CODES else "G0" for code in words.codes]  # no row has one of the others
+    number = np.array([int(code[1:]) for code in meant], dtype=np.int32)[words.code[rows]]
+    is_g = np.array([code.startswith("G") for code in meant], dtype=np.bool_)[words.code[rows]]
     return gcode.Blocks(
         line=words.line[rows],
         words={letter: column[rows] for letter, column in columns.items() if letter in words.values},

@@ -109,7 +109,10 @@ class CommandWords:
 
     def among(self, *codes: str) -> Array:
         """Which commands have one of these codes, (n,)."""
-        found: Array = np.isin(self.code, [number for number, code in enumerate(self.codes) if code in codes])
+        wanted = np.array([code in codes for code in self.codes], dtype=np.bool_)
+        if not wanted.any():
+            return np.zeros(len(self), dtype=np.bool_)
+        found: Array = wanted[self.code]
         return found
 
     def name(self, row: int) -> str:

@@ -25,7 +25,7 @@ from pkm_post.machine.kinematics.inverse import (
 )
 from pkm_post.machine.kinematics.jacobian import linearise
 from pkm_post.machine.kinematics.screw import screw_rates
-from pkm_post.model import Machine, Poses
+from pkm_post.model import Machine, Poses, is_uniform
 
 _CHUNK = 2048
 """Poses per pass: the 51 numbers of each fill about a megabyte, which stays in the processor's cache."""
@@ -40,10 +40,11 @@ def strut_rates(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
     """
     result = np.empty((3, len(poses), 6))
     form, middle = squared_length_coefficients(machine)
+    still = _stands_still(poses) and machine.screw_lead == 0.0
     for first in range(0, len(poses), _CHUNK):
         rows = slice(first, first + _CHUNK)
         axes = poses.axis[rows], poses.axis_1[rows], poses.axis_2[rows]
-        turn = angular_rates(*axes, poses.spin_1[rows], poses.spin_2[rows])
+        turn = None if still else angular_rates(*axes, poses.spin_1[rows], poses.spin_2[rows])
         numbers = _numbers(machine, middle, poses, rows, turn)
         length, speed, growth = (
             np.matmul(of_order.T, form, out=out) for of_order, out in zip(numbers, result[:, rows], strict=True)
@@ -53,14 +54,24 @@ def strut_rates(machine: Machine, poses: Poses) -> tuple[Array, Array, Array]:
         growth /= 2
         growth -= speed * speed
         growth /= length
-        if machine.screw_lead != 0.0:
+        if turn is not None and machine.screw_lead != 0.0:
             result[:, rows] += _of_screw(machine, poses, rows, turn, (length, speed, growth))
         length -= machine.length_offset
     return result[0], result[1], result[2]
 
 
-def _numbers(machine: Machine, middle: Array, poses: Poses, rows: slice, turn: tuple[Array, Array]) -> Array:
-    """The 17 numbers of each pose with their first and second derivatives, (3, 17, N), in the order of ``inverse``."""
+def _stands_still(poses: Poses) -> bool:
+    """Whether all poses are known to have one attitude, as in three-axis work."""
+    rates = poses.axis_1, poses.axis_2, poses.spin_1, poses.spin_2
+    columns = poses.axis, poses.spin, *rates
+    return len(poses) > 1 and all(map(is_uniform, columns)) and not any(rate[:1].any() for rate in rates)
+
+
+def _numbers(machine: Machine, middle: Array, poses: Poses, rows: slice, turn: tuple[Array, Array] | None) -> Array:
+    """The 17 numbers of each pose with their first and second derivatives, (3, 17, N), in the order of ``inverse``.
+
+    Without a turn the attitude is the same in all poses.
+    """
     reach = machine.spindle_nose + poses.tool_length[rows]
     numbers = np.empty((3, 17, len(reach)))
     p, turned, square, one = numbers[:, 0:3], numbers[:, 3:6], numbers[:, 6], numbers[:, 7]
@@ -71,27 +82,52 @@ def _numbers(machine: Machine, middle: Array, poses: Poses, rows: slice, turn: t
         np.multiply(reach, k[order], out=p[order])
         p[order] += tip[rows].T
     p[0] -= middle[:, None]
-    write_frames(x[0], y[0], k[0], poses.spin[rows])
-    velocity, acceleration = (np.ascontiguousarray(rates.T) for rates in turn)
-    for column in (x, y):
-        column[1] = _cross(velocity, column[0])
-        column[2] = _cross(acceleration, column[0]) + _cross(velocity, column[1])
+    if turn is None:
+        x[0], y[0] = _frame(k[0, :, :1], poses.spin[:1])
+        x[1:], y[1:] = 0.0, 0.0
+    else:
+        write_frames(x[0], y[0], k[0], poses.spin[rows])
+        velocity, acceleration = (np.ascontiguousarray(rates.T) for rates in turn)
+        for column in (x, y):
+            column[1] = _cross(velocity, column[0])
+            column[2] = _cross(acceleration, column[0]) + _cross(velocity, column[1])
     for number, column in enumerate((x, y, k)):
-        _fill_product(turned[:, number], column, p)
-    _fill_product(square, p, p)
+        _fill_product(turned[:, number], column, p, turns=turn is not None)
+    _fill_square(square, p)
     one[0], one[1:] = 1.0, 0.0
     return numbers
 
 
-def _fill_product(product: Array, left: Array, right: Array) -> None:
-    """Write scalar products with first and second derivatives, (3, N), of vectors with theirs, (3, 3, N)."""
+def _frame(axis: Array, spin: Array) -> tuple[Array, Array]:
+    """The x and y axes of one frame, (3, 1) each."""
+    x, y = np.empty((2, 3, 1))
+    write_frames(x, y, axis, spin)
+    return x, y
 
-    def dot(order: int, other: int) -> Array:
-        return np.asarray(np.einsum("ij,ij->j", left[order], right[other]))
 
-    product[0] = dot(0, 0)
-    product[1] = dot(1, 0) + dot(0, 1)
-    product[2] = dot(2, 0) + 2 * dot(1, 1) + dot(0, 2)
+def _fill_product(product: Array, left: Array, right: Array, turns: bool) -> None:
+    """Write scalar products with first and second derivatives, (3, N), of vectors with theirs, (3, 3, N).
+
+    The first vectors are constant unless they turn.
+    """
+    for order in range(3):
+        _dot(left[0], right[order], product[order])
+    if turns:
+        product[1] += _dot(left[1], right[0])
+        product[2] += _dot(left[2], right[0]) + 2 * _dot(left[1], right[1])
+
+
+def _fill_square(square: Array, vectors: Array) -> None:
+    """Write squares of lengths with first and second derivatives, (3, N), of vectors with theirs, (3, 3, N)."""
+    for order in range(3):
+        _dot(vectors[0], vectors[order], square[order])
+    square[1] *= 2
+    square[2] += square[2] + 2 * _dot(vectors[1], vectors[1])
+
+
+def _dot(left: Array, right: Array, out: Array | None = None) -> Array:
+    """Scalar products of (3, N) vectors, (N,)."""
+    return np.asarray(np.einsum("ij,ij->j", left, right, out=out))
 
 
 def _cross(left: Array, right: Array) -> Array:

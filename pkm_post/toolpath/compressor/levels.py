@@ -164,9 +164,8 @@ class _Search:
         where = (change != 0).any(axis=0)
         self.curves = curves.changed(curves.coefficients + change, where, curves.bend)
         at = self._reached_by(where)
-        self._state[0][:, at] += weighted(
-            change, self._column[at], _some(self._weights, at)
-        )  # directions hardly change
+        (moved,) = weighted(change, self._column[at], _some(self._weights, at))
+        self._state[0][:, at] += moved  # directions hardly change
         self._compare(at)
 
     def _reached_by(self, where: Array) -> Array | slice:

@@ -163,14 +163,15 @@ class Splines:
         """The same columns and their first derivative at parameters u within rows, not beyond ends of runs."""
         piece, width, share = self._located(row, u)
         around = np.take(powers, piece, axis=2)
-        value, first = around[_DEGREE] * share, around[_DEGREE].copy()
+        value, first = around[_DEGREE] * share, around[_DEGREE]
         for power in around[-2:0:-1]:
             value += power
             first *= share
             first += value
             value *= share
         value += around[0]
-        return value, first / width
+        first /= width
+        return value, first
 
     def _located(self, row: Array, u: Array) -> tuple[Array, Array, Array]:
         """The piece at parameters u of rows, its width, and the share of it, outside 0 and 1 beyond ends of runs."""

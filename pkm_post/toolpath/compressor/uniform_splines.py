@@ -129,18 +129,19 @@ def _polynomials(powers: Array, x: Array) -> Array:
 def values(grids: Grids, coefficients: Array, run: Array, s: Array) -> tuple[Array, Array]:
     """The curve and its derivative by s, (C, N) each."""
     column, share = grids.locate(run, s)
-    rates = basis_rates(share) / grids.width[run]
-    return weighted(coefficients, column, basis(share)), weighted(coefficients, column, rates)
+    value, rate = weighted(coefficients, column, basis(share), basis_rates(share) / grids.width[run])
+    return value, rate
 
 
-def weighted(coefficients: Array, column: Array, weights: Array) -> Array:
-    """The sum of the six coefficients at each place, (C, N), with weights, (6, N), from the column of the first."""
-    total, part = np.zeros((2, len(coefficients), len(column)))
-    for k, weight in enumerate(weights):
+def weighted(coefficients: Array, column: Array, *weights: Array) -> list[Array]:
+    """The sums of the six coefficients at each place, (C, N), with weights, (6, N), from the column of the first."""
+    shape = len(coefficients), len(column)
+    totals, part, product = [np.zeros(shape) for _ in weights], np.empty(shape), np.empty(shape)
+    for k, of_weights in enumerate(zip(*weights, strict=True)):
         np.take(coefficients, column + k, axis=1, out=part, mode="clip")  # avoids the copy of "raise"
-        part *= weight
-        total += part
-    return total
+        for total, weight in zip(totals, of_weights, strict=True):
+            total += np.multiply(part, weight, out=product)
+    return totals
 
 
 def at_nodes(grids: Grids, coefficients: Array, run: Array, number: Array) -> Array:
