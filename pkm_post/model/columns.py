@@ -43,6 +43,8 @@ def freeze(table: Any, rows: int, columns: dict[str, RowType]) -> None:
 
 
 def _frozen(column: Array, dtype: DTypeLike) -> Array:
+    if column.dtype == dtype and column.strides[0] == 0 and _cannot_change(column):
+        return column
     if is_uniform(column) and len(column):
         return uniform(column[0], len(column), dtype)
     column = np.asarray(column, dtype=dtype)
@@ -129,8 +131,13 @@ def uniform(row: ArrayLike, rows: int, dtype: DTypeLike | None = None) -> Array:
         rows: number of rows.
         dtype: of the column.
     """
-    one = read_only(np.array(row, dtype=dtype))
-    return np.broadcast_to(one, (rows, *one.shape))
+    return _repeated(np.array(row, dtype=dtype), rows)
+
+
+def _repeated(row: Array, rows: int) -> Array:
+    """A read-only column of equal rows; ``numpy.broadcast_to`` takes twice as long."""
+    one = read_only(np.asarray(row, order="C"))
+    return np.ndarray((rows, *one.shape), one.dtype, one, strides=(0, *one.strides))
 
 
 def shifted(first: ArrayLike, column: Array) -> Array:
@@ -149,7 +156,7 @@ def is_uniform(column: Array) -> bool:
 def select_rows(column: Array, rows: Array) -> Array:
     """Select rows of a column; a uniform one stays compact, as ``numpy.take`` would expand it."""
     if is_uniform(column) and len(column):
-        return np.broadcast_to(column[0], (len(rows), *column.shape[1:]))
+        return _repeated(column[0], len(rows))
     return np.take(column, rows, axis=0)
 
 

@@ -41,7 +41,7 @@ _LATE_S = 0.0005
 """... and s that are added."""
 _NEGLIGIBLE_DRIFT = 0.1
 """Share of the cubics' tolerance: a drift bounded below it is left to the remaining tolerance."""
-_POINTS_AT_ONCE = 16384
+_POINTS_AT_ONCE = 32768
 """Places in one pass: the working arrays of one pass stay in the processor's cache."""
 _SOME_JOINTS = 6
 """Joints of an interval that are looked at first: most intervals that are too long are so at one of these ..."""
