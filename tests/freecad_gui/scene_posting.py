@@ -10,7 +10,21 @@ from unittest import mock
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, answer, click, main, new_document, picture, picture_of_all, press, select, settle, step, until
+from gui import (
+    FOLDER,
+    answer,
+    click,
+    close_panel,
+    main,
+    new_document,
+    picture,
+    picture_of_all,
+    press,
+    select,
+    settle,
+    step,
+    until,
+)
 from PySide import QtCore, QtGui, QtWidgets
 
 LONG = ["G0 X0 Y0 Z30", *(f"G1 X{x % 2 * 20} Y{x * 0.02} Z20 F30" for x in range(400)), "G0 Z30"]
@@ -93,11 +107,6 @@ def clicked(listed, item):
     return selected, FreeCADGui.getMainWindow().statusBar().currentMessage()
 
 
-def close():
-    FreeCADGui.Control.closeDialog()
-    settle()
-
-
 @step
 def posting_shows_the_certificate():
     document, folder = saved("gui")
@@ -117,7 +126,7 @@ def posting_shows_the_certificate():
         "clicked": clicked(panel.outcome.findings, panel.outcome.findings.item(0, 0)),
         "where": panel.outcome.findings.item(0, 4).text(),
     }
-    close()
+    close_panel()
     return found
 
 
@@ -142,7 +151,7 @@ def panel_fits_a_narrow_dock():
     }
     panel.post()
     found["width with a certificate"] = panel.form.minimumSizeHint().width()
-    close()
+    close_panel()
     return found
 
 
@@ -162,7 +171,7 @@ def job_keeps_what_was_chosen():
     listed = manifest.check(folder / "gui.pmc")[0] is not None
     shown = open_panel(document)
     again = {"text": shown.choices.text(), "folder": shown.choices.folder.text()}
-    close()
+    close_panel()
     document.undo()
     document.undo()
     return {"kept": kept, "same": same, "listed": listed, "again": again, "undone": job.PostProcessorArgs}
@@ -177,7 +186,7 @@ def refused_job_is_reported_and_leaves_nothing():
     panel.post()
     place = clicked(panel.outcome.diagnostics, panel.outcome.diagnostics.item(0))
     found = {"files": names_in(folder), "reported": panel.rows(), "clicked": place, "drawn": picture("refused.png")}
-    close()
+    close_panel()
     return found
 
 
@@ -208,7 +217,7 @@ def refusal_that_a_place_mends_offers_one():
     found["offset"] = panel.choices.work_offset.currentText()
     panel.post()
     found |= {"verdict": panel.outcome.verdict.text(), "files": names_in(folder), "kept": job.PostProcessorArgs}
-    close()
+    close_panel()
     return found
 
 
@@ -265,7 +274,7 @@ def lack_of_memory_is_reported_and_leaves_nothing():
     with mock.patch.object(motion, "tool_path", lacking):  # beside it
         panel.post()
     reported.append(panel.rows())
-    close()
+    close_panel()
     shown = mock.patch.object(command.QtWidgets.QMessageBox, "warning", lambda *what: boxes.append(what[2]))
     with shown, command.show_lack_of_memory("Mirror"):
         lacking()
@@ -279,7 +288,7 @@ def arguments_without_a_meaning_are_reported():
     panel.choices.more.setText("--no-such-argument 'and a quote")
     panel.post()
     found = {"files": names_in(folder), "reported": panel.rows(), "kept": document.getObject("Job").PostProcessorArgs}
-    close()
+    close_panel()
     return found
 
 
@@ -300,7 +309,7 @@ def cancelled_job_leaves_nothing():
         "could": enabled,
         "can": panel.buttons["Cancel"].isEnabled(),
     }
-    close()
+    close_panel()
     return found
 
 
@@ -347,7 +356,7 @@ def preferences_are_what_a_new_job_is_offered():
     job.PostProcessorArgs = ""
     panel = open_panel(document)
     offered = {"text": panel.choices.text(), "folder": panel.choices.folder.text()}
-    close()
+    close_panel()
     from pkm_post.freecad_app.arguments import own_arguments
 
     return {"offered": offered, "headless": own_arguments(job).axis_tolerance}
@@ -402,7 +411,7 @@ def column_is_posted():
         panel.choices.folder.setText("programs")  # in the picture no folder of this computer
         panel.post()
     found = picture_of_all("post_panel.png")
-    close()
+    close_panel()
     return {"drawn": found}
 
 

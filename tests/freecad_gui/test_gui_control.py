@@ -13,14 +13,14 @@ NEAR_DEG = 1e-3
 
 @pytest.fixture(scope="module")
 def session(scene):
-    made = scene("control")
+    made = scene("control", alone=True)
     made.keep("control.png")
     return made
 
 
 @pytest.fixture(scope="module")
 def programs(scene):
-    return scene("control_programs")
+    return scene("control_programs", alone=True)
 
 
 def test_words_are_those_of_the_rooms_below(session):

@@ -7,7 +7,7 @@ from wheels import NAME
 
 @pytest.fixture(scope="module")
 def session(scene):
-    return scene("packages")
+    return scene("packages", alone=True)
 
 
 def test_what_is_missing_is_offered_with_its_purpose(session):
