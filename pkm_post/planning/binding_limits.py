@@ -10,6 +10,7 @@ Leaves: ``Limits`` without the others. Units: mm, s.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,6 +35,10 @@ class Weights:
 
     table: Array
     each: bool
+
+    def take(self, rows: Array) -> Weights:
+        """The same at some of the ends."""
+        return Weights(self.table[..., rows], self.each)
 
     def sizes(self) -> Array:
         """Their magnitudes by group, (3, G, E)."""
@@ -62,19 +67,28 @@ class Highest:
     change: Array
 
     @classmethod
-    def of(cls, ceiling: Array, accelerations: tuple[Weights, ...], jerks: tuple[Weights, ...]) -> Highest:
-        """The most by ceilings of the speed squared, (E,), and all limits."""
-        square, along, change = ceiling, np.full(len(ceiling), NO_LIMIT), np.full(len(ceiling), NO_LIMIT)
+    def of(cls, ceiling: Array, accelerations: tuple[Weights, ...]) -> Highest:
+        """The most by ceilings of the speed squared, (E,), and limits of acceleration."""
+        square, along = ceiling, np.full(len(ceiling), NO_LIMIT)
         with np.errstate(divide="ignore"):
             for one in accelerations:
                 square = square if one.each else np.minimum(square, 1 / one.across())
         for one in accelerations:
             _, slope, level = one.sizes()
             along = _lowered(along, 1 + level * square, slope)
+        return cls(square, along, np.full(len(ceiling), NO_LIMIT))
+
+    def take(self, rows: Array) -> Highest:
+        """The same at some of the ends."""
+        return Highest(self.square[rows], self.along[rows], self.change[rows])
+
+    def with_jerks(self, jerks: tuple[Weights, ...]) -> Highest:
+        """The most by limits of jerk as well."""
+        change, root = self.change, np.sqrt(self.square)
         for one in jerks:
             first, slope, level = one.sizes()
-            change = _lowered(change, 1 + (slope * along + level * square) * np.sqrt(square), first)
-        return cls(square, along, change)
+            change = _lowered(change, 1 + (slope * self.along + level * self.square) * root, first)
+        return Highest(self.square, self.along, change)
 
     def binding(self, one: Weights, jerk: bool) -> Array:
         """Whether limits of acceleration, or of jerk, can bind, (G, E)."""
@@ -82,19 +96,33 @@ class Highest:
         use = slope * self.along + level * self.square
         return np.asarray((first * self.change + use * np.sqrt(self.square) if jerk else use) > _BINDS)
 
-    def limits(self, ends: CellEnds, weights: tuple[Weights, ...], factor: Array, jerk: bool) -> list[Limits]:
-        """The limits that can bind, with weights that are larger by a factor, (E,); those of numbers are one set."""
-        found, ends_of_numbers, numbers = [], [], []
+    def limits(self, ends: CellEnds, weights: tuple[Weights, ...], jerk: bool) -> list[Limits]:
+        """The limits that can bind; those of numbers are one set."""
+        found: list[Limits] = []
+        ends_of_numbers, numbers = [], []
         for one in weights:
             group, end = np.nonzero(self.binding(one, jerk))
             if one.each:
                 ends_of_numbers.append(end)
-                numbers.append(one.table[:, group, end][:, None] * factor[end])
+                numbers.append(one.table[:, group, end][:, None])
             elif len(end):
-                found.append(Limits(ends.take(end), one.table[..., end] * factor[end], jerk))
+                parts = _of_vectors(one.table[..., end])
+                found += (Limits(ends.take(end[rows]), part, jerk) for rows, part in parts if len(rows))
         if sum(map(len, ends_of_numbers)):
             found.append(Limits(ends.take(np.concatenate(ends_of_numbers)), np.concatenate(numbers, axis=2), jerk))
         return found
+
+
+def _of_vectors(table: Array) -> Iterator[tuple[Array, Array]]:
+    """Which vectors, (K,), and their weights, (3, R, K); of one with a single weight, as on a line, only its length.
+
+    Args:
+        table: (3, 3, E) weights of the change of acceleration, of acceleration and of speed squared.
+    """
+    alone = np.count_nonzero((table != 0).any(axis=1), axis=0) == 1
+    one, several = np.flatnonzero(alone), np.flatnonzero(~alone)
+    yield one, np.sqrt((table[..., one] ** 2).sum(axis=1, keepdims=True))
+    yield several, table[..., several]
 
 
 def _lowered(values: Array, bound: Array, size: Array) -> Array:

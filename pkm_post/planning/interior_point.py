@@ -12,7 +12,7 @@ place (``banded``).
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -24,8 +24,6 @@ from pkm_post.planning.motion_limits import Limits
 _MOST_STEPS = 60
 _LEAST_SLACK = 0.1
 """Slack at the start where a limit leaves less, or is broken."""
-_LIFT = 1e-2
-"""Least slack at the start of a search that goes on from another one."""
 _FIRST_GAP = 1.0
 """Share of the time that the gap of optimality takes at the start."""
 _OFF = 0.1
@@ -40,30 +38,24 @@ _PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 
 
 @dataclass(frozen=True)
-class SlacksAndMultipliers:
+class _SlacksAndMultipliers:
     """Slacks and multipliers of one set of limits, (E,) each."""
 
     slack: Array
     multiplier: Array
 
-    def lifted(self) -> SlacksAndMultipliers:
-        """The same without slacks that would hold a search with other limits where it begins."""
-        return SlacksAndMultipliers(np.maximum(self.slack, _LIFT), self.multiplier)
-
 
 @dataclass(frozen=True)
 class Solution:
-    """Where a search is.
+    """What a search found.
 
     Attributes:
         unknowns: (N,)
-        states: what it knows of each set of limits; nothing at the start.
-        reached: whether it was found.
+        reached: whether they are the fastest; else the search gave up.
     """
 
     unknowns: Array
-    states: tuple[SlacksAndMultipliers, ...] = ()
-    reached: bool = False
+    reached: bool
 
 
 @dataclass(frozen=True)
@@ -117,13 +109,13 @@ class _Linear:
     """
 
     rows: _Rows
-    state: SlacksAndMultipliers
+    state: _SlacksAndMultipliers
     room: Array
     slope: Array
     factor: Array | float
 
     @classmethod
-    def of(cls, rows: _Rows, state: SlacksAndMultipliers | None, padded: Array, barrier: float) -> _Linear:
+    def of(cls, rows: _Rows, state: _SlacksAndMultipliers | None, padded: Array, barrier: float) -> _Linear:
         near = rows.near(padded)
         numbers = rows.settled + _combined(rows.weights, near)
         factor: Array | float = 1.0
@@ -135,7 +127,7 @@ class _Linear:
             slope -= 0.5 / factor * rows.square
         if state is None:
             slack = np.maximum(room, _LEAST_SLACK)
-            state = SlacksAndMultipliers(slack, barrier / slack)
+            state = _SlacksAndMultipliers(slack, barrier / slack)
         return cls(rows, state, room, slope, factor)
 
     def curvature(self) -> list[Array]:
@@ -161,30 +153,33 @@ def _padded(unknowns: Array) -> Array:
     return np.concatenate([[0.0], unknowns, [0.0]])
 
 
-def fastest(weight: Array, limits: tuple[Limits, ...], start: Solution, enough: float) -> Solution:
+def fastest(
+    weight: Array, limits: tuple[Limits, ...], unknowns: Array, enough: float, few_broken: float = 0.0
+) -> Solution:
     """The fastest motion.
 
     Args:
         weight: (N,) length of path for which each unknown stands.
         limits: the limits.
-        start: unknowns above 0, which may break limits; or the end of a search with nearly the same limits.
+        unknowns: (N,) where to begin, above 0; they may break limits.
         enough: gap of optimality at which to stop, and the most by which a limit may be broken, relative.
+        few_broken: share of the limits that may be broken by more. The last few take as many steps as all the others.
     """
     count = sum(one.weights.shape[2] for one in limits)
-    barrier = _FIRST_GAP * _time(weight, start.unknowns) / count
+    barrier = _FIRST_GAP * _time(weight, unknowns) / count
     rows = [_Rows.of(one) for one in limits]
-    now = Solution(start.unknowns, tuple(one.lifted() for one in start.states))
+    states: list[_SlacksAndMultipliers] | list[None] = [None] * len(limits)
     for _ in range(_MOST_STEPS):
         checkpoint()
-        states, padded = now.states or (None,) * len(limits), _padded(now.unknowns)
+        padded = _padded(unknowns)
         linear = [_Linear.of(one, state, padded, barrier) for one, state in zip(rows, states, strict=True)]
         gap = sum(float(one.state.slack @ one.state.multiplier) for one in linear)
-        broken = -min(float(one.room.min()) for one in linear)
-        balanced = gap + _imbalance(weight, linear, now.unknowns) <= enough * _time(weight, now.unknowns)
-        if balanced and broken <= enough:
-            return replace(now, reached=True)
-        now = _stepped(weight, linear, now.unknowns, gap / count, count)
-    return now
+        broken = sum(np.count_nonzero(one.room < -enough) for one in linear)
+        balanced = gap + _imbalance(weight, linear, unknowns) <= enough * _time(weight, unknowns)
+        if balanced and broken <= few_broken * count:
+            return Solution(unknowns, reached=True)
+        unknowns, states = _stepped(weight, linear, unknowns, gap / count, count)
+    return Solution(unknowns, reached=False)
 
 
 def _time(weight: Array, unknowns: Array) -> float:
@@ -202,7 +197,9 @@ def _downhill(weight: Array, unknowns: Array) -> Array:
     return np.asarray(0.5 * weight * unknowns**-1.5)
 
 
-def _stepped(weight: Array, linear: list[_Linear], unknowns: Array, mean_gap: float, count: int) -> Solution:
+def _stepped(
+    weight: Array, linear: list[_Linear], unknowns: Array, mean_gap: float, count: int
+) -> tuple[Array, list[_SlacksAndMultipliers]]:
     """One step of predictor and corrector."""
     size = len(unknowns)
     band = _band(linear, size)
@@ -237,11 +234,11 @@ def _stepped(weight: Array, linear: list[_Linear], unknowns: Array, mean_gap: fl
     ]
     primal, dual = (_TO_BOUNDARY * share for share in _shares(linear, slacks, multipliers))
     primal = min(primal, _TO_BOUNDARY * _reach(unknowns, change))
-    states = (
-        SlacksAndMultipliers(one.state.slack + primal * a, one.state.multiplier + dual * b)
+    states = [
+        _SlacksAndMultipliers(one.state.slack + primal * a, one.state.multiplier + dual * b)
         for one, a, b in zip(linear, slacks, multipliers, strict=True)
-    )
-    return Solution(unknowns + primal * change, tuple(states))
+    ]
+    return unknowns + primal * change, states
 
 
 def _centring(

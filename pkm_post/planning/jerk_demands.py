@@ -104,29 +104,39 @@ class Demands:
             ),
         )
 
-    def limits(self, spline: SpeedSpline, slower: Array, held: Array) -> tuple[Limits, ...]:
+    def limits(self, spline: SpeedSpline, held: Array) -> tuple[Limits, ...]:
         """The limits at the ends of cells.
 
         Args:
             spline: its M places.
-            slower: (M - 1,) by what factor each cell is to be slower than the limits allow.
             held: (N,) value of each unknown that is held, NaN for the others.
         """
         knots, ends = (one.where_free(held) for one in (spline.ends.take(spline.knots()), spline.ends))
-        factor = np.maximum(slower[knots.place], slower[knots.place - 1]) ** 2
-        jerks, ceiling = self._jerks(ends), np.zeros((3, 1, len(knots.place)))
-        ceiling[2, 0] = 1 / self.ceiling[2 * knots.place]
-        accelerations = (Weights(ceiling, each=True), *self._accelerations(knots))
-        at_knots = Highest.of(self.ceiling[2 * knots.place], accelerations[1:], ())
-        at_ends = Highest.of(self.ceiling[2 * ends.place], self._accelerations(ends), jerks)
+        first, last = (2 * int(extreme(ends.place)) for extreme in (np.min, np.max))
+        places = slice(first, last + 1, 2)
+        accelerations = self._accelerations(places)
+        highest = Highest.of(self.ceiling[places], accelerations)
+        at_knots, at_ends = knots.place - first // 2, ends.place - first // 2
+        speed = np.zeros((3, 1, len(at_knots)))
+        speed[2, 0] = 1 / self.ceiling[2 * knots.place]
+        of_knots = (Weights(speed, each=True), *(one.take(at_knots) for one in accelerations))
+        jerks = self._jerks(ends)
         return (
-            *at_knots.limits(knots, accelerations, factor, jerk=False),
-            *at_ends.limits(ends, jerks, slower[ends.cell] ** 3, jerk=True),
+            self._speeds_in_middle(spline, held),
+            *highest.take(at_knots).limits(knots, of_knots, jerk=False),
+            *highest.take(at_ends).with_jerks(jerks).limits(ends, jerks, jerk=True),
         )
 
-    def _accelerations(self, ends: CellEnds) -> tuple[Weights, ...]:
+    def _speeds_in_middle(self, spline: SpeedSpline, held: Array) -> Limits:
+        """The limits of speed in the middles of cells, where wide ones might be faster than at their ends."""
+        left = spline.ends.take(np.arange(len(spline.left))).where_free(held)
+        width = np.diff(spline.s)[left.cell]
+        weights = np.stack([width**2 / 4, width, np.ones_like(width)]) / self.ceiling[2 * left.cell + 1]
+        return Limits(left, weights[:, None], jerk=False, in_middle=True)
+
+    def _accelerations(self, rows: slice) -> tuple[Weights, ...]:
         limited = (item for item in self.quantities if np.isfinite(item.acceleration))
-        return tuple(Weights(_of_acceleration(item, 2 * ends.place), item.each) for item in limited)
+        return tuple(Weights(_of_acceleration(item, rows), item.each) for item in limited)
 
     def _jerks(self, ends: CellEnds) -> tuple[Weights, ...]:
         at_left, found = (ends.place == ends.cell)[:, None], []
@@ -208,7 +218,7 @@ def _planned(item: LimitedQuantity, interval: float) -> float:
     return max(by_jerk, SAFE_SHARE * item.acceleration)
 
 
-def _of_acceleration(item: LimitedQuantity, rows: Array) -> Array:
+def _of_acceleration(item: LimitedQuantity, rows: Array | slice) -> Array:
     """Weights of change of acceleration, acceleration and speed squared in the acceleration, (3, C, E)."""
     first, second = (_columns(one[rows]) for one in (item.first, item.second))
     return np.stack([np.zeros_like(first), first, second]) / item.acceleration

@@ -24,7 +24,7 @@ from pkm_post.planning.speed_profile import Stations, inserted
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import columns_in_workers, in_workers
 
-_ROUNDS = 4
+_ROUNDS = 3
 """Most rounds with narrower cells, and most with lower limits where the motion is too fast between places."""
 _COARSE, _FINE = 5e-2, 5e-3
 """Relative gap of optimality that is enough for the choice of places, and in the end."""
@@ -103,17 +103,19 @@ def _searched(path: ToolPath, marks: Stations, machine: Machine, window: Window)
     iterate = Iterate.of(path, marks, machine, places)
     for _ in range(_ROUNDS):
         iterate = iterate.searched(_COARSE)
-        cut = iterate.too_wide()
-        if not cut.any():
+        halvings = iterate.halvings()
+        if not halvings.any():
             break
-        iterate = iterate.at_pace(iterate.pace()).halved(cut, path, marks, machine)
+        iterate = iterate.at_pace(iterate.pace()).halved(halvings, path, marks, machine)
     quarters = iterate.quarters(path, marks, machine)
+    iterate = iterate.searched(_FINE)
+    pace = iterate.pace_with(*quarters)
     for _ in range(_ROUNDS):
-        iterate = iterate.searched(_FINE)
-        pace = iterate.pace_with(*quarters)
         if pace.max() <= 1 + TOO_FAST and not iterate.needlessly_slow(pace):
             break
-        iterate = iterate.at_pace(pace)
+        slowed = iterate.at_pace(pace)
+        iterate = slowed.searched_about(slowed.changed_from(iterate), _FINE)
+        pace = iterate.pace_with(*quarters)
     profile = JerkLimitedProfile(iterate.spline.s, iterate.spline.rest, *iterate.at_places())
     return _counted(profile, np.maximum(pace, 1.0), window)
 

@@ -17,7 +17,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from pkm_post.geometry import Array, expand_counts
 from pkm_post.model import Machine
-from pkm_post.planning.interior_point import SlacksAndMultipliers, Solution, fastest
+from pkm_post.planning.interior_point import fastest
 from pkm_post.planning.jerk_demands import Demands
 from pkm_post.planning.jerk_start import NARROWEST, long_held, unknowns, with_middles
 from pkm_post.planning.jerk_windows import Places
@@ -34,8 +34,16 @@ _WASTE = 0.04
 """Share of the time from rest to rest that may pass without the full use of a limit."""
 _WORTH = 3.0
 """A cell is halved that takes so many times its part of that."""
+_MUCH = 8.0
+"""A cell is cut into quarters that takes so many times that."""
 _LEAST = 1e-3
 """An unknown is at least this share of the speed squared about it."""
+_FEW_BROKEN = 1e-3
+"""Share of the limits that a search for all cells may leave broken, to be mended by searches about them."""
+_NEAR = 32
+"""Cells on either side of one with a broken or another limit that are searched with it."""
+_CHANGED = 5e-3
+"""Relative change of the limits of a cell after which the motion about it is searched again."""
 _BESIDE = 8
 """Cells on either side of one that is too fast that are on no plateau any more."""
 _BESIDE_FIXED = 2
@@ -57,7 +65,6 @@ class Iterate:
         held: (M - 1,) speed squared of cells that are held, NaN of others.
         room: (M - 1,) factor by which a cell could be slower whose speed cannot be given up, infinite for others.
         unknowns: (N,) of the spline.
-        states: what the last search knows of the limits, if it had the same unknowns.
     """
 
     spline: SpeedSpline
@@ -66,7 +73,6 @@ class Iterate:
     held: Array
     room: Array
     unknowns: Array
-    states: tuple[SlacksAndMultipliers, ...] = ()
 
     @classmethod
     def of(cls, path: ToolPath, marks: Stations, machine: Machine, places: Places) -> Iterate:
@@ -79,7 +85,18 @@ class Iterate:
     @functools.cached_property
     def limits(self) -> tuple[Limits, ...]:
         """The limits at ends of cells where an unknown counts that is not held."""
-        return self.demands.limits(self.spline, self.slower, self.held[self.spline.left])
+        return tuple(one.lowered(self.slower) for one in self.whole_limits)
+
+    @functools.cached_property
+    def whole_limits(self) -> tuple[Limits, ...]:
+        """The same limits where no cell has to be slower."""
+        return self.demands.limits(self.spline, self.held[self.spline.left])
+
+    @functools.cached_property
+    def uses(self) -> tuple[Array, ...]:
+        """The share of each of the limits that is in use."""
+        free = self._free()
+        return tuple(one.use(one.ends.values(free)) for one in self.limits)
 
     def searched(self, enough: float) -> Iterate:
         """The fastest motion with these places; without plateaus if it cannot be found between them.
@@ -88,17 +105,65 @@ class Iterate:
             NotFoundError: it cannot be found between borders.
         """
         free = np.isnan(self.held[self.spline.left])
-        found = fastest(self.spline.weight[free], self.limits, Solution(self.unknowns[free], self.states), enough)
-        if not found.reached and not free.all():
-            held = np.where(np.isfinite(self.room), self.held, np.nan)
-            if np.array_equal(held, self.held, equal_nan=True):
-                raise NotFoundError
-            return replace(self, held=held, states=()).searched(enough)
-        unknowns = self.unknowns.copy()
-        unknowns[free] = found.unknowns
-        iterate = replace(self, unknowns=unknowns, states=found.states)
-        vars(iterate)["limits"] = self.limits  # as they were computed
+        for few_broken in (_FEW_BROKEN, 0.0):
+            found = fastest(self.spline.weight[free], self.limits, self.unknowns[free], enough, few_broken)
+            if not found.reached:
+                return self._without_plateaus().searched(enough)
+            iterate = self._with(free, found.unknowns)
+            mended = iterate._searched_about(iterate._broken(enough), enough)
+            if mended is not None:
+                return mended
         return iterate
+
+    def searched_about(self, cells: Array, enough: float) -> Iterate:
+        """The fastest motion if only cells near some of them may change; if there is none, all may.
+
+        Args:
+            cells: (M - 1,) where limits have changed or are broken.
+            enough: gap of optimality at which to stop, and the most by which a limit may be broken, relative.
+        """
+        found = self._searched_about(cells, enough)
+        return self.searched(enough) if found is None else found
+
+    def _searched_about(self, cells: Array, enough: float) -> Iterate | None:
+        """The same, or None. Limits outside may stay as broken as they are."""
+        of_cell = self.held.copy()
+        of_cell[self.spline.left] = self.unknowns
+        known = long_held(np.where(_widened(cells, _NEAR) & np.isnan(self.held), np.nan, of_cell))
+        free = np.isnan(known[self.spline.left])
+        if not cells.any() or not free.any():
+            return self
+        strict = _widened(cells, _NEAR // 2)
+        limits = (
+            one.lowered(self.slower).loosened(one.ends.values(self.unknowns[free]), ~strict[one.ends.cell], enough)
+            for one in self.demands.limits(self.spline, known[self.spline.left])
+        )
+        found = fastest(self.spline.weight[free], tuple(limits), self.unknowns[free], enough)
+        return self._with(free, found.unknowns) if found.reached else None
+
+    def _without_plateaus(self) -> Iterate:
+        held = np.where(np.isfinite(self.room), self.held, np.nan)
+        if np.array_equal(held, self.held, equal_nan=True):
+            raise NotFoundError
+        return replace(self, held=held)
+
+    def _with(self, free: Array, found: Array) -> Iterate:
+        """The same with other values of some unknowns."""
+        unknowns = self.unknowns.copy()
+        unknowns[free] = found
+        return self._sharing(replace(self, unknowns=unknowns), "limits", "whole_limits")
+
+    def _sharing(self, other: Iterate, *names: str) -> Iterate:
+        """Another iterate, with properties as they were computed for this one."""
+        vars(other).update((name, vars(self)[name]) for name in names if name in vars(self))
+        return other
+
+    def _broken(self, enough: float) -> Array:
+        """Cells with a limit that is broken by more than a search may leave, (M - 1,)."""
+        broken = np.zeros(len(self.held), dtype=np.bool_)
+        for one, use in zip(self.limits, self.uses, strict=True):
+            broken[one.ends.cell[use**2 > 1 + 2 * enough]] = True
+        return broken
 
     def at_places(self) -> tuple[Array, Array]:
         """Speed squared and acceleration, (M,) each."""
@@ -107,8 +172,7 @@ class Iterate:
     def pace(self) -> Array:
         """The speed on each cell relative to the highest that its limits allow, (M - 1,); 1 where it is held."""
         faster = self.demands.in_middle(*self.at_places())
-        for one in self.limits:
-            use = one.use(one.ends.values(self._free()))
+        for one, use in zip(self.limits, self.uses, strict=True):
             factor = (np.cbrt(use) if one.jerk else np.sqrt(use)) / self.slower[one.ends.cell]
             np.maximum.at(faster, one.ends.cell, factor)
         searched = np.zeros(len(faster), dtype=np.bool_)  # the limits allow what is held
@@ -139,24 +203,30 @@ class Iterate:
         run = np.cumsum(self.spline.rest)[:-1] - 1
         return bool((np.bincount(run, lost) > TOO_SLOW * np.bincount(run, duration)).any())
 
-    def too_wide(self) -> Array:
-        """Cells on which too much time passes without the full use of a limit, (M - 1,)."""
+    def halvings(self) -> Array:
+        """How often to halve each cell, (M - 1,): where too much time passes below all limits."""
+        duration = durations(np.diff(self.spline.s), *self.at_places())
+        run, waste = np.cumsum(self.spline.rest)[:-1] - 1, duration * (1 - self._least_used())
+        allowed = _WASTE * np.bincount(run, duration)
+        share = np.where(np.bincount(run, waste) > allowed, _WORTH * allowed / np.bincount(run), np.inf)
+        return np.asarray((waste > share[run]).astype(np.int64) + (waste > _MUCH * share[run]))
+
+    def _least_used(self) -> Array:
+        """The largest use of a limit at that end of each cell where it is less, (M - 1,)."""
         at_place, at_end = np.zeros(len(self.spline.s)), np.zeros((2, len(self.held)))
-        for one in self.limits:
-            use = one.use(one.ends.values(self._free()))
+        for one, use in zip(self.limits, self.uses, strict=True):
             cell, place = one.ends.cell, one.ends.place
-            if one.jerk:
+            if one.in_middle:
+                for at_side in at_end:
+                    np.maximum.at(at_side, cell, use)
+            elif one.jerk:
                 np.maximum.at(at_end, (place - cell, cell), use)
             else:
                 np.maximum.at(at_place, place, use)
         ends, least = self.spline.ends.where_free(self.held[self.spline.left]), np.ones(len(self.held))
         used = np.maximum(at_end[ends.place - ends.cell, ends.cell], at_place[ends.place])
         np.minimum.at(least, ends.cell, used)
-        duration = durations(np.diff(self.spline.s), *self.at_places())
-        run, waste = np.cumsum(self.spline.rest)[:-1] - 1, duration * (1 - least)
-        allowed = _WASTE * np.bincount(run, duration)
-        share = np.where(np.bincount(run, waste) > allowed, _WORTH * allowed / np.bincount(run), np.inf)
-        return np.asarray(waste > share[run])
+        return least
 
     def _free(self) -> Array:
         return self.unknowns[np.isnan(self.held[self.spline.left])]
@@ -173,15 +243,24 @@ class Iterate:
         most = sliding_window_view(np.pad(self.room, _BESIDE_FIXED, mode="edge"), 2 * _BESIDE_FIXED + 1).min(axis=1)
         slower = np.clip(self.slower * pace, 1.0, most)  # no lower limit beside what cannot change
         same = np.array_equal(held, self.held, equal_nan=True)
-        return replace(self, slower=slower, held=held, states=self.states if same else ())
+        return self._sharing(replace(self, slower=slower, held=held), *(["whole_limits"] if same else []))
 
-    def halved(self, cut: Array, path: ToolPath, marks: Stations, machine: Machine) -> Iterate:
-        """The same motion with some cells cut into halves."""
+    def changed_from(self, before: Iterate) -> Array:
+        """Cells with other limits or without a plateau, (M - 1,)."""
+        given_up = np.isnan(self.held) & ~np.isnan(before.held)
+        return np.asarray(given_up | (np.abs(self.slower / before.slower - 1) > _CHANGED))
+
+    def halved(self, times: Array, path: ToolPath, marks: Stations, machine: Machine) -> Iterate:
+        """The same motion with each cell halved a number of times, (M - 1,)."""
+        if not times.any():
+            return self
+        cut = times > 0
         spline = SpeedSpline.of(*_inserted(self.spline, self.demands.s[1::2][cut], cut))
         demands = self.demands.joined(Demands.at(path, machine, marks, _new_middles(spline.s, cut)))
         slower, held, room = (np.repeat(one, 1 + cut) for one in (self.slower, self.held, self.room))
         found, known = _carried_over(self.spline, *self.at_places(), spline), held[spline.left]
-        return Iterate(spline, demands, slower, held, room, np.where(np.isnan(known), found, known))
+        iterate = Iterate(spline, demands, slower, held, room, np.where(np.isnan(known), found, known))
+        return iterate.halved(np.repeat(np.maximum(times - 1, 0), 1 + cut), path, marks, machine)
 
 
 def _widened(cells: Array, by: int) -> Array:

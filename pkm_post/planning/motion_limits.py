@@ -14,7 +14,7 @@ for a quantity with the derivatives y', y'', y''' by path length. Units: mm, s.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,14 +30,32 @@ class Limits:
         ends: where they apply; an end with several limits is there several times.
         weights: (3, R, E) of k, a and x for each of R numbers, divided by the bound.
         jerk: whether |p| is bounded by 1 / sqrt(x), rather than by 1.
+        in_middle: whether p is that in the middle of the cell.
     """
 
     ends: CellEnds
     weights: Array
     jerk: bool
+    in_middle: bool = False
 
     def use(self, values: Array) -> Array:
         """Share of each bound that is in use, (E,), by k, a and x at the ends, (3, E); above 1 it is broken."""
         k, a, x = self.weights
         size = np.sqrt(((k * values[0] + a * values[1] + x * values[2]) ** 2).sum(axis=0))
         return np.asarray(size * np.sqrt(values[2]) if self.jerk else size)
+
+    def lowered(self, slower: Array) -> Limits:
+        """The limits of a motion that has to be slower on each cell by a factor, (M - 1,)."""
+        ends = self.ends
+        if self.jerk:
+            factor = slower[ends.cell] ** 3
+        elif self.in_middle:
+            factor = slower[ends.cell] ** 2
+        else:
+            factor = np.maximum(slower[ends.place], slower[ends.place - 1]) ** 2
+        return replace(self, weights=self.weights * factor)
+
+    def loosened(self, values: Array, rows: Array, by: float) -> Limits:
+        """The same, but some of the rows, (E,), allow at least what the values, (3, E), use, and a share more."""
+        factor = np.where(rows, np.maximum(self.use(values) * (1 + by), 1.0), 1.0)
+        return replace(self, weights=self.weights / factor)

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from pkm_post.planning.interior_point import Solution, fastest
+from pkm_post.planning.interior_point import fastest
 from pkm_post.planning.motion_limits import Limits
 from pkm_post.planning.speed_spline import SpeedSpline, durations
 
@@ -44,7 +44,7 @@ def test_an_s_curve(length, shortest, level):
     # With 1000 mm/s^3, 100 mm/s^2 and 20 mm/s: 2 mm are 4 phases of 0.1 s; 6 mm are twice 0.1 s up, 0.1 s of even
     # acceleration, 0.1 s down; 20 mm/s are reached after 0.3 s on 3 mm, so 20 mm take 0.6 s and 14 mm at 20 mm/s.
     spline, limits = straight(graded(length), 20.0, 100.0, 1000.0)
-    unknowns = fastest(spline.weight, limits, Solution(like_from_rests(spline, level)), 1e-4).unknowns
+    unknowns = fastest(spline.weight, limits, like_from_rests(spline, level), 1e-4).unknowns
     square, acceleration = spline.at_places(unknowns)
     time = durations(np.diff(spline.s), square, acceleration).sum()
     assert shortest * (1 - 1e-3) <= time <= 1.02 * shortest
@@ -57,7 +57,7 @@ def test_a_vector_is_limited_by_its_length():
     spline, limits = straight(graded(6.0), 20.0, 100.0, 1000.0)
     whole = limits[1].weights
     parted = Limits(limits[1].ends, np.concatenate([0.6 * whole, 0.8 * whole], axis=1), jerk=False)
-    start = Solution(like_from_rests(spline, 100.0))
+    start = like_from_rests(spline, 100.0)
     found, expected = (
         fastest(spline.weight, (limits[0], one, limits[2]), start, 1e-8).unknowns for one in (parted, limits[1])
     )
@@ -66,7 +66,7 @@ def test_a_vector_is_limited_by_its_length():
 
 def test_the_time_does_not_depend_on_the_start():
     spline, limits = straight(graded(20.0), 20.0, 100.0, 1000.0)
-    starts = (Solution(like_from_rests(spline, level)) for level in (100.0, 500.0))
+    starts = (like_from_rests(spline, level) for level in (100.0, 500.0))
     found = (fastest(spline.weight, limits, start, 1e-6).unknowns for start in starts)
     times = [durations(np.diff(spline.s), *spline.at_places(unknowns)).sum() for unknowns in found]
     np.testing.assert_allclose(*times, rtol=1e-5)

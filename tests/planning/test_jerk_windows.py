@@ -99,8 +99,8 @@ def test_a_path_without_borders_is_one_window_when_none_holds(monkeypatch):
     in_windows_of(FEW, monkeypatch)
     plain = jerk_search.fastest
 
-    def not_between_borders(weight, limits, begin, enough):
-        found = plain(weight, limits, begin, enough)
+    def not_between_borders(weight, *arguments):
+        found = plain(weight, *arguments)
         return dataclasses.replace(found, reached=found.reached and len(weight) > 3 * FEW)
 
     monkeypatch.setattr(jerk_search, "fastest", not_between_borders)
