@@ -54,8 +54,9 @@ def diagnose(
     if decimals is None:
         return tuple(row.diagnostic() for row in certificate.findings if not row.holds)
     pairs = tuple(zip(certificate.findings, measured(exact).findings, strict=True))
-    rounded = [number for number, (row, plan) in enumerate(pairs) if plan.holds and not row.holds]
-    enough = _enough(exact, decimals, rounded, measured) if rounded else None
+    planned = [number for number, (_, plan) in enumerate(pairs) if plan.holds]
+    is_rounding = any(plan.holds and not row.holds for row, plan in pairs)
+    enough = _enough(exact, decimals, planned, measured) if is_rounding else None
     faults = ((row, _diagnostic(row, plan, decimals, enough)) for row, plan in pairs if not row.holds)
     return tuple(_of_short_intervals(fault, row.time, struts, machine) for row, fault in faults)
 
@@ -82,12 +83,12 @@ def _as_printed(struts: StrutMotion, exact: StrutMotion, machine: Machine) -> De
     return (length, speed) if all(near) else None
 
 
-def _enough(exact: StrutMotion, decimals: Decimals, rounded: list[int], measured: Measured) -> Decimals | None:
-    """The fewest of the tried decimals with which these findings hold."""
+def _enough(exact: StrutMotion, decimals: Decimals, planned: list[int], measured: Measured) -> Decimals | None:
+    """The fewest of the tried decimals with which all findings hold that hold without rounding."""
     for more in _further(decimals):
         length, speed = (np.round(one, digits) for one, digits in zip((exact.length, exact.speed), more, strict=True))
         found = measured(replace(exact, length=_without_sign(length), speed=_without_sign(speed))).findings
-        if all(found[number].holds for number in rounded):
+        if all(found[number].holds for number in planned):
             return more
     return None
 
