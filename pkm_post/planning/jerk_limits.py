@@ -106,7 +106,7 @@ def _searched(path: ToolPath, marks: Stations, machine: Machine, window: Window)
         halvings = iterate.halvings()
         if not halvings.any():
             break
-        iterate = iterate.at_pace(iterate.pace()).halved(halvings, path, marks, machine)
+        iterate = iterate.without_fast_plateaus(iterate.pace()).halved(halvings, path, marks, machine)
     quarters = iterate.quarters(path, marks, machine)
     iterate = iterate.searched(_FINE)
     pace = iterate.pace_with(*quarters)

@@ -231,19 +231,24 @@ class Iterate:
     def _free(self) -> Array:
         return self.unknowns[np.isnan(self.held[self.spline.left])]
 
+    def without_fast_plateaus(self, pace: Array) -> Iterate:
+        """The same motion without plateaus beside cells that are too fast."""
+        given_up = _widened(pace > 1 + TOO_FAST, _BESIDE) & ~np.isfinite(self.room)
+        held = long_held(np.where(given_up, np.nan, self.held))
+        same = np.array_equal(held, self.held, equal_nan=True)
+        return self._sharing(replace(self, held=held), *(["whole_limits"] if same else []))
+
     def at_pace(self, pace: Array) -> Iterate:
         """The same motion, with lower limits and no plateaus where it is too fast.
 
-        Where limits were lowered before, and it is slower than it may be, they are raised again: cells beside wide ones
-        were too fast only as long as these were wide.
+        Limits that were lowered too far, where the motion is now slower than it may be, are raised again.
         """
-        fixed = np.isfinite(self.room)
-        held = long_held(np.where(_widened(pace > 1 + TOO_FAST, _BESIDE) & ~fixed, np.nan, self.held))
-        pace = np.where(_widened(~np.isnan(held) & ~fixed, _BESIDE), np.minimum(pace, 1.0), pace)
+        iterate = self.without_fast_plateaus(pace)
+        on_plateau = ~np.isnan(iterate.held) & ~np.isfinite(self.room)
+        pace = np.where(_widened(on_plateau, _BESIDE), np.minimum(pace, 1.0), pace)
         most = sliding_window_view(np.pad(self.room, _BESIDE_FIXED, mode="edge"), 2 * _BESIDE_FIXED + 1).min(axis=1)
         slower = np.clip(self.slower * pace, 1.0, most)  # no lower limit beside what cannot change
-        same = np.array_equal(held, self.held, equal_nan=True)
-        return self._sharing(replace(self, slower=slower, held=held), *(["whole_limits"] if same else []))
+        return iterate._sharing(replace(iterate, slower=slower), "whole_limits")
 
     def changed_from(self, before: Iterate) -> Array:
         """Cells with other limits or without a plateau, (M - 1,)."""
