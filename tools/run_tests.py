@@ -3,7 +3,7 @@
 
 pytest collects all tests once. Processes forked from it claim one file after the other, so that none waits while
 another still has work, and send their reports to the first one, which prints one result for all. Tests with a window
-count as two files, so that no more than two windows work at a time: that of the control panel, which waits for its
+count as two files, so that no more than two windows are open at a time: that of the control panel, which waits for its
 simulated machine, and all others. ``PKM_TEST_PROCESSES`` says how many processes there are; by default one more than
 cores, since tests with windows and links wait most of their time. Inside FreeCAD (``make test``) this is run by
 run_script.py.

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What the scenes share: steps in a FreeCAD with a window, and what they found as JSON.
 
-A scene is a script that window.py runs in FreeCAD: functions marked as steps, and a call of ``main``. An exception in
-a step is its result, and the others still run. The environment names the folder for what is written (PKM_FOLDER). The
-last thing a scene reports is the text of the Report view.
+A scene is a script that FreeCAD runs in its window: functions marked as steps, and a call of ``main``. An exception in
+a step is its result, and the others still run. The environment names the folder for what is written (PKM_FOLDER), since
+FreeCAD would open files that its command line names. The last thing a scene reports is the text of the Report view.
 """
 
 import json
@@ -19,8 +19,6 @@ from PySide import QtCore, QtGui, QtWidgets
 
 FOLDER = Path(os.environ["PKM_FOLDER"])
 STEPS = []
-REPLACED = []
-"""Owners, names and earlier values of what the scene replaced, for the others in the same window."""
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parents[1] / "freecad_app"))
@@ -95,17 +93,6 @@ def click_named(text):
     (button,) = [each for each in buttons if each.isVisible() and each.text().replace("&", "") == text]
     click(button)
     settle()
-
-
-def replace(owner, name, value):
-    """Set an attribute until the end of the scene."""
-    REPLACED.append((owner, name, getattr(owner, name)))
-    setattr(owner, name, value)
-
-
-def close_panel():
-    """Close the open panel by its button, as a user does: of any other way out it would learn nothing."""
-    click_named("Close")
 
 
 def agree():
@@ -192,7 +179,11 @@ def job_on(name, shape, feed="0 mm/min"):
 
 
 def main(are_drawn=False):
-    """Run the steps of the scene; views are drawn for pictures, or always."""
+    """Run the steps of the scene when the window stands, then end FreeCAD; views are drawn for pictures, or always."""
+    QtCore.QTimer.singleShot(1500, lambda: _run(are_drawn))
+
+
+def _run(are_drawn):
     results = {}
     draw_views(are_drawn)
     for function in STEPS:
@@ -201,10 +192,11 @@ def main(are_drawn=False):
         except Exception:
             results[function.__name__] = {"exception": traceback.format_exc()}
         (FOLDER / "so_far.txt").write_text("\n".join(results), encoding="utf-8")  # what a scene that hangs has done
-    for owner, name, value in reversed(REPLACED):
-        setattr(owner, name, value)
     results["report view"] = _report_view()
-    (FOLDER / "result.part").write_text(json.dumps(results, indent=1), encoding="utf-8")  # till the window is in order
+    (FOLDER / "result.json").write_text(json.dumps(results, indent=1), encoding="utf-8")
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0)
 
 
 def _report_view():

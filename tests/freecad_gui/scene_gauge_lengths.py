@@ -3,7 +3,7 @@
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, click, close_panel, main, new_document, picture, press, settle, step, until
+from gui import FOLDER, click, main, new_document, picture, press, settle, step, until
 from PySide import QtWidgets
 
 INCHES = 3
@@ -84,6 +84,11 @@ def files(document):
     return sorted(file.name for file in (FOLDER / document.Name).iterdir() if file.suffix != ".FCStd")
 
 
+def close():
+    FreeCADGui.Control.closeDialog()
+    settle()
+
+
 @step
 def missing_length_is_reported_as_posting_tells_it():
     document, panel = opened("missing")
@@ -92,7 +97,7 @@ def missing_length_is_reported_as_posting_tells_it():
     found["drawn"] = picture("missing.png")
     panel.post()
     found |= {"reported": panel.reported(), "files": files(document), "lengths": lengths(document)}
-    close_panel()
+    close()
     return found
 
 
@@ -116,14 +121,14 @@ def inches_are_typed_and_posted():
     document.redo()
     settle()
     found["redone"] = [lengths(document), panel.texts(), panel.notes()]
-    close_panel()
+    close()
     return found
 
 
 @step
 def number_alone_has_the_unit_of_the_window():
     document, _ = opened("alone")
-    close_panel()
+    close()
     FreeCAD.Units.setSchema(INCHES)
     press("PKM_Post", document.getObject("Job"))
     panel = Panel()
@@ -133,7 +138,7 @@ def number_alone_has_the_unit_of_the_window():
     click(panel.apply)
     settle()
     kept = lengths(document)
-    close_panel()
+    close()
     FreeCAD.Units.setSchema(0)
     return {"before": before, "shown": shown, "kept": kept}
 
@@ -153,7 +158,7 @@ def what_is_no_length_is_reported_and_not_kept():
         click(panel.apply)
         found[text]["applied"] = panel.reported()
     found["document"] = [lengths(document), document.UndoCount, job.PostProcessorArgs == before, files(document)]
-    close_panel()
+    close()
     return found
 
 
@@ -168,7 +173,7 @@ def lengths_are_kept_without_posting():
     found |= {"files": files(document), "machine": document.getObject("Job").PostProcessorArgs}
     click(panel.apply)
     found["again"] = document.UndoCount
-    close_panel()
+    close()
     return found
 
 
@@ -183,7 +188,7 @@ def simulation_has_what_was_typed():
     found = {"lengths": lengths(document), "followable": made.Followable, "valid": made.isValid()}
     for dock in FreeCADGui.getMainWindow().findChildren(QtWidgets.QDockWidget, "PkmPlayer"):
         dock.close()
-    close_panel()
+    close()
     return found
 
 
@@ -198,7 +203,7 @@ def arguments_go_before_the_field():
     panel.choices.more.setText("")
     settle()
     found["without"] = panel.notes()
-    close_panel()
+    close()
     return found
 
 
@@ -221,7 +226,7 @@ def table_follows_the_document():
     settle()
     found = {"changed": changed, "more": more, "kept": lengths(document), "shown": panel.texts()}
     panel.type(0, "50 mm")
-    close_panel()
+    close()
     return {**found, "closed": lengths(document)}
 
 

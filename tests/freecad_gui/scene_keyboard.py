@@ -8,7 +8,7 @@ stand, and whether Shift-Tab goes back from the second one to the first one.
 import FreeCAD
 import FreeCADGui
 from control_machine import connect_and_home, posted_file, the_panel
-from gui import close_panel, job_on, main, press, select, settle, simulate, step, until
+from gui import job_on, main, press, select, settle, simulate, step, until
 from PySide import QtCore, QtGui, QtWidgets
 
 MOST_KEYS = 200
@@ -128,7 +128,7 @@ def post_panel():
         tab()
         rows.append(field_at(lengths))
     found = {"panel": tabbed(form), "rows": rows}
-    close_panel()
+    FreeCADGui.Control.closeDialog()
     return found
 
 

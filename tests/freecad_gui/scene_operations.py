@@ -6,12 +6,12 @@ import time
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, click, job_on, main, new_document, picture_of_all, press, replace, select, settle, step, until
+from gui import FOLDER, click, job_on, main, new_document, picture_of_all, press, select, settle, step, until
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app import surface_check
 
-replace(surface_check, "_MOST_CLOSE", 1000)  # how closely gouges are looked for is none of this scene's matter
+surface_check._MOST_CLOSE = 1000  # how closely gouges are looked for is none of this scene's matter
 PLATE = 8, 8, 4
 """mm. Every step along a pass and each point where a gouge is looked for takes its time."""
 

@@ -10,21 +10,7 @@ from unittest import mock
 
 import FreeCAD
 import FreeCADGui
-from gui import (
-    FOLDER,
-    answer,
-    click,
-    close_panel,
-    main,
-    new_document,
-    picture,
-    picture_of_all,
-    press,
-    select,
-    settle,
-    step,
-    until,
-)
+from gui import FOLDER, answer, click, main, new_document, picture, picture_of_all, press, select, settle, step, until
 from PySide import QtCore, QtGui, QtWidgets
 
 LONG = ["G0 X0 Y0 Z30", *(f"G1 X{x % 2 * 20} Y{x * 0.02} Z20 F30" for x in range(400)), "G0 Z30"]
@@ -107,6 +93,11 @@ def clicked(listed, item):
     return selected, FreeCADGui.getMainWindow().statusBar().currentMessage()
 
 
+def close():
+    FreeCADGui.Control.closeDialog()
+    settle()
+
+
 @step
 def posting_shows_the_certificate():
     document, folder = saved("gui")
@@ -126,7 +117,7 @@ def posting_shows_the_certificate():
         "clicked": clicked(panel.outcome.findings, panel.outcome.findings.item(0, 0)),
         "where": panel.outcome.findings.item(0, 4).text(),
     }
-    close_panel()
+    close()
     return found
 
 
@@ -151,7 +142,7 @@ def panel_fits_a_narrow_dock():
     }
     panel.post()
     found["width with a certificate"] = panel.form.minimumSizeHint().width()
-    close_panel()
+    close()
     return found
 
 
@@ -171,7 +162,7 @@ def job_keeps_what_was_chosen():
     listed = manifest.check(folder / "gui.pmc")[0] is not None
     shown = open_panel(document)
     again = {"text": shown.choices.text(), "folder": shown.choices.folder.text()}
-    close_panel()
+    close()
     document.undo()
     document.undo()
     return {"kept": kept, "same": same, "listed": listed, "again": again, "undone": job.PostProcessorArgs}
@@ -186,7 +177,7 @@ def refused_job_is_reported_and_leaves_nothing():
     panel.post()
     place = clicked(panel.outcome.diagnostics, panel.outcome.diagnostics.item(0))
     found = {"files": names_in(folder), "reported": panel.rows(), "clicked": place, "drawn": picture("refused.png")}
-    close_panel()
+    close()
     return found
 
 
@@ -217,7 +208,7 @@ def refusal_that_a_place_mends_offers_one():
     found["offset"] = panel.choices.work_offset.currentText()
     panel.post()
     found |= {"verdict": panel.outcome.verdict.text(), "files": names_in(folder), "kept": job.PostProcessorArgs}
-    close_panel()
+    close()
     return found
 
 
@@ -274,7 +265,7 @@ def lack_of_memory_is_reported_and_leaves_nothing():
     with mock.patch.object(motion, "tool_path", lacking):  # beside it
         panel.post()
     reported.append(panel.rows())
-    close_panel()
+    close()
     shown = mock.patch.object(command.QtWidgets.QMessageBox, "warning", lambda *what: boxes.append(what[2]))
     with shown, command.show_lack_of_memory("Mirror"):
         lacking()
@@ -288,7 +279,7 @@ def arguments_without_a_meaning_are_reported():
     panel.choices.more.setText("--no-such-argument 'and a quote")
     panel.post()
     found = {"files": names_in(folder), "reported": panel.rows(), "kept": document.getObject("Job").PostProcessorArgs}
-    close_panel()
+    close()
     return found
 
 
@@ -309,7 +300,7 @@ def cancelled_job_leaves_nothing():
         "could": enabled,
         "can": panel.buttons["Cancel"].isEnabled(),
     }
-    close_panel()
+    close()
     return found
 
 
@@ -356,7 +347,7 @@ def preferences_are_what_a_new_job_is_offered():
     job.PostProcessorArgs = ""
     panel = open_panel(document)
     offered = {"text": panel.choices.text(), "folder": panel.choices.folder.text()}
-    close_panel()
+    close()
     from pkm_post.freecad_app.arguments import own_arguments
 
     return {"offered": offered, "headless": own_arguments(job).axis_tolerance}
@@ -411,7 +402,7 @@ def column_is_posted():
         panel.choices.folder.setText("programs")  # in the picture no folder of this computer
         panel.post()
     found = picture_of_all("post_panel.png")
-    close_panel()
+    close()
     return {"drawn": found}
 
 

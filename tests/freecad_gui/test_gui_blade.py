@@ -21,7 +21,7 @@ SMALL = 150_000
 
 @pytest.fixture(scope="module")
 def session(scene):
-    made = scene("blade", alone=True)
+    made = scene("blade")
     made.keep("blade_*.png")
     return made
 

@@ -13,14 +13,14 @@ NEAR_DEG = 1e-3
 
 @pytest.fixture(scope="module")
 def session(scene):
-    made = scene("control", alone=True)
+    made = scene("control")
     made.keep("control.png")
     return made
 
 
 @pytest.fixture(scope="module")
 def programs(scene):
-    return scene("control_programs", alone=True)
+    return scene("control_programs")
 
 
 def test_words_are_those_of_the_rooms_below(session):

@@ -7,7 +7,7 @@ from wheels import NAME
 
 @pytest.fixture(scope="module")
 def session(scene):
-    return scene("packages", alone=True)
+    return scene("packages")
 
 
 def test_what_is_missing_is_offered_with_its_purpose(session):

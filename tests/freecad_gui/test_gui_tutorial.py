@@ -33,7 +33,7 @@ SMALL = 150_000
 
 @pytest.fixture(scope="module")
 def session(scene):
-    made = scene("tutorial", alone=True)
+    made = scene("tutorial")
     made.keep("tutorial_*.png")
     return made
 
