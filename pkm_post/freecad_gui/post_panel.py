@@ -77,6 +77,8 @@ class PostPanel:
         self._show_running(False)
         self.folder.setEnabled(False)
         self._watch = DeletionWatch(self.reject, job.Document.Name, job.Name)
+        self._is_open = True
+        self.form.destroyed.connect(lambda *_: self._end_all())  # other add-ons close panels without ``reject``
 
     def _lay_out(self) -> None:
         layout, buttons = QtWidgets.QVBoxLayout(self.form), QtWidgets.QGridLayout()
@@ -212,6 +214,15 @@ class PostPanel:
 
     def reject(self) -> bool:
         """Close the panel, after stopping any posting."""
+        self._end_all()
+        FreeCADGui.Control.closeDialog()
+        return True
+
+    def _end_all(self) -> None:
+        """Stop any posting, and following the document."""
+        if not self._is_open:
+            return
+        self._is_open = False
         self._watch.end()
         self.place.end()
         self._view.end()
@@ -219,8 +230,6 @@ class PostPanel:
         if self._task is not None:
             self._task.finished.disconnect(self._end)  # the display no longer exists
             self._task.finish()
-        FreeCADGui.Control.closeDialog()
-        return True
 
 
 def open_panel(job: Any) -> PostPanel | None:

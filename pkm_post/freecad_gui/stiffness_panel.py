@@ -75,6 +75,8 @@ class StiffnessPanel:
         self._hidden = [each.Name for each in job.InList if hasattr(each, "Violations") and each.Visibility]
         self._show_reach(False)
         self._watch = DeletionWatch(self.reject, self._document, job.Name)
+        self._is_open = True
+        self.form.destroyed.connect(lambda *_: self._end_all())  # other add-ons close panels without ``reject``
         self._fill()
         self._draw()
 
@@ -120,13 +122,20 @@ class StiffnessPanel:
 
     def reject(self) -> bool:
         """Close the panel, and remove the colours from the view."""
+        self._end_all()
+        FreeCADGui.Control.closeDialog()
+        return True
+
+    def _end_all(self) -> None:
+        """Remove the colours from the view, and stop following the document."""
+        if not self._is_open:
+            return
+        self._is_open = False
         self._watch.end()
         self._view.end()
         self._graph.removeChild(self._drawn)
         if is_shown(self._document):
             self._show_reach(True)
-        FreeCADGui.Control.closeDialog()
-        return True
 
 
 def open_panel(job: Any) -> StiffnessPanel | None:

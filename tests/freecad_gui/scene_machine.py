@@ -389,6 +389,10 @@ def stiffness_from_its_button():
     click_named("Close")
     found["nodes left"] = graph.getNumChildren() - before
     found["posed at rest again"] = not machine.Proxy.played
+    press("PKM_Stiffness", document.getObject("Job"))
+    FreeCADGui.Control.closeDialog()
+    until(lambda: not FreeCADGui.getMainWindow().findChild(QtWidgets.QWidget, NAME))
+    found["nodes left by another command"] = graph.getNumChildren() - before
     return found
 
 

@@ -382,6 +382,21 @@ def panel_closes_with_its_job():
     return {"open": bool(FreeCADGui.Control.activeDialog())}
 
 
+@step
+def panel_closed_by_another_command_stops_posting():
+    document, folder = saved("closed")
+    document.getObject("Custom").Gcode = LONG
+    document.recompute()
+    panel = open_panel(document)
+    click(panel.buttons["Post"])
+    running = panel.buttons["Cancel"].isEnabled()
+    FreeCADGui.Control.closeDialog()
+    until(lambda: not FreeCADGui.getMainWindow().findChild(QtWidgets.QWidget, "PkmPostPanel"))
+    FreeCAD.closeDocument(document.Name)  # a traceback of what still follows it would be a fault of the scene
+    settle()
+    return {"running": running, "files": names_in(folder)}
+
+
 def column_is_posted():
     """A picture of the panel with the tapered column for docs/pictures; it asserts nothing, and so it is no test."""
     sys.path.insert(0, str(Path(__file__).parents[2] / "examples" / "tapered_column"))

@@ -127,3 +127,8 @@ def test_preferences_have_a_page(session):
 
 def test_panel_closes_with_its_job(session):
     assert not session["panel_closes_with_its_job"]["open"]
+
+
+def test_panel_closed_by_another_command_stops_posting(session):
+    found = session["panel_closed_by_another_command_stops_posting"]
+    assert found == {"running": True, "files": ["closed.FCStd"]}
