@@ -5,6 +5,7 @@ import copy
 import dataclasses
 import json
 import logging
+import re
 import shutil
 import sys
 from itertools import islice
@@ -224,7 +225,7 @@ def test_a_part_in_the_place_of_another_is_refused(in_parts, tmp_path):
 
 def test_uncertified_is_taken_when_that_is_said_and_logged(program, machine, caplog):
     settings, _ = pmac.settings_of(machine)
-    program.write_text(next(mutants(program.read_text(), seed=4)))
+    program.write_text(re.sub(r"\d(?=:)", lambda digit: str(9 - int(digit[0])), program.read_text(), count=1))
     assert job_to_load(program, machine, settings)[0] is None
     with caplog.at_level(logging.WARNING):
         job, _ = job_to_load(program, machine, settings, uncertified=True)
