@@ -10,7 +10,6 @@ Leaves: ``Limits`` without the others. Units: mm, s.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -102,27 +101,28 @@ class Highest:
         ends_of_numbers, numbers = [], []
         for one in weights:
             group, end = np.nonzero(self.binding(one, jerk))
-            if one.each:
-                ends_of_numbers.append(end)
-                numbers.append(one.table[:, group, end][:, None])
-            elif len(end):
-                parts = _of_vectors(one.table[..., end])
-                found += (Limits(ends.take(end[rows]), part, jerk) for rows, part in parts if len(rows))
+            parts = [(end, one.table[:, group, end][:, None])] if one.each else _of_vectors(one.table[..., end], end)
+            for rows, table in parts:
+                if table.shape[1] == 1:
+                    ends_of_numbers.append(rows)
+                    numbers.append(table)
+                elif len(rows):
+                    found.append(Limits(ends.take(rows), table, jerk))
         if sum(map(len, ends_of_numbers)):
             found.append(Limits(ends.take(np.concatenate(ends_of_numbers)), np.concatenate(numbers, axis=2), jerk))
         return found
 
 
-def _of_vectors(table: Array) -> Iterator[tuple[Array, Array]]:
-    """Which vectors, (K,), and their weights, (3, R, K); of one with a single weight, as on a line, only its length.
+def _of_vectors(table: Array, ends: Array) -> list[tuple[Array, Array]]:
+    """Weights of vectors, (3, R, K), and their ends, (K,); of one with a single weight, as on a line, only its length.
 
     Args:
         table: (3, 3, E) weights of the change of acceleration, of acceleration and of speed squared.
+        ends: (E,) the ends.
     """
     alone = np.count_nonzero((table != 0).any(axis=1), axis=0) == 1
-    one, several = np.flatnonzero(alone), np.flatnonzero(~alone)
-    yield one, np.sqrt((table[..., one] ** 2).sum(axis=1, keepdims=True))
-    yield several, table[..., several]
+    length = np.sqrt((table[..., alone] ** 2).sum(axis=1, keepdims=True))
+    return [(ends[alone], length), (ends[~alone], table[..., ~alone])]
 
 
 def _lowered(values: Array, bound: Array, size: Array) -> Array:

@@ -118,7 +118,7 @@ def test_vectors_with_one_weight_are_their_lengths():
     table = random.normal(size=(3, 3, 60))
     table[1:, :, ::3], table[[0, 2], :, 1::3] = 0.0, 0.0
     values, seen = random.normal(size=(3, 60)), []
-    for rows, weights in _of_vectors(table):
+    for rows, weights in _of_vectors(table, np.arange(60)):
         length, expected = (
             np.linalg.norm(np.einsum("vre,ve->re", one, values[:, rows]), axis=0) for one in (weights, table[..., rows])
         )
