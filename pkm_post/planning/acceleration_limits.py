@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Acceleration limits: what struts, tip and tool axis demand of the motion along the path, at stations.
+"""Acceleration limits: the limits of struts, tip and tool axis on path speed and acceleration, at stations.
 
-Enters: a path and a machine. Leaves: the columns for ``fastest_profile``. On segments that need no exact limits
-(``rough_limits``) rough ones stand in. Units: mm, s.
+Input: a path and a machine. Output: the columns for ``fastest_profile``. Segments that need no exact limits get the
+rough ones of ``rough_limits``. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from pkm_post.planning.speed_limits import Pair, feed_at, limited_quantities, lo
 from pkm_post.planning.tool_path import ToolPath
 
 _AT_ONCE = 4096
-"""Stations in one pass: their working arrays stay in the processor's cache."""
+"""Stations per pass: keeps the working arrays in the processor's cache."""
 
 
 def station_limits(machine: Machine, poses: Poses, feed: Array) -> StationLimits:
-    """The limits at poses with derivatives by path length.
+    """Limits at poses with derivatives by path length.
 
     Args:
         machine: the limits.
@@ -39,15 +39,15 @@ def station_limits(machine: Machine, poses: Poses, feed: Array) -> StationLimits
 
 
 def rough_station_limits(square: Array, along: Array, share: float) -> StationLimits:
-    """The limits of which a share allows a speed squared and an acceleration along the path, (M,) each."""
+    """Limits from a speed squared and an acceleration along the path that a share of them allows, (M,)."""
     still, products = np.zeros((len(square), 6)), np.zeros((len(square), 3))
     checkpoint()
-    products[:, 0] = (share / along) ** 2  # as of a tip that reaches its limit there
+    products[:, 0] = (share / along) ** 2  # like a tip at its limit there
     return StationLimits.of(square, still, still, products)
 
 
 def limits_within(path: ToolPath, machine: Machine, segment: Array, u: Array) -> StationLimits:
-    """The limits at path lengths u, (M,), of the given segments."""
+    """Limits at path lengths u, (M,), of the given segments."""
     speed, table = np.empty(len(u)), np.empty((len(u), 15), dtype=np.float32)
     for rows in pieces(len(u), _AT_ONCE):
         poses = path.within(segment[rows], u[rows])
@@ -59,15 +59,15 @@ def limits_within(path: ToolPath, machine: Machine, segment: Array, u: Array) ->
 def limits_at(
     path: ToolPath, segment: Array, u: Array, close: Array, rough: Pair, share: float, machine: Machine
 ) -> StationLimits:
-    """The same, exact on close segments, else rough; where the two kinds meet, the rough ones hold.
+    """Limits at stations: exact on close segments, rough elsewhere and where the two kinds meet.
 
     Args:
         path: N segments.
-        segment: (M,) segments of the stations.
-        u: (M,) path lengths of the stations on them.
+        segment: (M,) segment of each station.
+        u: (M,) path length of each station on its segment.
         close: (N,) which segments get exact limits.
         rough: limits of speed squared and acceleration that hold on the whole of each segment, (N,) each.
-        share: the share of the limits of acceleration that the rough ones are.
+        share: share of the acceleration limits that the rough ones represent.
         machine: the limits.
     """
     after = next_segment(path, segment, u)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Banded: symmetric positive definite systems with two diagonals on either side of the main one.
 
-Two unknowns make one block, so the matrix is block tridiagonal. Cyclic reduction eliminates every second block, all of
-them at once: half as many are left, again block tridiagonal, until few remain for a dense solver. N unknowns take
-log2(N) steps over columns instead of a loop over rows; for positive definite matrices no pivots are needed
-[Golub2013]. Enters: the lower band. Leaves: a factor that solves for any number of right sides.
+Two unknowns form one block, so the matrix is block tridiagonal. Cyclic reduction eliminates every second block at once
+and leaves a block tridiagonal matrix of half the size, until a dense solver takes the rest. N unknowns take log2(N)
+steps over columns instead of a loop over rows; positive definite matrices need no pivoting [Golub2013]. Input: the
+lower band. Output: a factor that solves for any number of right-hand sides.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ import numpy as np
 from pkm_post.geometry import Array
 
 _FEW = 16
-"""Blocks that the dense solver takes: below it, steps over columns cost more than they save."""
+"""Most blocks for the dense solver: below this, steps over columns cost more than they save."""
 
 
 @dataclass(frozen=True)
 class _Level:
-    """What one step of the reduction keeps: of the blocks with odd number, (2, 2, K) each.
+    """One step of the reduction: its odd-numbered blocks, (2, 2, K) each.
 
     Attributes:
         inverse: inverses of the diagonal blocks.
-        before: inverse times the coupling to the block before.
-        after: inverse times the coupling to the block after; zero behind the last one.
+        before: inverse times the coupling to the previous block.
+        after: inverse times the coupling to the next block; zero for the last one.
     """
 
     inverse: Array
@@ -41,7 +41,7 @@ class BandedFactor:
         """Factor a matrix A.
 
         Args:
-            band: (3, N); row d has A[j + d, j] in column j. What lies beyond the matrix is not read.
+            band: (3, N); row d has A[j + d, j] in column j. Entries beyond the matrix are not read.
         """
         self._unknowns = band.shape[1]
         main, lower = _blocks(band)
@@ -52,7 +52,7 @@ class BandedFactor:
         self._last = np.linalg.inv(_dense(main, lower))
 
     def solve(self, right: Array) -> Array:
-        """The x of A x = right, (N,) both."""
+        """Solve A x = right for x, (N,) both."""
         padded = np.append(right, np.zeros(-self._unknowns % 2)).reshape(-1, 2).T
         odds = []
         for level in self._levels:
@@ -74,7 +74,7 @@ class BandedFactor:
 
 
 def _blocks(band: Array) -> tuple[Array, Array]:
-    """Diagonal blocks (2, 2, K), and those that couple each block with the one before it, (2, 2, K - 1)."""
+    """Diagonal blocks, (2, 2, K), and the blocks coupling each to its predecessor, (2, 2, K - 1)."""
     odd = band.shape[1] % 2
     band = np.concatenate([band, np.array([[1.0], [0.0], [0.0]])], axis=1) if odd else band
     if odd:
@@ -86,7 +86,7 @@ def _blocks(band: Array) -> tuple[Array, Array]:
 
 
 def _halved(main: Array, lower: Array) -> tuple[Array, Array, _Level]:
-    """The block tridiagonal matrix of the blocks with even number, and what the others leave for later."""
+    """The block tridiagonal matrix of the even-numbered blocks, and the eliminated level."""
     odd, into, out = main[..., 1::2], lower[..., ::2], lower[..., 1::2]
     inverse = _inverse(odd)
     rest = out.shape[2]

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Binding limits: which limits of a motion can bind at all, known before the motion is.
+"""Binding limits: filters out the limits that cannot bind, before the motion is known.
 
-The limits themselves bound what it can do: the speed squared x is at most its ceiling, and at most that at which the
-curvature of a vector takes all of its acceleration; then each acceleration |y' a + y'' x| <= A bounds a, and each jerk
-|y' k + 3 y'' a + y''' x| sqrt(x) <= J bounds k sqrt(x). A limit that stays below its bound with all of these can be
-left out: the ones that are left imply it. Of six struts and a tip few remain. Enters: weights of ``motion_limits``.
-Leaves: ``Limits`` without the others. Units: mm, s.
+The limits themselves bound the motion: the speed squared x is at most its ceiling, and at most the value at which a
+vector's curvature takes all of its acceleration; then each acceleration |y' a + y'' x| <= A bounds a, and each jerk
+|y' k + 3 y'' a + y''' x| sqrt(x) <= J bounds k sqrt(x). A limit that these bounds keep below its value is implied by
+the others and can be left out. Of six struts and a tip few remain. Input: weights of ``motion_limits``. Output: the
+``Limits`` that remain. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -20,31 +20,31 @@ from pkm_post.planning.speed_limits import NO_LIMIT
 from pkm_post.planning.speed_spline import CellEnds
 
 _BINDS = 0.95
-"""Use of a limit from which on it counts as one that can bind."""
+"""Use of a limit above which it may bind."""
 
 
 @dataclass(frozen=True)
 class Weights:
-    """Weights of one quantity, divided by its bound, as those of ``Limits``.
+    """Weights of one quantity, divided by its bound, as in ``Limits``.
 
     Attributes:
-        table: (3, R, E) of the change of acceleration, of acceleration and of speed squared, for R numbers.
-        each: whether each number has the bound for itself; else they are one vector.
+        table: (3, R, E) for change of acceleration, acceleration and speed squared, for R numbers.
+        each: whether the bound applies to each number; else to their vector.
     """
 
     table: Array
     each: bool
 
     def take(self, rows: Array) -> Weights:
-        """The same at some of the ends."""
+        """Select ends."""
         return Weights(self.table[..., rows], self.each)
 
     def sizes(self) -> Array:
-        """Their magnitudes by group, (3, G, E)."""
+        """Magnitudes by group, (3, G, E)."""
         return np.abs(self.table) if self.each else np.sqrt((self.table**2).sum(axis=1, keepdims=True))
 
     def across(self) -> Array:
-        """Of a vector, how much of the weight of the speed squared is across that of the acceleration, (E,)."""
+        """Component of a vector's speed-squared weight across its acceleration weight, (E,)."""
         along, square = self.table[1], self.table[2]
         length = (along**2).sum(axis=0)
         share = np.divide((along * square).sum(axis=0), length, out=np.zeros_like(length), where=length > 0)
@@ -53,7 +53,7 @@ class Weights:
 
 @dataclass(frozen=True)
 class Highest:
-    """The most that a motion can have at E ends of cells.
+    """Upper bounds on a motion at E ends of cells.
 
     Attributes:
         square: (E,) speed squared.
@@ -67,7 +67,7 @@ class Highest:
 
     @classmethod
     def of(cls, ceiling: Array, accelerations: tuple[Weights, ...]) -> Highest:
-        """The most by ceilings of the speed squared, (E,), and limits of acceleration."""
+        """Bounds from ceilings of the speed squared, (E,), and acceleration limits."""
         square, along = ceiling, np.full(len(ceiling), NO_LIMIT)
         with np.errstate(divide="ignore"):
             for one in accelerations:
@@ -78,11 +78,11 @@ class Highest:
         return cls(square, along, np.full(len(ceiling), NO_LIMIT))
 
     def take(self, rows: Array) -> Highest:
-        """The same at some of the ends."""
+        """Select ends."""
         return Highest(self.square[rows], self.along[rows], self.change[rows])
 
     def with_jerks(self, jerks: tuple[Weights, ...]) -> Highest:
-        """The most by limits of jerk as well."""
+        """Bounds from jerk limits as well."""
         change, root = self.change, np.sqrt(self.square)
         for one in jerks:
             first, slope, level = one.sizes()
@@ -90,13 +90,13 @@ class Highest:
         return Highest(self.square, self.along, change)
 
     def binding(self, one: Weights, jerk: bool) -> Array:
-        """Whether limits of acceleration, or of jerk, can bind, (G, E)."""
+        """Whether acceleration limits, or jerk limits, can bind, (G, E)."""
         first, slope, level = one.sizes()
         use = slope * self.along + level * self.square
         return np.asarray((first * self.change + use * np.sqrt(self.square) if jerk else use) > _BINDS)
 
     def limits(self, ends: CellEnds, weights: tuple[Weights, ...], jerk: bool) -> list[Limits]:
-        """The limits that can bind; those of numbers are one set."""
+        """The limits that can bind; scalar ones form one set."""
         found: list[Limits] = []
         ends_of_numbers, numbers = [], []
         for one in weights:
@@ -114,10 +114,10 @@ class Highest:
 
 
 def _of_vectors(table: Array, ends: Array) -> list[tuple[Array, Array]]:
-    """Weights of vectors, (3, R, K), and their ends, (K,); of one with a single weight, as on a line, only its length.
+    """Ends of vectors, (K,), and their weights, (3, R, K); a vector with one weight, as on a line, by length only.
 
     Args:
-        table: (3, 3, E) weights of the change of acceleration, of acceleration and of speed squared.
+        table: (3, 3, E) weights for change of acceleration, acceleration and speed squared.
         ends: (E,) the ends.
     """
     alone = np.count_nonzero((table != 0).any(axis=1), axis=0) == 1
@@ -126,6 +126,6 @@ def _of_vectors(table: Array, ends: Array) -> list[tuple[Array, Array]]:
 
 
 def _lowered(values: Array, bound: Array, size: Array) -> Array:
-    """Values, (E,), or less where a bound divided by one of the sizes is less, (G, E) both."""
+    """Values, (E,), lowered to the least bound divided by size, (G, E) both."""
     quotient = np.divide(bound, size, out=np.full_like(size, NO_LIMIT), where=size * NO_LIMIT > bound)
     return np.minimum(values, quotient.min(axis=0))

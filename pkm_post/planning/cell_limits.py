@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cell limits: what two-sided limits of acceleration allow between two stations of a path.
+"""Cell limits: the accelerations that two-sided limits allow between two stations of a path.
 
-With x = v^2, linear in path length within a cell of the width d, the acceleration along the path is a = dx / 2d, and a
-quantity y(s) of the path has the acceleration y' a + y'' x. Let x be that at the start of the cell. Then a limit is a
-strip |b a + c x| <= 1 of the plane of x and a, at either end of the cell; for a vector, the tip, it is an ellipse.
-Together they leave a highest speed of the cell, and at lower speeds a range of accelerations [Pham2018]. Enters:
-derivatives at stations, by their limits. Leaves: these ranges, and the speeds they lead to. Units: mm, s.
+With x = v^2 linear in path length within a cell of width d, the acceleration along the path is a = dx / 2d, and a
+quantity y(s) of the path has the acceleration y' a + y'' x. With x at the start of the cell, a limit at either end is a
+strip |b a + c x| <= 1 in the plane of x and a; for a vector, the tip, it is an ellipse. Together they leave the cell a
+highest speed, and at lower speeds a range of accelerations [Pham2018]. Input: derivatives at stations, divided by
+their limits. Output: these ranges, and the speeds they lead to. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -19,27 +19,27 @@ from pkm_post.geometry import Array
 from pkm_post.model import pieces
 
 _ROWS_AT_ONCE = 1 << 14
-"""Stations in one pass."""
+"""Stations per pass."""
 _LEAST = 1e-150
-"""Stands for no derivative: keeps quotients, and quotients of squares, finite."""
+"""Replaces a zero derivative: keeps quotients, and quotients of squares, finite."""
 _ROUNDS = 24
-"""Rounds of regula falsi for the highest speed of a cell: what is missing then is mostly below a share of 1e-6."""
+"""Rounds of regula falsi for the highest speed of a cell: the relative error is then mostly below 1e-6."""
 _STARTS_AND_ENDS = slice(None, -1), slice(1, None)
 _SURELY_WITHIN = 0.9
-"""Share of a limit up to which it needs no look, between stations neither."""
+"""Share of a limit up to which it needs no check, even between stations."""
 
 
 @dataclass(frozen=True)
 class StationLimits:
     """Limits at M stations.
 
-    The derivatives of C struts are by the limit of acceleration. Of the tip, a vector p(s), enter the products p'.p',
-    p'.p'' and p''.p'', by the square of its limit.
+    Derivatives of the C struts are divided by their acceleration limit. The tip, a vector p(s), enters by the products
+    p'.p', p'.p'' and p''.p'', divided by its limit squared.
 
     Attributes:
-        speed: (M,) highest speed squared by limits of speed.
-        table: (M, 2 C + 3) first derivatives of the struts, their second ones, and the three products of the tip; in
-            single precision, which is a ten-millionth of each limit.
+        speed: (M,) highest speed squared under the speed limits.
+        table: (M, 2 C + 3) first and second derivatives of the struts, and the three products of the tip; in single
+            precision, a ten-millionth of each limit.
     """
 
     speed: Array
@@ -47,28 +47,28 @@ class StationLimits:
 
     @classmethod
     def of(cls, speed: Array, first: Array, second: Array, tip: Array) -> StationLimits:
-        """The limits from derivatives of struts, (M, C) each, and products of the tip, (M, 3)."""
+        """Limits from derivatives of struts, (M, C) each, and products of the tip, (M, 3)."""
         return cls(speed, np.concatenate([first, second, tip], axis=1, dtype=np.float32))
 
     @property
     def columns(self) -> tuple[slice, slice, slice]:
-        """Columns of the first derivatives, of the second ones, and of the products."""
+        """Columns of the first derivatives, the second derivatives, and the products."""
         struts = (self.table.shape[1] - 3) // 2
         return slice(0, struts), slice(struts, 2 * struts), slice(2 * struts, None)
 
     def of_struts(self, struts: Array) -> StationLimits:
-        """The same of some of the struts, (C,), only."""
+        """Keep only the selected struts, (C,)."""
         return StationLimits(self.speed, self.table[:, np.concatenate([struts, struts, np.ones(3, dtype=np.bool_)])])
 
     def __getitem__(self, rows: Array | slice) -> StationLimits:
         return StationLimits(self.speed[rows], self.table[rows])
 
     def inserted(self, row: Array, other: StationLimits) -> StationLimits:
-        """These stations with others, each before the station of a row (K,)."""
+        """These stations with others inserted, each before a row, (K,)."""
         return StationLimits(np.insert(self.speed, row, other.speed), np.insert(self.table, row, other.table, axis=0))
 
     def struts_that_matter(self, share: float) -> Array:
-        """Struts that may be at their limits before the tip is at its own, (C,), where a share is planned.
+        """Struts that may reach their limits before the tip reaches its own, (C,), at a planned share.
 
         With P, Q, R of the tip, b a + c x is b (a + x Q / P) + (c - b Q / P) x, and the tip keeps the first bracket
         below 1 / sqrt(P) and x below 1 / sqrt(R - Q^2 / P).
@@ -87,11 +87,11 @@ class StationLimits:
 
 @dataclass(frozen=True)
 class CellLimits:
-    """What K cells allow, by the speed squared x at their starts.
+    """Limits of K cells by the speed squared x at their starts.
 
     Attributes:
         width: (K,) twice the path length of each cell: x at its end is x + width a.
-        slope: (2 C, K) b of each strip, not negative: of C struts at the starts, and at the ends.
+        slope: (2 C, K) b of each strip, not negative: of C struts at the starts, then at the ends.
         offset: (2 C, K) c of each strip.
         tips: two ellipses with the rows P, Q, R of P a^2 + 2 Q a x + R x^2 <= 1, (3, K) each.
     """
@@ -103,7 +103,7 @@ class CellLimits:
 
     @classmethod
     def of(cls, s: Array, limits: StationLimits, cell: Array | slice) -> CellLimits:
-        """The limits of cells, by path lengths and limits of all stations."""
+        """Limits of cells, from path lengths and limits of all stations."""
         width = 2 * (s[1:][cell] - s[:-1][cell])
         table, after = (limits.table[rows][cell].T.astype(np.float64, order="C") for rows in _STARTS_AND_ENDS)
         one, two, tip = limits.columns
@@ -116,7 +116,7 @@ class CellLimits:
         return cls(width, np.abs(slope), offset, tips)
 
     def ahead(self, share: Array | float) -> Ahead:
-        """The accelerations under a share of the limits, a number or (K,)."""
+        """Accelerations under a share of the limits, a number or (K,)."""
         struts, tips, cells = (np.empty((*rows, len(self.width))) for rows in ((2, len(self.slope)), (4, 2), (2,)))
         struts[0], cells[0], cells[1] = self.offset, self.width, share
         np.maximum(self.slope, _LEAST, out=struts[1])
@@ -140,7 +140,7 @@ class CellLimits:
         return Behind(struts, tips, self.width)
 
     def highest(self, ceiling: Array) -> Array:
-        """Highest speed squared that leaves any acceleration under whole limits, (K,); infinite above a ceiling."""
+        """Highest speed squared with an acceleration left under full limits, (K,); infinite above the ceiling."""
         high = functools.reduce(np.minimum, map(_end, self.tips))
         highest = np.where(high < ceiling, high, np.inf)
         high = np.minimum(high, ceiling)
@@ -151,7 +151,7 @@ class CellLimits:
             return highest
         tight, low, high, at_high = self[rows].ahead(1.0), np.zeros(len(rows)), high[rows], room[rows]
         at_low = tight.room(low)
-        for _ in range(_ROUNDS):  # Illinois: an end that stays counts half
+        for _ in range(_ROUNDS):  # Illinois method: halve the value of an end that stays
             middle = low + (high - low) * (at_low / (at_low - at_high))
             there = tight.room(middle)
             inside = there >= 0
@@ -168,11 +168,11 @@ class CellLimits:
 
 @dataclass(frozen=True)
 class Ahead:
-    """The accelerations that K cells leave under a share of the limits, by the speed squared at their starts.
+    """Accelerations of K cells under a share of the limits, by the speed squared at their starts.
 
     Attributes:
         struts: (2, 2 C, K) c and b of the strips.
-        tips: (4, 2, K) of both ellipses Q, P R - Q^2, P by the square of the share, and P.
+        tips: (4, 2, K) of both ellipses Q, P R - Q^2, P times the share squared, and P.
         cells: (2, K) widths, and shares.
     """
 
@@ -186,7 +186,7 @@ class Ahead:
     def bounds(self, square: Array) -> tuple[Array, Array]:
         """Least and greatest acceleration at a speed squared, (K,) each.
 
-        At a speed that is too high, the least one is above the greatest.
+        If the speed is too high, the least exceeds the greatest.
         """
         offset, slope = self.struts
         width, share = self.cells
@@ -201,12 +201,12 @@ class Ahead:
         return np.maximum(-least, -square / width), most
 
     def room(self, square: Array) -> Array:
-        """Greatest less least acceleration at a speed squared, (K,)."""
+        """Greatest minus least acceleration at a speed squared, (K,)."""
         least, greatest = self.bounds(square)
         return greatest - least
 
     def reached(self, square: Array) -> Array:
-        """Greatest speed squared at the ends by that at the starts, (K,)."""
+        """Greatest speed squared at the ends, given that at the starts, (K,)."""
         offset, slope = self.struts
         width, share = self.cells
         room = offset * square
@@ -219,9 +219,9 @@ class Ahead:
         return np.asarray(square + width * greatest)
 
     def _chords(self, square: Array) -> tuple[Array, Array, Array]:
-        """The ellipses at a speed squared: half of the width and the middle on the way back, by P; and P, (2, K) each.
+        """Ellipse chords at a speed squared: half width and negated middle, both times P; and P, (2, K) each.
 
-        The half is negative where the ellipse ends below that speed.
+        The half width is negative where the ellipse ends below that speed.
         """
         both, apart, power, size = self.tips
         root = power - square**2 * apart
@@ -232,13 +232,13 @@ class Ahead:
 class Behind:
     """Speeds squared at the starts of K cells from which those at their ends can be met, under a share of the limits.
 
-    By an ellipse: the greatest x for which a = (x1 - x) / w, or one below it, is inside. With W = P - 2 w Q + w^2 R
-    this is a quadratic equation in x. Where x1 is so great that its root would fall again, the acceleration is less,
-    and the root that of the x1 at which it is greatest.
+    For an ellipse: the greatest x for which a = (x1 - x) / w, or a lower one, is inside. With W = P - 2 w Q + w^2 R
+    this is a quadratic equation in x. Beyond the x1 at which its root peaks, the acceleration drops and the root stays
+    at its peak.
 
     Attributes:
-        struts: (3, 2 C, K) of the strips b; w by the share, infinite where no speed is too great; and b - w c.
-        tips: (5, 2, K) of both ellipses that x1, P R - Q^2, W by the square of the share, P - w Q, and W.
+        struts: (3, 2 C, K) of the strips b; w times the share, infinite where no speed is too great; and b - w c.
+        tips: (5, 2, K) of both ellipses the peak x1, P R - Q^2, W times the share squared, P - w Q, and W.
         width: (K,) of the cells.
     """
 
@@ -250,7 +250,7 @@ class Behind:
         return Behind(*(_of_cells(each, rows) for each in (self.struts, self.tips, self.width)))
 
     def reached(self, square: Array) -> Array:
-        """Greatest speed squared at the starts by that at the ends, (K,)."""
+        """Greatest speed squared at the starts, given that at the ends, (K,)."""
         slope, most, divisor = self.struts
         bound = slope * square
         bound += most
@@ -263,35 +263,35 @@ class Behind:
 
 
 def _end(tip: Array) -> Array:
-    """Where an ellipse ends: its greatest x, (K,)."""
+    """Greatest x of an ellipse, (K,)."""
     one, both, two = tip
     return np.asarray(1 / np.sqrt(np.maximum(two - both**2 / np.maximum(one, _LEAST), _LEAST)))
 
 
 def _of_cells(values: Array, rows: Array | slice) -> Array:
-    """Values (..., K) of some of the cells."""
+    """Values, (..., K), of selected cells."""
     return values[..., rows] if isinstance(rows, slice) else values.take(rows, axis=-1)
 
 
 def _apart(one: Array, both: Array, two: Array) -> Array:
-    """P R - Q^2 of an ellipse, (K,), not negative."""
+    """P R - Q^2 of an ellipse, (K,), clipped at zero."""
     return np.asarray(np.maximum(one * two - both**2, 0.0))
 
 
 def demand(limits: StationLimits, along: Array, square: Array, share: Array) -> Array:
-    """Largest demand of a motion at stations, (M,), by what is allowed; 1 is just within all limits.
+    """Largest demand of a motion at stations relative to its limits, (M,); 1 is just within.
 
     Args:
         limits: limits at M stations.
         along: (M,) acceleration along the path.
         square: (M,) speed squared.
-        share: (M,) share of the limits of acceleration.
+        share: (M,) share of the acceleration limits.
     """
     return np.asarray(np.maximum(acceleration_demand(limits, along, square) / share, square / limits.speed))
 
 
 def acceleration_demand(limits: StationLimits, along: Array, square: Array) -> Array:
-    """The same by the whole limits of acceleration alone."""
+    """Demand relative to the full acceleration limits, (M,)."""
     first, second, tip = (limits.table.T[rows] for rows in limits.columns)
     struts = functools.reduce(np.maximum, np.abs(first * along + second * square), np.zeros(len(along)))
     one, both, two = tip

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Check points: the intervals of a motion, and the instants at which it is compared with its plan.
 
-Enters: starts and ends of intervals in whole ms, and the times at which the path passes its joints, s. Leaves: the
+Input: starts and ends of intervals in whole ms, and the times at which the path passes its joints, s. Output: the
 joints inside each interval, and places between them that leave no wide gap.
 """
 
@@ -24,8 +24,8 @@ class Intervals:
     Attributes:
         start: (N,) whole ms.
         end: (N,) whole ms.
-        first: (N,) the segment on which it begins.
-        last: (N,) the segment on which it ends.
+        first: (N,) segment at the start.
+        last: (N,) segment at the end.
     """
 
     start: Array
@@ -35,7 +35,7 @@ class Intervals:
 
     @classmethod
     def of(cls, joint_time: Array, start: Array, end: Array) -> Intervals:
-        """The intervals between whole ms, (N,) each, on a path that passes the ends of its segments at times in s."""
+        """Intervals between whole ms, (N,) each; ``joint_time``: when the path passes its segment ends, s."""
         first = np.searchsorted(joint_time, start / 1000, side="right")
         return cls(start, end, first, np.searchsorted(joint_time, end / 1000))
 
@@ -51,11 +51,11 @@ class Intervals:
         return np.asarray((self.end - self.start) / 1000)
 
     def most_points(self, gaps: int, widest: float) -> Array:
-        """At most so many places between the joints, and not much more than there are, (N,)."""
+        """Upper bound, fairly tight, on the number of places between joints, (N,)."""
         return np.asarray(self.last - self.first + np.maximum(gaps, np.ceil(self.duration / widest)))
 
     def at_joints(self, joint_time: Array, most: int | None = None) -> CheckPoints:
-        """The joints inside the intervals; of each at most so many, spread evenly."""
+        """The joints inside the intervals; at most ``most`` of each, evenly spread."""
         inside = self.last - self.first
         count = inside if most is None else np.minimum(inside, most)
         row, number = expand_counts(count)
@@ -63,7 +63,7 @@ class Intervals:
         return self._points(row, joint_time[joint], joint)
 
     def at_other_joints(self, joint_time: Array, most: int) -> CheckPoints:
-        """The joints inside the intervals, each with more than so many, that ``at_joints`` leaves out."""
+        """The joints that ``at_joints`` leaves out; every interval has more than ``most``."""
         inside = self.last - self.first
         row, number = expand_counts(inside)
         other, begin = np.ones(len(row), dtype=np.bool_), np.cumsum(inside) - inside
@@ -76,8 +76,8 @@ class Intervals:
         """At least one place on each segment; with the joints, no gap exceeds 1 / ``gaps`` of the interval.
 
         Args:
-            joint_time: (J,) s, when the joints of the path are passed.
-            gaps: least number of even gaps of an interval.
+            joint_time: (J,) s, times of the joints of the path.
+            gaps: least number of even gaps in an interval.
             widest: s, widest gap.
         """
         row, number = expand_counts(self.last - self.first + 1)
@@ -100,10 +100,10 @@ class CheckPoints:
 
     Attributes:
         row: (M,) the interval.
-        share: (M,) elapsed share of the duration of the interval.
+        share: (M,) elapsed share of the interval.
         time: (M,) s.
-        segment: (M,) the segment of the path at that time; at a joint the one before it.
-        duration: (M,) s of the interval.
+        segment: (M,) segment of the path at that time; at a joint the earlier one.
+        duration: (M,) s, of the interval.
     """
 
     row: Array
@@ -113,7 +113,7 @@ class CheckPoints:
     duration: Array
 
     def maximum(self, values: Array, count: int) -> Array:
-        """The maximum of values at the points, (M,), for each of ``count`` intervals; 0 where there is no place."""
+        """Maximum of values at the points, (M,), in each of ``count`` intervals; 0 for intervals without points."""
         maximum, first = np.zeros(count), np.flatnonzero(np.diff(self.row, prepend=-1))
         if len(first):
             maximum[self.row[first]] = np.maximum.reduceat(values, first)
@@ -121,21 +121,21 @@ class CheckPoints:
 
 
 class KnownIntervals:
-    """What was found of intervals before, by a number for each."""
+    """Cache of findings, keyed by interval number."""
 
     def __init__(self) -> None:
-        """Nothing yet."""
+        """Start empty."""
         self._number, self._found = np.empty(0, dtype=np.int64), np.empty((2, 0))
 
     def of(self, number: Array) -> Array:
-        """Both findings of intervals, (2, N); NaN where there is none."""
+        """Both findings for each interval, (2, N); NaN if unknown."""
         at, known = self._located(number)
         found = np.full((2, len(number)), np.nan)
         found[:, known] = self._found[:, at[known]]
         return found
 
     def put(self, number: Array, found: Array) -> None:
-        """Remember findings, (2, N), of different intervals."""
+        """Store findings, (2, N), for distinct intervals."""
         at, known = self._located(number)
         self._found[:, at[known]] = found[:, known]
         new = np.flatnonzero(~known)
@@ -144,7 +144,7 @@ class KnownIntervals:
         self._found = np.insert(self._found, at[new], found[:, new], axis=1)
 
     def _located(self, number: Array) -> tuple[Array, Array]:
-        """Where intervals are or would be, (N,), and whether they are there, (N,)."""
+        """Sorted positions of intervals, (N,), and whether they are stored, (N,)."""
         at = np.searchsorted(self._number, number)
         known = np.zeros(len(at), dtype=np.bool_)
         inside = np.flatnonzero(at < len(self._number))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Fast poses: tool pose and tangent of the tip at many places of a path at once, without most derivatives.
+"""Fast poses: tool pose and tip tangent at many places of a path at once, without most derivatives.
 
-Enters: path lengths. Leaves: tips, axes, spins and tangents of the tip, column-major in memory; the exact pair is
+Input: path lengths. Output: tips, axes, spins and tip tangents, column-major in memory; the exact counterpart is
 ``ToolPath.within``, which gives the same poses. In the half of a segment next to a joint, a path of lines needs no case
 distinction: with t the tangent of the segment, D that of its neighbour at the joint minus t, W the step, H its integral
 and x the distance from the joint,
@@ -9,7 +9,7 @@ and x the distance from the joint,
     p = p_line + D H(-x) before the joint, p_line - D H(-x) after it,    p' = t + D W(-x)
 
 as H(x) - x = H(-x) and W(x) = 1 - W(-x). Tool axis and spin follow the same formulas. Places on an arc, and in blends
-beside an arc or a smooth curve, are left to ``ToolPath.within``, which extends both segments.
+next to an arc or a smooth curve, go to ``ToolPath.within``, which extends both segments.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class FastPoses:
         spin: (M,) rad.
         tip_1: (M, 3) derivative of the tip by path length.
         tool_length: (M,) gauge length in use, mm.
-        segment: (M,) the segment of each place; at a joint the earlier one.
+        segment: (M,) segment of each place; at a joint the earlier one.
     """
 
     tip: Array
@@ -49,13 +49,13 @@ class FastPoses:
 
 
 def fast_poses(path: ToolPath, s: Array) -> FastPoses:
-    """The result of ``path.at`` for path lengths s, (M,), without most derivatives."""
+    """Poses at path lengths s, (M,), as ``path.at`` gives them, without most derivatives."""
     segment = np.clip(np.searchsorted(path.starts, s) - 1, 0, len(path.segments) - 1)
     return fast_poses_within(path, segment, s - path.starts[segment])
 
 
 def fast_poses_within(path: ToolPath, segment: Array, u: Array) -> FastPoses:
-    """The same at path lengths u, (M,), of the given segments."""
+    """Poses at path lengths u, (M,), of the given segments."""
     seg, to_end = path.segments, path.segments.extent[segment] - u
     nearer_end = u > to_end
     joint = segment + nearer_end
@@ -93,7 +93,7 @@ def fast_poses_within(path: ToolPath, segment: Array, u: Array) -> FastPoses:
 
 
 def _merged(path: ToolPath, segment: Array, u: Array, smooth: Array) -> FastPoses:
-    """Places of which some are on smooth curves, (M,), and the others are not."""
+    """Poses, some of them, (M,), on smooth curves."""
     count = len(u)
     if path.attitude is None:
         axis, spin, tool_length = np.empty((count, 3)), np.empty(count), select_rows(path.tool_length, segment)
@@ -107,7 +107,7 @@ def _merged(path: ToolPath, segment: Array, u: Array, smooth: Array) -> FastPose
 
 
 def _curved(path: ToolPath, segment: Array, other: Array, blended: Array) -> Array:
-    """Places on arcs, and those in blends beside an arc or a curve, (M,); where the axis turns, all beside them."""
+    """Places on arcs and in blends next to an arc or a curve, (M,); if the axis turns, all next to one."""
     seg, curved = path.segments, np.zeros(len(segment), dtype=np.bool_)
     for kind in (seg.arcs, seg.splines):
         for one in (segment, other):
@@ -119,7 +119,7 @@ def _curved(path: ToolPath, segment: Array, other: Array, blended: Array) -> Arr
 
 
 def _on_curves(path: ToolPath, segment: Array, u: Array) -> FastPoses:
-    """Places on smooth curves, outside of blends."""
+    """Places on smooth curves, outside blends."""
     seg, splines = path.segments, path.segments.splines
     row = splines.number(segment)
     tip, tip_1 = splines.within(row, u, splines.tip)
@@ -137,7 +137,7 @@ def _columns(vectors: Array, rows: Array) -> Array:
 
 
 def _axes(seg: Segments, joints: Array, at: Array, x: Array, rounding: Array) -> Array:
-    """Tool axes at distances x from the joints ``joints[at]``, with H(-|x|)."""
+    """Tool axes at distances x from the joints ``joints[at]``, given H(-|x|)."""
     before, after = np.maximum(joints - 1, 0), np.minimum(joints, len(seg) - 1)
     if not (seg.axis_rate[before].any() or seg.axis_rate[after].any()):
         return take_rows(seg.axis[before], at)
@@ -149,5 +149,5 @@ def _axes(seg: Segments, joints: Array, at: Array, x: Array, rounding: Array) ->
 
 def _overwrite(poses: FastPoses, rows: Array, others: FastPoses | Poses) -> None:
     poses.tip[rows], poses.tip_1[rows] = others.tip, others.tip_1
-    if poses.axis.flags.writeable:  # not one attitude for all
+    if poses.axis.flags.writeable:  # not one shared attitude
         poses.axis[rows], poses.spin[rows] = others.axis, others.spin

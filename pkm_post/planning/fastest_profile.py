@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Fastest profile: the greatest speed squared at the stations of a path, within what its cells allow.
+"""Fastest profile: the greatest speed squared at the stations of a path, within the limits of its cells.
 
-From the end of the path backwards follows the greatest speed from which the next one can still be met, then forwards
-the greatest that can be reached [Pham2018]. Both begin at the ceilings: where a cell is too steep, a front starts, and
-goes on from station to station until it changes nothing; all fronts of a path move at once. So the work is that of the
-ramps, and what runs at its ceiling costs one look. Units: mm, s.
+A backward pass finds the greatest speed from which the next one can still be met, then a forward pass the greatest that
+can be reached [Pham2018]. Both start from the ceilings: each cell that is too steep starts a front, which marches from
+station to station until it changes nothing; all fronts of a path march at once. So ramps take the work; a stretch at
+its ceiling costs one check. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -19,23 +19,23 @@ from pkm_post.model import checkpoint, pieces
 from pkm_post.planning.cell_limits import Ahead, Behind, CellLimits, StationLimits
 
 _CELLS_AT_ONCE = 8192
-"""Cells in one pass: their working arrays stay in the processor's cache."""
+"""Cells per pass: keeps the working arrays in the processor's cache."""
 _STEPS_AT_ONCE, _AHEAD = 16, 256
-"""Steps of fronts whose limits are computed at once, and cells: few fronts would cost as many calls for each step."""
+"""Front steps, and cells, whose limits are computed at once: saves calls when only a few fronts are left."""
 _CHANGED = 1e-9
-"""Share of a speed squared by which a front has to change it to go on."""
+"""Relative change of a speed squared below which a front stops."""
 
 
 @dataclass(frozen=True)
 class Steps:
-    """The limits from station to station of a motion.
+    """The station-to-station limits of a motion.
 
     Attributes:
         s: (M,) path lengths, increasing.
         rest: (M,) whether the motion stops there.
         limits: limits at the stations.
-        ceiling: (M - 1,) highest speed squared at the start of each cell, at whole limits of acceleration.
-        share: (M - 1,) share of the limits of acceleration that each cell may use.
+        ceiling: (M - 1,) highest speed squared at the start of each cell, under full acceleration limits.
+        share: (M - 1,) share of the acceleration limits that each cell may use.
     """
 
     s: Array
@@ -45,16 +45,16 @@ class Steps:
     share: Array
 
     def highest(self) -> Array:
-        """Highest speed squared at each station by itself, (M,), were it not for rests."""
+        """Highest speed squared of each station on its own, (M,), ignoring rests."""
         return np.minimum(self.limits.speed, np.append(self.share * self.ceiling, np.inf))
 
     def fastest_profile(self) -> Array:
-        """Greatest speed squared at stations, (M,)."""
+        """Greatest speed squared at the stations, (M,)."""
         square = np.where(self.rest, 0.0, self.highest())
         return self.renewed(square, np.ones(len(square) - 1, dtype=np.bool_))
 
     def renewed(self, square: Array, open_cells: Array) -> Array:
-        """The same, (M,), where only some cells, (M - 1,), may be too steep under known speeds squared, (M,)."""
+        """Lowered speeds squared, (M,), where only ``open_cells``, (M - 1,), may be too steep."""
         for backward in (True, False):
             before, square = square, square.copy()
             _advance(self, square, before, np.flatnonzero(open_cells), backward)
@@ -64,23 +64,23 @@ class Steps:
         return square
 
     def reached(self, cell: Array | slice, square: Array, backward: bool) -> Array:
-        """Greatest speed squared at one side of cells by that at the other: at the starts, or at the ends, (K,)."""
+        """Greatest speed squared at the far side of cells, given the near side's, (K,); backward: at the starts."""
         return self.limits_of(cell, backward).reached(square)
 
     def limits_of(self, cell: Array | slice, backward: bool) -> Ahead | Behind:
-        """What leads from one side of cells to the other."""
+        """The limits from one side of cells to the other."""
         limits, share = CellLimits.of(self.s, self.limits, cell), self.share[cell]
         return limits.behind(share) if backward else limits.ahead(share)
 
     def reached_in_pieces(self, cell: Array, square: Array, backward: bool) -> Array:
-        """The same of many cells, (K,), by speeds squared at all stations, (M,)."""
+        """``reached`` for many cells, (K,), from all speeds squared, (M,)."""
         known = square[1:] if backward else square[:-1]
         parts = (cell[rows] for rows in _pieces(len(cell)))
         return np.concatenate([self.reached(part, known[part], backward) for part in parts])
 
 
 def ceilings(s: Array, limits: StationLimits, cell: Array, share: Array) -> Array:
-    """Highest speeds squared at the starts of cells, (K,), for ``Steps``, with their shares, (K,)."""
+    """Highest speed squared at the start of each cell, (K,), for ``Steps``, with its share, (K,)."""
     parts = [CellLimits.of(s, limits, cell[k]).highest(limits.speed[cell[k]] / share[k]) for k in _pieces(len(cell))]
     return np.concatenate(parts)
 
@@ -90,24 +90,24 @@ def _pieces(cells: int) -> Iterator[slice]:
 
 
 def _advance(steps: Steps, square: Array, highest: Array, cell: Array, backward: bool) -> None:
-    """Lower speeds squared, (M,) in place, to what can be met or reached, and no station above its highest, (M,)."""
+    """Lower speeds squared, (M,) in place, to those that can be met or reached, at most ``highest``, (M,)."""
     known = square[:-1] if backward else square[1:]
     steep = cell[steps.reached_in_pieces(cell, square, backward) < known[cell] * (1 - _CHANGED)]
     while len(steep):
-        # A front starts in the first cell of each run of steep ones, and goes through the others itself.
+        # One front per run of steep cells, in its first cell: it marches through the rest of the run.
         checkpoint()
         _march(steps, square, highest, steep[_begins(steep, backward)], backward)
         steep = steep[_goes_on(steps, square, highest, steep, backward)]
 
 
 def _begins(cell: Array, backward: bool) -> Array:
-    """Which of some cells, in order, have no neighbour among them on the side where they begin."""
+    """Which of the sorted cells begin a run of neighbours, in marching direction."""
     apart = np.diff(cell) > 1
     return np.append(apart, True) if backward else np.append(True, apart)
 
 
 def _march(steps: Steps, square: Array, highest: Array, cell: Array, backward: bool) -> None:
-    """Move fronts that start in some cells."""
+    """March fronts from some cells."""
     step = -1 if backward else 1
     while len(cell):
         ahead = step * np.arange(min(_STEPS_AT_ONCE, 1 + _AHEAD // len(cell)))
@@ -129,11 +129,11 @@ def _march(steps: Steps, square: Array, highest: Array, cell: Array, backward: b
 
 
 def _goes_on(steps: Steps, square: Array, highest: Array, cell: Array, backward: bool) -> Array:
-    """Whether the speeds squared at the far sides of cells differ from the present ones."""
+    """Whether the speed squared at the far side of each cell would still change."""
     near, far = (cell + 1, cell) if backward else (cell, cell + 1)
     return _differs(np.minimum(steps.reached(cell, square[near], backward), highest[far]), square[far])
 
 
 def _differs(found: Array, present: Array) -> Array:
-    """Whether speeds squared change a front, (K,)."""
+    """Whether a front continues, (K,)."""
     return np.asarray(np.abs(found - present) > _CHANGED * present)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Feed study: the feed as programmed, as the machine allows it, and as planned, at even instants of a motion.
+"""Feed study: the feed as programmed, as possible on the machine, and as planned, at even instants of a motion.
 
-Enters: the plan of the feed. Leaves: columns by time. The possible feed is the highest speed at which every strut, the
-tip and the tool axis keep their limits of speed, and of acceleration by the curvature of the path alone: what a plan
-could reach there if it had all the way to accelerate. Where the plan is below the programmed feed, the limit is the
-quantity that uses the largest share of its limit at that instant. Units: mm, s.
+Input: the feed plan. Output: columns by time. The possible feed is the highest speed at which every strut, the tip and
+the tool axis keep their speed limits, and their acceleration limits by path curvature alone: the feed that a plan could
+reach there given unlimited room to accelerate. Where the plan is below the programmed feed, the limit is the quantity
+that uses the largest share of its limit at that instant. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from pkm_post.planning.tool_path import ToolPath
 
 _INSTANTS = 2000
 _NEGLIGIBLE = 1e-9
-"""Derivatives below this impose no limit; keeps the quotients finite."""
+"""Derivatives below this impose no limit; keeps quotients finite."""
 _CONTROLLER = "blocks of the controller"
 _QUANTITIES = ("strut", "tip", "tool axis")
-"""Names of the limited quantities, in their order."""
+"""Names of the limited quantities, in order."""
 
 
 def feed_study(path: ToolPath, schedule: Schedule, trajectory: Trajectory, machine: Machine) -> FeedStudy:
     """The feed of a planned motion.
 
     Args:
-        path: the planned path; its feed is lower than programmed where the controller needs that.
+        path: the planned path; its feed is reduced where the controller needs it.
         schedule: position along the path by time.
         trajectory: as programmed.
         machine: its limits.
@@ -60,7 +60,7 @@ def feed_study(path: ToolPath, schedule: Schedule, trajectory: Trajectory, machi
 def _columns(
     quantities: tuple[LimitedQuantity, ...], speed: Array, acceleration: Array
 ) -> Iterator[tuple[str, Array, Array]]:
-    """Name of each limit; the highest speed along the path that it allows, and the used share of it, (M,) each."""
+    """For each limit its name, the highest path speed it allows, and its used share, (M,) each."""
     for noun, item in zip(_QUANTITIES, quantities, strict=True):
         now = item.first * acceleration[:, None] + item.second * np.square(speed)[:, None]
         first_second_now = (_magnitudes(item, vectors).T for vectors in (item.first, item.second, now))
@@ -74,5 +74,5 @@ def _columns(
 
 
 def _magnitudes(item: LimitedQuantity, vectors: Array) -> Array:
-    """Magnitudes by column (M, C), or of the vectors (M, 1)."""
+    """Magnitudes by column, (M, C), or of the vectors, (M, 1)."""
     return np.abs(vectors) if item.each else norm(vectors)[:, None]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Interior point: the fastest speed spline under limits, by Newton's method for all unknowns at once.
 
-Minimised is the sum of w / sqrt(c) over the unknowns c of a ``SpeedSpline``, the time of the motion, under the limits
-of ``motion_limits``. Those of speed and acceleration are convex. That of the jerk, |p| <= 1 / sqrt(x), has a convex
-right side, so its tangent is on the safe side: that makes every step one of a convex problem, and successive steps a
-sequential convex programme [Debrouwere2013]. Slacks start positive and need not fit; predictor and corrector are
+Minimises the sum of w / sqrt(c) over the unknowns c of a ``SpeedSpline``, the time of the motion, under the limits of
+``motion_limits``. Speed and acceleration limits are convex. The jerk limit, |p| <= 1 / sqrt(x), has a convex right
+side, so its tangent is on the safe side: every step solves a convex problem, and successive steps form a sequential
+convex programme [Debrouwere2013]. Slacks start positive, whether or not they match; the predictor-corrector is
 Mehrotra's [Mehrotra1992]. The matrix of a step has two diagonals on either side, as only three unknowns count at a
 place (``banded``).
 """
@@ -23,18 +23,18 @@ from pkm_post.planning.motion_limits import Limits
 
 _MOST_STEPS = 60
 _LEAST_SLACK = 0.1
-"""Slack at the start where a limit leaves less, or is broken."""
+"""Least initial slack, for limits with little or negative room."""
 _FIRST_GAP = 1.0
-"""Share of the time that the gap of optimality takes at the start."""
+"""Initial duality gap, as a share of the time."""
 _OFF = 0.1
-"""Share by which unknowns are taken to be off while the forces of limits are not in balance."""
+"""Relative error assumed for the unknowns in the cost of a stationarity residual."""
 _TO_BOUNDARY = 0.95
-"""Share of the way to the nearest bound that a step goes."""
+"""Share of the way to the nearest bound that a step takes."""
 _LEAST_CENTRING = 1e-4
 _STIFFENING = 1e-13
-"""Relative addition to the main diagonal, which keeps rounding from making the matrix indefinite."""
+"""Relative addition to the main diagonal: keeps the matrix positive definite despite rounding."""
 _PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
-"""The six different entries of a symmetric 3 x 3 matrix."""
+"""The six distinct entries of a symmetric 3 x 3 matrix."""
 
 
 @dataclass(frozen=True)
@@ -47,11 +47,11 @@ class _SlacksAndMultipliers:
 
 @dataclass(frozen=True)
 class Solution:
-    """What a search found.
+    """Result of a search.
 
     Attributes:
         unknowns: (N,)
-        reached: whether they are the fastest; else the search gave up.
+        reached: whether they are optimal; else the search gave up.
     """
 
     unknowns: Array
@@ -60,15 +60,15 @@ class Solution:
 
 @dataclass(frozen=True)
 class _Rows:
-    """A set of limits by the three unknowns that count at each of E ends.
+    """A set of limits in terms of the three unknowns that count at each of E ends.
 
     Attributes:
-        unknown: (E,) the first of the three, counted from one before the first of all.
-        weights: (3, R, E) by which the numbers grow with them.
+        unknown: (E,) index of the first of the three among the padded unknowns.
+        weights: (3, R, E) growth of the numbers with each of them.
         settled: (R, E) the numbers without them.
-        square: (3, E) by which the speed squared grows with them, for limits of jerk, and
-        square_settled: (E,) what it is without them; else None.
-        products: (6, E) products of two of the weights, summed over the numbers, for each of ``_PAIRS``.
+        square: (3, E) growth of the speed squared with each of them, for jerk limits, and
+        square_settled: (E,) the speed squared without them; else None.
+        products: (6, E) products of two weights, summed over the numbers, for each of ``_PAIRS``.
     """
 
     unknown: Array
@@ -92,18 +92,18 @@ class _Rows:
         )
 
     def near(self, padded: Array) -> tuple[Array, Array, Array]:
-        """The values at these three unknowns, (E,) each, from those of all, with one more at both ends."""
+        """Values of these three unknowns, (E,) each, from all unknowns, padded by one at both ends."""
         return padded[self.unknown], padded[self.unknown + 1], padded[self.unknown + 2]
 
 
 @dataclass(frozen=True)
 class _Linear:
-    """A set of limits at the present unknowns.
+    """Limits linearised at the present unknowns.
 
     Attributes:
         rows: the limits.
         state: slacks and multipliers.
-        room: (E,) what each limit leaves: (1 - p^2) / 2.
+        room: (E,) margin of each limit: (1 - factor p^2) / 2.
         slope: (3, E) of ``room`` by the three unknowns.
         factor: (E,) of the square of p: the speed squared for jerk, else 1.
     """
@@ -131,12 +131,12 @@ class _Linear:
         return cls(rows, state, room, slope, factor)
 
     def curvature(self) -> list[Array]:
-        """Second derivatives by the three unknowns at each end, (E,) for each of ``_PAIRS``."""
+        """Second derivatives at each end, (E,) for each of ``_PAIRS``."""
         stiff, shared = self.state.multiplier / self.state.slack * self.slope, self.factor * self.state.multiplier
         return [stiff[m] * self.slope[n] + shared * self.rows.products[k] for k, (m, n) in enumerate(_PAIRS)]
 
     def moved(self, padded: Array) -> Array:
-        """Change of the slacks with a step of the unknowns, (E,)."""
+        """Change of the slacks for a step of the unknowns, (E,)."""
         return np.asarray(_combined(self.slope, self.rows.near(padded)) + self.room - self.state.slack)
 
 
@@ -156,14 +156,14 @@ def _padded(unknowns: Array) -> Array:
 def fastest(
     weight: Array, limits: tuple[Limits, ...], unknowns: Array, enough: float, few_broken: float = 0.0
 ) -> Solution:
-    """The fastest motion.
+    """Find the fastest motion.
 
     Args:
-        weight: (N,) length of path for which each unknown stands.
+        weight: (N,) path length represented by each unknown.
         limits: the limits.
-        unknowns: (N,) where to begin, above 0; they may break limits.
-        enough: gap of optimality at which to stop, and the most by which a limit may be broken, relative.
-        few_broken: share of the limits that may be broken by more. The last few take as many steps as all the others.
+        unknowns: (N,) starting point, positive; it may break limits.
+        enough: duality gap at which to stop, and largest violation of a limit, relative.
+        few_broken: share of limits that may stay broken by more. The last few take as many steps as all the others.
     """
     count = sum(one.weights.shape[2] for one in limits)
     barrier = _FIRST_GAP * _time(weight, unknowns) / count
@@ -187,20 +187,20 @@ def _time(weight: Array, unknowns: Array) -> float:
 
 
 def _imbalance(weight: Array, linear: list[_Linear], unknowns: Array) -> float:
-    """What unknowns that are not in balance with their limits can cost, s, where they are off by a share."""
+    """Time that the stationarity residual may cost, s, at an assumed relative error of the unknowns."""
     left = _downhill(weight, unknowns) + _gathered(linear, [one.state.multiplier for one in linear], len(unknowns))
     return _OFF * float(np.abs(left * unknowns).sum())
 
 
 def _downhill(weight: Array, unknowns: Array) -> Array:
-    """How much the time goes down with each unknown, (N,)."""
+    """Negative gradient of the time by the unknowns, (N,)."""
     return np.asarray(0.5 * weight * unknowns**-1.5)
 
 
 def _stepped(
     weight: Array, linear: list[_Linear], unknowns: Array, mean_gap: float, count: int
 ) -> tuple[Array, list[_SlacksAndMultipliers]]:
-    """One step of predictor and corrector."""
+    """Take one predictor-corrector step."""
     size = len(unknowns)
     band = _band(linear, size)
     band[0] += 0.75 * weight * unknowns**-2.5
@@ -212,7 +212,7 @@ def _stepped(
     downhill = _downhill(weight, unknowns)
 
     def step(pushes: list[Array]) -> tuple[Array, list[Array]]:
-        """The change of the unknowns, and of the slacks, for right sides of the limits (E,)."""
+        """Changes of the unknowns and of the slacks for right-hand sides of the limits, (E,)."""
         right = downhill + _gathered(linear, pushes, size)
         change = scale * factor.solve(scale * right)
         padded = _padded(change)
@@ -244,7 +244,7 @@ def _stepped(
 def _centring(
     linear: list[_Linear], slacks: list[Array], multipliers: list[Array], mean_gap: float, count: int
 ) -> float:
-    """Share of the gap to aim for: little where the step without centring would close most of it."""
+    """Centring parameter: small where the predictor step would close most of the gap."""
     primal, dual = _shares(linear, slacks, multipliers)
     after = sum(
         float((one.state.slack + primal * a) @ (one.state.multiplier + dual * b))
@@ -254,7 +254,7 @@ def _centring(
 
 
 def _shares(linear: list[_Linear], slacks: list[Array], multipliers: list[Array]) -> tuple[float, float]:
-    """The longest steps, at most 1, with which all slacks and all multipliers stay positive."""
+    """Longest steps, at most 1, that keep all slacks and all multipliers positive."""
     return (
         min(_reach(one.state.slack, change) for one, change in zip(linear, slacks, strict=True)),
         min(_reach(one.state.multiplier, change) for one, change in zip(linear, multipliers, strict=True)),
@@ -262,7 +262,7 @@ def _shares(linear: list[_Linear], slacks: list[Array], multipliers: list[Array]
 
 
 def _reach(value: Array, change: Array) -> float:
-    """The longest step, at most 1, with which positive values stay so."""
+    """Longest step, at most 1, that keeps positive values positive."""
     least = float((change / value).min())
     return min(1.0, -1 / least) if least < 0 else 1.0
 
@@ -277,7 +277,7 @@ def _band(linear: list[_Linear], size: int) -> Array:
 
 
 def _gathered(linear: list[_Linear], pushes: list[Array], size: int) -> Array:
-    """Sums over all limits of a push (E,) times the slope by each unknown, (N,)."""
+    """Sums over all limits of push, (E,), times slope by each unknown, (N,)."""
     found = np.zeros(size + 2)
     for one, push in zip(linear, pushes, strict=True):
         for m in range(3):

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Interpolation: how well the controller's cubics between two knots follow the plan.
+"""Interpolation: how closely the controller's cubics between two knots follow the plan.
 
-Enters: path, schedule and machine, then starts and ends of intervals in whole ms. Leaves: the worst of the deviations
+Input: path, schedule and machine, then starts and ends of intervals in whole ms. Output: the worst of the deviations
 of tip and axis, of speed and acceleration of tip and struts, and of the turning rate, each relative to its limit.
 
 The plan is compared with the cubics of the tool at the joints of the path and between them, where the motion deviates
-most, without kinematics. Where a smooth curve stands for lines, the joints of its pieces count. The difference to the
-struts' cubics, the drift, is bounded; where the bound is too coarse, it is measured and added.
+most, without kinematics. On a smooth curve that replaces lines, the joints of its pieces count. The difference from
+the struts' cubics, the drift, is bounded; where the bound is too coarse, it is measured and added.
 """
 
 from __future__ import annotations
@@ -26,34 +26,34 @@ from pkm_post.planning.schedule import Schedule, by_time
 from pkm_post.planning.tool_path import ToolPath
 
 _SHARE_OF_TOLERANCES = 0.4
-"""Share for the controller's cubics; corners get the same, decimals and the gaps between check points get the rest."""
+"""Share for the controller's cubics, and for corners; decimals and the gaps between check points get the rest."""
 _SHARE_ON_CURVES = 0.25
-"""The same where a curve stands for short lines, and is off by up to 0.6."""
+"""The same on a curve that replaces short lines, which uses up to 0.6 itself."""
 _SPEED_SWING = 0.005
 """Share of the feed by which the controller's cubics may exceed it."""
 _GAPS = 8
-"""Places are no farther apart than this many even gaps of an interval ..."""
+"""Check points leave no gap wider than an interval divided by this ..."""
 _WIDEST_GAP = 0.064
-"""... and no farther than so many s."""
+"""... nor wider than this, s."""
 _LATE = 0.005
-"""Share of an interval by which the controller's cubics may pass a place of the plan too early or too late ..."""
+"""Share of an interval by which the controller's cubics may be early or late at a place of the plan ..."""
 _LATE_S = 0.0005
-"""... and s that are added."""
+"""... plus this, s."""
 _NEGLIGIBLE_DRIFT = 0.1
 """Share of the cubics' tolerance: a drift bounded below it is left to the remaining tolerance."""
 _POINTS_AT_ONCE = 32768
-"""Places in one pass: the working arrays of one pass stay in the processor's cache."""
+"""Check points per pass: keeps the working arrays in the processor's cache."""
 _SOME_JOINTS = 6
-"""Joints of an interval that are looked at first: most intervals that are too long are so at one of these ..."""
+"""Joints of an interval to check first: most intervals that are too long fail at one of these ..."""
 _CLEARLY = 2.0
-"""... by so much that no other joint is looked at."""
+"""... by this much, which makes the others needless."""
 _INTERVALS_AT_ONCE = 2048
-"""Intervals in one pass where machine limits are checked: the matrices of their struts take a thousand bytes each."""
+"""Intervals per pass of the machine limits: the matrices of their struts take a thousand bytes each."""
 _Deviation = Callable[[Intervals, ToolCubics, Array], Array]
 
 
 def poses_at(path: ToolPath, schedule: Schedule, ms: Array) -> Poses:
-    """Poses by time at whole ms, (N,); on a path with constant attitude second derivatives are omitted (zero)."""
+    """Poses by time at whole ms, (N,); with a constant attitude second derivatives are zero, not computed."""
     s, speed, acceleration = schedule.at(ms / 1000)
     if path.attitude is None:
         return by_time(path.at(s), speed, acceleration)
@@ -76,7 +76,7 @@ def poses_at(path: ToolPath, schedule: Schedule, ms: Array) -> Poses:
 
 
 def _places(path: ToolPath, s: Array) -> tuple[Array, Array, Array]:
-    """Places at path lengths, their derivatives, (7, N) each, and gauge lengths, (N,): tip, axis and spin.
+    """Places, their derivatives, (7, N) each, and gauge lengths, (N,), at path lengths: tip, axis and spin.
 
     The tip alone, (3, N), if the attitude is constant.
     """
@@ -89,7 +89,7 @@ def _places(path: ToolPath, s: Array) -> tuple[Array, Array, Array]:
 
 
 def _allowed(path: ToolPath, rows: slice, tolerances: Tolerances) -> Array:
-    """What tip and axis may be off on some segments, (2, N) mm and rad."""
+    """Allowance for tip and axis on some segments, (2, N) mm and rad."""
     programmed = path.tip_tolerance[rows]  # the program may tighten the tolerance, not widen it
     tip = np.where(programmed > 0, np.minimum(programmed, tolerances.tip), tolerances.tip)
     share = np.where(path.segments.is_curve(np.arange(rows.start, rows.stop)), _SHARE_ON_CURVES, _SHARE_OF_TOLERANCES)
@@ -97,12 +97,12 @@ def _allowed(path: ToolPath, rows: slice, tolerances: Tolerances) -> Array:
 
 
 def _exceeded(deviation: Array, use: Array) -> Array:
-    """The deviation, or the use of another limit where it is above 1 and more, (N,)."""
+    """The deviation, or a greater use of another limit if that exceeds 1, (N,)."""
     return np.where(use > 1, np.maximum(deviation, use), deviation)
 
 
 class InterpolationCheck:
-    """How well the controller's cubics follow the plan in one stretch; intervals and poses at their ends are cached."""
+    """Compares the controller's cubics with the plan in one stretch; caches intervals and poses at their ends."""
 
     def __init__(
         self, path: ToolPath, schedule: Schedule, machine: Machine, tolerances: Tolerances, marks: Array
@@ -133,11 +133,10 @@ class InterpolationCheck:
         self._known = KnownIntervals()
 
     def error(self, start: Array, end: Array, group: Array | None = None) -> Array:
-        """Worst value of intervals of whole ms, (N,), relative to its limit; above 1 the interval is too long.
+        """Worst value of each interval of whole ms, (N,), relative to its limit; above 1 the interval is too long.
 
-        Up to 1 it is the deviation, which grows with the length of an interval; other limits count where they are
-        exceeded. For an interval that is too long it is the value at which the check stopped, and so it is for those
-        with the same number in ``group``.
+        Up to 1 it is the deviation, which grows with interval length; other limits count only where exceeded. An
+        interval that is too long, and any in the same ``group``, gets the value at which its check stopped.
         """
         key = (start - self._first) * len(self._row) + end - self._first
         at_joints, closely = known = self._known.of(key)
@@ -158,7 +157,7 @@ class InterpolationCheck:
         return np.where(holds, np.maximum(at_joints, closely), at_joints)
 
     def _at_joints(self, intervals: Intervals, cubics: ToolCubics) -> Array:
-        """Deviations at joints, (N,); of an interval that is clearly too long, at some of its joints."""
+        """Deviations at joints, (N,); only some joints count if an interval is clearly too long."""
         worst, drift = np.empty(len(intervals)), np.zeros((2, len(intervals)))
         for part in pieces(len(intervals), _POINTS_AT_ONCE // _SOME_JOINTS) if len(intervals) else ():
             rows = np.arange(part.start, part.stop)
@@ -170,13 +169,13 @@ class InterpolationCheck:
         return worst
 
     def use_of_limits(self, start: Array, end: Array) -> Array:
-        """Largest share of a limit of the machine in intervals of whole ms, (N,): speeds and accelerations."""
+        """Largest use of a machine limit, speed or acceleration, in intervals of whole ms, (N,)."""
         duration = (end - start) / 1000
         cubics = self._tool_cubics(self._rows(start), self._rows(end), duration)
         return self._demand(Intervals.of(self._seen_time, start, end), cubics).limits
 
     def _closely(self, intervals: Intervals, cubics: ToolCubics) -> Array:
-        """Check machine limits and the points between joints, for intervals that hold at their joints."""
+        """Check machine limits, and points between joints, for intervals that pass at their joints."""
         demand = self._demand(intervals, cubics)
         of_all = Intervals.of(self._schedule.joint_time, intervals.start, intervals.end)
         feed = np.maximum(self._path.feed[of_all.first], self._path.feed[of_all.last])
@@ -209,7 +208,7 @@ class InterpolationCheck:
         return known.with_rows(rows, self._measured(intervals[rows], cubics[rows])) if len(rows) else known
 
     def _measured(self, intervals: Intervals, cubics: ToolCubics) -> Demand:
-        """The same, from the kinematics of both ends and of places between them."""
+        """Measured demand, from the kinematics at both ends and in between."""
         ms = distinct(np.concatenate([intervals.start, intervals.end]))
         poses = self._known_poses(ms)
         ends, (first, last) = KnotState.of(self._machine, poses), np.searchsorted(ms, [intervals.start, intervals.end])
@@ -220,7 +219,7 @@ class InterpolationCheck:
         return measured_demand(self._machine, ends[first], ends[last], cubics, inside, intervals.duration)
 
     def _known_poses(self, ms: Array) -> Poses:
-        """Poses by time at whole ms that are ends of intervals, (N,), without second derivatives."""
+        """Poses by time at whole ms that are interval ends, (N,), without second derivatives."""
         row, count = self._rows(ms), len(ms)
         place, rate, still = self._place[:, row].T, self._rate[:, row].T, np.zeros((count, 3))
         tip, tip_1, zero, axis_1, spin_1 = place[:, :3], rate[:, :3], still[:, 0], still, still[:, 0]
@@ -234,21 +233,21 @@ class InterpolationCheck:
     def _deviation_at_joints(
         self, intervals: Intervals, cubics: ToolCubics, drift: Array, most: int | None = None
     ) -> Array:
-        """Largest deviation at joints, or at most so many of each interval, by tolerance, (N,), with drifts, (2, N)."""
+        """Largest deviation at joints, at most ``most`` per interval, by tolerance, (N,), with drifts, (2, N)."""
         return self._largest_deviation(intervals.at_joints(self._seen_time, most), cubics, drift)
 
     def _deviation_at_others(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
-        """The same at the other joints of intervals that have more than those that are looked at first."""
+        """Largest deviation at the joints skipped by the first check."""
         return self._largest_deviation(intervals.at_other_joints(self._seen_time, _SOME_JOINTS), cubics, drift)
 
     def _largest_deviation(self, joints: CheckPoints, cubics: ToolCubics, drift: Array) -> Array:
-        """The same at some joints."""
+        """Deviation at joints, (N,)."""
         row = self._seen[joints.segment] - self._first_row
         plan, allowed = self._at_joint[:, row], np.minimum(*(self._allowed[:, row + side] for side in (0, 1)))
         return joints.maximum(self._deviation(joints, cubics, plan, allowed, drift), drift.shape[1])
 
     def _deviation_between(self, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
-        """The same between the joints."""
+        """Deviation between joints, (N,)."""
         points = intervals.between_joints(self._seen_time, _GAPS, _WIDEST_GAP)
         s, _, _ = self._schedule.at(points.time)
         segment = np.searchsorted(self._schedule.joint_time, points.time)
@@ -257,9 +256,9 @@ class InterpolationCheck:
         return points.maximum(self._deviation(points, cubics, plan, allowed, drift), len(intervals))
 
     def _deviation(self, points: CheckPoints, cubics: ToolCubics, plan: Array, allowed: Array, drift: Array) -> Array:
-        """Deviation of the tool from the plan at check points, (M,), by what cubics may be off there, (2, M).
+        """Deviation of the tool from the plan at check points, (M,), relative to ``allowed``, (2, M).
 
-        Where it is large it is that across the path.
+        Where it exceeds 1, only the part across the path counts.
         """
         here, drift = cubics[points.row], drift[:, points.row]
         worst = self._off(here.at(points.share), plan, allowed, drift)
@@ -271,13 +270,13 @@ class InterpolationCheck:
         return worst
 
     def _nearest(self, cubics: ToolCubics, share: Array, plan: Array, allowed: Array, duration: Array) -> Array:
-        """Shares near the given ones at which cubics fit places of the plan best, (M,)."""
+        """Shares near the given ones where cubics are closest to the plan, (M,)."""
         most = _LATE + _LATE_S / duration
         by_tip, by_axis = 1 / allowed
         return cubics.nearest(plan, by_tip, by_axis, share, most)
 
     def _off(self, tool: Array, plan: Array, allowed: Array, drift: Array) -> Array:
-        """Deviation of tools from places of the plan, (M,), by what they may be off, (2, M)."""
+        """Deviation of tools from places of the plan, (M,), relative to ``allowed``, (2, M)."""
         worst = (length_of(*(tool[:3] - plan[:3])) + drift[0]) / allowed[0]
         if self._path.attitude is None:
             (k, m, n), (x, y, z) = plan[3:], tool[3:6]
@@ -291,7 +290,7 @@ class InterpolationCheck:
         return np.asarray(poses.tip.T if self._path.attitude else np.concatenate([poses.tip.T, poses.axis.T]))
 
     def _backward(self, first: Array, last: Array, duration: Array) -> Array:
-        """Above 1 where a cubic of the path length runs backward, (N,): a deviation across the path does not show it.
+        """Above 1 where a cubic of the path length runs backward, (N,), invisible in deviations across the path.
 
         Its speed is nowhere negative while its mean is at least (v0 + v1 - sqrt(v0 v1)) / 3.
         """
@@ -300,7 +299,7 @@ class InterpolationCheck:
         return np.divide(least, way, out=np.zeros(len(way)), where=way > 0)
 
     def _tool_cubics(self, first: Array, last: Array, duration: Array) -> ToolCubics:
-        """Cubics between known places, given their rows."""
+        """Cubics between cached places, by row."""
         begin, end = self._place[:, first], self._place[:, last]
         if self._path.attitude is None:  # at a tool change the platform stands still: take the tip of the new tool
             begin[:3] += (self._tool_length[first] - self._tool_length[last]) * begin[3:6]

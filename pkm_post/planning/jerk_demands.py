@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jerk demands: what a path asks of a machine at the ends and in the middle of cells, and the limits that follow.
+"""Jerk demands: the demands of a path on a machine at the ends and in the middle of cells, and the resulting limits.
 
-Enters: a path, its stations, a machine, and the places of a ``SpeedSpline``. Leaves: the ``Limits`` of speed,
-acceleration and jerk at the ends of its cells, and by how much a motion is too fast in the middle. For a quantity y(s)
-the jerk is y' j + 3 y'' v a + y''' v^3. The third derivative is that of the parabola through y'' at both ends and in
-the middle of a cell. Units: mm, s.
+Input: a path, its stations, a machine, and the places of a ``SpeedSpline``. Output: the ``Limits`` of speed,
+acceleration and jerk at the ends of its cells, and the factor by which a motion is too fast in the middle. A quantity
+y(s) has the jerk y' j + 3 y'' v a + y''' v^3, with y''' from the parabola through y'' at both ends and in the middle
+of a cell. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -30,26 +30,26 @@ from pkm_post.planning.speed_spline import CellEnds, SpeedSpline, highest_within
 from pkm_post.planning.tool_path import ToolPath
 
 _HIGHEST_SHARE = 0.98
-"""Share of an acceleration limit that is planned at most; the rest is for decimals, and for what is between places."""
+"""Largest planned share of an acceleration limit; the rest is for decimals and the gaps between places."""
 _JERK_SHARE = 0.99
-"""Share of a jerk limit that is planned; the rest is for what is between places."""
+"""Planned share of a jerk limit; the rest is for the gaps between places."""
 _SWITCH = 2 / 27
-"""By how much a cubic over an interval h exceeds the highest acceleration of a motion with the jerk J, per J h: the
+"""Overshoot of a cubic over an interval h beyond the highest acceleration of a motion with jerk J, per J h: the
 maximum of the integral of (4 - 6 x) g(x), 0 < x < 1, for g <= 0 with slopes of at most 1 (docs/planning.md)."""
 _MS = 1e-3
 _NEGLIGIBLE = 1e-12
-"""Derivatives below this impose no limit; keeps the quotients finite."""
+"""Derivatives below this impose no limit; keeps quotients finite."""
 
 
 @dataclass(frozen=True)
 class Steady:
-    """What limits allow by single terms: M places and the M - 1 cells between them.
+    """Bounds by single terms of the limits: M places and the M - 1 cells between them.
 
     Attributes:
         square: (M,) speed squared without acceleration.
-        along: (M,) acceleration along the path at a low speed.
-        growth: (M,) jerk along the path at a low speed.
-        of_cell: (M - 1,) steady speed squared in a cell, its middle included.
+        along: (M,) acceleration along the path at low speed.
+        growth: (M,) jerk along the path at low speed.
+        of_cell: (M - 1,) steady speed squared in a cell, including its middle.
     """
 
     square: Array
@@ -60,12 +60,12 @@ class Steady:
 
 @dataclass(frozen=True)
 class Demands:
-    """What a path demands at M places and in the middle of the M - 1 cells between them, in turn.
+    """Demands of a path at M places, alternating with the middles of the M - 1 cells between them.
 
     Attributes:
         s: (2 M - 1,) path length, increasing.
         ceiling: (2 M - 1,) highest speed squared.
-        quantities: quantities with limits of acceleration, as planned, or jerk, with derivatives (2 M - 1, C).
+        quantities: quantities limited in acceleration (as planned) or jerk, with derivatives (2 M - 1, C).
     """
 
     s: Array
@@ -74,7 +74,7 @@ class Demands:
 
     @classmethod
     def at(cls, path: ToolPath, machine: Machine, marks: Stations, s: Array) -> Demands:
-        """The demands at increasing path lengths; at a station exactly those of the station."""
+        """Demands at increasing path lengths; at a station, exactly those of the station."""
         station = np.minimum(np.searchsorted(marks.s, s), len(marks.s) - 1)
         segment, u = marks.segment[station], marks.u[station] - (marks.s[station] - s)
         poses = path.within(segment, u)
@@ -89,7 +89,7 @@ class Demands:
         return cls(s, ceiling, tuple(replace(item, acceleration=_planned(item, interval)) for item in limited))
 
     def joined(self, other: Demands) -> Demands:
-        """These and other demands, in order."""
+        """Merge with other demands, in order."""
         order = np.argsort(np.concatenate([self.s, other.s]), kind="stable")
         return Demands(
             np.concatenate([self.s, other.s])[order],
@@ -105,11 +105,11 @@ class Demands:
         )
 
     def limits(self, spline: SpeedSpline, held: Array) -> tuple[Limits, ...]:
-        """The limits at the ends of cells.
+        """Limits at the ends of cells.
 
         Args:
             spline: its M places.
-            held: (N,) value of each unknown that is held, NaN for the others.
+            held: (N,) value of each fixed unknown, NaN for the others.
         """
         knots, ends = (one.where_free(held) for one in (spline.ends.take(spline.knots()), spline.ends))
         first, last = (2 * int(extreme(ends.place)) for extreme in (np.min, np.max))
@@ -128,7 +128,7 @@ class Demands:
         )
 
     def _speeds_in_middle(self, spline: SpeedSpline, held: Array) -> Limits:
-        """The limits of speed in the middles of cells, where wide ones might be faster than at their ends."""
+        """Speed limits in the middles of cells, as wide ones may be faster there than at their ends."""
         left = spline.ends.take(np.arange(len(spline.left))).where_free(held)
         width = np.diff(spline.s)[left.cell]
         weights = np.stack([width**2 / 4, width, np.ones_like(width)]) / self.ceiling[2 * left.cell + 1]
@@ -147,7 +147,7 @@ class Demands:
         return tuple(found)
 
     def steady(self) -> Steady:
-        """What each place, and each cell, allows by itself."""
+        """Bounds of each place, and each cell, on its own."""
         square, count = self.ceiling.copy(), len(self.s)
         along, growth = np.full((2, count), NO_LIMIT)
         with np.errstate(divide="ignore"):
@@ -163,7 +163,7 @@ class Demands:
         return Steady(square[::2], along[::2], growth[::2], of_cell)
 
     def _largest_third(self, item: LimitedQuantity) -> Array:
-        """The largest third derivative on either side of each place, and in the middles of cells, (2 M - 1,)."""
+        """Largest third derivative on either side of each place, and in the middles of cells, (2 M - 1,)."""
         cell, at = np.arange(len(self.s) // 2), np.arange(1, len(self.s), 2)
         found = np.zeros(len(self.s))
         left, right = (_largest(one, item.each) for one in self._thirds(item, cell))
@@ -183,7 +183,7 @@ class Demands:
         return (4 * middle - 3 * left - right) / width, (3 * right - 4 * middle + left) / width
 
     def in_middle(self, square: Array, acceleration: Array) -> Array:
-        """How much faster the motion is in the middle of each cell than the limits allow, a factor, (M - 1,)."""
+        """Speed in the middle of each cell relative to the highest allowed, (M - 1,)."""
         s, cell = self.s[::2], np.arange(len(square) - 1)
         at, width = 2 * cell + 1, np.diff(s)
         x, a = within_cells(s, square, acceleration, cell, self.s[at])
@@ -198,12 +198,12 @@ class Demands:
         return faster
 
     def faster(self, square: Array, acceleration: Array) -> Array:
-        """How much faster a motion is at the places than limits of speed and acceleration allow, a factor."""
+        """Speed at the places relative to the highest that speed and acceleration limits allow."""
         values = np.stack([np.zeros_like(square), acceleration, square])
         return self._by_accelerations(np.arange(len(self.s)), values, np.sqrt(square / self.ceiling))
 
     def _by_accelerations(self, at: Array, values: Array, faster: Array) -> Array:
-        """The same factor by limits of acceleration, if that is greater."""
+        """Raise the factor where acceleration limits demand it."""
         for item in self.quantities:
             if np.isfinite(item.acceleration):
                 faster = np.maximum(faster, np.sqrt(_use(_of_acceleration(item, at), values, item.each)))
@@ -211,7 +211,7 @@ class Demands:
 
 
 def _planned(item: LimitedQuantity, interval: float) -> float:
-    """The acceleration to plan with so that the cubic in an interval keeps the limit."""
+    """Acceleration to plan with so that the cubic in an interval keeps the limit."""
     if not np.isfinite(item.acceleration):
         return item.acceleration
     by_jerk = _HIGHEST_SHARE * item.acceleration - _SWITCH * item.jerk * interval
@@ -225,22 +225,22 @@ def _of_acceleration(item: LimitedQuantity, rows: Array | slice) -> Array:
 
 
 def _of_jerk(item: LimitedQuantity, rows: Array, third: Array) -> Array:
-    """The same in the jerk divided by the speed."""
+    """The same for the jerk divided by the speed."""
     first, second = (_columns(one[rows]) for one in (item.first, item.second))
     return np.stack([first, 3 * second, _columns(third)]) / (_JERK_SHARE * item.jerk)
 
 
 def _columns(vectors: Array) -> Array:
-    """Vectors (E, C) as (C, E), column by column in memory."""
+    """Vectors (E, C) as contiguous columns, (C, E)."""
     return np.ascontiguousarray(vectors.T)
 
 
 def _largest(derivative: Array, each: bool) -> Array:
-    """The largest component of each row, (M, C), or its length, (M,)."""
+    """Largest component of each row, (M, C), or its length, (M,)."""
     return reduce_columns(np.maximum, np.abs(derivative)) if each else norm(derivative)
 
 
 def _use(weights: Array, values: Array, each: bool) -> Array:
-    """The largest number, or the length of the vector, (E,)."""
+    """Largest number, or length of the vector, (E,)."""
     numbers = np.einsum("bre,be->re", weights, values)
     return np.abs(numbers).max(axis=0) if each else np.sqrt((numbers**2).sum(axis=0))

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Jerk: the fastest motion along a path with limits of speed, acceleration and jerk.
 
-Enters: a path, its stations and a machine. Leaves: places with their speeds squared and accelerations, between which
-the speed squared is a quadratic spline (``speed_spline``). Its places are the stations of the path, some more towards
-rests and narrow cells, and what a search adds. The path is cut into windows, each of which is searched by itself
-(``jerk_windows``, ``jerk_search``). What is too fast after the last round of a search slows the whole run from rest to
-rest. docs/planning.md has the derivations. Units: mm, s.
+Input: a path, its stations and a machine. Output: places with speeds squared and accelerations; between them the speed
+squared is a quadratic spline (``speed_spline``). The places are the stations of the path, extra ones towards rests and
+narrow cells, and those that a search adds. The path is cut into windows, each searched on its own (``jerk_windows``,
+``jerk_search``). Any excess speed left after the last round of a search slows the whole run from rest to rest.
+docs/planning.md has the derivations. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import columns_in_workers, in_workers
 
 _ROUNDS = 3
-"""Most rounds with narrower cells, and most with lower limits where the motion is too fast between places."""
+"""Most rounds of cell refinement, and of lowering limits where the motion is too fast between places."""
 _COARSE, _FINE = 5e-2, 5e-3
-"""Relative gap of optimality that is enough for the choice of places, and in the end."""
+"""Relative duality gap sufficient for choosing places, and for the result."""
 _PLACES_AT_ONCE = 4096
-"""Places in one pass: their working arrays stay in the processor's cache."""
+"""Places per pass: keeps the working arrays in the processor's cache."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class JerkLimitedProfile:
 
 
 def jerk_limited(path: ToolPath, marks: Stations, machine: Machine) -> JerkLimitedProfile:
-    """The fastest motion along a path; all of its joints and rests are among the places."""
+    """The fastest motion along a path; its places include all joints and rests."""
     places = _places(path, marks, machine)
 
     def found(window: Window) -> _Found:
@@ -64,7 +64,7 @@ def jerk_limited(path: ToolPath, marks: Stations, machine: Machine) -> JerkLimit
 
 
 def _places(path: ToolPath, marks: Stations, machine: Machine) -> Places:
-    """Places to begin with, and what is known of the motion."""
+    """Initial places, and the known parts of the motion."""
     s, rest = first_places(marks)
     checkpoint()
 
@@ -83,7 +83,7 @@ def _places(path: ToolPath, marks: Stations, machine: Machine) -> Places:
 
 @dataclass(frozen=True)
 class _Found:
-    """What was found in a window: its motion, and by what factor it is too fast on each cell."""
+    """Motion found in a window, and the factor by which each cell is too fast."""
 
     profile: JerkLimitedProfile
     too_fast: Array
@@ -93,7 +93,7 @@ def _searched(path: ToolPath, marks: Stations, machine: Machine, window: Window)
     """The fastest motion in a window.
 
     Raises:
-        NotFoundError: there is none between its borders.
+        NotFoundError: no motion fits between its borders.
     """
     places = window.places
     if not np.isnan(places.held).any():
@@ -121,7 +121,7 @@ def _searched(path: ToolPath, marks: Stations, machine: Machine, window: Window)
 
 
 def _counted(profile: JerkLimitedProfile, too_fast: Array, window: Window) -> _Found:
-    """What counts of a motion."""
+    """The part that counts."""
     first, last = np.searchsorted(profile.s, [window.begin, window.end])
     rows = slice(first, last + 1)
     columns = profile.s[rows], profile.rest[rows], profile.square[rows], profile.acceleration[rows]
@@ -129,7 +129,7 @@ def _counted(profile: JerkLimitedProfile, too_fast: Array, window: Window) -> _F
 
 
 def _joined(parts: list[_Found], places: Places) -> _Found:
-    """Motions of windows as one, and with the places inside plateaus."""
+    """Join the motions of windows, and restore the places inside plateaus."""
     columns = [
         np.concatenate([*(getattr(one.profile, field.name)[:-1] for one in parts), getattr(last, field.name)[-1:]])
         for last in [parts[-1].profile]
@@ -152,7 +152,7 @@ def _joined(parts: list[_Found], places: Places) -> _Found:
 
 
 def _from_rest_to_rest(found: _Found) -> JerkLimitedProfile:
-    """The motion, slower from rest to rest by as much as it is too fast anywhere on the way."""
+    """Slow each run from rest to rest by its largest excess speed."""
     profile = found.profile
     begin = np.flatnonzero(profile.rest)[:-1]
     checkpoint()

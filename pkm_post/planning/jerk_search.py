@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jerk search: the iterates of the search for the fastest motion with jerk limits, in one window.
+"""Jerk search: the iterates of the search for the fastest jerk-limited motion in one window.
 
-Its places are at first those of the window. The fastest motion with them is found (``interior_point``). A cell that
-uses no limit to the full at one of its ends is too wide: it is to be halved, and the motion found once more. In the
-middle of cells, and in quarters of those that are half a blend, the limits are looked at as well: where they are broken
-there, the ends are to be slower. Units: mm, s.
+The search starts with the places of the window and solves for the fastest motion (``interior_point``). A cell that
+leaves slack in all limits at one of its ends is too wide: it is halved, and the motion solved again. Limits are also
+checked in the middle of cells, and at the quarters of cells that are half a blend: where they are broken, the ends of
+the cell are slowed down. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -27,31 +27,31 @@ from pkm_post.planning.speed_spline import SpeedSpline, durations, within_cells
 from pkm_post.planning.tool_path import ToolPath
 
 TOO_FAST = 5e-3
-"""Share of its speed by which a motion may be too fast."""
+"""Relative excess of speed that is tolerated."""
 TOO_SLOW = 5e-4
-"""Share of the time from rest to rest that may be lost by limits that were lowered in vain."""
+"""Share of the time from rest to rest that needlessly lowered limits may cost."""
 _WASTE = 0.04
-"""Share of the time from rest to rest that may pass without the full use of a limit."""
+"""Share of the time from rest to rest that may pass with slack in all limits."""
 _WORTH = 3.0
-"""A cell is halved that takes so many times its part of that."""
+"""A cell is halved if it takes this many times its part of that."""
 _MUCH = 8.0
-"""A cell is cut into quarters that takes so many times that."""
+"""A cell is quartered if it takes this many times more."""
 _LEAST = 1e-3
-"""An unknown is at least this share of the speed squared about it."""
+"""Least unknown, as a share of the speed squared around it."""
 _FEW_BROKEN = 1e-3
-"""Share of the limits that a search for all cells may leave broken, to be mended by searches about them."""
+"""Share of limits that a search over all cells may leave broken, for local searches to mend."""
 _NEAR = 32
-"""Cells on either side of one with a broken or another limit that are searched with it."""
+"""Cells on either side of one with a broken or changed limit that are searched with it."""
 _CHANGED = 5e-3
-"""Relative change of the limits of a cell after which the motion about it is searched again."""
+"""Relative change of a cell's limits that calls for a new search around it."""
 _BESIDE = 8
-"""Cells on either side of one that is too fast that are on no plateau any more."""
+"""Cells on either side of a cell that is too fast that leave their plateau."""
 _BESIDE_FIXED = 2
-"""Cells on either side of what cannot be given up whose limits are not lowered."""
+"""Cells on either side of a fixed cell whose limits are not lowered."""
 
 
 class NotFoundError(Exception):
-    """There is no motion between borders."""
+    """No motion fits between borders."""
 
 
 @dataclass(frozen=True)
@@ -60,10 +60,10 @@ class Iterate:
 
     Attributes:
         spline: its M places.
-        demands: what the path demands at them.
-        slower: (M - 1,) factor by which each cell is to be slower than its limits allow.
-        held: (M - 1,) speed squared of cells that are held, NaN of others.
-        room: (M - 1,) factor by which a cell could be slower whose speed cannot be given up, infinite for others.
+        demands: demands of the path at them.
+        slower: (M - 1,) slowdown of each cell below its limits.
+        held: (M - 1,) speed squared of fixed cells, NaN for others.
+        room: (M - 1,) largest slowdown of cells whose speed must stay fixed, infinite for others.
         unknowns: (N,) of the spline.
     """
 
@@ -76,7 +76,7 @@ class Iterate:
 
     @classmethod
     def of(cls, path: ToolPath, marks: Stations, machine: Machine, places: Places) -> Iterate:
-        """The motion to begin with."""
+        """The initial motion."""
         demands = Demands.at(path, machine, marks, with_middles(places.s))
         spline, slower = SpeedSpline.of(places.s, places.rest), np.ones(len(places.held))
         first = unknowns(spline, places.fastest, places.held)
@@ -84,25 +84,25 @@ class Iterate:
 
     @functools.cached_property
     def limits(self) -> tuple[Limits, ...]:
-        """The limits at ends of cells where an unknown counts that is not held."""
+        """The limits at ends of cells where a free unknown counts."""
         return tuple(one.lowered(self.slower) for one in self.whole_limits)
 
     @functools.cached_property
     def whole_limits(self) -> tuple[Limits, ...]:
-        """The same limits where no cell has to be slower."""
+        """The limits without slowdowns."""
         return self.demands.limits(self.spline, self.held[self.spline.left])
 
     @functools.cached_property
     def uses(self) -> tuple[Array, ...]:
-        """The share of each of the limits that is in use."""
+        """Use of each limit, as a share."""
         free = self._free()
         return tuple(one.use(one.ends.values(free)) for one in self.limits)
 
     def searched(self, enough: float) -> Iterate:
-        """The fastest motion with these places; without plateaus if it cannot be found between them.
+        """Search for the fastest motion with these places; give up plateaus if there is none between them.
 
         Raises:
-            NotFoundError: it cannot be found between borders.
+            NotFoundError: no motion fits between borders.
         """
         free = np.isnan(self.held[self.spline.left])
         for few_broken in (_FEW_BROKEN, 0.0):
@@ -116,17 +116,17 @@ class Iterate:
         return iterate
 
     def searched_about(self, cells: Array, enough: float) -> Iterate:
-        """The fastest motion if only cells near some of them may change; if there is none, all may.
+        """Search with only the cells near some others free; if that fails, with all.
 
         Args:
             cells: (M - 1,) where limits have changed or are broken.
-            enough: gap of optimality at which to stop, and the most by which a limit may be broken, relative.
+            enough: duality gap at which to stop, and largest violation of a limit, relative.
         """
         found = self._searched_about(cells, enough)
         return self.searched(enough) if found is None else found
 
     def _searched_about(self, cells: Array, enough: float) -> Iterate | None:
-        """The same, or None. Limits outside may stay as broken as they are."""
+        """Local search, or None; limits farther away may break no further."""
         of_cell = self.held.copy()
         of_cell[self.spline.left] = self.unknowns
         known = long_held(np.where(_widened(cells, _NEAR) & np.isnan(self.held), np.nan, of_cell))
@@ -148,18 +148,18 @@ class Iterate:
         return replace(self, held=held)
 
     def _with(self, free: Array, found: Array) -> Iterate:
-        """The same with other values of some unknowns."""
+        """Copy with other values of some unknowns."""
         unknowns = self.unknowns.copy()
         unknowns[free] = found
         return self._sharing(replace(self, unknowns=unknowns), "limits", "whole_limits")
 
     def _sharing(self, other: Iterate, *names: str) -> Iterate:
-        """Another iterate, with properties as they were computed for this one."""
+        """Hand cached properties on to another iterate."""
         vars(other).update((name, vars(self)[name]) for name in names if name in vars(self))
         return other
 
     def _broken(self, enough: float) -> Array:
-        """Cells with a limit that is broken by more than a search may leave, (M - 1,)."""
+        """Cells with a limit broken by more than a search may leave, (M - 1,)."""
         broken = np.zeros(len(self.held), dtype=np.bool_)
         for one, use in zip(self.limits, self.uses, strict=True):
             broken[one.ends.cell[use**2 > 1 + 2 * enough]] = True
@@ -170,19 +170,19 @@ class Iterate:
         return self.spline.at_places(self.unknowns)
 
     def pace(self) -> Array:
-        """The speed on each cell relative to the highest that its limits allow, (M - 1,); 1 where it is held."""
+        """Speed on each cell relative to the highest that its limits allow, (M - 1,); 1 if fixed."""
         faster = self.demands.in_middle(*self.at_places())
         for one, use in zip(self.limits, self.uses, strict=True):
             factor = (np.cbrt(use) if one.jerk else np.sqrt(use)) / self.slower[one.ends.cell]
             np.maximum.at(faster, one.ends.cell, factor)
-        searched = np.zeros(len(faster), dtype=np.bool_)  # the limits allow what is held
+        searched = np.zeros(len(faster), dtype=np.bool_)  # fixed cells keep their limits
         searched[self.spline.ends.where_free(self.held[self.spline.left]).cell] = True
         return np.where(searched, faster, 1.0)
 
     def quarters(self, path: ToolPath, marks: Stations, machine: Machine) -> tuple[Array, Demands]:
         """Places a quarter of the width from the ends of cells with stations inside: their cells, (K,), and demands.
 
-        A cell leaves out the stations of half a blend, where the path may bend the most.
+        Such a cell is half a blend without its stations, where the path may bend the most.
         """
         s = self.spline.s
         inside = np.searchsorted(marks.s, s[1:] - NARROWEST) > np.searchsorted(marks.s, s[:-1] + NARROWEST)
@@ -190,21 +190,21 @@ class Iterate:
         return cell, Demands.at(path, machine, marks, s[cell] + (0.25 + 0.5 * number) * np.diff(s)[cell])
 
     def pace_with(self, cell: Array, demands: Demands) -> Array:
-        """The pace of the cells, (M - 1,), with demands at some more places inside them, (K,)."""
+        """Pace of the cells, (M - 1,), including demands at K more places inside them."""
         pace = self.pace()
         motion = within_cells(self.spline.s, *self.at_places(), cell, demands.s)
         np.maximum.at(pace, cell, demands.faster(*motion))
         return pace
 
     def needlessly_slow(self, pace: Array) -> bool:
-        """Whether much time from rest to rest passes below limits on cells whose limits were lowered."""
+        """Whether lowered limits leave slack that costs too much of the time from rest to rest."""
         duration = durations(np.diff(self.spline.s), *self.at_places())
         lost = np.where(self.slower > 1, duration * (1 - np.minimum(pace, 1.0)), 0.0)
         run = np.cumsum(self.spline.rest)[:-1] - 1
         return bool((np.bincount(run, lost) > TOO_SLOW * np.bincount(run, duration)).any())
 
     def halvings(self) -> Array:
-        """How often to halve each cell, (M - 1,): where too much time passes below all limits."""
+        """Number of halvings of each cell, (M - 1,): where slack in all limits costs too much time."""
         duration = durations(np.diff(self.spline.s), *self.at_places())
         run, waste = np.cumsum(self.spline.rest)[:-1] - 1, duration * (1 - self._least_used())
         allowed = _WASTE * np.bincount(run, duration)
@@ -212,7 +212,7 @@ class Iterate:
         return np.asarray((waste > share[run]).astype(np.int64) + (waste > _MUCH * share[run]))
 
     def _least_used(self) -> Array:
-        """The largest use of a limit at that end of each cell where it is less, (M - 1,)."""
+        """Largest use of a limit at the less used end of each cell, (M - 1,)."""
         at_place, at_end = np.zeros(len(self.spline.s)), np.zeros((2, len(self.held)))
         for one, use in zip(self.limits, self.uses, strict=True):
             cell, place = one.ends.cell, one.ends.place
@@ -232,26 +232,26 @@ class Iterate:
         return self.unknowns[np.isnan(self.held[self.spline.left])]
 
     def without_fast_plateaus(self, pace: Array) -> Iterate:
-        """The same motion without plateaus beside cells that are too fast."""
+        """Copy without plateaus next to cells that are too fast."""
         given_up = _widened(pace > 1 + TOO_FAST, _BESIDE) & ~np.isfinite(self.room)
         held = long_held(np.where(given_up, np.nan, self.held))
         same = np.array_equal(held, self.held, equal_nan=True)
         return self._sharing(replace(self, held=held), *(["whole_limits"] if same else []))
 
     def at_pace(self, pace: Array) -> Iterate:
-        """The same motion, with lower limits and no plateaus where it is too fast.
+        """Copy with lower limits, and without plateaus, where the motion is too fast.
 
-        Limits that were lowered too far, where the motion is now slower than it may be, are raised again.
+        Limits lowered too far, where the motion now leaves slack, are raised again.
         """
         iterate = self.without_fast_plateaus(pace)
         on_plateau = ~np.isnan(iterate.held) & ~np.isfinite(self.room)
         pace = np.where(_widened(on_plateau, _BESIDE), np.minimum(pace, 1.0), pace)
         most = sliding_window_view(np.pad(self.room, _BESIDE_FIXED, mode="edge"), 2 * _BESIDE_FIXED + 1).min(axis=1)
-        slower = np.clip(self.slower * pace, 1.0, most)  # no lower limit beside what cannot change
+        slower = np.clip(self.slower * pace, 1.0, most)  # a fixed neighbour cannot follow lower limits
         return iterate._sharing(replace(iterate, slower=slower), "whole_limits")
 
     def changed_from(self, before: Iterate) -> Array:
-        """Cells with other limits or without a plateau, (M - 1,)."""
+        """Cells with new limits or a lost plateau, (M - 1,)."""
         given_up = np.isnan(self.held) & ~np.isnan(before.held)
         return np.asarray(given_up | (np.abs(self.slower / before.slower - 1) > _CHANGED))
 
@@ -269,7 +269,7 @@ class Iterate:
 
 
 def _widened(cells: Array, by: int) -> Array:
-    """Cells that are marked, or have one near them that is."""
+    """Marked cells and neighbours within ``by`` cells."""
     return np.asarray(np.convolve(cells, np.ones(2 * by + 1))[by:-by] > 0)
 
 
@@ -284,7 +284,7 @@ def _new_middles(s: Array, cut: Array) -> Array:
 
 
 def _carried_over(spline: SpeedSpline, square: Array, acceleration: Array, new: SpeedSpline) -> Array:
-    """The unknowns at the places of another spline, of the same motion."""
+    """Unknowns of another spline for the same motion."""
     cell = np.clip(np.searchsorted(spline.s, new.s, side="right") - 1, 0, len(spline.s) - 2)
     x, a = within_cells(spline.s, square, acceleration, cell, new.s)
     least = _LEAST * np.minimum(x[new.left], x[new.left + 1])

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jerk start: where the search for the fastest motion with jerk limits begins.
+"""Jerk start: the starting point of the search for the fastest jerk-limited motion.
 
-Enters: the stations of a path, then limits at the ends of cells. Leaves: the first places of the spline, a motion to
-begin with, and plateaus: cells so far from anything that slows the motion that it is known to run at its highest speed
-there. The others are left to the search, which pays for each of them. Units: mm, s.
+Input: the stations of a path, then limits at the ends of cells. Output: the first places of the spline, an initial
+motion, and plateaus: cells so far from anything that slows the motion that it surely runs at its highest speed there.
+The search covers the other cells, and pays for each of them. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ from pkm_post.planning.speed_profile import Stations, inserted, speed_profile
 from pkm_post.planning.speed_spline import SpeedSpline
 
 NARROWEST = 1e-9
-"""mm: places nearer to each other are one, as the third derivatives would be rounding."""
+"""mm: places nearer to each other merge, as third derivatives between them would be rounding."""
 _GROWTH = 4.0
-"""Cells are at first at most so many times as wide as their neighbours."""
+"""Largest initial ratio of the widths of neighbouring cells."""
 _AT_REST = 1e-3
 """Width of the first cell after a rest, relative to that between the stations."""
 _START = 0.35
 """Share of the highest speed squared without jerk limits at which the search starts."""
 _EQUAL = 1e-9
-"""Relative difference of speeds squared that are the same but for rounding."""
+"""Relative difference of speeds squared that are equal but for rounding."""
 _FAR = 6.0
-"""Distance from which what slows a motion is not felt, by that on which it comes from a rest to its speed."""
+"""Range of anything that slows a motion, relative to the run-up from a rest to full speed."""
 _LEAST_HELD = 3
-"""Cells that are held side by side, at least."""
+"""Least number of neighbouring fixed cells."""
 
 
 def first_places(marks: Stations) -> tuple[Array, Array]:
-    """The stations but for those inside half blends, and places by which cells grow in steps; and which are rests."""
+    """Stations not inside half blends, with extra places that limit cell growth; and which of them are rests."""
     after = np.searchsorted(marks.edges, marks.s - NARROWEST)
     inside = (after % 2 == 1) & (after == np.searchsorted(marks.edges, marks.s + NARROWEST))
     checkpoint()
@@ -62,15 +62,15 @@ def first_places(marks: Stations) -> tuple[Array, Array]:
 
 
 def start(s: Array, rest: Array, steady: Steady) -> tuple[Array, Array]:
-    """A motion to begin with, without jerk limits, and slower about slow places; and plateaus.
+    """Initial motion, without jerk limits but slower around slow places; and plateaus.
 
-    From a slow place without acceleration on v^(3/2) grows by 3/2 sqrt(2 j) ds under the jerk j, from a rest on exactly
-    so. A plateau has the highest speed squared of each of its cells.
+    Leaving a slow place with no acceleration, v^(3/2) grows by 3/2 sqrt(2 j) ds under the jerk j; from a rest exactly
+    so. Each cell of a plateau runs at its highest speed squared.
 
     Args:
         s: (M,) places.
         rest: (M,) whether the motion stops there.
-        steady: what each place allows by itself.
+        steady: bounds of each place on its own.
 
     Returns:
         (M,) speeds squared, and (M - 1,) those of plateaus, NaN in other cells.
@@ -84,19 +84,19 @@ def start(s: Array, rest: Array, steady: Steady) -> tuple[Array, Array]:
 
 
 def unknowns(spline: SpeedSpline, fastest: Array, held: Array) -> Array:
-    """Unknowns to begin with, (N,): what is held, and less than the motion without jerk limits, (M,), elsewhere."""
+    """Initial unknowns, (N,): fixed values, and elsewhere below the motion without jerk limits, (M,)."""
     below = _START * (fastest[1:] + fastest[:-1]) / 2
     return np.where(np.isnan(held), below, held)[spline.left]
 
 
 def _rise(square: Array, along: Array, growth: Array) -> Array:
-    """Distance on which a motion comes from a rest to a speed with even jerk, acceleration and jerk, at most, (M,)."""
+    """Upper bound on the run-up from a rest to a speed under even jerk, acceleration and jerk, (M,)."""
     speed = np.sqrt(square)
     return np.asarray(speed / 2 * (speed / along + along / growth + np.sqrt(speed / growth)))
 
 
 def _plateaus(s: Array, square: Array, fastest: Array, rise: Array, of_cell: Array) -> Array:
-    """Speed squared of cells far enough from every place at which it changes, (M - 1,); NaN for other cells."""
+    """Speed squared of cells far enough from every place where it changes, (M - 1,); NaN for other cells."""
     even = np.abs(np.diff(square)) <= _EQUAL * square[1:]
     even &= fastest[1:] >= (1 - _EQUAL) * square[1:]
     checkpoint()
@@ -111,7 +111,7 @@ def _plateaus(s: Array, square: Array, fastest: Array, rise: Array, of_cell: Arr
 
 
 def long_held(held: Array) -> Array:
-    """Values of cells that are held, without those with too few of them side by side."""
+    """Fixed values of cells, dropped where too few are side by side."""
     short = np.isnan(held)
     begin = np.append(0, np.flatnonzero(short[1:] != short[:-1]) + 1)
     length = np.diff(np.append(begin, len(held)))
@@ -119,5 +119,5 @@ def long_held(held: Array) -> Array:
 
 
 def with_middles(s: Array) -> Array:
-    """Places, and the middles of the cells between them."""
+    """Places, with the middles of the cells between them."""
     return np.insert(s, np.arange(1, len(s)), (s[1:] + s[:-1]) / 2)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jerk windows: the parts of a path whose motions with jerk limits are found one by one, and put together again.
+"""Jerk windows: the parts of a path whose jerk-limited motions are found one by one and joined again.
 
-A search pays for each of its cells, and goes on until the last of them has settled. So a path is cut into windows of
-some thousand cells: at rests, on plateaus, and where there is neither within a window's length, where holding an even
-speed over a few cells costs the least time. Cells at both ends of a window are held at the speed squared of the border,
-which the limits allow for sure, so neighbours do not depend on one another. Within plateaus places are left out: the
-motion is known there. Units: mm, s.
+A search pays for each of its cells until the last one has settled. So a path is cut into windows of some thousand
+cells: at rests, on plateaus, and where a window's length has neither, where an even speed over a few cells costs the
+least time. The cells at both ends of a window are fixed at the speed squared of the border, which the limits surely
+allow, so neighbouring windows are independent. Places within plateaus are left out, as the motion is known there.
+Units: mm, s.
 """
 
 from __future__ import annotations
@@ -20,32 +20,32 @@ from pkm_post.geometry import Array
 from pkm_post.model import checkpoint
 
 _FREE_CELLS = 8192
-"""Cells of a window that are searched: half as many again at most, where a border or a rest is within reach."""
+"""Searched cells in a window; up to half as many again if a border or a rest is within reach."""
 _BORDER = 6
-"""Cells of a border, which both of its windows have."""
+"""Cells of a border, shared by both of its windows."""
 _JOIN = 3
-"""Cells of a border in the first of its windows."""
+"""Border cells that belong to its first window."""
 _ABOUT = 4
 """Cells on either side of a border that allow its speed as well."""
 _LOWER = 0.95
-"""Factor of the speed squared of a border that is not on a plateau, so that limits beside it may be lowered."""
+"""Factor of the speed squared of a border off plateaus, so that limits next to it may be lowered."""
 _INSIDE = 16
-"""Cells at the ends of a plateau that stay: as many may be given up when a limit is exceeded beside it."""
+"""Cells kept at the ends of a plateau: as many may be given up when a limit is exceeded next to it."""
 _KEPT = 3
-"""Cells beside the inner of a plateau that are not given up."""
+"""Cells next to the thinned part of a plateau that stay fixed."""
 
 
 @dataclass(frozen=True)
 class Places:
-    """Places of a spline, and what is known of the motion before it is searched.
+    """Places of a spline, with the known parts of the motion before the search.
 
     Attributes:
         s: (M,) path length, increasing.
         rest: (M,) whether the motion stops there.
-        fastest: (M,) speed squared to begin with.
-        held: (M - 1,) speed squared of cells on plateaus, NaN of others.
+        fastest: (M,) initial speed squared.
+        held: (M - 1,) speed squared of cells on plateaus, NaN for others.
         steady: (M - 1,) even speed squared that the limits allow in each cell.
-        room: (M - 1,) factor by which a cell could be slower whose speed cannot be given up, infinite for others.
+        room: (M - 1,) largest slowdown of cells whose speed must stay fixed, infinite for others.
     """
 
     s: Array
@@ -56,7 +56,7 @@ class Places:
     room: Array
 
     def thinned(self) -> Places:
-        """Without the places inside plateaus."""
+        """Leave out the places inside plateaus."""
         known = ~np.isnan(self.held)
         begin = np.flatnonzero(np.append(True, known[1:] != known[:-1]))
         length = np.diff(np.append(begin, len(known)))
@@ -78,11 +78,11 @@ class Places:
         )
 
     def with_nothing_held(self) -> Places:
-        """The same places, all of which are to be searched."""
+        """The same places with all cells free."""
         return replace(self, held=np.full(len(self.held), np.nan), room=np.full(len(self.held), np.inf))
 
     def part(self, first: int, last: int) -> Places:
-        """From one place to another; both count as rests."""
+        """Slice between two places, which become rests."""
         rest = self.rest[first : last + 1].copy()
         rest[[0, -1]] = True
         cells = slice(first, last)
@@ -92,7 +92,7 @@ class Places:
 
 @dataclass(frozen=True)
 class Window:
-    """A part of the places, and from where to where its motion counts."""
+    """A part of the places, and the range of s that counts."""
 
     places: Places
     begin: float
@@ -101,7 +101,7 @@ class Window:
 
 @dataclass(frozen=True)
 class _Borders:
-    """Borders that begin in each of K cells: their speeds squared, and the seconds that they cost."""
+    """Borders starting in each of K cells: speeds squared, and costs, s."""
 
     level: Array
     loss: Array
@@ -125,7 +125,7 @@ class _Borders:
 
 
 def windows(places: Places, free_cells: int = _FREE_CELLS) -> Iterator[Window]:
-    """The windows of some places, in order."""
+    """Cut places into windows, in order."""
     searched = np.append(0, np.cumsum(np.isnan(places.held)))
     if searched[-1] <= 1.5 * free_cells:
         yield Window(places, places.s[0], places.s[-1])
@@ -157,7 +157,7 @@ def _window(places: Places, held: Array, room: Array, first: int, last: int, beg
 
 
 def _lowest_about(values: Array) -> Array:
-    """The least of the values of each cell and its neighbours."""
+    """Least value among each cell and its neighbours."""
     return np.asarray(sliding_window_view(np.pad(values, _ABOUT, mode="edge"), 2 * _ABOUT + 1).min(axis=1))
 
 

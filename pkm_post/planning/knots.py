@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Knots: the whole milliseconds at which the controller gets a point.
 
-Few of them keep the controller's cubics within tolerance. First intervals outside it are cut, all at once, until they
-hold or reach the shortest interval of the controller. An interval is cut where a blend begins or ends, if possible: one
-cubic follows a line or a blend over a long distance, but not both. What holds is then up to half as long as it could
-be. So in some rounds neighbours are replaced by one interval fewer, wherever their deviations say that this may hold.
+The aim is few knots with the controller's cubics in tolerance. First all intervals out of tolerance are cut at once,
+until they pass or reach the controller's shortest interval. Cuts prefer the ends of blends: one cubic follows a line
+or a blend over a long distance, but not both. The passing intervals may then be half as long as possible. So in a few
+rounds neighbours are merged into one interval fewer, wherever their deviations suggest that this may pass.
 
-Where knots come faster than the block rate, or would need to be closer than the shortest interval of the controller,
-the segments run slower: the same knots take longer, and span less of the path.
+Where knots exceed the block rate, or would need to be closer than the controller's shortest interval, the segments run
+slower: the same knots take longer, and span less of the path.
 """
 
 from __future__ import annotations
@@ -24,43 +24,43 @@ LONGEST_MS = 4095
 """Longest interval: the most whole ms that the time word of a PMAC takes [TurboPMAC, PVT]."""
 _SECOND_MS = 1000
 _ROOM = 0.95
-"""Share of the block rate to aim for, so that few rounds are needed."""
+"""Share of the block rate to aim for: saves rounds."""
 SLOWDOWN = 0.7
 """Feed factor where even the shortest interval is out of tolerance."""
 _POWER = 4
-"""Of its length, by which the deviation of a cubic from a smooth curve grows."""
+"""Power of its length with which a cubic deviates from a smooth curve."""
 _ROUNDS = 4
-"""Most rounds of fewer intervals."""
+"""Most merging rounds."""
 _WORTH = 0.005
-"""Share of its intervals that a round must save between two marks for another one to follow there."""
+"""Share of the intervals between two marks that a round must save to be followed by another there."""
 _NEIGHBOURS, _ALIKE = 5, 7
-"""Most neighbours that are replaced by one interval fewer; and most of those whose costs are alike: all must hold."""
+"""Most neighbours to merge into one interval fewer; and the most if their costs are alike, as all must pass."""
 _APART = 0.15
-"""Difference of costs that are alike."""
+"""Largest difference of alike costs."""
 _FULL = 0.98
 """Share of the longest interval to aim for."""
 _TO_EDGE = 0.25
-"""Share of its length by which an end of an interval is moved to an edge."""
+"""Share of an interval by which its end may move to an edge."""
 _AGAIN = 1.06
-"""Factor of the cost of neighbours that could not be replaced, so that others are tried."""
+"""Cost factor of neighbours that failed to merge, so that others are tried."""
 _COST, _HIGHEST = 1e-3, 3.0
 """Least and highest cost of an interval."""
 _UNKNOWN = 0.5
-"""Cost of an interval too short to be cut, whose deviation is not asked for."""
+"""Cost of an interval too short to cut, whose deviation is never computed."""
 _MOST_PIECES = 4
 """Most pieces that an interval without edges is cut into at once."""
 
 
 class IntervalError(Protocol):
-    """How far intervals are from what is allowed."""
+    """Check of intervals against their limits."""
 
     def __call__(self, start: Array, end: Array, group: Array | None = None) -> Array:
-        """Deviation / tolerance of intervals, (N,); above 1 also where another limit is exceeded.
+        """Deviation / tolerance of intervals, (N,); above 1 also if another limit is exceeded.
 
         Args:
             start: (N,) whole ms.
             end: (N,) whole ms.
-            group: (N,) numbers: intervals with the same one count only if all of them hold.
+            group: (N,) numbers: intervals with the same one count only if all of them pass.
         """
         ...
 
@@ -71,7 +71,7 @@ class _Intervals:
 
     Attributes:
         time: (N + 1,) whole ms of their ends.
-        cost: (N,) share of the longest interval that would hold there.
+        cost: (N,) length as a share of the longest that would pass there.
     """
 
     time: Array
@@ -80,11 +80,11 @@ class _Intervals:
 
 @dataclass(frozen=True)
 class _Fewer:
-    """What may replace G groups of neighbours.
+    """Replacements for G groups of neighbours.
 
     Attributes:
         first: (G,) first interval of each group.
-        count: (G,) how many it has.
+        count: (G,) size of each group.
         start: (M,) whole ms of the new intervals, one fewer in each group.
         end: (M,) whole ms.
         group: (M,) the group of each.
@@ -108,8 +108,7 @@ def even_marks(rests_ms: Array, longest_ms: int = LONGEST_MS) -> Array:
 def knots(marks_ms: Array, edges_ms: Array, error: IntervalError, shortest: int = 1) -> Array:
     """Times of the knots, (K,) whole ms, from the first mark to the last; every mark is a knot.
 
-    Knots of one piece do not depend on other pieces: a long motion may be cut at its marks and each piece processed
-    separately.
+    Knots of one piece do not depend on other pieces: a long motion may be cut at its marks and processed piecewise.
 
     Args:
         marks_ms: (R,) whole ms that must be knots: ``even_marks`` of the rests.
@@ -134,7 +133,7 @@ def knots(marks_ms: Array, edges_ms: Array, error: IntervalError, shortest: int 
 
 
 def _cut_until_they_hold(marks_ms: Array, edges_ms: Array, error: IntervalError, shortest: int) -> _Intervals:
-    """Intervals that hold or cannot be cut."""
+    """Intervals that pass or cannot be cut."""
     start, end = marks_ms[:-1], marks_ms[1:]
     times, costs = [marks_ms[-1:]], []
     while len(start):
@@ -150,12 +149,12 @@ def _cut_until_they_hold(marks_ms: Array, edges_ms: Array, error: IntervalError,
 
 
 def _costs(deviation: Array) -> Array:
-    """Costs of intervals by their deviations, (N,)."""
+    """Costs of intervals from their deviations, (N,)."""
     return np.asarray(np.maximum(deviation, 0.0) ** (1 / _POWER))
 
 
 def _pieces(start: Array, end: Array, cost: Array, edges_ms: Array, shortest: int) -> tuple[Array, Array]:
-    """Starts and ends of the pieces of intervals: halves about an edge, or as many as the costs say without edges."""
+    """Starts and ends of the pieces of intervals: halves at an edge, or without edges as many as the cost suggests."""
     free = np.searchsorted(edges_ms, start + shortest) == np.searchsorted(edges_ms, end - shortest, side="right")
     pieces = np.where(free & (cost <= _MOST_PIECES), np.ceil(cost / _FULL).astype(np.int64), 2)
     pieces = np.maximum(np.minimum(pieces, (end - start) // shortest), 2)
@@ -175,7 +174,7 @@ def _cut(start: Array, end: Array, edges_ms: Array, shortest: int) -> Array:
 
 
 def _nearest_edge(ms: Array, edges_ms: Array) -> Array:
-    """The edge nearest to each time; of two the later one."""
+    """The edge nearest to each time; on a tie the later."""
     bounded = np.concatenate([[np.iinfo(np.int64).min // 2], edges_ms, [np.iinfo(np.int64).max // 2]])
     above = np.searchsorted(bounded, ms)
     before, after = bounded[above - 1], bounded[above]
@@ -183,7 +182,7 @@ def _nearest_edge(ms: Array, edges_ms: Array) -> Array:
 
 
 def _groups(found: _Intervals, run: Array, unfinished: Array, edges_ms: Array) -> _Fewer:
-    """Groups of neighbours that together cost less than one interval fewer would, in the order of time."""
+    """Groups of neighbours whose total cost fits one interval fewer, in order of time."""
     elapsed, number = np.append(0.0, np.cumsum(found.cost)), len(found.cost)
     count = np.zeros(number, dtype=np.int64)
     for many in range(min(_ALIKE, number), 1, -1):
@@ -209,9 +208,9 @@ def _groups(found: _Intervals, run: Array, unfinished: Array, edges_ms: Array) -
 
 
 def _met(begin: Array, step: Array) -> Array:
-    """The numbers that are met on the way from those that begin, by the step at each number, increasing."""
+    """Indices visited when stepping from the begins by the step at each index, increasing."""
     met, jump = np.append(begin, False), np.append(np.arange(len(step)) + step, len(step))
-    while True:  # with steps, then with twice as many steps, and so on
+    while True:  # the jump length doubles in each pass
         more = met.copy()
         more[jump[met]] = True
         if (more == met).all():
@@ -230,7 +229,7 @@ def _deviation(fewer: _Fewer, error: IntervalError, shortest: int) -> Array:
 
 
 def _replaced(found: _Intervals, fewer: _Fewer, deviation: Array, holds: Array) -> _Intervals:
-    """The intervals with the new ones of groups that hold, and with the costs that were found of the others."""
+    """Replace the groups that pass, and update the costs of those that fail."""
     group, number = expand_counts(fewer.count)
     old = fewer.first[group] + number
     new_cost, cost = np.minimum(_costs(deviation), _HIGHEST), found.cost.copy()
@@ -264,19 +263,19 @@ def block_rate_factors(time_ms: Array, segment: Array, block_rate: float, segmen
 
 
 def seconds_over_block_rate(time_ms: Array, block_rate: float) -> tuple[Array, Array]:
-    """Seconds with too many blocks: their first knots, (R,), and the number of knots in each, (R,)."""
+    """Seconds over the block rate: their first knots, (R,), and their numbers of knots, (R,)."""
     count = np.searchsorted(time_ms, time_ms + _SECOND_MS) - np.arange(len(time_ms))
     first = np.flatnonzero(count > block_rate)
     return first, count[first]
 
 
 def slower_feed(feed: Array, extent: Array, joint_time: Array, factor: Array) -> Array:
-    """Feeds that slow segments down by a factor, (N,) mm/s; unchanged where it is 1.
+    """Feeds that slow segments down by a factor, (N,) mm/s; unchanged for a factor of 1.
 
     Args:
         feed: (N,) by path length, mm/s.
         extent: (N,) path lengths of the segments, mm.
-        joint_time: (N,) s, when the end of each segment is passed.
+        joint_time: (N,) s, at the end of each segment.
         factor: (N,) of the mean speed on each segment.
     """
     mean = extent / np.diff(joint_time, prepend=0.0)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Motion: the order of planning, from a trajectory to tool poses in time and to the motion of the struts.
+"""Motion: the stages of planning, from a trajectory to tool poses in time and to strut motion.
 
-Enters: a trajectory, a machine and the requested tolerances. Leaves: first a ``FeedPlan``, position along the path with
+Input: a trajectory, a machine and the requested tolerances. Output: first a ``FeedPlan``, position along the path with
 rounded corners by time; then a ``Plan``, tool poses and strut lengths at the knots. Each stage takes the result of the
-one before it. Machine limits are computed as arrays along the path: the feed profile is independent of the machine, and
+previous one. Machine limits enter as arrays along the path: the feed profile is independent of the machine, and
 kinematics is independent of the feed. Units: mm, s, rad.
 """
 
@@ -52,20 +52,20 @@ from pkm_post.system import columns_in_workers, in_workers
 from pkm_post.toolpath import Segments, compress
 
 _FOR_CORNERS = 0.4
-"""Share of the tolerances that rounding the corners may use."""
+"""Share of the tolerances for rounding corners."""
 _FOR_CURVES = 0.6
-"""Share of the tolerances that curves may use in place of short lines."""
+"""Share of the tolerances for curves that replace short lines."""
 LONGEST_MOTION = 7 * 86_400.0
 """s: a week, which amounts to five million points and more."""
 _MOST_ROUNDS = 8
-"""Most rounds of slower planning for the controller; the certificate refuses what remains."""
+"""Most rounds of slower planning for the controller; the certificate refuses any excess left."""
 _STATIONS_AT_ONCE = 4096
-"""Stations in one pass: their working arrays stay in the processor's cache."""
+"""Stations per pass: keeps the working arrays in the processor's cache."""
 _KNOTS_AT_ONCE = 4096
-"""Knots in one pass: the derivatives of their poses take more memory than the result."""
+"""Knots per pass: the derivatives of their poses take more memory than the result."""
 _STRETCH_MS, _STRETCH_ROWS = 1 << 20, 1 << 15
-"""ms, and segments, of the stretches of the motion whose knots are determined separately, with up to a mark more: few
-passes over long columns, and what they compute on the way is small beside the motion."""
+"""ms, and segments, of the stretches whose knots are found separately, plus up to one mark: few passes over long
+columns, with intermediate results that are small compared with the motion."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class FeedPlan:
     Attributes:
         path: the path with rounded corners.
         schedule: position along the path by time.
-        share: (N,) share of the limits of acceleration that is planned on each segment.
+        share: (N,) planned share of the acceleration limits on each segment.
         trajectory: as programmed.
         machine: the machine to move.
         tolerances: the requested tolerances.
@@ -122,7 +122,7 @@ def plan(
 
 
 def tool_path(trajectory: Trajectory, tolerances: Tolerances) -> ToolPath:
-    """The path with rounded corners that the tool follows."""
+    """Path of the tool, with rounded corners."""
     segments = Segments.of(trajectory)
     for_curves = _FOR_CURVES * trajectory.tip_tolerances(tolerances.tip)
     segments = segments.smoothed(compress(trajectory, segments, for_curves, _FOR_CURVES * tolerances.axis))
@@ -150,7 +150,7 @@ def plan_feed(
         trajectory: the programmed trajectory, at least one segment.
         machine: geometry and limits.
         tolerances: the requested tolerances.
-        planned: share of the limits of acceleration to plan with; by default the highest that the machine allows.
+        planned: share of the acceleration limits to plan with; by default the highest that suits the machine.
     """
     machine = with_slow_threads(trajectory, machine)
     path = tool_path(trajectory, tolerances)
@@ -169,7 +169,7 @@ def plan_feed(
 def _reach_faults(
     path: ToolPath, trajectory: Trajectory, machine: Machine, bounds: DerivativeBounds
 ) -> tuple[Diagnostic, ...]:
-    """Diagnostics of unreachable poses: the path is followed in few steps, and from joint to joint if there are any."""
+    """Diagnostics of unreachable poses: checks the path in few steps, and from joint to joint if any fails."""
     deviates = deviates_in_blends(path, bounds)
     marks = stations(path, deviates)
     few = ~straight_groups(path, bounds, deviates)[marks.segment]
@@ -180,7 +180,7 @@ def _reach_faults(
 
 
 class _TooLongError(Exception):
-    """A motion takes longer than can be planned: its duration, and the segment that takes longest."""
+    """A motion too long to plan: its duration, and the segment that takes longest."""
 
     def __init__(self, seconds: float, segment: int) -> None:
         self.seconds, self.segment = seconds, segment
@@ -188,10 +188,10 @@ class _TooLongError(Exception):
 
 
 def _schedule(path: ToolPath, machine: Machine, bounds: DerivativeBounds, share: Array) -> Schedule:
-    """The schedule of a path with these bounds, and shares of the limits of acceleration by segment, (N,).
+    """The schedule of a path with these bounds, and shares of the acceleration limits by segment, (N,).
 
     Raises:
-        _TooLongError: the motion needs more points than fit into memory.
+        _TooLongError: the motion exceeds ``LONGEST_MOTION``.
     """
     if limits_jerk(machine):
         return _without_jumps(path, machine)
@@ -217,7 +217,7 @@ def _check_duration(s: Array, square: Array, marks: Stations) -> None:
 
 
 def _way(path: ToolPath, marks: Stations) -> tuple[PosePath, Array]:
-    """The pose path through stations, straight from one to the next; and their segments."""
+    """Pose path straight from station to station, and the segments of the stations."""
 
     def columns(rows: slice) -> tuple[Array, ...]:
         poses = fast_poses_within(path, marks.segment[rows], marks.u[rows])
@@ -227,7 +227,7 @@ def _way(path: ToolPath, marks: Stations) -> tuple[PosePath, Array]:
 
 
 def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
-    """The schedule for a machine with jerk limits."""
+    """The schedule for a jerk-limited machine."""
     from pkm_post.planning.jerk_limits import jerk_limited
 
     marks = stations(path)
@@ -241,7 +241,7 @@ def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
 def interpolate(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> Plan:
     """The motion of tool and struts at the knots, which are at most ``longest_ms`` apart.
 
-    Where points exceed the block rate of the controller, the motion is replanned with a lower feed.
+    Where points exceed the controller's block rate, the motion is replanned with a lower feed.
     """
     feed_plan, motion = within_controller(feed_plan, longest_ms)
     study = feed_study(feed_plan.path, feed_plan.schedule, feed_plan.trajectory, feed_plan.machine)
@@ -250,7 +250,7 @@ def interpolate(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> Plan:
 
 
 def within_controller(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> tuple[FeedPlan, Motion]:
-    """The plan with the feed that its controller can follow, and its motion at the knots."""
+    """The plan slowed down to suit its controller, and its motion at the knots."""
     motion, slower = _interpolated(feed_plan, longest_ms)
     for _ in range(_MOST_ROUNDS):
         if slower.is_none:
@@ -268,12 +268,12 @@ def within_controller(feed_plan: FeedPlan, longest_ms: int = LONGEST_MS) -> tupl
 
 
 def _interpolated(feed_plan: FeedPlan, longest_ms: int) -> tuple[Motion, Slower]:
-    """The motion of the tool; and what the controller requires."""
+    """Motion of the tool, and the controller's requirements."""
     return interpolated_between(feed_plan, even_marks(feed_plan.schedule.rests_ms, longest_ms))
 
 
 def interpolated_between(feed_plan: FeedPlan, marks: Array) -> tuple[Motion, Slower]:
-    """The same from the first of some whole ms, (K,) that are knots, to the last."""
+    """Motion and requirements over whole ms, (K,) that become knots."""
     path, schedule, machine = feed_plan.path, feed_plan.schedule, feed_plan.machine
     shortest = machine.shortest_interval
     row = np.searchsorted(schedule.joint_time, marks[:-1] / 1000)
@@ -295,7 +295,7 @@ def interpolated_between(feed_plan: FeedPlan, marks: Array) -> tuple[Motion, Slo
 
 
 def _motion(feed_plan: FeedPlan, time_ms: Array, joint_time: Array) -> Motion:
-    """Tool poses and their rates at whole ms; and the times, (N,) s, at which the program passes the joints."""
+    """Tool poses and rates at whole ms; ``joint_time``: (N,) s, when the program passes the joints."""
     path, schedule = feed_plan.path, feed_plan.schedule
 
     def columns(rows: slice) -> tuple[Array, ...]:

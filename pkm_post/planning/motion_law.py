@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Motion law: path length, speed and acceleration as functions of time, between places with known speeds.
 
-Without accelerations at the places the acceleration is constant from one to the next: the speed squared is linear in
-path length. With them it is linear in path length, s'' = a + k (s - s0), and does not jump; the solutions are
+Without accelerations at the places, the acceleration is constant from one to the next: the speed squared is linear in
+path length. With them it is continuous and linear in path length, s'' = a + k (s - s0); the solutions are
 
     s - s0 = v0 t S(k t^2) + a t^2 / 2 C(k t^2),   S(z) = sinh(sqrt z) / sqrt z,   C(z) = 2 (cosh(sqrt z) - 1) / z
 
-with sine and cosine where k is negative. Between a rest and the next place the jerk is constant: s - s0 = ds (t / T)^3.
-Both ways the time at which a place is passed has a closed form, too. Units: mm, s.
+with sine and cosine for negative k. Between a rest and the next place the jerk is constant: s - s0 = ds (t / T)^3.
+In both cases the time at which a place is passed has a closed form too. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class MotionLaw:
         s: (M,) path length, mm, not decreasing.
         time: (M,) s, not decreasing.
         speed: (M,) along the path, mm/s.
-        acceleration: (M,) along the path, mm/s^2, 0 at rests; None where it is constant between places.
+        acceleration: (M,) along the path, mm/s^2, 0 at rests; None if it is constant between places.
     """
 
     s: Array
@@ -76,7 +76,7 @@ class MotionLaw:
         return s, self.speed[other] * share**2, acceleration[other] * share
 
     def when(self, s: Array) -> Array:
-        """Times at which path lengths above that of the first place are first passed, (N,) s."""
+        """Times at which path lengths beyond the first place are first passed, (N,) s."""
         cell = np.clip(np.searchsorted(self.s, s) - 1, 0, len(self.s) - 2)
         s0, v0, v1 = self.s[cell], self.speed[cell], self.speed[cell + 1]
         width = self.s[cell + 1] - s0
@@ -96,7 +96,7 @@ class MotionLaw:
 
 
 def _hyperbolic(z: Array) -> tuple[Array, Array]:
-    """sinh(r) / r and 2 (cosh(r) - 1) / r^2 with r^2 = z; for negative z those of sine and cosine."""
+    """sinh(r) / r and 2 (cosh(r) - 1) / r^2 with r^2 = z; their sine and cosine forms for negative z."""
     half = np.sqrt(np.maximum(np.abs(z), _SERIES)) / 2
     sine, cosine = np.sin(half), np.cos(half)
     rows = np.flatnonzero(z > 0)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Motion limits: limits of speed, acceleration and jerk at the ends of the cells of a speed spline.
 
-A limit holds one or more numbers p, each a weighted sum of the change of acceleration k, the acceleration a and the
+A limit bounds one or more numbers p, each a weighted sum of the change of acceleration k, the acceleration a and the
 speed squared x:
 
     kind            p                                  limit
@@ -27,10 +27,10 @@ class Limits:
     """Limits of one kind at E ends of cells: R numbers p at each, a vector whose length has one bound.
 
     Attributes:
-        ends: where they apply; an end with several limits is there several times.
+        ends: where they apply; an end with several limits appears several times.
         weights: (3, R, E) of k, a and x for each of R numbers, divided by the bound.
-        jerk: whether |p| is bounded by 1 / sqrt(x), rather than by 1.
-        in_middle: whether p is that in the middle of the cell.
+        jerk: whether |p| is bounded by 1 / sqrt(x) instead of 1.
+        in_middle: whether p applies in the middle of the cell.
     """
 
     ends: CellEnds
@@ -39,13 +39,13 @@ class Limits:
     in_middle: bool = False
 
     def use(self, values: Array) -> Array:
-        """Share of each bound that is in use, (E,), by k, a and x at the ends, (3, E); above 1 it is broken."""
+        """Use of each bound, (E,), for k, a and x at the ends, (3, E); above 1 it is broken."""
         k, a, x = self.weights
         size = np.sqrt(((k * values[0] + a * values[1] + x * values[2]) ** 2).sum(axis=0))
         return np.asarray(size * np.sqrt(values[2]) if self.jerk else size)
 
     def lowered(self, slower: Array) -> Limits:
-        """The limits of a motion that has to be slower on each cell by a factor, (M - 1,)."""
+        """Limits for a motion slowed down on each cell by a factor, (M - 1,)."""
         ends = self.ends
         if self.jerk:
             factor = slower[ends.cell] ** 3
@@ -56,6 +56,6 @@ class Limits:
         return replace(self, weights=self.weights * factor)
 
     def loosened(self, values: Array, rows: Array, by: float) -> Limits:
-        """The same, but some of the rows, (E,), allow at least what the values, (3, E), use, and a share more."""
+        """Relax selected rows, (E,), so that values, (3, E), keep within them with a share to spare."""
         factor = np.where(rows, np.maximum(self.use(values) * (1 + by), 1.0), 1.0)
         return replace(self, weights=self.weights / factor)

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Played acceleration: what the cubic of a controller makes of the accelerations of a plan, wherever it begins.
+"""Played acceleration: the acceleration of a controller's cubic, for a planned acceleration and any start.
 
-In an interval of the length h the cubic through the places and speeds of the plan at both ends has, with g for the
-planned acceleration and x for the elapsed share, the acceleration
+In an interval of length h, the cubic through the planned positions and speeds at both ends has, with g the planned
+acceleration and x the elapsed share, the acceleration
 
     integral of (4 - 6 x) g dx  at its start,    integral of (6 x - 2) g dx  at its end
 
-and its extremes are there. Where g changes evenly in h, both are g; where it jumps or bends they are more, by most if
-the jump is at a third or at two thirds. So windows of that length are laid about every station. A rest is a point of
-the program: no window crosses one. Struts that keep well within their limits wherever the tip does are left out.
+and its extremes are there. Where g is linear over h, both equal g; where it jumps or bends they overshoot, most if the
+jump is at a third or two thirds. So windows of that length are laid around every station. A rest is a point of the
+program: no window crosses one. Struts that keep well within their limits whenever the tip does are left out.
 
-Enters: stations of a path, and how a motion passes them. Leaves: windows in time, and the accelerations that are
-planned and played in them, by their limits. Units: mm, s.
+Input: stations of a path, and their times and speeds. Output: windows in time, and the accelerations planned and
+played in them, relative to their limits. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import in_workers
 
 _SHARES = np.linspace(0, 1, 7)
-"""Where in windows their station is: a jump has the most effect at a third and at two thirds, a peak at the ends."""
+"""Places of the station in its windows: a jump has the most effect at a third and two thirds, a peak at the ends."""
 _PLAYED_SHARE = 0.98
-"""Share of the limits that may be played in windows: a little more is played between them, and 99 % are allowed in the
-end, for printed digits."""
+"""Share of the limits that may be played in windows: slightly more is played between them, and 99 % are allowed in
+the end, for printed digits."""
 _AT_ONCE = 2048
-"""Stations in one pass: the working arrays of one pass stay in the processor's cache."""
+"""Stations per pass: keeps the working arrays in the processor's cache."""
 
 
 @dataclass(frozen=True)
@@ -42,10 +42,10 @@ class Windows:
     """W windows of one length.
 
     Attributes:
-        station: (W,) time of the station about which each is, s.
+        station: (W,) time of the station in each, s.
         start: (W,) s.
-        planned: (W,) largest planned acceleration, by the limits that shares are planned of.
-        played: (W,) largest acceleration of the cubic, by what is allowed.
+        planned: (W,) largest planned acceleration, relative to the limits that shares refer to.
+        played: (W,) largest acceleration of the cubic, relative to the allowed one.
     """
 
     station: Array
@@ -54,7 +54,7 @@ class Windows:
     played: Array
 
     def take(self, rows: Array) -> Windows:
-        """Some of the windows."""
+        """Select windows."""
         return Windows(*(getattr(self, field.name)[rows] for field in fields(self)))
 
 
@@ -64,8 +64,8 @@ class Accelerations:
 
     Attributes:
         time: (K,) s, increasing.
-        powers: (4, C, K - 1) coefficients of the powers of the time since the start of each cell: of the places, which
-            are the second integral.
+        powers: (4, C, K - 1) polynomial coefficients, in the time since the start of each cell, of the positions: the
+            second integrals.
     """
 
     time: Array
@@ -73,7 +73,7 @@ class Accelerations:
 
     @classmethod
     def of(cls, time: Array, first: Array, last: Array) -> Accelerations:
-        """The accelerations with their integrals, from rest at the first station."""
+        """Accelerations with their integrals, from rest at the first station."""
         dt, powers = np.diff(time), np.zeros((4, *first.shape))
         place, speed, powers[2], powers[3] = powers[0], powers[1], first / 2, (last - first) / (6 * dt)
         np.cumsum(((first + last) * (dt / 2))[:, :-1], axis=1, out=speed[:, 1:])
@@ -81,13 +81,13 @@ class Accelerations:
         return cls(time, powers)
 
     def played(self, start: Array, interval: float) -> Array:
-        """Accelerations at both ends of the cubics that begin at some times, (2, C, W)."""
+        """Accelerations at both ends of the cubics that start at given times, (2, C, W)."""
         (p0, v0), (p1, v1) = self._at(start), self._at(start + interval)
         way = 6 * (p1 - p0) / interval**2
         return np.stack([way - (4 * v0 + 2 * v1) / interval, (2 * v0 + 4 * v1) / interval - way])
 
     def _at(self, time: Array) -> tuple[Array, Array]:
-        """Places and speeds at times, (C, W) each."""
+        """Positions and speeds at times, (C, W) each."""
         cell = np.clip(np.searchsorted(self.time, time) - 1, 0, len(self.time) - 2)
         since = time - self.time[cell]
         place, speed, second, third = np.take(self.powers, cell, axis=2)
@@ -100,34 +100,34 @@ class Accelerations:
 
 
 def reach(time: Array, places: Array, most: float) -> tuple[Array, Array]:
-    """Of stations at times, (M,), the first and the one after the last at cells that are near to places, (K,)."""
+    """First, and one past the last, of the stations at times, (M,), on cells near to each place, (K,)."""
     first = np.searchsorted(time, places - most, side="right") - 1
     last = np.searchsorted(time, places + most) + 1
     return np.maximum(first, 0), np.minimum(last, len(time))
 
 
 def covered(first: Array, last: Array, count: int) -> Array:
-    """Which numbers below a count lie in some ranges, without their ends, (count,)."""
+    """Which indices below ``count`` lie in half-open ranges, (count,)."""
     change = np.bincount(first, minlength=count + 1) - np.bincount(last, minlength=count + 1)
     return np.asarray(np.cumsum(change)[:count] > 0)
 
 
 def cells_in_windows(time: Array, start: Array, interval: float) -> tuple[Array, Array]:
-    """First and last of the cells between times, (M,), that windows touch, (W,) each."""
+    """First and last cell between times, (M,), that each window touches, (W,) each."""
     first = np.clip(np.searchsorted(time, start, side="right") - 1, 0, len(time) - 2)
     return first, np.clip(np.searchsorted(time, start + interval) - 1, first, len(time) - 2)
 
 
 @dataclass(frozen=True)
 class StationMotion:
-    """How a motion passes M stations of a path.
+    """The motion through M stations of a path.
 
     Attributes:
         path: the path.
         marks: M stations.
         time: (M,) s.
         square: (M,) speed squared.
-        struts: (6,) struts whose limits matter beside those of the tip.
+        struts: (6,) struts whose limits matter besides those of the tip.
     """
 
     path: ToolPath
@@ -137,11 +137,11 @@ class StationMotion:
     struts: Array
 
     def take(self, rows: Array) -> StationMotion:
-        """Some of the stations."""
+        """Select stations."""
         return StationMotion(self.path, self.marks.take(rows), self.time[rows], self.square[rows], self.struts)
 
     def windows(self, machine: Machine, about: Array, interval: float) -> Windows:
-        """The windows about some stations.
+        """The windows around some stations.
 
         Args:
             machine: the limits.
@@ -162,7 +162,7 @@ class StationMotion:
         return Windows(*(np.concatenate(column) for column in columns))
 
     def _windows(self, machine: Machine, joined: Array, about: Array, interval: float) -> Windows:
-        """The same about some of all stations, with (M - 1,) whether the next station of the path follows each."""
+        """Windows with stations missing; ``joined``, (M - 1,): whether the next one on the path follows each."""
         station, start = self._starts(joined, about, interval)
         first, last, allowed = self._accelerations(machine, joined)
         planned = np.append(np.maximum(_largest(first, 1.0), _largest(last, 1.0)), 0.0)
@@ -176,7 +176,7 @@ class StationMotion:
         )
 
     def _starts(self, joined: Array, about: Array, interval: float) -> tuple[Array, Array]:
-        """Stations of windows, and the starts of these, (W,) each: between rests and missing stations."""
+        """Stations of windows, and window starts, (W,) each: between rests and missing stations."""
         time, rest, end = self.time, self.marks.rest, np.array([True])
         earliest = np.maximum.accumulate(np.where(rest | np.append(end, ~joined), time, -np.inf))
         latest = np.where(rest | np.append(~joined, end), time, np.inf)
@@ -188,10 +188,10 @@ class StationMotion:
         return station[kept], start[kept]
 
     def _accelerations(self, machine: Machine, joined: Array) -> tuple[Array, Array, Array]:
-        """Accelerations at both ends of cells by the limits that shares are planned of, (C, M - 1) each.
+        """Accelerations at both ends of cells, relative to the limits that shares refer to, (C, M - 1) each.
 
-        And what may be played by these limits, (C, 1). Derivatives at a rest are those of one of two segments: those at
-        the next station count. Of cells with missing stations nothing is known.
+        And the playable share of these limits, (C, 1). At a rest the derivatives are those of one of two segments, so
+        the next station's are used. Cells with missing stations give zero.
         """
         poses = self.path.within(self.marks.segment, self.marks.u)
         struts, tip, _ = limited_quantities(machine, poses, self.struts)
@@ -208,6 +208,6 @@ class StationMotion:
 
 
 def _largest(accelerations: Array, allowed: Array | float) -> Array:
-    """The largest acceleration of struts, and of the tip as a vector, (W,), by what is allowed."""
+    """Largest acceleration of struts, and of the tip as a vector, (W,), relative to the allowed one."""
     by_limit = accelerations / allowed
     return np.asarray(functools.reduce(np.maximum, np.abs(by_limit[:-3]), length_of(*by_limit[-3:])))

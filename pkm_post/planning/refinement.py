@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Refinement: stations where the fastest profile bends, and where limits change too much from one to the next.
+"""Refinement: adds stations where the fastest profile bends, and where limits change too much between stations.
 
-A few stations of each segment come first. Then, in rounds, a cell gets stations
+A few stations per segment come first. Then, in rounds, a cell gets stations
 
-* in its middle: once, and again if the station before had changed the profile, or found a limit exceeded or bent near
-  to what is allowed, by more than a share;
-* else where the ramps from its ends meet the ceiling, or each other, if that saves more than a share of its time: at
-  rests, at slow corners, and where speeding up turns into braking.
+* in its middle: once, and again if the last station there changed the profile, or found a limit exceeded or bent close
+  to the demand, by more than a share;
+* otherwise where the ramps from its ends meet the ceiling, or each other, if that saves more than a share of its time:
+  at rests, at slow corners, and where speeding up turns into braking.
 
-Enters: a path, a machine, and rough limits of the segments that need no exact ones. Leaves: stations and speeds
+Input: a path, a machine, and rough limits of the segments that need no exact ones. Output: stations and speeds
 squared. Units: mm, s.
 """
 
@@ -30,21 +30,21 @@ from pkm_post.planning.tool_path import ToolPath
 
 _MOST_ROUNDS = 10
 _WORTH = 2e-3
-"""Share of the time of a cell that new stations must save, and s for each of them."""
+"""Share of a cell's time that new stations must save, and s for each of them."""
 _WORTH_SECONDS = 1e-6
 _CHANGED = 0.02
-"""Share of a speed squared, or of a limit, from which on the pieces of a cell are looked at again: the quarter of it is
-left, as the error of straight lines goes with the square of the width."""
+"""Share of a speed squared, or of a limit, above which the pieces of a cell are cut again: a quarter of it is left, as
+the error of straight lines goes with the square of the width."""
 _SHAPE = 4.0
-"""How much more than at a new station limits may bend between it and the ends of its cell."""
+"""Largest ratio of the bend of limits elsewhere in a cell to that at its new station."""
 _BRIEF = 1e-4
-"""s: what happens within a cell of this time is no concern of a controller that takes a point each millisecond."""
+"""s: briefer cells are left alone, as the controller takes one point per millisecond."""
 _NARROW = 1e-6
-"""Part of a cell that is no place for a station."""
+"""Part of a cell at its ends that gets no station."""
 _AT_FEED = 1e-6
-"""Share of a speed squared by which rounding may put it below the feed."""
+"""Relative rounding by which a speed squared may fall below the feed."""
 _STEEPEST = 1e12
-"""mm^2/s^2: stands for what no limit bounds."""
+"""mm^2/s^2: replaces an unbounded speed squared."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class StationProfile:
         marks: M stations.
         steps: their limits.
         square: (M,) speed squared.
-        look: (M - 1,) cells whose middle is of interest.
+        look: (M - 1,) cells due for a station in their middle.
         fresh: (M - 1,) cells whose speeds may have changed in the last round.
         struts: (6,) struts whose limits matter.
         close: (N,) which segments of the path have all of their stations.
@@ -74,7 +74,7 @@ class StationProfile:
     other_square: Array
 
     def complete(self) -> tuple[Stations, Array]:
-        """All stations, and the speeds squared at them, (M + K,)."""
+        """All stations, and their speeds squared, (M + K,)."""
         row = np.searchsorted(self.marks.s, self.others.s)
         checkpoint()
         return self.marks.inserted(row, self.others), inserted(self.square, row, self.other_square)
@@ -85,8 +85,8 @@ class StationProfile:
         Args:
             path: the path.
             machine: the limits.
-            cell: (K,) the cells in which they are, not decreasing.
-            part: (K,) the part of the cell before each of them, increasing within a cell.
+            cell: (K,) cell of each new station, not decreasing.
+            part: (K,) part of the cell before each, increasing within a cell.
         """
         marks, row = self.marks, cell + 1
         width = np.diff(marks.s)[cell]
@@ -112,11 +112,11 @@ class StationProfile:
 
 @dataclass(frozen=True)
 class SpanToRest:
-    """A part of a path, from a place that is passed at a speed to a rest.
+    """A part of a path, from a place passed at a given speed to a rest.
 
     Attributes:
-        start: path length where it begins.
-        end: path length where the motion rests.
+        start: path length at its start.
+        end: path length of the rest.
         square: speed squared at the start, 0 for a rest.
     """
 
@@ -140,7 +140,7 @@ class SpanToRest:
 def refined_profile(
     path: ToolPath, machine: Machine, close: Array, rough: Pair, share: Array, span: SpanToRest | None = None
 ) -> tuple[Stations, Array]:
-    """Stations, and the fastest speed squared at them, (M,); arguments as of ``refined``."""
+    """Stations, and the fastest speed squared at them, (M,); arguments as for ``refined``."""
     return refined(path, machine, close, rough, share, span).complete()
 
 
@@ -149,7 +149,7 @@ def refined(
 ) -> StationProfile:
     """The fastest profile, with its stations.
 
-    The motion comes to rest at the end of a span in time. If it is too fast for that at its start, the first speed is
+    The motion always stops by the end of a span. If its initial speed is too high for that, the first speed comes out
     lower than that of the span.
 
     Args:
@@ -157,8 +157,8 @@ def refined(
         machine: the limits.
         close: (N,) which segments get exact limits.
         rough: limits of speed squared and acceleration that hold on the whole of each other segment, (N,) each.
-        share: (N,) share of the limits of acceleration that is planned on each segment; rough ones are for the largest.
-        span: the part of the path to plan; its segments and their neighbours are all close. By default all of it.
+        share: (N,) planned share of the acceleration limits on each segment; rough ones are for the largest.
+        span: the part of the path to plan; its segments and their neighbours are all close. Default: the whole path.
     """
     marks = stations(path, close, coarse=True)
     marks = marks if span is None else span.of(marks, path)
@@ -182,8 +182,8 @@ def refined(
 def _coarse(
     marks: Stations, limits: StationLimits, share: Array, close: Array, others: Stations, other_square: Array
 ) -> StationProfile:
-    """The profile at the first stations, with the share of each cell, (M - 1,); and the other stations."""
-    limits.table[marks.rest] = 0.0  # derivatives there are those of one of two segments
+    """Profile at the first stations, with the share of each cell, (M - 1,), and the other stations."""
+    limits.table[marks.rest] = 0.0  # derivatives at a rest belong to one of two segments
     checkpoint()
     struts = limits.struts_that_matter(float(share.min()))
     checkpoint()
@@ -197,9 +197,9 @@ def _coarse(
 
 
 def _places(profile: StationProfile) -> tuple[Array, Array, Array]:
-    """Places of new stations: their cells, not decreasing, and the parts of the cells before them, (K,) each.
+    """New stations: their cells, not decreasing, and the parts of the cells before them, (K,) each.
 
-    And cells that still wait for a station in their middle, (M - 1,): they are too brief for one.
+    And cells still due for a station in their middle, (M - 1,), but too brief for one.
     """
     below = profile.square < profile.steps.highest()
     with np.errstate(divide="ignore", over="ignore"):  # a speed squared may underflow
@@ -225,7 +225,7 @@ def _places(profile: StationProfile) -> tuple[Array, Array, Array]:
 
 
 def _bends(profile: StationProfile, cell: Array, time: Array) -> tuple[Array, Array, Array]:
-    """Where in cells the ramps from both ends meet the ceiling or each other, and the time that this saves, (K,) each.
+    """Parts of cells at which the ramps from both ends meet the ceiling or each other, and the time saved, (K,) each.
 
     Args:
         profile: the profile.
@@ -253,7 +253,7 @@ def _bends(profile: StationProfile, cell: Array, time: Array) -> tuple[Array, Ar
 
 
 def _meeting(gap: Array, slope: Array) -> Array:
-    """The part of a cell after which a slope closes a gap, from 0 to 1."""
+    """Part of a cell, 0 to 1, after which a slope closes a gap."""
     gap = np.maximum(gap, 0.0)
     return np.asarray(np.divide(gap, slope, out=np.ones_like(gap), where=slope > gap))
 
@@ -285,7 +285,7 @@ def _refined(path: ToolPath, machine: Machine, profile: StationProfile, cell: Ar
 def _bent(
     profile: StationProfile, cell: Array, part: Array, added: StationLimits, along: Array, square: Array
 ) -> Array:
-    """Demand that limits at new stations add to what they would be if straight between the ends of cells, (K,)."""
+    """Demand added by limits at new stations, compared with straight ones between the ends of cells, (K,)."""
     limits, rest = profile.steps.limits, profile.marks.rest
     near, far = np.where(rest[cell], cell + 1, cell), np.where(rest[cell + 1], cell, cell + 1)
     table = limits.table[near] + (limits.table[far] - limits.table[near]) * part[:, None]
@@ -299,10 +299,10 @@ def _bent(
 
 
 def _renewed(steps: Steps, square: Array, new: Array) -> tuple[Array, Array]:
-    """Speeds squared, (M,), after stations were put in, and the cells that may have changed, (M - 1,).
+    """Speeds squared, (M,), after inserting stations, and cells that may have changed, (M - 1,).
 
-    A station at its highest speed parts the path: what is put in on one side can change nothing on the other, unless it
-    lowers that station.
+    A station at its highest speed splits the path: an insertion on one side affects the other only if it lowers that
+    station.
 
     Args:
         steps: the limits.

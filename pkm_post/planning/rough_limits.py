@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rough limits: where a path demands so little of a machine that its limits are not computed at every station.
+"""Rough limits: finds where the demand of a path is so low that exact limits at every station are needless.
 
-The parameters of a segment and of its two blends bound its derivatives in closed form, without sampling, and these
-bound the demand on the machine. A plan under such rough limits is also valid under the exact ones,
-so the exact plan is nowhere slower: where the rough plan runs at the feed, so does the exact one. Enters: a path and a
-machine. Leaves: bounds and limits by segment, and the segments that need exact limits. docs/planning.md has the
-derivations. Units: mm, s, rad.
+The parameters of a segment and of its two blends bound its derivatives in closed form, without sampling, and so the
+demand on the machine. A plan within rough limits is also within the exact ones, so the exact plan is nowhere slower:
+where the rough plan runs at the feed, so does the exact one. Input: a path and a machine. Output: bounds and limits by
+segment, and the segments that need exact limits. docs/planning.md has the derivations. Units: mm, s, rad.
 """
 
 from __future__ import annotations
@@ -32,25 +31,25 @@ from pkm_post.planning.tool_path import OFFSET, ToolPath
 from pkm_post.toolpath import Segments
 
 _AT_ONCE = 1 << 14
-"""Segments in one pass: the working arrays take more memory than the result."""
+"""Segments per pass: the working arrays take more memory than the result."""
 _STEP = 0.75
 """Largest slope of the cubic step from one segment to the next, per half width."""
 _PARTING_1, _PARTING_2 = 0.1, 0.73
-"""What two diverging arcs add to the first derivative of the tip, per half width and bends, and to the second, per
-bends: the maxima of |S - W| |x| + S' x^2 / 2 and of 2 S' |x| + |S''| x^2 / 2 in a blend of half width 1."""
+"""Contribution of two diverging arcs to the first derivative of the tip, per half width and bends, and to the second,
+per bends: the maxima of |S - W| |x| + S' x^2 / 2 and of 2 S' |x| + |S''| x^2 / 2 in a blend of half width 1."""
 _WIDEST = 0.5
-"""rad: a blend in which the tool axis may turn by more has no bound."""
+"""rad: blends whose tool axis may turn by more get no bound."""
 _NO_BOUND = 1e12
 _BEYOND = 1.45
-"""How far a segment is extended for its two blends, per extent."""
+"""Length of a segment extended for its two blends, per extent."""
 _AT_FEED = 1e-6
-"""Share of the speed squared by which rounding may put a plan at the feed below it."""
+"""Relative rounding by which the speed squared of a plan at the feed may fall below it."""
 _STRAIGHT = 0.01, 1e-4
-"""mm and rad: deviation from the segments in blends up to which a path counts as straight between its joints."""
+"""mm and rad: deviation of blends from the segments up to which a path counts as straight between its joints."""
 _GROUP_SIZES = 2, 4, 8, 16, 32
-"""Segments of a curve that may count as one straight line together ..."""
+"""Segments of a curve that may together count as one straight line ..."""
 _LONGEST_GROUP = 4.0
-"""... of at most so many mm."""
+"""... up to this length, mm."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +73,7 @@ class DerivativeBounds:
 
     @classmethod
     def of(cls, path: ToolPath) -> DerivativeBounds:
-        """The bounds of a path."""
+        """Bounds of a path."""
         width, blended = path.blend[1:-1], path.blend[1:-1] > 0
         steepness = np.divide(_STEP, width, out=np.zeros_like(width), where=blended)
         checkpoint()
@@ -87,7 +86,7 @@ class DerivativeBounds:
         return bounds._with_curves(path) if len(path.segments.splines) else bounds
 
     def _with_curves(self, path: ToolPath) -> DerivativeBounds:
-        """The bounds with those of smooth curves; blends at their ends have none."""
+        """Add the bounds of smooth curves; blends at their ends have none."""
         from pkm_post.toolpath import SplineBounds
 
         splines = path.segments.splines
@@ -117,8 +116,8 @@ class DerivativeBounds:
 def deviates_in_blends(path: ToolPath, bounds: DerivativeBounds) -> Array:
     """Segments whose blends deviate too far for the path to count as straight between its joints, (N,).
 
-    A blend of half width d and curvature c at its joint leaves the segments by c d^2 / 4; a curve over the length l
-    leaves its chord by c l^2 / 8.
+    A blend of half width d and curvature c at its joint leaves the segments by c d^2 / 4; a curve of length l leaves
+    its chord by c l^2 / 8.
     """
     square = np.maximum(path.blend[1:], path.blend[:-1]) ** 2 / 4
     splines = path.segments.splines
@@ -128,7 +127,7 @@ def deviates_in_blends(path: ToolPath, bounds: DerivativeBounds) -> Array:
 
 
 def straight_groups(path: ToolPath, bounds: DerivativeBounds, single: Array) -> Array:
-    """Segments whose ends are no places where the path bends: with the next ones they are one straight line, (N,).
+    """Segments at whose ends the path does not bend: they form one straight line with the next ones, (N,).
 
     Args:
         path: N segments.
@@ -153,7 +152,7 @@ def rough_limits(path: ToolPath, machine: Machine, bounds: DerivativeBounds, sha
     """Speeds squared and accelerations along the path that are allowed on the whole of each segment, (N,) each.
 
     They keep the exact limits anywhere on the segment, in either direction: each term of the acceleration has a fixed
-    part of the share of the limits that is planned.
+    part of the planned share of the limits.
     """
     square, along = feed_of_path_length(path.feed, bounds.tip_1) ** 2, np.full(len(path.feed), NO_LIMIT)
     for item in _quantities(machine, path, bounds):
@@ -168,7 +167,7 @@ def rough_limits(path: ToolPath, machine: Machine, bounds: DerivativeBounds, sha
 
 
 def _quantities(machine: Machine, path: ToolPath, bounds: DerivativeBounds) -> tuple[LimitedQuantity, ...]:
-    """The quantities that a machine limits, with bounds on the magnitudes of their derivatives, (N, 1)."""
+    """The quantities limited by a machine, with bounds on the magnitudes of their derivatives, (N, 1)."""
     tip, axis = (bounds.tip_1, bounds.tip_2), (bounds.axis_1, bounds.axis_2)
     spin = bounds.spin_1, bounds.spin_2
     struts = strut_rate_bounds(machine, tip, axis, spin, bounds.half_tilt, path.tool_length)
@@ -191,7 +190,7 @@ def below_feed(path: ToolPath, square: Array, along: Array) -> Array:
 
 
 def _of_tip(seg: Segments, width: Array, blended: Array, steepness: Array) -> tuple[Array, Array]:
-    """Bounds of the tip: in a blend, the divergence of the extended segments adds to the change of the tangent."""
+    """Tip bounds: in a blend, the divergence of the extended segments adds to the change of the tangent."""
     first, bend, arcs = norm(seg.tangent), np.zeros(len(seg)), seg.arcs
     radius, scale = norm(arcs.radius), 1 + np.abs(arcs.growth) * _BEYOND * seg.extent[arcs.row]
     first[arcs.row] = np.hypot(first[arcs.row], np.hypot(arcs.growth * radius, arcs.turn * radius * scale))
@@ -209,13 +208,13 @@ def _of_tip(seg: Segments, width: Array, blended: Array, steepness: Array) -> tu
 
 
 def _bend_at(seg: Segments, before: Array) -> Array:
-    """The change of the tangent of the tip at the ends of segments, (K,)."""
+    """Change of the tip tangent at the ends of segments, (K,)."""
     at_end, at_start = seg.tip_at(before, seg.extent[before])[1], seg.tip_at(before + 1, np.zeros(len(before)))[1]
     return np.asarray(norm(at_start - at_end))
 
 
 def _of_axis(seg: Segments, width: Array, blended: Array, steepness: Array) -> tuple[Array, Array, Array]:
-    """Bounds of the axis: a tangent vector a moves it by at most |a|, and bends it by |a'|^2 (1 + 2 |a|)."""
+    """Axis bounds: a tangent vector a moves the axis by at most |a|, and bends it by |a'|^2 (1 + 2 |a|)."""
     first = norm(seg.axis_rate)
     if not first.any():
         return first, first, _half_tilt(seg, first, first[1:])
@@ -233,7 +232,7 @@ def _of_axis(seg: Segments, width: Array, blended: Array, steepness: Array) -> t
 
 
 def _turns_off(seg: Segments, rows: slice) -> Array:
-    """How much the rate of the tool axis changes from segments, (K,), to the next ones, by path length."""
+    """Change of the tool axis rate from segments, (K,), to the next ones, by path length."""
     ends = seg.axis_at(np.arange(rows.start, rows.stop), seg.extent[rows])[1]
     return np.asarray(norm(seg.axis_rate[rows.start + 1 : rows.stop + 1] - ends))
 
@@ -259,7 +258,7 @@ def _of_spin(seg: Segments, blended: Array, steepness: Array) -> tuple[Array, Ar
 
 
 def _with_joints(inside: Array, at_joint: Array, blended: Array) -> Array:
-    """The maximum of the values of segments (N,) and of the blends at their joints (N - 1,)."""
+    """Maximum of the values of segments, (N,), and of the blends at their joints, (N - 1,)."""
     checkpoint()
     joint = np.concatenate([[0.0], np.where(blended, at_joint, 0.0), [0.0]])
     return np.maximum(inside, np.maximum(joint[1:], joint[:-1]))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Schedule: position along the path as a function of time.
 
-Enters: stations with their speeds squared, and with their accelerations where these do not jump. Leaves: path length,
-speed and acceleration at any time (``motion_law``). Controllers take whole milliseconds: the time from rest to rest is
-stretched to the next whole one, which lowers every speed slightly and exceeds no limit. Units: mm, s.
+Input: stations with their speeds squared, and their accelerations if continuous. Output: path length, speed and
+acceleration at any time (``motion_law``). Controllers take whole milliseconds: the time from rest to rest is stretched
+to the next whole one, which lowers every speed slightly and exceeds no limit. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from pkm_post.planning.motion_law import MotionLaw
 from pkm_post.planning.speed_profile import Stations, cell_times
 
 _AT_ONCE = 1 << 14
-"""Places in one pass: the working arrays take more memory than the result."""
+"""Places per pass: the working arrays take more memory than the result."""
 
 
 class Law(Protocol):
-    """Motion along a path by time; path lengths of its places are ``s``."""
+    """Motion along a path by time, through places at path lengths ``s``."""
 
     @property
     def s(self) -> Array:
@@ -45,10 +45,10 @@ class Schedule:
 
     Attributes:
         law: path length by time.
-        rests_ms: (R,) whole milliseconds at which the motion rests, from 0 to the end.
-        rest_joints: (R,) for each rest the number of segments before it.
-        edges_ms: (E,) whole milliseconds nearest to where blends begin and end.
-        joint_time: (N,) s, when the end of each segment is passed.
+        rests_ms: (R,) whole milliseconds of the rests, from 0 to the end.
+        rest_joints: (R,) number of segments before each rest.
+        edges_ms: (E,) whole milliseconds nearest to the starts and ends of blends.
+        joint_time: (N,) s, at the end of each segment.
     """
 
     law: Law
@@ -74,7 +74,7 @@ class Schedule:
             s: (M,) path length of each place.
             rest: (M,) whether the motion stops there.
             square: (M,) speed squared.
-            acceleration: (M,) acceleration along the path; None where it is constant between places.
+            acceleration: (M,) acceleration along the path; None if it is constant between places.
             shortest_ms: least time from one rest to the next.
         """
         law, rests_ms = _stretched(s, rest, square, acceleration, shortest_ms)
@@ -104,7 +104,7 @@ class Schedule:
 
 
 def _smooth_times(s: Array, square: Array, acceleration: Array) -> Array:
-    """Durations of cells whose accelerations do not jump, s."""
+    """Durations of cells with continuous acceleration, s."""
     from pkm_post.planning.speed_spline import durations
 
     found = np.empty(len(s) - 1)
@@ -117,7 +117,7 @@ def _smooth_times(s: Array, square: Array, acceleration: Array) -> Array:
 def _stretched(
     s: Array, rest: Array, square: Array, acceleration: Array | None, shortest_ms: int
 ) -> tuple[MotionLaw, Array]:
-    """The motion from rest to rest in whole milliseconds; and the rests."""
+    """Motion in whole milliseconds from rest to rest; the rests."""
     speed = np.sqrt(square)
     duration = cell_times(s, square) if acceleration is None else _smooth_times(s, square, acceleration)
     checkpoint()
@@ -145,7 +145,7 @@ def _stretched(
 
 
 def _each_once(ms: Array) -> Array:
-    """Unique whole milliseconds from 0 on, from values that increase except for rounding."""
+    """Unique whole milliseconds, not negative, from values that increase except for rounding."""
     ms = np.maximum.accumulate(ms)
     other = np.ones(len(ms), dtype=np.bool_)
     np.not_equal(ms[1:], ms[:-1], out=other[1:])

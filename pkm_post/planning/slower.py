@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Slower: where the controller requires that a motion is planned once more, with lower feeds or accelerations.
+"""Slower: the lower feeds and accelerations that the controller requires in a further round of planning.
 
-Enters: a motion at its knots. Leaves: factors by segment, where intervals that cannot be cut are out of tolerance, or
-knots come faster than the block rate. Units: mm, s.
+Input: a motion at its knots. Output: factors by segment, where intervals that cannot be cut are out of tolerance, or
+knots exceed the block rate. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.tool_path import ToolPath
 
 _AT_FEED = 0.95
-"""Share of the feed from which on a motion is limited by the feed."""
+"""Share of the feed above which the feed limits a motion."""
 _ROOM = 0.99
-"""Share of a limit to aim for where it is exceeded, so that few rounds are needed."""
+"""Share of an exceeded limit to aim for: saves rounds."""
 
 
 @dataclass(frozen=True)
 class Slower:
-    """What the controller requires of N segments.
+    """The controller's requirements for N segments.
 
     Attributes:
         feed: (N,) factors of the mean speed.
-        acceleration: (N,) factors of the share of accelerations.
+        acceleration: (N,) factors of the acceleration share.
     """
 
     feed: Array
@@ -38,20 +38,20 @@ class Slower:
 
     @property
     def is_none(self) -> bool:
-        """Whether nothing has to be slower."""
+        """Whether all factors are 1."""
         return bool((self.feed == 1).all() and (self.acceleration == 1).all())
 
 
 def limits_jerk(machine: Machine) -> bool:
-    """Whether a machine has a limit of jerk."""
+    """Whether a machine has a jerk limit."""
     return bool(np.isfinite(machine.strut_jerk) or np.isfinite(machine.tip_jerk))
 
 
 def too_coarse(times: Array, cubics: InterpolationCheck, shortest: int) -> Array:
-    """Intervals that cannot be cut for the controller but are beyond what is allowed, (3, R).
+    """Intervals that cannot be cut for the controller but exceed a limit, (3, R).
 
-    In the rows are their starts and ends in ms, and the factor of the acceleration that mends them. In intervals of one
-    millisecond deviations do not count, as nothing is shorter, and limits of the machine make the factor.
+    The rows are starts and ends in ms, and the acceleration factor that mends them. In intervals of one millisecond,
+    the shortest there is, deviations do not count, and machine limits set the factor.
     """
     start, end = times[:-1], times[1:]
     rows = np.flatnonzero(end - start < 2 * shortest)
@@ -66,10 +66,10 @@ def too_coarse(times: Array, cubics: InterpolationCheck, shortest: int) -> Array
 
 
 def required(path: ToolPath, schedule: Schedule, machine: Machine, motion: Motion, coarse: Array) -> Slower:
-    """What the controller requires, by the intervals that are too coarse.
+    """The controller's requirements, given the intervals that are too coarse.
 
-    In these the accelerations go down by their factor, and the feed by the square root of it where they are at the
-    feed, or jerk is limited. Where there are too many points, both go down.
+    In these the accelerations drop by their factor, and the feed by its square root if the motion is at the feed or
+    jerk-limited. Where there are too many points, both drop.
     """
     joint_time = motion.joint_time
     feed = block_rate_factors(motion.time_ms, motion.segment, machine.block_rate, len(joint_time))

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Smooth window: the motion along a part of a path from any place and speed to rest, with limits of jerk.
+"""Smooth window: jerk-limited motion along a part of a path, from any place and speed to rest.
 
 A window is the fastest motion from rest to rest that ``jerk_limits`` finds. One that continues a motion starts one
 stopping distance behind it. The speed squared of both is a quadratic spline of the path length, so a transition blends
-their coefficients: speed and acceleration do not jump. The length of the transition is searched: the limits are
-measured each millisecond, and if no length keeps them, the motion stays as it is and rests at its end. A stop scales
-the time of the motion (``time_scaled_law``), as fast as the limits allow.
+their coefficients: speed and acceleration do not jump. The length of the transition is searched, with limits measured
+each millisecond; if no length keeps them, the motion stays as it is and rests at its end. A stop scales the time of
+the motion (``time_scaled_law``), as fast as the limits allow.
 
-Windows are planned with a share of the limits of acceleration and jerk, since stops and transitions need the rest.
+Windows use only a share of the acceleration and jerk limits, since stops and transitions need the rest.
 
-Enters: a path, a machine, a motion, an override. Leaves: motion laws. Units: mm, s.
+Input: a path, a machine, a motion, an override. Output: motion laws. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from pkm_post.planning.tool_path import ToolPath
 
 
 class Shares(NamedTuple):
-    """Shares of the limits that a window is planned with."""
+    """Shares of the limits for planning a window."""
 
     acceleration: float
     jerk: float
@@ -40,22 +40,22 @@ class Shares(NamedTuple):
 
 FULL, GENTLE = Shares(0.92, 0.85), Shares(0.45, 0.3)
 _MOST_USE = 0.985
-"""Most use of a limit in a stop or a change, each millisecond; the rest is for decimals and cubics."""
+"""Largest use of a limit in a stop or transition, each millisecond; the rest is for decimals and cubics."""
 _SPEED_ROUNDING = 1.001
-"""Factor of limits of speed, of which a motion may use all, and a stop or a change no more."""
+"""Rounding allowance on speed limits, which a motion may use in full."""
 _FIRST_STOP_MS, _LONGEST_STOP_MS = 32, 1 << 15
 _LEAST_STEPS = 32
-"""Steps at least in which a motion is measured: those of a short stop are shorter than a ms."""
+"""Least number of steps for measuring a motion: in a short stop they are shorter than a ms."""
 _STOP_STEPS = 5
 """Halvings between a stop that is too short and one twice as long."""
 _FIRST_CHANGE, _LONGER_CHANGE = 0.5, 1.6
-"""Length of the first change of motion by the distance of a stop, and factor to the next one."""
+"""Length of the first transition, per stopping distance, and factor to the next."""
 _LEAST_NODES = 32
-"""Least places of a change."""
+"""Least places of a transition."""
 _APART = 1e-6
-"""Share of the length of a change by which places are apart."""
+"""Least gap between places, per length of a transition."""
 _MORE_S = 0.05
-"""s behind a change in which limits are measured as well: to whole ms a motion is a little slower there."""
+"""s after a transition in which limits are still measured: the stretch to whole ms slows it slightly."""
 _BISECTIONS = 50
 _AT_ONCE = 4096
 _LEAST = 1e-6
@@ -64,7 +64,7 @@ _LEAST = 1e-6
 
 @dataclass(frozen=True)
 class SpeedLaw:
-    """Speed squared along a path, a quadratic spline, to a rest at its end: M places."""
+    """Speed squared along a path, a quadratic spline with M places, to a rest at its end."""
 
     s: Array
     square: Array
@@ -72,14 +72,14 @@ class SpeedLaw:
 
     @classmethod
     def of(cls, law: MotionLaw) -> SpeedLaw:
-        """The speed of a motion without jumps of the acceleration."""
+        """The speed of a motion with continuous acceleration."""
         if law.acceleration is None:
             raise ValueError("law: expected accelerations at its places")
         return cls(law.s, law.speed**2, law.acceleration)
 
     @property
     def first(self) -> float:
-        """Path length from which on it is a quadratic spline: not in a cell behind a rest."""
+        """Path length from which it is a quadratic spline: a first cell after a rest is none."""
         return float(self.s[0] if self.square[0] else self.s[1])
 
     def duration(self) -> float:
@@ -87,7 +87,7 @@ class SpeedLaw:
         return float(durations(np.diff(self.s), self.square, self.acceleration).sum())
 
     def law(self, seconds: float) -> MotionLaw:
-        """Path length by time; its duration is that number of whole ms but for rounding."""
+        """Path length by time; ``seconds`` is its duration, whole ms but for rounding."""
         time = np.concatenate([[0.0], np.cumsum(durations(np.diff(self.s), self.square, self.acceleration))])
         time *= seconds / time[-1]
         time[-1] = seconds
@@ -100,14 +100,14 @@ class SpeedLaw:
         return float(x[0]), float(a[0])
 
     def coefficients(self, s: Array) -> Array:
-        """Of the cells between places that include its own, (K - 1,); none of the cells touches a rest."""
+        """Coefficients of the cells between places that include its own, (K - 1,); no cell may touch a rest."""
         cell = np.clip(np.searchsorted(self.s, s[:-1], side="right") - 1, 0, len(self.s) - 2)
         x, a = within_cells(self.s, self.square, self.acceleration, cell, s[:-1])
         return np.asarray(x + a * np.diff(s))
 
 
 def fastest_motion(path: ToolPath, machine: Machine, begin: float, end: float, share: Shares = FULL) -> SpeedLaw:
-    """The fastest motion from rest to rest with shares of the limits; no rest of the program lies between."""
+    """The fastest motion from rest to rest under shares of the limits, with no rest of the program in between."""
     limits = replace(
         machine,
         strut_acceleration=share.acceleration * machine.strut_acceleration,
@@ -122,7 +122,7 @@ def fastest_motion(path: ToolPath, machine: Machine, begin: float, end: float, s
 
 
 def in_whole_ms(found: SpeedLaw, shortest_ms: int) -> MotionLaw:
-    """A motion from rest to rest in whole ms, evenly slower."""
+    """Slow a motion from rest to rest evenly, to whole ms."""
     elapsed = found.duration()
     seconds = max(np.ceil(1000 * elapsed - 1e-9), shortest_ms) / 1000
     stretch = (elapsed / seconds) ** 2
@@ -130,7 +130,7 @@ def in_whole_ms(found: SpeedLaw, shortest_ms: int) -> MotionLaw:
 
 
 def use_of_limits(path: ToolPath, machine: Machine, law: TimeScaledLaw, until: float) -> float:
-    """Largest share of limits of acceleration and jerk up to a time, each ms or less; infinite at too high a speed."""
+    """Largest use of acceleration and jerk limits up to a time, each ms or less; infinite if the speed is too high."""
     worst, count = 0.0, max(int(np.ceil(1000 * until)), _LEAST_STEPS)
     step = min(1e-3, until / _LEAST_STEPS)
     for rows in pieces(count, _AT_ONCE):
@@ -153,7 +153,7 @@ def use_of_limits(path: ToolPath, machine: Machine, law: TimeScaledLaw, until: f
 
 
 def shortest_stop(path: ToolPath, machine: Machine, moving: TimeScaledLaw) -> TimeScaledLaw:
-    """The motion that comes to rest soonest; the motion itself where that rests before."""
+    """The motion with the shortest stop; the motion itself if it rests sooner."""
 
     def is_possible(ms: int) -> bool:
         return use_of_limits(path, machine, replace(moving, stop=ms / 1000), ms / 1000) <= _MOST_USE
@@ -179,8 +179,8 @@ def transition(
         path: the path.
         machine: the limits.
         moving: the motion, from the place on; its speed is above 0.
-        target: the motion from rest to rest to change over to; it begins behind the start of the transition.
-        override: factor of the feed of the target.
+        target: the motion from rest to rest to change over to; it starts before the transition does.
+        override: feed override of the target.
         stop_distance: length of a stop on the path, mm.
     """
     (here,), _, _ = moving.at(np.zeros(1))
@@ -199,10 +199,10 @@ def transition(
 
 
 def _blended(old: SpeedLaw, target: SpeedLaw, here: float, there: float) -> MotionLaw | None:
-    """A motion that is the old one at a place, and the target from another on; in whole ms, None if none is so fast."""
+    """Blend from the old motion at ``here`` to the target from ``there`` on, in whole ms; None if impossible."""
     s = _blend_nodes(old, target, here, there)
     under_way, inside = s[:-1], np.searchsorted(s, there)
-    middle = (under_way[1:] + under_way[:-1]) / 2  # where a coefficient counts most
+    middle = (under_way[1:] + under_way[:-1]) / 2  # a coefficient counts most there
     share = _step((middle - middle[0]) / (middle[inside - 1] - middle[0]))
     wanted = target.coefficients(under_way)
     wanted[:inside] *= share[:inside]
@@ -227,7 +227,7 @@ def _blended(old: SpeedLaw, target: SpeedLaw, here: float, there: float) -> Moti
 
 
 def _blend_nodes(old: SpeedLaw, target: SpeedLaw, here: float, there: float) -> Array:
-    """The places of both motions and more in between, and those of the target behind."""
+    """The places of both motions and more in between, then those of the target."""
     both = np.concatenate([old.s, target.s, np.linspace(here, there, _LEAST_NODES)])
     both = np.unique(both[(both > here) & (both < there)])
     both = both[(both - here > _APART * (there - here)) & (there - both > _APART * (there - here))]
@@ -236,13 +236,13 @@ def _blend_nodes(old: SpeedLaw, target: SpeedLaw, here: float, there: float) -> 
 
 
 def _step(share: Array) -> Array:
-    """From 0 to 1, level at both ends."""
+    """Smooth step from 0 to 1."""
     share = np.clip(share, 0.0, 1.0)
     return np.asarray(share**2 * (3 - 2 * share))
 
 
 def _of_coefficients(s: Array, coefficients: Array, start: Array, end: Array) -> SpeedLaw:
-    """A motion from the coefficients of its cells, (M - 2,), that of the last cell left out: it touches the rest.
+    """A motion from the coefficients of its cells, (M - 2,), without the last cell, which touches the rest.
 
     Args:
         s: (M,) places.

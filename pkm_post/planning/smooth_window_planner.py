@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Smooth window planner: plans windows for a machine with jerk limits; and the planner that a machine needs.
+"""Smooth window planner: plans windows for a jerk-limited machine; and chooses the planner for a machine.
 
-A motion keeps its law until its end comes near, the override changes, or it has to rest elsewhere. Then a new window is
-planned and the motion changes over to it; where that is not possible, the law stays, and ends at rest on the path.
+A motion keeps its law until its end comes near, the override changes, or it must rest elsewhere. Then a new window is
+planned and the motion changes over to it; if that fails, the law stays, and ends at rest on the path.
 
-Enters: a trajectory from rest to rest, a machine and tolerances; then a state on a motion and an override. Leaves:
-schedules, or what is out of reach. Units: mm, s.
+Input: a trajectory from rest to rest, a machine and tolerances; then a state on a motion and an override. Output:
+schedules, or diagnostics of unreachable poses. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -28,28 +28,28 @@ from pkm_post.planning.tool_path import ToolPath
 from pkm_post.planning.window import PathState, WindowPlanner, schedule_of
 
 _AHEAD, _MORE = 2.0, 1.5
-"""Time and way of a new window by those for which a motion is wanted; and by which its time is longer."""
+"""Time and distance covered by a new window, relative to those required; and margin on its time."""
 _SLOWER = 1 / GENTLE.jerk
-"""By how much a stop may be slower than with all of the acceleration and jerk along the path."""
+"""Slowdown of a stop relative to one with all of the acceleration and jerk along the path."""
 _BEHIND, _JUST_BEHIND = 2.5, 1.0
-"""How far behind a place the next window begins, by the distance of a stop: it is to be at its feed there; or, to
-become faster, as fast as the motion is."""
+"""Distance behind a place at which the next window begins, per stopping distance: enough to reach its feed there; or,
+for speeding up, the speed of the motion."""
 _AS_FAST = ((_BEHIND, FULL), (_JUST_BEHIND, FULL), (_BEHIND, GENTLE), (_JUST_BEHIND, GENTLE))
 _FASTER = ((_JUST_BEHIND, GENTLE), (_BEHIND, GENTLE), (_JUST_BEHIND, FULL))
-"""Where next windows begin, and with which shares of the limits they are planned, in the order of the trials. A motion
-that speeds up with all that it has cannot be joined by a slower one: the gentle one can."""
+"""Starts of the next window, with the shares of the limits to plan it with, in order of trial. A slower motion cannot
+join one that speeds up at full limits, but it can join a gentle one."""
 _LEAST_SPEED = 1e-3
 """mm/s"""
 _SAME = 1e-6
-"""mm: places that are nearer are the same."""
+"""mm: places closer than this are the same."""
 
 
 @dataclass(frozen=True)
 class SmoothWindowPlanner(WindowPlanner):
-    """Plans windows without jumps of acceleration.
+    """Plans windows with continuous acceleration.
 
     Attributes:
-        machine: with its limits of jerk.
+        machine: with its jerk limits.
     """
 
     machine: Machine
@@ -57,7 +57,7 @@ class SmoothWindowPlanner(WindowPlanner):
     leaves_stops: ClassVar[bool] = False
 
     def ahead(self, start: PathState, override: float, seconds: float) -> Schedule | None:
-        """As of ``WindowPlanner``; what is left of the motion where it cannot be led into another one."""
+        """As for ``WindowPlanner``; the rest of the present motion if no transition out of it is found."""
         law = start.law
         if law is not None and law.override == override and self._lasts(start.s, law, seconds):
             return self._schedule(law)
@@ -65,16 +65,16 @@ class SmoothWindowPlanner(WindowPlanner):
         return None if found is None else self._schedule(found)
 
     def _lasts(self, s: float, law: TimeScaledLaw, seconds: float) -> bool:
-        """Whether a motion ends at a rest of the program, or late enough to be led into any other one meanwhile."""
+        """Whether a motion ends at a rest of the program, or late enough for a transition to any other one."""
         if law.end > self.next_rest(s) - _SAME:
             return True
         return law.end > self._end(s, law.override, seconds, 1.0)
 
     def _end(self, s: float, override: float, seconds: float, factor: float) -> float:
-        """A place at which a motion is after some time and a stop at the earliest, or the next rest before it.
+        """Place reached no sooner than after some time plus a stop, or the next rest before it.
 
-        The motion is no faster than the feed, and than without limits of jerk. It is far enough to come gently from a
-        slow motion to the highest override.
+        The speed is bounded by the feed and the plan without jerk limits. The place is far enough for a gentle
+        speed-up from a slow motion to the highest override.
         """
         law, rest = self.feed_plan.schedule.law, self.next_rest(s)
         inside = law.s[(law.s > s) & (law.s < rest)]
@@ -90,13 +90,13 @@ class SmoothWindowPlanner(WindowPlanner):
         return min(max(by_time, s + factor * fastest * self._time_to_stop(fastest)), rest)
 
     def _time_to_stop(self, speed: float) -> float:
-        """About the time in which a motion comes to rest, s."""
+        """Rough time in which a motion comes to rest, s."""
         machine, slower = self.machine, _SLOWER * speed
         by_jerk = float(np.sqrt(slower / min(machine.tip_jerk, machine.strut_jerk)))
         return slower / min(machine.tip_acceleration, machine.strut_acceleration) + 2 * by_jerk
 
     def window(self, start: PathState, end: float, override: float) -> Schedule | None:
-        """As of ``WindowPlanner``."""
+        """As for ``WindowPlanner``."""
         law = start.law
         if law is not None and law.override == override and abs(law.end - end) < _SAME:
             return self._schedule(law)
@@ -104,7 +104,7 @@ class SmoothWindowPlanner(WindowPlanner):
         return None if found is None else self._schedule(found)
 
     def _transition(self, start: PathState, end: float, override: float) -> TimeScaledLaw | None:
-        """The motion into a new window that ends at a place; None where it cannot be led into it."""
+        """Transition into a new window that ends at a place; None if none is found."""
         path = replace(self.path, feed=self.feed(override))
         law = start.law
         if law is None:
@@ -124,18 +124,18 @@ class SmoothWindowPlanner(WindowPlanner):
         return None
 
     def factor(self, schedule: Schedule, override: float) -> float:
-        """As of ``WindowPlanner``: while the override goes down, the earlier one."""
+        """As for ``WindowPlanner``; the earlier override while it goes down."""
         assert isinstance(schedule.law, TimeScaledLaw)
         return schedule.law.highest_override
 
     def reached(self, schedule: Schedule, until_ms: int, override: float) -> PathState:
-        """As of ``WindowPlanner``, with what is left of the motion."""
+        """As for ``WindowPlanner``, with the rest of the motion."""
         assert isinstance(schedule.law, TimeScaledLaw)
         state = super().reached(schedule, until_ms, override)
         return replace(state, law=schedule.law.later(until_ms / 1000)) if state.speed else state
 
     def stop(self, start: PathState) -> Schedule:
-        """As of ``WindowPlanner``."""
+        """As for ``WindowPlanner``."""
         if start.law is None:
             raise ValueError("start: expected a place on a motion, got one at rest")
         return self._schedule(shortest_stop(self.path, self.machine, start.law))
@@ -148,7 +148,7 @@ class SmoothWindowPlanner(WindowPlanner):
 def window_planner(
     trajectory: Trajectory, machine: Machine, tolerances: Tolerances, highest_override: float
 ) -> tuple[WindowPlanner | None, tuple[Diagnostic, ...]]:
-    """The window planner of a trajectory, or what is out of reach.
+    """The window planner of a trajectory, or diagnostics.
 
     Args:
         trajectory: at least one segment; from rest to rest.
@@ -169,6 +169,6 @@ def window_planner(
 
 
 def _edges(path: ToolPath) -> Array:
-    """Path lengths at which blends begin and end, increasing."""
+    """Path lengths of the starts and ends of blends, increasing."""
     joint = np.flatnonzero(path.blend)
     return np.asarray((path.starts[joint, None] + path.blend[joint, None] * [-1.0, 1.0]).ravel())

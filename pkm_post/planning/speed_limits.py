@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Speed limits: what a machine and the programmed feed allow at the stations of a path.
+"""Speed limits: the limits of the machine and of the programmed feed at the stations of a path.
 
 For a quantity y(s) of the path with derivatives y', y'' by path length and the speed v = s', its rate is y' v and its
-acceleration y' v' + y'' v^2. Struts, tip and tool axis are such quantities. Enters: a path, its stations and a machine.
-Leaves: these quantities, in mm and s.
+acceleration y' v' + y'' v^2. Struts, tip and tool axis are such quantities. Input: a path, its stations and a machine.
+Output: these quantities, in mm and s.
 """
 
 from __future__ import annotations
@@ -20,22 +20,22 @@ from pkm_post.model import Machine, Poses
 from pkm_post.planning.tool_path import ToolPath
 
 SAFE_SHARE = 0.6
-"""Share of each acceleration limit that no plan has to fear: the cubic that a controller runs across a switch from full
-acceleration to full braking reaches 5/3 of it at its end (shown in docs/planning.md and in the tests)."""
+"""Share of each acceleration limit that is always safe to plan: the cubic that a controller runs across a switch from
+full acceleration to full braking reaches 5/3 of it at its end (shown in docs/planning.md and in the tests)."""
 PLANNED_SHARE = 0.97
-"""Share of each acceleration limit that is planned where no switch is near (``switches``)."""
+"""Planned share of each acceleration limit away from switches (``switches``)."""
 FOR_CURVATURE = 0.5
-"""Share of the planned acceleration that the curvature of the path may use; the rest accelerates and brakes."""
+"""Share of the planned acceleration for path curvature; the rest accelerates and brakes."""
 _NEGLIGIBLE = 1e-12
-"""Derivatives below this impose no limit; keeps the quotients finite."""
+"""Derivatives below this impose no limit; keeps quotients finite."""
 NO_LIMIT = 1e6
-"""mm/s^2: stands for no limit where no limited quantity moves; keeps the sums of the profile finite."""
+"""mm/s^2: finite substitute for no limit where nothing limited moves; keeps the sums of the profile finite."""
 _SPEED_SHARE = 0.95
-"""Share of the speeds of struts and tool axis that is planned: the controller's cubics oscillate slightly about it."""
+"""Planned share of the speeds of struts and tool axis: the controller's cubics oscillate slightly about the plan."""
 _TIP_SHARE = 0.98
-"""Share of the tip acceleration that is planned: the cubics take slightly more, up to ``ROUNDED_SHARE``."""
+"""Planned share of the tip acceleration: the cubics take slightly more, up to ``ROUNDED_SHARE``."""
 _LONGER = 1.002
-"""Factor by which the tip may travel farther than the path length without a lower feed; the certificate allows 1.01."""
+"""Tip travel per path length up to which the feed is not lowered; the certificate allows 1.01."""
 Pair = tuple[Array, Array]
 
 
@@ -46,10 +46,10 @@ class LimitedQuantity:
     Attributes:
         first: (M, C) derivatives by path length.
         second: (M, C) second derivatives.
-        speed: limit of the rate, infinite where there is none.
-        acceleration: limit of the acceleration, infinite where there is none.
+        speed: limit of the rate, infinite if there is none.
+        acceleration: limit of the acceleration, infinite if there is none.
         each: whether the limits apply to every column (struts), or to the norm of the vector (tip).
-        jerk: limit of the jerk, infinite where there is none.
+        jerk: limit of the jerk, infinite if there is none.
     """
 
     first: Array
@@ -65,12 +65,12 @@ class LimitedQuantity:
 
 
 def limited_quantities(machine: Machine, poses: Poses, struts: Array | None = None) -> tuple[LimitedQuantity, ...]:
-    """The quantities that a machine limits, at poses with derivatives by path length.
+    """The quantities limited by a machine, at poses with derivatives by path length.
 
     Args:
         machine: the limits.
         poses: M poses.
-        struts: (6,) which of the struts are asked for; by default all.
+        struts: (6,) which struts to include; by default all.
     """
     first = second = np.empty((len(poses), 0))
     if struts is None:
@@ -81,7 +81,7 @@ def limited_quantities(machine: Machine, poses: Poses, struts: Array | None = No
 
 
 def machine_quantities(machine: Machine, struts: Pair, tip: Pair, axis: Pair) -> tuple[LimitedQuantity, ...]:
-    """The quantities that a machine limits, from first and second derivatives by path length."""
+    """The quantities limited by a machine, from first and second derivatives by path length."""
     return (
         LimitedQuantity(
             first=struts[0],
@@ -121,7 +121,7 @@ def next_segment(path: ToolPath, segment: Array, u: Array) -> Array:
 
 
 def lowered(square: Array, limit: float, size: Array, power: int) -> Array:
-    """The lower one of values, (M,), and the power of a limit by the largest size of each row, (M, C)."""
+    """Lower values, (M,), to a power of the limit divided by the largest size in each row, (M, C)."""
     if not np.isfinite(limit):
         return square
     worst = np.maximum(reduce_columns(np.maximum, size), _NEGLIGIBLE)
@@ -129,5 +129,5 @@ def lowered(square: Array, limit: float, size: Array, power: int) -> Array:
 
 
 def reduce_columns(function: Callable[[Array, Array], Array], columns: Array) -> Array:
-    """The minimum or maximum of each row, (M,), for few columns; many times faster than numpy's reduction of rows."""
+    """Minimum or maximum of each row, (M,), for few columns; many times faster than numpy's reduction of rows."""
     return functools.reduce(function, columns.T)

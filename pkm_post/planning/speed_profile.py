@@ -2,11 +2,11 @@
 """Speed profile: the stations of a path, and the fastest speed at them, from rest to rest, within the limits.
 
 Stations are dense enough for limits to vary almost linearly between them: every blend is divided evenly, and between
-blends the tip moves and the axis turns only a little from station to station. Segments whose limits need no evaluation
-at stations have none in their blends.
+blends the tip moves and the axis turns only a little from station to station. Segments that need no limits at stations
+have none in their blends.
 
-With x = v^2 the acceleration along the path is half of dx/ds, so a bound on acceleration is a bound on the slope of x:
-x_j <= x_i + 2 a_i (s_j - s_i). The largest such x under given ceilings is a running minimum of x - C with C the sum of
+With x = v^2 the acceleration along the path is half of dx/ds, so an acceleration limit bounds the slope of x:
+x_j <= x_i + 2 a_i (s_j - s_i). The largest such x under given ceilings is a running minimum of x - C, with C the sum of
 the slopes, once from the left and once from the right: look-ahead of any depth without a loop. Units: mm, s.
 """
 
@@ -29,11 +29,11 @@ _LONGEST_CELL = 5.0
 _WIDEST_CELL = np.radians(1.0)
 """rad of axis turn, or of arc sweep"""
 _COARSER = 4
-"""Factor of both where a profile is refined afterwards."""
+"""Factor of both if the profile is refined afterwards."""
 
 
 def inserted(own: Array, row: Array, its: Array | float) -> Array:
-    """A column with values before some rows, (K,), with a checkpoint."""
+    """A column with values inserted before rows, (K,), after a checkpoint."""
     checkpoint()
     return np.insert(own, row, its)
 
@@ -57,11 +57,11 @@ class Stations:
     edges: Array
 
     def take(self, rows: Array) -> Stations:
-        """Some of the stations."""
+        """Select stations."""
         return Stations(self.segment[rows], self.u[rows], self.s[rows], self.rest[rows], self.edges)
 
     def inserted(self, row: Array, other: Stations) -> Stations:
-        """These stations with others, each before the station of a row, (K,)."""
+        """These stations with others inserted, each before a row, (K,)."""
         own, its = ((part.segment, part.u, part.s, part.rest) for part in (self, other))
         segment, u, s, rest = (inserted(values, row, new) for values, new in zip(own, its, strict=True))
         return Stations(segment, u, s, rest, self.edges)
@@ -73,7 +73,7 @@ def stations(path: ToolPath, close: Array | None = None, coarse: bool = False) -
     Args:
         path: N segments.
         close: (N,) whether a segment gets all of its stations, including those in its blends; by default all do.
-        coarse: whether a half blend, and what is between blends, may be one cell.
+        coarse: whether one cell may span a half blend, or the gap between blends.
     """
     extent = path.segments.extent
     close = np.ones(len(extent), dtype=bool) if close is None else close
@@ -120,7 +120,7 @@ def speed_profile(s: Array, ceiling: Array, acceleration: Array) -> Array:
 
     Args:
         s: (M,) path lengths, not decreasing.
-        ceiling: (M,) highest speed squared; 0 where the motion rests.
+        ceiling: (M,) highest speed squared; 0 at rests.
         acceleration: (M,) highest acceleration along the path.
     """
     climb, square = np.zeros(len(s)), np.empty(len(s))  # the only arrays of this length

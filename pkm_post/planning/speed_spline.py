@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Speed spline: the speed squared along the path as a quadratic spline, so that the acceleration does not jump.
+"""Speed spline: the speed squared along the path as a quadratic spline, with continuous acceleration.
 
-With x = v^2 the acceleration along the path is a = x' / 2, and its change by path length is k = x'' / 2: constant in
-each cell of a quadratic spline, while a is linear; x and a are continuous where cells meet. The jerk along the path is
+With x = v^2 the acceleration along the path is a = x' / 2, and its change by path length is k = x'' / 2: in each cell
+of a quadratic spline k is constant and a linear; x and a are continuous where cells meet. The jerk along the path is
 k v. All three are linear in the coefficients of the B-splines, of which three count at any place.
 
 No quadratic leaves a rest. There the jerk j is constant, s = j t^3 / 6, hence x ~ s^(4/3), a = 2/3 x / s, and
-j = k v with k = 2/9 x / s^2 at the end of the cell. That is one condition on two coefficients: one is left, that of the
-cell beside it. So there is one unknown for each cell that touches no rest. Units: mm, s.
+j = k v with k = 2/9 x / s^2 at the end of the cell. That is one condition on two coefficients, so only that of the
+neighbouring cell is left: one unknown for each cell that touches no rest. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ class CellEnds:
     Attributes:
         cell: (E,) number of the cell.
         place: (E,) number of the place.
-        unknown: (E,) the unknown of the cell, or of the cell beside it if it touches a rest.
-        basis: (3, 3, E) change of acceleration by path length, acceleration and speed squared, for each by how much
-            they grow with the unknown before, with this one, and with the one after it.
-        settled: (3, E) what unknowns that are settled add to them.
+        unknown: (E,) the unknown of the cell, or of its neighbour if it touches a rest.
+        basis: (3, 3, E) growth of change of acceleration by path length, acceleration and speed squared with the
+            previous unknown, this one, and the next one.
+        settled: (3, E) contribution of fixed unknowns to them.
     """
 
     cell: Array
@@ -46,21 +46,21 @@ class CellEnds:
         return self.settled + self.changes(unknowns)
 
     def changes(self, step: Array) -> Array:
-        """How much these change with a step of the unknowns, (3, E)."""
+        """Changes of these for a step of the unknowns, (3, E)."""
         padded = np.concatenate([[0.0], step, [0.0]])
         before, own, after = (padded[self.unknown + m] for m in range(3))
         return np.asarray(self.basis[:, 0] * before + self.basis[:, 1] * own + self.basis[:, 2] * after)
 
     def take(self, rows: Array) -> CellEnds:
-        """Some of these ends."""
+        """Select ends."""
         columns = self.basis[..., rows], self.settled[:, rows]
         return CellEnds(self.cell[rows], self.place[rows], self.unknown[rows], *columns)
 
     def where_free(self, held: Array) -> CellEnds:
-        """The ends at which an unknown counts that is not held, with these unknowns alone.
+        """The ends at which a free unknown counts, in terms of the free unknowns alone.
 
         Args:
-            held: (N,) value of each unknown that is held, NaN for the others; three next to each other at least.
+            held: (N,) value of each fixed unknown, NaN for the others; at least three in a row.
         """
         free, value = (np.concatenate([[end], one, [end]]) for one, end in ((np.isnan(held), False), (held, np.nan)))
         number, value = np.cumsum(free) - 1, np.where(free, 0.0, np.nan_to_num(value))
@@ -78,14 +78,14 @@ class CellEnds:
 
 @dataclass(frozen=True)
 class SpeedSpline:
-    """The places of a spline and its unknowns; between two rests there are three cells at least.
+    """The places of a spline and its unknowns; at least three cells between two rests.
 
     Attributes:
         s: (M,) path length, increasing.
         rest: (M,) whether the motion stops there; true at both ends.
-        left: (N,) place at the beginning of each cell that touches no rest.
+        left: (N,) left place of each cell that touches no rest.
         ends: left ends of these cells, right ends, and the ends of cells after and before a rest, (2 N + 2 R,).
-        weight: (N,) length of path for which each unknown stands.
+        weight: (N,) path length represented by each unknown.
     """
 
     s: Array
@@ -129,7 +129,7 @@ class SpeedSpline:
         )
 
     def knots(self) -> Array:
-        """Rows of ``ends`` that meet each place under way once."""
+        """Rows of ``ends`` that cover each moving place once."""
         count = len(self.left)
         before_rest = np.flatnonzero(self.rest[self.ends.place[2 * count :] + 1]) + 2 * count
         return np.concatenate([np.arange(count), before_rest])
@@ -142,7 +142,7 @@ class SpeedSpline:
         return square, acceleration
 
     def unknowns(self, square: Array, acceleration: Array) -> Array:
-        """The unknowns of a spline that is known at the places: x + a ds of the left end of each cell, (N,)."""
+        """Unknowns from values at the places: x + a ds at the left end of each cell, (N,)."""
         width = self.s[self.left + 1] - self.s[self.left]
         return np.asarray(square[self.left] + acceleration[self.left] * width)
 
@@ -195,7 +195,7 @@ def within_cells(s: Array, square: Array, acceleration: Array, cell: Array, at: 
 
 
 def highest_within(width: Array, square: Array, acceleration: Array) -> Array:
-    """Speed squared where it is highest between the ends of each cell, else in the middle, (M - 1,).
+    """Speed squared at the peak inside each cell, or in its middle if there is none, (M - 1,).
 
     Args:
         width: (M - 1,) of the cells, mm.
@@ -213,7 +213,7 @@ def highest_within(width: Array, square: Array, acceleration: Array) -> Array:
 def durations(width: Array, square: Array, acceleration: Array) -> Array:
     """Duration of each cell, (M - 1,) s.
 
-    s'' = a + k s has the solution tan(w t / 2) / w = ds / (v0 + v1) with w^2 = -k; beside a rest t = 3 ds / v.
+    s'' = a + k s has the solution tan(w t / 2) / w = ds / (v0 + v1) with w^2 = -k; next to a rest t = 3 ds / v.
 
     Args:
         width: (M - 1,) of the cells, mm.
@@ -228,7 +228,7 @@ def durations(width: Array, square: Array, acceleration: Array) -> Array:
 
 
 def inverse_tangent(z: Array) -> Array:
-    """Artanh(r) / r with r^2 = z, below 1; arctan(r) / r with r^2 = -z for negative z."""
+    """artanh(r) / r with r^2 = z, below 1; arctan(r) / r with r^2 = -z for negative z."""
     root = np.sqrt(np.maximum(np.abs(z), _SERIES))
     large = np.where(z > 0, np.arctanh(np.where(z > 0, np.minimum(root, 1 - 1e-15), 0.0)), np.arctan(root)) / root
     return np.where(np.abs(z) < _SERIES, 1 + z * (1 / 3 + z * (1 / 5 + z / 7)), large)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Switches: lower shares of the limits of acceleration about places where the acceleration of a profile switches.
+"""Switches: lower shares of the acceleration limits around places where the acceleration of a profile switches.
 
-The cubic of a controller exceeds the accelerations of the plan where these jump or turn within its interval
-(``played_acceleration``). There the plan uses less of the limits, which makes smaller switches to either side; in a few
-rounds they become steps that cubics can follow, an interval wide and more.
+A controller's cubic exceeds the planned accelerations where they jump or turn within its interval
+(``played_acceleration``). There the plan uses less of the limits, which leaves smaller switches on either side; in a
+few rounds they become steps that cubics can follow, each an interval wide or more.
 
-Enters: a profile that uses what is planned everywhere. Leaves: the same with stations about its switches, and lower
+Input: a profile that uses the planned share everywhere. Output: the same with stations around its switches, and lower
 speeds there. Units: mm, s.
 """
 
@@ -28,37 +28,37 @@ from pkm_post.system import columns_in_workers
 
 _MOST_ROUNDS = 16
 _SAFE = 1.02 * SAFE_SHARE
-"""Share of the limits up to which no look is needed: plans keep their share to 2 % between stations."""
+"""Share of the limits that needs no check: plans keep their share to 2 % between stations."""
 _AIM = 0.99
-"""Share of what is allowed to aim for, so that few rounds are needed."""
+"""Share of the allowed acceleration to aim for: saves rounds."""
 _STEPS = np.array([-2.0, -1.0, 1.0, 2.0])
-"""Intervals from a switch at which it may have smaller ones."""
+"""Offsets of smaller switches from a switch, in intervals."""
 _JUMP = 0.2
-"""Part of an acceleration by which it changes where a point of the program is of use."""
+"""Relative change of acceleration worth a point of the program."""
 _NARROWEST = 0.5
-"""Part of an interval that is left alone."""
+"""Least width of a piece, per interval."""
 _STILL = 2e-3
-"""Part of a limit, or of a speed squared, by which a motion may change without another look."""
+"""Change of a motion, as a share of a limit or of a speed squared, that needs no new check."""
 _FINEST = 2.0**-20
-"""Steps of shares: the last bits of sums, which pieces of other sizes begin elsewhere, make no other plan."""
+"""Quantum of shares: hides the last bits of sums, which depend on the piece sizes, from the plan."""
 _CELLS_AT_ONCE = 8192
-"""Cells in one pass: their working arrays stay in the processor's cache."""
+"""Cells per pass: keeps the working arrays in the processor's cache."""
 _INTERVAL = 1e-3
 """s: the interval that cannot be cut."""
 _STARTS_AND_ENDS = slice(None, -1), slice(1, None)
 
 
 def planned_share(machine: Machine) -> float:
-    """The share of the limits of acceleration to begin with.
+    """Initial planned share of the acceleration limits.
 
-    Intervals that cannot be cut are a millisecond long. Where the controller takes longer ones only, tolerances decide
-    in them: more acceleration would have to be taken back.
+    Intervals that cannot be cut are a millisecond long. If the controller takes only longer ones, tolerances decide
+    in them: more acceleration would be taken back.
     """
     return PLANNED_SHARE if machine.shortest_interval == 1 else SAFE_SHARE
 
 
 def with_lower_switches(path: ToolPath, machine: Machine, profile: StationProfile, planned: Array) -> StationProfile:
-    """A profile of which cubics keep the limits of acceleration.
+    """A profile whose cubics keep the acceleration limits.
 
     Args:
         path: the path.
@@ -86,7 +86,7 @@ def with_lower_switches(path: ToolPath, machine: Machine, profile: StationProfil
 
 
 def _with_edges(profile: StationProfile, planned: Array) -> StationProfile:
-    """The profile with its switches among the edges: cubics reach far on either side of a switch, not across it."""
+    """The profile with its switches as edges: cubics reach far on either side of a switch, not across it."""
     checkpoint()
     marks, lower = profile.marks, profile.steps.share < planned[profile.marks.segment[1:]]
     along = np.diff(profile.square) / (2 * np.diff(marks.s))
@@ -99,7 +99,7 @@ def _with_edges(profile: StationProfile, planned: Array) -> StationProfile:
 
 
 def _demanding(profile: StationProfile) -> Array:
-    """Cells that use more of their limits than no plan has to fear, (M - 1,)."""
+    """Cells that use more than the safe share of their limits, (M - 1,)."""
     steps, square, s = profile.steps, profile.square, profile.marks.s
 
     def largest(cells: slice) -> tuple[Array]:
@@ -112,7 +112,7 @@ def _demanding(profile: StationProfile) -> Array:
 
 
 def _affected(time: Array, cells: Array) -> Array:
-    """Whether windows about stations may touch some of the cells, (M - 1,): (M,)."""
+    """Stations, (M,), whose windows may touch one of the cells, (M - 1,)."""
     near = np.flatnonzero(cells)
     checkpoint()
     first, last = np.searchsorted(time, time[near] - _INTERVAL), np.searchsorted(time, time[near + 1] + _INTERVAL)
@@ -123,7 +123,7 @@ def _affected(time: Array, cells: Array) -> Array:
 def _cut(
     path: ToolPath, machine: Machine, profile: StationProfile, time: Array, found: Windows
 ) -> tuple[StationProfile, Array]:
-    """The same motion with stations about switches, and its times.
+    """The same motion with stations around switches, and its times.
 
     Args:
         path: the path.
@@ -152,7 +152,7 @@ def _cut(
 
 
 def _apart(cell: Array, since: Array, least: float) -> Array:
-    """Rows of places in cells that are not close to one another, in order: of those in a part of a cell the first."""
+    """Rows of places in cells that keep a gap, in order: the first in each part of a cell."""
     part = since // least
     checkpoint()
     order = np.lexsort((part, cell))
@@ -174,9 +174,9 @@ def _lower_shares(share: Array, time: Array, found: Windows) -> Array:
 
 
 def _least_of_ranges(first: Array, last: Array, value: Array, count: int) -> Array:
-    """The least value of the ranges in which numbers below a count lie, (count,), infinite where there is none.
+    """Least value among the ranges that contain each index below ``count``, (count,), infinite if none does.
 
-    Each range is two of a length that is a power of 2. Those of each length become two of half that length.
+    Each range is covered by two of a power-of-2 length. Those of each length split into two of half that length.
     """
     power = np.frexp(last - first)[1] - 1
     size = 1 << int(power.max(initial=0))
@@ -196,7 +196,7 @@ def _least_of_ranges(first: Array, last: Array, value: Array, count: int) -> Arr
 
 
 def _with_shares(profile: StationProfile, share: Array) -> tuple[StationProfile, Array]:
-    """The profile with lower shares, (M - 1,), and the cells in which it changed."""
+    """The profile with lower shares, (M - 1,), and the cells that changed."""
     steps = profile.steps
     changed = share < steps.share
     cells, ceiling = np.flatnonzero(changed), steps.ceiling.copy()
@@ -211,7 +211,7 @@ def _with_shares(profile: StationProfile, share: Array) -> tuple[StationProfile,
 
 
 def _moved(steps: Steps, before: Array, square: Array) -> Array:
-    """Cells, (M - 1,), in which a motion differs from that before, by speeds squared, (M,), enough for another look."""
+    """Cells, (M - 1,), in which speeds squared, (M,), changed enough for a new check."""
     slower = before - square
     along = np.diff(slower) / (2 * np.diff(steps.s))
     checkpoint()

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Threads: the turns of a spindle that is an axis, and what it limits.
+"""Threads: the turns of a spindle axis, and its limits on the motion.
 
-Enters: a trajectory with threads, its machine, and the motion at the knots. Leaves: the share of the acceleration that
-the spindle allows on the segments of threads; and its turns at their knots. In a thread of the lead p the tool, at the
-depth d below the start of the thread, has turned by d / p against the work; the platform's own turn about the tool
-axis, the spin, counts as well, counterclockwise as seen from the spindle:
+Input: a trajectory with threads, its machine, and the motion at the knots. Output: the share of the acceleration that
+the spindle allows on thread segments; and its turns at their knots. In a thread of lead p, at the depth d below its
+start, the tool has turned by d / p relative to the work; the platform's own turn about the tool axis, the spin, counts
+as well, counterclockwise as seen from the spindle:
 
     turns = d / p + (spin - spin at the start) / 2 pi
 
@@ -24,9 +24,9 @@ from pkm_post.planning.speed_limits import SAFE_SHARE
 
 
 def share_in_threads(trajectory: Trajectory, machine: Machine, share: Array) -> Array:
-    """Shares of the limits of acceleration by segment, (N,), no more than the spindle can follow in threads.
+    """Shares of the acceleration limits by segment, (N,), lowered in threads to what the spindle can follow.
 
-    The shares are of the tip acceleration, of which the cubics of a controller play at most 1 / ``SAFE_SHARE``.
+    They are shares of the tip acceleration, of which a controller's cubics play at most 1 / ``SAFE_SHARE``.
     """
     axis, lower = machine.spindle_axis, share.copy()
     for thread in threads(trajectory.events):
@@ -38,7 +38,7 @@ def share_in_threads(trajectory: Trajectory, machine: Machine, share: Array) -> 
 
 
 def with_slow_threads(trajectory: Trajectory, machine: Machine) -> Machine:
-    """The machine to plan with: where jerk is limited there are no shares, and all of the path goes as slowly."""
+    """The machine to plan with: jerk-limited plans have no shares, so the whole path slows down for threads."""
     if not limits_jerk(machine) or not threads(trajectory.events):
         return machine
     share = share_in_threads(trajectory, machine, np.ones(len(trajectory))).min()
@@ -46,7 +46,7 @@ def with_slow_threads(trajectory: Trajectory, machine: Machine) -> Machine:
 
 
 def spindle_turns(motion: Motion, trajectory: Trajectory) -> SpindleTurns:
-    """The turns of the spindle at the knots of threads."""
+    """Turns of the spindle at the knots of threads."""
     rows, knots = threads(trajectory.events), threads(motion.events)
     if not rows:
         return NO_TURNS

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Time-scaled law: the rest of a motion law from a time on, as planned or slowed down to rest.
+"""Time-scaled law: the rest of a motion law from a given time, as planned or slowed down to rest.
 
-A stop scales the time of the law: T seconds after it began, by the rate
+A stop scales the time of the law: t seconds into a stop of T seconds it runs at the rate
 
     r = 1 - 3 u^2 + 2 u^3,   u = t / T,
 
-the law has gone on by T / 2 of its own seconds and rests. A quantity that the law moves with the speed v, the
-acceleration a and the jerk j then has r v, r^2 a + r' v and r^3 j + 3 r r' a + r'' v, where |r'| <= 1.5 / T and
-|r''| <= 6 / T^2: the longer the stop, the less it adds. Units: mm, s.
+and rests after T / 2 of its own seconds. A quantity that the law moves with the speed v, the acceleration a and the
+jerk j then has r v, r^2 a + r' v and r^3 j + 3 r r' a + r'' v, with |r'| <= 1.5 / T and |r''| <= 6 / T^2: the longer
+the stop, the less it adds. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ _HALVINGS = 50
 
 @dataclass(frozen=True)
 class TimeScaledLaw:
-    """A law from a time on.
+    """A law from a given time.
 
     Attributes:
         law: path length by its own time.
-        begin: its time at which this one begins, s.
-        override: factor of the feed at its end.
-        highest_override: the highest factor of the feed anywhere in it.
-        stop: duration of the stop, s; None where nothing is slowed down.
+        begin: its own time at the start of this one, s.
+        override: feed override at its end.
+        highest_override: highest feed override anywhere in it.
+        stop: duration of the stop, s; None without one.
     """
 
     law: MotionLaw
@@ -47,12 +47,12 @@ class TimeScaledLaw:
 
     @property
     def duration(self) -> float:
-        """From its beginning to rest, s."""
+        """Time to rest, s."""
         return float(self.law.time[-1]) - self.begin if self.stop is None else self.stop
 
     @property
     def end(self) -> float:
-        """Path length where it rests."""
+        """Path length of the rest."""
         return float(self.at(np.array([self.duration]))[0][0])
 
     def at(self, time: Array) -> tuple[Array, Array, Array]:
@@ -66,12 +66,12 @@ class TimeScaledLaw:
         return s, speed * rate, acceleration * rate**2 + speed * change
 
     def _own(self, u: Array) -> Array:
-        """Time of the law since the beginning, s, at shares of the stop."""
+        """Own time of the law since the start, s, at shares of the stop."""
         assert self.stop is not None
         return np.asarray(self.stop * u * (1 - u**2 * (1 - u / 2)))
 
     def when(self, s: Array) -> Array:
-        """Times at which path lengths are passed, (N,) s; those behind the stop at its end."""
+        """Times at which path lengths are passed, (N,) s; for those beyond the stop, its end."""
         own = self.law.when(s) - self.begin
         if self.stop is None:
             return np.asarray(own)
@@ -83,9 +83,9 @@ class TimeScaledLaw:
         return np.asarray(self.stop * high)
 
     def later(self, seconds: float) -> TimeScaledLaw:
-        """What is left of it after some time; of a law that is not slowed down."""
+        """The rest of an unstopped law after some time."""
         return replace(self, begin=self.begin + seconds)
 
     def shifted(self, distance: float) -> TimeScaledLaw:
-        """The same at path lengths that are counted from another place."""
+        """The same with path lengths counted from another place."""
         return replace(self, law=replace(self.law, s=self.law.s + distance))

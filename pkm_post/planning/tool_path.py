@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tool path: tip, axis and spin with rounded corners, as functions of path length s.
 
-Enters: a trajectory and the tolerances of tip and axis at its corners. Leaves: poses with exact first and second
+Input: a trajectory and the tolerances of tip and axis at its corners. Output: poses with exact first and second
 derivatives at any s, in mm and rad. Tip and axis are rounded in step, so that cutting direction and tool attitude stay
 synchronous; the axis always turns along great circles, never through Euler angles [paper section 5.2].
 
@@ -29,9 +29,9 @@ OFFSET = 3 / 16
 _BLEND_DEVIATION = 0.0134
 """Deviation per half width squared and change of curvature: the maximum of (2v - 1)^2 S(v) / 2 before the joint."""
 _NEGLIGIBLE = 1e-12
-"""Changes below this impose no limit; keeps the quotients finite."""
+"""Changes below this impose no limit; keeps quotients finite."""
 _BEND = 0.5
-"""rad: the most that an arc is extended; beyond it, the two segments of a joint no longer approximate each other."""
+"""rad: largest extension of an arc; beyond it, the two segments of a joint no longer approximate each other."""
 _SHARE = 0.45
 """Share of the shorter neighbour that a blend may use; two blends on one segment never meet."""
 _JOINTS_AT_ONCE = 16384
@@ -55,7 +55,7 @@ class ToolPath:
         rests: (N + 1,) whether the motion stops at the start of each segment; true at both ends.
         feed: (N,) highest speed by path length, mm/s.
         tool_length: (N,) gauge length in use.
-        tip_tolerance: (N,) tolerance of the tip on each segment where the program states one, mm; 0 elsewhere.
+        tip_tolerance: (N,) programmed tolerance of the tip on each segment, mm; 0 if none.
     """
 
     segments: Segments
@@ -118,14 +118,14 @@ class ToolPath:
         rows = np.flatnonzero(np.abs(x) < _INSIDE * self.blend[joint])
         if len(rows):
             self._round(joint[rows], x[rows], rows, tip, axis, spin)
-        tip_0, tip_1, tip_2 = map(read_only, tip)  # so that no copies of them are made
+        tip_0, tip_1, tip_2 = map(read_only, tip)  # avoids copies
         return Poses(tip_0, tip_1, tip_2, *axis, *spin, select_rows(self.tool_length, segment), segment)
 
     def _round(self, joint: Array, x: Array, rows: Array, tip: Triple, axis: Triple, spin: Triple) -> None:
         """Overwrite the rows in blends, at distances x from the joints at the starts of segments ``joint``.
 
         With p1, p2 the two extended segments, D the change of tangent and H the integral of W:
-        p = p1 + D H + S (p2 - p1 - D x); where both are lines this is p1 + D H.
+        p = p1 + D H + S (p2 - p1 - D x); if both are lines this is p1 + D H.
         """
         before, seg = joint - 1, self.segments
         at_end, blend = seg.extent[before], _Blend.of(x, self.blend[joint])
@@ -136,7 +136,7 @@ class ToolPath:
                 turned(joint[some], x[some], rows[some], axis, spin)
 
     def _round_circles(self, joint: Array, x: Array, rows: Array, axis: Triple, spin: Triple) -> None:
-        """Overwrite axis and spin in blends of segments on which the axis turns along great circles."""
+        """Overwrite axis and spin in blends of segments whose axis turns along great circles."""
         before, seg = joint - 1, self.segments
         h, w, w1 = step(x, self.blend[joint])
         rate, rate_after = seg.axis_at(before, seg.extent[before])[1], seg.axis_rate[joint]
@@ -151,7 +151,7 @@ class ToolPath:
         _overwrite(spin, rows, (seg.spin[joint] + turn * x + change * h, turn + change * w, change * w1))
 
     def _round_curves(self, joint: Array, x: Array, rows: Array, axis: Triple, spin: Triple) -> None:
-        """The same beside smooth curves, where axes turn along no great circles."""
+        """The same next to smooth curves, whose axes do not turn along great circles."""
         seg = self.segments
         blend, ways = _Blend.of(x, self.blend[joint]), _ExtendedSegments(joint, x, seg.extent[joint - 1])
         k, k1, k2 = (one.T for one in blend.rounded(*ways.of(seg.axis_at)))
@@ -167,7 +167,7 @@ def _overwrite(values: Triple, rows: Array, others: Triple) -> None:
 
 
 def _as_vectors(at: Callable[[Array, Array], Triple]) -> Callable[[Array, Array], Triple]:
-    """Numbers as vectors of one coordinate."""
+    """Scalars as vectors of one coordinate."""
 
     def vectors(segment: Array, u: Array) -> Triple:
         value, first, second = at(segment, u)
@@ -199,7 +199,7 @@ def _blends(segments: Segments, rests: Array, tip_tolerance: Array | float, axis
 
 
 def _at_joints(tolerance: Array, joint: Array) -> Array:
-    """The lower tolerance of the two segments at joints."""
+    """Lower tolerance of the two segments at each joint."""
     return np.minimum(tolerance[joint - 1], tolerance[joint])
 
 
@@ -271,7 +271,7 @@ class _Blend:
         return cls(*(column[:, None] for column in columns))
 
     def rounded(self, one: Triple, two: Triple, change: Array) -> Triple:
-        """The way from one to the other, (M, C) each, with the change of the first derivative at the joint."""
+        """Blend of two quantities, (M, C) each, given the change of the first derivative at the joint."""
         s, s1, s2 = self.smooth, self.smooth_1, self.smooth_2
         apart, parting = two[0] - one[0] - change * self.x, two[1] - one[1] - change
         return (
@@ -283,7 +283,7 @@ class _Blend:
 
 @dataclass(frozen=True)
 class _ExtendedSegments:
-    """The two segments at joints, each extended beyond it: the joints, distances x from them, and the ends before."""
+    """The two segments at joints, each extended past it: the joints, distances x, and the ends of the first ones."""
 
     joint: Array
     x: Array
@@ -292,10 +292,10 @@ class _ExtendedSegments:
     def of(self, at: Callable[[Array, Array], Triple]) -> tuple[Triple, Triple, Array]:
         """A quantity on both extended segments, and the change of its first derivative at the joint."""
         before, after, places = self.joint - 1, self.joint, len(self.x)
-        first = np.flatnonzero(np.diff(after, prepend=-1))  # places at one joint follow each other
+        first = np.flatnonzero(np.diff(after, prepend=-1))  # places at one joint are contiguous
         segment = np.concatenate([before, after, before[first], after[first]])
         u = np.concatenate([self.at_end + self.x, self.x, self.at_end[first], np.zeros(len(first))])
-        value, rate, bend = at(segment, u)  # in one call, as most blends have few places
+        value, rate, bend = at(segment, u)  # one call, as most blends have few places
         one, two = ((value[side], rate[side], bend[side]) for side in (slice(places), slice(places, 2 * places)))
         ends, starts = np.split(rate[2 * places :], 2)
         return one, two, np.repeat(starts - ends, np.diff(first, append=len(after)), axis=0)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Window: the motion along a part of a path from any place and speed to rest, at any feed override.
+"""Window: the motion along a part of a path, from any place and speed to rest, at any feed override.
 
-A player plans a path window by window, while the controller runs what was planned before. It begins at the place and
-speed at which the part before it is left, and has two plans from there: the wanted motion, as fast as override and
-limits allow, and the shortest stop. Where the wanted motion cannot be met from there, because the override went down,
-the motion follows the stop until it can.
+A player plans a path window by window, while the controller runs the previous plan. A window begins at the place and
+speed at which the previous one is left, with two plans: the wanted motion, as fast as override and limits allow, and
+the shortest stop. If the wanted motion cannot be met from there, because the override went down, the motion follows
+the stop until it can.
 
-Enters: a trajectory that begins and ends at rest, a machine and tolerances; then a place, a speed, and an override.
-Leaves: position along the path by time, and tool poses at whole ms. Units: mm, s, rad.
+Input: a trajectory that begins and ends at rest, a machine and tolerances; then a place, a speed, and an override.
+Output: position along the path by time, and tool poses at whole ms. Units: mm, s, rad.
 """
 
 from __future__ import annotations
@@ -31,33 +31,33 @@ from pkm_post.planning.time_scaled_law import TimeScaledLaw
 from pkm_post.planning.tool_path import ToolPath
 
 _SAME_SPEED = 5e-3
-"""Relative difference of speeds squared that is left to the share of the acceleration that is not planned."""
+"""Relative difference of speeds squared that the unplanned share of the acceleration absorbs."""
 _SHARES_OF_STOPS = (1.0, 1.0, 1.0, 1.15, 1.3, 1.45, 1.6)
-"""Factors of that share in the tries of a stop: between stations a motion may be faster than at one that is new there.
-A stop does not speed up, so it needs not all of what is left for switches between speeding up and braking."""
+"""Factors of the planned share in the trials of a stop: a motion may be faster between stations than a new one there
+allows. A stop only brakes, so it may use some of the reserve for switches between speeding up and braking."""
 _SHORTEST_STOP = 1.1
-"""Factor of the distance in which the first stop is tried, by that with all of the acceleration along the path."""
+"""First stopping distance to try, relative to that with all of the acceleration along the path."""
 _LONGER_STOP = 1.6
-"""Factor of the distance of the next stop that is tried."""
+"""Factor to the next stopping distance."""
 _BRAKING = 0.1
-"""Share of the lowest limit of acceleration with which the horizon of a window is estimated."""
+"""Share of the lowest acceleration limit assumed for the horizon of a window."""
 _MORE = 1.5
-"""Factor of the distance that is wanted."""
+"""Margin on the required distance."""
 _BISECTIONS = 60
 """Bisections for the stretch to whole ms."""
 _BEFORE_S, _AFTER_S = 1.0, 1e6
-"""s: stand for the times of joints before and after a window."""
+"""s: replace the times of joints before and after a window."""
 
 
 @dataclass(frozen=True)
 class PathState:
-    """Where a motion is along a path.
+    """State of a motion along a path.
 
     Attributes:
         s: path length.
         speed: along the path, mm/s.
-        override: the factor of the feed with which it got there.
-        law: what is left of the motion that it follows, if its acceleration does not jump and it is not at rest.
+        override: feed override with which it got there.
+        law: the rest of the motion that it follows, if jerk-limited and not at rest.
     """
 
     s: float
@@ -75,9 +75,9 @@ class WindowPlanner:
     """Plans windows along a path.
 
     Attributes:
-        feed_plan: its plan from rest to rest at the highest override, as fast as the controller can follow.
+        feed_plan: its plan from rest to rest at the highest override, within the controller's limits.
         programmed: (N,) feed at an override of 1, mm/s.
-        bounds: of the derivatives of the path.
+        bounds: derivative bounds of the path.
     """
 
     feed_plan: FeedPlan
@@ -85,7 +85,7 @@ class WindowPlanner:
     bounds: DerivativeBounds
 
     leaves_stops: ClassVar[bool] = True
-    """Whether a motion can go on from within a stop."""
+    """Whether a motion can resume from within a stop."""
 
     @property
     def path(self) -> ToolPath:
@@ -98,7 +98,7 @@ class WindowPlanner:
         return float(self.path.starts[-1])
 
     def feed(self, override: float) -> Array:
-        """(N,) highest speeds at an override: rapid moves are not faster than at 1."""
+        """(N,) highest speeds at an override: above 1 it does not apply to rapid moves."""
         rapid = self.feed_plan.trajectory.kind == Kind.RAPID
         wanted = self.programmed * np.where(rapid, min(override, 1.0), override)
         return np.minimum(wanted, self.path.feed)
@@ -109,10 +109,10 @@ class WindowPlanner:
         return float(rests[np.searchsorted(rests, s, side="right")])
 
     def ahead(self, start: PathState, override: float, seconds: float) -> Schedule | None:
-        """The fastest motion for some time and to rest behind it, or at the next rest of the program.
+        """The fastest motion for some time, then to rest, or to the next rest of the program.
 
         Args:
-            start: where it begins.
+            start: state at its start.
             override: factor of the feed, above 0.
             seconds: the time.
         """
@@ -122,16 +122,16 @@ class WindowPlanner:
         return self.window(start, min(self.next_rest(start.s), start.s + reach), override)
 
     def factor(self, schedule: Schedule, override: float) -> float:
-        """The factor of the feed that holds in a schedule for an override."""
+        """The feed factor in effect in a schedule for an override."""
         return override
 
     def reached(self, schedule: Schedule, until_ms: int, override: float) -> PathState:
-        """Where a motion is at a whole ms.
+        """State of a motion at a whole ms.
 
         Args:
             schedule: of the motion.
             until_ms: at most its end.
-            override: the factor of the feed that holds in it.
+            override: the feed factor in effect.
         """
         s, speed, _ = (float(values[0]) for values in schedule.at(np.array([until_ms / 1000])))
         return PathState(s, 0.0 if until_ms == int(schedule.rests_ms[-1]) else speed, override)
@@ -140,14 +140,14 @@ class WindowPlanner:
         """The fastest motion from a place and speed to rest; None if it cannot be met from there.
 
         Args:
-            start: where it begins.
-            end: path length where it rests; no rest of the program lies between.
+            start: state at its start.
+            end: path length of the rest; no rest of the program lies between.
             override: factor of the feed, above 0.
         """
         return self._window(start, end, self.feed(override), self.feed_plan.share)
 
     def _window(self, start: PathState, end: float, feed: Array, share: Array) -> Schedule | None:
-        """The same with highest speeds and shares of the limits of acceleration by segment, (N,) each."""
+        """The same with highest speeds and shares of the acceleration limits by segment, (N,) each."""
         machine, square = self.feed_plan.machine, start.speed**2
         path = replace(self.path, feed=feed)
         first, last = np.searchsorted(path.starts, [start.s, end])
@@ -165,7 +165,7 @@ class WindowPlanner:
         """The motion that comes to rest soonest on the path, or nearly so.
 
         Args:
-            start: a place and a speed from which a motion can come to rest before the next rest of the program.
+            start: place and speed; a stop before the next rest of the program must be possible.
         """
         rest, machine = self.next_rest(start.s), self.feed_plan.machine
         feed = np.minimum(self.feed(start.override), start.speed)
@@ -187,7 +187,7 @@ class WindowPlanner:
         Args:
             schedule: of ``window`` or ``stop``.
             until_ms: at most the end of the window.
-            override: the factor of the feed that holds in it.
+            override: the feed factor in effect.
             longest_ms: longest interval between two knots.
         """
         path = replace(self.path, feed=np.maximum(self.feed(override), np.finfo(np.float64).tiny))
@@ -209,9 +209,9 @@ def schedule_of(path: ToolPath, law: Law, ends: tuple[float, float], edges: Arra
     Args:
         path: the whole path.
         law: from time 0 on.
-        ends: path lengths where it begins, and where it rests.
-        edges: (E,) path lengths of places at which intervals are cut first.
-        seconds: when it rests; whole ms but for rounding.
+        ends: path lengths of its start and of its rest.
+        edges: (E,) path lengths of preferred cuts.
+        seconds: time of the rest; whole ms but for rounding.
     """
     begin, end = ends
     starts = path.starts[1:]
