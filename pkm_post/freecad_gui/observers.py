@@ -146,6 +146,23 @@ class DeletionWatch:
             self._notify()
 
 
+class OnceClosed:
+    """Calls a function once: when called itself, or when a widget is deleted.
+
+    FreeCAD deletes a task panel without calling its ``reject`` where a command closes it by ``Control.closeDialog``.
+    """
+
+    def __init__(self, widget: QtWidgets.QWidget, function: Callable[[], Any]) -> None:
+        self._function: Callable[[], Any] | None = function
+        widget.destroyed.connect(lambda *_: self())
+
+    def __call__(self) -> None:
+        """Call the function, unless it was called before."""
+        function, self._function = self._function, None
+        if function is not None:
+            function()
+
+
 class RecomputeWatch:
     """A document observer, from its creation until ``end``; FreeCAD calls its slot.
 

@@ -25,7 +25,7 @@ from pkm_post.freecad_gui.background import BackgroundCall
 from pkm_post.freecad_gui.finding_view import FindingView
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.job_choices import JobChoices
-from pkm_post.freecad_gui.observers import DeletionWatch
+from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed
 from pkm_post.freecad_gui.place_row import PlaceRow, take_place
 from pkm_post.freecad_gui.post_outcome import PostOutcome, step_text
 from pkm_post.model import Refused
@@ -77,8 +77,7 @@ class PostPanel:
         self._show_running(False)
         self.folder.setEnabled(False)
         self._watch = DeletionWatch(self.reject, job.Document.Name, job.Name)
-        self._is_open = True
-        self.form.destroyed.connect(lambda *_: self._end_all())  # other add-ons close panels without ``reject``
+        self._close = OnceClosed(self.form, self._release)
 
     def _lay_out(self) -> None:
         layout, buttons = QtWidgets.QVBoxLayout(self.form), QtWidgets.QGridLayout()
@@ -214,15 +213,12 @@ class PostPanel:
 
     def reject(self) -> bool:
         """Close the panel, after stopping any posting."""
-        self._end_all()
+        self._close()
         FreeCADGui.Control.closeDialog()
         return True
 
-    def _end_all(self) -> None:
+    def _release(self) -> None:
         """Stop any posting, and following the document."""
-        if not self._is_open:
-            return
-        self._is_open = False
         self._watch.end()
         self.place.end()
         self._view.end()

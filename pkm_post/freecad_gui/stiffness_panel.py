@@ -23,7 +23,7 @@ from pkm_post.freecad_app.user_units import amount_text
 from pkm_post.freecad_gui.finding_view import FindingView
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.margin_colours import colour_bar, coloured_path, coloured_surface, colours_of
-from pkm_post.freecad_gui.observers import DeletionWatch
+from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed
 from pkm_post.freecad_gui.shown_pose import is_shown
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
 from pkm_post.geometry import Array
@@ -75,8 +75,7 @@ class StiffnessPanel:
         self._hidden = [each.Name for each in job.InList if hasattr(each, "Violations") and each.Visibility]
         self._show_reach(False)
         self._watch = DeletionWatch(self.reject, self._document, job.Name)
-        self._is_open = True
-        self.form.destroyed.connect(lambda *_: self._end_all())  # other add-ons close panels without ``reject``
+        self._close = OnceClosed(self.form, self._release)
         self._fill()
         self._draw()
 
@@ -122,15 +121,12 @@ class StiffnessPanel:
 
     def reject(self) -> bool:
         """Close the panel, and remove the colours from the view."""
-        self._end_all()
+        self._close()
         FreeCADGui.Control.closeDialog()
         return True
 
-    def _end_all(self) -> None:
+    def _release(self) -> None:
         """Remove the colours from the view, and stop following the document."""
-        if not self._is_open:
-            return
-        self._is_open = False
         self._watch.end()
         self._view.end()
         self._graph.removeChild(self._drawn)
