@@ -226,4 +226,15 @@ def _senses(state: ReaderState, arcs: list[_ArcMove], points: Points, centre: Ar
     for index in np.flatnonzero(seen & (np.abs(along) < _ALIGNED)).tolist():
         state.report("L401", int(row[index]), "clockwise about an axis that is not the tool axis")
     sense[seen] *= np.sign(along[seen])
+    _check_closed(state, row, points, end, centre, axis * sense[:, None], full & ~minor & (stated == 0))
     return sense
+
+
+def _check_closed(
+    state: ReaderState, row: Array, points: Points, end: Array, centre: Array, axis: Array, near: Array
+) -> None:
+    """Report arcs of next to no turn: their ends may be those of a full turn, rounded."""
+    start, stop = points.position[end - 1], points.position[end]
+    for index in np.flatnonzero(near & (arc_sweep(start, stop, centre, axis) < np.pi)).tolist():
+        apart = norm(across(stop[index] - start[index], axis[index]))
+        state.report("L408", int(row[index]), f"its ends are {apart:.4g} mm apart: a full turn, or none")

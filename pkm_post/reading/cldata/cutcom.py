@@ -27,22 +27,40 @@ _SIDES = {"LEFT": 1.0, "RIGHT": -1.0}
 _PLANES = {"XYPLAN": 2, "ZXPLAN": 1, "YZPLAN": 0}
 _REGISTERS = {"ADJUST", "LENGTH", "OSETNO"}
 """Words before the number of an offset register of the control, which does not affect the path."""
+_OTHER_OFFSETS = {"ADJUST", "LENGTH"}
+"""Words of fixture offset and tool length: ON and OFF with them are not those of the side."""
 _KNOWN = {*_SIDES, *_PLANES, *_REGISTERS, "OFF", "ON", "PLANE"}
 _GEOMETRY_TYPES = {"OUTPUT_ON_CENTER": "centre", "OUTPUT_ON_PROFILE": "contour"}
 _HEADERS = {"CENTRE": "centerline data", "CONTOUR": "contact contour data"}
 
 
 def cutcom(state: ReaderState, row: int, statement: Statement) -> None:
-    """CUTCOM/LEFT or RIGHT[,plane][,register], CUTCOM/OFF; CUTCOM/ON keeps the active state."""
+    """CUTCOM/LEFT or RIGHT[,plane][,register], CUTCOM/OFF; CUTCOM/ON the last side; with ADJUST or LENGTH no side."""
     words = statement.words
     sides = [_SIDES[word] for word in words if word in _SIDES]
     if not words or not set(words) <= _KNOWN or len(sides) > 1:
         state.report("L401", row, f"CUTCOM/{statement.items_text()}")
-        return
-    if sides or "OFF" in words:
+    elif sides:
         plane = next((_PLANES[word] for word in words if word in _PLANES), None)
-        side = sides[0] if sides else 0.0
-        state.cutcoms.append(Cutcom(row, side, plane, state.tool, _radius(state), state.point_meaning))
+        _record(state, row, sides[0], plane)
+    elif not set(words) & _OTHER_OFFSETS:
+        _on_or_off(state, row, statement)
+
+
+def _on_or_off(state: ReaderState, row: int, statement: Statement) -> None:
+    """OFF ends the side in force; ON after OFF takes the last one up again [NCCS PostWorks]."""
+    last = next((each for each in reversed(state.cutcoms) if each.side), None)
+    if "OFF" in statement.words:
+        _record(state, row, 0.0, None)
+    elif "ON" in statement.words and last is not None:
+        if not state.cutcoms[-1].side:
+            _record(state, row, last.side, last.plane)
+    elif "ON" in statement.words and state.statements.word(min(row + 1, len(state.statements) - 1)) != "CUTCOM":
+        state.report("L401", row, f"CUTCOM/{statement.items_text()} before any LEFT or RIGHT")
+
+
+def _record(state: ReaderState, row: int, side: float, plane: int | None) -> None:
+    state.cutcoms.append(Cutcom(row, side, plane, state.tool, _radius(state), state.point_meaning))
 
 
 def _radius(state: ReaderState) -> float:

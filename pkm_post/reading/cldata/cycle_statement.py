@@ -176,7 +176,7 @@ def _dwell(state: ReaderState, values: Mapping[str, float]) -> float:
     turns = values.get("turns", 0.0)
     if not turns:
         return values.get("dwell", 0.0)
-    return turns * 60 / state.spindle_speed if state.spindle_speed else math.inf
+    return turns * 60 / state.spindle_speed if state.spindle_speed > 0 else math.inf
 
 
 def _feed(state: ReaderState, given: tuple[str, float] | None) -> float:

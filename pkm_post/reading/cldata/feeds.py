@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable
 
 from pkm_post.model import EventKind
-from pkm_post.reading.cldata.state import Feed, ReaderState
+from pkm_post.reading.cldata.state import Feed, ReaderState, SurfaceSpeed
 from pkm_post.reading.cldata.statements import Statement
 from pkm_post.reading.units import UNITS
 
@@ -23,12 +23,13 @@ _FEED_MODES = frozenset({"AUTO", "ON", "OFF"})
 _SENSES = {"CLW": 1.0, "CCLW": -1.0}
 _SURFACE_SPEEDS = {"SMM": 1000.0, "SFM": 304.8}
 _SPINDLE_PAIRS = frozenset({"MAXRPM", "RADIUS", "RANGE"})
-_SPINDLE_WORDS = frozenset({"RPM", "ON", "OFF", "ORIENT", "LOCK", "NEUTRL", "RANGE", "LOW", "MEDIUM", "HIGH"})
+_STOPPED = frozenset({"OFF", "ORIENT", "LOCK", "NEUTRL"})
+_SPINDLE_WORDS = frozenset({"RPM", "ON", "LOW", "MEDIUM", "HIGH", "AUTO", *_SPINDLE_PAIRS, *_STOPPED})
 _COOLANT = {"ON": 1.0, "FLOOD": 1.0, "MIST": 2.0, "TAP": 1.0, "TAPKUL": 1.0, "THRU": 1.0, "OFF": 0.0}
 
 
 def feed_of(state: ReaderState, word: str, value: float) -> Feed:
-    """The feed of a value with its unit word; stores a feed per revolution."""
+    """The feed of a value with its unit word, NaN per revolution of a spindle at rest; stores a feed per revolution."""
     state.feed_per_turn = 0.0
     if word == "INVERS":
         return Feed(value / 60, inverse=True)
@@ -37,8 +38,13 @@ def feed_of(state: ReaderState, word: str, value: float) -> Feed:
     mm = value * (state.scale if stated is None or _unit_overridden(state, stated) else stated)
     if table is MM_PER_TURN:
         state.feed_per_turn = mm
-        return Feed(mm * state.spindle_speed / 60)
+        return _feed_per_turn(state)
     return Feed(mm / 60)
+
+
+def _feed_per_turn(state: ReaderState) -> Feed:
+    """The feed per revolution at the present speed."""
+    return Feed(state.feed_per_turn * (state.spindle_speed or math.nan) / 60, per_turn=True)
 
 
 def _unit_overridden(state: ReaderState, stated: float) -> bool:
@@ -48,11 +54,15 @@ def _unit_overridden(state: ReaderState, stated: float) -> bool:
 
 
 def fedrat(state: ReaderState, row: int, statement: Statement) -> None:
-    """FEDRAT/value[,unit], in any order; FEDRAT/INVERS,AUTO is an output setting for posts and has no effect."""
+    """FEDRAT/value[,unit], in any order; a unit alone is that of the next values.
+
+    FEDRAT/INVERS,AUTO and ON are output settings for posts and have no effect; INVERS,OFF ends inverse time.
+    """
     items = _without_pairs(statement, frozenset({"LENGTH"}))
     numbers = [item for item in items if isinstance(item, float)]
     words = [item for item in items if isinstance(item, str)]
     units = [word for word in words if word in FEED_WORDS]
+    modes = {word for word in words if word in _FEED_MODES}
     if len(numbers) > 1 or len(units) > 1 or not set(words) <= FEED_WORDS | _FEED_MODES:
         state.report_items(row, statement, f"one number and one of {_list(FEED_WORDS)}")
     elif numbers and not numbers[0] > 0:
@@ -60,42 +70,106 @@ def fedrat(state: ReaderState, row: int, statement: Statement) -> None:
     elif numbers:
         state.feed_word = units[0] if units else state.feed_word
         state.set_feed(row, feed_of(state, state.feed_word, numbers[0]))
+    elif units and not modes:
+        _set_feed_word(state, row, units[0])
+    elif units == ["INVERS"] and "OFF" in modes and state.feed_word == "INVERS":
+        _set_feed_word(state, row, "PERMIN")
     elif not words and len(items) == len(statement.items):
         state.report("L402", row, "FEDRAT, expected a number")
 
 
+def _set_feed_word(state: ReaderState, row: int, word: str) -> None:
+    """Set the unit of the next feeds; in another mode the present feed means nothing [NCCS PostWorks]."""
+    if _mode(word) != _mode(state.feed_word):
+        state.feed_per_turn = 0.0
+        state.set_feed(row, Feed(math.nan))
+    state.feed_word = word
+
+
+def _mode(word: str) -> str:
+    """The mode of a unit of feeds."""
+    return "minute" if word in MM_PER_MINUTE else "turn" if word in MM_PER_TURN else "inverse"
+
+
 def rapid(state: ReaderState, row: int, statement: Statement) -> None:
-    """RAPID: applies to the next motion only."""
+    """RAPID: applies to the next motion only. With words it is modal, or along single axes, as the post defines it."""
+    if any(item is not None for item in statement.items):
+        state.report("L401", row, f"RAPID/{statement.items_text()}, other than RAPID for one motion")
+        return
     state.rapids.append(row)
 
 
 def spindl(state: ReaderState, row: int, statement: Statement) -> None:
-    """SPINDL/speed, unit and sense in any order; SPINDL/OFF and ON."""
+    """SPINDL/speed, unit and sense in any order; SPINDL/OFF and ON; ORIENT[,angle]; MAXRPM,n and RANGE,n alone."""
     items = _without_pairs(statement, _SPINDLE_PAIRS)
     numbers = [item for item in items if isinstance(item, float)]
     words = {item for item in items if isinstance(item, str)}
-    if len(numbers) > 1 or not words <= _SPINDLE_WORDS | {*_SENSES, *_SURFACE_SPEEDS} or not statement.items:
+    unclear = "LOCK" in words and bool(words & {"ON", "OFF"})  # of the spindle, or of its override
+    known = words <= _SPINDLE_WORDS | {*_SENSES, *_SURFACE_SPEEDS}
+    if len(numbers) > 1 or not known or not statement.items or unclear:
         state.report_items(row, statement, "one number, RPM, SFM or SMM, CLW or CCLW")
         return
-    sense = next((_SENSES[word] for word in ("CLW", "CCLW") if word in words), state.spindle_sense or 1.0)
-    if numbers and not _new_speed(state, row, numbers[0], words):
+    state.spindle_limit = statement.number_after("MAXRPM") or state.spindle_limit
+    if not numbers and not words:
         return
-    stopped = bool(words & {"OFF", "ORIENT", "LOCK", "NEUTRL"}) or (not words and not numbers)
-    state.spindle_sense = 0.0 if stopped and not numbers else sense
+    if words & _STOPPED:
+        state.spindle_sense = 0.0
+    else:
+        state.spindle_sense = next((_SENSES[word] for word in _SENSES if word in words), state.spindle_sense or 1.0)
+        if numbers and not _new_speed(state, row, numbers[0], statement):
+            return
+    _spindle_event(state, row)
+
+
+def _new_speed(state: ReaderState, row: int, value: float, statement: Statement) -> bool:
+    """Set a speed in 1/min, or of the surface at the cutter's edge or the radius written; False if it is invalid."""
+    if value < 0:
+        state.report("L403", row, f"speed {value:g}")
+        return False
+    surface = next((_SURFACE_SPEEDS[word] for word in statement.words if word in _SURFACE_SPEEDS), None)
+    state.surface_speed = None
+    if surface is None:
+        state.spindle_speed = value
+        return True
+    diameter = 2 * statement.number_after("RADIUS") * state.scale
+    if not diameter:
+        motions, sense = state.motions_before(row), state.spindle_sense
+        state.surface_speed = SurfaceSpeed(len(state.events), motions, value * surface, sense)
+    state.spindle_speed = _turns_per_minute(state, value * surface, diameter or state.diameter)
+    return True
+
+
+def _turns_per_minute(state: ReaderState, surface: float, diameter: float) -> float:
+    """The speed at a diameter, mm, for one on the surface there, mm/min; NaN if the diameter is unknown."""
+    return min(surface / (math.pi * diameter), state.spindle_limit or math.inf) if diameter > 0 else math.nan
+
+
+def resolve_surface_speed(state: ReaderState, row: int) -> None:
+    """A new cutter gives a surface speed its turns if no motion was made with it: either may come first."""
+    surface = state.surface_speed
+    if surface is None or surface.motions != state.motions_before(row):
+        return
+    state.spindle_speed = _turns_per_minute(state, surface.speed, state.diameter)
+    at, kind, _ = state.events[surface.event]
+    state.events[surface.event] = (at, kind, surface.sense * state.spindle_speed)
+    if state.feed_per_turn:
+        state.set_feed(row, _feed_per_turn(state))
+
+
+def report_unknown_speeds(state: ReaderState) -> None:
+    """Report surface speeds of cutters that stayed unknown."""
+    for row, kind, value in state.events:
+        if kind is EventKind.SPINDLE and math.isnan(value):
+            statement = state.statements.statement(row)
+            state.report("L403", row, f"SPINDL/{statement.items_text()} of a cutter of unknown diameter")
+
+
+def _spindle_event(state: ReaderState, row: int) -> None:
+    """Record the present speed, and the feed per revolution that follows it."""
     speed = state.spindle_sense * state.spindle_speed if state.spindle_sense else 0.0
     state.events.append((row, EventKind.SPINDLE, speed))
     if state.feed_per_turn:
-        state.set_feed(row, Feed(state.feed_per_turn * state.spindle_speed / 60))
-
-
-def _new_speed(state: ReaderState, row: int, value: float, words: set[str]) -> bool:
-    """Set a speed in 1/min; False if it is invalid."""
-    surface = next((_SURFACE_SPEEDS[word] for word in ("SMM", "SFM") if word in words), None)
-    if value < 0 or (surface is not None and state.diameter <= 0):
-        state.report("L403", row, f"speed {value:g}" + ("" if surface is None else " of a cutter of unknown diameter"))
-        return False
-    state.spindle_speed = value if surface is None else value * surface / (math.pi * state.diameter)
-    return True
+        state.set_feed(row, _feed_per_turn(state))
 
 
 def coolnt(state: ReaderState, row: int, statement: Statement) -> None:
@@ -112,7 +186,7 @@ def delay(state: ReaderState, row: int, statement: Statement) -> None:
     numbers, turns = statement.numbers, "REV" in statement.words
     if len(numbers) != 1 or not set(statement.words) <= {"REV"}:
         state.report_items(row, statement, "seconds, or turns and REV")
-    elif numbers[0] < 0 or (turns and not state.spindle_speed):
+    elif numbers[0] < 0 or (turns and not state.spindle_speed > 0):
         state.report(
             "L403", row, f"{statement.word} {numbers[0]:g}" + (" revolutions of a stopped spindle" if turns else "")
         )

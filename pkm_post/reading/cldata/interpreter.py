@@ -32,7 +32,7 @@ from pkm_post.reading.cldata.check_surface import autops, indirp, indirv, psis, 
 from pkm_post.reading.cldata.copies import MATRIX
 from pkm_post.reading.cldata.cutcom import cutcom, geometry_type, points_comment
 from pkm_post.reading.cldata.cycle_statement import cycle
-from pkm_post.reading.cldata.feeds import coolnt, delay, fedrat, rapid, spindl, stop
+from pkm_post.reading.cldata.feeds import coolnt, delay, fedrat, rapid, report_unknown_speeds, spindl, stop
 from pkm_post.reading.cldata.nurbs import movnrb
 from pkm_post.reading.cldata.points import from_or_godlta, goto, multax, numbers_only, tlaxis
 from pkm_post.reading.cldata.state import ReaderState
@@ -161,6 +161,7 @@ def interpret(state: ReaderState, bulk: Array) -> Array:
             _report_after_end(state, row)
             break
     report_unused_arcdat(state)
+    report_unknown_speeds(state)
     _report_missing_end(state)
     for word, rows in unknown.items():
         times = f", {len(rows)} times" if len(rows) > 1 else ""

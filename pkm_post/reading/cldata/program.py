@@ -155,14 +155,26 @@ def _convert_inverse_time(state: ReaderState, points: Points, rows: _Rows) -> No
     if rows.inverse.any():
         before = np.vstack([rows.position[:1], rows.position[:-1]])
         length = move_lengths(before, rows.position, rows.kind == Kind.ARC, rows.centre, rows.axis)
+        # The time is that of a statement: the turns of a helix, or the chords of a curve, share it.
+        statement = np.unique(points.row[rows.point], return_inverse=True)[1]
+        length = np.bincount(statement, length)[statement]
         inverse = rows.inverse & cutting
         for row in np.flatnonzero(inverse & (length == 0)).tolist():
             state.report("L416", int(points.row[rows.point[row]]), "a move of zero length")
         rows.feed[inverse] *= length[inverse]
-    missing = np.flatnonzero(cutting & np.isnan(rows.feed))
-    if len(missing):
-        more = f", and {len(missing) - 1} more" if len(missing) > 1 else ""
-        state.report("L407", int(points.row[rows.point[missing[0]]]), f"the move{more}")
+    _report_missing_feeds(state, points.row[rows.point[cutting & np.isnan(rows.feed)]])
+
+
+def _report_missing_feeds(state: ReaderState, row: Array) -> None:
+    """Report the statements of cutting moves without a feed, (M,), by cause."""
+    per_turn = np.array([False, *(feed.per_turn for _, feed in state.feeds)])
+    by_turn = per_turn[active_index(row, [at for at, _ in state.feeds]) + 1]
+    causes = (("L407", "the move", ~by_turn), ("L403", "a feed per turn of a spindle without a speed", by_turn))
+    for code, found, mine in causes:
+        missing = row[mine]
+        if len(missing):
+            more = f", and {len(missing) - 1} more" if len(missing) > 1 else ""
+            state.report(code, int(missing[0]), f"{found}{more}")
 
 
 def _events(state: ReaderState, points: Points, start: Array, holes: HoleMoves) -> tuple[Event, ...]:

@@ -46,6 +46,8 @@ _STATEMENT = re.compile(r"([A-Z]\w*)\s*(?:/(.*))?", re.IGNORECASE | re.DOTALL)
 _CALL = re.compile(r"\s*CALL\s*/\s*(\w+)\s*(?:,(.*))?", re.IGNORECASE | re.DOTALL)
 _TERMAC = re.compile(r"\s*TERMAC\s*", re.IGNORECASE)
 _PARAMETER = re.compile(r"\s*([A-Z]\w*)\s*(?:=\s*(.*?))?\s*", re.IGNORECASE | re.DOTALL)
+_OPERATION = re.compile(r"[*(]|[\d.][ \t]*[-+/]")
+_LEADING_ZEROS = re.compile(r"(?<![\w.])0+(?=\d)")
 _NAME = re.compile(r"(?<![\w.])[A-Z]\w*", re.IGNORECASE)
 
 _OPERATORS: dict[type[ast.AST], Callable[..., float]] = {
@@ -209,7 +211,7 @@ class _Expander:
         return f"{head}/{','.join(map(self._item, _items(items)))}"
 
     def _has_expression(self, text: str) -> bool:
-        return "*" in text or "(" in text or any(name.upper() in self.values for name in _NAME.findall(text))
+        return _OPERATION.search(text) is not None or any(name.upper() in self.values for name in _NAME.findall(text))
 
     def _item(self, item: str) -> str:
         """An item with numbers in place of names and expressions; other items unchanged."""
@@ -238,7 +240,7 @@ class _Expander:
         if len(text) > _LONGEST_EXPRESSION:
             raise _NoValueError(f"{shown}..., too long")
         try:
-            value = self._evaluated(ast.parse(text.strip(), mode="eval").body)
+            value = self._evaluated(ast.parse(_LEADING_ZEROS.sub("", text.strip()), mode="eval").body)
         except (SyntaxError, RecursionError, MemoryError):
             raise _NoValueError(f"{shown}, no expression of numbers and names") from None
         except (ArithmeticError, ValueError):

@@ -38,10 +38,21 @@ class LengthUnit:
 
 @dataclass(frozen=True)
 class Feed:
-    """A feed: mm/s, or 1/s for inverse time."""
+    """A feed: mm/s, or 1/s for inverse time; NaN if there is none, per turn of a spindle whose speed is unknown."""
 
     value: float
     inverse: bool = False
+    per_turn: bool = False
+
+
+@dataclass(frozen=True)
+class SurfaceSpeed:
+    """A SPINDL in SMM or SFM: its event, motions before it, mm/min at the edge of the cutter, and sense."""
+
+    event: int
+    motions: int
+    speed: float
+    sense: float
 
 
 @dataclass(frozen=True)
@@ -166,8 +177,10 @@ class ReaderState:
         feed_word: unit of feeds that are written without one.
         feed_per_turn: mm per revolution, 0 if the feed is not per revolution.
         feed: active feed of moves, None before the first.
-        spindle_speed: 1/min.
+        spindle_speed: 1/min; NaN for a surface speed of a cutter that is not yet known.
         spindle_sense: 1 clockwise, -1 counterclockwise, 0 stopped.
+        spindle_limit: of surface speeds, 1/min; 0 if none.
+        surface_speed: the last speed, if it is one of the surface.
         tool: active tool number.
         changed_tool: tool number of the last tool change, -1 before the first.
         motions_at_change: number of motions before it.
@@ -212,6 +225,8 @@ class ReaderState:
     feed: Feed | None = None
     spindle_speed: float = 0.0
     spindle_sense: float = 0.0
+    spindle_limit: float = 0.0
+    surface_speed: SurfaceSpeed | None = None
     tool: int = 0
     changed_tool: int = -1
     motions_at_change: int = 0
@@ -277,6 +292,10 @@ class ReaderState:
             return values
         self.report_items(row, statement, f"{' or '.join(map(str, counts))} values")
         return []
+
+    def motions_before(self, row: int) -> int:
+        """Number of motions before a statement, with all preceding statements read."""
+        return int(self.gotos_before[row]) + sum(not point.start for _, point in self.points)
 
     def set_feed(self, row: int, feed: Feed) -> None:
         """Set the feed from here on."""

@@ -70,6 +70,13 @@ class Statement:
         """The words among the items."""
         return [item for item in self.items if isinstance(item, str)]
 
+    def number_after(self, word: str) -> float:
+        """The number after a word, 0 if absent."""
+        for name, value in zip(self.items, self.items[1:], strict=False):
+            if name == word and isinstance(value, float):
+                return value
+        return 0.0
+
     def items_text(self) -> str:
         """The items approximately as written, for messages."""
         return ",".join(

@@ -11,6 +11,7 @@ import math
 from dataclasses import replace
 
 from pkm_post.model import EventKind, Tool, corner_reach, largest_corner_radius, valid_cutter_angles
+from pkm_post.reading.cldata.feeds import resolve_surface_speed
 from pkm_post.reading.cldata.state import ReaderState
 from pkm_post.reading.cldata.statements import Statement
 
@@ -79,6 +80,7 @@ def _new_cutter(state: ReaderState, row: int, diameter: float, corner: float, bo
     state.bottom_angle, state.side_angle = bottom_angle, side_angle
     state.point_angle = math.pi - 2 * bottom_angle if bottom_angle > 0 and not corner else 0.0
     state.tool_name = state.inserted_name
+    resolve_surface_speed(state, row)
     return True
 
 
@@ -93,7 +95,7 @@ def load(state: ReaderState, row: int, statement: Statement) -> None:
         state.report_items(row, statement, "the number of a tool")
         return
     record_tool_if_used(state, row)
-    length = _after(statement, "LENGTH") * state.scale
+    length = statement.number_after("LENGTH") * state.scale
     if int(number) == state.changed_tool and state.motions_recorded == state.motions_at_change:
         state.tool_length = length or state.tool_length
         return
@@ -105,14 +107,6 @@ def load(state: ReaderState, row: int, statement: Statement) -> None:
     state.events.append((row, EventKind.TOOL_CHANGE, float(state.tool)))
 
 
-def _after(statement: Statement, word: str) -> float:
-    """The number after a word, 0 if absent."""
-    for name, value in zip(statement.items, statement.items[1:], strict=False):
-        if name == word and isinstance(value, float):
-            return value
-    return 0.0
-
-
 def insert(state: ReaderState, row: int, statement: Statement) -> None:
     """INSERT/text: in SolidWorks the tool name before its CUTTER; elsewhere text for the NC program."""
     if state.dialect.insert_is_tool:
@@ -121,7 +115,7 @@ def insert(state: ReaderState, row: int, statement: Statement) -> None:
 
 def record_tool_if_used(state: ReaderState, row: int) -> None:
     """Record the active tool if there were motions since its last change."""
-    motions = int(state.gotos_before[row]) + sum(not point.start for _, point in state.points)
+    motions = state.motions_before(row)
     if motions != state.motions_recorded:
         state.motions_recorded = motions
         record_tool(state)

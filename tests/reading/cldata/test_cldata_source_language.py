@@ -40,6 +40,8 @@ def faults(text):
         ("A=4\nGOTO/A,0,0\nINDIRV/0,1,0\nTLON,GOFWD/(CIRCLE/0,0,0,A),ON,(LINE/0,0,0,0,A,0)\n",
          "GOTO/4,0,0\nCIRCLE/0,0,0,0,0,1\nGOTO/0,4,0\n"),
         ("A=1\nPPRINT/A\nREMARK A*2\n", ""),
+        ("A=05\nGOTO/A-2,10-2,10/4\nGOTO/1.E-3,+5 - 2,007*1\n", "GOTO/3,8,2.5\nGOTO/0.001,3,7\n"),
+        ("A=1\nGOTO/1.5-.5-1,2/4/5,-1-1\nGOTO/-1.E+1,1E2-1,.5\n", "GOTO/0,.1,-2\nGOTO/-10,99,.5\n"),
     ],
 )  # fmt: skip
 def test_names_stand_for_their_numbers(text, plain):

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""FEDRAT, SPINDL, RAPID and CUTCOM in the forms of post-processor words: modes, limits, and times of statements.
+
+Sources: [NCCS PostWorks], `fedrat.f`, `pstwqz.f` and `cutcom.f`; ICAM Technologies, help of CAM-POST: SPINDL, CUTCOM.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from pkm_post.geometry import move_lengths
+from pkm_post.model import EventKind, Kind
+from pkm_post.model.diagnostics import errors
+from pkm_post.reading.cldata import ReadOptions, read
+
+HEAD = "UNITS/MM\nLOADTL/1,LENGTH,100\nCUTTER/10\nFEDRAT/600,MMPM\nGOTO/0,0,0\n"
+
+
+def program(text, **options):
+    found, diagnostics = read(text, "part.cl", ReadOptions(**options))
+    assert not errors(diagnostics), [str(fault) for fault in diagnostics]
+    return found
+
+
+def codes(text, **options):
+    found, diagnostics = read(text, "part.cl", ReadOptions(**options))
+    assert found is None
+    return [(fault.code, fault.place.line) for fault in errors(diagnostics)]
+
+
+def speeds(text):
+    return [(event.row, event.value) for event in program(text).events if event.kind is EventKind.SPINDLE]
+
+
+@pytest.mark.parametrize(
+    "statements, feed",
+    [
+        ("FEDRAT/INVERS\nFEDRAT/4", 2),  # 30 mm in a quarter of a minute
+        ("FEDRAT/INVERS,5\nFEDRAT/MMPM\nFEDRAT/60", 1),
+        ("FEDRAT/INVERS,5\nFEDRAT/INVERS,OFF\nFEDRAT/60", 1),
+        ("FEDRAT/INVERS,AUTO\nFEDRAT/60", 1),
+        ("FEDRAT/MMPR\nFEDRAT/.1", 2),
+        ("FEDRAT/IPM\nFEDRAT/6", 2.54),
+        ("FEDRAT/IPM", 10),  # the same mode: the feed stays
+    ],
+)
+def test_a_unit_alone_is_that_of_the_next_values(statements, feed):
+    assert program(f"{HEAD}SPINDL/1200,CLW\n{statements}\nGOTO/30,0,0\n").feed[-1] == pytest.approx(feed)
+
+
+@pytest.mark.parametrize("statements", ["FEDRAT/INVERS", "FEDRAT/MMPR", "FEDRAT/INVERS,5\nFEDRAT/INVERS,OFF"])
+def test_another_mode_without_a_value_has_no_feed(statements):
+    text = f"{HEAD}SPINDL/1200,CLW\n{statements}\nGOTO/30,0,0\n"
+    assert codes(text) == [("L407", text.count("\n"))]
+
+
+def test_a_feed_per_turn_needs_a_speed():
+    text = "UNITS/MM\nLOADTL/1,LENGTH,100\nFEDRAT/.1,MMPR\nGOTO/0,0,0\nGOTO/1,0,0\nSPINDL/1200,CLW\nGOTO/2,0,0\n"
+    assert codes(text) == [("L403", 5)]
+    assert program(text.replace("GOTO/1,0,0\n", "")).feed[-1] == pytest.approx(2)
+
+
+def seconds(found, line):
+    """Time of the rows of a line at their feeds."""
+    before = np.vstack([found.position[:1], found.position[:-1]])
+    length = move_lengths(before, found.position, found.kind == Kind.ARC, found.arc_centre, found.arc_axis)
+    mine = found.line == line
+    return float((length[mine] / found.feed[mine]).sum())
+
+
+@pytest.mark.parametrize("times", ["", ",.01,.5,10,0,TIMES,3"])
+def test_inverse_time_is_that_of_the_whole_helix(times):
+    text = f"{HEAD}GOTO/10,0,0\nFEDRAT/INVERS,5\nCIRCLE/0,0,0,0,0,1,10{times}\nGOTO/10,0,6\n"
+    assert seconds(program(text), 9) == pytest.approx(60 / 5)
+
+
+def test_inverse_time_is_that_between_the_points_of_a_curve():
+    """The parabola x = 2t, y = 2t(1-t) * 20 of three control points, with two points on it."""
+    curve = "MOVNRB/M3AXIS\nMOVNRB/ON,3,6,0,3,30\nMOVNRB/1,0,0,0,1,1,1\nMOVNRB/2,0,0,0,10,20,0,20,0,0\nMOVNRB/NEXT\n"
+    text = f"{HEAD}FEDRAT/INVERS,5\n{curve}GOTO/10,10,0\nGOTO/20,0,0\nMOVNRB/OFF\n"
+    found = program(text, dialect="creo")
+    lines = [12, 13]
+    assert [int((found.line == line).sum()) > 10 for line in lines] == [True, True]
+    assert [seconds(found, line) for line in lines] == pytest.approx([60 / 5, 60 / 5])
+
+
+@pytest.mark.parametrize(
+    "statement, speed",
+    [
+        ("SPINDL/ORIENT", 0), ("SPINDL/ORIENT,90", 0), ("SPINDL/OFF", 0), ("SPINDL/LOCK", 0),
+        ("SPINDL/MAXRPM,3000", 500), ("SPINDL/RANGE,2", 500), ("SPINDL/CLW,AUTO,900", 900),
+        ("SPINDL/314.159265358979,SMM,MAXRPM,1000", 1000), ("SPINDL/MAXRPM,1000\nSPINDL/314.159265358979,SMM", 1000),
+        ("SPINDL/314.159265358979,SMM", 10000), ("SPINDL/314.159265358979,SMM,RADIUS,50", 1000),
+    ],
+)  # fmt: skip
+def test_angles_limits_and_ranges_are_no_speeds(statement, speed):
+    found = speeds(f"{HEAD}SPINDL/500,CLW\nGOTO/1,0,0\n{statement}\nGOTO/2,0,0\n")
+    assert found[-1][1] == pytest.approx(speed)
+
+
+@pytest.mark.parametrize("words", ["LOCK,ON", "LOCK,OFF"])
+def test_a_lock_of_spindle_or_override_is_refused(words):
+    assert codes(f"{HEAD}SPINDL/{words}\nGOTO/1,0,0\n") == [("L402", 6)]
+
+
+def test_a_surface_speed_is_that_of_the_cutter_it_is_used_with():
+    """100 m/min over pi * 2 mm, where CUTTER stands behind SPINDL; a later cutter alone keeps the speed in 1/min."""
+    change = "LOADTL/2,LENGTH,100\nSPINDL/100,SMM,CCLW\nFEDRAT/.1,MMPR\nCUTTER/2\n"
+    text = f"{HEAD}{change}GOTO/1,0,0\nCUTTER/4\nGOTO/2,0,0\n"
+    turns = 100_000 / (math.pi * 2)
+    assert speeds(text) == [(1, pytest.approx(-turns))]
+    assert program(text).feed[1:] == pytest.approx([0.1 * turns / 60] * 2)
+    assert codes("UNITS/MM\nLOADTL/2\nSPINDL/100,SMM\nGOTO/1,0,0\nGOTO/2,0,0\n") == [("L403", 3)]
+
+
+@pytest.mark.parametrize("words", ["/ON", "/OFF", "/XAXIS", "/MODIFY,ON"])
+def test_rapid_with_words_is_refused(words):
+    assert codes(f"{HEAD}RAPID{words}\nGOTO/1,0,0\n") == [("L401", 6)]
+
+
+def test_rapid_with_a_bare_slash_is_rapid():
+    assert program(f"{HEAD}RAPID/\nGOTO/1,0,0\n").kind[-1] == Kind.RAPID
+
+
+OFFSETS = [
+    ("CUTCOM/LEFT", "CUTCOM/OFF", "CUTCOM/ON", [5, 0, 5]),
+    ("CUTCOM/RIGHT,XYPLAN", "CUTCOM/OFF", "CUTCOM/ON", [-5, 0, -5]),
+    ("CUTCOM/LEFT", "CUTCOM/ADJUST,OFF", "CUTCOM/OFF", [5, 5, 0]),
+    ("CUTCOM/LEFT", "CUTCOM/OFF,LENGTH", "CUTCOM/OFF", [5, 5, 0]),
+    ("CUTCOM/LEFT", "CUTCOM/OFF", "CUTCOM/ON,LENGTH,2", [5, 0, 0]),
+    ("CUTCOM/ON\nCUTCOM/LEFT", "CUTCOM/ON", "CUTCOM/OFF", [5, 5, 0]),
+]
+
+
+@pytest.mark.parametrize("first, second, third, offsets", OFFSETS)
+def test_cutcom_on_and_off_are_those_of_the_side(first, second, third, offsets):
+    text = f"{HEAD}{first}\nGOTO/9,0,0\n{second}\nGOTO/19,0,0\n{third}\nGOTO/29,0,0\n"
+    assert program(text, contour_data="contour").side_offset[1:].tolist() == offsets
+
+
+def test_cutcom_on_before_any_side_is_refused():
+    assert codes(f"{HEAD}CUTCOM/ON\nGOTO/9,0,0\n", contour_data="contour") == [("L401", 6)]
+
+
+@pytest.mark.parametrize("y, code", [("-0.0001", []), ("0", []), ("0.0001", [("L408", 7)])])
+def test_a_circle_that_ends_just_behind_its_start_is_a_full_turn_or_refused(y, code):
+    """Ends of files with four decimals: where the rounding leaves no turn, a full one may be meant."""
+    text = f"{HEAD}GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/10,{y},0\n"
+    if code:
+        assert codes(text, hand="right") == code
+    else:
+        found = program(text, hand="right")
+        assert seconds(found, 8) == pytest.approx(20 * math.pi / 10, rel=1e-4)
