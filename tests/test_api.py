@@ -3,6 +3,7 @@
 
 import doctest
 import inspect
+import math
 import runpy
 import subprocess
 from pathlib import Path
@@ -81,6 +82,76 @@ def test_a_fault_is_refused_and_a_warning_is_issued(folder):
     (folder / "long.ngc").write_text(PART.replace("X10\n", "X10\nG4 P100\n"), encoding="ascii")
     with pytest.warns(pkm.DiagnosticWarning, match="G428"):
         pkm.read("long.ngc", tool_lengths={1: 120.0})
+
+
+def test_a_warning_is_of_the_line_that_called(folder):
+    (folder / "long.ngc").write_text(PART.replace("X10\n", "X10\nG4 P100\n"), encoding="ascii")
+    with pytest.warns(pkm.DiagnosticWarning) as issued:
+        pkm.read("long.ngc", tool_lengths={1: 120.0})
+    assert {Path(each.filename) for each in issued} == {Path(__file__)}
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda program: pkm.read(None), "source: expected the path of a file or a CAM job, got NoneType"),
+        (lambda program: pkm.post(each for each in ["part.ngc"]), "expected the path .* got generator"),
+        (lambda program: pkm.read("part.ngc", 120.0), "read: tool_lengths: expected Mapping, got float 120.0"),
+        (lambda program: pkm.read("part.ngc", np.array([120.0])), "tool_lengths: expected Mapping, got ndarray"),
+        (lambda program: pkm.read("part.ngc", arguments=["--unit", "mm"]), "read: arguments: expected str, got list"),
+        (lambda program: pkm.read("part.ngc", reading="mm"), "reading: expected ReadingOptions, got str 'mm'"),
+        (lambda program: pkm.read_options(["--unit"]), "read_options: arguments: expected str, got list"),
+        (lambda program: pkm.read_machine(b"example_6tps"), "read_machine: name: expected str or Path, got bytes"),
+        (lambda program: pkm.find_machine(None), "find_machine: name: expected str or Path, got NoneType"),
+        (lambda program: pkm.compensate("part.ngc"), "program: expected Program, as made by pkm.read, got str 'part"),
+        (lambda program: pkm.place(program, "example_6tps"), "machine: expected Machine, as made by pkm.read_machine"),
+        (lambda program: pkm.place(program, pkm.read_machine(), {}), "options: expected Options or None, .* got dict"),
+        (lambda program: pkm.plan(program, pkm.read_machine()), "expected Trajectory, as made by pkm.place, got Prog"),
+        (lambda program: pkm.reach(program, pkm.read_machine()), "reach: trajectory: expected Trajectory"),
+        (lambda program: pkm.write(None, "a.ngc"), "what: expected Program or Trajectory or Plan, as made by pkm.read"),
+        (lambda program: pkm.write(program, "a.ngc", form="vector"), "form: expected GcodeDialect, got str 'vector'"),
+        (lambda program: pkm.certify("part.pmc", "example_6tps"), "certify: machine: expected Machine"),
+        (
+            lambda program: pkm.post("part.ngc", pkm.read_machine()),
+            "machine: expected str or Path or None, got Machine",
+        ),
+        (lambda program: pkm.post("part.ngc", options="--unit mm"), "options: expected Options or None"),
+        (lambda program: pkm.post("part.ngc", log="log"), "post: log: expected Callable, got str 'log'"),
+    ],
+)
+def test_an_argument_of_another_type_is_named(folder, call, said):
+    program = pkm.read("part.ngc", tool_lengths={1: 120.0})
+    before = sorted(folder.iterdir())
+    with pytest.raises(TypeError, match=said):
+        call(program)
+    assert sorted(folder.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    "lengths", [{1: math.inf}, {1: math.nan}, {1: 0}, {1: -5.0}, {1: "long"}, {"1": 120.0}, {1.5: 120.0}, {1: None}]
+)
+def test_gauge_lengths_are_checked_as_on_the_command_line(folder, lengths):
+    for call in (pkm.read, pkm.post):
+        with pytest.raises(ValueError, match=r"tool_lengths: expected mm by tool number, as {1: 120.0}, got {"):
+            call("part.ngc", tool_lengths=lengths)
+
+
+def test_numbers_of_numpy_and_paths_of_both_kinds_are_taken(folder):
+    program = pkm.read(folder / "part.ngc", {np.int64(1): np.float32(120.0)})
+    assert program.tools[1].length == 120.0
+    assert pkm.find_machine(Path("example_6tps")) == pkm.find_machine("example_6tps")
+
+
+@pytest.mark.parametrize("name", ["none.toml", "folder.toml", "a\0b.toml", "no_such_machine"])
+def test_a_machine_file_that_is_not_there_is_refused(folder, name):
+    (folder / "folder.toml").mkdir()
+    with pytest.raises(pkm.Refused, match="M101"):
+        pkm.find_machine(name)
+
+
+def test_what_is_said_of_options_holds_what_was_typed():
+    with pytest.raises(ValueError, match="^unrecognized arguments: --unti mm in '--unti mm'$"):
+        pkm.read_options("--unti mm")
 
 
 def test_a_program_is_written_as_g_code_and_read_again(folder):

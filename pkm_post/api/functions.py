@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pkm_post.api.inputs import NO_LENGTHS, Source, is_path, sound_value
+from pkm_post.api.inputs import NO_LENGTHS, Source, is_path, sound_lengths, sound_value, typed
 from pkm_post.machine import ReachReport, check_reach, placed_workpiece
 from pkm_post.model import Certificate, Machine, Program, Refused, Trajectory
 from pkm_post.options import Options
@@ -33,6 +33,7 @@ from pkm_post.writing import GcodeDialect, trajectory_file
 from pkm_post.writing import write as gcode_text
 
 
+@typed
 def compensate(program: Program, options: Options | None = None) -> Program:
     """Compensate the cutter: contours under G41, G42 or CUTCOM, and points with surface normals.
 
@@ -56,6 +57,7 @@ def compensate(program: Program, options: Options | None = None) -> Program:
     return sound_value(*compensated(program, chosen.contours, chosen.actual_tools))
 
 
+@typed
 def place(program: Program, machine: Machine, options: Options | None = None) -> Trajectory:
     """Place a program on a machine: compensation, surface speed, work offset, approach and spin.
 
@@ -79,6 +81,7 @@ def place(program: Program, machine: Machine, options: Options | None = None) ->
     return replace(sound_value(*trajectory_of(program, machine, chosen)), tolerances=chosen.tolerances)
 
 
+@typed
 def reach(trajectory: Trajectory, machine: Machine, options: Options | None = None) -> ReachReport:
     """Check that a machine can follow a trajectory everywhere, not only at sampled poses.
 
@@ -102,6 +105,7 @@ def reach(trajectory: Trajectory, machine: Machine, options: Options | None = No
     return check_reach(trajectory, machine, placed_workpiece(setup, trajectory))
 
 
+@typed
 def plan(trajectory: Trajectory, machine: Machine, options: Options | None = None) -> Plan:
     """Plan the motion: rounded corners, feed, and knots at whole milliseconds.
 
@@ -124,6 +128,7 @@ def plan(trajectory: Trajectory, machine: Machine, options: Options | None = Non
     return sound_value(*planned(trajectory, machine, (options or Options()).tolerances))
 
 
+@typed
 def write(
     what: Program | Trajectory | Plan,
     file: str | Path,
@@ -172,6 +177,7 @@ def write(
     return tuple(path.with_name(name) for name in names)
 
 
+@typed
 def certify(program: str | Path, machine: Machine, trajectory: str | Path | None = None) -> Certificate:
     """Read a motion program back and check it against its trajectory file and the limits of its machine.
 
@@ -198,6 +204,7 @@ def certify(program: str | Path, machine: Machine, trajectory: str | Path | None
     return sound_value(verified.certificate, verified.diagnostics)
 
 
+@typed
 def post(
     source: Source,
     machine: str | Path | None = None,
@@ -233,7 +240,8 @@ def post(
     Raises:
         Refused: the input or the folder has errors, or memory runs out (F130). Jobs of a document that are already
             posted remain; otherwise nothing is written.
-        ValueError: the suffix of the file is unknown, or both options and arguments are given.
+        ValueError: the suffix of the file is unknown, a tool length is not above 0, or both options and arguments are
+            given.
 
     Example:
         >>> (posted,) = pkm.post("part.ngc", tool_lengths={1: 120.0}, out="results")
@@ -241,7 +249,8 @@ def post(
         ('part.pmc', True)
     """
     common: dict[str, Any] = {
-        "options": options, "tool_lengths": tool_lengths, "log": log, "progress": progress, "arguments": arguments,
+        "options": options, "tool_lengths": sound_lengths(tool_lengths), "arguments": arguments, "log": log,
+        "progress": progress,
     }  # fmt: skip
     with memory_guard(str(source) if is_path(source) else source.Label):
         if is_path(source) and Path(source).suffix.lower() != ".fcstd":

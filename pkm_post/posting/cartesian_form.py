@@ -25,7 +25,7 @@ from pkm_post.posting.cartesian_guard import POWER_REASONS, Allowance, Setting, 
 from pkm_post.posting.cartesian_segments import on_segments
 from pkm_post.posting.verify import read_motion, verify
 from pkm_post.report import summary
-from pkm_post.system import staged, write_fault
+from pkm_post.system import require_other, staged, write_fault
 from pkm_post.writing import (
     PmacSettings,
     PowerPmacSettings,
@@ -78,6 +78,7 @@ def cartesian_program(
     source = _Source(read_motion(program, machine), trajectory, planned, machine, controller, settings)
     setting = Setting(source.tool_length, allowance or Allowance(), segment_time)
     try:
+        require_other(out, [program, trajectory])
         with staged(out.parent) as folder:
             return source.written(folder / out.name, out, setting)
     except OSError as fault:

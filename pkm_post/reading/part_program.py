@@ -181,7 +181,19 @@ def _read_flavour(content: bytes, file: str, options: gcode.ReadOptions, flavour
     return program and replace(program, reading=(why, *program.reading)), diagnostics
 
 
+def _unreadable_folders(reading: ReadingOptions) -> Iterator[Diagnostic]:
+    """F103 for each folder of subprograms that cannot be listed: a file of the same name elsewhere is not meant."""
+    for folder in reading.subprograms:
+        try:
+            os.listdir(folder)
+        except OSError as fault:
+            yield Diagnostic("F103", Place(folder), str(fault))
+
+
 def _read_gcode(content: bytes, file: str, reading: ReadingOptions, folder: Path | None) -> _Result:
+    faults = tuple(_unreadable_folders(reading))
+    if faults:
+        return None, faults
     # NaN as diameter or length is reported where it is used.
     unknown = Tool(0, "", math.nan, 0.0, math.nan, corner_known=False)
     numbers = {*reading.tools, *reading.lengths}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from pkm_post import at_first_use
 from pkm_post.system import result_files
-from pkm_post.system.file_names import require_usable, unusable_name
+from pkm_post.system.file_names import require_other, require_usable, unusable_name
 from pkm_post.system.freecad_command import VARIABLE as FREECADCMD
 from pkm_post.system.freecad_command import FreeCADCommand, freecad_command
 from pkm_post.system.lock import Lock, OwnerRecord, lock_owner, try_lock
@@ -56,6 +56,7 @@ __all__ = [
     "memory_guard",
     "packages",
     "read_document",
+    "require_other",
     "require_usable",
     "result_files",
     "staged",

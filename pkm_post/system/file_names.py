@@ -9,8 +9,11 @@ Namespaces; Maximum Path Length Limitation]
 from __future__ import annotations
 
 import ntpath
+import os
 import re
 import sys
+from collections.abc import Iterable
+from pathlib import Path
 
 if sys.platform == "win32":
     import ctypes
@@ -87,6 +90,25 @@ def require_usable(name: str, system: str = sys.platform) -> None:
     fault = unusable_name(name, system)
     if fault:
         raise UnusableNameError(fault)
+
+
+class ReplacedSourceError(OSError):
+    """A result would replace a file that it is made from."""
+
+
+def require_other(out: Path, sources: Iterable[Path]) -> None:
+    """Check a result before it is written.
+
+    Args:
+        out: path of the result.
+        sources: files that it is made from.
+
+    Raises:
+        ReplacedSourceError: the result is one of them, by whatever name.
+    """
+    for source in sources:
+        if os.path.exists(out) and os.path.exists(source) and os.path.samefile(out, source):
+            raise ReplacedSourceError(f"the result is made from {source}")
 
 
 def require_short(path: str) -> None:

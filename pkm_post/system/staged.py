@@ -20,7 +20,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pkm_post.system.file_names import UnusableNameError, prefixed, require_short
+from pkm_post.system.file_names import ReplacedSourceError, UnusableNameError, prefixed, require_short
 from pkm_post.system.lock import Lock, try_lock
 from pkm_post.system.staged_folder import FolderExistsError
 
@@ -246,6 +246,7 @@ _CODES = (
     (OpenElsewhereError, "F113"),
     (UnusableNameError, "F114"),
     (FolderExistsError, "F119"),
+    (ReplacedSourceError, "F120"),
     (OSError, "F101"),
 )
 

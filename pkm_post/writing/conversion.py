@@ -10,7 +10,7 @@ from pathlib import Path
 
 from pkm_post.model import Diagnostic, errors
 from pkm_post.reading import AS_WRITTEN, ReadingOptions, read_part_program
-from pkm_post.system import require_usable, staged, write_fault
+from pkm_post.system import require_other, require_usable, staged, write_fault
 from pkm_post.writing.gcode import GcodeDialect, write
 
 TARGETS: dict[str, GcodeDialect] = {f"gcode:{form.value}": form for form in GcodeDialect}
@@ -46,6 +46,7 @@ def convert(
         return (*found, *warnings)
     try:
         require_usable(out.name)
+        require_other(out, [file])
         with staged(out.parent) as folder:
             (folder / out.name).write_text(text, encoding="ascii", newline="\n")
     except OSError as fault:

@@ -1767,6 +1767,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>为结果选择其他文件夹，或删除已有的内容</translation>
     </message>
     <message>
+        <source>a result would replace a file that it is made from</source>
+        <translation>结果会覆盖生成它所用的文件</translation>
+    </message>
+    <message>
+        <source>choose another name for the result</source>
+        <translation>为结果选择其他名称</translation>
+    </message>
+    <message>
         <source>there is not enough memory</source>
         <translation>内存不足</translation>
     </message>

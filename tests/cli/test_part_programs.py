@@ -64,6 +64,17 @@ def test_a_folder_that_cannot_be_made_is_reported(tmp_path):
     assert [one.code for one in convert(source, "gcode:vector", tmp_path / "taken" / "out.nc")] == ["F101"]
 
 
+@pytest.mark.parametrize("name", ["part.ngc", "link.ngc", "folder/../part.ngc"])
+def test_a_source_is_not_replaced_by_its_own_conversion(tmp_path, name):
+    source = saved(tmp_path / "part.ngc", "G0 X0 Y0 Z0\nM2\n")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "link.ngc").symlink_to(source)
+    before = source.read_bytes()
+    assert [one.code for one in errors(convert(source, "gcode:vector", tmp_path / name))] == ["F120"]
+    assert source.read_bytes() == before
+    assert (tmp_path / "link.ngc").is_symlink()
+
+
 def test_compensation_needs_a_diameter(tmp_path):
     source = saved(tmp_path / "part.ngc", "T3 M6\nG0 X0 Y0 Z0\nG41\nG1 X10 F100\nY10\nG40\nX20\nM2\n")
     assert "G411" in [one.code for one in check_file(source).diagnostics]

@@ -47,6 +47,15 @@ def test_its_struts_are_those_of_the_program(posted):
     assert form.certificate.holds and len(form.files) == 1
 
 
+@pytest.mark.parametrize("name", ["job.pmc", "job.pkmt"])
+def test_it_does_not_replace_the_files_it_is_made_from(posted, name):
+    machine, folder, _ = posted
+    before = (folder / name).read_bytes()
+    with pytest.raises(Refused, match="F120"):
+        cartesian_program(folder / "job.pmc", folder / "job.pkmt", machine, folder / name)
+    assert (folder / name).read_bytes() == before
+
+
 @pytest.mark.parametrize("bits", [DOUBLE, TURBO])
 def test_the_exported_inverse_program_makes_the_struts_of_it(posted, bits):
     """Words of the text, through the kinematic program of ``machine export``, against the program of strut lengths."""

@@ -33,7 +33,7 @@ from pkm_post.machine.description.presets import find_machine, machine_named
 from pkm_post.machine.description.reader import machine_of
 from pkm_post.machine.description.rewrite import CannotRewriteError, with_entries
 from pkm_post.model import Diagnostic, Machine, Place, errors
-from pkm_post.system import staged, write_fault
+from pkm_post.system import require_other, staged, write_fault
 
 COLUMNS = ("x", "y", "z", "i", "j", "k", "spin", "gauge", "l1", "l2", "l3", "l4", "l5", "l6")
 _AXIS_TOLERANCE = 1e-3
@@ -171,6 +171,7 @@ def calibrate_file(
         return None, diagnostics
     uncertainty = repetition.of(found, measured) if repetition else None
     try:
+        require_other(out, [path, measurements])
         with staged(out.parent) as folder:
             (folder / out.name).write_text(text, encoding="utf-8", newline="")
     except OSError as fault:

@@ -50,6 +50,17 @@ def test_the_new_file_is_the_real_machine(tmp_path):
     assert "# Assumed: the radius of the platform joints, and a limit away from singular poses." in text
 
 
+def test_the_measurements_and_the_machine_file_are_not_replaced(tmp_path):
+    path = measurements(tmp_path, preset("nategh_agheli_calibrated"))
+    nominal = tmp_path / "nominal.toml"
+    nominal.write_bytes(find_machine("nategh_agheli_nominal").read_bytes())
+    for out in (path, nominal):
+        before = out.read_bytes()
+        report, reported = calibrate_file(str(nominal), path, out)
+        assert report is None and [each.code for each in reported] == ["F120"]
+        assert out.read_bytes() == before
+
+
 def test_an_inch_file_stays_an_inch_file(tmp_path):
     nominal = preset("linuxcnc_genhexkins")
     rng = np.random.default_rng(2)

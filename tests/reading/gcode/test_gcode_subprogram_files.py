@@ -68,8 +68,20 @@ def test_folders_are_searched_in_order_and_that_of_the_program_last(tmp_path):
     shop = written(tmp_path / "shop", O1234_nc="O1234\nX5.\nM99\n")
     library = written(tmp_path / "library", O1234_nc="O1234\nX6.\nM99\n")
     written(tmp_path, main_nc=MAIN, O1234_nc=SUB)
-    for folders, first in (((shop, library), 5.0), ((library, shop), 6.0), ((), 1.0), ((tmp_path / "none",), 1.0)):
+    empty = written(tmp_path / "empty")
+    for folders, first in (((shop, library), 5.0), ((library, shop), 6.0), ((), 1.0), ((empty,), 1.0)):
         assert way(taken(tmp_path / "main.nc", *folders)[0])[0] == first
+
+
+def test_no_file_elsewhere_stands_in_for_a_folder_that_is_not_there(tmp_path):
+    shop = written(tmp_path / "shop", O1234_nc="O1234\nX5.\nM99\n")
+    written(tmp_path, main_nc=MAIN, O1234_nc=SUB, main_mpf="G0 X0 Y0 Z5\nG1 F100 X1\nM30\n")
+    for missing in (tmp_path / "shpo", tmp_path / "main.nc"):
+        for name in ("main.nc", "main.mpf"):
+            options = ReadingOptions(subprograms=(str(shop), str(missing)))
+            program, found = read_part_program(tmp_path / name, options)
+            assert program is None
+            assert [(each.code, each.place.file) for each in found] == [("F103", str(missing))]
 
 
 def faults(folder, **options):
