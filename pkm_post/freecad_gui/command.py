@@ -18,6 +18,7 @@ from PySide import QtWidgets
 from pkm_post.freecad_app.core_texts import fault_text
 from pkm_post.freecad_app.document import job_for, transaction
 from pkm_post.freecad_gui.icons import ICONS
+from pkm_post.freecad_gui.views import is_panel_open
 from pkm_post.system import MEMORY_FAULTS, memory_diagnostic
 
 translate = FreeCAD.Qt.translate
@@ -136,6 +137,11 @@ class PanelCommand(Command):
 
     def Activated(self) -> None:
         """Add the object and open its panel; a fault restores the previous state."""
+        editing = FreeCADGui.editDocument()
+        if editing is not None:
+            editing.resetEdit()  # now: later it would commit the transaction of the new object
+        if is_panel_open(translate(self.name, self.text)):
+            return
         subject = self._selected()
         document, before = subject.Document, set(subject.Document.Objects)
         with show_lack_of_memory(translate(self.name, self.text)):

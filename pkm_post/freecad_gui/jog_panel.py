@@ -158,6 +158,9 @@ class JogPanel:
         self._close()
         return True
 
+    def release(self) -> None:
+        """Nothing remains connected: the fields are its own."""
+
     def _close(self) -> None:
         FreeCADGui.getDocument(self.obj.Document.Name).resetEdit()
 

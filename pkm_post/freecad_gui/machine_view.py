@@ -10,14 +10,13 @@ from __future__ import annotations
 from typing import Any
 
 import FreeCAD
-import FreeCADGui
 
 from pkm_post.freecad_app.document import transaction
 from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.machine_object import go_home, machine_of, pose_of
 from pkm_post.freecad_gui.context_menu import add_commands, add_entry
 from pkm_post.freecad_gui.machine_scene import MachineScene
-from pkm_post.freecad_gui.views import DrawnView
+from pkm_post.freecad_gui.views import DrawnView, PanelView
 from pkm_post.model import Refused
 
 translate = FreeCAD.Qt.translate
@@ -26,7 +25,7 @@ _MACHINE, _TOOL = ("MachineFile",), ("ToolLength", "ToolDiameter", "ToolCornerRa
 _POSE = ("Tip", "ToolAxis", "Spin", "ToolLength", "WorkOffset", "Frame")
 
 
-class MachineView(DrawnView):
+class MachineView(DrawnView, PanelView):
     """Draws the machine around the part.
 
     Attributes:
@@ -57,23 +56,11 @@ class MachineView(DrawnView):
         super().setupContextMenu(vobj, menu)
         add_commands(menu, vobj.Object.Job, "PKM_Reach", "PKM_Simulate", "PKM_Post")
 
-    def doubleClicked(self, vobj: Any) -> bool:
-        """Open the jog panel."""
-        return bool(vobj.Document.setEdit(vobj, 0))
-
-    def setEdit(self, vobj: Any, _mode: int = 0) -> bool:
-        """Open the jog panel."""
+    def make_panel(self, obj: Any) -> Any:
+        """The jog panel."""
         from pkm_post.freecad_gui.jog_panel import JogPanel
 
-        if FreeCADGui.Control.activeDialog():
-            return False
-        FreeCADGui.Control.showDialog(JogPanel(vobj.Object))
-        return True
-
-    def unsetEdit(self, _vobj: Any, _mode: int = 0) -> bool:
-        """Close the jog panel."""
-        FreeCADGui.Control.closeDialog()
-        return True
+        return JogPanel(obj)
 
     def refresh(self) -> None:
         """Rebuild the scene."""

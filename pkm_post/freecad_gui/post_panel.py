@@ -28,6 +28,7 @@ from pkm_post.freecad_gui.job_choices import JobChoices
 from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed
 from pkm_post.freecad_gui.place_row import PlaceRow, take_place
 from pkm_post.freecad_gui.post_outcome import PostOutcome, step_text
+from pkm_post.freecad_gui.views import is_panel_open
 from pkm_post.model import Refused
 from pkm_post.options import READING_STEP
 from pkm_post.posting import Prepared, may_be_mended
@@ -230,9 +231,7 @@ class PostPanel:
 
 def open_panel(job: Any) -> PostPanel | None:
     """Show the panel for a job; None if another task panel is open."""
-    if FreeCADGui.Control.activeDialog():
-        text = translate("PostPanel", "Another task panel is open: close it first.")
-        QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), translate("PostPanel", "Post to a hexapod"), text)
+    if is_panel_open(translate("PostPanel", "Post to a hexapod")):
         return None
     panel = PostPanel(job)
     FreeCADGui.Control.showDialog(panel)

@@ -125,8 +125,8 @@ class ReachPanel:
         if pose_row is not None:
             self._pose.show(self.obj.Proxy.study, pose_row)
 
-    def end(self) -> None:
-        """Draw the machine at its own pose again."""
+    def release(self) -> None:
+        """Stop a search, and draw the machine at its own pose again."""
         self.place.end()
         self._pose.end()
 
@@ -135,7 +135,7 @@ class ReachPanel:
         return QtWidgets.QDialogButtonBox.StandardButton.Close
 
     def reject(self) -> bool:
-        """Close the panel; the view provider then calls ``end``."""
+        """Close the panel; the view provider then calls ``release``."""
         self.obj.Document.commitTransaction()
         FreeCADGui.getDocument(self.obj.Document.Name).resetEdit()
         return True

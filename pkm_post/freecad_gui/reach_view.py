@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import Any
 
 import FreeCAD
-import FreeCADGui
 import numpy as np
 from pivy import coin
 
@@ -21,7 +20,7 @@ from pkm_post.freecad_gui.context_menu import add_commands, add_entry
 from pkm_post.freecad_gui.margin_colours import coloured_path, colours_of, largest, legend
 from pkm_post.freecad_gui.preferences import every_nth
 from pkm_post.freecad_gui.shapes import OUT, points_through
-from pkm_post.freecad_gui.views import DrawnView
+from pkm_post.freecad_gui.views import DrawnView, PanelView
 
 translate = FreeCAD.Qt.translate
 
@@ -29,11 +28,10 @@ _MARK_SIZE = 11.0
 _WORST_IN_LIMITS = (0.1, 0.2, 0.8)
 
 
-class ReachView(DrawnView):
+class ReachView(DrawnView, PanelView):
     """Draws the path. A double click opens the findings."""
 
     icon, mode = "reach.svg", "Reach"
-    _panel: Any = None
     _axes: Any = None
 
     def updateData(self, _obj: Any, name: str) -> None:
@@ -74,31 +72,17 @@ class ReachView(DrawnView):
         self.refresh()
         self._root.addChild(points_through([point], OUT, _MARK_SIZE))
 
-    def doubleClicked(self, vobj: Any) -> bool:
-        """Open the findings."""
-        return bool(vobj.Document.setEdit(vobj, 0))
-
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
         """Add the findings, and the other commands for the job."""
         add_entry(menu, translate("PKM_Reach", "Open the findings"), lambda: self.doubleClicked(vobj), self.icon)
         super().setupContextMenu(vobj, menu)
         add_commands(menu, vobj.Object.Job, "PKM_Simulate", "PKM_Post")
 
-    def setEdit(self, vobj: Any, _mode: int = 0) -> bool:
-        """Open the findings."""
+    def make_panel(self, obj: Any) -> Any:
+        """The panel with the findings."""
         from pkm_post.freecad_gui.reach_panel import ReachPanel
 
-        self._panel = ReachPanel(vobj.Object)
-        FreeCADGui.Control.showDialog(self._panel)
-        return True
-
-    def unsetEdit(self, _vobj: Any, _mode: int = 0) -> bool:
-        """Close the findings; draw the machine at its own pose again."""
-        if self._panel is not None:
-            self._panel.end()
-            self._panel = None
-        FreeCADGui.Control.closeDialog()
-        return True
+        return ReachPanel(obj)
 
 
 def _legend_texts(obj: Any, top: float, unit: str) -> tuple[str, str]:

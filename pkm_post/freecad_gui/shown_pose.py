@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import FreeCADGui
 import numpy as np
 from pivy import coin
 
@@ -47,14 +46,6 @@ class ShownPose:
             self._view.played = False
             self._view.refresh()
         self._view = None
-
-
-def is_shown(document: str) -> bool:
-    """Whether a document still has its views, which close before it."""
-    try:
-        return FreeCADGui.getDocument(document) is not None
-    except NameError:
-        return False
 
 
 def look_at(document: Any, point: Any) -> None:

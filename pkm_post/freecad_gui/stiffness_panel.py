@@ -24,8 +24,8 @@ from pkm_post.freecad_gui.finding_view import FindingView
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.margin_colours import colour_bar, coloured_path, coloured_surface, colours_of
 from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed
-from pkm_post.freecad_gui.shown_pose import is_shown
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
+from pkm_post.freecad_gui.views import is_panel_open, is_shown
 from pkm_post.geometry import Array
 from pkm_post.machine import StiffnessMap
 from pkm_post.model import Refused
@@ -136,9 +136,7 @@ class StiffnessPanel:
 
 def open_panel(job: Any) -> StiffnessPanel | None:
     """Show the panel for a job; None if another task panel is open."""
-    if FreeCADGui.Control.activeDialog():
-        text = translate("PostPanel", "Another task panel is open: close it first.")
-        QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), translate("StiffnessPanel", "Stiffness"), text)
+    if is_panel_open(translate("StiffnessPanel", "Stiffness")):
         return None
     panel = StiffnessPanel(job)
     FreeCADGui.Control.showDialog(panel)

@@ -16,6 +16,7 @@ import Path.Op.Gui.Base as CamGui
 from PathScripts import PathUtils
 from PySide import QtWidgets
 
+from pkm_post.freecad_gui.observers import OnceClosed
 from pkm_post.freecad_gui.surface_finish_outcome import SurfaceFinishOutcome
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
 
@@ -72,12 +73,13 @@ class SurfaceFinishPage(CamGui.TaskPanelPage):
 
     def initPage(self, obj: Any) -> None:
         """Show the outcome of the operation, again after each computation."""
-        self._outcome = SurfaceFinishOutcome(obj, self.form.verdict, self.form.findings, self.form.again)
-        self._outcome.show()
+        outcome = SurfaceFinishOutcome(obj, self.form.verdict, self.form.findings, self.form.again)
+        self._close = OnceClosed(self.form, outcome.end)
+        outcome.show()
 
     def cleanupPage(self, _obj: Any) -> None:
         """Remove the map from the view."""
-        self._outcome.end()
+        self._close()
 
     def getForm(self) -> Any:
         """Create the fields."""

@@ -11,17 +11,16 @@ from pathlib import Path
 from typing import Any
 
 import FreeCAD
-import FreeCADGui
 
 from pkm_post.freecad_gui.context_menu import add_commands, add_entry
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.verdict_icons import with_verdict
-from pkm_post.freecad_gui.views import View
+from pkm_post.freecad_gui.views import PanelView
 
 translate = FreeCAD.Qt.translate
 
 
-class SymmetryView(View):
+class SymmetryView(PanelView):
     """The icon of a symmetric operation. The base keeps its place in the tree, beside the copy."""
 
     def getIcon(self) -> Any:
@@ -31,28 +30,14 @@ class SymmetryView(View):
     def _icon_file(self) -> Path:
         return ICONS / ("rotate.svg" if hasattr(getattr(self, "Object", None), "Angle") else "mirror.svg")
 
-    def doubleClicked(self, vobj: Any) -> bool:
-        """Open the panel."""
-        return bool(vobj.Document.setEdit(vobj, 0))
-
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
         """Add the panel, and further copies."""
         add_entry(menu, translate("SymmetryPanel", "Edit"), lambda: self.doubleClicked(vobj), self._icon_file().name)
         super().setupContextMenu(vobj, menu)
         add_commands(menu, vobj.Object, "PKM_Mirror", "PKM_Rotate")
 
-    def setEdit(self, vobj: Any, _mode: int = 0) -> bool:
-        """Open the panel."""
+    def make_panel(self, obj: Any) -> Any:
+        """The panel with the plane or the axis."""
         from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
 
-        FreeCADGui.Control.showDialog(SymmetryPanel(vobj.Object))
-        return True
-
-    def unsetEdit(self, _vobj: Any, _mode: int = 0) -> bool:
-        """Close the panel; FreeCAD also calls this when another object is edited, or the document closed."""
-        from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
-
-        if SymmetryPanel.opened is not None:
-            SymmetryPanel.opened.release()
-        FreeCADGui.Control.closeDialog()
-        return True
+        return SymmetryPanel(obj)

@@ -10,11 +10,37 @@ from __future__ import annotations
 import abc
 from typing import Any, ClassVar
 
+import FreeCAD
+import FreeCADGui
 from pivy import coin
+from PySide import QtWidgets
 
 from pkm_post.freecad_gui.context_menu import add_switch
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.verdict_icons import with_verdict
+
+translate = FreeCAD.Qt.translate
+
+
+def is_shown(document: str) -> bool:
+    """Whether a document still has its views, which close before it."""
+    try:
+        return FreeCADGui.getDocument(document) is not None
+    except NameError:
+        return False
+
+
+def is_panel_open(title: str) -> bool:
+    """Whether a task panel is open; if so, a message says to close it first.
+
+    Args:
+        title: of the message.
+    """
+    if not FreeCADGui.Control.activeDialog():
+        return False
+    text = translate("PostPanel", "Another task panel is open: close it first.")
+    QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), title, text)
+    return True
 
 
 class View:
@@ -52,6 +78,52 @@ class View:
 
     def loads(self, state: object) -> None:
         """Restore nothing: nothing was saved."""
+
+
+class PanelView(View, abc.ABC):
+    """An object whose task panel is open while FreeCAD edits it."""
+
+    _panel: Any = None
+    _edit: tuple[str, Any] = ("", None)
+    """Name of the document and the transaction of the open panel."""
+
+    @abc.abstractmethod
+    def make_panel(self, obj: Any) -> Any:
+        """Create the panel, with a ``form`` and ``release``, which disconnects it and may be called again."""
+
+    def doubleClicked(self, vobj: Any) -> bool:
+        """Open the panel, or say why not."""
+        return bool(vobj.Document.setEdit(vobj, 0)) or is_panel_open(vobj.Object.Label)
+
+    def setEdit(self, vobj: Any, _mode: int = 0) -> bool:
+        """Open the panel, unless another one is open."""
+        if FreeCADGui.Control.activeDialog():
+            return False
+        panel = self.make_panel(vobj.Object)
+        panel.form.destroyed.connect(lambda *_: self._lost(panel))
+        self._panel, self._edit = panel, (vobj.Object.Document.Name, FreeCAD.getActiveTransaction())
+        FreeCADGui.Control.showDialog(panel)
+        return True
+
+    def unsetEdit(self, _vobj: Any, _mode: int = 0) -> bool:
+        """Close the panel; FreeCAD also calls this when another object is edited, or the document closed."""
+        if self._panel is not None:
+            self._release()
+            FreeCADGui.Control.closeDialog()
+        return True
+
+    def _release(self) -> None:
+        panel, self._panel = self._panel, None
+        panel.release()
+
+    def _lost(self, panel: Any) -> None:
+        """Leave the edit mode, which commits, when a command closes the panel, without a call of its ``reject``."""
+        if panel is not self._panel:
+            return
+        self._release()
+        document, transaction = self._edit
+        if FreeCAD.getActiveTransaction() in (None, transaction) and is_shown(document):  # not that of the command
+            FreeCADGui.getDocument(document).resetEdit()
 
 
 class DrawnView(View, abc.ABC):

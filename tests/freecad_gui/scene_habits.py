@@ -3,7 +3,7 @@
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, main, new_document, settle, step
+from gui import FOLDER, answer, main, new_document, press, select, settle, step
 from PySide import QtWidgets
 
 PROGRAM = "G21 G90 G17\nT1 M6\nG0 X0 Y0 Z30\nG1 Z5 F600\nG1 X10 F900\nM2\n"
@@ -161,6 +161,95 @@ def command_of_a_menu_takes_its_object():
     SymmetryPanel.opened.accept()
     settle()
     return reported
+
+
+def _state(document):
+    """Whether a panel is open, an object is edited and a transaction is pending."""
+    editing = FreeCADGui.getDocument(document.Name).getInEdit() is not None
+    return [bool(FreeCADGui.Control.activeDialog()), editing, document.HasPendingTransaction]
+
+
+def _closed_by_a_command(item, change):
+    """The states of the document with the panel of an object and a change, and when a command has closed it."""
+    item.ViewObject.Document.setEdit(item.ViewObject, 0)
+    change()
+    settle()
+    before = _state(item.Document)
+    FreeCADGui.Control.closeDialog()
+    settle()
+    after = _state(item.Document)
+    select(item.Document.getObject("Stock"), "Face1")  # a traceback of what still follows would fail the scene
+    item.Document.recompute()
+    settle()
+    return [before, after, item.Document.UndoNames[0]]
+
+
+@step
+def panels_are_closed_by_a_command():
+    from pkm_post.freecad_app.machine_object import create_machine
+    from pkm_post.freecad_app.reach_object import create_reach
+    from pkm_post.freecad_app.symmetry import create_mirror
+
+    document = new_document("closed")
+    job = document.getObject("Job")
+    machine, mirror = create_machine(document, job=job), create_mirror(document.getObject("Custom"), normal=(0, 1, 0))
+    reach = create_reach(job, machine)
+    document.recompute()
+    found = {
+        "mirror": _closed_by_a_command(mirror, lambda: setattr(mirror, "KeepClimb", True)),
+        "machine": _closed_by_a_command(machine, lambda: setattr(machine, "Spin", 3.0)),
+        "reach": _closed_by_a_command(reach, lambda: reach.ViewObject.Proxy._panel.show_worst(0)),
+    }
+    found["at its own pose"] = not machine.ViewObject.Proxy.played
+    return found
+
+
+@step
+def surface_finish_is_closed_by_a_command():
+    import Path.Main.Gui.Job
+    import Path.Op.Gui.Selection
+
+    from pkm_post.freecad_app.surface_finish import create_surface_finish
+
+    document = FreeCAD.newDocument("finish")
+    block = document.addObject("Part::Box", "Block")
+    document.recompute()
+    Path.Main.Gui.Job.Create([block.Name], None, openTaskPanel=False)
+    finish = create_surface_finish(document.getObject("Job"), [])
+    finish.ViewObject.Document.setEdit(finish.ViewObject, 0)
+    settle()
+    panel = finish.ViewObject.Proxy.panel
+    found = {"open": bool(FreeCADGui.Control.activeDialog())}
+    FreeCADGui.Selection.removeObserver(panel)  # CAM leaves it, and the gate of its selection, with each operation
+    FreeCADGui.Control.closeDialog()
+    Path.Op.Gui.Selection.clear()
+    settle()
+    document.recompute()  # a traceback of the page, which followed that, would fail the scene
+    finish.ViewObject.Proxy.clearTaskPanel()
+    FreeCADGui.getDocument(document.Name).resetEdit()
+    return found
+
+
+@step
+def mirror_beside_an_open_panel():
+    from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
+
+    document = new_document("beside")
+    job, base, said = document.getObject("Job"), document.getObject("Custom"), []
+    press("PKM_Post", job)
+    before = len(document.Objects)
+    answer(said)
+    press("PKM_Mirror", base)
+    found = {"said": said, "made": len(document.Objects) - before, "state": _state(document)}
+    FreeCADGui.Control.closeDialog()
+    settle()
+    press("PKM_Mirror", base)
+    first = SymmetryPanel.opened.obj.Name
+    press("PKM_Mirror", base)  # with the panel of the first open
+    second = SymmetryPanel.opened.obj.Name
+    SymmetryPanel.opened.reject()
+    settle()
+    return found | {"left": [document.getObject(name) is not None for name in (first, second)]}
 
 
 main()

@@ -70,3 +70,29 @@ def test_program_has_a_menu(session):
 def test_command_of_a_menu_takes_its_object(session):
     found = session["command_of_a_menu_takes_its_object"]
     assert found["base"] == found["rotation"]
+
+
+def test_panel_closed_by_a_command_leaves_nothing_open(session):
+    found = session["panels_are_closed_by_a_command"]
+    steps = {"mirror": "Edit symmetric operation", "machine": "Jog the machine", "reach": "Colour by a check"}
+    for name, step in steps.items():
+        before, after, undo = found[name]
+        assert before[:2] == [True, True], name
+        assert after == [False, False, False], name
+        assert undo == step
+    assert found["at its own pose"]
+
+
+def test_page_of_surface_finish_closed_by_a_command_follows_nothing(session):
+    assert session["surface_finish_is_closed_by_a_command"]["open"]
+
+
+def test_mirror_waits_for_the_panel_of_another_command(session):
+    found = session["mirror_beside_an_open_panel"]
+    assert found["said"] == ["Another task panel is open: close it first."]
+    assert found["made"] == 0
+    assert found["state"] == [True, False, False]
+
+
+def test_cancelled_mirror_leaves_the_one_before(session):
+    assert session["mirror_beside_an_open_panel"]["left"] == [True, False]
