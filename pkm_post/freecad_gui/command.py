@@ -18,7 +18,7 @@ from PySide import QtWidgets
 from pkm_post.freecad_app.core_texts import fault_text
 from pkm_post.freecad_app.document import job_for, transaction
 from pkm_post.freecad_gui.icons import ICONS
-from pkm_post.freecad_gui.views import is_panel_open
+from pkm_post.freecad_gui.observers import is_panel_open
 from pkm_post.system import MEMORY_FAULTS, memory_diagnostic
 
 translate = FreeCAD.Qt.translate

@@ -19,9 +19,9 @@ from pkm_post.freecad_app.job_setup import placed_job
 from pkm_post.freecad_app.job_study import JobStudy
 from pkm_post.freecad_app.reach_object import machine_for
 from pkm_post.freecad_gui.job_choices import show_place
+from pkm_post.freecad_gui.observers import is_shown
 from pkm_post.freecad_gui.shapes import OUT, points_through
 from pkm_post.freecad_gui.shown_pose import ShownPose, look_at
-from pkm_post.freecad_gui.views import is_shown
 from pkm_post.model import Place, Refused
 
 _MARK_SIZE = 11.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Observers: Escape during a long computation; changes, recomputes and deletions in a document.
+"""Observers: Escape during a long computation; changes, recomputes and deletions in a document; what is open.
 
 Each takes a callback and calls it in the GUI thread. During a computation FreeCAD's progress bar blocks other keys and
 the mouse, so that nothing can be changed while events are processed.
@@ -14,6 +14,8 @@ from typing import Any
 import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
+
+translate = FreeCAD.Qt.translate
 
 _CALM_MS = 700
 """ms without Escape until it has its usual meaning again: longer than the initial delay of key repeat."""
@@ -161,6 +163,27 @@ class OnceClosed:
         function, self._function = self._function, None
         if function is not None:
             function()
+
+
+def is_shown(document: str) -> bool:
+    """Whether a document still has its views, which close before it."""
+    try:
+        return FreeCADGui.getDocument(document) is not None
+    except NameError:
+        return False
+
+
+def is_panel_open(title: str) -> bool:
+    """Whether a task panel is open; if so, a message says to close it first.
+
+    Args:
+        title: of the message.
+    """
+    if not FreeCADGui.Control.activeDialog():
+        return False
+    text = translate("PostPanel", "Another task panel is open: close it first.")
+    QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), title, text)
+    return True
 
 
 class RecomputeWatch:

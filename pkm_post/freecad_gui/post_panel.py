@@ -25,10 +25,9 @@ from pkm_post.freecad_gui.background import BackgroundCall
 from pkm_post.freecad_gui.finding_view import FindingView
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.job_choices import JobChoices
-from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed
+from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed, is_panel_open
 from pkm_post.freecad_gui.place_row import PlaceRow, take_place
 from pkm_post.freecad_gui.post_outcome import PostOutcome, step_text
-from pkm_post.freecad_gui.views import is_panel_open
 from pkm_post.model import Refused
 from pkm_post.options import READING_STEP
 from pkm_post.posting import Prepared, may_be_mended

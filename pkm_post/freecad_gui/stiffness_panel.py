@@ -23,9 +23,8 @@ from pkm_post.freecad_app.user_units import amount_text
 from pkm_post.freecad_gui.finding_view import FindingView
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.margin_colours import colour_bar, coloured_path, coloured_surface, colours_of
-from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed
+from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed, is_panel_open, is_shown
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
-from pkm_post.freecad_gui.views import is_panel_open, is_shown
 from pkm_post.geometry import Array
 from pkm_post.machine import StiffnessMap
 from pkm_post.model import Refused

@@ -13,34 +13,11 @@ from typing import Any, ClassVar
 import FreeCAD
 import FreeCADGui
 from pivy import coin
-from PySide import QtWidgets
 
 from pkm_post.freecad_gui.context_menu import add_switch
 from pkm_post.freecad_gui.icons import ICONS
+from pkm_post.freecad_gui.observers import is_panel_open, is_shown
 from pkm_post.freecad_gui.verdict_icons import with_verdict
-
-translate = FreeCAD.Qt.translate
-
-
-def is_shown(document: str) -> bool:
-    """Whether a document still has its views, which close before it."""
-    try:
-        return FreeCADGui.getDocument(document) is not None
-    except NameError:
-        return False
-
-
-def is_panel_open(title: str) -> bool:
-    """Whether a task panel is open; if so, a message says to close it first.
-
-    Args:
-        title: of the message.
-    """
-    if not FreeCADGui.Control.activeDialog():
-        return False
-    text = translate("PostPanel", "Another task panel is open: close it first.")
-    QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), title, text)
-    return True
 
 
 class View:
