@@ -7,7 +7,7 @@ Input: statements and comments. Output: records in the state, evaluated once all
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -60,7 +60,17 @@ def _on_or_off(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 def _record(state: ReaderState, row: int, side: float, plane: int | None) -> None:
-    state.cutcoms.append(Cutcom(row, side, plane, state.tool, _radius(state), state.point_meaning))
+    state.cutcoms.append(Cutcom(row, row, side, plane, state.tool, _radius(state), state.point_meaning))
+
+
+def cutcom_with_new_tool(state: ReaderState, row: int) -> None:
+    """Compensation in force goes on with the tool and the radius from here on."""
+    last = state.cutcoms[-1] if state.cutcoms else None
+    if last is None or not last.side or _cutter(last) == (state.tool, _radius(state)):
+        return
+    if state.motions_before(row) == state.motions_before(last.row):
+        state.cutcoms.pop()
+    state.cutcoms.append(replace(last, row=row, tool=state.tool, radius=_radius(state)))
 
 
 def _radius(state: ReaderState) -> float:
@@ -205,7 +215,7 @@ def _distance(state: ReaderState, cutcom: Cutcom, interpretation: _Interpretatio
     """Offset of the tool from the points, to the side of the CUTCOM, mm."""
     is_contour = interpretation.points == _CONTOUR
     if is_contour and not cutcom.radius:
-        state.report("L403", cutcom.row, "compensation for a cutter of unknown diameter")
+        state.report("L403", cutcom.written, "compensation for a cutter of unknown diameter")
     radius = cutcom.radius if is_contour else 0.0
     return radius + state.options.wear.get(cutcom.tool, 0.0)
 
@@ -215,7 +225,7 @@ def _descriptions(state: ReaderState, interpretations: list[_Interpretation]) ->
     rows: dict[_Interpretation, list[int]] = {}
     for cutcom, interpretation in zip(state.cutcoms, interpretations, strict=True):
         if interpretation.points:
-            rows.setdefault(interpretation, []).append(cutcom.row)
+            rows.setdefault(interpretation, []).append(cutcom.written)
     descriptions = []
     for interpretation, mine in rows.items():
         if interpretation.by_arcs:
@@ -241,12 +251,12 @@ def _report_undecided(
             by_cutter.setdefault(_cutter(cutcom), []).append(cutcom)
     for (tool, radius), mine in by_cutter.items():
         arcs = tight.get((tool, radius), _TightArcs())
-        hints = [f"{_cutcom_lines(state, [cutcom.row for cutcom in mine])} with T{tool}"]
+        hints = [f"{_cutcom_lines(state, [cutcom.written for cutcom in mine])} with T{tool}"]
         if arcs.towards:
             hints.append(f"{_tightest_arc(state, arcs.towards, 'bend towards it', radius)}, as the centre may")
         if arcs.away:
             hints.append(f"{_tightest_arc(state, arcs.away, 'bend away from it', radius)}, as a contour may")
-        state.report("L429", mine[0].row, "; ".join(hints))
+        state.report("L429", mine[0].written, "; ".join(hints))
 
 
 def _tightest_arc(state: ReaderState, arcs: list[tuple[int, float]], bend: str, radius: float) -> str:

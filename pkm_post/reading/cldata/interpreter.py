@@ -146,13 +146,15 @@ def interpret(state: ReaderState, bulk: Array) -> Array:
     """
     statements = state.statements
     valid = _plausible(state)
+    with_rapid = np.array([template.rapid for template in statements.templates], dtype=np.bool_)
+    state.rapids += np.flatnonzero(with_rapid[statements.template]).tolist()
     unknown: dict[str, list[int]] = {}
     for row in np.flatnonzero(~bulk & valid).tolist():
         word = statements.word(row)
         handler = _handler(state, word)
         if handler is not None:
             handler(state, row, statements.statement(row))
-        elif word in UNSUPPORTED:
+        elif word in UNSUPPORTED or _known_parts(word):
             state.report("L401", row, word)
         elif word not in IGNORED:
             unknown.setdefault(word, []).append(row)
@@ -167,6 +169,12 @@ def interpret(state: ReaderState, bulk: Array) -> Array:
         times = f", {len(rows)} times" if len(rows) > 1 else ""
         state.report("L404", rows[0], f"{word[:60]}{times}")
     return bulk & valid
+
+
+def _known_parts(word: str) -> bool:
+    """Whether several words before the slash contain one with a meaning, as in TLLFT,GORGT."""
+    parts = word.split(",")
+    return len(parts) > 1 and any(part in HANDLERS or part in UNSUPPORTED for part in parts)
 
 
 def _handler(state: ReaderState, word: str) -> _Handler | None:

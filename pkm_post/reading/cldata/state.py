@@ -122,10 +122,11 @@ class PointMeaning:
 
 @dataclass(frozen=True)
 class Cutcom:
-    """A CUTCOM that begins, changes or ends compensation.
+    """A CUTCOM that begins, changes or ends compensation, or goes on with another cutter.
 
     Attributes:
-        row: its statement.
+        row: the statement from which it applies: its own, or that of the cutter.
+        written: its statement.
         side: 1 for LEFT, -1 for RIGHT, 0 for OFF.
         plane: the coordinate normal to the named plane; None if no plane is named.
         tool: tool number.
@@ -134,6 +135,7 @@ class Cutcom:
     """
 
     row: int
+    written: int
     side: float
     plane: int | None
     tool: int
@@ -295,7 +297,7 @@ class ReaderState:
 
     def motions_before(self, row: int) -> int:
         """Number of motions before a statement, with all preceding statements read."""
-        return int(self.gotos_before[row]) + sum(not point.start for _, point in self.points)
+        return int(self.gotos_before[row]) + sum(at < row and not point.start for at, point in self.points)
 
     def set_feed(self, row: int, feed: Feed) -> None:
         """Set the feed from here on."""

@@ -38,6 +38,8 @@ _HIDDEN_DIGITS = str.maketrans({str(digit): chr(0xE000 + digit) for digit in ran
 _BLANKS = f" \t{JOINT}"
 _TEXT = re.compile(r"\s*(?:TOOL[ \t]+PATH|OPERATION[ \t]+NAME|\w+)(.*)", re.DOTALL | re.IGNORECASE)
 _LABEL = re.compile(r"N\d+")
+_AFTER_RAPID = ("GOTO", "GODLTA", "GOHOME")
+"""Motions that may follow RAPID in one statement."""
 
 
 @dataclass(frozen=True)
@@ -93,11 +95,13 @@ class Template:
         word: the major word, several joined by commas; empty for a line of numbers.
         items: words and nested templates; ``float`` itself marks a number, None an empty item.
         takes_text: whether the rest of the line is text.
+        rapid: whether RAPID precedes the major word, as in RAPID,GOTO/x,y,z.
     """
 
     word: str
     items: tuple[object, ...]
     takes_text: bool = False
+    rapid: bool = False
 
     @property
     def only_numbers(self) -> bool:
@@ -253,8 +257,10 @@ def template_of(tree: Tree[Token]) -> Template:
     words = [str(word).upper() for word in head.children]
     if len(words) > 1 and _LABEL.fullmatch(words[0]):
         del words[0]
+    rapid = words[:-1] == ["RAPID"] and words[-1] in _AFTER_RAPID
     children = items.children if items is not None else []
-    return Template(",".join(words), tuple(_item(cast("Tree[Token] | None", child)) for child in children))
+    word = words[-1] if rapid else ",".join(words)
+    return Template(word, tuple(_item(cast("Tree[Token] | None", child)) for child in children), rapid=rapid)
 
 
 def _item(tree: Tree[Token] | None) -> object:

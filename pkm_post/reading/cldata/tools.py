@@ -11,6 +11,7 @@ import math
 from dataclasses import replace
 
 from pkm_post.model import EventKind, Tool, corner_reach, largest_corner_radius, valid_cutter_angles
+from pkm_post.reading.cldata.cutcom import cutcom_with_new_tool
 from pkm_post.reading.cldata.feeds import resolve_surface_speed
 from pkm_post.reading.cldata.state import ReaderState
 from pkm_post.reading.cldata.statements import Statement
@@ -81,6 +82,7 @@ def _new_cutter(state: ReaderState, row: int, diameter: float, corner: float, bo
     state.point_angle = math.pi - 2 * bottom_angle if bottom_angle > 0 and not corner else 0.0
     state.tool_name = state.inserted_name
     resolve_surface_speed(state, row)
+    cutcom_with_new_tool(state, row)
     return True
 
 
@@ -104,6 +106,7 @@ def load(state: ReaderState, row: int, statement: Statement) -> None:
     state.tool_length = length
     if state.tool not in state.tools:
         record_tool(state)
+    cutcom_with_new_tool(state, row)
     state.events.append((row, EventKind.TOOL_CHANGE, float(state.tool)))
 
 

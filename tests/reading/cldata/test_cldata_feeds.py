@@ -139,6 +139,23 @@ def test_cutcom_on_and_off_are_those_of_the_side(first, second, third, offsets):
     assert program(text, contour_data="contour").side_offset[1:].tolist() == offsets
 
 
+@pytest.mark.parametrize("before, offsets", [("", [5, 2, 3, 0]), ("GOTO/4,0,0\n", [5, 5, 2, 3, 0])])
+def test_the_offset_is_that_of_the_cutter_in_use(before, offsets):
+    """A smaller cutter used to keep the radius of the one that CUTCOM was written for."""
+    change = f"CUTCOM/LEFT\nGOTO/2,0,0\n{before}LOADTL/2\nCUTTER/4\nGOTO/9,0,0\nCUTTER/6\nGOTO/19,0,0\nCUTCOM/OFF\n"
+    found = program(f"{HEAD}{change}CUTTER/8\nGOTO/29,0,0\n", contour_data="contour")
+    assert found.side_offset[1:].tolist() == offsets
+    worn = program(f"{HEAD}{change}GOTO/29,0,0\n", contour_data="centre", wear={2: -0.1})
+    assert worn.side_offset[-3:] == pytest.approx([-0.1, -0.1, 0])
+
+
+def test_a_cutter_may_be_written_behind_its_cutcom():
+    text = f"{HEAD}LOADTL/2\nCUTCOM/RIGHT\nCUTTER/4\nGOTO/9,0,0\n"
+    assert program(text, contour_data="contour").side_offset[1:].tolist() == [-2]
+    text = "UNITS/MM\nLOADTL/2,LENGTH,100\nCUTCOM/LEFT\nCUTTER/4\nFEDRAT/9\nFROM/0,0,0\nGOTO/9,0,0\n"
+    assert program(text, contour_data="contour").side_offset.tolist() == [2, 2]
+
+
 def test_cutcom_on_before_any_side_is_refused():
     assert codes(f"{HEAD}CUTCOM/ON\nGOTO/9,0,0\n", contour_data="contour") == [("L401", 6)]
 
@@ -152,3 +169,30 @@ def test_a_circle_that_ends_just_behind_its_start_is_a_full_turn_or_refused(y, c
     else:
         found = program(text, hand="right")
         assert seconds(found, 8) == pytest.approx(20 * math.pi / 10, rel=1e-4)
+
+
+@pytest.mark.parametrize("head", ["RAPID,", "rapid , ", "N10,RAPID,"])
+def test_rapid_may_stand_before_its_motion_in_one_statement(head):
+    """PERSONAL APT, sample of milling: RAPID,GODLTA/3,200 and RAPID,GOTO/0,0,3."""
+    found = program(f"{HEAD}{head}GOTO/5,0,0\nGOTO/6,0,0\n{head}GODLTA/1,0,0\nGODLTA/1,0,0\n")
+    assert found.position[:, 0].tolist() == [0, 5, 6, 7, 8]
+    assert found.kind.tolist() == [Kind.RAPID, Kind.RAPID, Kind.LINE, Kind.RAPID, Kind.LINE]
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "TLLFT,GORGT/1,2",
+        "TLON,GOBACK/1",
+        "GO,TO/5",
+        "GOTO,RAPID/5,0,0",
+        "TLOFPS,TLLFT,GOFWD/1",
+        "RAPID,CIRCLE/0,0,0,0,0,1",
+    ],
+)
+def test_several_words_of_a_motion_are_refused_by_name(statement):
+    found, diagnostics = read(f"{HEAD}{statement}\nGOTO/9,0,0\n", "part.cl", ReadOptions())
+    assert found is None
+    assert [(fault.code, fault.place.line, fault.found) for fault in errors(diagnostics)] == [
+        ("L401", 6, statement.partition("/")[0])
+    ]
