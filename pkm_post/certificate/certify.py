@@ -17,7 +17,7 @@ import numpy as np
 
 from pkm_post.certificate.consistency import structure_faults
 from pkm_post.certificate.coverage import coverage
-from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.certificate.deviation import FeedRuler, TrajectoryRuler
 from pkm_post.certificate.diagnosis import diagnose
 from pkm_post.certificate.dynamics import contour_error, count_at_tip, tip_jerk, tool_limits
 from pkm_post.certificate.joints import JointDeviations, measure_joints
@@ -25,7 +25,7 @@ from pkm_post.certificate.playback import PlaybackBounds, Quantity, play, when_w
 from pkm_post.certificate.struts import AdjacentMotion, acceleration_steps, blocks_in_a_second, off_plan, strut_jerk
 from pkm_post.certificate.tool_spline import ToolSpline
 from pkm_post.certificate.tool_states import PlaybackTask
-from pkm_post.geometry import Array, norm
+from pkm_post.geometry import Array
 from pkm_post.machine import NO_SETUP
 from pkm_post.model import (
     Certificate,
@@ -69,7 +69,7 @@ def findings(
         ("V110", Phrase("tool tip off a programmed point"), "mm", passed.tip, at_ends, joints),
         ("V110", Phrase("tool axis off a programmed one"), "degrees", np.degrees(passed.axis), axis_limit, joints),
         ("V111", Phrase("strut off its plan"), "mm", off, tolerances.tip, knots),
-        ("V108", Phrase("tip speed"), "mm/s", *at_worst(Quantity.SPEED, played.tip_speed, task.ceiling)),
+        ("V108", Phrase("tip speed"), "mm/s", *at_worst(Quantity.SPEED, played.tip_speed, played.ceiling)),
         ("V103", Phrase("strut speed"), "mm/s", played.strut_speed, machine.strut_speed, starts),
         ("V104", Phrase("strut acceleration"), "mm/s^2", played.strut_acceleration, machine.strut_acceleration, starts),
         ("V113", Phrase("turning rate of the tool axis"), "degrees/s", np.degrees(axis_speed), turning, starts),
@@ -196,15 +196,6 @@ _LEAST = ("shortest strut", "shortest interval")
 """Findings whose limit is a least value."""
 
 
-_FEED_SHARE = 1.01
-"""Factor by which the cubic may exceed the planned speed where the acceleration changes."""
-_SWING = 1 / 3
-"""Share of the change of speed within one millisecond, which no knot can divide: a tip at its speed long before
-the end overshoots by this to cover the same distance."""
-_FEED_ROUNDING = 0.05
-"""mm/s: effect of rounding lengths to six decimals on the speed within one millisecond, with margin."""
-
-
 def certify(
     struts: StrutMotion,
     program_name: str,
@@ -241,12 +232,13 @@ def certify(
     faults = structure_faults(struts, program_name, trajectory, machine, motion, rests)
     if faults:
         return None, faults
-    ruler, ceiling = TrajectoryRuler(trajectory, tolerances), _feed_ceiling(trajectory, motion)
+    ruler = TrajectoryRuler(trajectory, tolerances)
+    feeds = FeedRuler(trajectory, motion, (2 * machine.shortest_interval - 1) / 1000)
 
     def measured(struts: StrutMotion) -> Certificate:
         spline, knots = ToolSpline.of(machine, struts, motion)
         task = PlaybackTask(
-            struts, machine, ruler, motion, knots, spline, ceiling, spin_deviation, adjacent or AdjacentMotion()
+            struts, machine, ruler, motion, knots, spline, feeds, spin_deviation, adjacent or AdjacentMotion()
         )
         return _certificate(task, trajectory, tolerances, collisions)
 
@@ -273,19 +265,3 @@ def _certificate(
         coverage=coverage(task.machine, trajectory, collisions),
         figures=figures(task, trajectory),
     )
-
-
-def _feed_ceiling(trajectory: Trajectory, motion: Motion) -> Array:
-    """Highest allowed tip speed of each interval: that of the fastest segment it touches, (K,)."""
-    first, last = motion.segment[:-1], motion.segment[1:]
-    # reduceat over pairs (first, last + 1): the maxima of the ranges are every second result.
-    bounds = np.column_stack([first, last + 1]).ravel()
-    checkpoint()
-    fastest = np.maximum.reduceat(np.append(trajectory.feed, 0.0), bounds)[::2]
-    speed = norm(motion.tip_rate)
-    checkpoint()
-    change = np.abs(np.minimum(speed[1:], fastest) - np.minimum(speed[:-1], fastest))
-    checkpoint()
-    indivisible = np.diff(motion.time_ms) == 1
-    checkpoint()
-    return fastest * _FEED_SHARE + _FEED_ROUNDING + np.where(indivisible, _SWING * change, 0.0)

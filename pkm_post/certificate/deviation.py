@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Deviation: distance of tool poses from segments of the programmed trajectory, independent of time and plan.
+"""Deviation: tool poses against segments of the programmed trajectory, and speeds of the tip against its feeds.
 
-Input: poses, and a segment for each. Output: deviations of tip (mm) and axis (rad). A pose is compared with the
-best-fitting programmed pose of its segment: the one with the least sum of squares of tip and axis deviation, each by
-its tolerance. On a helix that pose is one step of Newton's method away from the one at the same angle. A wrong segment
-can only give a deviation larger than that from the trajectory, never smaller.
+Input: poses, and a segment for each. Output: deviations of tip (mm) and axis (rad), independent of time and plan. A
+pose is compared with the best-fitting programmed pose of its segment: the one with the least sum of squares of tip and
+axis deviation, each by its tolerance. On a helix that pose is one step of Newton's method away from the one at the same
+angle. A wrong segment can only give a deviation larger than that from the trajectory, never smaller.
+
+Speeds come with times, and are compared with the feed of the segment executed then.
 """
 
 from __future__ import annotations
@@ -20,14 +22,27 @@ from pkm_post.geometry import (
     cross,
     distinct,
     dot,
+    expand_counts,
+    length_of,
     norm,
     take_rows,
     towards,
 )
-from pkm_post.model import Kind, Tolerances, Trajectory, map_row_pairs, uniform
+from pkm_post.model import Kind, Motion, Tolerances, Trajectory, checkpoint, map_row_pairs, uniform
 
 _NEARLY_CLOSED = 4.0
 """Tip tolerances: an arc whose gap is no larger may have a pose near both of its ends."""
+_FEED_SHARE = 1.01
+"""Factor by which the cubic may exceed the planned speed where the acceleration changes."""
+_SLOWER_SHARE = 1.05
+"""The same for the slower feeds of an interval with several: one cubic follows the change from one to the next."""
+_SWING = 1 / 3
+"""Share of the change of speed within one millisecond, which no knot can divide: a tip at its speed long before
+the end overshoots by this to cover the same distance."""
+_FEED_ROUNDING = 0.05
+"""mm/s: effect of rounding lengths to six decimals on the speed within one millisecond, with margin."""
+_JUST = 1e-9
+"""s: just before and just after a change of the ceiling."""
 
 
 class TrajectoryRuler:
@@ -157,6 +172,87 @@ class TrajectoryRuler:
         outward, end_radius = across(point - centre, turn), norm(across(end - centre, turn))
         growth = share * (end_radius / norm(outward) - 1)
         return point + growth[:, None] * outward
+
+
+class FeedRuler:
+    """Measures speeds of the tip in the intervals of a motion against the feeds of its trajectory.
+
+    The feed at an instant is the highest of the segments executed within ``margin`` of it: no point can be closer to
+    a joint than the shortest interval of the controller.
+
+    Attributes:
+        ceiling: (K,) highest speed allowed anywhere in each interval, mm/s.
+    """
+
+    def __init__(self, trajectory: Trajectory, motion: Motion, margin: float) -> None:
+        """Prepare the feeds of a trajectory.
+
+        Args:
+            trajectory: the programmed trajectory.
+            motion: the motion, with the time at which it passes each joint.
+            margin: s, before and after an instant.
+        """
+        last = np.append(np.flatnonzero(np.diff(trajectory.feed)), len(trajectory) - 1)
+        self._feed, self._margin = trajectory.feed[last], margin
+        self._until = motion.joint_time[last[:-1]]
+        rises = np.diff(self._feed) > 0
+        self._changes = np.sort(self._until + np.where(rises, -margin, margin))
+        begin, end = motion.time_ms[:-1] / 1000, motion.time_ms[1:] / 1000
+        checkpoint()
+        self._fastest = self._highest(begin, end)
+        self._mixed = np.searchsorted(self._changes, begin) < np.searchsorted(self._changes, end, side="right")
+        checkpoint()
+        speed = norm(motion.tip_rate)
+        change = np.abs(np.minimum(speed[1:], self._fastest) - np.minimum(speed[:-1], self._fastest))
+        checkpoint()
+        self._room = _FEED_ROUNDING + np.where(np.diff(motion.time_ms) == 1, _SWING * change, 0.0)
+        self.ceiling = _FEED_SHARE * self._fastest + self._room
+
+    def ceilings(self, rows: Array, time: Array) -> Array:
+        """Highest allowed speeds at times of intervals, (M, N) mm/s.
+
+        Args:
+            rows: (N,) the intervals.
+            time: (M, N) s.
+        """
+        found = np.broadcast_to(self.ceiling[rows], time.shape)
+        mixed = np.flatnonzero(self._mixed[rows])
+        if not len(mixed):
+            return found
+        found = found.copy()
+        found[:, mixed] = self._slower(np.tile(rows[mixed], len(time)), time[:, mixed].ravel()).reshape(len(time), -1)
+        return found
+
+    def at_changes(self, rows: Array, time: Array, velocity: Array) -> tuple[Array, Array, Array]:
+        """Changes of the ceiling inside intervals: interval, speed on the chord, and the lower ceiling, (S,) each.
+
+        Args:
+            rows: (N,) the intervals.
+            time: (M, N) s, even instants.
+            velocity: (3, M, N) mm/s, at these.
+        """
+        first, last = np.searchsorted(self._changes, time[[0, -1]])
+        which, number = expand_counts(last - first)
+        when = self._changes[first[which] + number]
+        step = (time[1] - time[0])[which]
+        at = np.clip((when - time[0, which]) / step, 0.0, len(time) - 1.0)
+        before = np.minimum(at.astype(np.int64), len(time) - 2)
+        begin, end = velocity[:, before, which], velocity[:, before + 1, which]
+        lower = np.minimum(*(self._slower(rows[which], when + shift) for shift in (-_JUST, _JUST)))
+        return which, length_of(*(begin + (at - before) * (end - begin))), lower
+
+    def _slower(self, row: Array, time: Array) -> Array:
+        """Highest allowed speeds at single times of intervals with several feeds, (S,) mm/s."""
+        feed = np.minimum(_FEED_SHARE * self._fastest[row], _SLOWER_SHARE * self._highest(time, time))
+        return np.asarray(feed + self._room[row])
+
+    def _highest(self, begin: Array, end: Array) -> Array:
+        """Highest feed of the segments executed in stretches of time, and within the margin of them, (S,)."""
+        first = np.searchsorted(self._until, begin - self._margin)
+        last = np.searchsorted(self._until, end + self._margin, side="right")
+        # reduceat over pairs (first, last + 1): the maxima of the ranges are every second result.
+        bounds = np.column_stack([first, last + 1]).ravel()
+        return np.asarray(np.maximum.reduceat(np.append(self._feed, 0.0), bounds)[::2])
 
 
 def _bends(trajectory: Trajectory, before: Array) -> Array:

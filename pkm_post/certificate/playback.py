@@ -60,17 +60,19 @@ class Samples:
         worst: (3, N) the largest value at an instant.
         hidden: (3, N) bound on the undetected excess, at and between instants.
         tip_tolerance: (N,) tolerance of the tip where it is worst, mm.
+        ceiling: (N,) highest allowed tip speed where it is worst, mm/s.
     """
 
     found: Array
     worst: Array
     hidden: Array
     tip_tolerance: Array
+    ceiling: Array
 
     @classmethod
     def nothing(cls, count: int) -> Samples:
         """Intervals that were not sampled: their values are unbounded."""
-        return cls(np.ones(count, dtype=bool), np.zeros((3, count)), np.full((3, count), np.inf), np.ones(count))
+        return cls(np.ones(count, dtype=bool), np.zeros((3, count)), np.full((3, count), np.inf), *np.ones((2, count)))
 
 
 @dataclass(frozen=True)
@@ -82,42 +84,61 @@ class _Measured:
         time: (M, N) s since the start.
         segment: (M, N) the trajectory segment executed then, the reference of the deviation.
         tip_tolerance: (M, N) tolerance of the tip there, mm.
-        values: deviation of the tip by tolerance, of the axis, rad, and speed of the tip, mm/s; (M, N) each.
+        ceiling: (M, N) highest allowed speed of the tip there, mm/s.
+        values: deviation of the tip by tolerance, of the axis, rad, and speed of the tip by its ceiling; (M, N) each.
     """
 
     tool: ToolStates
     time: Array
     segment: Array
     tip_tolerance: Array
+    ceiling: Array
     values: tuple[Array, Array, Array]
 
 
 def sample(task: PlaybackTask, rows: Array, instants: int, closely: bool) -> Samples:
     """Play the intervals that start at the given knots, (N,), and measure each at a number of even instants."""
     measured = _measured(task, rows, instants, closely)
-    tool, tip_tolerance, (by_tolerance, off_axis, speed) = measured.tool, measured.tip_tolerance, measured.values
+    tool, tip_tolerance, (by_tolerance, off_axis, _) = measured.tool, measured.tip_tolerance, measured.values
     worst = np.argmax(by_tolerance, axis=0), np.arange(len(rows))
-    axis_tolerance, ceiling = task.ruler.axis_tolerance, task.ceiling[rows]
+    axis_tolerance, (by_ceiling, ceiling, lowest) = task.ruler.axis_tolerance, _speeds(task, rows, measured)
     missed_tip, missed_axis, missed_speed = tool.missed
     hidden_tip = (
         chordal_deviation(tool.tip) + sagitta(tool.tip, task.ruler.bend(measured.segment).max(axis=0)) + missed_tip
     )
     return Samples(
         found=np.asarray(tool.found.all(axis=0)),
-        worst=np.stack([by_tolerance[worst], off_axis.max(axis=0) / axis_tolerance, speed.max(axis=0) / ceiling]),
+        worst=np.stack([by_tolerance[worst], off_axis.max(axis=0) / axis_tolerance, by_ceiling]),
         hidden=np.stack([
             hidden_tip / tip_tolerance.min(axis=0),
             (chordal_deviation(tool.axis) + sagitta(tool.axis, 1.0) + missed_axis) / axis_tolerance,
-            (chordal_deviation(tool.velocity) + missed_speed) / ceiling,
+            (chordal_deviation(tool.velocity) + missed_speed) / lowest,
         ]),
         tip_tolerance=tip_tolerance[worst],
+        ceiling=ceiling,
     )  # fmt: skip
+
+
+def _speeds(task: PlaybackTask, rows: Array, measured: _Measured) -> tuple[Array, Array, Array]:
+    """Largest share of the ceiling in intervals, the ceiling there, and the lowest ceiling in each, (N,).
+
+    Between two instants the ceiling may change: then the chord counts just before and after the change.
+    """
+    shares, each = measured.values[Quantity.SPEED], np.arange(len(rows))
+    where = np.argmax(shares, axis=0), each
+    share, ceiling, lowest = shares[where], measured.ceiling[where], measured.ceiling.min(axis=0)
+    which, speed, lower = task.feeds.at_changes(rows, measured.time, measured.tool.velocity)
+    np.minimum.at(lowest, which, lower)
+    np.maximum.at(share, which, speed / lower)
+    more = speed / lower == share[which]
+    ceiling[which[more]] = lower[more]
+    return share, ceiling, lowest
 
 
 def when_worst(task: PlaybackTask, passed: JointDeviations, quantity: Quantity, row: int) -> tuple[float, int]:
     """Time of the worst value in the interval that begins at a knot, s since the start, and its segment."""
     measured = _measured(task, np.array([row]), _TO_FIND_THE_WORST, closely=True)
-    allowed = 1.0, task.ruler.axis_tolerance, task.ceiling[row]
+    allowed = 1.0, task.ruler.axis_tolerance, 1.0
     joints = np.flatnonzero((passed.intervals == row).any(axis=0))
     at_joints = passed.off[quantity, joints] if quantity is not Quantity.SPEED else np.zeros(len(joints))
     values = np.append(measured.values[quantity] / allowed[quantity], at_joints)
@@ -138,7 +159,9 @@ def _measured(task: PlaybackTask, rows: Array, instants: int, closely: bool) -> 
     segment = np.clip(np.searchsorted(motion.joint_time, time), first, last)
     tip, axis = tool.tip.reshape(3, -1).T, tool.axis.reshape(3, -1).T
     off = task.ruler.deviation_from(tip, axis, segment.ravel()).reshape(3, *segment.shape)
-    return _Measured(tool, time, segment, off[2], (off[0] / off[2], off[1], length_of(*tool.velocity)))
+    ceiling = task.feeds.ceilings(rows, time)
+    values = off[0] / off[2], off[1], length_of(*tool.velocity) / ceiling
+    return _Measured(tool, time, segment, off[2], ceiling, values)
 
 
 _ON_SPLINE = (9, 33)
@@ -161,7 +184,8 @@ class PlaybackBounds:
         tip: deviation of the tip, mm, where it is largest by its tolerance.
         tip_tolerance: tolerance of the tip there, mm.
         axis: deviation of the tool axis, rad.
-        tip_speed: speed of the tip, mm/s.
+        tip_speed: speed of the tip, mm/s, where it is largest by its ceiling.
+        ceiling: highest allowed speed of the tip there, mm/s.
         strut_speed: mm/s.
         strut_acceleration: mm/s^2.
         shortest: shortest strut length, mm.
@@ -176,6 +200,7 @@ class PlaybackBounds:
     tip_tolerance: Array
     axis: Array
     tip_speed: Array
+    ceiling: Array
     strut_speed: Array
     strut_acceleration: Array
     shortest: Array
@@ -210,7 +235,8 @@ def play(task: PlaybackTask, passed: JointDeviations) -> PlaybackBounds:
         tip=tip * seen.tip_tolerance,
         tip_tolerance=seen.tip_tolerance,
         axis=axis * task.ruler.axis_tolerance,
-        tip_speed=speed * task.ceiling,
+        tip_speed=speed * seen.ceiling,
+        ceiling=seen.ceiling,
         strut_speed=strut_speed,
         strut_acceleration=strut_acceleration,
         shortest=shortest,
@@ -236,6 +262,7 @@ def _keep(seen: Samples, peaks: _JointPeaks, rows: Array, again: Samples) -> Non
     again.tip_tolerance[at_joint] = peaks.tip_tolerance[rows[at_joint]]
     seen.worst[:, rows] = np.concatenate([np.maximum(again.worst[:2], peaks.off[:, rows]), again.worst[2:]])
     seen.hidden[:, rows], seen.tip_tolerance[rows] = again.hidden, again.tip_tolerance
+    seen.ceiling[rows] = again.ceiling
     seen.found[rows] = again.found
 
 

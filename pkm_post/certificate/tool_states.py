@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.certificate.deviation import FeedRuler, TrajectoryRuler
 from pkm_post.certificate.struts import AdjacentMotion
 from pkm_post.certificate.tool_spline import KnotKinematics, ToolSpline, inverses_at
 from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds, length_of
@@ -35,7 +35,7 @@ class PlaybackTask:
         motion: the planned motion with the same knots.
         knots: kinematic state at the knots.
         spline: approximate cubics of the tool.
-        ceiling: (K,) highest tip speed of each interval, mm/s.
+        feeds: measures speeds of the tip against the programmed feeds.
         spin_deviation: (K + 1,) mm of a strut due to spin error, in addition to the deviation from the plan.
         adjacent: the motion before and after, if this is a piece of a longer motion.
     """
@@ -46,7 +46,7 @@ class PlaybackTask:
     motion: Motion
     knots: KnotKinematics
     spline: ToolSpline
-    ceiling: Array
+    feeds: FeedRuler
     spin_deviation: Array | float = 0.0
     adjacent: AdjacentMotion = field(default_factory=AdjacentMotion)
 

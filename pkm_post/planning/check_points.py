@@ -89,6 +89,26 @@ class Intervals:
         time = begin[piece] + way[piece] * ((number + 1) / parts[piece])
         return self._points(row[piece], time, segment[piece])
 
+    def beside_joints(self, joint_time: Array, margin: Array, gaps: int) -> tuple[Array, Array, Array]:
+        """The segments executed in the intervals, without what is near their joints, at even places of each.
+
+        Args:
+            joint_time: (J,) s, times of the joints of the path.
+            margin: (N,) s, left out before and after a joint; below 0 included beyond it.
+            gaps: number of gaps between the places.
+
+        Returns:
+            Segments, (S,); the interval of each; and the times of the places after its start, (gaps + 1, S) s.
+        """
+        row, number = expand_counts(self.last - self.first + 1)
+        segment, start = self.first[row] + number, (self.start / 1000)[row]
+        until, margin = (self.end / 1000)[row], margin[row]
+        begin = np.where(number > 0, np.maximum(joint_time[segment - 1] + margin, start), start)
+        end = np.where(segment < self.last[row], np.minimum(joint_time[segment] - margin, until), until)
+        long = np.flatnonzero(begin < end)
+        row, begin, end = row[long], begin[long] - start[long], end[long] - start[long]
+        return segment[long], row, begin + (end - begin) * np.linspace(0, 1, gaps + 1)[:, None]
+
     def _points(self, row: Array, time: Array, segment: Array) -> CheckPoints:
         duration = self.duration[row]
         return CheckPoints(row, (time - (self.start / 1000)[row]) / duration, time, segment, duration)

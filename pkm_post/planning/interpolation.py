@@ -31,6 +31,10 @@ _SHARE_ON_CURVES = 0.25
 """The same on a curve that replaces short lines, which uses up to 0.6 itself."""
 _SPEED_SWING = 0.005
 """Share of the feed by which the controller's cubics may exceed it."""
+_SLOWER_SWING = 0.04
+"""The same for the slower feeds of an interval with several: the certificate allows 0.05 there."""
+_BESIDE_JOINTS = 0.0005
+"""s: as near to a joint between two feeds speeds are not checked; a knot may be half a millisecond off."""
 _GAPS = 8
 """Check points leave no gap wider than an interval divided by this ..."""
 _WIDEST_GAP = 0.064
@@ -125,6 +129,8 @@ class InterpolationCheck:
         self._seen = joints[~path.segments.in_one_piece(first, last)]
         self._seen_time = schedule.joint_time[np.append(self._seen, last)]
         self._allowed = _allowed(path, slice(first, last + 1), tolerances)
+        feed = path.feed[first : last + 1]
+        self._feeds_before = np.cumsum(np.diff(feed, prepend=feed[0]) != 0)
         self._negligible_drift = _NEGLIGIBLE_DRIFT * self._allowed[0].min()
         self._first = marks[0]
         self._row = np.full(marks[-1] - marks[0] + 1, -1)
@@ -178,8 +184,7 @@ class InterpolationCheck:
         """Check machine limits, and points between joints, for intervals that pass at their joints."""
         demand = self._demand(intervals, cubics)
         of_all = Intervals.of(self._schedule.joint_time, intervals.start, intervals.end)
-        feed = np.maximum(self._path.feed[of_all.first], self._path.feed[of_all.last])
-        swing = (demand.tip_speed / feed - 1) / _SPEED_SWING
+        swing = self._swing(of_all, cubics, demand.tip_speed)
         drift = np.stack([demand.tip, demand.axis])
         off = self._in_passes(self._deviation_between, intervals, cubics, drift)
         rows = np.flatnonzero(drift.any(axis=0))
@@ -187,6 +192,26 @@ class InterpolationCheck:
             at_joints = self._in_passes(self._deviation_at_joints, intervals[rows], cubics[rows], drift[:, rows])
             off[rows] = np.maximum(off[rows], at_joints)
         return _exceeded(off, np.maximum(demand.limits, swing))
+
+    def _swing(self, intervals: Intervals, cubics: ToolCubics, speed: Array) -> Array:
+        """By what part of the allowed share the tip exceeds the feed, (N,); on each segment the feed of that segment.
+
+        An interval that cannot be cut is only compared with the higher feed: no knot can be nearer to the joint.
+        ``speed``: (N,) highest of the tip, mm/s, with that of the drift.
+        """
+        feed, before = self._path.feed, self._feeds_before
+        swing = (speed / np.maximum(feed[intervals.first], feed[intervals.last]) - 1) / _SPEED_SWING
+        several = before[intervals.last - self._first_row] > before[intervals.first - self._first_row]
+        rows = np.flatnonzero(several & (intervals.end - intervals.start >= 2 * self._machine.shortest_interval))
+        if len(rows):
+            # a cubic may pass a joint later than planned
+            margin = _BESIDE_JOINTS - _LATE * intervals.duration[rows]
+            segment, row, times = intervals[rows].beside_joints(self._schedule.joint_time, margin, _GAPS)
+            share = times / intervals.duration[rows[row]]
+            drifting = speed[rows] - cubics[rows].sizes()[0] / intervals.duration[rows]
+            fastest = cubics[rows[row]].fastest_at(share) / intervals.duration[rows[row]] + drifting[row]
+            np.maximum.at(swing, rows[row], (fastest / feed[segment] - 1) / _SLOWER_SWING)
+        return np.asarray(swing)
 
     def _in_passes(self, deviation: _Deviation, intervals: Intervals, cubics: ToolCubics, drift: Array) -> Array:
         """Deviations of intervals, (N,), computed in blocks."""

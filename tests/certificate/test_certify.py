@@ -8,7 +8,7 @@ from machines import example
 from programs import ON_PALLET, cone, program, steep_helices
 
 from pkm_post.certificate import certify
-from pkm_post.certificate.certify import _SWING
+from pkm_post.certificate.deviation import _SWING
 from pkm_post.geometry import hermite_speeds
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances

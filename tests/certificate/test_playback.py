@@ -9,7 +9,7 @@ from machines import example
 from programs import BALL, ON_PALLET, cone, program, square_with_arc
 
 from pkm_post.certificate import joints, playback, tool_spline, tool_states
-from pkm_post.certificate.deviation import TrajectoryRuler
+from pkm_post.certificate.deviation import FeedRuler, TrajectoryRuler
 from pkm_post.certificate.joints import measure_joints
 from pkm_post.certificate.playback import chordal_deviation, play, sagitta, sample
 from pkm_post.certificate.struts import off_plan
@@ -23,7 +23,6 @@ from pkm_post.planning import plan
 from pkm_post.toolpath.place import place
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
-FEED = 30.0
 SPEED_MISSED = 2e-4
 """What the mean of two inverse Jacobians makes of a speed, as a part of it, at most."""
 SAME = 1e-9
@@ -70,9 +69,9 @@ def newton_alone():
 
 def task_of(job, struts=None):
     machine, trajectory, motion, printed = planned(job)
-    struts, ceiling = struts or printed, np.full(len(printed) - 1, FEED)
+    struts, feeds = struts or printed, FeedRuler(trajectory, motion, 0.001)
     course, knots = ToolSpline.of(machine, struts, motion)
-    return PlaybackTask(struts, machine, TrajectoryRuler(trajectory, TOLERANCES), motion, knots, course, ceiling)
+    return PlaybackTask(struts, machine, TrajectoryRuler(trajectory, TOLERANCES), motion, knots, course, feeds)
 
 
 def passed(task, job):

@@ -142,6 +142,35 @@ def test_a_tool_that_runs_to_and_fro_on_its_path_is_found(machine, swing, expect
     assert all("goes back on its path" in fault.found for fault in faults)
 
 
+ONE_DASH = [(20, 0.01, 1.0), (320, 15.16, 100.0), (618, 45.0, 100.0), (818, 55.0, 0.0)]
+"""ms, mm and mm/s: from rest to the speed of the second line, in an interval that begins on the first one."""
+
+
+@pytest.mark.parametrize(("feed", "expected"), [(100.0, set()), (1.0, {"V108"})])
+def test_a_tool_that_is_fast_before_it_reaches_the_fast_line_is_found(machine, feed, expected):
+    """An interval from a slow line of 15 mm to a fast one: at its end the tool may be fast, on the slow line not.
+
+    The oracle: the mean speed of the interval is 50.5 mm/s, the first line has 1 mm/s.
+    """
+    wide = Tolerances(0.05, np.radians(0.05))
+    stop = Event(0, EventKind.TOOL_CHANGE, 1), Event(1, EventKind.DWELL, 0.1)
+    lines = program([[0, 0, 60], [15, 0, 60], [55, 0, 60]], feed=np.array([np.nan, feed, 100.0]), events=stop)
+    trajectory = placed(lines, machine)
+    motion, _ = planned(trajectory, machine, wide)
+    rest = motion.events[-1].row
+    time_ms, along, speed = np.array(ONE_DASH).T
+    count, still = len(along), np.zeros((len(along), 2))
+    dash = {
+        "time_ms": motion.time_ms[rest] + time_ms.astype(int), "segment": np.minimum(1 + (along > 15), 2),
+        "tip": motion.tip[rest] + np.column_stack([along, still]), "tip_rate": np.column_stack([speed, still]),
+    }  # fmt: skip
+    same = ("axis", "axis_rate", "spin", "spin_rate", "tool_length")
+    dash |= {name: np.repeat(getattr(motion, name)[[rest]], count, axis=0) for name in same}
+    joined = {name: np.concatenate([getattr(motion, name)[: rest + 1], column]) for name, column in dash.items()}
+    faults = refusals(printed(replace(motion, **joined), machine), trajectory, machine, wide)
+    assert {fault.code for fault in faults} == expected
+
+
 @pytest.fixture(scope="module")
 def with_a_stop(machine):
     """A trajectory with a tool change and a stop, and a program of it that holds."""

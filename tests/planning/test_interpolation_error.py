@@ -165,6 +165,36 @@ def test_the_tip_is_not_faster_than_the_feed_by_more_than_the_swing():
     assert np.all(np.linalg.norm(speed, axis=2).max(axis=1) <= 1.0051 * feed)
 
 
+FEEDS = np.array([np.nan, *4 * [3.0, 90.0]])
+
+
+def lines_of_two_feeds():
+    """Lines straight on, slow and fast by turns, tilting a little."""
+    x = np.linspace(-40, 40, 9)
+    tilt = np.radians(np.linspace(0, 4, 9))
+    axis = np.column_stack([np.sin(tilt), 0 * tilt, np.cos(tilt)])
+    return program(np.column_stack([x, 0 * x, 60 + 0 * x]), axis, feed=FEEDS)
+
+
+@pytest.mark.parametrize("tolerances", [TOLERANCES, Tolerances(0.1, np.radians(1.0))], ids=["narrow", "wide"])
+def test_the_tip_keeps_to_a_slow_feed_until_the_faster_line_begins(tolerances):
+    """One cubic over both lines is up to 9 % faster than the slow one allows, more than a millisecond before it ends."""
+    trajectory, _ = place(lines_of_two_feeds(), example(), ON_PALLET)
+    feed_plan, faults = plan_feed(trajectory, example(), tolerances)
+    assert not faults
+    made = interpolate(feed_plan).motion
+    ends = made.tip[:-1], made.tip_rate[:-1], made.tip[1:], made.tip_rate[1:]
+    duration = np.diff(made.time_ms) / 1000
+    speed = np.linalg.norm(hermite_speeds(*ends, duration, DENSE), axis=2)
+    time = made.time_ms[:-1, None] / 1000 + duration[:, None] * DENSE
+    slow = np.ones(time.shape, dtype=np.bool_)
+    for row in np.flatnonzero(trajectory.feed > 3):
+        begin = made.joint_time[row - 1] if row else 0.0
+        slow &= (time < begin - 0.001) | (time > made.joint_time[row] + 0.001)
+    assert slow.sum() > 200
+    assert speed[slow].max() <= 1.05 * 3
+
+
 @pytest.mark.parametrize("limit", ["strut_speed", "strut_acceleration"])
 @pytest.mark.parametrize("make", JOBS.values(), ids=JOBS)
 def test_a_strut_beyond_its_limit_is_reported(make, limit):

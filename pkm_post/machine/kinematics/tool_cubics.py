@@ -80,6 +80,11 @@ class ToolCubics:
         found += place
         return np.asarray(found)
 
+    def fastest_at(self, share: Array) -> Array:
+        """Largest first derivative of the tip by the share at some shares of each, (M, N), (N,) mm."""
+        _, begin, square, cube = self.powers[:, :3, None]
+        return np.asarray(length_of(*(begin + share * (2 * square + 3 * share * cube))).max(axis=0))
+
     def nearest(self, place: Array, by_tip: Array, by_axis: Array, share: Array, most: Array) -> Array:
         """Shares of the duration at which the tool fits given places best, (N,), by Newton's method.
 
