@@ -57,7 +57,7 @@ def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine
         for name, text in texts
         if program_files.own_hash_matches(text) is False
     )
-    diagnostics = (*listed, *changed)
+    diagnostics = (*listed, *changed, *_of_another_trajectory(texts, trajectory))
     try:
         certificate, report = _certified(texts, program, trajectory, machine)
     except Refused as refused:
@@ -65,6 +65,18 @@ def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine
     if errors(diagnostics):
         raise Refused(diagnostics)
     return Verified(certificate, report, diagnostics)
+
+
+def _of_another_trajectory(texts: Texts, trajectory: Path) -> Findings:
+    """F106 for each part of a program whose heading names another trajectory file."""
+    if not trajectory.is_file():  # reported where it is read
+        return ()
+    digest = manifest.fingerprint_of_file(trajectory)
+    return tuple(
+        Diagnostic("F106", Place(name), f"its heading names another trajectory file than this {trajectory.name}")
+        for name, text in texts
+        if program_files.states_another_hash(text, "trajectory", digest)
+    )
 
 
 def read_motion(program: Path, machine: Machine) -> StrutMotion:

@@ -178,7 +178,7 @@ def lines_of_two_feeds():
 
 @pytest.mark.parametrize("tolerances", [TOLERANCES, Tolerances(0.1, np.radians(1.0))], ids=["narrow", "wide"])
 def test_the_tip_keeps_to_a_slow_feed_until_the_faster_line_begins(tolerances):
-    """One cubic over both lines is up to 9 % faster than the slow one allows, more than a millisecond before it ends."""
+    """One cubic over both lines is up to 9 % too fast more than a millisecond before the slow one ends."""
     trajectory, _ = place(lines_of_two_feeds(), example(), ON_PALLET)
     feed_plan, faults = plan_feed(trajectory, example(), tolerances)
     assert not faults

@@ -159,7 +159,7 @@ def test_a_trajectory_without_tolerances_is_refused(machine, posted, tmp_path):
     trajectory_file.write(dataclasses.replace(trajectory, tolerances=None), tmp_path / "bare.pkmt")
     with pytest.raises(Refused) as refused:
         verify(posted.program, tmp_path / "bare.pkmt", machine)
-    assert [fault.code for fault in errors(refused.value.diagnostics)] == ["T105"]
+    assert [fault.code for fault in errors(refused.value.diagnostics)] == ["F106", "T105"]
 
 
 def test_the_command(posted, capsys, tmp_path):
@@ -191,6 +191,21 @@ def refused_command(folder, capsys):
 def test_files_of_two_postings_are_refused_by_name(copied, capsys):
     (copied / "cone-report.json").write_text("{}")
     assert "error F106" in (reported := refused_command(copied, capsys)) and "cone-report.json has changed" in reported
+
+
+@pytest.mark.parametrize("manifests", [True, False], ids=["listed", "unlisted"])
+def test_the_trajectory_of_another_posting_is_refused_though_the_program_follows_it(
+    machine, posted, tmp_path, manifests
+):
+    """The same path with wide tolerances and a feed twice as high: nothing that is measured is above its limit."""
+    faster = dataclasses.replace(cone(12, turns=0.1), feed=2 * cone(12, turns=0.1).feed)
+    wide = Options(ON_PALLET, 0.2, np.radians(2.0))
+    other = post(faster, machine, tmp_path / "cone.pmc", wide).program.with_suffix(".pkmt")
+    if not manifests:
+        (tmp_path / "cone-manifest.json").unlink()
+    with pytest.raises(Refused) as refused:
+        verify(posted.program, other, machine)
+    assert [(one.code, one.place.file) for one in errors(refused.value.diagnostics)] == [("F106", "cone.pmc")]
 
 
 def test_what_is_measured_is_reported_beside_what_has_changed(posted, copied, capsys):

@@ -149,6 +149,11 @@ def states_hash(text: str, name: str, value: str) -> bool:
     return found is not None and found[1] == value[:_DIGITS]
 
 
+def states_another_hash(text: str, name: str, value: str) -> bool:
+    """Whether the heading of a program states a file with another SHA-256; arguments as for ``states_hash``."""
+    return _STATED[name].search(text, 0, _heading_end(text)) is not None and not states_hash(text, name, value)
+
+
 def _heading_end(text: str) -> int:
     found = _HEADING.match(text)
     return found.end() if found else 0
