@@ -238,6 +238,10 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     directly = modal.programmed[Group.ONCE] == 530
     wrong = directly & (motion != 0) & (motion != 10) & (not modal.flavour.g53_is_rapid)
     faults.add_where("G407", wrong, lambda row: (word_of(530), " while ", word_of(motion[row]), " is in force"))
+    relative = directly & modal.moves & (modal.active[Group.DISTANCE] == 910)
+    faults.add_where("G407", relative, lambda _: (word_of(530), " while ", word_of(910), " is in force"))
+    both = modal.moves & (modal.programmed[Group.LENGTH] == 432)
+    faults.add_where("G407", both, lambda _: (word_of(432), " and a motion in one block"))
     inverse = modal.moves & is_cycle(motion) & (modal.active[Group.FEED_MODE] == 930)
     faults.add_where(
         "G407", inverse, lambda row: (word_of(motion[row]), " with inverse time feed (", word_of(930), ")")

@@ -181,13 +181,13 @@ class PositionTracker:
     def _special_motion(self, row: int) -> bool:
         """Execute a block with a special motion; return whether it was one."""
         once = int(self.modal.programmed[Group.ONCE][row])
+        if once in (281, 301):  # before the motion of its block [LinuxCNC, order of execution]
+            self.offset_codes.require_position(row, self.known, word_of(once))
+            self.home[once - 1] = tuple(self.frame.to_work(self.position).tolist())
         if once == 530 and self.modal.moves[row]:
             self._machine_move(row)
         elif once in (280, 300):
             self._home(row, once)
-        elif once in (281, 301):
-            self.offset_codes.require_position(row, self.known, word_of(once))
-            self.home[once - 1] = tuple(self.frame.to_work(self.position).tolist())
         elif self.modal.moves[row] and self.modal.active[Group.MOTION][row] in STROKES:
             self._drill(row)
         else:
