@@ -28,6 +28,11 @@ from pkm_post.reading.gcode.flavours import Flavour
 
 _NEVER_DROPPED = frozenset("FSTXYZABCIJK")
 """Words that have a meaning without a code in their block."""
+_AXIS_WORDS = ("X", "Y", "Z", "I", "J", "K", "A", "B", "C")
+_LIMITS = 220
+"""G22: X Y Z and I J K are corners of a space."""
+_CALLS = (97,)
+"""M codes of programs that are refused."""
 _LINES_SHOWN = 3
 _HERE = ": here the tolerances of planning decide"
 _OF_GROUP_1 = (0, 10, *ARCS)
@@ -44,7 +49,7 @@ def adapted(blocks: Blocks, flavour: Flavour, left_out: Collection[str]) -> tupl
     Returns:
         The adapted blocks, and the skipped codes as lines of text.
     """
-    blocks = _with_equivalents(blocks, flavour)
+    blocks = _with_p_of_g54(_without_owned_words(_with_equivalents(blocks, flavour), flavour), flavour)
     g, m = np.zeros(len(blocks.g), np.bool_), np.zeros(len(blocks.m), np.bool_)
     if left_out:
         g, m = _left_out(blocks, flavour, left_out)
@@ -65,13 +70,13 @@ def _left_out(blocks: Blocks, flavour: Flavour, names: Collection[str]) -> tuple
     """Mark the G and M codes to skip: only codes not understood here, and no G code that may move the tool.
 
     A G code may move it if its block has X, Y or Z, or if it is known and refused: it may then change the meaning of
-    words in other blocks, as G16 does.
+    words in other blocks, as G16 does. M97 calls moves.
     """
     g, m = (is_among(codes, _named(codes, names, letter)) for letter, codes in (("G", blocks.g), ("M", blocks.m)))
     refused = {*flavour.unsupported, *SPINDLE_SYNCHRONISED}
     fixed = [code for code in distinct(blocks.g[g]).tolist() if code in flavour.g_codes or name_of(code) in refused]
     moves = blocks.has("X") | blocks.has("Y") | blocks.has("Z")
-    return g & ~is_among(blocks.g, fixed) & ~moves[blocks.g_row], m & ~is_among(blocks.m, flavour.m_codes)
+    return g & ~is_among(blocks.g, fixed) & ~moves[blocks.g_row], m & ~is_among(blocks.m, (*flavour.m_codes, *_CALLS))
 
 
 def _named(codes: Array, names: Collection[str], letter: str) -> list[int]:
@@ -131,6 +136,39 @@ def _taken(blocks: Blocks, row: int, flavour: Flavour) -> Iterable[str]:
     codes = [flavour.g_codes.get(code) for code in blocks.g_of(row).tolist()]
     codes += [flavour.m_codes.get(code) for code in blocks.m_of(row).tolist()]
     return "".join(code.letters for code in codes if code is not None)
+
+
+def _without_owned_words(blocks: Blocks, flavour: Flavour) -> Blocks:
+    """Drop the axis words of codes that own them: limits of G22, and the axes of G5.1, all 0 [Fanuc].
+
+    In a block with a motion, or with other values after G5.1, they stay and are what they are without the code.
+    """
+    rows = distinct(blocks.g_row[is_among(blocks.g, flavour.owns_axes)])
+    letters = [letter for letter in _AXIS_WORDS if letter in blocks.words]
+    if not (len(rows) and letters):
+        return blocks
+    own = [row for row in rows.tolist() if _owns_words(blocks, row, flavour, letters)]
+    words = {letter: blocks.words[letter].copy() for letter in letters}
+    for column in words.values():
+        column[own] = np.nan
+    return replace(blocks, words={**blocks.words, **words})
+
+
+def _owns_words(blocks: Blocks, row: int, flavour: Flavour, letters: list[str]) -> bool:
+    here = blocks.g_of(row).tolist()
+    others = {*_OF_GROUP_1, *flavour.axis_takers()} & {*here}
+    return not others and (_LIMITS in here or not any(abs(blocks.words[letter][row]) > 0 for letter in letters))
+
+
+def _with_p_of_g54(blocks: Blocks, flavour: Flavour) -> Blocks:
+    """Read G54 P as G54.1 P, unless another code of the block uses P [Fanuc]."""
+    found = np.flatnonzero((blocks.g == 540) & blocks.has("P")[blocks.g_row])
+    further = [index for index in found.tolist() if "P" not in _taken(blocks, int(blocks.g_row[index]), flavour)]
+    if not further or 541 not in flavour.g_codes:
+        return blocks
+    g = blocks.g.copy()
+    g[further] = 541
+    return replace(blocks, g=g)
 
 
 def _with_further_offsets(blocks: Blocks) -> Blocks:

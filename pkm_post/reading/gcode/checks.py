@@ -30,6 +30,8 @@ from pkm_post.reading.gcode.options import NORMAL_WORDS, VECTOR_WORDS, ReadOptio
 
 _WHOLE = "HLT"
 _NOT_NEGATIVE = "DFHLQST"
+_DWELL, _TIME = 40, "X"
+"""G4, and its word in seconds, which some flavours have beside P."""
 _LIMIT = 1e9
 """Upper bound of lengths, angles, times and numbers of a program; beyond it decimals are lost."""
 
@@ -100,10 +102,15 @@ def _codes_of_one_group(blocks: Blocks, flavour: Flavour, faults: BlockDiagnosti
 
 
 def _functions(modal: Modal, faults: BlockDiagnostics) -> None:
-    """Report machine functions in a block with a move: controls differ in their timing."""
+    """Report machine functions in a block with a move, and M5 with a cut: controls differ in their timing."""
     codes = functions_of(modal)
     beside = (codes != NONE) & (modal.moves | (modal.takes_axes != NONE))
     faults.add_where("G437", beside, lambda row: word_of(int(codes[row]), "M"))
+    if not modal.flavour.stops_first:
+        cuts = modal.moves & map_rows(lambda codes: codes != 0, modal.active[Group.MOTION])
+        cuts &= modal.programmed[Group.ONCE] != 530
+        stops = map_rows(lambda codes: codes == 5, modal.programmed[Group.SPINDLE])
+        faults.add_where("G437", cuts & stops, lambda _: (Word("M", 5), " with a cut"))
 
 
 def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> None:
@@ -183,6 +190,9 @@ def _missing_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> No
         for letter in known[code].needs if code in known else "":
             missing = _marked(blocks, blocks.g_row[blocks.g == code]) & ~blocks.has(letter)
             faults.add_where("G405", missing, lambda _, c=code, w=letter: (word_of(c), f" without {w}"))  # type: ignore[misc]
+    if _TIME in known[_DWELL].letters:
+        timeless = _marked(blocks, blocks.g_row[blocks.g == _DWELL]) & ~blocks.has("P") & ~blocks.has(_TIME)
+        faults.add_where("G405", timeless, lambda _: (word_of(_DWELL), f" without P or {_TIME}"))
     spindle = modal.programmed[Group.SPINDLE]
     turning = map_rows(lambda codes: np.isin(codes, (3, 4)), spindle)
     faults.add_where("G405", turning & _before_first(blocks, "S"), lambda row: (Word("M", spindle[row]), " without S"))

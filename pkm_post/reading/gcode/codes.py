@@ -65,6 +65,9 @@ WORK_OFFSETS = (540, 550, 560, 570, 580, 590, 591, 592, 593)
 """In order of the P word of G10."""
 FURTHER_OFFSET, MOST_FURTHER_OFFSETS = -1000, 300
 """Code of G54.1 P0, from which later ones count down; and the number of these offsets."""
+FURTHER_OFFSETS = tuple(FURTHER_OFFSET - number for number in range(1, MOST_FURTHER_OFFSETS + 1))
+OFFSETS_OF_G10 = {2: (NONE, *WORK_OFFSETS[:6]), 20: (NONE, *FURTHER_OFFSETS)}
+"""Codes by L and P of G10 on Fanuc's controls; P0 is the offset of all of them, and none of these [Fanuc, G10]."""
 
 G_CODES: dict[int, Code] = {
     0: Code(Group.MOTION, "XYZ@^"),
@@ -147,6 +150,7 @@ UNSUPPORTED: dict[str, str] = {
     "M61": "setting the tool number without a change",
     **{f"M{code}": "digital and analogue outputs" for code in (62, 63, 64, 65, 66, 67, 68)},
     **{f"M{code}": "saving and restoring modal states" for code in (70, 71, 72, 73)},
+    "M97": "calls of a sequence number on Haas's controls; M98 of an O number is understood",
 }
 """Purpose of well-known unsupported codes."""
 

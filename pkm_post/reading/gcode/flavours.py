@@ -12,10 +12,9 @@ from dataclasses import dataclass, replace
 
 from pkm_post.reading.gcode.codes import (
     DRILLING,
-    FURTHER_OFFSET,
+    FURTHER_OFFSETS,
     G_CODES,
     M_CODES,
-    MOST_FURTHER_OFFSETS,
     NONE,
     ORIENTED_STOP,
     RIGID_TAP,
@@ -45,6 +44,9 @@ class Flavour:
         pecks_by_i: whether I, J and K of G73 and G83 are the first peck, the reduction, and the smallest.
         moves_beside_reference: whether G0 or G1 may share a block with G28 and G30, which take the axis words.
         g53_is_rapid: whether G53 moves at rapid whatever the active motion.
+        offsets_add_up: whether G10 L2 adds to an offset under G91; then L20 sets those of G54.1, and no P is in force.
+        stops_first: whether M5 acts before the move of its block, rather than whenever the machine's builder decided.
+        owns_axes: codes, in tenths, to which the axis words of their block belong, without a motion.
         counts_in_p: whether P of M98 with more than four digits starts with the number of passes.
         programs_apart: whether an O number starts another program, entered only by a call.
         counts_thousandths: whether some controls read lengths without a point as thousandths.
@@ -72,6 +74,9 @@ class Flavour:
     pecks_by_i: bool
     moves_beside_reference: bool
     g53_is_rapid: bool
+    offsets_add_up: bool
+    stops_first: bool
+    owns_axes: tuple[int, ...]
     counts_in_p: bool
     programs_apart: bool
     counts_thousandths: bool
@@ -105,6 +110,9 @@ RS274 = Flavour(
     pecks_by_i=False,
     moves_beside_reference=False,
     g53_is_rapid=False,
+    offsets_add_up=False,
+    stops_first=True,
+    owns_axes=(),
     counts_in_p=False,
     programs_apart=False,
     counts_thousandths=False,
@@ -123,6 +131,7 @@ _SMOOTHING = "smoothing"
 _FANUC_CODES: dict[int, Code] = {
     **{code: meaning for code, meaning in G_CODES.items() if code not in (281, 301, 431, 432, 922, 923)},
     40: Code(Group.ONCE, "PX", takes_axes=True),
+    921: Code(Group.ONCE, "XYZ", takes_axes=True),
     90: Code(Group.ONCE),
     **{code: Code(Group.POLAR) for code in (150, 160)},
     300: replace(G_CODES[300], letters="XYZP"),
@@ -131,7 +140,7 @@ _FANUC_CODES: dict[int, Code] = {
     510: Code(Group.SCALING, "XYZIJKP", takes_axes=True),
     541: Code(Group.SYSTEM, "P", "P"),
     682: Code(Group.ROTATION, "XYZIJKPQR", takes_axes=True),
-    **{FURTHER_OFFSET - number: Code(Group.SYSTEM) for number in range(1, MOST_FURTHER_OFFSETS + 1)},
+    **{code: Code(Group.SYSTEM) for code in FURTHER_OFFSETS},
     **{code: Code(Group.MOTION, "XYZRLKPQ") for code in DRILLING},
     **{code: Code(Group.MOTION, "XYZRLKPQIJ") for code in (730, 830)},
 }
@@ -151,6 +160,8 @@ _FANUC_REFUSED: dict[str, str] = {
     "G7.1": "interpolation on a cylinder",
     "G12.1": "interpolation in polar coordinates",
     "G66.1": "macros after every block; G66 is understood",
+    **{code: "circular pockets of Haas's controls" for code in ("G12", "G13", "G150")},
+    **{code: "patterns of holes of Haas's controls" for code in ("G70", "G71", "G72")},
     "G76": "fine boring, which needs an oriented spindle",
 }
 
@@ -170,6 +181,9 @@ FANUC = replace(
     pecks_by_i=True,
     moves_beside_reference=True,
     g53_is_rapid=True,
+    offsets_add_up=True,
+    stops_first=False,
+    owns_axes=(51, 220),
     counts_in_p=True,
     programs_apart=True,
     counts_thousandths=True,

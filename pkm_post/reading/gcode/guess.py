@@ -77,6 +77,7 @@ def _for_fanuc(blocks: Blocks) -> _Found:
     yield from _codes(blocks.g[here], blocks.g_row[here], _WITHOUT_PLACE, "G")
     yield from _codes(blocks.m, blocks.m_row, (29,), "M")
     yield from _word_with_code(blocks, (40,), "X", "G4 X", without="P")
+    yield from _word_with_code(blocks, (921,), "X", "G92.1 X")
     yield from _word_with_code(blocks, CYCLES, "K", "K in a cycle")
     yield from _after_g80(blocks)
 

@@ -23,8 +23,11 @@ from pkm_post.reading.gcode.scan import scan_recovering, with_line_feeds
 from pkm_post.reading.gcode.subprograms import Source, with_operations, with_places
 
 _COMMENT = re.compile(rb"\([^()\n]*\)|;[^\n]*")
-_WITHOUT_A_POINT = re.compile(rb"(?<![A-Za-z#\]])[XYZIJxyzij][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])")
-"""A coordinate that is a whole number other than 0, without a point."""
+_WITHOUT_A_POINT = re.compile(rb"(?<![A-Za-z#\]])[XYZIJRABCxyzijrabc][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])")
+"""A coordinate, radius or angle that is a whole number other than 0, without a point."""
+_PECKS = re.compile(rb"^[^\n]*[Gg]0*[78]3(?![\d.])[^\n]*", re.MULTILINE)
+_PECK_WITHOUT_A_POINT = re.compile(rb"(?<![A-Za-z#\]])[Qq][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])")
+"""Q of G73 and G83 likewise; many controls take no point there, and count thousandths."""
 _MACRO_CALL = re.compile(rb"^[^\n]*[Gg]0*6[56](?![\d.])[^\n]*", re.MULTILINE)
 _ARGUMENT_WITHOUT_A_POINT = re.compile(
     rb"(?<![A-Za-z#\]])[ABCEFKQRUVWabcefkqruvw][ \t]*[+-]?0*[1-9]\d*(?![\d. \t]*[.\d])"
@@ -102,12 +105,13 @@ def _lengths_without_a_point(text: bytes | str, file: str) -> tuple[Diagnostic, 
     """A warning about whole numbers as coordinates, at the first of them."""
     raw = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else bytes(text)
     plain = _COMMENT.sub(lambda comment: b" " * len(comment[0]), raw) if b"(" in raw or b";" in raw else raw
-    places = [*_WITHOUT_A_POINT.finditer(plain)]
-    for call in _MACRO_CALL.finditer(plain):
-        places += _ARGUMENT_WITHOUT_A_POINT.finditer(plain, *call.span())
+    places = {place.start(): place for place in _WITHOUT_A_POINT.finditer(plain)}
+    for lines, words in ((_MACRO_CALL, _ARGUMENT_WITHOUT_A_POINT), (_PECKS, _PECK_WITHOUT_A_POINT)):
+        for block in lines.finditer(plain):
+            places |= {place.start(): place for place in words.finditer(plain, *block.span())}
     if not places:
         return ()
-    found, number = min(places, key=lambda place: place.start()), len(places)
+    found, number = places[min(places)], len(places)
     line = plain.count(b"\n", 0, found.start()) + 1
     column = found.start() - plain.rfind(b"\n", 0, found.start())
     more = f", and {number - 1} more like it" if number > 1 else ""

@@ -17,7 +17,7 @@ import numpy as np
 
 from pkm_post.model import Array, Tool
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import FURTHER_OFFSET, NONE, WORK_OFFSETS, Group, Word, word_of
+from pkm_post.reading.gcode.codes import FURTHER_OFFSET, NONE, OFFSETS_OF_G10, WORK_OFFSETS, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
 from pkm_post.reading.gcode.frames import PLANES, ProgramFrame, rotation
 from pkm_post.reading.gcode.modal import Modal, PositionWords
@@ -284,7 +284,9 @@ class OffsetCodes:
     def _local_offset(self, row: int, code: int, position: Array, known: Array) -> None:
         offsets, words = self.offsets, self._words.at(row)
         given = ~np.isnan(words)
-        if code in (520, 920) and not given.any():
+        if code == 920 and not given.any() and self._blocks.has("S")[row]:
+            self._faults.add("G402", row, (word_of(code), " with S: the highest speed for constant cutting speed"))
+        elif code in (520, 920) and not given.any():
             self._faults.add("G405", row, (word_of(code), " without X, Y or Z"))
         if code == 520:
             offsets.local = offsets.kept = np.where(given, words, offsets.local)
@@ -292,7 +294,7 @@ class OffsetCodes:
             self.require_position(row, known[given], word_of(code))
             offsets.set_local_here(words, position)
         elif code == 921:
-            offsets.local = offsets.kept = np.zeros(3)
+            offsets.local = offsets.kept = self._without_local_offset(row, words)
         elif code == 922:
             offsets.local = np.zeros(3)
         elif code == 923:
@@ -300,16 +302,30 @@ class OffsetCodes:
         else:
             self._set_system(row, words, position, known)
 
+    def _without_local_offset(self, row: int, words: Array) -> Array:
+        """The local offset after G92.1: none, or none in the axes that it names with 0 [Fanuc, G92.1 IP0]."""
+        given = ~np.isnan(words)
+        if self._modal.takes_axes[row] != 921 or not given.any():
+            return np.zeros(3)
+        if words[given].any():
+            self._faults.add("G406", row, (word_of(921), " sets no coordinate but 0"))
+        return np.where(given, 0.0, self.offsets.local)
+
     def _set_system(self, row: int, words: Array, position: Array, known: Array) -> None:
         """G10 L2 and L20."""
         offsets = self.offsets
         kind, number, degrees = (float(self._blocks.word(letter)[row]) for letter in "LPR")
         angle = () if math.isnan(degrees) else (" ", Word("R", degrees))
-        if kind not in (2, 20) or number not in range(len(WORK_OFFSETS) + 1) or (kind == 20 and angle):
+        adds_up = self._modal.flavour.offsets_add_up
+        systems = OFFSETS_OF_G10.get(int(kind), ()) if adds_up else (offsets.system, *WORK_OFFSETS)
+        numbers = range(1 if adds_up else 0, len(systems))
+        if kind not in (2, 20) or number not in numbers or (angle and (kind == 20 or adds_up)):
             self._faults.add("G406", row, (word_of(100), " ", Word("L", kind), " ", Word("P", number), *angle))
             return
-        system = WORK_OFFSETS[int(number) - 1] if number else offsets.system
-        if kind == 20:
+        system = systems[int(number)]
+        if adds_up and self._modal.active[Group.DISTANCE][row] == 910:
+            words = words + offsets.origins.get(system, np.zeros(3))
+        elif kind == 20 and not adds_up:
             self.require_position(row, known[~np.isnan(words)], (word_of(100), " ", Word("L", 20)))
             offsets.set_origin_here(system, words, offsets.frame().to_work(position))
             return

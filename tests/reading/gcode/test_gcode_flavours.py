@@ -193,10 +193,10 @@ def test_ends_of_what_was_never_begun_change_nothing():
     assert codes("G15\n", flavour="rs274") == ["G402"]
 
 
-@pytest.mark.parametrize("code", ["G113", "G150"])
-def test_codes_that_another_make_moves_by_are_not_ends_of_something(code):
+@pytest.mark.parametrize(("code", "fault"), [("G113", "G401"), ("G150", "G402")])
+def test_codes_that_another_make_moves_by_are_not_ends_of_something(code, fault):
     # Ends of modes on Fanuc's controls; a work offset and the milling of a pocket on those of Haas.
-    assert codes(f"{code}\n", flavour="fanuc") == ["G401"]
+    assert codes(f"{code}\n", flavour="fanuc") == [fault]
 
 
 def test_requests_for_smoothing_are_reported():
@@ -255,6 +255,9 @@ def test_another_program_is_only_entered_by_a_call():
         ("G1 X10\n", [(3, 4, "X10")]),
         ("G1 X1.\nY 20 I 3.5\nz-007\n", [(4, 1, "Y 20, and 1 more like it")]),
         ("G4 P1\nN10 G1 X1.5 Y2. F300\n", []),
+        ("G83 X1. Z-9. R2 Q5000\nG80\n", [(3, 14, "R2, and 1 more like it")]),
+        ("G73 X1. Z-9. R2. Q5000\nG80\nG5.1 Q1\n", [(3, 18, "Q5000")]),
+        ("G68 X0 Y0 R90\nG2 X1. Y1. R5\n", [(3, 11, "R90, and 1 more like it")]),
     ],
 )
 def test_lengths_without_a_point_are_reported(text, found):
@@ -280,6 +283,7 @@ def test_a_colon_is_an_o():
         ("G0 X1\nM2", "rs274", ()),
         ("O1001\nG0 X1\nM30", "fanuc", ("O1001 in line 1",)),
         ("G0 X1\nG5.1 Q1\nM30", "fanuc", ("G5.1 in line 2",)),
+        ("G0 X1.\nG92.1 X0 Y0\nM30", "fanuc", ("G92.1 X in line 2",)),
         ("G5.1 X1 Y1 I1 J1", "rs274", ()),
         ("G81 X1 Z-1 R1\nG80\nZ5", "fanuc", ("axis words after G80 in line 3",)),
         ("G81 X1 Z-1 R1\nG0 G80\nZ5", "rs274", ()),
