@@ -46,6 +46,8 @@ class Flavour:
         g53_is_rapid: whether G53 moves at rapid whatever the active motion.
         offsets_add_up: whether G10 L2 adds to an offset under G91; then L20 sets those of G54.1, and no P is in force.
         stops_first: whether M5 acts before the move of its block, rather than whenever the machine's builder decided.
+        needs_both_after_turns: whether controls differ in the first move after G68 that has one coordinate of its
+            plane, and in one by distances after G69.
         owns_axes: codes, in tenths, to which the axis words of their block belong, without a motion.
         counts_in_p: whether P of M98 with more than four digits starts with the number of passes.
         programs_apart: whether an O number starts another program, entered only by a call.
@@ -76,6 +78,7 @@ class Flavour:
     g53_is_rapid: bool
     offsets_add_up: bool
     stops_first: bool
+    needs_both_after_turns: bool
     owns_axes: tuple[int, ...]
     counts_in_p: bool
     programs_apart: bool
@@ -112,6 +115,7 @@ RS274 = Flavour(
     g53_is_rapid=False,
     offsets_add_up=False,
     stops_first=True,
+    needs_both_after_turns=False,
     owns_axes=(),
     counts_in_p=False,
     programs_apart=False,
@@ -183,6 +187,7 @@ FANUC = replace(
     g53_is_rapid=True,
     offsets_add_up=True,
     stops_first=False,
+    needs_both_after_turns=True,
     owns_axes=(51, 220),
     counts_in_p=True,
     programs_apart=True,

@@ -17,6 +17,7 @@ from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import NONE, STROKES, Group, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.events import CycleEvent
+from pkm_post.reading.gcode.frames import plane_axes
 from pkm_post.reading.gcode.modal import Modal, PositionWords, is_cycle, track_coordinate
 from pkm_post.reading.gcode.motions import KEPT, OTHERS_LOST, Motions, Section, as_slice, concatenated
 from pkm_post.reading.gcode.options import ReadOptions
@@ -27,6 +28,8 @@ from pkm_post.reading.gcode.work_offsets import IN_ORDER, SETS_OFFSETS, TIP_CONT
 if TYPE_CHECKING:
     from pkm_post.reading.gcode.cycle_tracker import CycleTracker
 
+_SAME_PLACE = 1e-6
+"""mm"""
 _ROTARY = "ABC"
 """Axes of other machines; G28 with only these moves no other axis."""
 _SECOND = 2
@@ -65,6 +68,8 @@ class PositionTracker:
         start = options.start
         self.position = np.zeros(3) if start is None else self.frame.to_program(np.array(start))
         self.known = np.full(3, start is not None)
+        self._doubtful = np.zeros(3, np.bool_)
+        """Coordinates that G68 or G69 changed at a tool at rest."""
 
     @cached_property
     def drilling(self) -> CycleTracker:
@@ -117,6 +122,7 @@ class PositionTracker:
         if not len(rows):
             return
         self._uses_work_offset = True
+        self._check_first_move(rows)
         index = as_slice(rows)
         ends, known_from = np.empty((len(rows), 3)), np.zeros(3, np.int64)
         for axis, column in enumerate(self.words.columns):
@@ -135,6 +141,7 @@ class PositionTracker:
         self._rows += len(block)
 
     def _change_frame(self, row: int) -> None:
+        before = self.position
         if self.modal.programmed[Group.CHANGE][row] == 6:
             self.offset_codes.change_tool(row)
             # The coordinates are unchanged; with a length offset the tip of the new tool is elsewhere.
@@ -148,9 +155,37 @@ class PositionTracker:
                 self._rebase(point)
             if was_tilted and not self.offset_codes.offsets.tilted:
                 self.known = np.zeros(3, np.bool_)
+        if self.modal.flavour.needs_both_after_turns and self.modal.programmed[Group.ROTATION][row] in (680, 690):
+            self._doubtful = self.known & (np.abs(self.position - before) > _SAME_PLACE)
         if self.modal.programmed[Group.ONCE][row] == TURN_TO_PLANE:
             # Rotary axes turn the tool, and the tip position then depends on the original machine.
             self.known = np.zeros(3, np.bool_)
+
+    def _check_first_move(self, rows: Array) -> None:
+        """Report the first move after G68 or G69 whose place depends on the control.
+
+        After G68 a coordinate that is not written is the one of the program or that of the tool; after G69 a control
+        adds distances to the one or the other [Fanuc, coordinate system rotation, parameter 11600; Mitsubishi].
+        """
+        if not self._doubtful.any():
+            return
+        given = np.column_stack([~np.isnan(column[rows]) for column in self.words.columns])
+        turned, relative = self.offset_codes.offsets.rotation is not None, self.relative[rows]
+        in_plane = given[:, plane_axes(self.modal.active[Group.PLANE][rows[:1]])[0, :2]].any(axis=1)
+        firsts = (
+            np.flatnonzero(in_plane & ~relative)[:1] if turned else np.flatnonzero(given[:, self._doubtful].any(axis=1))
+        )
+        for first in firsts.tolist():
+            missing = self._doubtful & ~given[first] if turned else self._doubtful & given[first] & relative[first]
+            if missing.any():
+                names = " and ".join(
+                    name for name, is_missing in zip("XYZ", missing.tolist(), strict=True) if is_missing
+                )
+                what = f"after G68 it needs {names} as well" if turned else f"after G69 it needs {names} under G90"
+                self.faults.add("G416", int(rows[first]), what)
+            self._doubtful = self._doubtful & ~given[first] & (not turned)
+            if not self._doubtful.any():
+                return
 
     def _rebase(self, point: Array) -> None:
         """Switch to the active frame; the tool keeps its position in {C}, and its coordinates change."""
@@ -247,6 +282,7 @@ class PositionTracker:
         self._move_to(row, 0, np.where(given if given.any() else True, np.array(home), np.nan))
 
     def _drill(self, row: int) -> None:
+        self._check_first_move(np.array([row]))
         strokes = self.drilling.strokes(row, self.position, self.known, self.frame)
         if strokes is None:
             return

@@ -249,8 +249,10 @@ class OffsetCodes:
             self._tilt(row)
             return
         plane = int(self._modal.active[Group.PLANE][row])
-        axes = list(PLANES[plane][:2])
+        axes, across = list(PLANES[plane][:2]), PLANES[plane][2]
         words = self._words.at(row)
+        if abs(words[across]) > 0:
+            self._faults.add("G404", row, (Word("XYZ"[across]), " beside ", word_of(code)))
         self.require_position(row, known[axes] | ~np.isnan(words[axes]), (word_of(code), " without a centre"))
         centre = np.where(np.isnan(words), self.offsets.inner(position), words)
         about = rotation(plane, math.radians(self._blocks.word("R")[row]))
