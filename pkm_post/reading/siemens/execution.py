@@ -110,6 +110,7 @@ def _call_modal(machine: SiemensMachine, row: int, has_place: bool) -> None:
 
 
 def _general(machine: SiemensMachine, block: Block) -> None:
+    is_compensated = bool(machine.state.side)
     once = {_SUPA for code in block.g if code in codes.SUPPRESSED}
     for call in block.names:
         if call.name == _SUPA:
@@ -123,7 +124,7 @@ def _general(machine: SiemensMachine, block: Block) -> None:
     for code in block.m:
         m_code(machine, block, code)
     if "D" in block.words:
-        tool_offset(machine, block)
+        tool_offset(machine, block, is_compensated)
     if DWELL_G in block.g:
         _dwell_block(machine, block)
     elif once:
@@ -150,7 +151,10 @@ def _motion(machine: SiemensMachine, block: Block) -> None:
 
 
 def _dwell_block(machine: SiemensMachine, block: Block) -> None:
-    """G4 F in seconds, or G4 S in turns of the spindle [SiemensNC, G4]."""
+    """G4 F in seconds, or G4 S in turns of the spindle, in a block of its own [SiemensNC, G4]."""
+    beside = [name for name in block.words if name in PLACES]
+    if beside:
+        raise BlockFault("G407", f"{beside[0]} beside G4", block.columns.get(beside[0], 0))
     if "F" in block.words:
         machine.dwell(block.row, block.number("F"))
     elif "S" in block.words:

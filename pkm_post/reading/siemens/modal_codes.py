@@ -72,8 +72,13 @@ def _tool(machine: SiemensMachine, block: Block) -> None:
         _change_tool(machine)
 
 
-def tool_offset(machine: SiemensMachine, block: Block) -> None:
+def tool_offset(machine: SiemensMachine, block: Block, is_compensated: bool) -> None:
     """D0 cancels the tool offset, any other D activates it.
+
+    Args:
+        machine: the machine.
+        block: with D.
+        is_compensated: whether cutter compensation was on before the block, as it is not in ``G41 D1``.
 
     Raises:
         BlockFault: D is not the number of a cutting edge.
@@ -81,7 +86,7 @@ def tool_offset(machine: SiemensMachine, block: Block) -> None:
     value = block.number("D")
     if value < 0 or value != round(value):
         raise BlockFault("G406", f"D{value:g}", block.columns["D"])
-    if machine.state.side:
+    if is_compensated:
         raise BlockFault("G419", f"D{value:g}", block.columns["D"])
     machine.state.has_offset = value > 0
 

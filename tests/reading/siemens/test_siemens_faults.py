@@ -88,6 +88,8 @@ FAULTS = {
     "CYCLE81(10,0,2,5)": ("G418", 1, "CYCLE81: the depth 5 is not below RFP 0"),
     "HOLES1(0,0,0,0,1,3)": ("G418", 1, "HOLES1 without MCALL of a drilling cycle before it"),
     "T1\nG1 G41 X5\nTRANS X1": ("G419", 1, "TRANS"),
+    "T1\nG1 G41 D1 X5\nX9 D2": ("G419", 4, "D2"),
+    "G4 F2 X5": ("G407", 7, "X beside G4"),
     "M3": ("G405", 1, "M3 without S"),
     "M6": ("G405", 1, "M6 without T"),
     "D0\nG1 X1": ("G424", 1, "a cut after D0"),
