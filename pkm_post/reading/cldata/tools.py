@@ -19,6 +19,9 @@ from pkm_post.reading.cldata.statements import Statement
 _TANGENT_TOLERANCE = 2e-3
 """Tolerance in mm of e and f from those of a tangent corner: files round to three decimals."""
 
+_OTHER_PROCESSES = frozenset({"TURN", "GROOVE", "THREAD", "WEDM"})
+"""Tools of TLDATA whose first number is no diameter of a cutter."""
+
 
 def cutter(state: ReaderState, row: int, statement: Statement) -> None:
     """CUTTER/d[,r[,e,f,a,b,h]], angles in degrees; e and f follow from the others."""
@@ -37,12 +40,18 @@ def cutter(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 def tldata(state: ReaderState, row: int, statement: Statement) -> None:
-    """TLDATA/MILL,d,r,length,taper,tip,...; of TLDATA/DRILL,[MILL,]d,r,length,point,... diameter and point angle."""
-    numbers = statement.numbers
+    """TLDATA/MILL,d,r,length,taper,tip,...; of TLDATA/DRILL,[MILL,]d,r,length,point,... diameter and point angle.
+
+    Of other tools of milling, such as BARREL, only the diameter is known; those of other processes are refused.
+    """
+    numbers, kind = statement.numbers, next(iter(statement.words), "MILL")
+    if kind in _OTHER_PROCESSES:
+        state.report("L401", row, f"TLDATA/{kind}, no tool of milling")
+        return
     if not numbers:
         state.report_items(row, statement, "a diameter")
         return
-    given = numbers[:1] if "DRILL" in statement.words else numbers
+    given = numbers if kind == "MILL" else numbers[:1]
     d, r, _, taper, tip = _padded(given, 5)
     if _new_cutter(state, row, d, r, tip, taper):
         state.corner_known = len(given) > 1

@@ -50,6 +50,7 @@ def test_sizes_of_the_tool(statement, expected):
         ("$$-> CUTTER / 10.0", False),
         ("TLDATA/MILL,10,5,50,0,0", True),
         ("TLDATA/DRILL,MILL,6.0000,118.0000", False),
+        ("TLDATA/BARREL,MILL,10,5,50,0,0", False),  # not a ball of radius 5
         ("PPRINT/none", False),
     ],
 )
@@ -126,3 +127,11 @@ def test_of_several_lengths_of_a_tool_none_is_taken():
         {1: 70, 2: 80},
         [],
     )
+
+
+@pytest.mark.parametrize(
+    "statement", ["TLDATA/WEDM,0.2000,25.0000,0.0000", "TLDATA/TURN,0,0,1,0.8,20", "TLDATA/GROOVE,3"]
+)
+def test_tools_of_other_processes_are_refused_by_name(statement):
+    """Their first number is no diameter: STEPNode of STEP Tools, ParseNX.js, lists their values."""
+    assert tool_and_codes(statement)[1] == ["L401"]
