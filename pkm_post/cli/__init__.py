@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Command line: ``python3 -m pkm_post post part.FCStd --machine example_6tps --out DIR`` and other commands.
 
-Exit code 0 on success, 1 when the input was refused, memory ran out, or the output pipe was closed, 2 for invalid
+Exit code 0 on success, 1 when the input was refused, memory ran out, or the output was closed or full, 2 for invalid
 arguments, 130 after Ctrl-C. Each module adds its commands to the parser and runs them; only the module of the named
 command is imported.
 """
@@ -50,9 +50,12 @@ def main(arguments: Sequence[str]) -> int:
         namespace = _parser(arguments[:1]).parse_args(arguments)
         code: int = namespace.run(namespace, arguments)
         sys.stdout.flush()
-    except BrokenPipeError:
-        if not _output_is_closed():
+    except OSError:
+        fault = _output_fault()
+        if fault is None:
             raise
+        if not isinstance(fault, BrokenPipeError):
+            print(diagnostic_text("F101", "standard output", str(fault)), file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         return INTERRUPTED
@@ -85,14 +88,14 @@ def _prepare_streams() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
-def _output_is_closed() -> bool:
-    """Whether the output pipe was closed, as by ``| head``; then the remaining output is discarded."""
+def _output_fault() -> OSError | None:
+    """Why nothing can be printed: the pipe was closed, as by ``| head``, or the disk is full; the rest is discarded."""
     try:
         print(flush=True)
-    except BrokenPipeError:
+    except OSError as fault:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes once more at exit
-        return True
-    return False
+        return fault
+    return None
 
 
 def _parser(first: Sequence[str] = ()) -> argparse.ArgumentParser:

@@ -31,6 +31,24 @@ def test_output_that_nobody_reads_ends_a_command_without_a_word(python):
     assert (ran.returncode, ran.stderr) == (1, "")
 
 
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="only Linux has a file on a full disk")
+@pytest.mark.parametrize("python", [("python3",), ("python3", "-u")])
+@pytest.mark.parametrize("command", [("machine", "check", "example_6tps"), ("post", "--tool-length", "1=120")])
+def test_output_on_a_full_disk_is_said_in_one_line(tmp_path, python, command):
+    part = tmp_path / "part.ngc"
+    part.write_text(PART, encoding="ascii")
+    files = [part, "--out", tmp_path / "out"] if command[0] == "post" else []
+    with open("/dev/full", "w", encoding="ascii") as full:
+        ran = subprocess.run(
+            [*python, "-m", "pkm_post", *command, *map(str, files)],
+            env=os.environ | {"PYTHONPATH": str(ADDON)}, stdout=full, stderr=subprocess.PIPE, text=True, timeout=300,
+            check=False,
+        )  # fmt: skip
+    assert ran.returncode == 1
+    assert ran.stderr.splitlines()[-1].startswith("standard output: error F101: the output cannot be written: [Errno")
+    assert "Traceback" not in ran.stderr and "Exception ignored" not in ran.stderr
+
+
 def test_posting_that_nobody_follows_leaves_nothing(tmp_path):
     part = tmp_path / "part.ngc"
     part.write_text(PART, encoding="ascii")
