@@ -20,6 +20,7 @@ import numpy as np
 
 from pkm_post.cli import run_batch
 from pkm_post.machine import machine_named, reach_map
+from pkm_post.model import Refused
 
 
 @contextlib.contextmanager
@@ -67,7 +68,10 @@ def main():
     parser.add_argument("--machine", default="example_6tps", help="whose reach is mapped")
     options = parser.parse_args()
     with EXECUTORS[options.executor](options) as executor:
-        rows = run_batch(options.list, executor, at_a_time=options.workers)
+        try:
+            rows = run_batch(options.list, executor, at_a_time=options.workers)
+        except Refused as refused:
+            sys.exit(str(refused))
         machine, faults = machine_named(options.machine)
         if machine is None:
             sys.exit("\n".join(map(str, faults)))
