@@ -3,8 +3,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import argparse
+import math
+from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
+
+from pkm_post.options import tool_length
+
+
+def _require(name: str, value: Any, attribute: str, expected: str) -> None:
+    """Check that an object of FreeCAD is of the expected kind, before anything is added or changed.
+
+    Raises:
+        TypeError: it lacks the attribute of its kind.
+    """
+    if not hasattr(value, attribute):
+        raise TypeError(f"{name}: expected {expected}, got {type(value).__name__}")
+
+
+def _require_operation(operation: Any) -> None:
+    _require("operation", operation, "Path", "an operation of a CAM job")
+    if hasattr(operation, "PostProcessor"):
+        raise TypeError("operation: expected an operation of a CAM job, got the job itself")
+
+
+def _vector(name: str, value: Iterable[float], least: float = 0.0) -> tuple[float, ...]:
+    """Three finite numbers of a length above the least.
+
+    Raises:
+        ValueError: they are not.
+    """
+    numbers = tuple(map(float, value))
+    if len(numbers) != 3 or not least < math.hypot(*numbers) < math.inf:
+        raise ValueError(f"{name}: expected three numbers{', not all zero' if least == 0 else ''}, got {numbers}")
+    return numbers
 
 
 def jobs(document: Any) -> list[Any]:
@@ -17,6 +50,7 @@ def jobs(document: Any) -> list[Any]:
         >>> [job.Label for job in pkm.jobs(FreeCAD.ActiveDocument)]  # in FreeCAD
         ['Job']
     """
+    _require("document", document, "addObject", "a FreeCAD document")
     from pkm_post.freecad_app.post_job import find_jobs
 
     return find_jobs(document)
@@ -32,6 +66,7 @@ def job(document: Any, name: str | None = None) -> Any:
         >>> pkm.job(FreeCAD.ActiveDocument).Label  # in FreeCAD
         'Job'
     """
+    _require("document", document, "addObject", "a FreeCAD document")
     from pkm_post.freecad_app.post_job import find_job
 
     return find_job(document, name)
@@ -39,8 +74,8 @@ def job(document: Any, name: str | None = None) -> Any:
 
 def mirror(
     operation: Any,
-    normal: Sequence[float],
-    point: Sequence[float] = (0.0, 0.0, 0.0),
+    normal: Iterable[float],
+    point: Iterable[float] = (0.0, 0.0, 0.0),
     label: str | None = None,
     keep_climb: bool = False,
 ) -> Any:
@@ -54,23 +89,25 @@ def mirror(
         keep_climb: reverse each pass, so that the copy climb mills as the original does.
 
     Raises:
-        ValueError: the operation is in no job.
+        ValueError: the operation is in no job, or a number is not finite or a direction zero; nothing is added.
 
     Example:
         >>> operation = pkm.job(FreeCAD.ActiveDocument).Operations.Group[0]  # in FreeCAD
         >>> pkm.mirror(operation, normal=(1, 0, 0), label="Quadrant 2").Label
         'Quadrant 2'
     """
+    _require_operation(operation)
+    plane = _vector("normal", normal), _vector("point", point, -1.0)
     from pkm_post.freecad_app.symmetry import create_mirror
 
-    return create_mirror(operation, normal, point, label, keep_climb)
+    return create_mirror(operation, *plane, None if label is None else str(label), bool(keep_climb))
 
 
 def rotate(
     operation: Any,
-    axis: Sequence[float],
+    axis: Iterable[float],
     angle: float,
-    point: Sequence[float] = (0.0, 0.0, 0.0),
+    point: Iterable[float] = (0.0, 0.0, 0.0),
     label: str | None = None,
 ) -> Any:
     """Add a rotated copy of an operation to its job.
@@ -83,16 +120,20 @@ def rotate(
         label: displayed name.
 
     Raises:
-        ValueError: the operation is in no job.
+        ValueError: the operation is in no job, or a number is not finite or a direction zero; nothing is added.
 
     Example:
         >>> operation = pkm.job(FreeCAD.ActiveDocument).Operations.Group[0]  # in FreeCAD
         >>> pkm.rotate(operation, axis=(0, 0, 1), angle=math.pi, label="Quadrant 3").Label
         'Quadrant 3'
     """
+    _require_operation(operation)
+    direction, centre = _vector("axis", axis), _vector("point", point, -1.0)
+    if not math.isfinite(angle):
+        raise ValueError(f"angle: expected a number in rad, got {angle}")
     from pkm_post.freecad_app.symmetry import create_rotation
 
-    return create_rotation(operation, axis, angle, point, label)
+    return create_rotation(operation, direction, angle, centre, None if label is None else str(label))
 
 
 def symmetry(operation: Any) -> Any:
@@ -111,6 +152,7 @@ def symmetry(operation: Any) -> Any:
         >>> pkm.symmetry(pkm.job(FreeCAD.ActiveDocument).Operations.Group[0]).members  # in FreeCAD
         3
     """
+    _require_operation(operation)
     from pkm_post.freecad_app.symmetry_report import family_of
 
     return family_of(operation)
@@ -123,12 +165,20 @@ def set_gauge_length(controller: Any, length: float) -> None:
         controller: a tool controller of a CAM job.
         length: mm.
 
+    Raises:
+        ValueError: the length is not a number above 0.
+
     Example:
         >>> pkm.set_gauge_length(pkm.job(FreeCAD.ActiveDocument).Tools.Group[0], 120.0)  # in FreeCAD
     """
+    _require("controller", controller, "ToolNumber", "a tool controller of a CAM job")
+    try:
+        checked = tool_length(str(float(length)))
+    except (ValueError, argparse.ArgumentTypeError) as fault:
+        raise ValueError(f"length: {fault}") from None
     from pkm_post.freecad_app.tools import set_gauge_length as set_length
 
-    set_length(controller, length)
+    set_length(controller, checked)
 
 
 def surface_points(face: Any, u: Any, v: Any) -> tuple[Any, Any]:
@@ -147,12 +197,13 @@ def surface_points(face: Any, u: Any, v: Any) -> tuple[Any, Any]:
         >>> point.shape, normal.shape
         ((1, 3), (1, 3))
     """
+    _require("face", face, "valueAt", "a face of a shape")
     from pkm_post.freecad_app.face_surface import surface_points as points_of
 
     return points_of(face, u, v)
 
 
-def add_machine(document: Any, machine: str = "", job: Any = None, label: str = "") -> Any:
+def add_machine(document: Any, machine: str | Path = "", job: Any = None, label: str = "") -> Any:
     """Add a machine to a FreeCAD document, at its home pose.
 
     Args:
@@ -168,6 +219,9 @@ def add_machine(document: Any, machine: str = "", job: Any = None, label: str = 
         >>> pkm.add_machine(FreeCAD.ActiveDocument, "example_6tps").Label  # in FreeCAD
         'Machine Example 6-TPS'
     """
+    _require("document", document, "addObject", "a FreeCAD document")
+    if job is not None:
+        _require("job", job, "PostProcessor", "a CAM job")
     from pkm_post.freecad_app.machine_object import create_machine
 
-    return create_machine(document, machine, job, label)
+    return create_machine(document, str(machine), job, str(label))

@@ -166,7 +166,7 @@ def is_path(source: Source) -> bool:
     Raises:
         TypeError: it is neither.
     """
-    if not isinstance(source, str | Path) and not hasattr(source, "Operations"):
+    if not isinstance(source, str | Path) and not hasattr(source, "PostProcessor"):
         raise TypeError(f"source: expected the path of a file or a CAM job, got {type(source).__name__}")
     return isinstance(source, str | Path)
 
