@@ -76,11 +76,24 @@ def test_the_codes_of_the_example_are_in_order_and_tell_all_meanings_apart():
         ({"M21": "S7 M3"}, "got 'S7 M3' for spindle_clockwise and M21"),
         ({"M21": "M{value}"}, "M21: expected text without"),
         ({"M21": "RAPID"}, "got RAPID in"),
+        # the controller reads words without spaces between them
+        ({"stop": f"M0 RAPID{LETTERS[0]}100"}, f"got {LETTERS[0]} in"),
+        ({"stop": f"M0INC{LETTERS[1]}-5"}, f"got {LETTERS[1]} in"),
+        ({"stop": f"M0 PSET{LETTERS[2]}(0)"}, f"got {LETTERS[2]} in"),
+        # motors 1 to 6 are the struts
+        ({"stop": "M0 HOME"}, "got HOME in"),
+        ({"stop": "M0 HOMEZ1..6"}, "got HOMEZ in"),
+        ({"stop": 'M0 CMD"#1J+"'}, "got #1 in"),
+        ({"stop": 'M0 cmd"# 6 k"'}, "got # 6 in"),
     ],
 )
 def test_a_table_of_codes_must_be_well_formed_and_invertible(change, complaint):
     with pytest.raises(ValueError, match=complaint):
         check_codes(CODES | change, LETTERS)
+
+
+def test_motors_that_are_no_struts_may_be_homed_and_jogged():
+    check_codes(CODES | {"M21": "HOME7", "M22": 'CMD"#16J/"', "M23": "HOMEZ 10,11"}, LETTERS)
 
 
 def test_outputs_can_be_set_with_synchronous_assignments():

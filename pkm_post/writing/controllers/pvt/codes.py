@@ -77,10 +77,11 @@ _FIXED_CODE = re.compile(rf"{_LITERAL}+")
 _VALUE_CODE = re.compile(rf"(?:{_LITERAL}*(?![0-9.-]){_LITERAL})?{FIELD.pattern}(?:(?![0-9.-]){_LITERAL}+)?")
 _RESERVED = ("PVT", "DWELL", "LINEAR", "CLOSE")
 _COMMENTS = ("//", "/*")
-_MODES = re.compile(
-    r"(?<![A-Z])(PVT|LINEAR|RAPID|CIRCLE|SPLINE|INC|ABS|FRAX|NORMAL|OPEN|CLOSE|CLEAR|DELETE)(?![A-Z])", re.IGNORECASE
-)
+_MODE_WORDS = "PVT|LINEAR|RAPID|CIRCLE|SPLINE|INC|ABS|FRAX|NORMAL|OPEN|CLOSE|CLEAR|DELETE"
+_MODES = re.compile(rf"(?<![A-Z])({_MODE_WORDS})(?![A-Z])", re.IGNORECASE)
 """Words that change the interpretation of the following moves, or the program itself."""
+_OF_STRUTS = re.compile(r"(?<![A-Z])(HOMEZ|HOME(?!Z))(?!\s*(?:[7-9]|[1-9][0-9]))|(#\s*[1-6])(?![0-9])", re.IGNORECASE)
+"""Homing of all motors or of a strut, and commands to the motor of a strut; strut i is motor i."""
 _SYNCHRONOUS = re.compile(r"[=&|^]=")
 _WITH_DWELL = re.compile(r".* DWELL *0", re.IGNORECASE)
 _OTHER_NUMBERS = ("7919", "7919.5")
@@ -125,10 +126,13 @@ def _check_synchronous(name: str, template: str) -> None:
 
 def _check_no_motion(name: str, template: str, letters: Sequence[str]) -> None:
     """Refuse codes with moves and modes: the certificate covers only those of the program itself."""
-    moves = re.compile(rf"(?<![A-Z])({'|'.join(map(re.escape, letters))})\s*[-+.(0-9{{]", re.IGNORECASE)
-    found = _MODES.search(template) or moves.search(template)
+    axes = "|".join(map(re.escape, letters))
+    # the controller needs no space between words: RAPIDA10 is a mode and a move
+    moves = re.compile(rf"(?<![A-Z])(?:{_MODE_WORDS}|PSET)?({axes})\s*[-+.(0-9{{]", re.IGNORECASE)
+    found = _MODES.search(template) or moves.search(template) or _OF_STRUTS.search(template)
     if found:
-        raise ValueError(f"codes.{name}: expected no mode and no move of an axis, got {found[1]} in {template!r}")
+        word = next(filter(None, found.groups()))
+        raise ValueError(f"codes.{name}: expected no mode and no move of an axis, got {word} in {template!r}")
 
 
 def _check_invertible(codes: Mapping[str, str]) -> None:
