@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from pkm_post import at_first_use
 from pkm_post.certificate.certify import certify
 from pkm_post.certificate.consistency import machine_fault, values_beyond_machine
-from pkm_post.certificate.struts import AdjacentMotion, blocks_in_a_second
+from pkm_post.certificate.struts import AdjacentMotion, ProgramPoints, blocks_in_a_second
 
 if TYPE_CHECKING:
     from pkm_post.certificate.reconstruction import reconstruct
@@ -15,6 +15,7 @@ else:
 
 __all__ = [
     "AdjacentMotion",
+    "ProgramPoints",
     "values_beyond_machine",
     "blocks_in_a_second",
     "certify",

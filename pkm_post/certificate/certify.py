@@ -22,7 +22,15 @@ from pkm_post.certificate.diagnosis import diagnose
 from pkm_post.certificate.dynamics import contour_error, count_at_tip, tip_jerk, tool_limits
 from pkm_post.certificate.joints import JointDeviations, measure_joints
 from pkm_post.certificate.playback import PlaybackBounds, Quantity, play, when_worst
-from pkm_post.certificate.struts import AdjacentMotion, acceleration_steps, blocks_in_a_second, off_plan, strut_jerk
+from pkm_post.certificate.struts import (
+    AdjacentMotion,
+    ProgramPoints,
+    acceleration_ramps,
+    acceleration_steps,
+    blocks_in_a_second,
+    off_plan,
+    strut_jerk,
+)
 from pkm_post.certificate.tool_spline import ToolSpline
 from pkm_post.certificate.tool_states import PlaybackTask
 from pkm_post.geometry import Array
@@ -82,7 +90,7 @@ def findings(
         blocks = blocks_in_a_second(struts.time_ms)
         rows = (*rows, ("V117", Phrase("blocks in one second"), "1/s", blocks, machine.block_rate, knots))
     if math.isfinite(machine.strut_jerk):
-        jerk = strut_jerk(struts, task.adjacent)
+        jerk = strut_jerk(struts, task.adjacent, task.points)
         rows = (*rows, ("V112", Phrase("strut jerk"), "mm/s^3", jerk, machine.strut_jerk, knots))
     if math.isfinite(machine.tip_jerk):
         rows = (*rows, ("V115", Phrase("tip jerk"), "mm/s^3", tip_jerk(task), machine.tip_jerk, knots))
@@ -116,8 +124,9 @@ def figures(task: PlaybackTask, trajectory: Trajectory) -> tuple[Figure, ...]:
     """Measured quantities without a limit."""
     checkpoint()
     machine, struts, knots = task.machine, task.struts, _at_knots(task)
+    steps = acceleration_steps(struts) if task.points is None else acceleration_ramps(struts)
     rows = [
-        (Phrase("step of strut acceleration at a knot"), "mm/s^2", acceleration_steps(struts), knots),
+        (Phrase("step of strut acceleration at a knot"), "mm/s^2", steps, knots),
     ]
     if not math.isfinite(machine.block_rate):
         rows.append((Phrase("blocks in one second"), "1/s", blocks_in_a_second(struts.time_ms), knots))
@@ -207,6 +216,7 @@ def certify(
     spin_deviation: Array | float = 0.0,
     rests: tuple[bool, bool] = (True, True),
     adjacent: AdjacentMotion | None = None,
+    points: ProgramPoints | None = None,
 ) -> tuple[Certificate | None, tuple[Diagnostic, ...]]:
     """Play a program and compare it with the trajectory it was made from.
 
@@ -222,6 +232,7 @@ def certify(
             of the program itself.
         rests: whether the program is at rest at its start and end; a piece of a motion may not be.
         adjacent: the motion before and after such a piece; the jerk at its ends depends on it.
+        points: of the program, if the struts have knots between them; all knots by default.
 
     Raises:
         ValueError: jerk is limited, and the motion before a piece is unknown.
@@ -237,9 +248,8 @@ def certify(
 
     def measured(struts: StrutMotion) -> Certificate:
         spline, knots = ToolSpline.of(machine, struts, motion)
-        task = PlaybackTask(
-            struts, machine, ruler, motion, knots, spline, feeds, spin_deviation, adjacent or AdjacentMotion()
-        )
+        before = adjacent or AdjacentMotion()
+        task = PlaybackTask(struts, machine, ruler, motion, knots, spline, feeds, spin_deviation, before, points)
         return _certificate(task, trajectory, tolerances, collisions)
 
     certificate = measured(struts)

@@ -101,8 +101,13 @@ def tip_jerk(task: PlaybackTask) -> Array:
 
     Velocities at the knots are J^-1 times the printed speeds, with J of the planned pose; their error bound is added.
     """
-    struts = task.struts
+    struts, points = task.struts, task.points
     miss = _SPEED_BY_RESIDUAL * np.abs(struts.length - task.knots.length).max(axis=1)
+    if points is not None:
+        velocity = (task.knots.tip_inverse[points.knots] @ points.speed[:, :, None])[:, :, 0]
+        changes, apart = points.changes(velocity)
+        jerk = (length_of(*changes.T) + points.uncertainty(miss[points.knots])) / apart
+        return points.at_knots(jerk, len(struts))
     changes, apart = mean_changes(struts.time_ms, task.spline.rate[:3].T, task.adjacent, task.adjacent.tip)
     duration = np.diff(struts.time_ms) / 1000
     checkpoint()

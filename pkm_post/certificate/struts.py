@@ -88,12 +88,60 @@ class AdjacentMotion:
     goes_on: bool = False
 
 
-def strut_jerk(struts: StrutMotion, adjacent: AdjacentMotion) -> Array:
+@dataclass(frozen=True)
+class ProgramPoints:
+    """The points of a program that is played as splines over segments: its jerk is that from point to point.
+
+    The spline makes a ramp of two segments of a step of the acceleration at a point. Over single segments the jerk
+    would be that of the ramp, and grow with shorter segments of the same motion.
+
+    Attributes:
+        knots: (P,) knots at the points, with both ends.
+        time_ms: (P,) of the program, without what the segments add.
+        speed: (P, 6) of the struts, mm/s.
+        before: (P,) point at which the interval before each begins; the first itself.
+        after: (P,) point at which the interval after each ends; the last itself.
+    """
+
+    knots: Array
+    time_ms: Array
+    speed: Array
+    before: Array
+    after: Array
+
+    def changes(self, speed: Array) -> tuple[Array, Array]:
+        """As ``mean_changes``, (P, C) and (P,) s, for a motion that begins and ends at rest, and its (P, C) speeds."""
+        before, after = self._durations()
+        mean_after = (speed[self.after] - speed) / after[:, None]
+        mean_before = (speed - speed[self.before]) / before[:, None]
+        return mean_after - mean_before, (self.time_ms[self.after] - self.time_ms[self.before]) / 2000
+
+    def uncertainty(self, miss: Array) -> Array:
+        """Bounds on the errors of the changes, (P,), from those of the speeds, (P,)."""
+        before, after = self._durations()
+        return np.asarray((miss[self.after] + miss) / after + (miss + miss[self.before]) / before)
+
+    def at_knots(self, values: Array, count: int) -> Array:
+        """Values of the points, (P,), at each of so many knots; 0 at the others."""
+        everywhere = np.zeros(count)
+        everywhere[self.knots] = values
+        return everywhere
+
+    def _durations(self) -> tuple[Array, Array]:
+        """Of the intervals before and after each point, s; infinite before the first and after the last."""
+        before, after = self.time_ms - self.time_ms[self.before], self.time_ms[self.after] - self.time_ms
+        return np.where(before > 0, before / 1000, np.inf), np.where(after > 0, after / 1000, np.inf)
+
+
+def strut_jerk(struts: StrutMotion, adjacent: AdjacentMotion, points: ProgramPoints | None = None) -> Array:
     """Largest strut jerk about each knot, (K + 1,) mm/s^3.
 
     The mean acceleration of an interval is its change of speed by its duration. From one interval to the next it
     changes by no more than the jerk times the time between their middles.
     """
+    if points is not None:
+        changes, apart = points.changes(points.speed)
+        return points.at_knots(np.abs(changes).max(axis=1) / apart, len(struts))
     changes, apart = mean_changes(struts.time_ms, struts.speed, adjacent, adjacent.struts)
     return np.asarray(np.abs(changes).max(axis=1) / apart)
 
@@ -133,6 +181,16 @@ def acceleration_steps(struts: StrutMotion) -> Array:
         steps[piece], before = np.abs(begin - ends[:-1]).max(axis=1), ends[-1:]
     steps[-1] = np.abs(before).max()
     return steps
+
+
+def acceleration_ramps(struts: StrutMotion) -> Array:
+    """Largest change of a strut's acceleration from the knot before to the one after each, (K + 1,) mm/s^2.
+
+    A spline over segments, whose acceleration is continuous, makes such a ramp of each step.
+    """
+    begin, end = hermite_accelerations(*struts.cubics(np.arange(len(struts) - 1)))
+    around = np.concatenate([np.zeros((1, 6)), begin, end[-1:], np.zeros((1, 6))])
+    return np.asarray(np.abs(around[2:] - around[:-2]).max(axis=1))
 
 
 def blocks_in_a_second(time_ms: Array) -> Array:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pkm_post.certificate.deviation import FeedRuler, TrajectoryRuler
-from pkm_post.certificate.struts import AdjacentMotion
+from pkm_post.certificate.struts import AdjacentMotion, ProgramPoints
 from pkm_post.certificate.tool_spline import KnotKinematics, ToolSpline, inverses_at
 from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_speeds, length_of
 from pkm_post.machine import ToolPoses, forward, jacobian_of_tip, linearise, map_to_tool, refine_poses
@@ -38,6 +38,7 @@ class PlaybackTask:
         feeds: measures speeds of the tip against the programmed feeds.
         spin_deviation: (K + 1,) mm of a strut due to spin error, in addition to the deviation from the plan.
         adjacent: the motion before and after, if this is a piece of a longer motion.
+        points: of the program, if the struts have knots between them; all knots by default.
     """
 
     struts: StrutMotion
@@ -49,6 +50,7 @@ class PlaybackTask:
     feeds: FeedRuler
     spin_deviation: Array | float = 0.0
     adjacent: AdjacentMotion = field(default_factory=AdjacentMotion)
+    points: ProgramPoints | None = None
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from pkm_post.certificate import blocks_in_a_second
 from pkm_post.model import Certificate, Diagnostic, Machine, Place, Refused, StrutMotion, Trajectory
 from pkm_post.posting.cartesian_axes import strut_motion
 from pkm_post.posting.cartesian_guard import Setting, guard_lines, stated_allowance, stated_segment_time, unguarded
-from pkm_post.posting.cartesian_segments import played_in_segments
+from pkm_post.posting.cartesian_segments import played_in_segments, program_points
 from pkm_post.posting.program_certificate import certified
 from pkm_post.writing import PmacSettings, PowerPmacSettings, controller_settings, trajectory_file
 
@@ -83,12 +83,16 @@ def certify_axes(
     return found
 
 
-def _check_points(axes: StrutMotion, name: str, machine: Machine) -> None:
+def _check_points(axes: StrutMotion, name: str, machine: Machine, segment_time: int = 1) -> None:
     """Check that the controller accepts the spacing of the points.
 
     Raises:
-        Refused: points are too close together.
+        Refused: points are too close together, or within a segment.
     """
+    within = np.flatnonzero(axes.time_ms % segment_time)
+    if len(within):
+        found = f"point at {axes.time_ms[within[0]]} ms, expected whole segments of {segment_time} ms from each rest"
+        raise Refused([Diagnostic("C101", Place(name), found)])
     shortest, most = np.diff(axes.time_ms).min(), blocks_in_a_second(axes.time_ms).max()
     faults = []
     if shortest < machine.shortest_interval:
@@ -112,13 +116,14 @@ def _certify(
 ) -> tuple[Certificate, dict[str, Any]]:
     """Certify the axes on one machine; ``fault`` precedes its faults."""
     if setting.segment_time:
+        _check_points(axes, name, machine, setting.segment_time)
         played = played_in_segments(machine, axes, setting.tool_length, setting.segment_time)
-        _check_points(axes, name, machine)
         machine = replace(machine, block_rate=math.inf, shortest_interval=0)  # segments are not points of a program
+        points = program_points(machine, axes, setting.tool_length, setting.segment_time)
     else:
-        played = strut_motion(machine, axes, setting.tool_length)
+        played, points = strut_motion(machine, axes, setting.tool_length), None
     try:
-        return certified(played, name, trajectory, machine, digests)
+        return certified(played, name, trajectory, machine, digests, points)
     except Refused as refused:
         raise Refused((*filter(None, [fault]), *refused.diagnostics)) from None
 

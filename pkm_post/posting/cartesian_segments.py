@@ -19,12 +19,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from pkm_post.certificate import ProgramPoints
 from pkm_post.geometry import Array
 from pkm_post.model import Machine, StrutMotion, read_only
 from pkm_post.posting.cartesian_axes import at_times, strut_motion
 
 _LONGEST_INTERVAL_MS = 2000
 """Half the longest move, which is enough for any segment time."""
+
+_SHORTEST_WINDOW = 2
+"""Segments."""
 
 _SAME = 1e-6
 """In segments."""
@@ -84,6 +88,30 @@ def played_in_segments(machine: Machine, axes: StrutMotion, tool_length: float, 
     length = np.concatenate(lengths)
     time_ms = segment_time * np.arange(len(length), dtype=np.int64)
     return StrutMotion(read_only(time_ms), read_only(length), read_only(np.concatenate(speeds)), events)
+
+
+def program_points(machine: Machine, axes: StrutMotion, tool_length: float, segment_time: int) -> ProgramPoints:
+    """The points of the program, as knots of the motion that ``played_in_segments`` returns.
+
+    Intervals of a single segment are taken with the next, unless a rest is between: where ``on_segments`` makes two
+    points of one, a step of the acceleration is between them.
+
+    Args:
+        machine: its geometry.
+        axes: positions and rates at whole segments from each rest, as from ``on_segments``.
+        tool_length: gauge length, mm.
+        segment_time: ms.
+    """
+    rests, points, time_ms = _rests(axes), np.arange(len(axes)), axes.time_ms
+    way = np.searchsorted(rests, points)  # rests before each point
+    # each rest adds two segments, the first of them before the points of its way
+    knots = time_ms // segment_time + 2 * way - ~np.isin(points, rests)
+    least = _SHORTEST_WINDOW * segment_time
+    before = np.searchsorted(time_ms, time_ms - least, side="right") - 1
+    after = np.searchsorted(time_ms, time_ms + least)
+    before = np.maximum(before, rests[np.maximum(way - 1, 0)])
+    after = np.minimum(after, rests[np.minimum(np.searchsorted(rests, points, side="right"), len(rests) - 1)])
+    return ProgramPoints(knots, time_ms, strut_motion(machine, axes, tool_length).speed, before, after)
 
 
 def _spline(points: Array, seconds: float) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from pkm_post.certificate import certify, machine_fault, values_beyond_machine
+from pkm_post.certificate import ProgramPoints, certify, machine_fault, values_beyond_machine
 from pkm_post.machine import reach_faults
 from pkm_post.model import Certificate, Diagnostic, Machine, Place, Refused, StrutMotion, Trajectory, errors
 from pkm_post.report import Results, summary
@@ -17,7 +17,12 @@ from pkm_post.writing import manifest, trajectory_file
 
 
 def certified(
-    struts: StrutMotion, name: str, trajectory: Path, machine: Machine, digests: list[str]
+    struts: StrutMotion,
+    name: str,
+    trajectory: Path,
+    machine: Machine,
+    digests: list[str],
+    points: ProgramPoints | None = None,
 ) -> tuple[Certificate, dict[str, Any]]:
     """Certify a motion against a trajectory file; return the certificate, which holds, and the report.
 
@@ -27,6 +32,7 @@ def certified(
         trajectory: the trajectory file.
         machine: the machine.
         digests: SHA-256 of the parts of the program, for the report.
+        points: of the program, if the struts have knots between them; all knots by default.
 
     Raises:
         Refused: the file cannot be read, is of another machine, or the certificate does not hold.
@@ -44,7 +50,14 @@ def certified(
     if result is None:
         raise Refused(faults)
     certificate, faults = certify(
-        struts, name, planned, machine, result.motion, tolerances, spin_deviation=result.spin_deviation
+        struts,
+        name,
+        planned,
+        machine,
+        result.motion,
+        tolerances,
+        spin_deviation=result.spin_deviation,
+        points=points,
     )
     faults = (*faults, *reach_faults(machine, planned, *result.pose_path()))
     if certificate is None or errors(faults):

@@ -1499,8 +1499,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>采用此分段时间时，程序不成立</translation>
     </message>
     <message>
-        <source>take a shorter one for --segment-time and SegMoveTime, or 0 for no segmentation, or post with more tolerance; the faults that follow are those of the motion in segments</source>
-        <translation>为 --segment-time 和 SegMoveTime 取更短的时间，或取 0 表示不分段，或以更宽的公差进行后处理；以下是分段运动的错误</translation>
+        <source>take 0 for --segment-time and SegMoveTime, which is no segmentation: then it holds; of the faults that follow, those of the motion in segments, a shorter time mends deviations and jerk, and more tolerance deviations</source>
+        <translation>为 --segment-time 和 SegMoveTime 取 0，即不分段，此时程序成立；以下是分段运动的错误：更短的时间可消除偏差和加加速度的错误，更宽的公差可消除偏差的错误</translation>
     </message>
     <message>
         <source>the command moves nothing</source>

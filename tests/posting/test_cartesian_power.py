@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import programs
 import pytest
-from machines import without_jerk
 
+from pkm_post.certificate.struts import AdjacentMotion, strut_jerk
 from pkm_post.cli import main
 from pkm_post.control.loading import program_to_load
 from pkm_post.control.simulator import PowerPmac
@@ -19,10 +19,10 @@ from pkm_post.machine import find_machine, forward_along_path, machine_named
 from pkm_post.model import Event, EventKind, Refused, StrutMotion
 from pkm_post.options import Options
 from pkm_post.posting import Allowance, cartesian_program, post
-from pkm_post.posting.cartesian_axes import at_times
-from pkm_post.posting.cartesian_check import _check_points
+from pkm_post.posting.cartesian_axes import at_times, axis_motion, strut_motion
+from pkm_post.posting.cartesian_check import _check_points, certify_axes, planned_of_one_tool
 from pkm_post.posting.cartesian_guard import Setting, guard_lines, unguarded
-from pkm_post.posting.cartesian_segments import on_segments, played_in_segments
+from pkm_post.posting.cartesian_segments import on_segments, played_in_segments, program_points
 from pkm_post.posting.verify import read_motion, verify
 from pkm_post.writing import power_pmac
 
@@ -259,9 +259,75 @@ def test_segments_are_no_points_of_the_program_for_the_limits_of_the_controller(
     """1 ms are 1000 segments in a second, of 500 points that the controller of the example accepts; these are few."""
     machine, folder, _ = posted
     files = folder / "job.pmc", folder / "job.pkmt"
-    jumping = without_jerk(machine)  # a segment of 1 ms has all of the step between two cubics
-    assert cartesian_program(*files, jumping, tmp_path / "tip.pmc", segment_time=1).certificate.holds
+    assert cartesian_program(*files, machine, tmp_path / "tip.pmc", segment_time=1).certificate.holds
     axes = read_motion(files[0], machine)
     _check_points(axes, "tip.pmc", machine)
     with pytest.raises(Refused, match="V117"):
         _check_points(axes, "tip.pmc", dataclasses.replace(machine, block_rate=1.0))
+
+
+JERKS = ("V112", "V115")
+
+
+@pytest.mark.parametrize("job", ["with a stop", *range(1, 5)])
+def test_segments_of_a_millisecond_have_the_jerk_of_the_program_whatever_they_do_to_its_steps(job, posted, tmp_path):
+    """As shipped, and not with limits that it exceeds: the spline over segments of 1 ms is what the cubics are."""
+    machine, _, _ = posted
+    made = JOB if job == "with a stop" else programs.random_job(np.random.default_rng(SEEDS[job - 1]))
+    files = tmp_path / "job.pmc", tmp_path / "job.pkmt"
+    post(made, machine, files[0], Options(tip_tolerance=0.02, axis_tolerance=0.05, work_offset=programs.ON_PALLET))
+    direct = verify(*files, machine)[0]
+    played = cartesian_program(*files, machine, tmp_path / "tip.pmc", segment_time=1).certificate
+    for code in JERKS:
+        assert figure_of(played, code) == pytest.approx(figure_of(direct, code), rel=2e-3)
+    steps = [next(each.value for each in one.figures if each.name.startswith("step")) for one in (direct, played)]
+    assert 0.6 * steps[0] < steps[1] < 1.05 * steps[0]  # in two segments, within which a cubic's acceleration changes
+    axes = axis_motion(machine, read_motion(files[0], machine), 120.0, planned_of_one_tool(files[1], "job.pmc"))
+    tight = dataclasses.replace(machine, strut_jerk=0.99 * figure_of(direct, "V112"))
+    with pytest.raises(Refused, match=r"C116(?s:.*)V112"):
+        certify_axes(axes, "tip.pmc", files[1], tight, Setting(120.0, Allowance(), 1), [])
+
+
+SEEDS = (2, 4, 11, 12)
+"""Jobs of which the spline over segments of 1 ms had over 1.2 of a limit of jerk, or up to 0.97 of it."""
+
+
+def figure_of(certificate, code):
+    return next(found.value for found in certificate.findings if found.code == code)
+
+
+@pytest.mark.parametrize("segment", [1, 2, 3, 5, 8])
+@pytest.mark.parametrize("seed", range(4))
+def test_jerk_of_a_motion_is_found_whatever_the_segments(segment, seed, posted):
+    """Sums of sines, with points by chance: what finite differences of the exact struts find, at every 0.5 ms."""
+    machine, chance = posted[0], np.random.default_rng(seed)
+    wide = np.array([20.0, 20.0, 10.0, 1.5, 1.5, 1.5]) * chance.uniform(0.3, 1, (3, 6))
+    omega, phase = 2 * np.pi * chance.uniform(0.4, 2.0, (3, 6)), chance.uniform(0, 2 * np.pi, (3, 6))
+    moves = np.append(0, np.cumsum(segment * chance.integers(1, 24 // segment + 1, 400)))
+    moves = moves[moves <= 2400]
+    whole, rate = sines(moves / 1000, wide, omega, phase)
+    whole[:, :3] += machine.home_tip
+    axes = StrutMotion(moves, whole, rate, ())
+    points = program_points(machine, axes, 120.0, segment)
+    inner = (points.before > 0) & (points.after < len(moves) - 1)  # it does not begin and end at rest
+    found = strut_jerk(played_in_segments(machine, axes, 120.0, segment), AdjacentMotion(), points)[points.knots]
+    fine = np.arange(0, moves[-1] + 0.5, 0.5)
+    dense, there = sines(fine / 1000, wide, omega, phase)
+    dense[:, :3] += machine.home_tip
+    length = strut_motion(machine, StrutMotion(fine, dense, there, ()), 120.0).length
+    true = np.abs(np.diff(length, n=3, axis=0) / 0.0005**3).max()
+    assert 0.9 * true <= found[inner].max() <= 1.001 * true
+
+
+def sines(seconds, wide, omega, phase):
+    """Places and rates of axes that swing, (T, 6) each."""
+    turn = omega * seconds[:, None, None] + phase
+    return (wide * np.sin(turn)).sum(axis=1), (wide * omega * np.cos(turn)).sum(axis=1)
+
+
+def test_points_within_a_segment_are_refused(posted):
+    machine, folder, _ = posted
+    axes = read_motion(folder / "job.pmc", machine)
+    within = next(time for time in axes.time_ms if time % 9)
+    with pytest.raises(Refused, match=f"C101.*point at {within} ms, expected whole segments of 9 ms"):
+        _check_points(axes, "tip.pmc", machine, 9)

@@ -53,8 +53,8 @@ RESULT_RULES: dict[str, Rule] = {
     ),
     "C116": error(
         "with this segment time the program does not hold",
-        "take a shorter one for --segment-time and SegMoveTime, or 0 for no segmentation, or post with more tolerance;"
-        " the faults that follow are those of the motion in segments",
+        "take 0 for --segment-time and SegMoveTime, which is no segmentation: then it holds; of the faults that follow,"
+        " those of the motion in segments, a shorter time mends deviations and jerk, and more tolerance deviations",
     ),
     # C2: manual moves at the controller
     "C201": error("the command moves nothing", "give a direction and a distance"),
