@@ -118,7 +118,8 @@ def _certify(
     if setting.segment_time:
         _check_points(axes, name, machine, setting.segment_time)
         played = played_in_segments(machine, axes, setting.tool_length, setting.segment_time)
-        machine = replace(machine, block_rate=math.inf, shortest_interval=0)  # segments are not points of a program
+        # segments are not points of a program; how far a feed reaches into another one depends on them
+        machine = replace(machine, block_rate=math.inf, shortest_interval=setting.segment_time)
         points = program_points(machine, axes, setting.tool_length, setting.segment_time)
     else:
         played, points = strut_motion(machine, axes, setting.tool_length), None
