@@ -215,7 +215,7 @@ class Player:
             if run.is_started and status is not None and not status.running and status.standing:
                 run.time_late_piece(self._timing)
                 self._stops += run.was_late()
-                return run.rest(lambda: self._way.text(self._feed.current))
+                return run.rest(lambda: self._way.text(self._feed.current), status.fault_texts())
             if run.is_void():
                 return run.begin, False
             try:

@@ -219,11 +219,12 @@ class RunToRest:
             raise self._fault
         return True
 
-    def rest(self, where: Callable[[], str]) -> tuple[MotionState, bool]:
+    def rest(self, where: Callable[[], str], faults: tuple[str, ...]) -> tuple[MotionState, bool]:
         """The state in which the machine came to rest, and whether the part ends there.
 
         Args:
             where: returns the place as text.
+            faults: of struts and program in the controller, as text.
 
         Raises:
             Refused: a piece was not certified; the machine is at rest before it.
@@ -231,7 +232,8 @@ class RunToRest:
         """
         point = self._feed.current
         if point is None or not self._feed.is_at_its_end():
-            raise PmacError(f"the program was ended from elsewhere {where()}; go on with --from-line")
+            why = f" ({'; '.join(faults)})" if faults else ""
+            raise PmacError(f"the program was ended from elsewhere {where()}{why}; go on with --from-line")
         if self._fault is not None:
             raise self._fault
         return point.motion.end, self._planner.is_end(point.motion.end)  # a stop may also lead there

@@ -133,6 +133,25 @@ def test_a_link_that_is_cut_for_good_ends_in_a_stop_on_the_path():
     assert not playing.wire.controller.runs_program() and playing.arrived() > 1.0
 
 
+def fails(playing):
+    """The largest following error becomes a count, which no moving motor keeps."""
+    playing.wire.controller.variables.write("I", 311, 1)
+
+
+@pytest.mark.parametrize(
+    ("happens", "said"),
+    [
+        (lambda playing: playing.wire.controller.kill(2), "strut 3: in open loop"),
+        (fails, "strut 3: following error too large, switched off"),
+    ],
+)
+def test_a_motor_that_fails_on_the_way_is_named(happens, said):
+    playing = Playing.of(at={12: [lambda player: happens(playing)]})
+    with pytest.raises(PmacError, match=rf"ended from elsewhere in Finish line \d+ \(.*{said}.*\); go on with"):
+        playing.play()
+    assert playing.wire.controller.systems[0].running is False
+
+
 @BOTH
 def test_single_block_rests_at_the_end_of_each_line(machine):
     playing = Playing.of(machine=machine)
