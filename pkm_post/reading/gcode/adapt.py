@@ -31,7 +31,7 @@ _NEVER_DROPPED = frozenset("FSTXYZABCIJK")
 _AXIS_WORDS = ("X", "Y", "Z", "I", "J", "K", "A", "B", "C")
 _LIMITS = 220
 """G22: X Y Z and I J K are corners of a space."""
-_CALLS = (97,)
+_CALLS = (97, 198)
 """M codes of programs that are refused."""
 _LINES_SHOWN = 3
 _HERE = ": here the tolerances of planning decide"
@@ -70,7 +70,7 @@ def _left_out(blocks: Blocks, flavour: Flavour, names: Collection[str]) -> tuple
     """Mark the G and M codes to skip: only codes not understood here, and no G code that may move the tool.
 
     A G code may move it if its block has X, Y or Z, or if it is known and refused: it may then change the meaning of
-    words in other blocks, as G16 does. M97 calls moves.
+    words in other blocks, as G16 does. M97 and M198 call moves.
     """
     g, m = (is_among(codes, _named(codes, names, letter)) for letter, codes in (("G", blocks.g), ("M", blocks.m)))
     refused = {*flavour.unsupported, *SPINDLE_SYNCHRONISED}

@@ -151,6 +151,7 @@ UNSUPPORTED: dict[str, str] = {
     **{f"M{code}": "digital and analogue outputs" for code in (62, 63, 64, 65, 66, 67, 68)},
     **{f"M{code}": "saving and restoring modal states" for code in (70, 71, 72, 73)},
     "M97": "calls of a sequence number on Haas's controls; M98 of an O number is understood",
+    "M198": "calls of a program in another memory; M98 is understood, with the folder in --subprograms",
 }
 """Purpose of well-known unsupported codes."""
 

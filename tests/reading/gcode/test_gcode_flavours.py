@@ -199,6 +199,12 @@ def test_codes_that_another_make_moves_by_are_not_ends_of_something(code, fault)
     assert codes(f"{code}\n", flavour="fanuc") == [fault]
 
 
+@pytest.mark.parametrize("flavour", ["fanuc", "rs274"])
+@pytest.mark.parametrize("code", ["M97", "M198"])
+def test_calls_that_are_not_read_are_never_left_out(code, flavour):
+    assert codes(f"{code} P100\n", flavour=flavour, left_out=(code,)) == ["G402"]
+
+
 def test_requests_for_smoothing_are_reported():
     program = fanuc("G5.1 Q1\nG1 X1\nG5.1 Q0\nG5 P10000\nG187 P2 E0.02\nG8 P1\nG61.1\nG5.1 Q1\nG5.1 Q0\nX2\n")
     assert moves(program) == [(L, 1, 0, 50), (L, 2, 0, 50)]
