@@ -40,6 +40,7 @@ class CycleTracker:
         faults: BlockDiagnostics,
     ) -> None:
         self._modal, self._polar, self._words = modal, polar, polar.words
+        self._is_polar = polar.rows()
         self._cycle_words = {letter: blocks.word(letter) for letter in "RQIJ" + _REPEATS}
         self._spindle, self._dwells, self._faults = spindle, dwells, faults
         self._series: CycleSeries | None = None
@@ -65,6 +66,9 @@ class CycleTracker:
         code = int(self._modal.active[Group.MOTION][row])
         if code == RIGID_TAP:
             return self._rigid_tap(row, position, known)
+        if not self._has_place(row):
+            self._faults.add("G405", row, (word_of(code), " without X, Y or Z"))
+            return None
         axes = PLANES[int(self._modal.active[Group.PLANE][row])]
         relative = bool(self._modal.active[Group.DISTANCE][row] == 910)
         given = ~np.isnan(self._words.at(row)) & (not relative)
@@ -88,6 +92,11 @@ class CycleTracker:
             return None
         centres = self._centres(row, position, axes, relative, int(repeats))
         return cycle_strokes(series.cycle, hole, centres, axes, position, spindle, self._modal.flavour)
+
+    def _has_place(self, row: int) -> bool:
+        """Whether a block has a hole: without one rs274 refuses it, and Fanuc's controls drill nothing."""
+        by_r = self._modal.flavour.keeps_cycle_words and not math.isnan(self._cycle_words["R"][row])
+        return bool(by_r or self._is_polar[row] or not np.isnan(self._words.at(row)).all())
 
     def _rigid_tap(self, row: int, position: Array, known: Array) -> Strokes | None:
         """Tap to the point of the block and back, with lead K [LinuxCNC, G33.1]."""
