@@ -139,6 +139,15 @@ def replace_arguments(text: str, chosen: Mapping[str, str | Sequence[str] | None
     return shlex.join([*kept, *(f"{flag}={value}" for flag, each in values.items() for value in each)])
 
 
+def flags_in(text: str) -> set[str]:
+    """The flags of some arguments.
+
+    Raises:
+        ValueError: the quotes of the text do not close.
+    """
+    return {flag for flag, _ in _by_flag(shlex.split(text))}
+
+
 def _by_flag(words: list[str]) -> Iterator[tuple[str, list[str]]]:
     """Yield each flag with its words: one word with ``=`` or without a value, else two."""
     while words:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Command: FreeCAD's command interface, and the three ways in which our commands run.
+"""Command: FreeCAD's command interface, and the ways in which our commands run.
 
 A command that changes a document runs in one transaction, so that one undo reverts it.
 """
@@ -129,6 +129,22 @@ class WindowCommand(Command):
         """Open the window."""
         with show_lack_of_memory(translate(self.name, self.text)):
             self.action(next(iter(FreeCADGui.Selection.getSelection()), None))
+
+
+@dataclass(frozen=True)
+class JobPanelCommand(Command):
+    """A command that opens the panel of a job; the panel has undo steps of its own.
+
+    FreeCAD leaves the transaction of a command open while a panel is: later changes would join it.
+    """
+
+    def Activated(self) -> None:
+        """Recompute if needed, and open the panel."""
+        subject = self._selected()
+        with show_lack_of_memory(translate(self.name, self.text)):
+            self.action(subject)
+            if self.computes:
+                subject.Document.recompute()
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import FreeCADGui
 
 from pkm_post.freecad_app.document import is_operation, is_simulation, job_of
 from pkm_post.freecad_gui import command_actions
-from pkm_post.freecad_gui.command import Command, PanelCommand, WindowCommand, exactly_one, job_or
+from pkm_post.freecad_gui.command import Command, JobPanelCommand, PanelCommand, WindowCommand, exactly_one, job_or
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
@@ -79,7 +79,7 @@ COMMANDS = (
         "P, K, C",
         "reach.md",
     ),
-    Command(
+    JobPanelCommand(
         "PKM_Stiffness",
         "stiffness.svg",
         QT_TRANSLATE_NOOP("PKM_Stiffness", "Stiffness"),
@@ -108,7 +108,7 @@ COMMANDS = (
         command_actions.edit,
         "P, K, E",
     ),
-    Command(
+    JobPanelCommand(
         "PKM_Post",
         "pkm_post.svg",
         QT_TRANSLATE_NOOP("PKM_Post", "Post to a hexapod"),

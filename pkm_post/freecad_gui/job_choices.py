@@ -76,6 +76,7 @@ class JobChoices(QtWidgets.QWidget):
         with transaction(job.Document, translate("PostPanel", "Post to a hexapod")):
             store_in_job(job, text, str(self.program()))
             store_gauge_lengths(job, lengths)
+        self.show_job()
         return chosen
 
     def _show_given(self, *_changed: str) -> None:

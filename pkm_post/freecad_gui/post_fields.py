@@ -13,7 +13,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtWidgets
 
-from pkm_post.freecad_app.arguments import parse_arguments, replace_arguments
+from pkm_post.freecad_app.arguments import flags_in, parse_arguments, replace_arguments
 from pkm_post.machine import machine_named, presets
 from pkm_post.model import Place, Refused
 from pkm_post.options import FIXTURE_OF_THE_JOB, RULES_WITH_HEADING, SIDE_OUTPUTS, SPIN_WORDS
@@ -224,7 +224,7 @@ class PostChoices(QtWidgets.QWidget):
         self._show_heading()
 
     def text(self) -> str:
-        """The arguments."""
+        """The arguments; one in the line for all others, such as beside a mistake, goes before its field."""
         spin = self.spin.currentData()
         chosen = {
             "--machine": self.machine.currentText().strip() or None,
@@ -235,7 +235,8 @@ class PostChoices(QtWidgets.QWidget):
             "--also": ",".join(name for name, box in self.also.items() if box.isChecked()) or None,
         }
         try:
-            return replace_arguments(self.more.text(), chosen)
+            typed = flags_in(self.more.text())
+            return replace_arguments(self.more.text(), {flag: chosen[flag] for flag in chosen if flag not in typed})
         except ValueError:  # the parser reports the error
             return self.more.text()
 

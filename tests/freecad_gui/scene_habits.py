@@ -231,6 +231,37 @@ def surface_finish_is_closed_by_a_command():
 
 
 @step
+def panels_of_a_job_leave_no_transaction():
+    document, found = new_document("steps"), {}
+    for command in ("PKM_Post", "PKM_Stiffness"):
+        press(command, document.getObject("Job"))
+        found[command] = [bool(FreeCADGui.Control.activeDialog()), FreeCAD.getActiveTransaction() is None]
+        FreeCADGui.Control.closeDialog()
+        settle()
+    return found
+
+
+@step
+def arguments_beside_a_mistake_are_kept():
+    from pkm_post.freecad_gui.job_choices import JobChoices
+    from pkm_post.model import Refused
+
+    job = new_document("mistake").getObject("Job")
+    job.PostProcessorArgs, found = "--work-offset=0,0,25O --surface-speed=100", {}
+    choices = JobChoices(job)
+    try:
+        choices.keep()
+    except Refused as refused:
+        found["refused"] = [each.code for each in refused.diagnostics]
+    choices.arguments.more.setText(choices.arguments.more.text().replace("25O", "250"))
+    found["kept"] = list(choices.keep().work_offset[:3])
+    found["fields"] = [choices.arguments.work_offset.currentText(), choices.arguments.more.text()]
+    found["job"] = "--work-offset=0,0,250" in job.PostProcessorArgs
+    choices.end()
+    return found
+
+
+@step
 def mirror_beside_an_open_panel():
     from pkm_post.freecad_gui.symmetry_panel import SymmetryPanel
 

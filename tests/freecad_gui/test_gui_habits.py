@@ -96,3 +96,16 @@ def test_mirror_waits_for_the_panel_of_another_command(session):
 
 def test_cancelled_mirror_leaves_the_one_before(session):
     assert session["mirror_beside_an_open_panel"]["left"] == [True, False]
+
+
+def test_panel_of_a_job_leaves_no_transaction_open(session):
+    found = session["panels_of_a_job_leave_no_transaction"]
+    assert found == {"PKM_Post": [True, True], "PKM_Stiffness": [True, True]}
+
+
+def test_work_offset_with_a_mistake_is_refused_by_the_panel_and_kept_once_mended(session):
+    found = session["arguments_beside_a_mistake_are_kept"]
+    assert found["refused"] == ["J117"]
+    assert found["kept"] == [0.0, 0.0, 250.0]
+    assert found["fields"] == ["0,0,250", "--surface-speed=100"]
+    assert found["job"]
