@@ -7,7 +7,8 @@ Real programs have some ten to hundred patterns, so a million blocks take some h
 are parsed here: importing lark and making its tables take longer than a short program. Lark parses all others.
 
 In a pattern letters are upper case and blanks are removed. The digits of G and M codes are kept: they determine the
-meaning of a block, as do those before an equals sign, as in A3=0.5; these and line numbers do not count as numbers.
+meaning of a block, as do those before an equals sign, as in A3=0.5, and of a switch of block delete, as in /2; these
+and line numbers do not count as numbers.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ _IS_NUMERIC = _byte_table(lambda byte: byte in _NUMERIC)
 _STAYS = _byte_table(lambda byte: byte not in _NUMERIC + _BLANKS)
 _KEYWORDS = (b"LN", b"TRA")
 """Prefixes of multi-letter words. Where one occurs, blanks after letters are kept: L N is not LN."""
-_IS_CODE, _IS_LINE_NUMBER = (np.isin(np.arange(256), [ord(letter) for letter in letters]) for letters in ("GM", "N"))
+_IS_CODE, _IS_LINE_NUMBER = (np.isin(np.arange(256), [ord(letter) for letter in letters]) for letters in ("GM/", "N"))
 
 
 @dataclass
@@ -167,7 +168,7 @@ class PatternTable:
 
 
 _WORD = re.compile(rb"([GM])(\d+\.?\d*|\.\d+)|([A-MP-Z@^])\x01")
-_PLAIN = re.compile(rb"%|(/?)(?:N\x01)?((?:" + _WORD.pattern + rb")*)")
+_PLAIN = re.compile(rb"%|((?:/[1-9]?)?)(?:N\x01)?((?:" + _WORD.pattern + rb")*)")
 """``block`` of the grammar without blanks, where each word is a letter and a number."""
 
 

@@ -37,6 +37,7 @@ EXPECTED: dict[str, tuple[str, ...]] = {
     "']'": ("RSQB",),
     "'='": ("EQUAL",),
     "'/'": ("DELETE",),
+    "the number of a switch": ("SWITCH",),
     "a word": ("LETTER", "NAMED", "SURFACE", "LN", "TRAORI", "TRAFOOF"),
     "a line number": ("_N",),
     "an O word": ("_O",),

@@ -179,6 +179,12 @@ def test_deleted_blocks_are_left_out_when_asked():
     assert read(text, block_delete=True).line.tolist() == [1, 4]
 
 
+def test_blocks_of_numbered_switches_are_left_out_when_asked():
+    text = "G0 X0 Y0 Z0\n/2 G0 X1\n/9M30\nG0 X2\n"
+    assert read(text).line.tolist() == [1, 2]
+    assert read(text, block_delete=True).line.tolist() == [1, 4]
+
+
 def test_a_default_tool_stands_in_for_those_that_are_missing():
     default = Tool(0, "any", 8.0, 0.0, 70.0)
     assert read(START, default_tool=default).tools == {0: default}

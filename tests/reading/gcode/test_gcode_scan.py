@@ -70,6 +70,19 @@ def test_block_delete_is_reported():
     assert scanned("/N10 G1 X1\nG1 X2\n/ #1=2\n").deleted.tolist() == [True, False, True]
 
 
+def test_a_numbered_switch_deletes_its_block_and_is_no_number_of_it():
+    blocks = scanned("/2 G1 X1 Y3\n/ 9N10 X2\n/1\nX4 (/3)\n/3 #1=8/2\n/4N8 X[8/2]\n")
+    assert blocks.line.tolist() == [1, 2, 4, 5, 6]
+    assert blocks.deleted.tolist() == [True, True, False, True, True]
+    assert blocks.word("X")[:3].tolist() == [1, 2, 4] and blocks.word("Y")[0] == 3
+
+
+@pytest.mark.parametrize("line", ["/0 X1", "/10 X1", "/2.5 X1", "/-2 X1", "/2 3 X1"])
+def test_other_numbers_after_a_slash_are_no_switch(line):
+    blocks, faults = scan(f"{line}\n", "part.ngc")
+    assert blocks is None and [fault.place.line for fault in faults] == [1]
+
+
 @pytest.mark.parametrize(
     "line, kind",
     [
