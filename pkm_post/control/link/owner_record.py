@@ -9,6 +9,7 @@ import time
 from dataclasses import dataclass
 
 from pkm_post.control.link.errors import DiagnosedError, LinkLostError
+from pkm_post.control.link.queries import parse_number
 from pkm_post.control.link.session import Session
 from pkm_post.model import Diagnostic, Place
 
@@ -62,7 +63,7 @@ def read_record(session: Session) -> Owner:
     """
     answer = session.query(RECORD)
     try:
-        values = [float(line) for line in answer]
+        values = [parse_number(line) for line in answer]
         if len(values) != len(VARIABLES):
             raise ValueError(f"expected {len(VARIABLES)} lines, got {len(values)}")
     except ValueError as fault:

@@ -1,17 +1,44 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Queries: single lines and numbers that a controller reports.
+"""Queries: single lines, numbers and bits that a controller reports.
 
-Input: a session and the name of a variable or an element. Output: a line or a number.
+Input: a session and the name of a variable or an element. Output: a line, a number or bits.
 """
 
 from __future__ import annotations
 
+import math
 import re
 
 from pkm_post.control.link.errors import LinkLostError, PmacError
 from pkm_post.control.link.session import Session
 
-_REAL = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_REAL = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+_HEXADECIMAL = re.compile("[0-9A-Fa-f]+")
+
+
+def parse_number(text: str) -> float:
+    """A number as a controller writes it: no underscores, no ``nan``, nothing beyond the range of its numbers.
+
+    Raises:
+        ValueError: the text is something else.
+    """
+    text = text.strip()
+    value = float(text) if _REAL.fullmatch(text) else math.nan
+    if not math.isfinite(value):
+        raise ValueError(f"expected a number, got {text!r}")
+    return value
+
+
+def parse_bits(text: str, digits: int) -> int:
+    """Status bits as a controller writes them: hexadecimal digits, on a Turbo PMAC after ``$`` if it is set so.
+
+    Raises:
+        ValueError: there are other characters, or the number of digits differs.
+    """
+    text = text.strip().removeprefix("$")
+    if len(text) != digits or not _HEXADECIMAL.fullmatch(text):  # int() takes signs and underscores
+        raise ValueError(f"expected {digits} hexadecimal digits, got {text!r}")
+    return int(text, 16)
 
 
 def query_line(session: Session, query: str) -> str:
@@ -33,6 +60,7 @@ def read_number(session: Session, name: str) -> float:
         LinkLostError: the answer is not a number.
     """
     answer = query_line(session, name)
-    if not _REAL.fullmatch(answer):
-        raise LinkLostError(f"{name}: expected a number, got {answer!r}")
-    return float(answer)
+    try:
+        return parse_number(answer)
+    except ValueError as fault:
+        raise LinkLostError(f"{name}: {fault}") from None

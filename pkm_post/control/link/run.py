@@ -77,7 +77,7 @@ def check_start(
     reasons = [*_motor_faults(status), *status.fault_texts()]
     if status.running:
         reasons.append("a program runs, or is held")
-    if status.override > 100:
+    if not status.override <= 100:
         reasons.append(f"the override is {status.override:g} %: the program was planned to the limits at 100 %")
     away = np.abs(status.length - first)
     reasons += [

@@ -20,6 +20,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from pkm_post.control.link.errors import LinkLostError
+from pkm_post.control.link.queries import parse_bits, parse_number
 from pkm_post.control.link.session import Session
 from pkm_post.writing import PmacSettings, PowerPmacSettings
 
@@ -216,9 +217,9 @@ def _turbo_query(settings: PmacSettings) -> str:
 def _turbo_status(answer: tuple[str, ...], settings: PmacSettings) -> Status:
     if len(answer) != 20:
         raise ValueError(f"expected 20 lines, got {len(answer)}")
-    motors = tuple(MotorBits(_parse_bits(line, MotorBits.DIGITS)) for line in answer[0:18:3])
-    system = SystemBits(_parse_bits(answer[18], SystemBits.DIGITS))
-    return Status(motors, system, float(answer[19]), *_lengths_and_errors(answer, settings))
+    motors = tuple(MotorBits(parse_bits(line, MotorBits.DIGITS)) for line in answer[0:18:3])
+    system = SystemBits(parse_bits(answer[18], SystemBits.DIGITS))
+    return Status(motors, system, _parse_override(answer[19]), *_lengths_and_errors(answer, settings))
 
 
 def _power_query(settings: PowerPmacSettings) -> str:
@@ -242,12 +243,12 @@ def _power_status(answer: tuple[str, ...], settings: PowerPmacSettings) -> Statu
     expected = 3 * len(MOTORS) + 2 + len(_ELEMENTS)
     if len(answer) != expected:
         raise ValueError(f"expected {expected} lines, got {len(answer)}")
-    motors = tuple(_power_motor(_parse_bits(line, PowerMotorBits.DIGITS)) for line in answer[0:18:3])
-    bits = _parse_bits(answer[18], PowerSystemBits.DIGITS)
+    motors = tuple(_power_motor(parse_bits(line, PowerMotorBits.DIGITS)) for line in answer[0:18:3])
+    bits = parse_bits(answer[18], PowerSystemBits.DIGITS)
     for place, value in enumerate(answer[20:], start=_STATUS_BITS):
-        bits |= int(float(value) != 0) << place
+        bits |= int(parse_number(value) != 0) << place
     length, error = _lengths_and_errors(answer, settings)
-    return Status(motors, PowerSystemBits(bits), float(answer[19]), length, error, slows_in_a_hold=False)
+    return Status(motors, PowerSystemBits(bits), _parse_override(answer[19]), length, error, slows_in_a_hold=False)
 
 
 def _power_motor(value: int) -> PowerMotorBits:
@@ -266,21 +267,21 @@ def _lengths_and_errors(answer: tuple[str, ...], settings: AnySettings) -> tuple
     Raises:
         ValueError: a count is not a number.
     """
-    counts = np.array([[float(line) for line in answer[column : 3 * len(MOTORS) : 3]] for column in (1, 2)])
+    counts = np.array([[parse_number(line) for line in answer[column : 3 * len(MOTORS) : 3]] for column in (1, 2)])
     position, error = counts / settings.counts_per_mm
     return position + np.array(settings.zero_length), error
 
 
-def _parse_bits(text: str, digits: int) -> int:
-    """The bits of an answer.
+def _parse_override(text: str) -> float:
+    """The override of an answer, %.
 
     Raises:
-        ValueError: the number of digits differs.
+        ValueError: it is no number, or below 0.
     """
-    text = text.strip().lstrip("$")
-    if len(text) != digits:
-        raise ValueError(f"expected {digits} hexadecimal digits, got {text!r}")
-    return int(text, 16)
+    value = parse_number(text)
+    if value < 0:
+        raise ValueError(f"expected an override of 0 or more, got {text!r}")
+    return value
 
 
 def settled_status(session: Session, settings: AnySettings) -> Status:
@@ -307,10 +308,10 @@ def is_busy(session: Session) -> bool:
     motors = " ".join(f"#{motor}?" for motor in MOTORS)
     answer = session.query(f"{motors} ??" if session.has_handshake else motors)
     try:
-        bits = [kind(_parse_bits(line, kind.DIGITS)) for line in answer[: len(MOTORS)]]
+        bits = [kind(parse_bits(line, kind.DIGITS)) for line in answer[: len(MOTORS)]]
         if session.has_handshake:
             (system,) = answer[len(MOTORS) :]
-            runs = SystemBits(_parse_bits(system, SystemBits.DIGITS)).has("running")
+            runs = SystemBits(parse_bits(system, SystemBits.DIGITS)).has("running")
         else:
             runs = _runs_in_power_pmac(session)
     except ValueError as fault:
@@ -327,11 +328,12 @@ def _runs_in_power_pmac(session: Session) -> bool:
     Raises:
         ValueError: the answer is invalid.
     """
-    (most,) = session.query("Sys.MaxCoords")
-    for first in range(1, int(float(most)), _SYSTEMS_AT_ONCE):
-        systems = range(first, min(first + _SYSTEMS_AT_ONCE, int(float(most))))
+    (line,) = session.query("Sys.MaxCoords")
+    most = int(parse_number(line))
+    for first in range(1, most, _SYSTEMS_AT_ONCE):
+        systems = range(first, min(first + _SYSTEMS_AT_ONCE, most))
         answer = session.query(" ".join(f"Coord[{system}].ProgRunning" for system in systems))
-        if any(float(line) for line in answer):
+        if any(parse_number(line) for line in answer):
             return True
     return False
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from itertools import islice
 
 from pkm_post.control.link.errors import LinkLostError, OutcomeUnknownError, PmacError
+from pkm_post.control.link.queries import parse_number
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings
 from pkm_post.control.player.certified_motion import CertifiedMotion
@@ -273,7 +274,7 @@ class ListFeed:
     def _read(self, first: int, count: int) -> list[float]:
         answer = self._session.query(f"P{first}..{first + count - 1}" if count > 1 else f"P{first}")
         try:
-            values = [float(line) for line in answer]
+            values = [parse_number(line) for line in answer]
         except ValueError:
             values = []
         if len(values) != count:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Set-up, start, hold, resume and abort with the simulated controller, and everything that forbids a start."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from controller_settings import threading_settings
@@ -164,6 +166,12 @@ def test_an_override_beyond_the_plan_is_refused(wire, loaded):
     wire.sleep(1.0)  # the time base goes there slowly
     with pytest.raises(NotReadyError, match="the override is 120 %"):
         operate.start_program(loaded, SETTINGS, SLOW, FIRST)
+
+
+def test_an_override_that_is_no_number_is_refused(loaded):
+    status = replace(read_status(loaded, SETTINGS), override=float("nan"))
+    with pytest.raises(NotReadyError, match="the override is nan %"):
+        check_start(status, FIRST)
 
 
 def test_a_state_that_shows_a_command_late_is_waited_for(wire, loaded):

@@ -3,16 +3,17 @@
 
 import random
 import re
+from types import SimpleNamespace
 
 import pytest
 from rig import SETTINGS, STROKE, Wire, controller, served
 
 from pkm_post.cli import main
-from pkm_post.control.link.errors import PmacError
+from pkm_post.control.link.errors import LinkLostError, PmacError
 from pkm_post.control.link.owner_record import read_record
 from pkm_post.control.link.rotary_buffer import RotaryBuffer
 from pkm_post.control.link.run import check_setup
-from pkm_post.control.link.status import read_status
+from pkm_post.control.link.status import PowerMotorBits, is_busy, read_status
 from pkm_post.control.simulator import Controller
 from pkm_post.machine import machine_named
 from pkm_post.writing.controllers.pmac import settings_of, setup_text
@@ -85,6 +86,64 @@ def test_every_action_ends_in_words(action, machine, capsys, monkeypatch):
             monkeypatch.undo()
             assert code == 0 or (code == 1 and reported.err.strip()), (share, reported)
             assert "Traceback" not in reported.err
+
+
+def answered(place, said):
+    """The honest answer to the query of the state, but for one of its lines."""
+    wire = Wire(controller(), "tcp")
+    with wire.session() as session:
+        honest = session.query
+
+        def query(text, most=1 << 16):
+            lines = list(honest(text, most))
+            lines[place] = said
+            return tuple(lines)
+
+        session.query = query
+        return read_status(session, SETTINGS)
+
+
+BITS, COUNTS, SYSTEM, OVERRIDE = 3, 4, 18, 19
+
+
+@pytest.mark.parametrize(
+    ("place", "said", "expected"),
+    [
+        (BITS, "+12800008400", "expected 12 hexadecimal digits"),
+        (BITS, "8_2800008400", "expected 12 hexadecimal digits"),
+        (BITS, "0x2800008400", "expected 12 hexadecimal digits"),
+        (BITS, "$$812000008400", "expected 12 hexadecimal digits"),
+        (BITS, "\uff18" + "0" * 11, "expected 12 hexadecimal digits"),
+        (SYSTEM, "-" + "0" * 17, "expected 18 hexadecimal digits"),
+        (COUNTS, "1_000", "expected a number"),
+        (COUNTS, "nan", "expected a number"),
+        (COUNTS, "1e999", "expected a number"),
+        (COUNTS, "\uff18", "expected a number"),
+        (OVERRIDE, "nan", "expected a number"),
+        (OVERRIDE, "inf", "expected a number"),
+        (OVERRIDE, "1_00", "expected a number"),
+        (OVERRIDE, "-50", "expected an override of 0 or more"),
+    ],
+)
+def test_what_no_controller_answers_is_refused_and_quoted(place, said, expected):
+    with pytest.raises(LinkLostError) as lost:
+        answered(place, said)
+    assert expected in str(lost.value) and repr(said.removeprefix("$")) in str(lost.value)
+
+
+def test_bits_and_numbers_as_controllers_write_them():
+    assert answered(BITS, "$812000008400").motors == answered(BITS, "812000008400").motors
+    assert answered(OVERRIDE, " 1E2").override == 100 and answered(COUNTS, "-.5").length[1] < SETTINGS.zero_length[1]
+
+
+def test_a_power_pmac_that_reports_no_number_of_systems():
+    said = {"Sys.MaxCoords": "1e999"}
+    bits = "0" * PowerMotorBits.DIGITS
+    session = SimpleNamespace(
+        has_handshake=False, query=lambda text: (said.get(text, bits),) * (1 if text in said else 6)
+    )
+    with pytest.raises(LinkLostError, match="expected a number, got '1e999'"):
+        is_busy(session)
 
 
 ASKING = {
