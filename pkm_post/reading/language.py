@@ -42,6 +42,23 @@ _APT = re.compile(
 """A statement or comment of APT. No block of G-code has two letters in a row directly before a slash."""
 
 
+_MARKS = ((b"\xff\xfe\0\0", "UTF-32"), (b"\0\0\xfe\xff", "UTF-32"), (b"\xff\xfe", "UTF-16"), (b"\xfe\xff", "UTF-16"))
+"""Byte order marks of encodings that are not read."""
+
+
+def unread_encoding(content: bytes) -> str:
+    """The encoding of a text that is neither UTF-8 nor of one byte a character; empty if it is.
+
+    Without a byte order mark UTF-16 shows by its zero bytes: every other byte of a part program is one.
+
+    Args:
+        content: of the whole file.
+    """
+    marked = next((name for mark, name in _MARKS if content.startswith(mark)), "")
+    zeros = [half.count(0) * 2 > len(half) for half in (content[:_HEAD:2], content[1:_HEAD:2])]
+    return marked or ("UTF-16" if sum(zeros) == 1 and len(content) > 1 else "")
+
+
 def is_part_program(file: Path) -> bool:
     """Whether a file has the suffix of a part program."""
     return _suffix(file) in SUFFIXES

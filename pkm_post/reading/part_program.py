@@ -24,7 +24,7 @@ import numpy as np
 from pkm_post.geometry import dot
 from pkm_post.model import Diagnostic, EventKind, Kind, Phrase, Place, Program, Tool
 from pkm_post.reading import gcode, siemens
-from pkm_post.reading.language import Language, language_of
+from pkm_post.reading.language import Language, language_of, unread_encoding
 
 _Result = tuple[Program | None, tuple[Diagnostic, ...]]
 
@@ -138,7 +138,9 @@ def read_content(content: bytes, name: str, reading: ReadingOptions, folder: Pat
     """
     if folder is None and Path(name).is_absolute():
         folder = Path(name).parent
-    language = language_of(name, content)
+    language, encoding = language_of(name, content), unread_encoding(content)
+    if encoding:
+        return None, (Diagnostic("F121", Place(name), encoding),)
     reading, faults = with_tool_table(reading, language)
     if faults:
         return None, faults

@@ -2859,6 +2859,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>请指定程序中的刀具；若原位换刀之后紧接圆弧，请以新的长度重新进行后处理</translation>
     </message>
     <message>
+        <source>the encoding of the file is not read</source>
+        <translation>不支持该文件的编码</translation>
+    </message>
+    <message>
+        <source>save it as UTF-8 text</source>
+        <translation>将其另存为 UTF-8 文本</translation>
+    </message>
+    <message>
         <source>tapping needs a feed synchronised with the spindle, which is not supported here</source>
         <translation>攻丝需要与主轴同步的进给,此处不支持</translation>
     </message>

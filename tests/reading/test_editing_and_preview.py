@@ -46,8 +46,14 @@ def test_blocks_are_numbered_and_nothing_else():
     assert renumbered(text, 100, 5) == ("%\n(head)\n\nN100 G1 X1\nN105 X2\n  /N110 X3\nN115 O1 sub\n; end\nN120\n%\n")
 
 
+def test_the_number_of_a_switch_stays_behind_its_slash():
+    assert renumbered("/2 G1 X1\n / 3N7X3\n/9\n/G1\n") == "/2 N10 G1 X1\n / 3N20 X3\n/9\n/N30 G1\n"
+
+
 _LINES = st.lists(
-    st.sampled_from(["", "(a)", "G21", "N3 G90", "/G0 X1 Y1 Z1", " n12g1 x2 f100", "N 7.5 Y3", "M2 ; end", "%"]),
+    st.sampled_from(
+        ["", "(a)", "G21", "N3 G90", "/G0 X1 Y1 Z1", "/2 N4G0 X3", " n12g1 x2 f100", "N 7.5 Y3", "M2 ; end", "%"]
+    ),
     max_size=12,
 ).map("\n".join)
 

@@ -66,3 +66,21 @@ def test_the_same_statements_mean_the_same_under_every_name(tmp_path):
 def test_a_text_file_that_does_not_exist_is_a_fault_of_the_input(tmp_path):
     program, (fault,) = read_part_program(tmp_path / "none.txt", ReadingOptions())
     assert (program, fault.code) == (None, "F103")
+
+
+@pytest.mark.parametrize("suffix", ["ngc", "cls", "txt", "mpf"])
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-32"])
+def test_a_file_in_another_encoding_is_refused_by_its_name(tmp_path, suffix, encoding):
+    text = CL_DATA if suffix == "cls" else "G21 G90 (\u76ee\u5f55)\nG0 X0 Y0 Z5\nG1 X9 F100\nM30\n"
+    if encoding == "utf-32":
+        text += "(\u9aa8)\n"
+    (tmp_path / f"part.{suffix}").write_bytes(text.encode(encoding))
+    program, faults = read_part_program(tmp_path / f"part.{suffix}", ReadingOptions())
+    assert program is None
+    assert [(each.code, each.found) for each in faults] == [("F121", encoding[:6].upper())]
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "latin-1"])
+def test_files_of_one_byte_a_letter_are_read(tmp_path, encoding):
+    (tmp_path / "part.ngc").write_bytes("G21 G90 (\xfc)\nG0 X0 Y0 Z5\nG1 X9 F100\nM30\n".encode(encoding))
+    assert len(read_part_program(tmp_path / "part.ngc", ReadingOptions())[0]) == 2

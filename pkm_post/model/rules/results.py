@@ -221,6 +221,7 @@ RESULT_RULES: dict[str, Rule] = {
         "choose another folder for the result, or remove what is there",
     ),
     "F120": error("a result would replace a file that it is made from", "choose another name for the result"),
+    "F121": error("the encoding of the file is not read", "save it as UTF-8 text"),
     "F130": error(
         "there is not enough memory",
         "close other programs, do fewer operations or files at a time, or use a computer with more memory",

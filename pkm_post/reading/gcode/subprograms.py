@@ -21,6 +21,7 @@ import numpy as np
 from pkm_post.model import IN_SUBPROGRAM_FILE, Array, Diagnostic, Place, Program, errors
 from pkm_post.reading.gcode.blocks import Blocks, SubprogramFile, located
 from pkm_post.reading.gcode.scan import scan_recovering, with_line_feeds
+from pkm_post.reading.language import unread_encoding
 
 if TYPE_CHECKING:
     from pkm_post.reading.gcode.call_levels import MissingProgram
@@ -68,6 +69,9 @@ class Source:
             return self, (Diagnostic("F103", Place(str(path)), str(fault)),)
         if len(content) > _BYTES:
             return self, (Diagnostic("F103", Place(str(path)), f"more than {_BYTES} bytes"),)
+        encoding = unread_encoding(content)
+        if encoding:
+            return self, (Diagnostic("F121", Place(str(path)), encoding),)
         blocks, faults = scan_recovering(content, str(path))
         if errors(faults):
             return self, faults

@@ -15,6 +15,7 @@ from pathlib import Path
 from pkm_post.model import Diagnostic, Place
 from pkm_post.reading.gcode.blocks import SubprogramFile
 from pkm_post.reading.gcode.scan import with_line_feeds
+from pkm_post.reading.language import unread_encoding
 
 SUFFIXES = (".spf", ".mpf")
 _BYTES = 256 * 1024 * 1024
@@ -60,6 +61,9 @@ class Source:
             return self, (Diagnostic("F103", Place(str(paths[0])), str(fault)),)
         if len(content) > _BYTES:
             return self, (Diagnostic("F103", Place(str(paths[0])), f"more than {_BYTES} bytes"),)
+        encoding = unread_encoding(content)
+        if encoding:
+            return self, (Diagnostic("F121", Place(str(paths[0])), encoding),)
         lines = self.text.count(b"\n")
         file = SubprogramFile(name, str(paths[0]), lines, lines + 1)
         note = f"{name} is the file {paths[0].name}, SHA-256 {hashlib.sha256(content).hexdigest()}"

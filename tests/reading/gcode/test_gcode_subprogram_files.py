@@ -40,6 +40,16 @@ def test_a_call_finds_the_file_of_its_number(tmp_path, name, sub):
     assert sum("SHA-256" in line for line in program.reading) == 1
 
 
+@pytest.mark.parametrize(("flavour", "call"), [("fanuc", "M98 P1234"), ("siemens", "L1234")])
+def test_a_subprogram_in_another_encoding_is_refused_by_its_name(tmp_path, flavour, call):
+    written(tmp_path, main_nc=f"{HEAD}{call}\nM30\n")
+    file = tmp_path / ("L1234.SPF" if flavour == "siemens" else "O1234.nc")
+    file.write_bytes(SUB.encode("utf-16"))
+    program, faults = read_part_program(tmp_path / "main.nc", ReadingOptions(flavour=flavour))
+    assert program is None
+    assert [(each.code, each.place.file, each.found) for each in faults] == [("F121", str(file), "UTF-16")]
+
+
 def test_linuxcnc_calls_by_name_and_number_with_arguments(tmp_path):
     main = f"{HEAD}o<My Hole> call [3]\no100 call [4]\n#1=100\no#1 call [5]\nM2\n"
     written(
