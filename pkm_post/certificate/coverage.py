@@ -16,10 +16,12 @@ import numpy as np
 
 from pkm_post.geometry import norm
 from pkm_post.machine import NO_SETUP, has_strut_bodies
-from pkm_post.model import Coverage, EventKind, Extent, Machine, Phrase, Topic, Trajectory, cuts_by_speed
+from pkm_post.model import Coverage, Event, EventKind, Extent, Machine, Phrase, Topic, Trajectory, cuts_by_speed
 
 _SAME = 1e-6
 """mm, and of unit axes: a tool change this close to the pose in the machine file is at that pose."""
+_SHORT = 1e-6
+"""s: a wait this much too short is one of rounding."""
 _UNPLANNED = "each strut moves by itself, on a way that is not planned"
 _PLANNED_BY_HAND = f"{_UNPLANNED}; pmac approach and the panel plan one, loading the program by other means does not"
 _Answer = tuple[str, str]
@@ -65,11 +67,64 @@ def _tool_change_answer(machine: Machine, trajectory: Trajectory) -> _Answer:
 def _spindle(machine: Machine, trajectory: Trajectory) -> _Answer:
     if machine.spin_up_time is None:
         return "", "the machine file states no spindle.spin_up_time: the motion does not wait for the spindle"
-    starts = [event.row for event in trajectory.events if event.kind is EventKind.SPINDLE and event.value]
-    cuts = np.flatnonzero(cuts_by_speed(trajectory.kind, trajectory.events))
-    if len(cuts) and (not starts or min(starts) > cuts[0]):
-        return "", "the program cuts before it starts the spindle"
+    down = machine.spin_up_time if machine.spin_down_time is None else machine.spin_down_time
+    spindle = _Spindle(machine.spin_up_time / machine.spindle_speed, down / machine.spindle_speed)
+    cuts, done = np.flatnonzero(cuts_by_speed(trajectory.kind, trajectory.events)), 0
+    for event in (*trajectory.events, Event(len(trajectory), EventKind.STOP, 0.0)):
+        before = int(np.searchsorted(cuts, event.row))
+        fault = spindle.fault_in_a_cut() if before > done else ""
+        if fault:
+            return "", f"the program cuts {fault}, at line {int(trajectory.line[cuts[done]])}"
+        done = before
+        spindle.happens(event)
     return f"dwells for a spindle that takes {machine.spin_up_time:g} s to its highest speed", ""
+
+
+class _Spindle:
+    """The speeds that the spindle may have from event to event, in revolutions per minute.
+
+    They are a range, since a spindle that was not waited for may be anywhere between its old speed and the new one.
+    Only dwells count as waits: a trajectory has no times.
+    """
+
+    def __init__(self, up: float, down: float) -> None:
+        self._up, self._down = up, down  # s for each revolution per minute gained, and lost
+        self._least = self._most = self._commanded = self._wait = 0.0
+        self._rests_after = "before it starts the spindle"
+
+    def fault_in_a_cut(self) -> str:
+        """Why a cut here may not have its spindle speed, or nothing."""
+        if self._rests_after:
+            return self._rests_after
+        if self._commanded and self._wait > _SHORT:
+            return f"up to {self._wait:.3f} s before the spindle has its speed"
+        return ""
+
+    def happens(self, event: Event) -> None:
+        if event.kind is EventKind.SPINDLE:
+            self._turn_at(event.value)
+        elif event.kind is EventKind.DWELL:
+            self._wait -= event.value
+        elif event.kind is EventKind.TOOL_CHANGE:
+            self._turn_at(0.0)
+            self._rests_after = self._rests_after or "after a tool change that stops the spindle"
+        elif event.kind is EventKind.SPINDLE_AXIS:  # the code waits for rest: the turns count from there
+            self._least = self._most = self._commanded = self._wait = 0.0
+            self._rests_after = self._rests_after or "after a thread that stops the spindle"
+
+    def _turn_at(self, speed: float) -> None:
+        if self._wait <= _SHORT:
+            self._least = self._most = self._commanded
+        self._least, self._most = min(self._least, self._commanded), max(self._most, self._commanded)
+        self._wait = max(self._seconds(before, speed) for before in (self._least, self._most))
+        self._commanded = speed
+        if speed:
+            self._rests_after = ""
+
+    def _seconds(self, before: float, after: float) -> float:
+        """By the speed lost on the way to rest, or to a lower speed, and that gained from there."""
+        turn = min(abs(before), abs(after)) if before * after > 0.0 else 0.0
+        return (abs(before) - turn) * self._down + (abs(after) - turn) * self._up
 
 
 def _event_rows(trajectory: Trajectory, kind: EventKind) -> list[int]:

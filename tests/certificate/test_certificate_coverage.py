@@ -127,6 +127,42 @@ def test_the_spindle_counts_as_covered_where_the_motion_waits_for_it():
         assert why in beside_the_path(stated, trajectory)["spindle speed at the first cut"][1]
 
 
+SPINDLE, DWELL = EventKind.SPINDLE, EventKind.DWELL
+CHANGE, AXIS = EventKind.TOOL_CHANGE, EventKind.SPINDLE_AXIS
+
+
+@pytest.mark.parametrize(
+    ("events", "why"),  # 24000 rpm in 4 s, to rest in 2 s
+    [
+        (((SPINDLE, 6000), (DWELL, 1.0)), ""),
+        (((SPINDLE, -6000), (DWELL, 0.5), (DWELL, 0.5)), ""),
+        (((SPINDLE, 6000),), "up to 1.000 s before the spindle has its speed"),
+        (((SPINDLE, 6000), (DWELL, 0.998)), "up to 0.002 s before"),
+        (((DWELL, 1.0), (SPINDLE, 6000)), "up to 1.000 s before"),
+        (((SPINDLE, 12000), (DWELL, 2.0), (SPINDLE, 6000)), "up to 0.500 s before"),
+        (((SPINDLE, 12000), (DWELL, 2.0), (SPINDLE, -6000), (DWELL, 1.9)), "up to 0.100 s before"),
+        (((SPINDLE, 12000), (DWELL, 2.0), (SPINDLE, -6000), (DWELL, 2.0)), ""),
+        (((SPINDLE, 24000), (SPINDLE, 6000), (DWELL, 1.4)), "up to 0.100 s before"),  # at 24000 in the worst case
+        (((SPINDLE, 24000), (SPINDLE, 0), (SPINDLE, 6000), (DWELL, 1.5)), ""),
+        (((SPINDLE, 6000), (DWELL, 1.0), (CHANGE, 2)), "after a tool change that stops the spindle"),
+        (((SPINDLE, 6000), (DWELL, 1.0), (CHANGE, 2), (SPINDLE, 6000), (DWELL, 1.0)), ""),
+        (((SPINDLE, 6000), (DWELL, 1.0), (AXIS, 1.0), (AXIS, 0.0)), "after a thread that stops the spindle"),
+        (((SPINDLE, 6000), (DWELL, 1.0), (AXIS, 1.0), (AXIS, 0.0), (SPINDLE, 6000), (DWELL, 1.0)), ""),
+        (((SPINDLE, 6000), (DWELL, 1.0), (SPINDLE, 0)), ""),  # meant to cut at rest
+    ],
+)
+def test_the_spindle_is_covered_where_every_cut_has_its_waits(events, why):
+    """Trajectories as a hand or another program writes them: nothing has put the waits in."""
+    machine = replace(machines.example(), spin_up_time=4.0, spin_down_time=2.0)
+    job = program([[0, 0, 60], [10, 0, 60], [20, 0, 60]], tools=TOOLS)
+    trajectory = place(job, machines.example(), ON_PALLET)[0]  # a rapid move and two cuts
+    cut_before = (Event(1, SPINDLE, 6000.0), Event(1, DWELL, 1.0), Event(2, SPINDLE, 0.0), Event(2, DWELL, 0.5))
+    for before, row in (((), 1), (cut_before, 2)):
+        made = (*before, *(Event(row, kind, value) for kind, value in events))
+        extent, detail = beside_the_path(machine, replace(trajectory, events=made))["spindle speed at the first cut"]
+        assert (extent is Extent.PROVEN) is (why == "") and why in detail, detail
+
+
 def test_jerk_is_covered_where_a_limit_is_stated():
     before, after = (extents(machine, Topic.LIMITS) for machine in (machines.without_jerk(example()), example()))
     changed = {subject for subject in before if before[subject] is not after[subject]}
