@@ -35,6 +35,8 @@ _UNSIGNED = r"(?:\d+(?:\.\d*)?|\.\d+)"
 """Digits belong to one part of it only: a long answer of nothing else is refused in time in proportion to it."""
 _DEFINITION = re.compile(rf"([-+]?{_UNSIGNED})?([A-Z])([-+]{_UNSIGNED})?")
 _ROTARY = "ABC"
+HIGHEST_OVERRIDE = 100.0
+"""%: programs are planned to the limits of the machine, and certified, up to this override."""
 
 
 def check_setup(session: Session, settings: AnySettings, stroke: tuple[float, float]) -> None:
@@ -77,7 +79,7 @@ def check_start(
     reasons = [*_motor_faults(status), *status.fault_texts()]
     if status.running:
         reasons.append("a program runs, or is held")
-    if not status.override <= 100:
+    if not status.override <= HIGHEST_OVERRIDE:
         reasons.append(f"the override is {status.override:g} %: the program was planned to the limits at 100 %")
     away = np.abs(status.length - first)
     reasons += [
@@ -235,7 +237,7 @@ def set_feed_override(
         CancelledError: a stop came first.
         NotOwnerError: another client owns the machine.
     """
-    if not 0 < percent <= 100:
+    if not 0 < percent <= HIGHEST_OVERRIDE:
         raise ValueError(f"percent: expected above 0 and up to 100, got {percent:g}")
     with owned(session, "override", concurrent=RESUMED_BY_ALL):
         return _override(session, settings, percent, meanwhile)

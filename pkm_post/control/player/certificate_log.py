@@ -2,7 +2,7 @@
 """Certificate log: the worst of each quantity over all played motions, with time and place.
 
 The certificates of single motions hold for the whole, except for the blocks in a second, which are counted across the
-ends of motions.
+ends of motions. They are for a time base of at most 100 %, so none holds once it was above.
 
 Input: motions with their certificates, in order of play. Output: findings as in one certificate.
 """
@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from pkm_post.control.link.run import HIGHEST_OVERRIDE
 from pkm_post.control.player.certified_motion import CertifiedMotion
 from pkm_post.geometry import Array
 from pkm_post.model import Finding
@@ -26,10 +27,11 @@ class CertificateLog:
 
     Attributes:
         motions: number of motions.
+        override: highest override of the controller meanwhile, %.
     """
 
     def __init__(self) -> None:
-        self.motions = 0
+        self.motions, self.override = 0, 0.0
         self._ms = 0
         self._recent: Array = np.zeros(1, dtype=np.int64)
         self._worst: dict[tuple[str, str], Finding] = {}
@@ -60,8 +62,8 @@ class CertificateLog:
 
     @property
     def holds(self) -> bool:
-        """Whether all findings hold."""
-        return all(finding.holds for finding in self.findings)
+        """Whether all findings hold, at the overrides that the controller had."""
+        return self.override <= HIGHEST_OVERRIDE and all(finding.holds for finding in self.findings)
 
     def _blocks(self, motion: CertifiedMotion) -> int:
         """Most points in any second up to the end of a motion."""

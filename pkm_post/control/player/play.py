@@ -15,10 +15,11 @@ from collections.abc import Callable
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
+from pkm_post.control.link import stopping
 from pkm_post.control.link.download import download
-from pkm_post.control.link.errors import CancelledError, LinkLostError
+from pkm_post.control.link.errors import CancelledError, LinkLostError, PmacError
 from pkm_post.control.link.ownership import owned
-from pkm_post.control.link.run import check_setup, set_feed_override, start_program
+from pkm_post.control.link.run import HIGHEST_OVERRIDE, check_setup, set_feed_override, start_program
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings, Status, read_status
 from pkm_post.control.player.block_skip import chosen_parts
@@ -243,6 +244,7 @@ class Player:
 
         Raises:
             CancelledError: the host ends the play.
+            PmacError: another client has set an override above 100 %, and the machine is held.
         """
         was_stopped = self._session.stop_pending()
         if was_stopped and not self._host.give_way():
@@ -252,6 +254,7 @@ class Player:
             self._operator.carry_out(self._session, self._settings)
             status = read_status(self._session, self._settings)
             if is_started:
+                self._check_override(status)
                 for motion in self._feed.poll():
                     self.log.add(motion)
         except LinkLostError as lost:
@@ -267,6 +270,22 @@ class Player:
         if not self._is_waiting:
             self._show(self._state("held" if status.held else "runs" if status.running else "rests"))
         return status
+
+    def _check_override(self, status: Status) -> None:
+        """Hold the machine on its path at an override for which no piece is certified.
+
+        Raises:
+            PmacError: the override is above 100 %.
+        """
+        self.log.override = max(self.log.override, status.override)
+        if status.override <= HIGHEST_OVERRIDE:
+            return
+        held = stopping.hold(self._session, self._settings).held
+        raise PmacError(
+            f"the override is {status.override:g} % {self._way.text(self._feed.current)}, set from elsewhere: the"
+            f" motion is certified for at most {HIGHEST_OVERRIDE:g} %;"
+            f" the machine is {'held: abort, and' if held else 'at rest:'} go on with --from-line"
+        )
 
     def _lose(self, lost: LinkLostError) -> None:
         """Note that the link is lost.

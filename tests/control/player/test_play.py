@@ -153,6 +153,27 @@ def test_a_motor_that_fails_on_the_way_is_named(happens, said):
 
 
 @BOTH
+def test_an_override_above_the_certificate_that_another_client_sets_is_held(machine):
+    at = {12: [lambda player: playing.wire.controller.systems[0].set_override(150.0)]}
+    playing = Playing.of(at=at, machine=machine)
+    said = r"the override is 1\d\d\S* % in Finish line \d+, set from elsewhere: .* at most 100 %; the machine is held"
+    with pytest.raises(PmacError, match=said):
+        playing.play()
+    system, log = playing.wire.controller.systems[0], playing.player.log
+    assert system.holding and system.override == 0.0 and 100 < log.override < 115
+    assert not log.holds and all(finding.holds for finding in log.findings)
+    off = distance(playing.tips(), np.vstack([playing.trajectory.start_tip, playing.trajectory.tip]))
+    assert off.max() < TOLERANCES.tip and playing.arrived() > 1.0
+
+
+def test_an_override_below_is_only_slower():
+    playing = Playing.of(at={12: [lambda player: playing.wire.controller.systems[0].set_override(60.0)]})
+    done = playing.play()
+    playing.check()
+    assert done.finished and done.log.holds and done.log.override == 100.0 and playing.arrived() < 1e-3
+
+
+@BOTH
 def test_single_block_rests_at_the_end_of_each_line(machine):
     playing = Playing.of(machine=machine)
     done = playing.play(single_block=True)
