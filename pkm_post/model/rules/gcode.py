@@ -176,6 +176,10 @@ GCODE_RULES: dict[str, Rule] = {
         "controls differ in whether this code acts before the move of its block or after it",
         "write it in a block of its own",
     ),
+    "G438": error(
+        "controls forbid this while a rotation is in force, or differ in where it leads",
+        "write G69 before it, and G68 again after it",
+    ),
     # G5: writing G-code
     "G501": error("the tool axis tilts, and this form of G-code cannot express it", "choose a form with five axes"),
     "G502": error("the tool axis points down, and this form of G-code cannot express it", "choose vectors or a head"),

@@ -25,13 +25,17 @@ from pkm_post.reading.gcode.codes import (
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.events import functions_of
 from pkm_post.reading.gcode.flavours import Flavour
-from pkm_post.reading.gcode.modal import Modal, is_cycle
+from pkm_post.reading.gcode.frames import PLANES
+from pkm_post.reading.gcode.modal import Modal, changed, forward_fill, is_cycle
 from pkm_post.reading.gcode.options import NORMAL_WORDS, VECTOR_WORDS, ReadOptions, axis_names
 
 _WHOLE = "HLT"
 _NOT_NEGATIVE = "DFHLQST"
 _DWELL, _TIME = 40, "X"
 """G4, and its word in seconds, which some flavours have beside P."""
+_TURN, _END_OF_TURN = 680, 690
+_TO_THE_MACHINE = (280, 300, 530)
+"""Codes that go to places of the machine, by the axes that they name."""
 _LIMIT = 1e9
 """Upper bound of lengths, angles, times and numbers of a program; beyond it decimals are lost."""
 
@@ -55,6 +59,7 @@ def check(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagn
     _values(blocks, modal, faults)
     _functions(modal, faults)
     _axis_words(blocks, modal, faults)
+    _within_turns(blocks, modal, faults)
 
 
 def _codes(blocks: Blocks, flavour: Flavour) -> tuple[_Codes, _Codes]:
@@ -256,3 +261,25 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     faults.add_where(
         "G407", inverse, lambda row: (word_of(motion[row]), " with inverse time feed (", word_of(930), ")")
     )
+
+
+def _within_turns(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
+    """Report codes that may not stand within a rotation: controls forbid them, or differ in the place after them.
+
+    Along the normal of the plane nothing turns, so G28 Z0 is one and the same on all controls.
+    """
+    turns = modal.programmed[Group.ROTATION]
+    rows = np.flatnonzero(turns != NONE)
+    turned = forward_fill(rows, turns[rows], _END_OF_TURN, len(blocks)) == _TURN
+    inside = turned & np.append(False, turned[:-1])[: len(turned)]
+    if not inside.any():
+        return
+    in_plane = np.zeros(len(blocks), dtype=np.bool_)
+    for plane, axes in PLANES.items():
+        words = blocks.has("XYZ"[axes[0]]) | blocks.has("XYZ"[axes[1]])
+        in_plane |= words & (modal.active[Group.PLANE] == plane)
+    another = changed(modal.active[Group.PLANE], 170)
+    for code in modal.flavour.outside_turns:
+        wrong = inside & _marked(blocks, blocks.g_row[blocks.g == code])
+        wrong &= in_plane if code in _TO_THE_MACHINE else another if code in PLANES else True
+        faults.add_where("G438", wrong, lambda _, code=code: (word_of(code), " within ", word_of(_TURN)))  # type: ignore[misc]

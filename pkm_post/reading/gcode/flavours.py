@@ -48,6 +48,7 @@ class Flavour:
         stops_first: whether M5 acts before the move of its block, rather than whenever the machine's builder decided.
         needs_both_after_turns: whether controls differ in the first move after G68 that has one coordinate of its
             plane, and in one by distances after G69.
+        outside_turns: codes, in tenths, that controls read differently, or forbid, while a G68 rotation is in force.
         owns_axes: codes, in tenths, to which the axis words of their block belong, without a motion.
         counts_in_p: whether P of M98 with more than four digits starts with the number of passes.
         programs_apart: whether an O number starts another program, entered only by a call.
@@ -79,6 +80,7 @@ class Flavour:
     offsets_add_up: bool
     stops_first: bool
     needs_both_after_turns: bool
+    outside_turns: tuple[int, ...]
     owns_axes: tuple[int, ...]
     counts_in_p: bool
     programs_apart: bool
@@ -116,6 +118,7 @@ RS274 = Flavour(
     offsets_add_up=False,
     stops_first=True,
     needs_both_after_turns=False,
+    outside_turns=(),
     owns_axes=(),
     counts_in_p=False,
     programs_apart=False,
@@ -148,6 +151,7 @@ _FANUC_CODES: dict[int, Code] = {
     **{code: Code(Group.MOTION, "XYZRLKPQ") for code in DRILLING},
     **{code: Code(Group.MOTION, "XYZRLKPQIJ") for code in (730, 830)},
 }
+_ORIGINS = tuple(code for code, meaning in _FANUC_CODES.items() if meaning.group is Group.SYSTEM)
 _ONLY_HERE = ("G5", "G5.1", "G15", "G16", "G50", "G51", "G68.2", "M50", "M51")
 _FANUC_REFUSED: dict[str, str] = {
     **{code: why for code, why in UNSUPPORTED.items() if code not in _ONLY_HERE},
@@ -188,6 +192,7 @@ FANUC = replace(
     offsets_add_up=True,
     stops_first=False,
     needs_both_after_turns=True,
+    outside_turns=(170, 180, 190, 280, 300, 520, 530, 920, 921, *_ORIGINS),
     owns_axes=(51, 220),
     counts_in_p=True,
     programs_apart=True,

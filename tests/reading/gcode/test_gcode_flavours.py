@@ -67,6 +67,29 @@ def test_each_difference_has_a_row_in_the_documentation():
     assert rows == differ
 
 
+# Coordinate system rotation: codes for reference points and coordinate systems are forbidden in it [Fanuc, Mach4]
+
+
+@pytest.mark.parametrize(
+    "block",
+    [
+        *("G52 X5.", "G54", "G55", "G54.1 P1", "G92 X5.", "G92.1", "G18", "G28 X0", "G91 G28 X0 Y0 Z0", "G30 Y0"),
+        *("G53 X0", "G53 G0 Y1. Z5."),
+    ],
+)
+def test_codes_within_a_rotation_are_refused_by_name(block):
+    text = f"G0 X1. Y2. Z30.\nG68 X0. Y0. R30.\nX3. Y4.\n{block}\nG69\nM30\n"
+    _, faults = read(text, "part.ngc", ReadOptions(flavour="fanuc", machine_zero=(0.0, 0.0, 100.0)))
+    code = block if "P" in block else next(word for word in block.split() if word not in ("G91", "G0"))
+    assert [(fault.code, fault.place.line, fault.found) for fault in faults] == [("G438", 4, f"{code} within G68")]
+
+
+@pytest.mark.parametrize("block", ["G17", "G28 Z0", "G91 G28 Z0", "G53 Z5.", "G69 G54", "G69\nG55", "G69\nG28 X0"])
+def test_what_no_rotation_turns_and_what_comes_after_it_is_read(block):
+    text = f"G0 X1. Y2. Z30.\nG68 X0. Y0. R30.\nX3. Y4.\n{block}\nG69\nM30\n"
+    assert "G438" not in codes(text, flavour="fanuc", machine_zero=(0.0, 0.0, 100.0))
+
+
 # G80: 13.1 canned cycle. The cycles are group 09, the motions group 01
 
 
