@@ -25,6 +25,8 @@ _DEFINITION = re.compile(
     rf"(?:(?:&(?P<system>\d+))?#(?P<motor>\d+)->)?(?P<scale>[-+]?{_UNSIGNED})?(?P<letter>[A-Z]+)(?P<offset>[-+]{_UNSIGNED})?"
 )
 _ROTARY = "ABC"
+_BEYOND = 0.001
+"""mm: a limit this far beyond the stroke, or a motor unit if that is less, is one of rounding."""
 
 
 def setup_faults(session: Session, settings: PowerPmacSettings, stroke: tuple[float, float]) -> Iterator[str]:
@@ -76,11 +78,12 @@ def _element_faults(session: Session, settings: PowerPmacSettings) -> Iterator[s
 
 def _limit_faults(session: Session, settings: PowerPmacSettings, stroke: tuple[float, float]) -> Iterator[str]:
     """The soft limits must be enabled and within the stroke."""
+    beyond = min(1.0, _BEYOND * abs(settings.counts_per_mm))  # a motor unit can be a millimetre or a metre
     for motor, zero in zip(MOTORS, settings.zero_length, strict=True):
         low, high = sorted(settings.counts_per_mm * (length - zero) for length in stroke)
         least, most = (read_number(session, f"Motor[{motor}].{name}") for name in ("MinPos", "MaxPos"))
-        if not low - 1 <= least < most <= high + 1:
+        if not low - beyond <= least < most <= high + beyond:
             yield (
-                f"Motor[{motor}].MinPos and MaxPos: expected limits from {low:.0f} to {high:.0f},"
+                f"Motor[{motor}].MinPos and MaxPos: expected limits from {low:.10g} to {high:.10g},"
                 f" the controller has {least:g} and {most:g}"
             )

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 
 from pkm_post.model import Diagnostic, Machine, StrutMotion
 from pkm_post.system import result_files
@@ -118,6 +119,8 @@ def _grammar(settings: PowerPmacSettings) -> ProgramGrammar:
 
 
 _COMMENT = "//"
+_LIMIT_DECIMALS = 4
+"""Decimals of a soft limit in mm, at least."""
 
 
 def setup_text(settings: PowerPmacSettings, machine_name: str, stroke: tuple[float, float]) -> str:
@@ -161,11 +164,17 @@ def _coordinate_system_lines(settings: PowerPmacSettings) -> list[str]:
 
 
 def soft_limit_lines(settings: PowerPmacSettings, stroke: tuple[float, float]) -> list[str]:
-    """The lines of the soft limits of all motors; the stroke in mm."""
+    """The lines of the soft limits of all motors; the stroke in mm.
+
+    A motor unit may be a count, a millimetre or a metre, and limits may have decimals. They are cut inward by less than
+    1e-4 mm: whole large units could make the higher limit the lower one, which switches both off.
+    """
+    step = Decimal(1).scaleb(min(0, Decimal(repr(settings.counts_per_mm)).adjusted() - _LIMIT_DECIMALS))
     lines = ["// Soft limits: the stroke in motor units. They act while the higher one is above the lower one"]
     for motor, (low, high) in enumerate(stroke_counts(settings, stroke), start=1):
-        lines.append(f"Motor[{motor}].MaxPos={math.floor(high)} // strut {motor}")
-        lines.append(f"Motor[{motor}].MinPos={math.ceil(low)} // strut {motor}")
+        most, least = math.floor(high / step) * step, math.ceil(low / step) * step
+        lines.append(f"Motor[{motor}].MaxPos={plain(most)} // strut {motor}")
+        lines.append(f"Motor[{motor}].MinPos={plain(least)} // strut {motor}")
     return lines
 
 

@@ -18,7 +18,7 @@ from pkm_post.control.link.status import is_busy, read_status
 from pkm_post.control.numerical_control.execute import continue_after_stop
 from pkm_post.machine import machine_named
 from pkm_post.model import Event, EventKind, StrutMotion
-from pkm_post.writing.controllers.power_pmac import program_text
+from pkm_post.writing.controllers.power_pmac import program_text, setup_text
 
 PROGRAM = small_program()
 LONGEST_S = 300.0
@@ -172,6 +172,18 @@ def test_a_set_up_that_is_another_one(wire, session, line, said):
     with pytest.raises(NotReadyError) as refused:
         check_setup(session, SETTINGS, STROKE)
     assert said.upper() in str(refused.value).upper()
+
+
+@pytest.mark.parametrize(("units_per_mm", "beyond"), [(1.0, "50.5"), (0.001, "0.06"), (10000.0, "500002")])
+def test_limits_beyond_the_stroke_are_told_in_any_motor_unit(wire, session, units_per_mm, beyond):
+    settings = dataclasses.replace(SETTINGS, counts_per_mm=units_per_mm)
+    commands = [line.partition("//")[0].rstrip() for line in setup_text(settings, "test", STROKE).splitlines()]
+    for command in filter(None, commands):
+        session.command(command)
+    check_setup(session, settings, STROKE)
+    session.command(f"Motor[3].MaxPos={beyond}")
+    with pytest.raises(NotReadyError, match=r"Motor\[3\].MinPos and MaxPos: expected limits"):
+        check_setup(session, settings, STROKE)
 
 
 def test_a_machine_that_is_not_where_the_program_begins(session):

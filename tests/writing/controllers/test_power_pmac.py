@@ -164,9 +164,25 @@ def test_the_elements_follow_coordinate_system_and_letters():
     assert len(re.findall("PosRollover", text)) == 1
 
 
-def test_a_falling_count_turns_the_limits_round_and_they_are_cut_inward():
+def test_a_falling_count_turns_the_limits_round():
     text = setup_text(replace(SETTINGS, counts_per_mm=-2.5), "m", (499.0, 501.0))
-    assert {"#1->-2.5A+1250", "Motor[1].MaxPos=2", "Motor[1].MinPos=-2"} < set(_commands(text))
+    assert {"#1->-2.5A+1250", "Motor[1].MaxPos=2.5", "Motor[1].MinPos=-2.5"} < set(_commands(text))
+
+
+@pytest.mark.parametrize(
+    ("units_per_mm", "stroke", "most", "least"),
+    [
+        (10000.0, (499.99992, 500.00018), "1", "0"),
+        (-10000.0, (499.99982, 500.00012), "1", "-1"),
+        (1.0, (450.20004, 700.60006), "200.6", "-49.7999"),  # a motor unit is a millimetre
+        (0.001, (600.0, 1400.0), "0.9", "0.1"),  # a metre: whole units would be from 1 to 0, and off
+        (-0.001, (600.0, 1400.0), "-0.1", "-0.9"),
+        (0.2, (499.9999999, 700.0), "40", "0"),  # a turn of 5 mm
+    ],
+)
+def test_limits_are_cut_inward_by_less_than_a_tenth_of_a_micrometre(units_per_mm, stroke, most, least):
+    text = setup_text(replace(SETTINGS, counts_per_mm=units_per_mm), "m", stroke)
+    assert {f"Motor[1].MaxPos={most}", f"Motor[1].MinPos={least}"} < set(_commands(text))
 
 
 def test_one_limit_may_be_zero():
