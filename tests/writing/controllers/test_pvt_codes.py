@@ -83,6 +83,8 @@ def test_the_codes_of_the_example_are_in_order_and_tell_all_meanings_apart():
         # motors 1 to 6 are the struts
         ({"stop": "M0 HOME"}, "got HOME in"),
         ({"stop": "M0 HOMEZ1..6"}, "got HOMEZ in"),
+        ({"stop": "M0 HM3"}, "got HM in"),
+        ({"stop": "HMZ1..6"}, "got HMZ in"),
         ({"stop": 'M0 CMD"#1J+"'}, "got #1 in"),
         ({"stop": 'M0 cmd"# 6 k"'}, "got # 6 in"),
     ],
@@ -92,8 +94,106 @@ def test_a_table_of_codes_must_be_well_formed_and_invertible(change, complaint):
         check_codes(CODES | change, LETTERS)
 
 
+@pytest.mark.parametrize(
+    ("code", "said"),
+    [
+        # times of moves, modes by their short names, and what works like one
+        ("G91", "got G in"),
+        ("M0 G 90", "got G in"),
+        ("M0F10", "got F in"),
+        ("RAPIDF10", "got F in"),
+        ("TA100 TS0", "got TA in"),
+        ("M8 ts(P1)", "got ts in"),
+        ("TM50", "got TM in"),
+        ("LIN", "got LIN in"),
+        ("RPD", "got RPD in"),
+        ("CIR1", "got CIR in"),
+        ("NRM K-1", "got NRM in"),
+        ("TSEL3", "got TSEL in"),
+        ("PRELUDE1", "got PRELUDE in"),
+        ('CMD"UNDEFINE ALL"', "got UNDEFINE in"),
+        # the flow of the program
+        ("GOTO100", "got GOTO in"),
+        ("IF(P1=0)GOTO 100", "got GOTO in"),
+        ("gosub 500", "got gosub in"),
+        ("CALL1001.5", "got CALL in"),
+        ("M0 RETURN", "got RETURN in"),
+        ("RET", "got RET in"),
+        # an override beyond the plan
+        ('CMD"%150"', "got % in"),
+        ('CMD"&1 %150"', "got % in"),
+        # settings of struts and coordinate system
+        ("I5190=500", "got I5190 in"),
+        ("M8 i 113 = 0", "got i 113 in"),
+        ("ENDIFI699=1", "got I699 in"),
+        ("I100..5000=0", "got I100..5000 in"),
+        ("I5000..90=0", "got I5000..90 in"),
+        ("I100,7,100=0", "got I100,7,100 in"),
+        ("I(P1+(P2*3))=5", r"got I\(...\) in"),
+        ("IF(P1=2)I122=5", "got I122 in"),
+        ('CMD"I42=1"', "got I42 in"),
+        ("I10=3713991", "got I10 in"),
+        ("Motor[6].MaxSpeed=0", r"got Motor\[6\].MaxSpeed in"),
+        ("motor[ 1 ].maxpos = 0", r"got motor\[ 1 \].maxpos in"),
+        ("Motor[P1].MaxPos=0", r"got Motor\[P1\].MaxPos in"),
+        ("Motor[2].Servo.Kp*=2", r"got Motor\[2\].Servo.Kp in"),
+        ("Coord[1].FeedTime=60000", r"got Coord\[1\].FeedTime in"),
+        ("Coord[1].DesTimeBase+=1", r"got Coord\[1\].DesTimeBase in"),
+        ("Sys.ServoPeriod=1", "got Sys.ServoPeriod in"),
+    ],
+)
+def test_codes_that_alter_the_moves_behind_them_are_refused(code, said):
+    for table in ({"stop": code}, {"M21": code}):
+        with pytest.raises(ValueError, match=said):
+            check_codes(CODES | table, LETTERS)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "M60=1",
+        "M60=$1F0 M61=$A1",
+        "M60==1 DWELL0",
+        "P1=SIN(30)",
+        "Q127=1200 P5=-3",
+        "P100..107=0",
+        "P1=I122 M60=1",
+        "P1=I5190",
+        "M61=(I5190>500)",
+        "IF(I122=5)M60=1",
+        "IF(I(P1)=5)M60=1 ENDIF",
+        "WHILE(M10=0)DELAY10",
+        "M0 DWELL100",
+        "I722=3",
+        "I5290=1000",
+        "I7000..7009=1",
+        "I5=2",
+        'CMD"#7J/"',
+        'CMD"ENABLEPLC3"',
+        "P1=P2%4",
+        "P1=INT(P2)",
+        "STOP",
+        "T3 M6 S1200 D5",
+        "if(Motor[1].HomeComplete==1)M60=1 DWELL0",
+        "P1=Motor[1].ActPos",
+        "Motor[7].JogSpeed=10",
+        "Coord[2].FeedTime=1000",
+        "Sys.Udata[5]=1",
+        "P1=LOG(5)",
+    ],
+)
+def test_what_machines_need_between_moves_is_accepted(code):
+    check_codes(CODES | {"M21": code}, LETTERS)
+
+
+def test_the_settings_of_the_own_coordinate_system_are_refused():
+    check_codes(CODES | {"M21": "I5190=500"}, LETTERS, system=2)
+    with pytest.raises(ValueError, match="got I5290 in"):
+        check_codes(CODES | {"M21": "I5290=500"}, LETTERS, system=2)
+
+
 def test_motors_that_are_no_struts_may_be_homed_and_jogged():
-    check_codes(CODES | {"M21": "HOME7", "M22": 'CMD"#16J/"', "M23": "HOMEZ 10,11"}, LETTERS)
+    check_codes(CODES | {"M21": "HOME7", "M24": "HM8", "M22": 'CMD"#16J/"', "M23": "HOMEZ 10,11"}, LETTERS)
 
 
 def test_outputs_can_be_set_with_synchronous_assignments():

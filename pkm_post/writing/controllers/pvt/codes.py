@@ -77,27 +77,56 @@ _FIXED_CODE = re.compile(rf"{_LITERAL}+")
 _VALUE_CODE = re.compile(rf"(?:{_LITERAL}*(?![0-9.-]){_LITERAL})?{FIELD.pattern}(?:(?![0-9.-]){_LITERAL}+)?")
 _RESERVED = ("PVT", "DWELL", "LINEAR", "CLOSE")
 _COMMENTS = ("//", "/*")
-_MODE_WORDS = "PVT|LINEAR|RAPID|CIRCLE|SPLINE|INC|ABS|FRAX|NORMAL|OPEN|CLOSE|CLEAR|DELETE"
+_MODE_WORDS = (
+    "PVT|LINEAR|LIN|RAPID|RPD|CIRCLE|CIR|SPLINE|INC|ABS|FRAX|NORMAL|NRM|OPEN|CLOSE|CLEAR|DELETE"
+    "|TSEL|TINIT|ADIS|IDIS|AROT|IROT|PRELUDE|UNDEFINE"
+)
 _MODES = re.compile(rf"(?<![A-Z])({_MODE_WORDS})(?![A-Z])", re.IGNORECASE)
-"""Words that change the interpretation of the following moves, or the program itself."""
-_OF_STRUTS = re.compile(r"(?<![A-Z])(HOMEZ|HOME(?!Z))(?!\s*(?:[7-9]|[1-9][0-9]))|(#\s*[1-6])(?![0-9])", re.IGNORECASE)
+"""Words that change the interpretation of the following moves, or the program itself; long and short."""
+_TIMES = re.compile(rf"(?<![A-Z])(?:{_MODE_WORDS}|ELSE|ENDIF|ENDI)?(TA|TS|TM|F|G)\s*[-+.(0-9{{]", re.IGNORECASE)
+"""Times and feed of moves, and G words, whose subprograms set modes."""
+_HEXADECIMAL = re.compile(r"\$[0-9A-F]+", re.IGNORECASE)
+"""Constants whose digits are no words."""
+_FLOW = re.compile(r"(GOTO|GOSUB|GOS|CALLSUB|CALL|RETURN|RET)(?![A-Z])", re.IGNORECASE)
+"""Words after which other lines are executed than those that follow."""
+_TIME_BASE = re.compile(r"\"[^\"]*?(%)\s*[0-9{]")
+"""An override, within a command to the controller."""
+_OF_STRUTS = re.compile(
+    r"(?<![A-Z.])(H(?:OME|M)(?:Z|(?!Z)))(?!\s*(?:[7-9]|[1-9][0-9]))|(#\s*[1-6])(?![0-9])", re.IGNORECASE
+)
 """Homing of all motors or of a strut, and commands to the motor of a strut; strut i is motor i."""
+_PARENTHESES = re.compile(r"\([^()]*\)")
+_COMPUTED = "\0"
+"""Stands for text in parentheses: a condition or an index, never an assignment."""
+_SET = r"\s*(?:(?:[-+*/%&|^]|<<|>>)?=|\+\+|--)"
+_VARIABLES = re.compile(
+    rf"(?P<name>I\s*(?P<first>[0-9]+)(?:\s*\.\.\s*(?P<last>[0-9]+))?)(?![0-9]){_SET}"
+    rf"|(?P<indirect>I\s*(?:{_COMPUTED}|[0-9]*\{{[^}}]*\}}[0-9]*|[0-9]+\s*(?:,|\.\.)[^=;]*)){_SET}"
+    rf"|(?P<element>(?P<kind>MOTOR|COORD|SYS)\s*(?:\[\s*(?P<index>[^]]*?)\s*\])?\s*\.\s*\w[\w.\[\]]*){_SET}",
+    re.IGNORECASE,
+)
+"""Assignments to I-variables, and to elements of a Power PMAC's data structure."""
+_STRUTS = range(1, 7)
+_GLOBAL = (range(10, 11), range(42, 43))
+"""I10 is the servo cycle, I42 the unit of the times of PVT moves."""
+_SERVO_CYCLE = ("SERVOPERIOD", "PHASEOVERSERVOPERIOD")
 _SYNCHRONOUS = re.compile(r"[=&|^]=")
 _WITH_DWELL = re.compile(r".* DWELL *0", re.IGNORECASE)
 _OTHER_NUMBERS = ("7919", "7919.5")
 
 
-def check_codes(codes: Mapping[str, str], letters: Sequence[str]) -> None:
-    """Check that a table of codes is complete, well formed and invertible, and moves no strut.
+def check_codes(codes: Mapping[str, str], letters: Sequence[str], system: int = 1) -> None:
+    """Check that a table of codes is complete, well formed and invertible, moves no strut, and alters no later move.
 
     Args:
         codes: text for each name of ``EVENT_CODES``, with one field if it states the value of the event, and for the
             functions of the machine.
         letters: letters of the axes.
+        system: number of the coordinate system.
 
     Raises:
-        ValueError: a name is missing or unknown, a text is malformed, changes modes or moves an axis, or some text
-            would mean two events.
+        ValueError: a name is missing or unknown, a text is malformed, changes modes, flow or settings of the program,
+            or moves an axis, or some text would mean two events.
     """
     names = {name for name in codes if not FUNCTION_NAME.fullmatch(name)}
     if names not in (set(EVENT_CODES), set(EVENT_CODES) - OF_THREADS):
@@ -115,6 +144,7 @@ def check_codes(codes: Mapping[str, str], letters: Sequence[str]) -> None:
             raise ValueError(f"codes.{name}: expected {expected}, {besides}, got {template!r}")
         _check_synchronous(name, template)
         _check_no_motion(name, template, letters)
+        _check_no_setting(name, template, system)
     _check_invertible(codes)
 
 
@@ -129,10 +159,39 @@ def _check_no_motion(name: str, template: str, letters: Sequence[str]) -> None:
     axes = "|".join(map(re.escape, letters))
     # the controller needs no space between words: RAPIDA10 is a mode and a move
     moves = re.compile(rf"(?<![A-Z])(?:{_MODE_WORDS}|PSET)?({axes})\s*[-+.(0-9{{]", re.IGNORECASE)
-    found = _MODES.search(template) or moves.search(template) or _OF_STRUTS.search(template)
+    text = _HEXADECIMAL.sub("$", template)
+    patterns = (_MODES, moves, _OF_STRUTS, _TIMES, _FLOW, _TIME_BASE)
+    found = next(filter(None, (pattern.search(text) for pattern in patterns)), None)
     if found:
         word = next(filter(None, found.groups()))
         raise ValueError(f"codes.{name}: expected no mode and no move of an axis, got {word} in {template!r}")
+
+
+def _check_no_setting(name: str, template: str, system: int) -> None:
+    """Refuse codes that set up struts or coordinate system: speed unit, limits and time base are those of the plan."""
+    text, before = template, ""
+    while text != before:
+        text, before = _PARENTHESES.sub(_COMPUTED, text), text
+    for found in _VARIABLES.finditer(text):
+        if found["indirect"] or (_sets_variable(found, system) if found["name"] else _sets_element(found, system)):
+            what = (found["name"] or found["element"] or found["indirect"]).replace(_COMPUTED, "(...)")
+            expected = "no setting of motors 1 to 6 and of the coordinate system"
+            raise ValueError(f"codes.{name}: expected {expected}, got {what} in {template!r}")
+
+
+def _sets_variable(found: re.Match[str], system: int) -> bool:
+    """Whether a range of I-variables has one of the struts (Ixx..), of the system (Isx..), or of the time of moves."""
+    first, last = sorted((int(found["first"]), int(found["last"] or found["first"])))
+    begin = 100 * (50 + system)
+    refused = (range(100 * _STRUTS[0], 100 * _STRUTS[-1] + 100), range(begin, begin + 100), *_GLOBAL)
+    return any(first < numbers.stop and last >= numbers.start for numbers in refused)
+
+
+def _sets_element(found: re.Match[str], system: int) -> bool:
+    kind, index = found["kind"].upper(), found["index"]
+    if kind == "SYS":
+        return found["element"].upper().rpartition(".")[2] in _SERVO_CYCLE
+    return index is None or not index.isdecimal() or int(index) in (_STRUTS if kind == "MOTOR" else (system,))
 
 
 def _check_invertible(codes: Mapping[str, str]) -> None:

@@ -69,7 +69,7 @@ class PvtSettings:
         # manual moves and single blocks run under a program number chosen at run time
         if not 1 <= self.program <= _LAST_PROGRAM:
             raise ValueError(f"program: expected a whole number from 1 to {_LAST_PROGRAM}, got {self.program}")
-        check_codes(self.codes, self.all_letters)
+        check_codes(self.codes, self.all_letters, self.coordinate_system)
 
     @property
     def all_letters(self) -> tuple[str, ...]:
