@@ -19,7 +19,7 @@ from pkm_post.machine import NO_SETUP, has_strut_bodies
 from pkm_post.model import Coverage, Event, EventKind, Extent, Machine, Phrase, Topic, Trajectory, cuts_by_speed
 
 _SAME = 1e-6
-"""mm, and of unit axes: a tool change this close to the pose in the machine file is at that pose."""
+"""mm, rad, and of unit axes: a tool change this close to the pose in the machine file is at that pose."""
 _SHORT = 1e-6
 """s: a wait this much too short is one of rounding."""
 _UNPLANNED = "each strut moves by itself, on a way that is not planned"
@@ -57,8 +57,9 @@ def _tool_change_answer(machine: Machine, trajectory: Trajectory) -> _Answer:
     if pose is None:
         return "", "the machine file states no tool-change pose: tools change where the tip stands"
     rows = _event_rows(trajectory, EventKind.TOOL_CHANGE)
-    off = np.hypot(norm(trajectory.nose_before(rows) - pose.nose), norm(trajectory.axis_at(rows) - pose.axis))
-    if (off > _SAME).any():
+    spin = np.append(trajectory.start_spin, trajectory.spin)[rows]
+    off = norm(trajectory.nose_before(rows) - pose.nose), norm(trajectory.axis_at(rows) - pose.axis), spin - pose.spin
+    if (np.abs(off) > _SAME).any():
         return "", "the trajectory changes tools elsewhere than at the tool-change pose of the machine file"
     nose = ", ".join(f"{value:g}" for value in pose.nose)
     return f"there and back by moves of the program, to the spindle nose at ({nose}) mm", ""

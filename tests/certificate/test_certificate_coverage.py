@@ -97,7 +97,9 @@ def test_a_tool_change_counts_as_covered_where_the_trajectory_has_it_at_the_pose
     there, elsewhere = place(job, machine, ON_PALLET)[0], place(job, machines.example(), ON_PALLET)[0]
     assert beside_the_path(machine, there)["tool change"][0] is Extent.PROVEN
     moved = machines.with_tool_change(machines.example(), nose=machine.tool_change.nose + 1e-3)
+    spun = machines.with_tool_change(machines.example(), spin=machine.tool_change.spin + 1e-3)
     for stated, trajectory, why in (
+        (spun, there, "elsewhere than at the tool-change pose"),
         (machine, elsewhere, "elsewhere than at the tool-change pose"),
         (moved, there, "elsewhere than at the tool-change pose"),
         (machines.example(), there, "states no tool-change pose"),
