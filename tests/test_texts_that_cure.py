@@ -9,8 +9,9 @@ import pytest
 
 from pkm_post.cli import main
 from pkm_post.machine import poses_along, strut_lengths
-from pkm_post.model import RULES
+from pkm_post.model import RULES, errors
 from pkm_post.posting import prepared_file, study
+from pkm_post.reading import ReadingOptions, read_part_program
 
 ROOT = Path(__file__).parents[1]
 HEAD = "G21 G90 G94\nT1 M6\nS8000 M3\n"
@@ -36,6 +37,31 @@ def test_a_coordinate_that_was_never_given_is_named(tmp_path, capsys, blocks, mi
     said = capsys.readouterr()
     assert f"G436: the place of no move is known: {missing} never given; give X, Y and Z" in said.out + said.err
     assert "G420" not in said.out + said.err  # there are motions
+
+
+@pytest.mark.parametrize(
+    ("code", "flavour", "blocks", "cured"),
+    [
+        ("G439", "rs274", "G80 X1", "G80 G0 X1"),
+        ("G439", "rs274", "G2 X2 I1\nG53 X1", "G2 X2 I1\nG53 G1 X1"),
+        ("G439", "siemens", "G2 X2 I1 J0\nSUPA X1", "G2 X2 I1 J0\nSUPA G1 X1"),
+        ("G440", "fanuc", "G91 G53 X1.", "G90 G53 X1."),
+        ("G440", "fanuc", "G16 G91\nX5. Y30.", "G16 G90\nX5. Y30."),
+        ("G441", "rs274", "G93 G81 X1 Z-1 R2 F2", "G94 F90 G81 X1 Z-1 R2"),
+        ("G441", "siemens", "G93 F2\nCYCLE81(5,0,1,-3)", "G94 F90\nCYCLE81(5,0,1,-3)"),
+        ("G407", "rs274", "G0 G92 X1 Z5", "G92 X1\nG0 Z5"),
+        ("G407", "rs274", "G0 @1 X1", "G0 @1 ^30"),
+        ("G407", "siemens", "G4 F2 X5", "G4 F2\nX5"),
+    ],
+)
+def test_the_cure_of_axis_words_mends_them(tmp_path, code, flavour, blocks, cured):
+    codes = []
+    for text in (blocks, cured):
+        part = tmp_path / "part.ngc"
+        part.write_text(f"G21 G90\nS900 M3\nG0 X0 Y0 Z5\nF100\n{text}\nM30\n")
+        reading = ReadingOptions(flavour=flavour, machine_zero=(0.0, 0.0, 0.0), allow_open_end=True)
+        codes.append({each.code for each in errors(read_part_program(part, reading)[1])})
+    assert codes == [{code}, set()]
 
 
 @pytest.mark.parametrize(("move", "expected"), [("G0", {"K128": 4}), ("G1 F1200", {"K128": 4, "K118": 5})])

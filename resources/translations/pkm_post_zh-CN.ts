@@ -2179,10 +2179,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>轴的字有歧义</translation>
     </message>
     <message>
-        <source>write one motion in a block, with its words</source>
-        <translation>一个程序段只写一个运动及其字</translation>
-    </message>
-    <message>
         <source>a cutting move has no feed</source>
         <translation>切削移动没有进给速度</translation>
     </message>
@@ -2867,6 +2863,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>将其另存为 UTF-8 文本</translation>
     </message>
     <message>
+        <source>write each code in a block of its own, with its words; @ and ^ without X and Y</source>
+        <translation>每个代码及其字各写一个程序段；@ 和 ^ 不与 X、Y 同写</translation>
+    </message>
+    <message>
         <source>tapping needs a feed synchronised with the spindle, which is not supported here</source>
         <translation>攻丝需要与主轴同步的进给,此处不支持</translation>
     </message>
@@ -2877,6 +2877,30 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>write G69 before it, and G68 again after it</source>
         <translation>在其之前写 G69，之后再写 G68</translation>
+    </message>
+    <message>
+        <source>the axis words have no motion that they can go by</source>
+        <translation>坐标字没有可用的运动代码</translation>
+    </message>
+    <message>
+        <source>let G0 or G1 be the motion of the block</source>
+        <translation>该程序段的运动代码应为 G0 或 G1</translation>
+    </message>
+    <message>
+        <source>controls differ in whether this goes by distances under G91</source>
+        <translation>在 G91 下，各数控系统对此是否按增量移动的解释不同</translation>
+    </message>
+    <message>
+        <source>write G90 before it</source>
+        <translation>在其之前写 G90</translation>
+    </message>
+    <message>
+        <source>a cycle needs a feed, which inverse time does not give</source>
+        <translation>循环需要进给速度，而反比时间不给出进给速度</translation>
+    </message>
+    <message>
+        <source>write G94 and F before it</source>
+        <translation>在其之前写 G94 和 F</translation>
     </message>
     <message>
         <source>give the second one its own with --origin NAME=X,Y,Z</source>

@@ -247,7 +247,7 @@ def test_rigid_tapping_of_linuxcnc_goes_to_a_point_and_back():
         ("M5\nG33.1 Z-8 K1", "G418"),
         ("G33.1 Z-8 K1\nZ-9", "G418"),
         ("G33 Z-8 K1", "G425"),
-        ("G93 G33.1 Z-8 K1 F1", "G407"),
+        ("G93 G33.1 Z-8 K1 F1", "G441"),
     ],
 )
 def test_rigid_tapping_without_its_meaning_is_refused(block, code):

@@ -92,7 +92,10 @@ GCODE_RULES: dict[str, Rule] = {
     "G404": error("no code of the block uses the word", "remove it, or add the code that it belongs to"),
     "G405": error("a word is missing", "add it"),
     "G406": error("a word has an invalid value", "correct it"),
-    "G407": error("the axis words are ambiguous", "write one motion in a block, with its words"),
+    "G407": error(
+        "the axis words are ambiguous",
+        "write each code in a block of its own, with its words; @ and ^ without X and Y",
+    ),
     "G408": error(
         "a cutting move has no feed",
         "write F above zero before the move, or in it with G93, or give --feed",
@@ -180,6 +183,9 @@ GCODE_RULES: dict[str, Rule] = {
         "controls forbid this while a rotation is in force, or differ in where it leads",
         "write G69 before it, and G68 again after it",
     ),
+    "G439": error("the axis words have no motion that they can go by", "let G0 or G1 be the motion of the block"),
+    "G440": error("controls differ in whether this goes by distances under G91", "write G90 before it"),
+    "G441": error("a cycle needs a feed, which inverse time does not give", "write G94 and F before it"),
     # G5: writing G-code
     "G501": error("the tool axis tilts, and this form of G-code cannot express it", "choose a form with five axes"),
     "G502": error("the tool axis points down, and this form of G-code cannot express it", "choose vectors or a head"),

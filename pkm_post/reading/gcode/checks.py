@@ -239,7 +239,7 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     """Report axis words that belong to no motion, or to two codes."""
     explicit, motion = modal.programmed[Group.MOTION], modal.active[Group.MOTION]
     faults.add_where(
-        "G407", modal.moves & (motion == 800), lambda _: ("axis words while no motion is in force (", word_of(800), ")")
+        "G439", modal.moves & (motion == 800), lambda _: ("axis words while no motion is in force (", word_of(800), ")")
     )
     both = (modal.takes_axes != NONE) & (explicit != NONE) & (explicit != 800)
     if modal.flavour.moves_beside_reference:
@@ -252,14 +252,14 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
         faults.add("G407", row, _spaced([word_of(code) for code in blocks.g_of(row).tolist()]))
     directly = modal.programmed[Group.ONCE] == 530
     wrong = directly & (motion != 0) & (motion != 10) & (not modal.flavour.g53_is_rapid)
-    faults.add_where("G407", wrong, lambda row: (word_of(530), " while ", word_of(motion[row]), " is in force"))
+    faults.add_where("G439", wrong, lambda row: (word_of(530), " while ", word_of(motion[row]), " is in force"))
     relative = directly & modal.moves & (modal.active[Group.DISTANCE] == 910)
-    faults.add_where("G407", relative, lambda _: (word_of(530), " while ", word_of(910), " is in force"))
+    faults.add_where("G440", relative, lambda _: (word_of(530), " while ", word_of(910), " is in force"))
     both = modal.moves & (modal.programmed[Group.LENGTH] == 432)
     faults.add_where("G407", both, lambda _: (word_of(432), " and a motion in one block"))
     inverse = modal.moves & is_cycle(motion) & (modal.active[Group.FEED_MODE] == 930)
     faults.add_where(
-        "G407", inverse, lambda row: (word_of(motion[row]), " with inverse time feed (", word_of(930), ")")
+        "G441", inverse, lambda row: (word_of(motion[row]), " with inverse time feed (", word_of(930), ")")
     )
 
 

@@ -105,7 +105,7 @@ class PolarWords:
         letter = POLAR_WORDS[0] if self._blocks.has(POLAR_WORDS[0])[row] else POLAR_WORDS[1]
         name = Word("G", _ON / 10) if by_mode else Word(letter)
         if from_tool:
-            return "G407", row, (name, " with ", Word("G", 91), ": polar coordinates from the place of the tool")
+            return "G440", row, (name, " with ", Word("G", 91), ": polar coordinates from the place of the tool")
         if not by_mode and not np.isnan(self.words.at(row)[:2]).all():
             return "G407", row, (name, " and X or Y in one block")
         if from_here and not known.all():

@@ -50,7 +50,7 @@ def drill(machine: SiemensMachine, row: int, call: Call) -> None:
     if not state.known.all():
         raise BlockFault("G416", call.name, call.column)
     if state.feed_mode == _INVERSE_TIME:
-        raise BlockFault("G407", f"{call.name} with inverse time feed (G93)", call.column)
+        raise BlockFault("G441", f"{call.name} with inverse time feed (G93)", call.column)
     strokes, modes = CYCLES[call.name]
     in_turns = _checked_modes(machine, call, modes)
     before = machine.scratch()

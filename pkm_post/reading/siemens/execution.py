@@ -176,7 +176,7 @@ def _in_machine(machine: SiemensMachine, block: Block) -> None:
     if not words or zero is None:
         return
     if state.motion not in (RAPID, LINE):
-        raise BlockFault("G407", "SUPA, G53 or G153 without G0 or G1 in force")
+        raise BlockFault("G439", "SUPA, G53 or G153 without G0 or G1 in force")
     target, known = state.frame.points(state.position).copy(), state.known.copy()
     mixed = state.frame.mixed()
     if mixed.any() and not known[mixed].all() and len(words) < len(PLACES):

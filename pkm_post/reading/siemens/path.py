@@ -107,7 +107,7 @@ class Path:
         """Execute blocks together if possible, else one by one, to find the faulty one."""
         without = np.flatnonzero(blocks.motion == NO_MOTION)
         if len(without):
-            self._faults.add(blocks.row(int(without[0])), "G407", "axis words while no motion is in force")
+            self._faults.add(blocks.row(int(without[0])), "G439", "axis words while no motion is in force")
             return
         if self.state.unplaced:
             self._faults.add(blocks.row(), "G609", self.state.unplaced)

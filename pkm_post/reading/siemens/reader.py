@@ -28,7 +28,7 @@ from pkm_post.reading.siemens.subprograms import MissingProgram, Source, files_b
 from pkm_post.reading.siemens.tools import Tools
 from pkm_post.reading.threads import without_idle_starts
 
-_CONSEQUENCES = ("G301", "G407", "G408", "G416", "G420", "G424", "G430", "G436", "G604", "G605")
+_CONSEQUENCES = ("G301", "G407", "G408", "G416", "G420", "G424", "G430", "G436", "G439", "G604", "G605")
 """Faults that may be consequences of earlier ones."""
 
 

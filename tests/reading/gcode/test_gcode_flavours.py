@@ -97,7 +97,7 @@ def test_after_g80_the_motion_before_the_cycle_is_in_force():
     cycle = "G98 G81 X10 Z-5 R2\nG80\n"
     assert moves(fanuc(f"{cycle}Z60\n"))[-1] == (R, 10, 0, 60)
     assert moves(fanuc(f"G1 X5\n{cycle}Z60\n"))[-1] == (L, 10, 0, 60)
-    assert codes(f"{cycle}Z60\n", flavour="rs274") == ["G407"]
+    assert codes(f"{cycle}Z60\n", flavour="rs274") == ["G439"]
 
 
 @pytest.mark.parametrize("flavour", FLAVOURS)
@@ -108,7 +108,7 @@ def test_g0_beside_g80_is_in_force_in_every_flavour(flavour):
 
 def test_without_a_motion_before_g80_there_is_none_after_it():
     program, faults = read("G80\nX1. Y1. Z1.\nM30\n", "part.nc", ReadOptions(default_tool=ANY, flavour="fanuc"))
-    assert (program, [fault.code for fault in faults]) == (None, ["G407"])
+    assert (program, [fault.code for fault in faults]) == (None, ["G439"])
 
 
 # cycles: 13.1 drilling data are held until the cycle is cancelled; K0 stores them

@@ -88,4 +88,4 @@ def test_g16_in_another_plane_and_in_inches():
 
 def test_g16_with_g91_counts_from_the_tool_and_is_refused():
     faults = taken("G21\nG0 X1. Y1. Z5.\nG16 G91\nX5. Y30.\n", flavour="fanuc")[1]
-    assert [(fault.code, fault.place.line) for fault in faults] == [("G407", 4)]
+    assert [(fault.code, fault.place.line) for fault in faults] == [("G440", 4)]
