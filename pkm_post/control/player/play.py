@@ -15,13 +15,13 @@ from collections.abc import Callable
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
-from pkm_post.control.link import stopping
 from pkm_post.control.link.download import download
 from pkm_post.control.link.errors import CancelledError, LinkLostError, PmacError
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.run import HIGHEST_OVERRIDE, check_setup, set_feed_override, start_program
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings, Status, read_status
+from pkm_post.control.numerical_control.execute import held_above_plan
 from pkm_post.control.player.block_skip import chosen_parts
 from pkm_post.control.player.certificate_log import CertificateLog
 from pkm_post.control.player.certified_motion import MotionState
@@ -280,12 +280,8 @@ class Player:
         self.log.override = max(self.log.override, status.override)
         if status.override <= HIGHEST_OVERRIDE:
             return
-        held = stopping.hold(self._session, self._settings).held
-        raise PmacError(
-            f"the override is {status.override:g} % {self._way.text(self._feed.current)}, set from elsewhere: the"
-            f" motion is certified for at most {HIGHEST_OVERRIDE:g} %;"
-            f" the machine is {'held: abort, and' if held else 'at rest:'} go on with --from-line"
-        )
+        where = self._way.text(self._feed.current)
+        raise PmacError(f"{held_above_plan(self._session, self._settings, status, where)}; go on with --from-line")
 
     def _lose(self, lost: LinkLostError) -> None:
         """Note that the link is lost.

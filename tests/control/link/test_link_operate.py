@@ -16,6 +16,7 @@ from pkm_post.control.link.errors import CancelledError, NotReadyError, OutcomeU
 from pkm_post.control.link.program import read_job
 from pkm_post.control.link.run import check_setup, check_start
 from pkm_post.control.link.status import read_status
+from pkm_post.control.numerical_control.execute import wait_for_rest
 from pkm_post.model import StrutMotion
 from pkm_post.writing.controllers.pmac import program_text, setup_text
 
@@ -172,6 +173,16 @@ def test_an_override_that_is_no_number_is_refused(loaded):
     status = replace(read_status(loaded, SETTINGS), override=float("nan"))
     with pytest.raises(NotReadyError, match="the override is nan %"):
         check_start(status, FIRST)
+
+
+def test_a_move_that_another_client_speeds_up_is_held(wire, loaded):
+    operate.start_program(loaded, SETTINGS, SLOW, FIRST)
+    wire.controller.systems[0].set_override(150.0)
+    with pytest.raises(
+        PmacError, match=r"the override is 1\d\d\S* %, set from elsewhere: .* the machine is held: abort"
+    ):
+        wait_for_rest(loaded, SETTINGS, 60.0)
+    assert wire.controller.systems[0].holding and read_status(loaded, SETTINGS).override == 0.0
 
 
 def test_a_state_that_shows_a_command_late_is_waited_for(wire, loaded):

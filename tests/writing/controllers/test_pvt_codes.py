@@ -136,6 +136,8 @@ def test_a_table_of_codes_must_be_well_formed_and_invertible(change, complaint):
         ("Motor[6].MaxSpeed=0", r"got Motor\[6\].MaxSpeed in"),
         ("motor[ 1 ].maxpos = 0", r"got motor\[ 1 \].maxpos in"),
         ("Motor[P1].MaxPos=0", r"got Motor\[P1\].MaxPos in"),
+        ("Motor[P(1)].MaxPos=0", r"got Motor\[P\(...\)\].MaxPos in"),
+        ("Motor[axis[1]].MaxPos=0", r"got Motor\[axis\[1\]\].MaxPos in"),
         ("Motor[2].Servo.Kp*=2", r"got Motor\[2\].Servo.Kp in"),
         ("Coord[1].FeedTime=60000", r"got Coord\[1\].FeedTime in"),
         ("Coord[1].DesTimeBase+=1", r"got Coord\[1\].DesTimeBase in"),

@@ -101,8 +101,8 @@ _COMPUTED = "\0"
 _SET = r"\s*(?:(?:[-+*/%&|^]|<<|>>)?=|\+\+|--)"
 _VARIABLES = re.compile(
     rf"(?P<name>I\s*(?P<first>[0-9]+)(?:\s*\.\.\s*(?P<last>[0-9]+))?)(?![0-9]){_SET}"
-    rf"|(?P<indirect>I\s*(?:{_COMPUTED}|[0-9]*\{{[^}}]*\}}[0-9]*|[0-9]+\s*(?:,|\.\.)[^=;]*)){_SET}"
-    rf"|(?P<element>(?P<kind>MOTOR|COORD|SYS)\s*(?:\[\s*(?P<index>[^]]*?)\s*\])?\s*\.\s*\w[\w.\[\]]*){_SET}",
+    rf"|(?P<indirect>I\s*(?:{_COMPUTED}|[0-9]*\{{[^}}]*\}}[0-9]*|[0-9]+(?:\s*(?:,|\.\.)\s*[0-9]+)+)){_SET}"
+    rf"|(?P<element>(?P<kind>MOTOR|COORD|SYS)\s*(?:\[\s*(?P<index>.{{0,80}}?)\s*\])?\s*\.\s*\w[\w.\[\]]*){_SET}",
     re.IGNORECASE,
 )
 """Assignments to I-variables, and to elements of a Power PMAC's data structure."""
