@@ -4,7 +4,7 @@
 A window is the fastest motion from rest to rest that ``jerk_limits`` finds. One that continues a motion starts one
 stopping distance behind it. The speed squared of both is a quadratic spline of the path length, so a transition blends
 their coefficients: speed and acceleration do not jump. The length of the transition is searched, with limits measured
-each millisecond; if no length keeps them, the motion stays as it is and rests at its end. A stop scales the time of
+each half millisecond; if no length keeps them, the motion stays as it is and rests at its end. A stop scales the time of
 the motion (``time_scaled_law``), as fast as the limits allow.
 
 Windows use only a share of the acceleration and jerk limits, since stops and transitions need the rest.
@@ -40,12 +40,12 @@ class Shares(NamedTuple):
 
 FULL, GENTLE = Shares(0.92, 0.85), Shares(0.45, 0.3)
 _MOST_USE = 0.985
-"""Largest use of a limit in a stop or transition, each millisecond; the rest is for decimals and cubics."""
+"""Largest use of a limit in a stop or transition; the rest is for decimals and cubics."""
 _SPEED_ROUNDING = 1.001
 """Rounding allowance on speed limits, which a motion may use in full."""
 _FIRST_STOP_MS, _LONGEST_STOP_MS = 32, 1 << 15
-_LEAST_STEPS = 32
-"""Least number of steps for measuring a motion: in a short stop they are shorter than a ms."""
+_STEP_S, _LEAST_STEPS = 0.0005, 64
+"""Longest step for measuring a motion, s, and least number of steps: in a short stop they are shorter."""
 _STOP_STEPS = 5
 """Halvings between a stop that is too short and one twice as long."""
 _FIRST_CHANGE, _LONGER_CHANGE = 0.5, 1.6
@@ -130,9 +130,12 @@ def in_whole_ms(found: SpeedLaw, shortest_ms: int) -> MotionLaw:
 
 
 def use_of_limits(path: ToolPath, machine: Machine, law: TimeScaledLaw, until: float) -> float:
-    """Largest use of acceleration and jerk limits up to a time, each ms or less; infinite if the speed is too high."""
-    worst, count = 0.0, max(int(np.ceil(1000 * until)), _LEAST_STEPS)
-    step = min(1e-3, until / _LEAST_STEPS)
+    """Largest use of acceleration and jerk limits up to a time; infinite if the speed is too high.
+
+    Jerk is that of a ms, measured each half of one: a corner that takes less may begin anywhere in it.
+    """
+    worst, count = 0.0, max(int(np.ceil(until / _STEP_S)), _LEAST_STEPS)
+    step = min(_STEP_S, until / _LEAST_STEPS)
     for rows in pieces(count, _AT_ONCE):
         time = np.minimum(np.arange(rows.start, min(rows.stop + 1, count) + 1) * step, law.duration)
         s, speed, acceleration = law.at(time)
@@ -140,7 +143,7 @@ def use_of_limits(path: ToolPath, machine: Machine, law: TimeScaledLaw, until: f
         for item in limited_quantities(machine, poses):
             rate = item.first * speed[:, None]
             change = item.first * acceleration[:, None] + item.second * (speed**2)[:, None]
-            jerk = np.diff(change, axis=0) / step
+            jerk = (change[2:] - change[:-2]) / (2 * step)
             sizes = [np.abs(values) if item.each else norm(values) for values in (rate, change, jerk)]
             speed_use, *uses = (
                 float(size.max(initial=0.0)) / limit
