@@ -26,6 +26,8 @@ _LEAST_SLACK = 0.1
 """Least initial slack, for limits with little or negative room."""
 _FIRST_GAP = 1.0
 """Initial duality gap, as a share of the time."""
+_HOPELESS = 1e12
+"""Duality gap, as a share of the time, above which the limits leave no motion: there it grows without end."""
 _OFF = 0.1
 """Relative error assumed for the unknowns in the cost of a stationarity residual."""
 _TO_BOUNDARY = 0.95
@@ -178,6 +180,8 @@ def fastest(
         balanced = gap + _imbalance(weight, linear, unknowns) <= enough * _time(weight, unknowns)
         if balanced and broken <= few_broken * count:
             return Solution(unknowns, reached=True)
+        if gap > _HOPELESS * _time(weight, unknowns):
+            break
         unknowns, states = _stepped(weight, linear, unknowns, gap / count, count)
     return Solution(unknowns, reached=False)
 
