@@ -112,10 +112,10 @@ def column(file):
     feed_plan, _ = plan_feed(trajectory, example(), FINE)
     study = interpolate(feed_plan).feed
     figure, (panel,) = panels((9, 3.2), "feed along the tapered column")
-    for name in ("possible", "asked", "planned"):
+    for name in ("possible", "programmed", "planned"):
         feed = np.where(study.cutting, 60 * getattr(study, name), np.nan)
         panel.plot(study.time, feed, label=name, linewidth=0.8)
-    panel.set(ylim=(0, 2 * 60 * study.asked[study.cutting].max()), xlabel="s", ylabel="mm/min")
+    panel.set(ylim=(0, 2 * 60 * study.programmed[study.cutting].max()), xlabel="s", ylabel="mm/min")
     panel.legend(fontsize=8, loc="upper right")
     return figure
 
