@@ -23,12 +23,14 @@ from pkm_post.model import Machine, Poses, Tolerances, checkpoint, distinct, pie
 from pkm_post.planning.check_points import CheckPoints, Intervals, KnownIntervals
 from pkm_post.planning.fast_poses import fast_poses, fast_poses_within
 from pkm_post.planning.schedule import Schedule, by_time
-from pkm_post.planning.tool_path import ToolPath
+from pkm_post.planning.tool_path import FOR_CORNERS, ToolPath
 
-_SHARE_OF_TOLERANCES = 0.4
-"""Share for the controller's cubics, and for corners; decimals and the gaps between check points get the rest."""
-_SHARE_ON_CURVES = 0.25
-"""The same on a curve that replaces short lines, which uses up to 0.6 itself."""
+_MOST = 0.4
+"""Largest share of the tolerances for the controller's cubics."""
+_WITH_CORNERS = 0.8
+"""Share for cubics and corners together; decimals and the gaps between check points get the rest."""
+_ON_CURVES = 0.25
+"""Share for cubics on a curve that replaces short lines."""
 _SPEED_SWING = 0.005
 """Share of the feed by which the controller's cubics may exceed it."""
 _SLOWER_SWING = 0.04
@@ -93,11 +95,13 @@ def _places(path: ToolPath, s: Array) -> tuple[Array, Array, Array]:
 
 
 def _allowed(path: ToolPath, rows: slice, tolerances: Tolerances) -> Array:
-    """Allowance for tip and axis on some segments, (2, N) mm and rad."""
+    """Allowance for tip and axis on some segments, (2, N) mm and rad: what the corners at both ends leave of it."""
     programmed = path.tip_tolerance[rows]  # the program may tighten the tolerance, not widen it
     tip = np.where(programmed > 0, np.minimum(programmed, tolerances.tip), tolerances.tip)
-    share = np.where(path.segments.is_curve(np.arange(rows.start, rows.stop)), _SHARE_ON_CURVES, _SHARE_OF_TOLERANCES)
-    return np.stack([share * tip, share * tolerances.axis])
+    corner = np.maximum(path.rounding[:, rows], path.rounding[:, rows.start + 1 : rows.stop + 1])
+    left = np.minimum(_WITH_CORNERS - corner * FOR_CORNERS[:, None], _MOST)
+    left[:, path.segments.is_curve(np.arange(rows.start, rows.stop))] = _ON_CURVES
+    return np.asarray(left * [tip, np.full(len(tip), tolerances.axis)])
 
 
 def _exceeded(deviation: Array, use: Array) -> Array:

@@ -39,7 +39,7 @@ _APART = 0.15
 """Largest difference of alike costs."""
 _FULL = 0.98
 """Share of the longest interval to aim for."""
-_TO_EDGE = 0.25
+_TO_EDGE = 0.1
 """Share of an interval by which its end may move to an edge."""
 _AGAIN = 1.06
 """Cost factor of neighbours that failed to merge, so that others are tried."""

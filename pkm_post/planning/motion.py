@@ -47,12 +47,10 @@ from pkm_post.planning.slower import Slower, limits_jerk, required, too_coarse
 from pkm_post.planning.speed_profile import Stations, cell_times, stations
 from pkm_post.planning.switches import planned_share, with_lower_switches
 from pkm_post.planning.threads import share_in_threads, spindle_turns, with_slow_threads
-from pkm_post.planning.tool_path import ToolPath
+from pkm_post.planning.tool_path import FOR_CORNERS, ToolPath
 from pkm_post.system import columns_in_workers, in_workers
 from pkm_post.toolpath import Segments, compress
 
-_FOR_CORNERS = 0.4
-"""Share of the tolerances for rounding corners."""
 _FOR_CURVES = 0.6
 """Share of the tolerances for curves that replace short lines."""
 LONGEST_MOTION = 7 * 86_400.0
@@ -127,10 +125,13 @@ def tool_path(trajectory: Trajectory, tolerances: Tolerances) -> ToolPath:
     for_curves = _FOR_CURVES * trajectory.tip_tolerances(tolerances.tip)
     segments = segments.smoothed(compress(trajectory, segments, for_curves, _FOR_CURVES * tolerances.axis))
     checkpoint()
-    return ToolPath.of(trajectory, _for_corners(trajectory, tolerances.tip), _FOR_CORNERS * tolerances.axis, segments)
+    of_tip, of_axis = FOR_CORNERS
+    return ToolPath.of(
+        trajectory, _for_corners(trajectory, tolerances.tip, of_tip), of_axis * tolerances.axis, segments
+    )
 
 
-def _for_corners(trajectory: Trajectory, asked: float) -> Array:
+def _for_corners(trajectory: Trajectory, asked: float, share: float) -> Array:
     """Corner tolerance of the tip on each segment, (N,) mm.
 
     Where the program allows more than requested, corners get all of the excess: cubics and decimals keep to the
@@ -138,7 +139,7 @@ def _for_corners(trajectory: Trajectory, asked: float) -> Array:
     """
     allowed = trajectory.tip_tolerances(asked)
     tight = np.minimum(allowed, asked)
-    return _FOR_CORNERS * tight + (allowed - tight)
+    return share * tight + (allowed - tight)
 
 
 def plan_feed(

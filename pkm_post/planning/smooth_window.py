@@ -4,8 +4,8 @@
 A window is the fastest motion from rest to rest that ``jerk_limits`` finds. One that continues a motion starts one
 stopping distance behind it. The speed squared of both is a quadratic spline of the path length, so a transition blends
 their coefficients: speed and acceleration do not jump. The length of the transition is searched, with limits measured
-each half millisecond; if no length keeps them, the motion stays as it is and rests at its end. A stop scales the time of
-the motion (``time_scaled_law``), as fast as the limits allow.
+each half millisecond; if no length keeps them, the motion stays as it is and rests at its end. A stop scales the time
+of the motion (``time_scaled_law``), as fast as the limits allow.
 
 Windows use only a share of the acceleration and jerk limits, since stops and transitions need the rest.
 

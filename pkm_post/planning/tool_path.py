@@ -24,6 +24,8 @@ from pkm_post.geometry import Array, along_rates, norm
 from pkm_post.model import Poses, Trajectory, pieces, read_only, select_rows
 from pkm_post.toolpath import Segments, direction
 
+FOR_CORNERS = np.array([0.55, 0.4])
+"""Shares of the tolerances of tip and axis for rounding corners."""
 OFFSET = 3 / 16
 """Deviation at the joint per half width and change of direction."""
 _BLEND_DEVIATION = 0.0134
@@ -52,6 +54,7 @@ class ToolPath:
         segments: the segments before rounding.
         starts: (N + 1,) path length s at the start of each segment, and at the end of the path.
         blend: (N + 1,) half width of the blend at the start of each segment; 0 at rests and at both ends.
+        rounding: (2, N + 1) how much of the corner tolerances of tip and axis that blend uses, up to 1.
         rests: (N + 1,) whether the motion stops at the start of each segment; true at both ends.
         feed: (N,) highest speed by path length, mm/s.
         tool_length: (N,) gauge length in use.
@@ -61,6 +64,7 @@ class ToolPath:
     segments: Segments
     starts: Array
     blend: Array
+    rounding: Array
     rests: np.ndarray[tuple[int], np.dtype[np.bool_]]
     feed: Array
     tool_length: Array
@@ -85,10 +89,12 @@ class ToolPath:
         """
         segments = segments or Segments.of(trajectory)
         rests = np.concatenate([[True], trajectory.exact_stop])
+        blend, rounding = _blends(segments, rests, tip_tolerance, axis_tolerance)
         return cls(
             segments=segments,
             starts=np.concatenate([[0.0], np.cumsum(segments.extent)]),
-            blend=_blends(segments, rests, tip_tolerance, axis_tolerance),
+            blend=blend,
+            rounding=rounding,
             rests=rests,
             feed=trajectory.feed,
             tool_length=trajectory.tool_length(),
@@ -176,8 +182,11 @@ def _as_vectors(at: Callable[[Array, Array], Triple]) -> Callable[[Array, Array]
     return vectors
 
 
-def _blends(segments: Segments, rests: Array, tip_tolerance: Array | float, axis_tolerance: float) -> Array:
-    blend = np.zeros(len(segments) + 1)
+def _blends(
+    segments: Segments, rests: Array, tip_tolerance: Array | float, axis_tolerance: float
+) -> tuple[Array, Array]:
+    """Half widths of the blends, (N + 1,), and their shares of the tolerances of tip and axis, (2, N + 1)."""
+    blend, rounding = np.zeros(len(segments) + 1), np.zeros((2, len(segments) + 1))
     joints = 1 + np.flatnonzero(~(rests[1:-1] | segments.in_one_curve()))
     tip = np.broadcast_to(tip_tolerance, len(segments))
     for rows in pieces(len(joints), _JOINTS_AT_ONCE):
@@ -186,16 +195,24 @@ def _blends(segments: Segments, rests: Array, tip_tolerance: Array | float, axis
         at_end = segments.extent[before]
         _, tangent_end, bend_end = segments.tip_at(before, at_end)
         _, tangent_start, bend_start = segments.tip_at(joint, at_start)
-        blend[joint] = half_widths(
-            norm(tangent_start - tangent_end),
-            norm(bend_start - bend_end),
-            np.maximum(norm(bend_start), norm(bend_end)),
-            norm(segments.axis_at(joint, at_start)[1] - segments.axis_at(before, at_end)[1]),
-            np.minimum(at_end, segments.extent[joint]),
-            _at_joints(tip, joint),
-            axis_tolerance,
-        )
-    return blend
+        changes = norm(tangent_start - tangent_end), norm(bend_start - bend_end)
+        turn = norm(segments.axis_at(joint, at_start)[1] - segments.axis_at(before, at_end)[1])
+        curvature, neighbour = np.maximum(norm(bend_start), norm(bend_end)), np.minimum(at_end, segments.extent[joint])
+        at_joint = _at_joints(tip, joint)
+        half = blend[joint] = half_widths(*changes, curvature, turn, neighbour, at_joint, axis_tolerance)
+        rounding[0, joint] = _share(_tip_deviation(*changes, half), at_joint)
+        rounding[1, joint] = _share(OFFSET * turn * half, axis_tolerance)
+    return blend, rounding
+
+
+def _tip_deviation(tip_change: Array, curvature_change: Array, half_width: Array) -> Array:
+    """Largest deviation of the tip in blends, (N,) mm."""
+    return (OFFSET * tip_change + _BLEND_DEVIATION * curvature_change * half_width) * half_width
+
+
+def _share(deviation: Array, tolerance: Array | float) -> Array:
+    """Deviations by tolerance, (N,); where there is no tolerance, there is no blend."""
+    return np.divide(deviation, tolerance, out=np.zeros(len(deviation)), where=np.asarray(tolerance) > 0)
 
 
 def _at_joints(tolerance: Array, joint: Array) -> Array:

@@ -34,7 +34,7 @@ MADE = {"cone": cone(120, turns=0.5), "scan": scan()}
 JOBS = pytest.mark.parametrize("job", MADE)
 
 
-def searched(job, tolerance=1e-3):
+def searched(job, tolerance=7e-4):
     machine = dataclasses.replace(example(), strut_jerk=1e6, tip_jerk=4e5)
     trajectory, _ = place(MADE[job], machine, ON_PALLET)
     path = tool_path(trajectory, Tolerances(tolerance, np.radians(tolerance)))

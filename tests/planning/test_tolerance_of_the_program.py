@@ -47,7 +47,7 @@ def worst(certificate, code):
 
 def test_the_lower_tolerance_of_two_rows_rounds_their_corner():
     path = tool_path(placed([0, 0.05, 0.05, 0, 0.0002, 0.05]), ASKED)
-    most = np.array([0.05 - 0.6 * ASKED.tip, 0.4 * ASKED.tip, 0.4 * 0.0002, 0.4 * 0.0002])
+    most = np.array([0.05 - 0.45 * ASKED.tip, 0.55 * ASKED.tip, 0.55 * 0.0002, 0.55 * 0.0002])
     np.testing.assert_allclose(path.blend[2:-1], most / (OFFSET * RIGHT_ANGLE), rtol=1e-12)
 
 
