@@ -73,11 +73,11 @@ def _spindle(machine: Machine, trajectory: Trajectory) -> _Answer:
     cuts, done = np.flatnonzero(cuts_by_speed(trajectory.kind, trajectory.events)), 0
     for event in (*trajectory.events, Event(len(trajectory), EventKind.STOP, 0.0)):
         before = int(np.searchsorted(cuts, event.row))
-        fault = spindle.fault_in_a_cut() if before > done else ""
+        fault = spindle.cut_fault() if before > done else ""
         if fault:
             return "", f"the program cuts {fault}, at line {int(trajectory.line[cuts[done]])}"
         done = before
-        spindle.happens(event)
+        spindle.apply(event)
     return f"dwells for a spindle that takes {machine.spin_up_time:g} s to its highest speed", ""
 
 
@@ -91,27 +91,27 @@ class _Spindle:
     def __init__(self, up: float, down: float) -> None:
         self._up, self._down = up, down  # s for each revolution per minute gained, and lost
         self._least = self._most = self._commanded = self._wait = 0.0
-        self._rests_after = "before it starts the spindle"
+        self._stopped = "before it starts the spindle"
 
-    def fault_in_a_cut(self) -> str:
+    def cut_fault(self) -> str:
         """Why a cut here may not have its spindle speed, or nothing."""
-        if self._rests_after:
-            return self._rests_after
+        if self._stopped:
+            return self._stopped
         if self._commanded and self._wait > _SHORT:
             return f"up to {self._wait:.3f} s before the spindle has its speed"
         return ""
 
-    def happens(self, event: Event) -> None:
+    def apply(self, event: Event) -> None:
         if event.kind is EventKind.SPINDLE:
             self._turn_at(event.value)
         elif event.kind is EventKind.DWELL:
             self._wait -= event.value
         elif event.kind is EventKind.TOOL_CHANGE:
             self._turn_at(0.0)
-            self._rests_after = self._rests_after or "after a tool change that stops the spindle"
+            self._stopped = self._stopped or "after a tool change that stops the spindle"
         elif event.kind is EventKind.SPINDLE_AXIS:  # the code waits for rest: the turns count from there
             self._least = self._most = self._commanded = self._wait = 0.0
-            self._rests_after = self._rests_after or "after a thread that stops the spindle"
+            self._stopped = self._stopped or "after a thread that stops the spindle"
 
     def _turn_at(self, speed: float) -> None:
         if self._wait <= _SHORT:
@@ -120,10 +120,10 @@ class _Spindle:
         self._wait = max(self._seconds(before, speed) for before in (self._least, self._most))
         self._commanded = speed
         if speed:
-            self._rests_after = ""
+            self._stopped = ""
 
     def _seconds(self, before: float, after: float) -> float:
-        """By the speed lost on the way to rest, or to a lower speed, and that gained from there."""
+        """Time from one speed to another: down to rest or to the lower one, and up from there."""
         turn = min(abs(before), abs(after)) if before * after > 0.0 else 0.0
         return (abs(before) - turn) * self._down + (abs(after) - turn) * self._up
 
