@@ -9,7 +9,6 @@ cores, since tests with windows and links wait most of their time. Inside FreeCA
 run_script.py.
 """
 
-import gc
 import json
 import mmap
 import os
@@ -96,8 +95,6 @@ class ForkedRun:
         if session.testsfailed or session.config.option.collectonly or not session.items:
             return None
         _require_one_thread()
-        gc.collect()
-        gc.freeze()  # the collected tests last as long as the run: no process searches them for cycles
         workers = [Worker(session, self._next_file) for _ in range(min(self._count, len(session.items)))]
         try:
             self._report(session, workers)
