@@ -154,19 +154,22 @@ class AssignmentTarget:
         return _located(self.column, in_range, self.number.value(parameters))
 
 
-def expression_of(node: Node) -> Expression:
+def expression_of(node: Node, rounding: str = "round") -> Expression:
     """Compile a value.
 
     Args:
         node: a branch or leaf of the parse tree that represents a value.
+        rounding: key of ROUND in ``Parameters.functions``: some controls round in words otherwise.
     """
     steps: list[Step] = []
-    waiting = [node]
+    waiting = [(node, rounding)]
     while waiting:  # a node precedes its operands, last operand first: this yields the steps in reverse
-        here = waiting.pop()
-        step, operands = _step_of(here)
+        here, rounding = waiting.pop()
+        step, operands = _step_of(here, rounding)
         steps.extend(step)
-        waiting.extend(operands)
+        if not isinstance(here, str) and here.data == "parameter":
+            rounding = "round"  # the number of a parameter is no length
+        waiting.extend((operand, rounding) for operand in operands)
     return Expression(tuple(reversed(steps)), column_of_node(node))
 
 
@@ -203,7 +206,7 @@ def _column_of_sign(name_or_number: Node) -> int:
     return max(column_of_node(name_or_number) - 1, 0)
 
 
-def _step_of(node: Node) -> tuple[list[Step], list[Node]]:
+def _step_of(node: Node, rounding: str) -> tuple[list[Step], list[Node]]:
     """The stack operation of a node, and its operand nodes, in order."""
     if isinstance(node, str):
         return [_push(float(node))], []
@@ -217,18 +220,42 @@ def _step_of(node: Node) -> tuple[list[Step], list[Node]]:
     if node.data == "binary":
         left, sign, right = node.children
         name = str(sign).lower()
-        return [_combine(OPERATORS[name], name, column_of_node(sign))], [left, right]
-    return _function_step(node)
+        step = _combine(OPERATORS[name], name, column_of_node(sign))
+        return [step, *([_bracketed(name, column_of_node(sign))] if _is_ambiguous(node) else [])], [left, right]
+    if node.data == "bracketed":
+        return [], [node.children[0]]
+    return _function_step(node, rounding)
 
 
-def _function_step(node: Tree[Token]) -> tuple[list[Step], list[Node]]:
+def _function_step(node: Tree[Token], rounding: str) -> tuple[list[Step], list[Node]]:
     name, *operands = node.children
     assert isinstance(name, str)  # in the grammar a function starts with its name
     if name.type == "ATAN":
         return [_combine(arc_tangent, "atan", column_of_node(node))], operands
     if name.type == "EXISTS":
         return [_exists(target_of(operands[0]))], []
-    return [_apply(FUNCTIONS[name.lower()], name.lower(), node)], operands
+    function = name.lower()
+    return [_apply(FUNCTIONS[function], rounding if function == "round" else function, node)], operands
+
+
+def _is_ambiguous(node: Tree[Token]) -> bool:
+    """Whether AND, OR or XOR has an operand that Fanuc's priorities divide: AND binds as ``*``, the others as ``+``."""
+    left, sign, right = node.children
+    if not isinstance(sign, str) or sign.type != "LOGIC":
+        return False
+    inner = [child.children[1] for child in (left, right) if not isinstance(child, str) and child.data == "binary"]
+    return any(
+        isinstance(other, str) and (other.type != "LOGIC" or (sign.lower() == "and" and other.lower() != "and"))
+        for other in inner
+    )
+
+
+def _bracketed(name: str, column: int) -> Step:
+    def check(_: list[float], parameters: Parameters) -> None:
+        if parameters.needs_brackets:
+            raise ExecutionFault("G305", f"{name} beside another operator, without brackets", column)
+
+    return check
 
 
 def _push(number: float) -> Step:

@@ -10,7 +10,7 @@ variables]. The initial values of #500 to #999 are unknown: reading one before i
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import ClassVar
 
 from pkm_post.reading.gcode.expressions import FUNCTIONS, arc_tangent
@@ -37,6 +37,20 @@ def _whole(value: float) -> int:
     return round(value)
 
 
+def _unrounded(value: float) -> float:
+    if value != round(value):
+        raise ExecutionFault("G305", f"round of {value:.10g} in an argument of a macro")
+    return value
+
+
+def _remainder(left: float, right: float) -> float:
+    if left != round(left) or right != round(right):
+        raise ExecutionFault("G305", f"{left:.10g} mod {right:.10g}")
+    if right == 0:
+        raise ExecutionFault("G304", f"{left:.10g} mod {right:.10g}")
+    return math.fmod(left, right)
+
+
 def _positive(degrees: float) -> float:
     return degrees + _FULL_TURN if degrees < 0 else degrees
 
@@ -46,6 +60,9 @@ class MacroVariables(Parameters):
 
     functions: ClassVar[Mapping[str, Callable[..., float]]] = {
         "fix": math.trunc,
+        "round in a word": lambda value: value,
+        "round in an argument": _unrounded,
+        "mod": _remainder,
         "fup": lambda value: math.copysign(math.ceil(abs(value)), value),
         "and": lambda left, right: _whole(left) & _whole(right),
         "or": lambda left, right: _whole(left) | _whole(right),
@@ -56,10 +73,13 @@ class MacroVariables(Parameters):
     """FIX truncates and FUP rounds away from 0; AND, OR and XOR are bitwise, which is the same for conditions; ATAN
     and ASIN are from 0 to 360 degrees [Fanuc, custom macro, arithmetic; parameter 6004#0 at 0]."""
 
+    needs_brackets: ClassVar[bool] = True
+    """AND binds as ``*`` and OR and XOR as ``+`` [Fanuc, custom macro, priority of operations], which few expect."""
+
     def __init__(self) -> None:
         super().__init__()
         self._common: dict[int, float] = {}
-        self._local: list[dict[int, float]] = [{}]
+        self._local: list[list[float]] = [[_VACANT] * LOCAL]
         self._calls: list[bool] = []
         """For each call, whether it started its own level."""
 
@@ -77,7 +97,7 @@ class MacroVariables(Parameters):
         if isinstance(name, str):
             raise ExecutionFault("G302", f"#<{name}>")
         if name <= LOCAL:
-            return self._local[-1].get(name, _VACANT)
+            return self._local[-1][name - 1] if name else _VACANT
         if name in self._common or name in _CLEARED:
             return self._common.get(name, _VACANT)
         if name in _KEPT:
@@ -104,7 +124,7 @@ class MacroVariables(Parameters):
         if isinstance(name, str):
             raise ExecutionFault("G302", f"#<{name}>")
         if 1 <= name <= LOCAL:
-            self._local[-1][name] = value
+            self._local[-1][name - 1] = value
         elif name in _CLEARED or name in _KEPT:
             self._common[name] = value
         elif name == _ALARM:
@@ -116,15 +136,17 @@ class MacroVariables(Parameters):
         """Whether a variable has a value."""
         return self.value(name) == self.value(name)
 
-    def enter(self, arguments: Sequence[float] | None) -> None:
+    def enter(self, arguments: list[float] | None) -> None:
         """Enter a program.
 
         Args:
             arguments: values of #1 and up, NaN where vacant; None if it shares them with its caller, as after M98.
+                Assignments change them: a further pass of the call has the values that this one leaves.
         """
         self._calls.append(arguments is not None)
         if arguments is not None:
-            self._local.append(dict(enumerate(arguments, start=1)))
+            arguments.extend([_VACANT] * (LOCAL - len(arguments)))
+            self._local.append(arguments)
 
     def leave(self, returned: float | None) -> None:
         """Leave a program; macros return nothing."""

@@ -9,7 +9,7 @@ knows are refused.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
@@ -102,6 +102,8 @@ class Parameters:
 
     functions: ClassVar[Mapping[str, Callable[..., float]]] = {}
     """Functions and operators that differ from RS274NGC."""
+    needs_brackets: ClassVar[bool] = False
+    """Whether operands of AND, OR and XOR that are computed by other operators are refused without brackets."""
 
     def __init__(self) -> None:
         self.where: Callable[[], SystemVariables] | None = None
@@ -156,7 +158,7 @@ class Parameters:
             raise ExecutionFault("G303", f"#<{name}>")
         return isinstance(name, int) or name in _NAMES_OF_THE_MACHINE or name in self._named(name)
 
-    def enter(self, arguments: Sequence[float] | None) -> None:
+    def enter(self, arguments: list[float] | None) -> None:
         """Enter a subprogram.
 
         Args:

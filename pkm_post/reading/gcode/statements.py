@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 _CODE_TOLERANCE = 1e-3
 """Tolerance for accepting a value as a code, in units of its smallest step."""
+_WHOLE = frozenset("DGHLMNOPST")
+"""Words of whole numbers, in which ROUND rounds to one; in others Fanuc controls round to the least increment."""
 
 
 @dataclass
@@ -150,12 +152,15 @@ def statement_of(tree: Tree[Token], block_delete: bool = False) -> Statement:
 
 def _macro_call_of(tree: Tree[Token]) -> MacroCall:
     words = [child for child in tree.children if not isinstance(child, str) and child.data == "word"]
-    return MacroCall(tuple((str(word.children[0]).upper(), expression_of(word.children[1])) for word in words))
+    rounding = "round in an argument"
+    return MacroCall(
+        tuple((str(word.children[0]).upper(), expression_of(word.children[1], rounding)) for word in words)
+    )
 
 
 def _add_word(words: WordBlock, word: Tree[Token]) -> None:
     name = "".join(str(word.children[0]).split()).upper()
-    value = expression_of(word.children[1])
+    value = expression_of(word.children[1], "round" if name in _WHOLE else "round in a word")
     if name == "G":
         words.g.append(value)
     elif name == "M":

@@ -66,7 +66,10 @@ def test_arguments(words, expected):
         # levels: a macro has its own locals, M98 shares them, common ones are everybody's
         ("#1=5.\n#100=6.\nG65 P9 A7.\nZ#1\nM30\nO9\nZ#1\nZ#100\n#1=8.\nM99\n", [7.0, 6.0, 5.0]),
         ("#1=5.\nM98 P9\nZ#1\nM30\nO9\n#1=#1+1.\nM99\n", [6.0]),
-        ("G65 P9 L3 A2.\nM30\nO9\nZ#1\n#1=#1+1.\nM99\n", [2.0, 2.0, 2.0]),
+        # a further pass has the values that the one before left [Haas, L of G65; Fanuc, G66, limitations]
+        ("G65 P9 L3 A2.\nM30\nO9\nZ#1\n#1=#1+1.\nM99\n", [2.0, 3.0, 4.0]),
+        ("G66 P9 A2.\nX1.\nX2.\nG67\nG65 P9 A2.\nM30\nO9\nZ#1\n#1=#1+1.\nM99\n", [10.0, 2.0, 2.0, 3.0, 2.0]),
+        ("WHILE [#1 LT 2] DO1\n#1=#1+1\nG65 P9 A2.\nEND1\nM30\nO9\nZ#1\n#1=#1+1.\nM99\n", [2.0, 2.0]),
         ("G65 P9 L0 A2.\nZ1.\nM30\nO9\nZ#1\nM99\n", [1.0]),
         ("G65 P8 A1.\nM30\nO8\nG65 P9 A[#1+1]\nZ#1\nM99\nO9\nZ#1\nM99\n", [2.0, 1.0]),
         # vacant variables
@@ -77,6 +80,12 @@ def test_arguments(words, expected):
         ("Z[FIX[-1.5]]\nZ[FUP[-1.5]]\nZ[FUP[1.2]]\nM30\n", [-1.0, -2.0, 2.0]),
         ("Z[6 AND 3]\nZ[6 OR 3]\nZ[6 XOR 3]\nM30\n", [2.0, 7.0, 5.0]),
         ("Z[ATAN[-1]/[1]]\nZ[ASIN[-0.5]]\nM30\n", [315.0, 330.0]),
+        ("Z[-7 MOD 3]\nZ[7 MOD -3]\nM30\n", [-1.0, 1.0]),  # the sign of the first [Fanuc, 30i, arithmetic]
+        ("Z[6 AND [3+1]]\nZ[[1 EQ 1] AND [2 GT 1]]\nZ[4 AND 6 OR 1 OR 2]\nM30\n", [4.0, 1.0, 7.0]),
+        # ROUND in a word keeps the decimals that the control can go to [Fanuc, ROUND; Haas]
+        ("#1=1.2345\n#2=2.3456\nG91 Z-#1\nZ-#2\nG90 Z[10.-ROUND[#1]-ROUND[#2]]\nM30\n", [8.7655, 6.4199, 6.4199]),
+        ("#1=1.6\n#2=ROUND[#1]\nZ#2\nZ#[ROUND[#1]]\nIF [ROUND[#1] EQ 2] THEN #3=5.\nZ#3\nM30\n", [2.0, 2.0, 5.0]),
+        ("#1=1.6\nG65 P9 A[ROUND[2.]]\nM30\nO9\nZ#1\nM99\n", [2.0]),
         # jumps
         ("M98 P9\nZ1.\nN5 Z2.\nM30\nO9\nM99 P5\n", [2.0]),
         ("#1=#1+1.\nZ#1\nN7\nIF [#1 GT 2.] GOTO #2\n#1=#1+1.\nZ#1\n#2=9\nM99 P7\nN9 Z0.\nM30\n", [1.0, 2.0, 3.0, 0.0]),
@@ -139,6 +148,12 @@ def test_linuxcnc_reads_the_place_of_the_tool():
         ("Z#<depth>\nM30\n", [("G302", 1)]),
         ("Z-#1\nM30\n", [("G301", 1)]),
         ("Z[1.5 AND 1]\nM30\n", [("G305", 1)]),
+        ("Z[6 AND 3+1]\nM30\n", [("G305", 1)]),
+        ("Z[4 OR 6 AND 1]\nM30\n", [("G305", 1)]),
+        ("IF [#1 EQ 1 AND #2 EQ 2] GOTO 5\nN5 M30\n", [("G305", 1)]),
+        ("Z[7.6 MOD 3]\nM30\n", [("G305", 1)]),
+        ("Z[7 MOD 0]\nM30\n", [("G304", 1)]),
+        ("G65 P9 A[ROUND[1.2]]\nM30\nO9\nM99\n", [("G305", 1)]),
         ("G43 H1\nZ#5043\nM30\n", [("G303", 2)]),
         ("Z#5021\nM30\n", [("G303", 1)]),
         ("IF [#1 EQ #0] THEN #3000=1 (NO DEPTH)\nM30\n", [("G319", 1)]),
