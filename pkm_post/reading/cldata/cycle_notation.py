@@ -10,6 +10,7 @@ point: depth is positive downwards, all others upwards.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
@@ -46,8 +47,11 @@ class Cycle:
         to_initial: the tool returns to its height before the first hole instead, if above the clearance.
         step: maximum depth of one peck; 0 for none.
         first_step: depth of the first peck.
-        dwell: at the bottom, s.
-        feed: mm/s.
+        dwell: at the bottom, s; infinite for turns of a spindle at rest.
+        feed: mm/s, NaN if there is none.
+        dwell_turns: turns of the spindle to dwell, 0 for a dwell in s.
+        own_feed: mm/s, or mm per turn; NaN if the feed is that of FEDRAT.
+        per_turn: whether that is per turn.
     """
 
     kind: CycleKind
@@ -58,8 +62,11 @@ class Cycle:
     to_initial: bool
     step: float
     first_step: float
-    dwell: float
-    feed: float
+    dwell: float = 0.0
+    feed: float = math.nan
+    dwell_turns: float = 0.0
+    own_feed: float = math.nan
+    per_turn: bool = False
 
 
 AUTO = "AUTO"

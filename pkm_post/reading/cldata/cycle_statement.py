@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NoReturn
 
 from pkm_post.reading.cldata.cycle_notation import (
@@ -58,7 +58,7 @@ def cycle(state: ReaderState, row: int, statement: Statement) -> None:
     if word == "OFF":
         state.cycles.append((row, None))
     elif word == "ON" and state.cycle is not None:
-        state.cycles.append((row, state.cycle))
+        state.cycles.append((row, _at_feed_and_speed(state, state.cycle)))
     elif word in _RETURNS and len(statement.items) == 1 and notation_of_dialect(state.dialect.name) in (None, CAMWORKS):
         state.cycle_return = word
     else:
@@ -68,6 +68,24 @@ def cycle(state: ReaderState, row: int, statement: Statement) -> None:
             state.cycle_interpretations.setdefault(interpretation, []).append(row)
         except _CycleError as fault:
             state.report(fault.code, row, fault.found)
+
+
+def cycle_goes_on(state: ReaderState, row: int) -> None:
+    """A cycle in force goes on with the feed and the spindle speed that a statement has set."""
+    if state.cycle is not None and state.cycles[-1][1] is not None:
+        state.cycles.append((row, _at_feed_and_speed(state, state.cycle)))
+
+
+def _at_feed_and_speed(state: ReaderState, cycle: Cycle) -> Cycle:
+    """The cycle with its feed and dwell at the present FEDRAT and spindle speed."""
+    turns_per_second = state.spindle_speed / 60 if state.spindle_speed > 0 else math.nan
+    feed = cycle.own_feed * (turns_per_second if cycle.per_turn else 1.0)
+    if math.isnan(cycle.own_feed) and state.feed is not None and not state.feed.inverse:
+        feed = state.feed.value
+    if not cycle.dwell_turns:
+        return replace(cycle, feed=feed)
+    dwell = math.inf if math.isnan(turns_per_second) else cycle.dwell_turns / turns_per_second
+    return replace(cycle, feed=feed, dwell=dwell)
 
 
 def cycle_descriptions(state: ReaderState) -> list[str]:
@@ -92,7 +110,7 @@ def _interpret(state: ReaderState, statement: Statement) -> tuple[Cycle, str]:
     if "diameter" in items.values:
         items.values["depth"] = _countersink_depth(state, items) * notation.down
     _check_signs(items)
-    cycle = _cycle(state, kinds[kind], items)
+    cycle = _at_feed_and_speed(state, _cycle(state, kinds[kind], items))
     fault = _fault_of(cycle, notation)
     if fault:
         raise _CycleError("L412", f"CYCLE/{kind}: {fault}")
@@ -157,6 +175,7 @@ def _cycle(state: ReaderState, kind: CycleKind, items: _CycleItems) -> Cycle:
     returns = "return" in values and state.cycle_return != "CLEAR"
     before = values["return"] == items.notation.initial if returns else state.cycle_return == "INIT"
     pecks = kind.pecks != "none"
+    own_feed, per_turn = _own_feed(state, items.feed)
     return Cycle(
         kind=kind,
         depth=values["depth"] * scale,
@@ -166,27 +185,28 @@ def _cycle(state: ReaderState, kind: CycleKind, items: _CycleItems) -> Cycle:
         to_initial=items.to_initial or before,
         step=values.get("step", math.nan) * scale if pecks else 0.0,
         first_step=values.get("first step", 0.0) * scale if pecks else 0.0,
-        dwell=_dwell(state, values),
-        feed=_feed(state, items.feed),
+        dwell=values.get("dwell", 0.0),
+        dwell_turns=values.get("turns", 0.0),
+        own_feed=own_feed,
+        per_turn=per_turn,
     )
 
 
-def _dwell(state: ReaderState, values: Mapping[str, float]) -> float:
-    """The dwell at the bottom in s; infinite for revolutions of a stopped spindle."""
-    turns = values.get("turns", 0.0)
-    if not turns:
-        return values.get("dwell", 0.0)
-    return turns * 60 / state.spindle_speed if state.spindle_speed > 0 else math.inf
+def _own_feed(state: ReaderState, given: tuple[str, float] | None) -> tuple[float, bool]:
+    """The feed that a cycle states, mm/s or mm per turn, and which; the feed of other moves is unchanged.
 
-
-def _feed(state: ReaderState, given: tuple[str, float] | None) -> float:
-    """The feed of the cycle in mm/s, NaN if absent; the feed of other moves is unchanged."""
+    Raises:
+        _CycleError: it is an inverse time, or not above zero.
+    """
     if given is None:
-        return math.nan if state.feed is None or state.feed.inverse else state.feed.value
-    per_turn = state.feed_per_turn
+        return math.nan, False
+    of_moves = state.feed_per_turn
     feed = feed_of(state, given[0] or state.feed_word, given[1])
-    state.feed_per_turn = per_turn
-    return math.nan if feed.inverse else feed.value
+    value = state.feed_per_turn if feed.per_turn else feed.value
+    state.feed_per_turn = of_moves
+    if feed.inverse or not value > 0:
+        raise _CycleError("L412", f"a feed of {given[1]:g} {given[0]}, expected one in mm/min or mm per turn")
+    return value, feed.per_turn
 
 
 def _fault_of(cycle: Cycle, notation: CycleNotation) -> str:

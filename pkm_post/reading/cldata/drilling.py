@@ -117,7 +117,23 @@ def drilling_moves(state: ReaderState, points: Points, arcs: Arcs) -> HoleMoves:
     series = np.cumsum(~on)[active]
     cycles = [cycle for _, cycle in state.cycles if cycle is not None]
     holes = _holes(points, np.flatnonzero(drilling), (np.cumsum(on) - 1)[active], series, cycles)
-    return _hole_moves(holes.only(_reachable(state, points, holes)), [_strokes_of(cycle) for cycle in cycles])
+    executable = _executable(state, holes.cycle, cycles)[holes.cycle] & _reachable(state, points, holes)
+    return _hole_moves(holes.only(executable), [_strokes_of(cycle) for cycle in cycles])
+
+
+def _executable(state: ReaderState, used: Array, cycles: list[Cycle]) -> Array:
+    """Mask of the cycles with a finite dwell, (C,); report what takes it, or the feed, from those that holes use."""
+    rows = [row for row, cycle in state.cycles if cycle is not None]
+    without_feed = np.array([not cycle.feed > 0 for cycle in cycles], dtype=np.bool_)
+    endless = np.array([not math.isfinite(cycle.dwell) for cycle in cycles], dtype=np.bool_)
+    faults = (
+        ("the cycle in force has no feed in mm/min after it", without_feed),
+        ("the cycle in force dwells for turns of a spindle at rest after it", endless),
+    )
+    for found, wrong in faults:
+        for index in np.intersect1d(used, np.flatnonzero(wrong)).tolist():
+            state.report("L412", rows[index], found)
+    return ~endless
 
 
 def _holes(points: Points, point: Array, cycle: Array, series: Array, cycles: list[Cycle]) -> _Holes:

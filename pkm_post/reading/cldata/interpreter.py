@@ -31,7 +31,7 @@ from pkm_post.reading.cldata.arc_statements import (
 from pkm_post.reading.cldata.check_surface import autops, indirp, indirv, psis, tlon
 from pkm_post.reading.cldata.copies import MATRIX
 from pkm_post.reading.cldata.cutcom import cutcom, geometry_type, points_comment
-from pkm_post.reading.cldata.cycle_statement import cycle
+from pkm_post.reading.cldata.cycle_statement import cycle, cycle_goes_on
 from pkm_post.reading.cldata.feeds import coolnt, delay, fedrat, rapid, report_unknown_speeds, spindl, stop
 from pkm_post.reading.cldata.nurbs import movnrb
 from pkm_post.reading.cldata.points import from_or_godlta, goto, multax, numbers_only, tlaxis
@@ -116,6 +116,9 @@ HANDLERS: dict[str, _Handler] = {
 }  # fmt: skip
 """Words with a handler."""
 
+_PACE = frozenset({"FEDRAT", "SPINDL", "CUTTER", "TLDATA"})
+"""Words that may change the feed, or the spindle speed, which a speed of the surface takes from the cutter."""
+
 IGNORED = frozenset({
     "PARTNO", "PPRINT", "TPRINT", "LETTER", "DISPLY", "REMARK", "MACHIN", "PPWORD", "PAINT", "END-OF-PATH", "SETUP",
     "SELECT", "SWITCH", "END", "REWIND", "LINTOL", "INTOL", "OUTTOL", "TOLER", "SET",
@@ -154,6 +157,8 @@ def interpret(state: ReaderState, bulk: Array) -> Array:
         handler = _handler(state, word)
         if handler is not None:
             handler(state, row, statements.statement(row))
+            if word in _PACE:
+                cycle_goes_on(state, row)
         elif word in UNSUPPORTED or _known_parts(word):
             state.report("L401", row, word)
         elif word not in IGNORED:

@@ -54,6 +54,8 @@ def build_program(
     _convert_inverse_time(state, points, rows)
     point = rows.point
     sides = [(change.row, change.offset, change.plane, change.smaller_tool) for change in offsets]
+    side_offset = _column(sides, points.row, 1, 0.0)
+    _report_offset_holes(state, points.row[holes.point[side_offset[holes.point] != 0]])
     lines = state.statements.lines.number[state.statements.index[points.row]]
     return Program(
         kind=rows.kind,
@@ -68,13 +70,20 @@ def build_program(
         operations=tuple(state.operations),
         tools=dict(sorted(state.tools.items())),
         source=source,
-        side_offset=_column(sides, points.row, 1, 0.0)[point],
+        side_offset=side_offset[point],
         smaller_tool=_column(sides, points.row, 3, 0)[point].astype(np.bool_),
         plane=_column(sides, points.row, 2, 2)[point].astype(np.uint8),
         normal=points.normal[point],
         contact=points.contact[point],
         reading=tuple(reading),
     )
+
+
+def _report_offset_holes(state: ReaderState, row: Array) -> None:
+    """Report the statements, (M,), of holes that CUTCOM would move aside: no cycle runs under it [NCCS PostWorks]."""
+    if len(row):
+        more = f", and {len(row) - 1} more" if len(row) > 1 else ""
+        state.report("L412", int(row[0]), f"a hole under CUTCOM{more}")
 
 
 def _column(changes: Sequence[tuple[float, ...]], row: Array, item: int, first: float) -> Array:

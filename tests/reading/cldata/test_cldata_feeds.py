@@ -196,3 +196,50 @@ def test_several_words_of_a_motion_are_refused_by_name(statement):
     assert [(fault.code, fault.place.line, fault.found) for fault in errors(diagnostics)] == [
         ("L401", 6, statement.partition("/")[0])
     ]
+
+
+def drilled(dialect, cycle, between):
+    """Feeds of the strokes down, mm/s, and dwells, of two holes with statements between them."""
+    text = f"{HEAD}SPINDL/1200,CLW\nGOTO/0,0,30\n{cycle}\nGOTO/7,0,0\n{between}\nGOTO/9,0,0\nCYCLE/OFF\n"
+    found = program(text, dialect=dialect)
+    down = (found.kind == Kind.LINE) & (np.abs(found.position[:, 2] + 5) < 1e-9)
+    return found.feed[down].tolist(), [event.value for event in found.events if event.kind is EventKind.DWELL]
+
+
+@pytest.mark.parametrize(
+    "cycle, between, feeds",
+    [  # [NCCS PostWorks] cycle.f: PFEED is set by a feed of CYCLE alone, and keeps its mode, per minute or per turn
+        ("DEPTH,5,CLEAR,2", "FEDRAT/60,MMPM", [10, 1]),
+        ("DEPTH,5,CLEAR,2", "CYCLE/OFF\nFEDRAT/60,MMPM\nRAPID\nGOTO/8,0,9\nCYCLE/ON", [10, 1]),
+        ("DEPTH,5,CLEAR,2", "FEDRAT/.1,MMPR\nSPINDL/2400,CLW", [10, 4]),
+        ("DEPTH,5,CLEAR,2,MMPM,120", "SPINDL/2400,CLW", [2, 2]),
+        ("DEPTH,5,CLEAR,2,MMPR,.1", "SPINDL/2400,CLW", [2, 4]),
+        ("DEPTH,5,CLEAR,2,MMPR,.1", "CYCLE/OFF\nSPINDL/600,CLW\nRAPID\nGOTO/8,0,9\nCYCLE/ON", [2, 1]),
+        ("DEPTH,5,CLEAR,2,IPR,.01", "UNITS/MM\nSPINDL/600,CLW", [5.08, 2.54]),
+    ],
+)
+def test_a_cycle_goes_on_with_the_feed_and_speed_at_its_holes(cycle, between, feeds):
+    assert drilled("creo", f"CYCLE/DRILL,{cycle}", between)[0] == pytest.approx(feeds)
+
+
+def test_a_dwell_in_turns_goes_on_with_the_speed_at_its_holes():
+    cycle = "CYCLE/DRILL,RAPTO,2,FEDTO,-5,DWELL,REV,6"
+    assert drilled("nx", cycle, "SPINDL/600,CLW")[1] == pytest.approx([0.3, 0.6])
+
+
+@pytest.mark.parametrize("between, line", [("FEDRAT/INVERS", 10), ("COOLNT/OFF\nFEDRAT/2,INVERS", 11)])
+def test_a_cycle_whose_feed_ends_is_refused_where_a_hole_follows(between, line):
+    text = f"{HEAD}GOTO/0,0,30\nSPINDL/1200,CLW\nCYCLE/DRILL,DEPTH,5,CLEAR,2\nGOTO/7,0,0\n{between}\n"
+    assert codes(f"{text}GOTO/9,0,0\nCYCLE/OFF\n", dialect="creo") == [("L412", line)]
+    program(f"{text}CYCLE/OFF\nRAPID\nGOTO/9,0,30\n", dialect="creo")
+
+
+def test_holes_that_cutcom_would_move_aside_are_refused():
+    """[NCCS PostWorks] cycle.f: CYCCUT, a cycle with CUTCOM on."""
+    holes = "GOTO/9,0,0\nCYCLE/DRILL,DEPTH,5,CLEAR,2\nGOTO/20,0,0\nGOTO/20,9,0\nCYCLE/OFF\n"
+    text = f"{HEAD}CUTCOM/LEFT\n{holes}CUTCOM/OFF\nGOTO/30,0,0\n"
+    assert codes(text, dialect="creo", contour_data="contour") == [("L412", 9)]
+    assert codes(text, dialect="creo", contour_data="centre", wear={1: 0.1}) == [("L412", 9)]
+    assert not program(text, dialect="creo", contour_data="centre").side_offset.any()
+    after = text.replace("CUTCOM/OFF\n", "").replace("CYCLE/DRILL", "CUTCOM/OFF\nCYCLE/DRILL")
+    assert program(after, dialect="creo", contour_data="contour").side_offset.any()
