@@ -197,6 +197,8 @@ class _ProgramBuilder:
         """Append events that bring the machine to the requested state."""
         for kind, value in wanted.items():
             if self._state.get(kind) != value:
+                if kind is EventKind.COOLANT and value and self._state.get(kind):  # M7 leaves the flood of M8 on
+                    self._append_event(Event(self.rows, kind, 0.0))
                 self._append_event(Event(self.rows, kind, value))
 
     def _append_event(self, event: Event) -> None:

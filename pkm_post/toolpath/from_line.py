@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """From line: start a program at a line of its source, after an abort or a loss of power.
 
-The rows before the line are skipped. Their modal state is restored: the last spindle speed with its wait, the last
-coolant, the tool and, on request, the M codes of the machine. The approach starts where the whole program starts; it
-passes the tool-change pose, if the machine file states one, crosses above everything that the program reaches above the
-line, and comes down along the tool axis, at the feed of the line if that cuts. Spindle and coolant are switched on
+The rows before the line are skipped. Their modal state is restored: the last spindle speed with its wait, the coolants
+that are on, the tool and, on request, the M codes of the machine. The approach starts where the whole program starts;
+it passes the tool-change pose, if the machine file states one, crosses above everything that the program reaches above
+the line, and comes down along the tool axis, at the feed of the line if that cuts. Spindle and coolant are switched on
 before that last move. As a part of the trajectory, the approach is planned, checked for reach and collisions and
 certified like any move.
 
@@ -13,6 +13,7 @@ Input: a trajectory on its machine. Output: the trajectory from the line on. Uni
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -79,21 +80,35 @@ def row_of_line(trajectory: Trajectory, start: StartLine) -> int | None:
 
 
 def modal_events(trajectory: Trajectory, row: int, repeat_codes: bool = False) -> tuple[Event, ...]:
-    """The modal state before a row: the last event of each kind, in the order of the program.
+    """The modal state before a row: the events in force, in the order of the program.
 
     Args:
         trajectory: the program.
         row: the first row to run.
         repeat_codes: whether to include machine-specific M codes, each once at its last place.
     """
-    last: dict[tuple[EventKind, float], Event] = {}
-    for each in trajectory.events:
-        is_code = repeat_codes and each.kind is EventKind.FUNCTION
-        if each.row <= row and (each.kind in _MODAL or is_code):
-            key = each.kind, each.value if is_code else 0.0
-            last.pop(key, None)
-            last[key] = each
-    return tuple(last.values())
+    kinds = (*_MODAL, EventKind.FUNCTION) if repeat_codes else _MODAL
+    return events_in_force([each for each in _before(trajectory, row) if each.kind in kinds])
+
+
+def events_in_force(events: Iterable[Event]) -> tuple[Event, ...]:
+    """The events that no later one replaces, in order.
+
+    Flood and mist do not replace each other: M7 and M8 are outputs of their own, and M9 ends both [LinuxCNC].
+    """
+    last: list[Event] = []
+    for each in events:
+        last = [earlier for earlier in last if not _replaces(each, earlier)]
+        last.append(each)
+    return tuple(last)
+
+
+def _replaces(event: Event, earlier: Event) -> bool:
+    if event.kind is not earlier.kind:
+        return False
+    is_own = event.kind in (EventKind.FUNCTION, EventKind.COOLANT)
+    ends_all = event.kind is EventKind.COOLANT and 0.0 in (event.value, earlier.value)
+    return not is_own or ends_all or event.value == earlier.value
 
 
 def started_at_line(trajectory: Trajectory, start: StartLine, machine: Machine) -> tuple[Trajectory | None, Findings]:

@@ -17,6 +17,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, angle_between
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Phrase, Place, Program
+from pkm_post.toolpath.from_line import events_in_force
 
 HALF_TURN = np.pi - 1e-6
 """rad: a tool axis that turns by this much in one row defines no direction of rotation."""
@@ -80,11 +81,11 @@ def _events(program: Program, begin: int, end: int) -> tuple[Event, ...]:
 
     Events between the last row of a side and the first of the next prepare the next one.
     """
-    before = {each.kind: each for each in program.events if each.row < begin and each.kind in _MODAL}
+    before = events_in_force(each for each in program.events if each.row < begin and each.kind in _MODAL)
     is_last = end == len(program)
     last = len(program) if is_last else end - 1
     own = [each for each in program.events if begin <= each.row - _ends_thread(each) <= last]
-    started = (replace(before[kind], row=begin) for kind in _MODAL if kind in before)
+    started = (replace(each, row=begin) for each in sorted(before, key=lambda each: _MODAL.index(each.kind)))
     found = [*started, *own]
     if not is_last:
         state = {each.kind: each.value for each in found}

@@ -117,6 +117,18 @@ def test_spindle_and_coolant_stop_for_a_tool_change(job):
     assert {number: tool.length for number, tool in program.tools.items()} == {1: 120, 7: 107}
 
 
+def test_flood_stops_where_an_operation_wants_mist(job):
+    """M7 does not end M8 [LinuxCNC, M7, M8, M9]; CAM's own posts write M9 after each operation with coolant."""
+    first, second = add_operation(job, label="First"), add_operation(job, label="Second")
+    first.CoolantMode, second.CoolantMode = "Flood", "Mist"
+    assert [each for each in events(program_of(job)) if each[1] is COOLANT] == [
+        (0, COOLANT, 1),
+        (4, COOLANT, 0),
+        (4, COOLANT, 2),
+        (8, COOLANT, 0),
+    ]
+
+
 def test_same_tool_with_another_speed_is_not_changed(job):
     add_operation(job, label="First")
     slow = add_tool_controller(job, 1)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Sides of a part that is turned over are posted one by one, each as if a file had it alone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -68,6 +70,19 @@ def test_spindle_and_coolant_are_on_in_both_sides_and_off_behind_each():
         assert switched[EventKind.SPINDLE] == [(0, 3000), (len(side), 0)]
         assert switched[EventKind.COOLANT] == [(0, 1), (len(side), 0)]
     np.testing.assert_array_equal(np.vstack([side.position for side in sides]), program.position)
+
+
+def test_flood_and_mist_that_are_both_on_are_so_on_both_sides():
+    """As on LinuxCNC [M7, M8, M9], where one does not end the other."""
+    program, faults = read_content(BOTH.encode(), "part.cls", AS_WRITTEN)
+    assert not faults and program is not None
+    mist = next(each for each in program.events if each.kind is EventKind.COOLANT)
+    program = replace(program, events=(replace(mist, value=2.0), *program.events))
+    for number in (1, 2):
+        side, _ = with_side(program, number)
+        assert side is not None
+        switched = [(each.row, each.value) for each in side.events if each.kind is EventKind.COOLANT]
+        assert switched == [(0, 2), (0, 1), (len(side), 0)]
 
 
 @pytest.mark.parametrize("side", [3, 100])

@@ -95,6 +95,21 @@ def test_spindle_and_coolant_are_on_above_the_line_and_stops_before_it_are_behin
     assert list(found.events[len(there) :]) == later
 
 
+@pytest.mark.parametrize(
+    ("switched", "wanted"),
+    [([1, 2], [1, 2]), ([2, 1], [2, 1]), ([1, 2, 1], [2, 1]), ([1, 2, 0], [0]), ([1, 2, 0, 2], [2]), ([0, 1], [1])],
+)
+def test_flood_and_mist_are_both_on_where_the_program_has_them_both_on(switched, wanted):
+    """M7 and M8 switch outputs of their own, and M9 both off [LinuxCNC 2.9, M codes: M7, M8, M9].
+
+    rs274 prints MIST_ON and FLOOD_ON for them, and MIST_OFF and FLOOD_OFF for M9.
+    """
+    events = tuple(Event(1, EventKind.COOLANT, float(value)) for value in switched)
+    whole = placed(program(STEPS, events=events))
+    found = begun(whole, int(whole.line[3]))
+    assert [each.value for each in found.events if each.kind is EventKind.COOLANT] == wanted
+
+
 @pytest.mark.parametrize("machine", [MACHINE, replace(MACHINE, tool_change=POSE)], ids=["in place", "at a pose"])
 def test_the_tool_of_the_line_is_put_in_before_the_way_to_it(machine):
     tools = {number: Tool(number, "", 6.0, 0.0, length) for number, length in ((1, 120.0), (2, 95.0))}
