@@ -17,7 +17,7 @@ from pkm_post.model import Array, map_rows, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import RIGID_TAP, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
-from pkm_post.reading.gcode.modal import Modal, changed, forward_fill
+from pkm_post.reading.gcode.modal import Modal, changed, forward_fill, is_cycle
 from pkm_post.reading.gcode.motions import Motions
 from pkm_post.reading.gcode.options import ReadOptions
 
@@ -114,7 +114,7 @@ def path_modes(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> dict[s
 
 
 def _tolerances(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> Array:
-    """Tolerance of each block, mm; 0 where the program gives none."""
+    """Tolerance of each block, mm; 0 where the program gives none, and in cycles, which LinuxCNC runs without it."""
     programmed = modal.programmed[Group.PATH]
     with_p = (programmed == _TOLERANCE) & blocks.has("P")
     if not with_p.any():
@@ -123,7 +123,8 @@ def _tolerances(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> Array
     valid = with_p & (word > 0) & ~_p_of_another_code(blocks, modal)
     faults.add_where("G417", with_p & ~valid, lambda row: (word_of(_TOLERANCE), " ", Word("P", word[row])))
     rows = np.flatnonzero(np.isin(programmed, (610, 611, _TOLERANCE)))
-    return forward_fill(rows, np.where(valid, modal.in_mm(word), 0.0)[rows], 0.0, len(blocks))
+    in_force = forward_fill(rows, np.where(valid, modal.in_mm(word), 0.0)[rows], 0.0, len(blocks))
+    return np.where(is_cycle(modal.active[Group.MOTION]), 0.0, in_force)
 
 
 def _p_of_another_code(blocks: Blocks, modal: Modal) -> Array:
