@@ -115,7 +115,10 @@ def test_blocks_with_more_than_plain_words_keep_their_tree(line, kind):
 )
 def test_operators_bind_as_in_rs274ngc(expression, tree):
     def written(branch):
-        return str(branch) if isinstance(branch, str) else f"({' '.join(written(child) for child in branch.children)})"
+        if isinstance(branch, str):
+            return str(branch)
+        inside = " ".join(written(child) for child in branch.children)
+        return inside if branch.data == "bracketed" else f"({inside})"
 
     (assignment,) = scanned(f"#1=[{expression}]").special[0].children
     assert written(assignment.children[1]) == tree
