@@ -8,9 +8,9 @@ from machines import example
 from programs import ON_PALLET, cone, program
 
 from pkm_post.model import Kind
-from pkm_post.model.certificate import Tolerances
-from pkm_post.planning.motion import tool_path
 from pkm_post.planning.speed_profile import stations
+from pkm_post.planning.tool_path import ToolPath
+from pkm_post.toolpath import Segments, compress
 from pkm_post.toolpath.place import place
 
 
@@ -48,8 +48,15 @@ def stations_of(name, limits, speed_share=1.0):
     trajectory, _ = place(
         dataclasses.replace(made, feed=np.where(made.kind == Kind.RAPID, np.nan, 200.0)), machine, ON_PALLET
     )
-    path = tool_path(dataclasses.replace(trajectory, exact_stop=_at_the_end(trajectory)), Tolerances(0.1, 0.01))
+    path = _path(dataclasses.replace(trajectory, exact_stop=_at_the_end(trajectory)))
     return machine, path, stations(path)
+
+
+def _path(trajectory):
+    """With curves and corners of tolerances of its own: the shortest times are those of this path."""
+    segments = Segments.of(trajectory)
+    smoothed = segments.smoothed(compress(trajectory, segments, np.full(len(trajectory), 0.06), 0.006))
+    return ToolPath.of(trajectory, 0.04, 0.004, smoothed)
 
 
 def _at_the_end(trajectory):
