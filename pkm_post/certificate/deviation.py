@@ -220,7 +220,8 @@ class FeedRuler:
         if not len(mixed):
             return found
         found = found.copy()
-        found[:, mixed] = self._slower(np.tile(rows[mixed], len(time)), time[:, mixed].ravel()).reshape(len(time), -1)
+        ceiling = self._ceiling_at(np.tile(rows[mixed], len(time)), time[:, mixed].ravel())
+        found[:, mixed] = ceiling.reshape(len(time), -1)
         return found
 
     def at_changes(self, rows: Array, time: Array, velocity: Array) -> tuple[Array, Array, Array]:
@@ -238,10 +239,10 @@ class FeedRuler:
         at = np.clip((when - time[0, which]) / step, 0.0, len(time) - 1.0)
         before = np.minimum(at.astype(np.int64), len(time) - 2)
         begin, end = velocity[:, before, which], velocity[:, before + 1, which]
-        lower = np.minimum(*(self._slower(rows[which], when + shift) for shift in (-_JUST, _JUST)))
+        lower = np.minimum(*(self._ceiling_at(rows[which], when + shift) for shift in (-_JUST, _JUST)))
         return which, length_of(*(begin + (at - before) * (end - begin))), lower
 
-    def _slower(self, row: Array, time: Array) -> Array:
+    def _ceiling_at(self, row: Array, time: Array) -> Array:
         """Highest allowed speeds at single times of intervals with several feeds, (S,) mm/s."""
         feed = np.minimum(_FEED_SHARE * self._fastest[row], _SLOWER_SHARE * self._highest(time, time))
         return np.asarray(feed + self._room[row])

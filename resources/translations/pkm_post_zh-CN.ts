@@ -1499,8 +1499,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>采用此分段时间时，程序不成立</translation>
     </message>
     <message>
-        <source>take 0 for --segment-time and SegMoveTime, which is no segmentation: then it holds; of the faults that follow, those of the motion in segments, a shorter time mends deviations and jerk, and more tolerance deviations</source>
-        <translation>为 --segment-time 和 SegMoveTime 取 0，即不分段，此时程序成立；以下是分段运动的错误：更短的时间可消除偏差和加加速度的错误，更宽的公差可消除偏差的错误</translation>
+        <source>take a shorter one for --segment-time and SegMoveTime against deviations and jerk, more tolerance against deviations, or 0, which is no segmentation; the faults that follow are those of the motion in segments</source>
+        <translation>针对偏差和加加速度，为 --segment-time 和 SegMoveTime 取更短的时间；针对偏差，放宽公差；或取 0，即不分段；以下是分段运动的错误</translation>
     </message>
     <message>
         <source>the command moves nothing</source>

@@ -53,8 +53,8 @@ RESULT_RULES: dict[str, Rule] = {
     ),
     "C116": error(
         "with this segment time the program does not hold",
-        "take 0 for --segment-time and SegMoveTime, which is no segmentation: then it holds; of the faults that follow,"
-        " those of the motion in segments, a shorter time mends deviations and jerk, and more tolerance deviations",
+        "take a shorter one for --segment-time and SegMoveTime against deviations and jerk, more tolerance against"
+        " deviations, or 0, which is no segmentation; the faults that follow are those of the motion in segments",
     ),
     # C2: manual moves at the controller
     "C201": error("the command moves nothing", "give a direction and a distance"),
