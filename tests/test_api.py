@@ -6,6 +6,7 @@ import inspect
 import math
 import runpy
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -69,6 +70,15 @@ def test_the_stages_give_the_program_that_post_gives(folder):
         assert _without_heading(path) == _without_heading(other), path.name
     certificate = pkm.certify("staged/part.pmc", machine)
     assert certificate.holds
+
+
+def test_a_document_outside_freecad_is_refused_with_what_to_do(folder, monkeypatch):
+    monkeypatch.delitem(sys.modules, "FreeCAD", raising=False)
+    monkeypatch.setattr("pkm_post.api.functions.find_spec", lambda name: None)
+    with pytest.raises(pkm.Refused) as refused:
+        pkm.post("part.FCStd")
+    assert [fault.code for fault in refused.value.diagnostics] == ["F143"]
+    assert "python3 -m pkm_post post" in str(refused.value)
 
 
 def _without_heading(path):

@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from pkm_post.api.inputs import NO_LENGTHS, Source, is_path, sound_lengths, sound_value, typed
 from pkm_post.machine import ReachReport, check_reach, placed_workpiece
-from pkm_post.model import Certificate, Machine, Program, Refused, Trajectory
+from pkm_post.model import Certificate, Diagnostic, Machine, Place, Program, Refused, Trajectory
 from pkm_post.options import Options
 from pkm_post.planning import Plan
 from pkm_post.planning import plan as planned
@@ -238,8 +240,8 @@ def post(
         The posted programs, one per job.
 
     Raises:
-        Refused: the input or the folder has errors, or memory runs out (F130). Jobs of a document that are already
-            posted remain; otherwise nothing is written.
+        Refused: the input or the folder has errors, a document is to be posted outside FreeCAD (F143), or memory runs
+            out (F130). Jobs of a document that are already posted remain; otherwise nothing is written.
         ValueError: the suffix of the file is unknown, a tool length is not above 0, or both options and arguments are
             given.
 
@@ -255,6 +257,8 @@ def post(
     with memory_guard(str(source) if is_path(source) else source.Label):
         if is_path(source) and Path(source).suffix.lower() != ".fcstd":
             return (post_file(Path(source), machine, out, reading=reading, **common),)
+        if is_path(source) and "FreeCAD" not in sys.modules and find_spec("FreeCAD") is None:
+            raise Refused([Diagnostic("F143", Place(str(source)), "this Python has none")])
         from pkm_post.freecad_app import post_job as jobs
 
         if is_path(source):

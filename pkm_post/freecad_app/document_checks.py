@@ -130,12 +130,13 @@ def _not_computed(operation: Any) -> str:
 
 def _empty(operation: Any) -> str:
     """A path that CAM computes has at least a comment; only one made from an inactive operation is entirely empty."""
-    return "" if operation.Path.Size or _has_inactive_base(operation) else "no command, not even a comment"
+    return "" if operation.Path.Size or has_inactive_base(operation) else "no command, not even a comment"
 
 
-def _has_inactive_base(operation: Any) -> bool:
+def has_inactive_base(operation: Any) -> bool:
+    """Whether an operation is made from one that is switched off."""
     return any(
-        getattr(below, "Active", True) is False or _has_inactive_base(below) for below in base_operations(operation)
+        getattr(below, "Active", True) is False or has_inactive_base(below) for below in base_operations(operation)
     )
 
 

@@ -23,7 +23,7 @@ from Path.Base.Util import opProperty, toolControllerForOp
 
 from pkm_post.freecad_app.commands import read_commands
 from pkm_post.freecad_app.document import document_name
-from pkm_post.freecad_app.document_checks import file_faults, state_faults
+from pkm_post.freecad_app.document_checks import file_faults, has_inactive_base, state_faults
 from pkm_post.freecad_app.fixtures import DEFAULT, ONE_PLACE, cutting_order, files_of_split_output, operation_name
 from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.tools import SPINDLE_SENSES, read_tools
@@ -139,6 +139,16 @@ def is_active(operation: Any) -> bool:
     return opProperty(operation, "Active") is not False
 
 
+def _acts(program: Program) -> bool:
+    """Whether a program cuts, or switches or waits for something."""
+    return bool(program.events or np.any(program.kind != Kind.RAPID))
+
+
+def _may_do_nothing(operation: Any) -> bool:
+    """Whether an operation without cuts is meant: Custom is as typed, and a copy of an inactive operation is empty."""
+    return hasattr(operation, "Gcode") or has_inactive_base(operation)
+
+
 def _foreign(job: Any, selection: Selection, place: Place) -> list[Diagnostic]:
     """Selected operations that are missing."""
     return [Diagnostic("J127", place, each.Label) for each in selection.foreign_operations(job)]
@@ -177,8 +187,10 @@ class _ProgramBuilder:
         program, placement_faults = transform(program, work_from_operation)
         if program is None:
             return [*faults, *placement_faults]
+        controller = toolControllerForOp(operation)
+        if controller is not None and not (_acts(program) or _may_do_nothing(operation)):
+            faults.append(Diagnostic("J141", Place(self.source, operation.Label), Phrase("only rapid moves")))
         if len(program):
-            controller = toolControllerForOp(operation)
             if controller is None:
                 return [*faults, Diagnostic("J112", Place(self.source, operation.Label), Phrase("none is set"))]
             self._switch_tool(controller, _COOLANT[opProperty(operation, "CoolantMode") or "None"])

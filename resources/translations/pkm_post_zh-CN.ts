@@ -1807,6 +1807,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>确认没有其他程序从文件夹中删除文件，然后重新后处理</translation>
     </message>
     <message>
+        <source>run the script in FreeCADCmd, or post with python3 -m pkm_post post, which starts it</source>
+        <translation>请在 FreeCADCmd 中运行该脚本，或用会启动它的 python3 -m pkm_post post 进行后处理</translation>
+    </message>
+    <message>
         <source>a character is not allowed here</source>
         <translation>此处不允许该字符</translation>
     </message>
@@ -2555,14 +2559,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>在 CAM 工作台中添加作业，或用 --job 指定作业</translation>
     </message>
     <message>
-        <source>the job has no active operation with a path</source>
-        <translation>作业中没有带轨迹的启用的操作</translation>
-    </message>
-    <message>
-        <source>activate an operation and recompute</source>
-        <translation>启用一个操作并重新计算</translation>
-    </message>
-    <message>
         <source>the command is unknown or not allowed here</source>
         <translation>该命令未知，或不允许用在此处</translation>
     </message>
@@ -2787,6 +2783,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>等待重新计算结束，然后再次后处理或检查</translation>
     </message>
     <message>
+        <source>see CAM&apos;s message in the Report view; correct its tool, geometry or depths, or deactivate it</source>
+        <translation>请查看报告视图中 CAM 的消息；更正其刀具、几何体或深度，或停用它</translation>
+    </message>
+    <message>
         <source>a strut would be too short</source>
         <translation>一条支链会过短</translation>
     </message>
@@ -2863,6 +2863,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>将其另存为 UTF-8 文本</translation>
     </message>
     <message>
+        <source>a FreeCAD document is read only inside FreeCAD</source>
+        <translation>FreeCAD 文档只能在 FreeCAD 中读取</translation>
+    </message>
+    <message>
         <source>write each code in a block of its own, with its words; @ and ^ without X and Y</source>
         <translation>每个代码及其字各写一个程序段；@ 和 ^ 不与 X、Y 同写</translation>
     </message>
@@ -2903,6 +2907,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>在其之前写 G94 和 F</translation>
     </message>
     <message>
+        <source>the job has no active operation that moves the tool</source>
+        <translation>作业中没有使刀具移动的启用的操作</translation>
+    </message>
+    <message>
+        <source>activate an operation, or mend one that CAM computed without a move, and recompute</source>
+        <translation>启用一个操作，或修正一个 CAM 计算后没有运动的操作，然后重新计算</translation>
+    </message>
+    <message>
         <source>give the second one its own with --origin NAME=X,Y,Z</source>
         <translation>用 --origin NAME=X,Y,Z 为第二个给出其自己的位置</translation>
     </message>
@@ -2929,6 +2941,18 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>deactivate operations, or take fixtures out of the job, to post a part of it</source>
         <translation>如只需后处理其中一部分，请停用部分操作，或从作业中移除部分夹具</translation>
+    </message>
+    <message>
+        <source>CAM computed an active operation without a cutting move</source>
+        <translation>CAM 计算出的一个启用的操作没有切削运动</translation>
+    </message>
+    <message>
+        <source>probing is not part of a program, which is computed before it runs</source>
+        <translation>程序在运行前已计算完成，不能包含探测</translation>
+    </message>
+    <message>
+        <source>deactivate the operation; pkm-post pmac measure probes between programs</source>
+        <translation>停用该操作；pkm-post pmac measure 可在程序之间进行探测</translation>
     </message>
     <message>
         <source>add it to the machine file, or pass --work-offset, or --origin for a further fixture of a CAM job</source>
@@ -4441,6 +4465,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>nothing to post</source>
         <translation>没有可后处理的内容</translation>
+    </message>
+    <message>
+        <source>only rapid moves</source>
+        <translation>只有快速运动</translation>
     </message>
     <message>
         <source>none is set</source>

@@ -4,13 +4,15 @@
 import FreeCAD as App
 import numpy as np
 import Path
+import Path.Op.Probe
 import pytest
 from cam_jobs import ARC, FIVE_AXIS, add_operation, add_tool_controller, moves
+from test_tools import stock_bit
 
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.symmetry import create_mirror
-from pkm_post.freecad_app.tools import set_gauge_length
-from pkm_post.model import EventKind
+from pkm_post.freecad_app.tools import preselected, set_gauge_length
+from pkm_post.model import EventKind, Kind
 
 SIX_DECIMALS = 1e-6
 TOOL, SPINDLE, COOLANT, DWELL, STOP = (
@@ -188,6 +190,37 @@ def test_job_with_nothing_but_inactive_operations(job):
     add_operation(job).Active = False
     job.Document.recompute()
     assert faults_of(job) == [("J103", "Job", 0)]
+
+
+def probe(job, bit):
+    """CAM's own probing of the stock, at its four corners."""
+    job.Tools.Group[0].Tool = stock_bit(job.Document, bit)
+    operation = job.Document.addObject("Path::FeaturePython", "Probe")
+    with preselected(job.Tools.Group[0]):
+        operation.Proxy = Path.Op.Probe.ObjectProbing(operation, "Probe", job)
+    operation.ToolController, operation.PointCountX, operation.PointCountY = job.Tools.Group[0], 2, 2
+    job.Document.recompute()
+    return operation
+
+
+def test_probing_is_refused_by_name(job):
+    operation = probe(job, "probe.fcstd")
+    (fault,) = read_job(job)[1]
+    assert (
+        fault.code == "J142"
+        and fault.place.operation == operation.Label
+        and fault.found.startswith("G38.2, and 3 more")
+    )
+
+
+def test_an_operation_that_cuts_nothing_is_named_alone_and_among_others(job):
+    probe(job, "endmill.fcstd")  # CAM warns that this is no probe, and leaves a rapid move
+    assert faults_of(job) == [("J141", "Probe", 0), ("J103", "Job", 0)]
+    add_operation(job)
+    add_operation(job, ["G0 Z50"], "as typed")
+    program, faults = read_job(job)
+    assert [(fault.code, fault.place.operation) for fault in faults] == [("J141", "Probe")]
+    assert (program.kind != Kind.RAPID).any()
 
 
 def test_faults_of_all_operations_are_reported_together(job):

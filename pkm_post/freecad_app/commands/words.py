@@ -54,6 +54,11 @@ _OTHERS: dict[str, str] = {
 LETTERS: dict[str, str] = MOVES | CYCLES | TAPPING | _OTHERS
 """Every supported code with its permitted letters; all others are refused."""
 
+_REFUSED: dict[str, str] = dict.fromkeys(SPINDLE_SYNCHRONISED, "J123") | {
+    f"G38.{kind}": "J142" for kind in (2, 3, 4, 5)
+}
+"""Diagnostics of codes that are known, but not supported."""
+
 EVENTS: dict[str, tuple[EventKind, str, float]] = {
     "G4": (EventKind.DWELL, "P", 1.0),
     "M0": (EventKind.STOP, "", 0.0),
@@ -229,7 +234,7 @@ def check_words(words: CommandWords, diagnostics: CommandDiagnostics, spindle_ax
     """Report unsupported commands and words; tapping is supported if the spindle can be an axis."""
     for code in words.codes:
         if code not in LETTERS and code != COMMENT:
-            diagnostics.add("J123" if code in SPINDLE_SYNCHRONISED else "J104", words.among(code), code)
+            diagnostics.add(_REFUSED.get(code, "J104"), words.among(code), code)
     for code in TAPPING:
         diagnostics.add("J123", words.among(code) & (not spindle_axis), code)
         lacks = words.among(code) & ~(words.has("S") & words.has("F")) & spindle_axis

@@ -11,7 +11,10 @@ CAM_JOB_RULES: dict[str, Rule] = {
     # J1: the CAM job
     "J101": error("the file cannot be opened as a FreeCAD document", "check the path, or save the document again"),
     "J102": error("there is no CAM job to post", "add a Job in the CAM workbench, or name the job with --job"),
-    "J103": error("the job has no active operation with a path", "activate an operation and recompute"),
+    "J103": error(
+        "the job has no active operation that moves the tool",
+        "activate an operation, or mend one that CAM computed without a move, and recompute",
+    ),
     "J104": error("the command is unknown or not allowed here", "remove it, or use a G0, G1, G2 or G3 move"),
     "J105": error("a cutting move has no feed", "set the feed in the tool controller, in mm/min above zero"),
     "J106": error("an arc in this plane is not supported", "use XY-plane arcs (G17), or straight moves"),
@@ -92,5 +95,13 @@ CAM_JOB_RULES: dict[str, Rule] = {
     "J140": warning(
         "Split Output of the job is not followed: one program holds all of it",
         "deactivate operations, or take fixtures out of the job, to post a part of it",
+    ),
+    "J141": warning(
+        "CAM computed an active operation without a cutting move",
+        "see CAM's message in the Report view; correct its tool, geometry or depths, or deactivate it",
+    ),
+    "J142": error(
+        "probing is not part of a program, which is computed before it runs",
+        "deactivate the operation; pkm-post pmac measure probes between programs",
     ),
 }

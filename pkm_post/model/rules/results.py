@@ -235,4 +235,8 @@ RESULT_RULES: dict[str, Rule] = {
         "see what was printed before, and that FREECADCMD, if it is set, names FreeCADCmd of FreeCAD 1.0 or newer",
     ),
     "F142": error("a result is missing", "check that nothing else removes files from the folder, and post again"),
+    "F143": error(
+        "a FreeCAD document is read only inside FreeCAD",
+        "run the script in FreeCADCmd, or post with python3 -m pkm_post post, which starts it",
+    ),
 }
