@@ -25,6 +25,7 @@ MATRIX = "_COPY"
 MOST_STATEMENTS = 10_000_000
 """Statements of a file with all its copies."""
 
+_MOTIONS = frozenset({"GOTO", "FROM", "GOHOME", "GODLTA", "ARCMOV", "GOCLW", "GOCCLW", "CW", "CCW", "HELICAL"})
 _SAME = 1e-6
 """Tolerance of equal matrices, in units of the file."""
 _PLANES = {"XYROT": (0, 1), "YZROT": (1, 2), "ZXROT": (2, 0)}
@@ -93,6 +94,9 @@ def _copies_at(
         found = f"COPY/{statement.items_text()} with another COPY after its INDEX, whose order matters"
         faults.add("L401", place, found)
         return []
+    if _begins_with_godlta(statements, path):
+        faults.add("L401", place, f"COPY/{statement.items_text()} of a path that begins with GODLTA")
+        return []
     if count * sum(map(_size, path)) > MOST_STATEMENTS:
         faults.add("L403", place, f"COPY/{statement.items_text()}: more than {MOST_STATEMENTS} statements")
         return []
@@ -115,6 +119,12 @@ def _path_after(parts: list[_Part], begin: int) -> list[_Part]:
     at = next(index for index, part in enumerate(parts) if isinstance(part, np.ndarray) and begin in part)
     first = parts[at]
     return [first[first > begin], *parts[at + 1 :]] if isinstance(first, np.ndarray) else []
+
+
+def _begins_with_godlta(statements: Statements, path: list[_Part]) -> bool:
+    """Whether the first motion of a path is an increment: APT copies its end point [aptos], other systems may not."""
+    words = (statements.word(row) for part in path if isinstance(part, np.ndarray) for row in part.tolist())
+    return next((word for word in words if word in _MOTIONS), "") == "GODLTA"
 
 
 def _commute(one: Array, other: Array) -> bool:

@@ -78,7 +78,7 @@ def cycle_goes_on(state: ReaderState, row: int) -> None:
 
 def _at_feed_and_speed(state: ReaderState, cycle: Cycle) -> Cycle:
     """The cycle with its feed and dwell at the present FEDRAT and spindle speed."""
-    turns_per_second = state.spindle_speed / 60 if state.spindle_speed > 0 else math.nan
+    turns_per_second = state.turning_speed / 60 if state.turning_speed > 0 else math.nan
     feed = cycle.own_feed * (turns_per_second if cycle.per_turn else 1.0)
     if math.isnan(cycle.own_feed) and state.feed is not None and not state.feed.inverse:
         feed = state.feed.value
@@ -214,12 +214,10 @@ def _fault_of(cycle: Cycle, notation: CycleNotation) -> str:
     missing = [notation.words_for(name) for name in ("depth", "clearance", "step") if math.isnan(getattr(cycle, name))]
     if missing:
         return f"{', '.join(missing)} is missing"
-    if not cycle.feed > 0:
+    if not cycle.feed > 0 and not cycle.per_turn:
         return "it has no feed in mm/min"
     if cycle.start < 0:
         return f"the feed begins {-cycle.start:g} mm below the point"
-    if not math.isfinite(cycle.dwell):
-        return "it dwells for turns of a spindle at rest"
     if cycle.kind.pecks != "none" and not cycle.step * _MAX_PECKS > cycle.depth:
         return f"the step is {cycle.step:g} mm"
     return ""

@@ -44,7 +44,7 @@ def feed_of(state: ReaderState, word: str, value: float) -> Feed:
 
 def _feed_per_turn(state: ReaderState) -> Feed:
     """The feed per revolution at the present speed."""
-    return Feed(state.feed_per_turn * (state.spindle_speed or math.nan) / 60, per_turn=True)
+    return Feed(state.feed_per_turn * (state.turning_speed or math.nan) / 60, per_turn=True)
 
 
 def _unit_overridden(state: ReaderState, stated: float) -> bool:
@@ -112,10 +112,9 @@ def spindl(state: ReaderState, row: int, statement: Statement) -> None:
     state.spindle_limit = statement.number_after("MAXRPM") or state.spindle_limit
     if not numbers and not words:
         return
-    if words & _STOPPED:
-        state.spindle_sense = 0.0
-    else:
-        state.spindle_sense = next((_SENSES[word] for word in _SENSES if word in words), state.spindle_sense or 1.0)
+    state.spindle_on = not words & _STOPPED
+    if state.spindle_on:  # with the last sense and speed where there are no others [NCCS PostWorks]
+        state.spindle_sense = next((_SENSES[word] for word in _SENSES if word in words), state.spindle_sense)
         if numbers and not _new_speed(state, row, numbers[0], statement):
             return
     _spindle_event(state, row)
@@ -166,8 +165,9 @@ def report_unknown_speeds(state: ReaderState) -> None:
 
 def _spindle_event(state: ReaderState, row: int) -> None:
     """Record the present speed, and the feed per revolution that follows it."""
-    speed = state.spindle_sense * state.spindle_speed if state.spindle_sense else 0.0
-    state.events.append((row, EventKind.SPINDLE, speed))
+    state.events.append(
+        (row, EventKind.SPINDLE, state.spindle_sense * state.turning_speed if state.spindle_on else 0.0)
+    )
     if state.feed_per_turn:
         state.set_feed(row, _feed_per_turn(state))
 
@@ -186,7 +186,7 @@ def delay(state: ReaderState, row: int, statement: Statement) -> None:
     numbers, turns = statement.numbers, "REV" in statement.words
     if len(numbers) != 1 or not set(statement.words) <= {"REV"}:
         state.report_items(row, statement, "seconds, or turns and REV")
-    elif numbers[0] < 0 or (turns and not state.spindle_speed > 0):
+    elif numbers[0] < 0 or (turns and not state.turning_speed > 0):
         state.report(
             "L403", row, f"{statement.word} {numbers[0]:g}" + (" revolutions of a stopped spindle" if turns else "")
         )

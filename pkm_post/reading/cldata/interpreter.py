@@ -87,9 +87,16 @@ def _syn(state: ReaderState, row: int, statement: Statement) -> None:
         state.report("L401", row, f"SYN/{statement.items_text()} with {renamed[0]} after it")
 
 
+def _end(state: ReaderState, row: int, statement: Statement) -> None:
+    state.end_of_program = row
+
+
 def _fini(state: ReaderState, row: int, statement: Statement) -> None:
     state.ended = True
 
+
+PROGRAM_ENDS = frozenset({"END", "REWIND"})
+"""Words that write the end of the NC program, M2 and M30 [UG/Post]."""
 
 HANDLERS: dict[str, _Handler] = {
     "GOTO": goto, "FROM": from_or_godlta, "GODLTA": from_or_godlta, "GOHOME": from_or_godlta,
@@ -113,6 +120,7 @@ HANDLERS: dict[str, _Handler] = {
     "MOVNRB": movnrb,
     "TLCOMP": _tlcomp, "ROTABL": _rotary, "ROTHED": _rotary, "ROTATE": _rotary, "SYN": _syn,
     "TOOL PATH": _operation, "OPERATION NAME": _operation, "FEATNO": _operation, "FINI": _fini,
+    **dict.fromkeys(PROGRAM_ENDS, _end),
 }  # fmt: skip
 """Words with a handler."""
 
@@ -121,7 +129,7 @@ _PACE = frozenset({"FEDRAT", "SPINDL", "CUTTER", "TLDATA"})
 
 IGNORED = frozenset({
     "PARTNO", "PPRINT", "TPRINT", "LETTER", "DISPLY", "REMARK", "MACHIN", "PPWORD", "PAINT", "END-OF-PATH", "SETUP",
-    "SELECT", "SWITCH", "END", "REWIND", "LINTOL", "INTOL", "OUTTOL", "TOLER", "SET",
+    "SELECT", "SWITCH", "LINTOL", "INTOL", "OUTTOL", "TOLER", "SET",
     "CSI_SET_FLUTE_LENGTH", "CSI_SET_EXTENSION_LENGTH", "CLPRNT", "NOPOST", "LEADER", "CLEARP",
     "MODE", "PRINT", "SEQNO",
 })  # fmt: skip
@@ -170,6 +178,7 @@ def interpret(state: ReaderState, bulk: Array) -> Array:
     report_unused_arcdat(state)
     report_unknown_speeds(state)
     _report_missing_end(state)
+    _report_motion_after_program(state, bulk & valid)
     for word, rows in unknown.items():
         times = f", {len(rows)} times" if len(rows) > 1 else ""
         state.report("L404", rows[0], f"{word[:60]}{times}")
@@ -217,12 +226,26 @@ def _report_missing_end(state: ReaderState) -> None:
         state.report("L441", len(state.statements) - 1, "no FINI or END-OF-PATH after it")
 
 
+def _report_motion_after_program(state: ReaderState, goto: Array) -> None:
+    """Report a motion after END or REWIND: the NC program does not reach it.
+
+    Args:
+        state: with all statements read.
+        goto: (N,) mask of the plain GOTO statements.
+    """
+    end = state.end_of_program
+    rows = [*(np.flatnonzero(goto[end + 1 :]) + end + 1)[:1].tolist(), *(row for row, _ in state.points if row > end)]
+    if end >= 0 and rows:
+        word, line = state.statements.word(end), state.statements.place(end)[0]
+        state.report("L401", min(rows), f"a motion after {word} in line {line}, the end of the program")
+
+
 def _is_closed(state: ReaderState) -> bool:
     """Whether only words without effect follow a statement that ends a file."""
     statements = state.statements
     for row in reversed(range(len(statements))):
         if _END.fullmatch(statements.lines.text[statements.index[row]]):
             return True
-        if statements.word(row) not in IGNORED:
+        if statements.word(row) not in IGNORED | PROGRAM_ENDS:
             return False
     return False

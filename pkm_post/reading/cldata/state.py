@@ -180,7 +180,8 @@ class ReaderState:
         feed_per_turn: mm per revolution, 0 if the feed is not per revolution.
         feed: active feed of moves, None before the first.
         spindle_speed: 1/min; NaN for a surface speed of a cutter that is not yet known.
-        spindle_sense: 1 clockwise, -1 counterclockwise, 0 stopped.
+        spindle_sense: 1 clockwise, -1 counterclockwise; the last one while it is stopped.
+        spindle_on: whether it turns.
         spindle_limit: of surface speeds, 1/min; 0 if none.
         surface_speed: the last speed, if it is one of the surface.
         tool: active tool number.
@@ -206,6 +207,7 @@ class ReaderState:
         part_surface: of PSIS; None for the tool position.
         arc_rise: of the next ARCDAT, as written.
         arc_data: circle of the next ARCMOV.
+        end_of_program: row of the last END or REWIND, -1 before.
         ended: whether FINI was read.
         tools: by number.
         stated_lengths: by number, the different gauge lengths that the file gives a tool, mm.
@@ -226,7 +228,8 @@ class ReaderState:
     feed_per_turn: float = 0.0
     feed: Feed | None = None
     spindle_speed: float = 0.0
-    spindle_sense: float = 0.0
+    spindle_sense: float = 1.0
+    spindle_on: bool = False
     spindle_limit: float = 0.0
     surface_speed: SurfaceSpeed | None = None
     tool: int = 0
@@ -251,6 +254,7 @@ class ReaderState:
     part_surface: Plane | None = None
     arc_rise: float = 0.0
     arc_data: ArcData | None = None
+    end_of_program: int = -1
     ended: bool = False
 
     transforms: dict[str, Array] = field(default_factory=dict)
@@ -294,6 +298,11 @@ class ReaderState:
             return values
         self.report_items(row, statement, f"{' or '.join(map(str, counts))} values")
         return []
+
+    @property
+    def turning_speed(self) -> float:
+        """The speed of the spindle, 1/min; 0 while it is stopped."""
+        return self.spindle_speed if self.spindle_on else 0.0
 
     def motions_before(self, row: int) -> int:
         """Number of motions before a statement, with all preceding statements read."""

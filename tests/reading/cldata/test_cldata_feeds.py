@@ -99,6 +99,38 @@ def test_angles_limits_and_ranges_are_no_speeds(statement, speed):
     assert found[-1][1] == pytest.approx(speed)
 
 
+@pytest.mark.parametrize(
+    ("again", "speed"), [("ON", -1000), ("500", -500), ("ON,CLW", 1000), ("500,CLW", 500), ("RPM,500", -500)]
+)
+def test_the_spindle_starts_again_in_its_last_sense(again, speed):
+    text = f"{HEAD}SPINDL/1000,CCLW\nGOTO/1,0,0\nSPINDL/OFF\nGOTO/2,0,0\nSPINDL/{again}\nGOTO/3,0,0\nFINI\n"
+    assert [value for _, value in speeds(text)] == [-1000, 0, speed]
+
+
+@pytest.mark.parametrize(
+    ("statement", "code"),
+    [
+        ("DELAY/10,REV", "L403"),
+        ("FEDRAT/.1,MMPR", "L403"),
+        ("CYCLE/DRILL,FEDTO,-2,RAPTO,1,MMPR,.1", "L412"),
+        ("CYCLE/DRILL,FEDTO,-2,RAPTO,1,DWELL,REV,3", "L412"),
+    ],
+)
+def test_turns_of_a_stopped_spindle_are_refused(statement, code):
+    stopped = f"{HEAD}SPINDL/1000,CLW\nGOTO/1,0,0\nSPINDL/OFF\n{statement}\n"
+    assert [found for found, _ in codes(f"{stopped}GOTO/5,0,0\nFINI\n", dialect="nx")] == [code]
+    if code == "L412" or "FEDRAT" in statement:
+        program(f"{stopped}SPINDL/ON\nGOTO/5,0,0\nFINI\n", dialect="nx")
+
+
+@pytest.mark.parametrize("motion", ["GOTO/1,2,3", "GODLTA/1,2,3", "RAPID,GOTO/1,2,3"])
+@pytest.mark.parametrize("word", ["END", "REWIND"])
+def test_no_motion_follows_the_end_of_the_program(word, motion):
+    assert codes(f"{HEAD}{word}\n{motion}\nFINI\n") == [("L401", 7)]
+    ended = program(f"{HEAD}{motion}\n{word}\nFINI\nGOTO/9,9,9\n")
+    assert ended.position[1:].tolist() == [[1, 2, 3]]
+
+
 @pytest.mark.parametrize("words", ["LOCK,ON", "LOCK,OFF"])
 def test_a_lock_of_spindle_or_override_is_refused(words):
     assert codes(f"{HEAD}SPINDL/{words}\nGOTO/1,0,0\n") == [("L402", 6)]
