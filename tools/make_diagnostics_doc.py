@@ -23,6 +23,7 @@ FAMILIES = {
     "C": "The controller's program",
     "V": "The certificate",
     "F": "Files",
+    "U": "The command line",
 }
 """For each first letter of a code what it is about, in the order of the page."""
 

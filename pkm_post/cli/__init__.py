@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Command line: ``python3 -m pkm_post post part.FCStd --machine example_6tps --out DIR`` and other commands.
 
-Exit code 0 on success, 1 when the input was refused, memory ran out, or the output was closed or full, 2 for invalid
-arguments, 130 after Ctrl-C. Each module adds its commands to the parser and runs them; only the module of the named
-command is imported.
+Exit code 0 on success, 1 when the input was refused, memory ran out, or the output was closed or full, 2 for arguments
+that are not valid, 130 after Ctrl-C. Each module adds its commands to the parser and runs them; only the module of the
+named command is imported.
 """
 
 from __future__ import annotations
@@ -14,12 +14,13 @@ import io
 import os
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import pkm_post
 from pkm_post import at_first_use
 from pkm_post.cli.console import interrupt_on_break
 from pkm_post.cli.processes import INTERRUPTED, diagnostic_text
+from pkm_post.options import UsageParser
 from pkm_post.system import MEMORY_FAULTS, THREADS, ThreadCountError, memory_diagnostic
 
 __all__ = ["main", "run_batch"]
@@ -98,10 +99,18 @@ def _output_fault() -> OSError | None:
     return None
 
 
+class CommandParser(UsageParser):
+    """A parser that prints the diagnostic of a fault and exits."""
+
+    def refuse(self, code: str, found: str) -> NoReturn:
+        """Exit with code 2."""
+        self.exit(2, f"{diagnostic_text(code, self.prog, found)}\n")
+
+
 def _parser(first: Sequence[str] = ()) -> argparse.ArgumentParser:
     """The parser of the command that the first argument names, or of all commands if it names none."""
     program = "pkm-post" if os.path.basename(sys.argv[0]) == "pkm-post" else "python3 -m pkm_post"
-    parser = argparse.ArgumentParser(prog=program, description=pkm_post.__doc__)
+    parser = CommandParser(prog=program, description=pkm_post.__doc__)
     parser.add_argument("--version", action="version", version=f"PKM Post {pkm_post.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     named = [module for module, names in _COMMANDS.items() if set(first) & set(names)]

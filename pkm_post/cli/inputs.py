@@ -14,6 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pkm_post.cli.processes import DOCUMENTS, diagnostic_text
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import (
     applicable_values,
@@ -58,20 +59,33 @@ def reading_from(namespace: argparse.Namespace) -> ReadingOptions:
 
 
 def misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> list[str]:
-    """Diagnostics of the options that apply to none of the files."""
+    """Diagnostics of the files that are not read, or of the options that apply to none of the files."""
     try:
         from pkm_post.model import Diagnostic, Place
     except ImportError:  # no NumPy, or one for another Python: this command reruns inside FreeCAD, and checks there
         return []
 
+    if unread := list(_unread(files)):
+        return unread
     chosen = (name for name, default in _FOR_SOME_FILES.items() if getattr(namespace, name, default) != default)
     place = Place(str(files[0]) if len(files) == 1 else "arguments")
     messages = inapplicable_options((*explicit_values(namespace), *chosen), {input_kind(file) for file in files})
     return [str(Diagnostic("L442", place, message)) for message in messages]
 
 
+def _unread(files: Sequence[Path]) -> Iterator[str]:
+    """Yield the diagnostics of files that are neither documents nor part programs by their names."""
+    from pkm_post.reading import SUFFIXES, is_part_program
+
+    for file in files:
+        if os.path.isdir(file):
+            yield diagnostic_text("F103", str(file), "it is a folder")
+        elif file.suffix.lower() not in DOCUMENTS and not is_part_program(file):
+            yield diagnostic_text("F122", str(file), f"expected one of .FCStd, .FCBak, {', '.join(SUFFIXES)}")
+
+
 def print_misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> bool:
-    """Print the options that apply to none of the files; return whether there are any."""
+    """Print the diagnostics of ``misplaced``; return whether there are any."""
     faults = misplaced(namespace, files)
     print_diagnostics(faults)
     return bool(faults)

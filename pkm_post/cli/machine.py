@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pkm_post.cli.processes import diagnostic_text
 from pkm_post.cli.terminal import print_diagnostics
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ def _calibrate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.machine import MeasurementNoise, Repetition, calibrate_file
 
     if namespace.noise and not namespace.runs:
-        print("--noise: say with --runs how often the calibration is repeated", file=sys.stderr)
+        print_diagnostics([diagnostic_text("U102", "--noise", "--runs, how often the calibration is repeated")])
         return 2
     noise = None
     if namespace.noise:
@@ -153,10 +153,10 @@ def _export(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.writing import kinematics
 
     if namespace.to == "linuxcnc" and namespace.segment_time is not None:
-        print("--segment-time: LinuxCNC has no segments", file=sys.stderr)
+        print_diagnostics([diagnostic_text("U103", "--segment-time", "LinuxCNC has no segments")])
         return 2
     if namespace.program is not None and namespace.to != _PROJECT:
-        print(f"--program: of --to {_PROJECT} alone", file=sys.stderr)
+        print_diagnostics([diagnostic_text("U103", "--program", f"it is for --to {_PROJECT} alone")])
         return 2
     machine, diagnostics = machine_named(namespace.file)
     files: tuple[Path, ...] = ()

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.pmac_manual import control_of
 from pkm_post.cli.pmac_stop import held_at_the_end
+from pkm_post.cli.processes import diagnostic_text
 from pkm_post.options import offset, positive
 
 if TYPE_CHECKING:
@@ -74,8 +75,9 @@ def measure(session: Session, target: Target, namespace: argparse.Namespace) -> 
     work, faults = work_offset(target.machine, Options(work_offset=namespace.work_offset))
     lacks = needs(namespace)
     if lacks:
-        print(lacks, file=sys.stderr)
-    if work is None or lacks:
+        print(diagnostic_text("U103", "pmac measure", lacks), file=sys.stderr)
+        return 2
+    if work is None:
         return _print_faults(faults)
     logging.getLogger().setLevel(logging.WARNING)  # each of the many moves would log its download
     control = control_of(session, target, namespace)

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pkm_post.cli.processes import diagnostic_text
 from pkm_post.options import between, whole, whole_from
 
 if TYPE_CHECKING:
@@ -79,6 +80,9 @@ def _words(text: str) -> int:
 def _simulate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.control.simulator import Server
 
+    if namespace.probed is not None and namespace.machine is None:
+        print(diagnostic_text("U102", "--probed", "--machine"), file=sys.stderr)
+        return 2
     machine = _power_pmac(namespace) if namespace.ssh is not None else None
     controller = machine.controller if machine is not None else _turbo_pmac(namespace)
     if namespace.setup and not _set_up(machine or controller, namespace.setup):
@@ -117,9 +121,6 @@ def _be_of_machine(controller: Controller, namespace: argparse.Namespace) -> boo
     from pkm_post.control.simulator import function_programs
     from pkm_post.machine import machine_named
 
-    if namespace.probed is not None and namespace.machine is None:
-        print("--probed: expected --machine", file=sys.stderr)
-        return False
     if namespace.machine is None:
         return True
     machine, faults = machine_named(namespace.machine)

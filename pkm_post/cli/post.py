@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.inputs import add_reading, misplaced, programs_of, reading_from
 from pkm_post.cli.processes import (
+    DOCUMENTS,
     command_inside,
     command_outside,
     diagnostic_text,
@@ -43,7 +44,6 @@ if TYPE_CHECKING:
     from pkm_post.posting import Posted
     from pkm_post.system import Job
 
-_DOCUMENT = ".fcstd"
 _ONLY = "--only"
 """Index of the one file that a process posts, from 0."""
 
@@ -105,15 +105,16 @@ def _faults(namespace: argparse.Namespace) -> list[str]:
     """Reasons why these files cannot be posted in one call."""
     files = namespace.files
     if namespace.only is not None and namespace.only >= len(files):
-        return [f"argument {_ONLY}: expected a number below {len(files)}, got {namespace.only}"]
+        return [diagnostic_text("U103", _ONLY, f"expected a number below {len(files)}, got {namespace.only}")]
     items = [item for file in files for item in items_of(file, namespace.job, namespace.also)]
-    lost = [*result_conflicts(items), *overwritten_sources(files, items, namespace.out)]
-    return [*misplaced(namespace, files), *(f"{each}: post to different folders" for each in lost)]
+    lost = {"F105": result_conflicts(items), "F120": overwritten_sources(files, items, namespace.out)}
+    conflicts = [diagnostic_text(code, str(namespace.out), found) for code in lost for found in lost[code]]
+    return misplaced(namespace, files) or conflicts
 
 
 def items_of(file: Path, job_name: str | None, also: tuple[str, ...]) -> list[PostItem]:
     """Items of a file: a part program, or the jobs of a document, with their own optional outputs."""
-    if file.suffix.lower() != _DOCUMENT:
+    if file.suffix.lower() not in DOCUMENTS:
         from pkm_post.reading import program_stem
 
         return [PostItem(str(file), program_stem(file), also)]

@@ -24,7 +24,8 @@ _IN_A_WHEEL = _PACKAGE / "tools"
 _TOOLS = _IN_A_WHEEL if _IN_A_WHEEL.is_dir() else _ADDON / "tools"
 _FINDER = _ADDON / "tools" / "freecad"
 _START_INSIDE = str(_PACKAGE / "cli" / "start_inside.py")
-_READ_BY_FREECAD = (".fcstd", ".step", ".stp")
+DOCUMENTS = (".fcstd", ".fcbak")
+_READ_BY_FREECAD = (*DOCUMENTS, ".step", ".stp")
 _START = "import sys; sys.path.insert(0, sys.argv.pop(1)); from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))"
 """Equivalent of ``-m pkm_post`` for any location of the add-on."""
 INTERRUPTED = 130
@@ -49,13 +50,7 @@ def needs_freecad(files: Sequence[Path], solids: Sequence[str] = ()) -> bool:
         files: documents and part programs.
         solids: files of part, stock and fixtures.
     """
-    if is_inside():
-        return False
-    if any(file.suffix.lower() in _READ_BY_FREECAD for file in (*files, *map(Path, solids))):
-        return True
-    from pkm_post.reading import is_part_program
-
-    return not all(map(is_part_program, files))
+    return not is_inside() and any(path.suffix.lower() in _READ_BY_FREECAD for path in (*files, *map(Path, solids)))
 
 
 def run_inside(arguments: Sequence[str]) -> int:

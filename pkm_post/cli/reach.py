@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from pkm_post.cli.inputs import add_reading, print_misplaced, programs_of, read_machine
-from pkm_post.cli.processes import needs_freecad, run_inside
+from pkm_post.cli.processes import diagnostic_text, needs_freecad, run_inside
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import (
     add_options,
@@ -121,7 +121,8 @@ def _map(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.system import staged, threads, write_fault
 
     if math.prod(map(len, (namespace.x, namespace.y, namespace.z))) > _MAX_POINTS:
-        print_diagnostics([f"expected --x, --y and --z with at most {_MAX_POINTS} places together"])
+        expected = f"expected --x, --y and --z with at most {_MAX_POINTS} places together"
+        print_diagnostics([diagnostic_text("U103", "reach-map", expected)])
         return 2
     machine = read_machine(namespace.machine)
     if machine is None:

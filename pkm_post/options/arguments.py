@@ -8,9 +8,11 @@ units of the user: mm, degrees, m/min. ``conversion`` makes options of them.
 from __future__ import annotations
 
 import argparse
+import re
 import shlex
-from collections.abc import Iterable
-from typing import NoReturn
+import sys
+from collections.abc import Iterable, Sequence
+from typing import Any, NoReturn
 
 from pkm_post.options.argument_table import ARGUMENTS
 from pkm_post.options.layers import add_recorded
@@ -60,12 +62,77 @@ def _add(parser: argparse.ArgumentParser, flags: Iterable[str]) -> None:
         add_recorded(parser, flag, **ARGUMENTS[flag])
 
 
-class TextParser(argparse.ArgumentParser):
-    """A parser that raises ``ValueError`` instead of printing its usage and exiting."""
+_UNKNOWN, _MISSING, _NOT_VALID = "U101", "U102", "U103"
+_REQUIRED = re.compile(r"(?:the following arguments are|(one of) the arguments) (?:required: )?(.*?)(?: is required)?")
+_NO_VALUE = re.compile(r"argument (\S+): expected (?:one|at least one|\d+) arguments?")
+_SIGNED = re.compile(r"-[\d.]")
+
+
+class UsageParser(argparse.ArgumentParser):
+    """A parser that gives each usage fault a code, and names the nearest argument. Subclasses report it."""
+
+    _words: Sequence[str] = ()
+
+    def refuse(self, code: str, found: str) -> NoReturn:
+        """Report the fault of a rule."""
+        raise NotImplementedError
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse, and refuse what is left over; argparse calls it for the parser of a command, too."""
+        self._words = sys.argv[1:] if args is None else args
+        found, left = super().parse_known_args(args, namespace)
+        self._refuse_unknown(left)
+        return found, left
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        if action.choices is not None and value not in action.choices:
+            name = "/".join(action.option_strings) or action.metavar or action.dest
+            got = f"got {value!r}{nearest(value, action.choices)}"
+            found = f"{name}: expected one of {', '.join(action.choices)}, {got}"
+            self.refuse(_UNKNOWN if action.nargs == argparse.PARSER else _NOT_VALID, found)
 
     def error(self, message: str) -> NoReturn:
-        """Handle a parse error of argparse."""
-        raise ValueError(message)
+        """Refuse what argparse has found in words of its own."""
+        if message.startswith("ambiguous option: "):
+            self.refuse(_UNKNOWN, message.removeprefix("ambiguous option: ").replace("could match", "may be"))
+        if missing := _REQUIRED.fullmatch(message):
+            self._refuse_unknown(filter(self._is_unknown, self._words))
+            self.refuse(_MISSING, " ".join(filter(None, missing.groups())))
+        if flag := _NO_VALUE.fullmatch(message):
+            self.refuse(_MISSING, f"the value of {flag[1]}{self._behind_equals(flag[1])}")
+        found = message.removeprefix("argument ").replace("ignored explicit argument", "expected no value, got")
+        self.refuse(_NOT_VALID, found)
+
+    def _refuse_unknown(self, words: Iterable[str]) -> None:
+        named = [word + nearest(word.partition("=")[0], self._option_string_actions) for word in words]
+        if named:
+            self.refuse(_UNKNOWN, "; ".join(named))
+
+    def _is_unknown(self, word: str) -> bool:
+        name = word.partition("=")[0]
+        known = any(option.startswith(name) for option in self._option_string_actions)
+        return name.startswith("--") and not known
+
+    def _behind_equals(self, flag: str) -> str:
+        """How to write a value that begins with a minus sign, if one follows the option."""
+        values = (value for name, value in zip(self._words, self._words[1:], strict=False) if name == flag)
+        return next((f"; write {flag}={value}" for value in values if _SIGNED.match(value)), "")
+
+
+def nearest(word: object, names: Iterable[str]) -> str:
+    """The names that are like a word, to be appended to a message; empty if there are none."""
+    import difflib
+
+    found = difflib.get_close_matches(str(word), list(names), n=2)
+    return f", perhaps {' or '.join(found)}" if found else ""
+
+
+class TextParser(UsageParser):
+    """A parser that raises ``ValueError`` instead of exiting."""
+
+    def refuse(self, code: str, found: str) -> NoReturn:
+        """Raise what was found."""
+        raise ValueError(found)
 
 
 def text_parser(name: str = "options", description: str = "") -> TextParser:

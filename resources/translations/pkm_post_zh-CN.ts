@@ -1667,10 +1667,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>两个作业的结果会同名</translation>
     </message>
     <message>
-        <source>give the jobs labels that differ in letters or digits, not in their case and not in an ending such as -setup</source>
-        <translation>为作业取字母或数字不同的标签，不能只是大小写不同，也不能只是 -setup 之类的结尾不同</translation>
-    </message>
-    <message>
         <source>results are not those that were posted together</source>
         <translation>这些结果不是同一次后处理得到的</translation>
     </message>
@@ -1769,10 +1765,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>a result would replace a file that it is made from</source>
         <translation>结果会覆盖生成它所用的文件</translation>
-    </message>
-    <message>
-        <source>choose another name for the result</source>
-        <translation>为结果选择其他名称</translation>
     </message>
     <message>
         <source>there is not enough memory</source>
@@ -2855,6 +2847,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>请指定程序中的刀具；若原位换刀之后紧接圆弧，请以新的长度重新进行后处理</translation>
     </message>
     <message>
+        <source>give them names that differ in letters or digits, not in case or an ending such as -setup, or post to different folders</source>
+        <translation>为其取字母或数字不同的名称，不能只是大小写不同或 -setup 之类的结尾不同，或后处理到不同的文件夹</translation>
+    </message>
+    <message>
+        <source>choose another name or folder for the result</source>
+        <translation>为结果选择其他名称或文件夹</translation>
+    </message>
+    <message>
         <source>the encoding of the file is not read</source>
         <translation>不支持该文件的编码</translation>
     </message>
@@ -2865,6 +2865,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>a FreeCAD document is read only inside FreeCAD</source>
         <translation>FreeCAD 文档只能在 FreeCAD 中读取</translation>
+    </message>
+    <message>
+        <source>files with this ending are not read</source>
+        <translation>不支持此扩展名的文件</translation>
+    </message>
+    <message>
+        <source>give the file the ending of its kind</source>
+        <translation>为文件取与其类型相符的扩展名</translation>
     </message>
     <message>
         <source>write each code in a block of its own, with its words; @ and ^ without X and Y</source>
@@ -4081,6 +4089,30 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>post the job again for this machine</source>
         <translation>为此机床重新对作业进行后处理</translation>
+    </message>
+    <message>
+        <source>there is no such command or option</source>
+        <translation>没有这样的命令或选项</translation>
+    </message>
+    <message>
+        <source>correct it; --help lists them</source>
+        <translation>请更正；--help 会列出它们</translation>
+    </message>
+    <message>
+        <source>an argument is missing</source>
+        <translation>缺少参数</translation>
+    </message>
+    <message>
+        <source>add it; --help says what it is</source>
+        <translation>请补上；--help 有其说明</translation>
+    </message>
+    <message>
+        <source>an argument is not valid</source>
+        <translation>参数无效</translation>
+    </message>
+    <message>
+        <source>correct it; --help says what it may be</source>
+        <translation>请更正；--help 说明其取值</translation>
     </message>
     <message>
         <source>the tool tip leaves the programmed path</source>

@@ -169,11 +169,21 @@ def test_document_that_is_none(tmp_path, capsys):
         assert "Traceback" not in errors
 
 
-@pytest.mark.parametrize("arguments", [(), ("post",), ("post", "x.FCStd", "--tip-tolerance", "-1"), ("nonsense",)])
-def test_arguments_that_make_no_sense_end_with_two(arguments):
+@pytest.mark.parametrize(
+    ("arguments", "code", "found"),
+    [
+        ((), "U102", "COMMAND; "),
+        (("post",), "U102", "FILE; "),
+        (("post", "x.FCStd", "--tip-tolerance", "-1"), "U103", "--tip-tolerance: expected a number from 1e-06 to 100"),
+        (("nonsense",), "U101", "COMMAND: expected one of post, reach, "),
+    ],
+)
+def test_arguments_that_make_no_sense_end_with_two(arguments, code, found):
     reported = pkm_post(*arguments)
     assert reported.returncode == 2
-    assert "usage:" in reported.stderr
+    command = " ".join(("python3 -m pkm_post", *(word for word in arguments if word == "post")))
+    (line,) = reported.stderr.splitlines()  # and no usage of 30 lines before it
+    assert line.startswith(f"{command}: error {code}: ") and found in line
 
 
 def test_arcs_are_posted(tmp_path, capsys):

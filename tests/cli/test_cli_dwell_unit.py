@@ -62,4 +62,5 @@ def test_reach_takes_it_as_well(file, capsys):
 def test_another_word_is_refused(file, capsys):
     with pytest.raises(SystemExit) as ended:
         main(["check", str(file), "--dwell-unit", "min"])
-    assert ended.value.code == 2 and "invalid choice: 'min'" in capsys.readouterr().err
+    expected = "error U103: an argument is not valid: --dwell-unit: expected one of s, ms, got 'min'"
+    assert ended.value.code == 2 and expected in capsys.readouterr().err

@@ -9,6 +9,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from pkm_post.cli import main, processes
+from pkm_post.options import parse_text
 from pkm_post.options.argument_types import (
     above_zero,
     between,
@@ -125,3 +127,45 @@ def test_the_user_reads_it_beside_the_name_of_the_argument(convert, capsys):
         parser.parse_args(["--argument", "many"])
     assert ended.value.code == 2
     assert re.search(r"error: argument --argument: expected .*, got 'many'\n$", capsys.readouterr().err)
+
+
+USAGE = [
+    ("post a.ngc --machne=x", " post: error U101: ", "--machne=x, perhaps --machine or --machine-zero; "),
+    ("post a.ngc --machin x", " post: error U101: ", "--machin may be --machine, --machine-zero; "),
+    ("pst a.ngc", ": error U101: ", "got 'pst', perhaps post; "),
+    ("pmac prob", " pmac: error U101: ", "got 'prob', perhaps probe; "),
+    ("--verison", ": error U101: ", "--verison, perhaps --version; "),
+    ("verify a.pmc --agianst x", " verify: error U101: ", "--agianst, perhaps --against; "),
+    ("verify", " verify: error U102: ", "missing: PROGRAM.pmc, --against; "),
+    ("pmac simulate", " pmac simulate: error U102: ", "missing: one of --pty --tcp --ssh; "),
+    ("post a.ngc --out", " post: error U102: ", "missing: the value of --out; "),
+    ("post a.ngc --work-offset -1,2,3", " post: error U102: ", "of --work-offset; write --work-offset=-1,2,3; "),
+    ("post a.ngc --find-place=3", " post: error U103: ", "--find-place: expected no value, got '3'; "),
+    ("post a.ngc --corners cord", " post: error U103: ", "expected one of chord, arc, got 'cord', perhaps chord; "),
+    ("pmac simulate --pty --tcp 1", " pmac simulate: error U103: ", "--tcp: not allowed with argument --pty; "),
+]
+
+
+@pytest.mark.parametrize(("words", "start", "found"), USAGE)
+def test_usage_faults_have_a_code_and_name_what_may_be_meant(words, start, found, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(words.split())
+    (line,) = capsys.readouterr().err.splitlines()
+    assert ended.value.code == 2
+    assert line.startswith(f"python3 -m pkm_post{start}") and found in line
+
+
+@pytest.mark.parametrize("words", ["--machne=x", "--corners cord", "--out", "extra"])
+def test_the_arguments_of_a_job_are_explained_likewise(words):
+    with pytest.raises(ValueError, match="(perhaps --machine|perhaps chord|--out|extra).* in "):
+        parse_text(words)
+
+
+@pytest.mark.parametrize("command", ["post", "reach", "stiffness"])
+def test_files_that_are_not_read_are_refused_before_freecad_is_started(command, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(processes, "command_inside", pytest.fail)
+    (tmp_path / "folder.ngc").mkdir()
+    assert main([command, str(tmp_path / "part.stp"), str(tmp_path / "folder.ngc")]) == 2
+    unread, folder = capsys.readouterr().err.splitlines()
+    assert "part.stp: error F122: files with this ending are not read: expected one of .FCStd, .FCBak, .ngc, " in unread
+    assert "folder.ngc: error F103: the file cannot be read: it is a folder; " in folder

@@ -89,7 +89,9 @@ def test_nothing_is_posted_when_something_would_be_lost(part, tmp_path, capsys):
     other = part.with_name("part-setup.ngc")
     other.write_text(PART, encoding="ascii")
     assert main(["post", str(part), str(other), "--out", str(tmp_path / "out")]) == 2
-    assert "would both be posted as part-setup.pmc: post to different folders" in capsys.readouterr().err
+    errors = capsys.readouterr().err
+    assert "error F105: results of two jobs would have the same name: " in errors
+    assert "would both be posted as part-setup.pmc; " in errors and "or post to different folders" in errors
     assert not (tmp_path / "out").exists()
 
 
@@ -105,7 +107,7 @@ def test_a_process_of_its_own_has_one_file_also_after_two_dashes(part, monkeypat
         ]  # fmt: skip
     assert len(started) == 2
     assert main(["post", "--only=2", str(part), str(other)]) == 2
-    assert "argument --only: expected a number below 2, got 2" in capsys.readouterr().err
+    assert "--only: error U103: an argument is not valid: expected a number below 2, got 2" in capsys.readouterr().err
     with pytest.raises(SystemExit) as ended:
         main(["post", "--only=-1", str(part)])
     assert ended.value.code == 2
@@ -134,7 +136,9 @@ def test_jobs_of_documents_are_counted_in_a_batch(tmp_path, capsys):
     several = document(tmp_path / "a.FCStd", JOBS[1:])
     (tmp_path / "A-other.ngc").write_text(PART, encoding="ascii")
     assert main(["post", str(several), str(tmp_path / "A-other.ngc"), "--out", str(tmp_path / "out")]) == 2
-    assert "would both be posted as A-other.pmc: post to different folders" in capsys.readouterr().err
+    errors = capsys.readouterr().err
+    assert "error F105: results of two jobs would have the same name: " in errors
+    assert "would both be posted as A-other.pmc; " in errors and "or post to different folders" in errors
     assert not (tmp_path / "out").exists()
 
 

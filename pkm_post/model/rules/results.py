@@ -178,7 +178,8 @@ RESULT_RULES: dict[str, Rule] = {
     ),
     "F105": error(
         "results of two jobs would have the same name",
-        "give the jobs labels that differ in letters or digits, not in their case and not in an ending such as -setup",
+        "give them names that differ in letters or digits, not in case or an ending such as -setup, or post to"
+        " different folders",
     ),
     "F106": error(
         "results are not those that were posted together",
@@ -220,8 +221,9 @@ RESULT_RULES: dict[str, Rule] = {
         "there is something of this name already",
         "choose another folder for the result, or remove what is there",
     ),
-    "F120": error("a result would replace a file that it is made from", "choose another name for the result"),
+    "F120": error("a result would replace a file that it is made from", "choose another name or folder for the result"),
     "F121": error("the encoding of the file is not read", "save it as UTF-8 text"),
+    "F122": error("files with this ending are not read", "give the file the ending of its kind"),
     "F130": error(
         "there is not enough memory",
         "close other programs, do fewer operations or files at a time, or use a computer with more memory",
@@ -239,4 +241,8 @@ RESULT_RULES: dict[str, Rule] = {
         "a FreeCAD document is read only inside FreeCAD",
         "run the script in FreeCADCmd, or post with python3 -m pkm_post post, which starts it",
     ),
+    # U: arguments of the command line
+    "U101": error("there is no such command or option", "correct it; --help lists them"),
+    "U102": error("an argument is missing", "add it; --help says what it is"),
+    "U103": error("an argument is not valid", "correct it; --help says what it may be"),
 }

@@ -222,8 +222,8 @@ def test_a_face_is_measured_over_tcp(capsys, monkeypatch):
         assert main([*measure, "--within", "0.2"]) == 1
         assert "C221" in capsys.readouterr().err
         for lacks in (["face"], ["bore", "--along", "z-"], ["boss", "--depth", "3"], ["bore", "--at", "1"]):
-            assert main(["pmac", "measure", *lacks, "--port", port, *words]) == 1
-            assert f"{lacks[0]}: expected " in capsys.readouterr().err
+            assert main(["pmac", "measure", *lacks, "--port", port, *words]) == 2
+            assert f"error U103: an argument is not valid: {lacks[0]}: expected " in capsys.readouterr().err
     origin = MACHINE.work_offsets["G54"][:3, 3]
     found = float(re.search("face: Z(\\S+) in G54, mm", said)[1])
     assert found == pytest.approx(296.2 - origin[2], abs=0.1) and "each contact within 0.0" in said

@@ -83,7 +83,7 @@ def test_a_port_that_is_taken_is_reported(capsys):
 @pytest.mark.parametrize(
     ("arguments", "reported"),
     [
-        ([], "one of the arguments --pty --tcp --ssh is required"),
+        ([], "error U102: an argument is missing: one of --pty --tcp --ssh; "),
         (["--pty", "--tcp", "1"], "not allowed with argument --pty"),
         (["--tcp", "65536"], "expected a port from 0 to 65535, got '65536'"),
         (["--tcp", "x"], "expected a port from 0 to 65535, got 'x'"),
@@ -101,8 +101,8 @@ def test_arguments_without_sense_are_refused(arguments, reported, capsys):
 
 
 def test_a_probe_needs_the_machine_that_carries_it(capsys):
-    assert main(["pmac", "simulate", "--tcp", "0", "--probed", "plane:3"]) == 1
-    assert "--probed: expected --machine\n" in capsys.readouterr().err
+    assert main(["pmac", "simulate", "--tcp", "0", "--probed", "plane:3"]) == 2
+    assert "--probed: error U102: an argument is missing: --machine; " in capsys.readouterr().err
     assert main(["pmac", "simulate", "--ssh", "0", "--probed", "plane:3", "--machine", "example_6tps"]) == 1
     assert "kind: expected power_pmac, got 'turbo_pmac'" in capsys.readouterr().err
     assert main(["pmac", "simulate", "--tcp", "0", "--probed", "plane:3", "--machine", "none_of_these"]) == 1
