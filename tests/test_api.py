@@ -160,7 +160,7 @@ def test_a_machine_file_that_is_not_there_is_refused(folder, name):
 
 
 def test_what_is_said_of_options_holds_what_was_typed():
-    with pytest.raises(ValueError, match="^unrecognized arguments: --unti mm in '--unti mm'$"):
+    with pytest.raises(ValueError, match="^unknown: --unti, perhaps --unit; mm in '--unti mm'$"):
         pkm.read_options("--unti mm")
 
 

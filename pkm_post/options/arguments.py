@@ -63,6 +63,8 @@ def _add(parser: argparse.ArgumentParser, flags: Iterable[str]) -> None:
 
 
 _UNKNOWN, _MISSING, _NOT_VALID = "U101", "U102", "U103"
+_CAUSES = {_UNKNOWN: "unknown: ", _MISSING: "missing: "}
+"""What a message without the cause of its rule begins with."""
 _REQUIRED = re.compile(r"(?:the following arguments are|(one of) the arguments) (?:required: )?(.*?)(?: is required)?")
 _NO_VALUE = re.compile(r"argument (\S+): expected (?:one|at least one|\d+) arguments?")
 _SIGNED = re.compile(r"-[\d.]")
@@ -132,7 +134,7 @@ class TextParser(UsageParser):
 
     def refuse(self, code: str, found: str) -> NoReturn:
         """Raise what was found."""
-        raise ValueError(found)
+        raise ValueError(_CAUSES.get(code, "") + found)
 
 
 def text_parser(name: str = "options", description: str = "") -> TextParser:
