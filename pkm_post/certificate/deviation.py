@@ -182,6 +182,7 @@ class FeedRuler:
 
     Attributes:
         ceiling: (K,) highest speed allowed anywhere in each interval, mm/s.
+        several: (K,) whether the allowed speed changes within the interval.
     """
 
     def __init__(self, trajectory: Trajectory, motion: Motion, margin: float) -> None:
@@ -200,7 +201,7 @@ class FeedRuler:
         begin, end = motion.time_ms[:-1] / 1000, motion.time_ms[1:] / 1000
         checkpoint()
         self._fastest = self._highest(begin, end)
-        self._mixed = np.searchsorted(self._changes, begin) < np.searchsorted(self._changes, end, side="right")
+        self.several = np.searchsorted(self._changes, begin) < np.searchsorted(self._changes, end, side="right")
         checkpoint()
         speed = norm(motion.tip_rate)
         change = np.abs(np.minimum(speed[1:], self._fastest) - np.minimum(speed[:-1], self._fastest))
@@ -216,12 +217,12 @@ class FeedRuler:
             time: (M, N) s.
         """
         found = np.broadcast_to(self.ceiling[rows], time.shape)
-        mixed = np.flatnonzero(self._mixed[rows])
-        if not len(mixed):
+        several = np.flatnonzero(self.several[rows])
+        if not len(several):
             return found
         found = found.copy()
-        ceiling = self._ceiling_at(np.tile(rows[mixed], len(time)), time[:, mixed].ravel())
-        found[:, mixed] = ceiling.reshape(len(time), -1)
+        ceiling = self._ceiling_at(np.tile(rows[several], len(time)), time[:, several].ravel())
+        found[:, several] = ceiling.reshape(len(time), -1)
         return found
 
     def at_changes(self, rows: Array, time: Array, velocity: Array) -> tuple[Array, Array, Array]:

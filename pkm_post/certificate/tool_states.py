@@ -4,7 +4,8 @@
 Input: a strut motion as read back, and a planned motion as the start value for each pose; the poses found do not
 depend on it. Output: tip, axis and velocity of the tip, with error bounds. Poses come from the tool's cubics
 (``tool_spline``) or from forward kinematics: mostly by linear steps from the plan (``refine_poses``); by Newton's
-method where these do not converge. Where the Jacobian changes a lot, each pose has its own for the velocity.
+method where these do not converge. Where the Jacobian changes a lot, or the feed changes, each pose has its own for
+the velocity.
 """
 
 from __future__ import annotations
@@ -92,7 +93,9 @@ def states_by_kinematics(task: PlaybackTask, rows: Array, shares: Array) -> Tool
     tip, axis = np.array(pose.tip.T, order="C"), np.array(pose.axis.T, order="C")
     velocity = np.array(map_to_tool(inverses[0][:, :3], inverses[1][:, :3], speed, shares), order="C").reshape(3, -1)
     speed = speed.reshape(-1, 6)
-    varying = np.flatnonzero(found & ~np.repeat(task.knots.alike[rows], len(shares)))
+    # what is missed at the highest speed of an interval would exceed its lowest feed
+    alike = task.knots.alike[rows] & ~task.feeds.several[rows]
+    varying = np.flatnonzero(found & ~np.repeat(alike, len(shares)))
     if len(varying):
         there = ToolPoses(tip[:, varying].T, axis[:, varying].T, pose.spin[varying], tool_length[varying])
         velocity[:, varying] = _velocity(jacobian_of_tip(machine, *there), speed[varying])
@@ -104,7 +107,7 @@ def states_by_kinematics(task: PlaybackTask, rows: Array, shares: Array) -> Tool
         )
     columns = np.stack([tip, axis, velocity]).reshape(3, 3, len(rows), -1).swapaxes(2, 3)
     missed = np.zeros((3, len(rows)))
-    missed[2] = _SPEED_MISSED * length_of(*columns[2]).max(axis=0)
+    missed[2] = np.where(alike, _SPEED_MISSED * length_of(*columns[2]).max(axis=0), 0.0)
     return ToolStates(columns[0], columns[1], columns[2], missed, found.reshape(len(rows), -1).T)
 
 

@@ -25,8 +25,6 @@ LONGEST_MS = 4095
 _SECOND_MS = 1000
 _ROOM = 0.95
 """Share of the block rate to aim for: saves rounds."""
-SLOWDOWN = 0.7
-"""Feed factor where even the shortest interval is out of tolerance."""
 _POWER = 4
 """Power of its length with which a cubic deviates from a smooth curve."""
 _ROUNDS = 4

@@ -55,7 +55,7 @@ _FOR_CURVES = 0.6
 """Share of the tolerances for curves that replace short lines."""
 LONGEST_MOTION = 7 * 86_400.0
 """s: a week, which amounts to five million points and more."""
-_MOST_ROUNDS = 8
+_MOST_ROUNDS = 20
 """Most rounds of slower planning for the controller; the certificate refuses any excess left."""
 _STATIONS_AT_ONCE = 4096
 """Stations per pass: keeps the working arrays in the processor's cache."""

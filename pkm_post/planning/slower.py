@@ -14,12 +14,16 @@ import numpy as np
 from pkm_post.geometry import Array, expand_counts
 from pkm_post.model import Machine, Motion
 from pkm_post.planning.interpolation import InterpolationCheck
-from pkm_post.planning.knots import SLOWDOWN, block_rate_factors
+from pkm_post.planning.knots import block_rate_factors
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.tool_path import ToolPath
 
 _AT_FEED = 0.95
 """Share of the feed above which the feed limits a motion."""
+_SLOWDOWN = 0.7
+"""Largest speed factor where an interval that cannot be cut is out of tolerance."""
+_POWER = 0.5
+"""Power of the deviation by which accelerations fall there: deviations fall with the first to second power of these."""
 _ROOM = 0.99
 """Share of an exceeded limit to aim for: saves rounds."""
 
@@ -58,7 +62,8 @@ def too_coarse(times: Array, cubics: InterpolationCheck, shortest: int) -> Array
     start, end = start[rows], end[rows]
     factor, wide = np.ones(len(rows)), end - start > 1
     if wide.any():
-        factor[wide] = np.where(cubics.error(start[wide], end[wide]) > 1, SLOWDOWN**2, 1.0)
+        error = np.maximum(cubics.error(start[wide], end[wide]), 1.0)
+        factor[wide] = np.where(error > 1, np.minimum(_SLOWDOWN**2, error**-_POWER), 1.0)
     if not wide.all():
         use = cubics.use_of_limits(start[~wide], end[~wide])
         factor[~wide] = np.where(use > 1, _ROOM / np.maximum(use, 1.0), 1.0)

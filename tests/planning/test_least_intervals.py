@@ -10,6 +10,7 @@ from machines import without_jerk
 from posted_jobs import NARROW, finding, of, preset
 from programs import random_job
 
+from pkm_post.planning import motion as motion_of_plan
 from pkm_post.planning.knots import block_rate_factors, slower_feed
 
 ROUGH = (0.05, 0.05)
@@ -62,7 +63,17 @@ def test_the_jobs_have_seconds_with_more_blocks_than_that():
     assert max(blocks_of_busiest_second(free(seed).time_ms) for seed in SEEDS) > 50
 
 
-def test_a_path_that_needs_closer_points_is_refused_for_that():
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("shortest", [50, 100])
+def test_plans_are_as_slow_as_long_intervals_require(seed, shortest):
+    _, _, motion, _, certificate, faults = of(on(shortest), job(seed), NARROW)
+    assert faults == ()
+    assert finding(certificate, "shortest interval").value >= shortest
+    assert motion.time_ms[-1] > free(seed).time_ms[-1]
+
+
+def test_a_path_that_needs_closer_points_is_refused_for_that(monkeypatch):
+    monkeypatch.setattr(motion_of_plan, "_MOST_ROUNDS", 1)
     *_, faults = of(on(100), job(2), NARROW)
     assert {fault.code for fault in faults} == {"V119"}
     assert all("controller.shortest_interval is 100" in fault.found for fault in faults)
