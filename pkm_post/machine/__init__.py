@@ -27,7 +27,7 @@ from pkm_post.machine.kinematics.jacobian import (
     solve_regular,
 )
 from pkm_post.machine.kinematics.placed_machine import has_strut_bodies
-from pkm_post.machine.kinematics.rates import strut_rate_bounds, strut_rates, tool_rates
+from pkm_post.machine.kinematics.rates import strut_jerk_bound, strut_rate_bounds, strut_rates, tool_rates
 from pkm_post.machine.kinematics.stiffness import stiffness_along
 from pkm_post.machine.kinematics.strut_cubics import KnotState, map_to_tool, strut_state
 from pkm_post.machine.kinematics.tool_cubics import DRIFT_SHARES, Demand, ToolCubics, bounded_demand, measured_demand
@@ -134,6 +134,7 @@ __all__ = [
     "stiffness_along",
     "stiffness_map",
     "strut_lengths",
+    "strut_jerk_bound",
     "strut_rate_bounds",
     "strut_rates",
     "table_poses",

@@ -31,7 +31,7 @@ from pkm_post.planning.tool_path import ToolPath
 
 _HIGHEST_SHARE = 0.98
 """Largest planned share of an acceleration limit; the rest is for decimals and the gaps between places."""
-_JERK_SHARE = 0.99
+JERK_SHARE = 0.99
 """Planned share of a jerk limit; the rest is for the gaps between places."""
 _SWITCH = 2 / 27
 """Overshoot of a cubic over an interval h beyond the highest acceleration of a motion with jerk J, per J h: the
@@ -78,15 +78,14 @@ class Demands:
         station = np.minimum(np.searchsorted(marks.s, s), len(marks.s) - 1)
         segment, u = marks.segment[station], marks.u[station] - (marks.s[station] - s)
         poses = path.within(segment, u)
-        bounded = limited_quantities(machine, poses)
+        bounded = planned(machine, limited_quantities(machine, poses))
         ceiling = feed_at(path, poses, u) ** 2
         for item in bounded:
             if np.isfinite(item.speed):
                 size = np.maximum(_largest(item.first, item.each), _NEGLIGIBLE)
                 ceiling = np.minimum(ceiling, (item.speed / size) ** 2)
         limited = (item for item in bounded if np.isfinite([item.acceleration, item.jerk]).any())
-        interval = (2 * machine.shortest_interval - 1) * _MS  # the longest that cannot be cut
-        return cls(s, ceiling, tuple(replace(item, acceleration=_planned(item, interval)) for item in limited))
+        return cls(s, ceiling, tuple(limited))
 
     def joined(self, other: Demands) -> Demands:
         """Merge with other demands, in order."""
@@ -156,7 +155,7 @@ class Demands:
                     along = np.minimum(along, item.acceleration / _largest(item.first, item.each))
                     square = np.minimum(square, item.acceleration / _largest(item.second, item.each))
                 if np.isfinite(item.jerk):
-                    limit = _JERK_SHARE * item.jerk
+                    limit = JERK_SHARE * item.jerk
                     growth = np.minimum(growth, limit / _largest(item.first, item.each))
                     square = np.minimum(square, (limit / self._largest_third(item)) ** (2 / 3))
         of_cell = np.minimum(np.minimum(square[:-1:2], square[2::2]), square[1::2])
@@ -210,7 +209,13 @@ class Demands:
         return faster
 
 
-def _planned(item: LimitedQuantity, interval: float) -> float:
+def planned(machine: Machine, quantities: tuple[LimitedQuantity, ...]) -> tuple[LimitedQuantity, ...]:
+    """The same quantities with accelerations to plan with, so that the cubics in intervals keep their limits."""
+    longest = (2 * machine.shortest_interval - 1) * _MS  # interval that cannot be cut
+    return tuple(replace(item, acceleration=_planned_acceleration(item, longest)) for item in quantities)
+
+
+def _planned_acceleration(item: LimitedQuantity, interval: float) -> float:
     """Acceleration to plan with so that the cubic in an interval keeps the limit."""
     if not np.isfinite(item.acceleration):
         return item.acceleration
@@ -227,7 +232,7 @@ def _of_acceleration(item: LimitedQuantity, rows: Array | slice) -> Array:
 def _of_jerk(item: LimitedQuantity, rows: Array, third: Array) -> Array:
     """The same for the jerk divided by the speed."""
     first, second = (_columns(one[rows]) for one in (item.first, item.second))
-    return np.stack([first, 3 * second, _columns(third)]) / (_JERK_SHARE * item.jerk)
+    return np.stack([first, 3 * second, _columns(third)]) / (JERK_SHARE * item.jerk)
 
 
 def _columns(vectors: Array) -> Array:

@@ -16,10 +16,12 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.model import Machine, checkpoint
+from pkm_post.planning.jerk_bounds import steady_at_feed
 from pkm_post.planning.jerk_demands import Demands, Steady
 from pkm_post.planning.jerk_search import TOO_FAST, Iterate, NotFoundError
 from pkm_post.planning.jerk_start import first_places, start, with_middles
 from pkm_post.planning.jerk_windows import Places, Window, windows
+from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.speed_profile import Stations, inserted
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import columns_in_workers, in_workers
@@ -49,9 +51,12 @@ class JerkLimitedProfile:
     acceleration: Array
 
 
-def jerk_limited(path: ToolPath, marks: Stations, machine: Machine) -> JerkLimitedProfile:
-    """The fastest motion along a path; its places include all joints and rests."""
-    places = _places(path, marks, machine)
+def jerk_limited(
+    path: ToolPath, marks: Stations, machine: Machine, bounds: DerivativeBounds | None = None
+) -> JerkLimitedProfile:
+    """The fastest motion along a path with certain bounds; its places include all joints and rests."""
+    rough = steady_at_feed(path, machine, DerivativeBounds.of(path) if bounds is None else bounds)
+    places = _places(path, marks, machine, rough)
 
     def found(window: Window) -> _Found:
         return _searched(path, marks, machine, window)
@@ -63,10 +68,43 @@ def jerk_limited(path: ToolPath, marks: Stations, machine: Machine) -> JerkLimit
     return _from_rest_to_rest(_joined(parts, places))
 
 
-def _places(path: ToolPath, marks: Stations, machine: Machine) -> Places:
+def _places(path: ToolPath, marks: Stations, machine: Machine, rough: Steady) -> Places:
     """Initial places, and the known parts of the motion."""
     s, rest = first_places(marks)
+    steady = _steady(path, marks, machine, s, rough)
+    fastest_square, held = start(s, rest, steady)
+    return Places(s, rest, fastest_square, held, steady.of_cell, np.full(len(held), np.inf))
+
+
+def _steady(path: ToolPath, marks: Stations, machine: Machine, s: Array, rough: Steady) -> Steady:
+    """Bounds of M places: exact ones, but for places between cells where rough ones allow the feed."""
+    segment = np.searchsorted(path.starts, (s[1:] + s[:-1]) / 2, side="right") - 1
+    unknown = np.isnan(rough.of_cell[segment])
+    exact = _at_ends(unknown)
+    computed = _at_ends(exact[1:] | exact[:-1])  # the outermost places have a wider cell than they should
+    computed[:2] = True
     checkpoint()
+    found, row = _exact_steady(path, marks, machine, s[computed]), np.cumsum(computed) - 1
+    square, along, growth = (_lower(one[segment]) for one in (rough.square, rough.along, rough.growth))
+    of_place, of_cell = row[exact], rough.of_cell[segment]
+    checkpoint()
+    square[exact], along[exact], growth[exact] = found.square[of_place], found.along[of_place], found.growth[of_place]
+    of_cell[unknown] = found.of_cell[row[:-1][unknown]]
+    return Steady(square, along, growth, of_cell)
+
+
+def _at_ends(cells: Array) -> Array:
+    """Places at an end of any of these cells."""
+    return np.append(cells, False) | np.append(False, cells)
+
+
+def _lower(of_cells: Array) -> Array:
+    """The lower of the values of the cells on either side of each place."""
+    return np.minimum(np.append(of_cells, of_cells[-1]), np.append(of_cells[0], of_cells))
+
+
+def _exact_steady(path: ToolPath, marks: Stations, machine: Machine, s: Array) -> Steady:
+    """Bounds of M places and the cells between them, from the demands there."""
 
     def allowed(cells: slice) -> tuple[Array, ...]:
         first, last = max(cells.start - 1, 0), min(cells.stop + 1, len(s))  # a place has a cell on either side
@@ -76,9 +114,7 @@ def _places(path: ToolPath, marks: Stations, machine: Machine) -> Places:
         return steady.square[rows], steady.along[rows], steady.growth[rows], of_cell
 
     square, along, growth, of_cell = columns_in_workers(len(s), _PLACES_AT_ONCE, allowed)
-    steady = Steady(square, along, growth, of_cell[:-1])
-    fastest_square, held = start(s, rest, steady)
-    return Places(s, rest, fastest_square, held, steady.of_cell, np.full(len(held), np.inf))
+    return Steady(square, along, growth, of_cell[:-1])
 
 
 @dataclass(frozen=True)

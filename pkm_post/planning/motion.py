@@ -195,7 +195,7 @@ def _schedule(path: ToolPath, machine: Machine, bounds: DerivativeBounds, share:
         _TooLongError: the motion exceeds ``LONGEST_MOTION``.
     """
     if limits_jerk(machine):
-        return _without_jumps(path, machine)
+        return _without_jumps(path, machine, bounds)
     planned = float(share.max())
     rough = rough_limits(path, machine, bounds, planned)
     close = below_feed(path, *rough) | (share < planned)
@@ -227,12 +227,12 @@ def _way(path: ToolPath, marks: Stations) -> tuple[PosePath, Array]:
     return PosePath.straight(*columns_in_workers(len(marks.s), _STATIONS_AT_ONCE, columns)), marks.segment
 
 
-def _without_jumps(path: ToolPath, machine: Machine) -> Schedule:
+def _without_jumps(path: ToolPath, machine: Machine, bounds: DerivativeBounds) -> Schedule:
     """The schedule for a jerk-limited machine."""
     from pkm_post.planning.jerk_limits import jerk_limited
 
     marks = stations(path)
-    profile = jerk_limited(path, marks, machine)
+    profile = jerk_limited(path, marks, machine, bounds)
     _check_duration(profile.s, profile.square, marks)
     return Schedule.of(
         marks, profile.s, profile.rest, profile.square, profile.acceleration, shortest_ms=machine.shortest_interval

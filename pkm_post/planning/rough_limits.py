@@ -155,7 +155,7 @@ def rough_limits(path: ToolPath, machine: Machine, bounds: DerivativeBounds, sha
     part of the planned share of the limits.
     """
     square, along = feed_of_path_length(path.feed, bounds.tip_1) ** 2, np.full(len(path.feed), NO_LIMIT)
-    for item in _quantities(machine, path, bounds):
+    for item in rough_quantities(machine, path, bounds):
         checkpoint()
         planned = share * item.acceleration
         square = lowered(square, item.speed, item.first, 2)
@@ -166,7 +166,7 @@ def rough_limits(path: ToolPath, machine: Machine, bounds: DerivativeBounds, sha
     return square, along
 
 
-def _quantities(machine: Machine, path: ToolPath, bounds: DerivativeBounds) -> tuple[LimitedQuantity, ...]:
+def rough_quantities(machine: Machine, path: ToolPath, bounds: DerivativeBounds) -> tuple[LimitedQuantity, ...]:
     """The quantities limited by a machine, with bounds on the magnitudes of their derivatives, (N, 1)."""
     tip, axis = (bounds.tip_1, bounds.tip_2), (bounds.axis_1, bounds.axis_2)
     spin = bounds.spin_1, bounds.spin_2

@@ -120,7 +120,7 @@ def next_segment(path: ToolPath, segment: Array, u: Array) -> Array:
     return np.minimum(segment + (u == path.segments.extent[segment]), len(path.feed) - 1)
 
 
-def lowered(square: Array, limit: float, size: Array, power: int) -> Array:
+def lowered(square: Array, limit: float, size: Array, power: float) -> Array:
     """Lower values, (M,), to a power of the limit divided by the largest size in each row, (M, C)."""
     if not np.isfinite(limit):
         return square

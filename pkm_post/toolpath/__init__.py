@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pkm_post.toolpath.compensation.cutter import Cutter
     from pkm_post.toolpath.compensation.offset_options import OffsetOptions
     from pkm_post.toolpath.compensation.swept_volume import SweptVolume, stock_left
-    from pkm_post.toolpath.compressor.bounds import SplineBounds
+    from pkm_post.toolpath.compressor.bounds import SplineBounds, tip_jerk_bound
     from pkm_post.toolpath.from_line import StartLine, modal_events, not_repeated, row_of_line, started_at_line
     from pkm_post.toolpath.machine_offsets import MachineOffsets, with_machine_offsets
     from pkm_post.toolpath.optional_stops import OPTIONAL_STOPS, with_optional_stops
@@ -46,7 +46,7 @@ else:
             "compensation.cutter": "Cutter",
             "compensation.offset_options": "OffsetOptions",
             "compensation.swept_volume": "SweptVolume stock_left",
-            "compressor.bounds": "SplineBounds",
+            "compressor.bounds": "SplineBounds tip_jerk_bound",
             "from_line": "StartLine started_at_line modal_events not_repeated row_of_line",
             "machine_offsets": "MachineOffsets with_machine_offsets",
             "optional_stops": "OPTIONAL_STOPS with_optional_stops",
@@ -101,6 +101,7 @@ __all__ = [
     "mirror_gap",
     "pose_columns",
     "SplineBounds",
+    "tip_jerk_bound",
     "StartLine",
     "started_at_line",
     "modal_events",

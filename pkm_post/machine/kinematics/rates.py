@@ -203,6 +203,8 @@ def _without_acceleration(machine: Machine, tip: Array, rotation: Array, tool_le
 
 _NEARER = 0.99
 """Rounded corners and cubics may make a strut slightly shorter than on the path that is proven within the stroke."""
+_ACROSS = 2 / 27**0.5
+"""Maximum of x (1 - x^2)."""
 
 Pair = tuple[Array, Array]
 
@@ -235,6 +237,24 @@ def strut_rate_bounds(
     turn, turn_1 = _turning(axis, spin, half_tilt)
     speed = tip[0] + arm * turn
     return speed, tip[1] + arm * (turn_1 + turn**2) + speed**2 / shortest
+
+
+def strut_jerk_bound(machine: Machine, first: Array, second: Array, third: Array) -> Array:
+    """Bound of the third derivative of any strut length, (N,), where the tool does not turn; as ``strut_rate_bounds``.
+
+    The derivatives of the tip are v, a and b. With w and c, the parts of v and a across a strut of length l, its third
+    derivative is b along the strut + 3 (w c - l' w^2 / l) / l, where l' w^2 <= 2 / 27^(1/2) v^3.
+
+    Args:
+        machine: the geometry.
+        first: size of the first derivative of the tip, (N,).
+        second: of the second, (N,).
+        third: of the third, (N,).
+    """
+    shortest = least_joint_distance(machine)
+    if machine.screw_lead != 0.0 or shortest <= 0:
+        return np.full(len(first), np.inf)
+    return third + 3 * first * (second + _ACROSS * first**2 / shortest) / shortest
 
 
 def _turning(axis: Pair, spin: Pair, half_tilt: Array) -> Pair:

@@ -8,6 +8,7 @@ whole piece. The axis is the direction k = v / m of a vector polynomial: with n 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import comb
 
@@ -40,9 +41,23 @@ class SplineBounds:
         def columns(pieces: slice) -> tuple[Array, ...]:
             return _of_pieces(splines.powers[..., pieces], splines.width[pieces])
 
-        of_pieces = columns_in_workers(len(splines.begin), _PIECES_AT_ONCE, columns)
-        first_piece, last_piece = splines.pieces_of_rows()
-        return cls(*(_over(one, first_piece, last_piece) for one in of_pieces))
+        return cls(*_of_rows(splines, columns))
+
+
+def tip_jerk_bound(splines: Splines) -> Array:
+    """Upper bound of the magnitude of the third derivative of the tip on the rows of runs, (M,)."""
+
+    def columns(pieces: slice) -> tuple[Array, ...]:
+        return (_largest(_derivative(splines.powers[:, TIP, pieces], splines.width[pieces], 3)),)
+
+    return _of_rows(splines, columns)[0]
+
+
+def _of_rows(splines: Splines, columns: Callable[[slice], tuple[Array, ...]]) -> list[Array]:
+    """The largest values of the pieces on which each row lies, (M,), of columns by piece."""
+    of_pieces = columns_in_workers(len(splines.begin), _PIECES_AT_ONCE, columns)
+    first_piece, last_piece = splines.pieces_of_rows()
+    return [_over(one, first_piece, last_piece) for one in of_pieces]
 
 
 def _of_pieces(powers: Array, width: Array) -> tuple[Array, ...]:
