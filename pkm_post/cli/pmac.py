@@ -203,6 +203,8 @@ def _add_own(parser: argparse.ArgumentParser, name: str) -> None:
 
         near = "how far each strut and the tip may be from the first point (%(default)s)"
         parser.add_argument("--near", type=positive, default=START_TOLERANCE_MM, metavar="MM", help=near)
+    if name in ("run", "continue"):
+        parser.add_argument("--no-watch", action="store_true", help="leave it to the controller once it runs")
     elif name == "abort":
         parser.add_argument("--at-once", action="store_true", help="without a hold before: the struts leave the path")
     elif name == "monitor":

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
+from pkm_post.cli.pmac_manual import watched
 from pkm_post.cli.pmac_stop import JobTarget, ProgramTarget, Target, abort, held_at_the_end, hold, signals_interrupt
 
 if TYPE_CHECKING:
@@ -83,22 +84,21 @@ def _no_progress(done: int, lines: int) -> None:
 
 
 def start(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
-    """Start the program from its beginning."""
+    """Start the program from its beginning, and watch it."""
     from pkm_post.control.link import check_setup, start_program
 
     check_setup(session, target.settings, target.machine.strut_stroke)
     job = target.job
     with held_at_the_end(session, target.settings):
-        return _print_state(
-            start_program(session, target.settings, job.program, job.first, namespace.near, target.machine)
-        )
+        status = start_program(session, target.settings, job.program, job.first, namespace.near, target.machine)
+        return watched(session, target, namespace, status)
 
 
 def resume(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Resume after a hold."""
-    from pkm_post.control.link import resume_program
+    from pkm_post.control.link import resume_program, watch_resumed
 
-    return _print_state(resume_program(session, target.settings))
+    return _print_state(watch_resumed(session, target.settings, resume_program(session, target.settings)))
 
 
 def status(session: Session, target: Target, namespace: argparse.Namespace) -> int:

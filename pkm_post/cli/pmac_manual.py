@@ -97,6 +97,29 @@ def ended_elsewhere(status: Status, lengths: Array) -> bool:
     return bool(words)
 
 
+def watched(session: Session, target: JobTarget, namespace: argparse.Namespace, status: Status) -> int:
+    """Print the state of a program, and watch it until it rests at its end or at one of its stops.
+
+    Args:
+        session: an open session.
+        target: with the program.
+        namespace: tells whether the program is left to itself.
+        status: after its start.
+    """
+    from pkm_post.control.link import state_text, watch_program
+    from pkm_post.control.numerical_control import program_stops, target_deviation
+
+    print(state_text(status), flush=True)
+    if namespace.no_watch:
+        return 0
+    status = watch_program(session, target.settings)
+    rests = [target.job.motion.length[-1], *(stop.length for stop in program_stops(target.job))]
+    if ended_elsewhere(status, min(rests, key=lambda rest: target_deviation(status, rest))):
+        return 1
+    print(state_text(status))
+    return 0
+
+
 _WATCH_S = 0.2
 _THERE_MM = 1e-3
 """mm of a strut: within this distance of the start of a program no approach is planned."""
@@ -226,16 +249,14 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
 
 
 def continue_after_stop(session: Session, target: JobTarget, namespace: argparse.Namespace) -> int:
-    """Continue after a stop (M0, M1) of the program."""
-    from pkm_post.control.link import state_text
+    """Continue after a stop (M0, M1) of the program, and watch it."""
     from pkm_post.control.numerical_control import continue_after_stop
 
     with held_at_the_end(session, target.settings):
         status = continue_after_stop(
             session, target.machine, target.settings, target.job, namespace.stop, namespace.near
         )
-        print(state_text(status))
-    return 0
+        return watched(session, target, namespace, status)
 
 
 def override(session: Session, target: Target, namespace: argparse.Namespace) -> int:

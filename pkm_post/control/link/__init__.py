@@ -14,7 +14,14 @@ from pkm_post.control.link.errors import (
 from pkm_post.control.link.ownership import claim, owned
 from pkm_post.control.link.ports import Port, port_named
 from pkm_post.control.link.program import PmacJob, PmacProgram
-from pkm_post.control.link.run import check_setup, resume_program, set_feed_override, start_program
+from pkm_post.control.link.run import (
+    check_setup,
+    resume_program,
+    set_feed_override,
+    start_program,
+    watch_program,
+    watch_resumed,
+)
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.ssh_link import PASSWORD, ssh_package
 from pkm_post.control.link.status import Array, Bits, Status, is_busy, read_status, settled_status
@@ -60,4 +67,6 @@ __all__ = [
     "start_program",
     "state_text",
     "stream",
+    "watch_program",
+    "watch_resumed",
 ]

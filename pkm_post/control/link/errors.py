@@ -134,6 +134,18 @@ class DownloadError(PmacError):
         self.cleared = cleared
 
 
+class OverrideError(PmacError):
+    """The override is above the one for which the motion is certified; the machine was held.
+
+    Attributes:
+        reason: the override and its limit, without the state of the machine.
+    """
+
+    def __init__(self, reason: str, held: bool) -> None:
+        super().__init__(f"{reason}; the machine is {'held: abort' if held else 'at rest'}")
+        self.reason = reason
+
+
 class StreamError(PmacError):
     """A program could not be streamed to its end.
 

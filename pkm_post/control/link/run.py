@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Run: check, start and resume a program, and set its override. Each command is sent once, then the state is read.
+"""Run: check, start and resume a program, watch its override. Each command is sent once, then the state is read.
 
 Hold and abort are in ``stopping``. ``Q`` is not offered: it would end a program at a knot where the struts are moving.
 The controller's state reflects a command with a short delay, so it is polled. Preconditions in controller and machine
@@ -17,8 +17,9 @@ from decimal import Decimal
 
 import numpy as np
 
+from pkm_post.control.link import stopping
 from pkm_post.control.link.download import verify_listing
-from pkm_post.control.link.errors import NotReadyError, OutcomeUnknownError, PmacError
+from pkm_post.control.link.errors import NotReadyError, OutcomeUnknownError, OverrideError, PmacError
 from pkm_post.control.link.owner_record import RESUMED_BY_ALL
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.power_setup import setup_faults
@@ -261,6 +262,56 @@ def _override(session: Session, settings: AnySettings, percent: float, meanwhile
     raise PmacError(
         f"the time base stays at {status.override:g} % after %{percent:g}: {source} may select another source"
     )
+
+
+def check_override(session: Session, settings: AnySettings, status: Status, where: str = "") -> None:
+    """Hold a running program on its path at an override for which no motion is certified.
+
+    Args:
+        session: an open session.
+        settings: of the controller.
+        status: the last one read.
+        where: the place, as text.
+
+    Raises:
+        OverrideError: the override is above 100 %, set from elsewhere.
+    """
+    if not status.running or status.held or status.override <= HIGHEST_OVERRIDE:
+        return
+    held = stopping.hold(session, settings).held
+    at = f"{status.override:g} % {where}".rstrip()
+    limit = f"the motion is certified for at most {HIGHEST_OVERRIDE:g} %"
+    raise OverrideError(f"the override is {at}, set from elsewhere: {limit}", held)
+
+
+def watch_program(session: Session, settings: AnySettings) -> Status:
+    """Poll until no program runs and the struts are at rest; a held program is waited for.
+
+    Raises:
+        OverrideError: as ``check_override``.
+    """
+    while True:
+        status = read_status(session, settings)
+        if status.standing and not status.running:
+            return status
+        check_override(session, settings, status)
+        session.sleep(_POLL_S)
+
+
+def watch_resumed(session: Session, settings: AnySettings, status: Status) -> Status:
+    """Poll until the time base is steady after a resume: a held one does not show the override that it returns to.
+
+    Raises:
+        OverrideError: as ``check_override``.
+    """
+    until = session.now() + OVERRIDE_S
+    while status.running and not status.held and session.now() < until:
+        check_override(session, settings, status)
+        session.sleep(_POLL_S)
+        before, status = status, read_status(session, settings)
+        if status.override == before.override:
+            break
+    return status
 
 
 def _start_motion(session: Session, settings: AnySettings, order: str, goes: Callable[[Status], bool]) -> Status:

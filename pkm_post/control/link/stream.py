@@ -5,7 +5,7 @@ The program is sent in segments that end with STOP at rest (``rotary_buffer``). 
 in the buffer and the previous one has ended; while it runs, the next one is sent. So a cut link ends at rest without
 any help. When the link is back, the stream waits until the controller is at rest and queries the number of lines ahead,
 which shows how many of the last lines arrived. If the number is inconsistent, or the machine is not at the end of the
-segment, the stream does not continue.
+segment, the stream does not continue. Above the override for which the program is certified it is held, then aborted.
 
 Input: a session, settings, a program, the size of the rotary buffer. Output: a record of the executed program.
 """
@@ -18,11 +18,19 @@ from dataclasses import dataclass
 from itertools import accumulate
 
 from pkm_post.control.link import stopping
-from pkm_post.control.link.errors import CancelledError, LinkLostError, PmacError, RefusedError, StreamError
+from pkm_post.control.link.errors import (
+    CancelledError,
+    LinkLostError,
+    OverrideError,
+    PmacError,
+    RefusedError,
+    StreamError,
+)
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.program import PmacProgram
+from pkm_post.control.link.queries import read_number
 from pkm_post.control.link.rotary_buffer import ATTEMPTS, RotaryBuffer, Segment, split_into_segments
-from pkm_post.control.link.run import check_start
+from pkm_post.control.link.run import HIGHEST_OVERRIDE, check_override, check_start
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import Array, Status, read_status, settled_status
 from pkm_post.model import Machine
@@ -31,6 +39,8 @@ from pkm_post.writing import PmacSettings
 
 _NOT_OPEN, _NO_ROOM = 5, 6
 _POLL_S = 0.05
+_WATCH_S = 0.2
+"""Interval at which the override is read while lines are sent."""
 _QUIET_POLLS = 20
 """Consecutive readings of the machine at rest in the wrong place before the stream fails."""
 
@@ -62,6 +72,7 @@ class RotaryStream:
         self._ends = list(accumulate(len(segment.lines) for segment in segments))
         self._buffer = RotaryBuffer(session, settings, [line for each in segments for line in each.lines], words)
         self._let_go = 0  # lines
+        self._watched_at = session.now()
 
     def open(self) -> None:
         """Open an empty rotary buffer and point the coordinate system to it."""
@@ -99,8 +110,8 @@ class RotaryStream:
             if not at_once:
                 self._wait(lambda: None)
                 return
-        except KeyboardInterrupt:
-            pass  # the user wants to end now
+        except (KeyboardInterrupt, OverrideError):
+            pass  # the user wants to end now, or the machine is held
         stopping.abort(self._session, self._settings)
         self._wait(lambda: None)
 
@@ -115,6 +126,7 @@ class RotaryStream:
         while self._buffer.loaded < end:
             check()
             try:
+                self._watch_override()
                 if not self._buffer.send(end):
                     self._session.sleep(_POLL_S)
             except (LinkLostError, RefusedError) as fault:
@@ -125,11 +137,24 @@ class RotaryStream:
                 _log.warning("the stream was interrupted: %s", fault)
                 self._settle(check)
 
+    def _watch_override(self) -> None:
+        """Check the override now and then while the released lines run; the whole state is long for a serial line.
+
+        Raises:
+            OverrideError: it is above that of the certificate; the machine is held.
+        """
+        if self._session.now() - self._watched_at < _WATCH_S:
+            return
+        if read_number(self._session, f"&{self._settings.coordinate_system}%") > HIGHEST_OVERRIDE:
+            check_override(self._session, self._settings, read_status(self._session, self._settings))
+        self._watched_at = self._session.now()
+
     def _wait(self, check: Callable[[], None]) -> Status:
         """Wait until the controller has finished the released lines, or was stopped, and the struts are at rest."""
         quiet = 0
         while True:
             status = read_status(self._session, self._settings)
+            check_override(self._session, self._settings, status)
             quiet = 0 if status.running or not status.standing else quiet + 1
             # The state reflects R with a delay.
             if quiet and (quiet >= _QUIET_POLLS or self._is_done()):
@@ -267,7 +292,8 @@ def _streamed(
 
 def _ended(streaming: RotaryStream, fault: PmacError | KeyboardInterrupt) -> PmacError:
     """End an incomplete stream; return the exception that describes its state."""
-    is_empty = streaming.end(at_once=isinstance(fault, KeyboardInterrupt))
+    is_empty = streaming.end(at_once=isinstance(fault, KeyboardInterrupt | OverrideError))
     if isinstance(fault, CancelledError | KeyboardInterrupt) and is_empty:
         return CancelledError("the stream was stopped; the machine rests, the rotary buffer is empty")
-    return StreamError(str(fault) or "the stream was stopped", streaming.line, is_empty)
+    why = fault.reason if isinstance(fault, OverrideError) else str(fault)
+    return StreamError(why or "the stream was stopped", streaming.line, is_empty)

@@ -17,7 +17,14 @@ from typing import TypeVar
 
 from pkm_post.control.link import run, stopping
 from pkm_post.control.link.download import DownloadResult, Progress, download
-from pkm_post.control.link.errors import CancelledError, LinkLostError, NotOwnerError, NotReadyError, PmacError
+from pkm_post.control.link.errors import (
+    CancelledError,
+    LinkLostError,
+    NotOwnerError,
+    NotReadyError,
+    OverrideError,
+    PmacError,
+)
 from pkm_post.control.link.ownership import claim
 from pkm_post.control.link.program import PmacJob
 from pkm_post.control.link.run import check_setup
@@ -105,13 +112,15 @@ class NumericalControl:
         """Read the state once and renew the watchdog of a jog; a lost link is a state, not an error."""
         try:
             status = read_status(self._session, self._settings)
-            self._drop_watchdog(status)
+            self._watchdog = self._watchdog if status.running else None
             self.renew()
+            if self._session.keeper is not None:  # others watch what they started themselves
+                run.check_override(self._session, self._settings, status)
         except CancelledError:
             return self._last  # a stop has priority; the next reading catches up
-        except NotOwnerError as fault:
+        except (NotOwnerError, OverrideError) as fault:
             _log.warning("%s", fault)
-            if self._session.keeper is not None:
+            if isinstance(fault, NotOwnerError) and self._session.keeper is not None:
                 self._session.keeper.release()
             return self._last
         except PmacError as fault:
@@ -189,7 +198,8 @@ class NumericalControl:
         else:
             status = self._with_ownership("run", lambda: execute.execute(*order, start_tolerance))
         if plan.block and self._blocks is not None:
-            self._set_next_block(self._blocks[0], plan.block + 1)
+            blocks, number = self._blocks[0], plan.block + 1
+            self._blocks, self._block = (blocks, number), blocks.shown(number)
         return status
 
     @property
@@ -211,7 +221,7 @@ class NumericalControl:
     def wait_for_rest(self, seconds: float) -> Status:
         """Poll until the machine rests, and renew the watchdog of a jog; as ``execute.wait_for_rest``."""
         status = execute.wait_for_rest(self._session, self._settings, seconds, self.renew)
-        self._drop_watchdog(status)
+        self._watchdog = self._watchdog if status.running else None
         return status
 
     def load(self, job: PmacJob, progress: Progress, is_cancelled: Callable[[], bool]) -> DownloadResult:
@@ -244,7 +254,7 @@ class NumericalControl:
         """
         if not 1 <= at <= len(blocks):
             raise ValueError(f"at: expected a block from 1 to {len(blocks)}, got {at}")
-        self._set_next_block(blocks, at)
+        self._blocks, self._block = (blocks, at), blocks.shown(at)
         return len(blocks)
 
     def plan_step(self) -> tuple[MovePlan | None, Findings]:
@@ -283,20 +293,10 @@ class NumericalControl:
         check_trigger(trigger)
         self._watch = self._with_ownership("home", lambda: start_homing(self._session, self._settings, trigger))
 
-    def _drop_watchdog(self, status: Status) -> None:
-        """Drop the watchdog of a program that has ended."""
-        if not status.running:
-            self._watchdog = None
-
-    def _set_next_block(self, blocks: ProgramBlocks, number: int) -> None:
-        """Make a block the next one."""
-        self._blocks, self._block = (blocks, number), blocks.shown(number)
-
     def _emergency(self) -> tuple[str, ...]:
         """Instructions after the link is lost; none before the first connection."""
-        if self._may_move:
-            return emergency_text(None)
-        return () if self._last.status is None else emergency_text(self._last.status)
+        is_silent = self._last.status is None and not self._may_move
+        return () if is_silent else emergency_text(None if self._may_move else self._last.status)
 
     def _with_ownership(self, what: str, order: Callable[[], Done]) -> Done:
         """Execute an order that moves the machine; keep ownership until the machine is seen at rest."""

@@ -13,12 +13,11 @@ from typing import Any
 import numpy as np
 
 from pkm_post.control.link import run as operate
-from pkm_post.control.link import stopping
 from pkm_post.control.link.download import download
 from pkm_post.control.link.errors import NotReadyError, PmacError
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.program import PmacJob, read_job
-from pkm_post.control.link.run import HIGHEST_OVERRIDE, check_setup, check_start
+from pkm_post.control.link.run import check_override, check_setup, check_start
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings, Array, Status, read_status
 from pkm_post.control.numerical_control.watchdog import Watchdog, watchdog_of
@@ -87,8 +86,7 @@ def wait_for_rest(
     until = session.now() + seconds
     while True:
         status = read_status(session, settings)
-        if status.running and not status.held and status.override > HIGHEST_OVERRIDE:
-            raise PmacError(held_above_plan(session, settings, status))
+        check_override(session, settings, status)
         if status.standing and (status.held or not status.running):
             return status
         if session.now() > until:
@@ -97,21 +95,6 @@ def wait_for_rest(
             )
         meanwhile()
         session.sleep(_POLL_S)
-
-
-def held_above_plan(session: Session, settings: AnySettings, status: Status, where: str = "") -> str:
-    """Hold the machine on its path at an override for which no motion is certified, and say so.
-
-    Args:
-        session: an open session.
-        settings: of the controller.
-        status: with the override.
-        where: the place, as text.
-    """
-    held = stopping.hold(session, settings).held
-    at = f"{status.override:g} % {where}".rstrip()
-    limit = f"the motion is certified for at most {HIGHEST_OVERRIDE:g} %"
-    return f"the override is {at}, set from elsewhere: {limit}; the machine is {'held: abort' if held else 'at rest'}"
 
 
 def target_deviation(status: Status, lengths: Array) -> float:

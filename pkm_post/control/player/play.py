@@ -16,12 +16,11 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 from pkm_post.control.link.download import download
-from pkm_post.control.link.errors import CancelledError, LinkLostError, PmacError
+from pkm_post.control.link.errors import CancelledError, LinkLostError, OverrideError, PmacError
 from pkm_post.control.link.ownership import owned
-from pkm_post.control.link.run import HIGHEST_OVERRIDE, check_setup, set_feed_override, start_program
+from pkm_post.control.link.run import check_override, check_setup, set_feed_override, start_program
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings, Status, read_status
-from pkm_post.control.numerical_control.execute import held_above_plan
 from pkm_post.control.player.block_skip import chosen_parts
 from pkm_post.control.player.certificate_log import CertificateLog
 from pkm_post.control.player.certified_motion import MotionState
@@ -278,10 +277,10 @@ class Player:
             PmacError: the override is above 100 %.
         """
         self.log.override = max(self.log.override, status.override)
-        if status.override <= HIGHEST_OVERRIDE:
-            return
-        where = self._way.text(self._feed.current)
-        raise PmacError(f"{held_above_plan(self._session, self._settings, status, where)}; go on with --from-line")
+        try:
+            check_override(self._session, self._settings, status, self._way.text(self._feed.current))
+        except OverrideError as fault:
+            raise PmacError(f"{fault}; go on with --from-line") from fault
 
     def _lose(self, lost: LinkLostError) -> None:
         """Note that the link is lost.

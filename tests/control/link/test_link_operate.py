@@ -12,7 +12,7 @@ from rig import SETTINGS, STROKE, Wire, controller
 from pkm_post.control.link import run as operate
 from pkm_post.control.link import stopping
 from pkm_post.control.link.download import download
-from pkm_post.control.link.errors import CancelledError, NotReadyError, OutcomeUnknownError, PmacError
+from pkm_post.control.link.errors import CancelledError, NotReadyError, OutcomeUnknownError, OverrideError, PmacError
 from pkm_post.control.link.program import read_job
 from pkm_post.control.link.run import check_setup, check_start
 from pkm_post.control.link.status import read_status
@@ -183,6 +183,25 @@ def test_a_move_that_another_client_speeds_up_is_held(wire, loaded):
     ):
         wait_for_rest(loaded, SETTINGS, 60.0)
     assert wire.controller.systems[0].holding and read_status(loaded, SETTINGS).override == 0.0
+
+
+def test_a_program_that_is_watched_is_held_at_an_override_beyond_the_plan(wire, loaded):
+    operate.start_program(loaded, SETTINGS, SLOW, FIRST)
+    wire.controller.systems[0].set_override(150.0)
+    with pytest.raises(OverrideError, match=r"the override is 1\d\d\S* %, set from elsewhere: .*: abort"):
+        operate.watch_program(loaded, SETTINGS)
+    with pytest.raises(OverrideError, match="the machine is held: abort"):
+        operate.watch_resumed(loaded, SETTINGS, operate.resume_program(loaded, SETTINGS))
+    assert wire.controller.systems[0].holding and read_status(loaded, SETTINGS).override == 0.0
+
+
+def test_a_program_is_watched_to_its_end_through_a_hold(wire, loaded):
+    operate.start_program(loaded, SETTINGS, SLOW, FIRST)
+    stopping.hold(loaded, SETTINGS)
+    status = operate.watch_resumed(loaded, SETTINGS, operate.resume_program(loaded, SETTINGS))
+    assert status.running and status.override == 100.0
+    status = operate.watch_program(loaded, SETTINGS)
+    assert not status.running and np.allclose(status.commanded, 500.0, atol=MICRON)
 
 
 def test_a_state_that_shows_a_command_late_is_waited_for(wire, loaded):

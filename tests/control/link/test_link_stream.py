@@ -156,6 +156,32 @@ def test_interrupted_it_is_held_and_aborted(kind):
     assert b"&1H" in wire.sent and b"&1A" in wire.sent
 
 
+@KINDS
+@pytest.mark.parametrize("running", [1, len(RESTS) - 1])
+def test_sped_up_by_another_client_it_is_held_and_aborted(kind, running):
+    """While lines are sent, and while the last segment runs."""
+    wire, highest = wired(kind), []
+    system = wire.controller.systems[0]
+
+    def sleep(seconds, passed=wire.sleep):
+        passed(seconds)
+        sent = bytes(wire.sent)
+        if not highest and sent.count(b"&1R\x0e" if kind == "serial" else b"&1R") == running and system.running:
+            system.set_override(150.0)
+            highest.append(0.0)
+        if highest:
+            highest.append(system.override)
+
+    wire.sleep = sleep
+    session = wire.session()
+    session.open()
+    with pytest.raises(StreamError, match=r"the override is 1\d\d\S* %, set from elsewhere: .*%; it rests") as failed:
+        streamed(session, wire)
+    assert failed.value.cleared and not wire.controller.memory.rotaries[1].lines
+    assert not wire.controller.runs_program() and path(wire).abrupt_stops == 0
+    assert 1.0 < max(highest) < 1.4 and wire.sent.index(b"&1H") < wire.sent.index(b"&1A")
+
+
 def test_interrupted_again_while_it_goes_to_the_next_rest():
     wire, calls = wired("tcp"), itertools.count()
 

@@ -71,7 +71,7 @@ def test_from_the_first_word_to_the_end_of_a_job(simulator, job, capsys, monkeyp
     assert capsys.readouterr().out.endswith(
         "done\n25\nthe controller refused 'FOO': ERR003, not understood, or wrong data\n"
     )
-    assert pmac("run", port, job) == 0
+    assert pmac("run", port, job, "--no-watch") == 0
     assert "a program runs" in capsys.readouterr().out
     assert pmac("hold", port) == 0 and pmac("resume", port) == 0
     assert pmac("abort", port) == 0 and not made.runs_program()
@@ -151,7 +151,7 @@ def test_arguments_without_sense(arguments):
 def test_one_client_has_the_machine_and_the_others_watch_and_stop(simulator, job, capsys, monkeypatch):
     made, port = simulator
     typed(monkeypatch, port, *(f"#{motor}J/ #{motor}HMZ" for motor in range(1, 7)))
-    assert pmac("download", port, job) == 0 and pmac("run", port, job) == 0
+    assert pmac("download", port, job) == 0 and pmac("run", port, job, "--no-watch") == 0
     name = port_named(port).name
     with try_lock(lock_path(name)) as lock:
         lock.describe({"user": "anna", "process": 4711, "what": "jog", "since": 0})

@@ -338,3 +338,15 @@ def test_a_reading_that_gives_way_to_a_stop_is_no_lost_link(station):
     assert station.control.poll() is before
     station.control.preempt_when(lambda: False)
     assert station.control.poll().lost
+
+
+def test_a_program_that_another_client_speeds_up_is_held_while_the_panel_polls(station, caplog):
+    plan, _ = station.control.plan_line("G91 G1 Z-20 F120")
+    station.control.execute(plan)
+    station.wire.controller.systems[0].set_override(150.0)
+    states = [station.wait(0.1) for _ in range(30)]
+    assert states[-1].status.held and states[-1].status.standing
+    assert [record.message for record in caplog.records if "set from elsewhere" in record.message]
+    station.control.resume()
+    assert [station.wait(0.1) for _ in range(30)][-1].status.held
+    assert not station.control.abort().running

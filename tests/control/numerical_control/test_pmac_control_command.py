@@ -4,7 +4,9 @@
 import copy
 import io
 import re
+import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -89,7 +91,7 @@ def test_the_way_to_the_start_of_a_program(simulator, capsys, tmp_path):
     assert pmac("run", port, file) == 1
     assert pmac("approach", port, file, "--feed", 3000) == 0
     assert "arrived" in capsys.readouterr().out
-    assert pmac("run", port, file) == 0
+    assert pmac("run", port, file, "--no-watch") == 0
     until_it_rests(made)
 
 
@@ -150,17 +152,49 @@ def test_behind_a_stop(simulator, capsys, tmp_path):
     motion = job(SETTINGS, (Event(PER_BLOCK, EventKind.STOP, 0.0),)).motion
     file = tmp_path / "job.pmc"
     file.write_text(program_text(motion, SETTINGS, ["job"]))
-    assert pmac("download", port, file) == 0 and pmac("run", port, file) == 0
+    assert pmac("download", port, file) == 0 and pmac("run", port, file, "--no-watch") == 0
     until_it_rests(made)
     assert pmac("resume", port) == 1
     assert "no program is held; after a stop (M0, M1) continue it" in capsys.readouterr().err
     assert pmac("continue", port, file, "--stop", 2) == 1
     assert "there is no stop 2" in capsys.readouterr().err
-    assert pmac("continue", port, file, "--stop", 1) == 0
+    assert pmac("continue", port, file, "--stop", 1, "--no-watch") == 0
     assert "a program runs" in capsys.readouterr().out
     until_it_rests(made)
     commanded = made.motors.commanded / SETTINGS.counts_per_mm + SETTINGS.zero_length
     assert np.allclose(commanded, motion.length[-1], atol=1e-4)
+
+
+def test_a_program_is_watched_to_its_end_to_a_stop_and_for_its_override(simulator, tmp_path, capsys):
+    made, port = simulator
+    file = tmp_path / "job.pmc"
+    file.write_text(program_text(job(SETTINGS, (Event(PER_BLOCK, EventKind.STOP, 0.0),)).motion, SETTINGS, ["job"]))
+    assert pmac("download", port, file) == 0 and pmac("run", port, file) == 0
+    assert "no program runs" in capsys.readouterr().out and not made.runs_program()
+    assert pmac("continue", port, file, "--stop", 1) == 0
+    assert "no program runs" in capsys.readouterr().out and not made.runs_program()
+    slow = tmp_path / "slow.pmc"
+    motion = job(SETTINGS, ()).motion
+    motion = replace(motion, time_ms=motion.time_ms * 40, speed=motion.speed / 40)
+    slow.write_text(program_text(motion, SETTINGS, ["slow"]))
+    assert pmac("approach", port, slow) == 0 and pmac("download", port, slow) == 0
+    for act, ended in [
+        (lambda system: system.set_override(130.0), "set from elsewhere: the motion is certified for at most 100 %"),
+        (lambda system: system.abort(), "it ended"),
+    ]:
+        threading.Thread(target=when_it_runs, args=(made, act)).start()
+        assert pmac("run", port, slow) == 1
+        assert ended in capsys.readouterr().err
+        assert pmac("abort", port) == 0
+        made.systems[0].set_override(100.0)
+        assert pmac("approach", port, slow) == 0
+
+
+def when_it_runs(made, act):
+    until = time.monotonic() + LONGEST_S
+    while not made.runs_program() and time.monotonic() < until:
+        time.sleep(0.01)
+    act(made.systems[0])
 
 
 def until_it_rests(made):

@@ -150,7 +150,7 @@ def test_people_are_called_while_a_stop_is_not_confirmed_and_it_goes_on_trying(m
     with served(made) as port:
         target = ["--port", port, "--machine", "example_6tps"]
         program = [*target, "--uncertified", file]
-        assert main(["pmac", "download", *program]) == 0 and main(["pmac", "run", *program]) == 0
+        assert main(["pmac", "download", *program]) == 0 and main(["pmac", "run", *program, "--no-watch"]) == 0
         capsys.readouterr()
         hold, said = made.systems[0].hold, []
         made.systems[0].hold = made.systems[0].abort = lambda *_: None
