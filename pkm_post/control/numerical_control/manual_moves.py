@@ -21,7 +21,8 @@ from pkm_post.machine import SpinPolicy, SpinRule, forward_along_path, platform_
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Place, Program, Tool, Trajectory, errors
 from pkm_post.options import Options
 from pkm_post.posting import trajectory_of, work_offset
-from pkm_post.reading import gcode
+from pkm_post.posting.machine_reading import with_machine
+from pkm_post.reading import ReadingOptions, gcode
 from pkm_post.toolpath import ToolPose, clearance_path, pose_columns
 
 _JOG = "jog"
@@ -233,6 +234,8 @@ _MDI = "MDI"
 _SAYS_THE_SPIN = "RPY"
 _EMPTY_CODE, _NO_MOVES_CODE = "G420", "J103"
 """Codes that reading and placing report for a program without moves; their cures refer to files and CAM."""
+_NAMELESS = "G54.1P301"
+"""Frame of a work offset without a code, as no program can name it."""
 _STAY = "G90 G21 G94 G1 X{:.6f} Y{:.6f} Z{:.6f} F60"
 """Appended to a line without moves, so that its switching codes precede a move to the current position."""
 
@@ -247,12 +250,10 @@ class MdiSettings:
         work_offset: name of a work offset in the machine file: the frame of the coordinates.
         axis_words: notation of the tool axis, a key of ``gcode.options.AXIS_WORDS``; with ``"none"`` the axis
             is unchanged.
-        functions: M codes with a code in the machine file; always taken from it.
     """
 
     work_offset: str = "G54"
     axis_words: str = "none"
-    functions: tuple[int, ...] = ()
 
 
 def mdi_trajectory(
@@ -272,14 +273,15 @@ def mdi_trajectory(
     """
     if len(line.splitlines()) > 1:
         raise ValueError(f"line: expected one line, got {len(line.splitlines())}")
-    reading = replace(reading or MdiSettings(), functions=machine.functions)
+    reading = reading or MdiSettings()
     options = Options(work_offset=reading.work_offset, spin=SpinPolicy(SpinRule.FILE))
     offset, diagnostics = work_offset(machine, options)
     if offset is None:
         return None, diagnostics
-    program, faults = _read(line, pose, offset, tool_length, reading)
+    words = _read_options(machine, options, pose, offset, tool_length, reading.axis_words)
+    program, faults = _read(line, pose, offset, words)
     if any(fault.code == _EMPTY_CODE for fault in faults):
-        return _standing(line, machine, pose, offset, tool_length, reading)
+        return _standing(line, machine, pose, offset, tool_length, words)
     diagnostics += faults
     if program is None or errors(diagnostics):
         return None, diagnostics
@@ -294,11 +296,11 @@ def mdi_trajectory(
 
 
 def _standing(
-    line: str, machine: Machine, pose: ToolPose, machine_from_work: Array, tool_length: float, reading: MdiSettings
+    line: str, machine: Machine, pose: ToolPose, offset: Array, tool_length: float, words: gcode.ReadOptions
 ) -> tuple[Trajectory | None, Findings]:
     """A line without a move: switching codes at standstill."""
-    stay = _STAY.format(*_in_work(pose, machine_from_work))
-    program, diagnostics = _read(f"{line}\n{stay}", pose, machine_from_work, tool_length, reading)
+    stay = _STAY.format(*_in_work(pose, offset))
+    program, diagnostics = _read(f"{line}\n{stay}", pose, offset, words)
     if program is not None and program.events and not errors(diagnostics):
         return stationary_trajectory(machine, pose, tool_length, program.events), diagnostics
     diagnostics = tuple(fault for fault in diagnostics if fault.code != _EMPTY_CODE)
@@ -313,20 +315,27 @@ def _in_work(pose: ToolPose, machine_from_work: Array) -> tuple[float, float, fl
     return x, y, z
 
 
-def _read(
-    line: str, pose: ToolPose, machine_from_work: Array, tool_length: float, reading: MdiSettings
-) -> tuple[Program | None, Findings]:
-    """The line as a program in {C}."""
-    # A NaN diameter reveals cutter compensation.
-    tool = Tool(0, "in the spindle", math.nan, 0.0, tool_length)
-    options = gcode.ReadOptions(
-        default_tool=tool,
-        start=_in_work(pose, machine_from_work),
-        axis_words=reading.axis_words,
-        functions=reading.functions,
+def _read_options(
+    machine: Machine, options: Options, pose: ToolPose, offset: Array, tool_length: float, axis_words: str
+) -> gcode.ReadOptions:
+    """The chosen work offset is in force; the line may name another one of the machine."""
+    known = with_machine(ReadingOptions(), machine, options)
+    return gcode.ReadOptions(
+        # A NaN diameter reveals cutter compensation.
+        default_tool=Tool(0, "in the spindle", math.nan, 0.0, tool_length),
+        start=_in_work(pose, offset),
+        axis_words=axis_words,
+        work_offset=str(options.work_offset) if options.work_offset in known.machine_offsets else _NAMELESS,
+        machine_offsets=known.machine_offsets,
+        machine_zero=known.machine_zero,
+        functions=known.functions,
         flavour="rs274",  # one line is no evidence, and the same words mean the same in every line
     )
-    program, diagnostics = gcode.read(line, _MDI, options)
+
+
+def _read(line: str, pose: ToolPose, offset: Array, words: gcode.ReadOptions) -> tuple[Program | None, Findings]:
+    """The line as a program in {C}."""
+    program, diagnostics = gcode.read(line, _MDI, words)
     if program is None:
         return None, diagnostics
     if np.isnan(program.side_offset).any():
@@ -335,7 +344,7 @@ def _read(
     if any(event.kind is EventKind.TOOL_CHANGE for event in program.events):
         return None, (*diagnostics, Diagnostic("C203", Place(_MDI, line=1), line.splitlines()[0].strip()))
     tools = {number: replace(each, diameter=0.0) for number, each in program.tools.items()}
-    if reading.axis_words == "none":
-        kept = np.tile(machine_from_work[:3, :3].T @ pose.axis, (len(program), 1))
+    if words.axis_words == "none":
+        kept = np.tile(offset[:3, :3].T @ pose.axis, (len(program), 1))
         return replace(program, tools=tools, tool_axis=kept), diagnostics
     return replace(program, tools=tools), diagnostics

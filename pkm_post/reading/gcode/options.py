@@ -56,6 +56,7 @@ class ReadOptions:
             in {C}. If empty, {C} is the frame of the only work offset that the program uses.
         machine_offsets: offsets of the machine, likewise, for a program with several; the first one that it uses
             must be 0.
+        work_offset: name of the one in force at the beginning, whose frame is {C}; empty if the program chooses it.
         machine_zero: tool tip position in {C}, mm, where X, Y and Z of G53 are zero: with ``work_offsets`` {C}'s own
             zero.
         home: target of G28, in {C}, mm; ``machine_zero`` if None.
@@ -83,6 +84,7 @@ class ReadOptions:
     axis_words: str = "none"
     work_offsets: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
     machine_offsets: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
+    work_offset: str = ""
     machine_zero: Point | None = None
     home: Point | None = None
     second_home: Point | None = None

@@ -73,6 +73,9 @@ class _Offsets:
         """Create the offsets from the options."""
         offsets = cls()
         offsets.take(options.work_offsets)
+        if options.work_offset:
+            offsets.system = _code_of(options.work_offset)
+            offsets.origins[offsets.system] = np.zeros(3)
         return offsets
 
     def take(self, poses: Mapping[str, tuple[float, float, float, float]]) -> None:

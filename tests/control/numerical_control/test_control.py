@@ -2,13 +2,14 @@
 """A machine operated by hand: what is looked at, what moves, and what is not sent."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from rig import listed
 
 from pkm_post.control.link.errors import CancelledError, NotReadyError, PmacError
-from pkm_post.control.numerical_control.manual_moves import CartesianJog, MdiSettings, StrutJog
+from pkm_post.control.numerical_control.manual_moves import CartesianJog, MdiSettings, StrutJog, mdi_trajectory
 from pkm_post.machine import strut_lengths
 from pkm_post.model import Diagnostic
 
@@ -182,6 +183,41 @@ def test_a_line_of_a_dwell_alone_takes_its_time(station):
 def test_an_unknown_work_offset(station):
     plan, reported = station.control.plan_line("G1 X1 F100", MdiSettings("G59"))
     assert plan is None and [fault.code for fault in reported] == ["K108"]
+
+
+def turned(degrees, *origin):
+    """A frame in {M}, turned about z."""
+    frame, angle = np.eye(4), math.radians(degrees)
+    frame[:2, :2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
+    frame[:3, 3] = origin
+    return frame
+
+
+@pytest.mark.parametrize(
+    ("chosen", "line", "tip"),
+    [
+        ("G54", "G1 X4 Y3 Z2 F600", (14, 3, 302)),
+        ("G54", "G54 G1 X4 Y3 Z2 F600", (14, 3, 302)),
+        ("G54", "G55 G1 X4 Y3 Z2 F600", (-3, 4, 312)),
+        ("G54", "G55 G91 G1 X4 Y3 F600", (-3, 4, 300)),
+        ("G55", "G1 X4 Y3 Z2 F600", (-3, 4, 312)),
+        ("G55", "G54 G1 X4 Y3 Z2 F600", (14, 3, 302)),
+        ("vise", "G1 X4 Y3 Z2 F600", (4, 23, 302)),
+        ("G55", "G53 G1 X4 Y3 Z250 F600", None),
+        ("G54", "G53 G1 X4 Y3 Z250 F600", (4, 3, 310)),
+        ("G54", "G56 G1 X4 Y3 Z2 F600", None),
+        ("vise", "G54 G1 X4 Y3 Z2 F600", None),
+    ],
+)
+def test_a_line_goes_to_the_work_offset_that_it_names(station, chosen, line, tip):
+    offsets = {"G54": turned(0, 10, 0, 300), "G55": turned(90, 0, 0, 310), "vise": turned(0, 0, 20, 300)}
+    machine = replace(station.machine, work_offsets=offsets, machine_zero=np.array([0.0, 0.0, 60.0]))
+    pose = station.control.standing_pose()
+    trajectory, reported = mdi_trajectory(line, machine, pose, 120.0, MdiSettings(chosen))
+    if tip is None:
+        assert trajectory is None and [fault.code for fault in reported] == ["G412"]
+    else:
+        assert reported == () and np.allclose(trajectory.tip[-1], tip, atol=MICRON)
 
 
 def test_two_lines_are_none(station):
