@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """From line: start a program at a line of its source, after an abort or a loss of power.
 
-The rows before the line are skipped. Their modal state is restored: the last spindle speed with its wait, the coolants
-that are on, the tool and, on request, the M codes of the machine. The approach starts where the whole program starts;
-it passes the tool-change pose, if the machine file states one, crosses above everything that the program reaches above
-the line, and comes down along the tool axis, at the feed of the line if that cuts. Spindle and coolant are switched on
-before that last move. As a part of the trajectory, the approach is planned, checked for reach and collisions and
-certified like any move.
+The rows before the line are skipped. Their modal state is restored: the last spindle speed since the last tool change,
+which stops the spindle [NGC 3.6.3], with the wait for it from rest, the coolants that are on, the tool and, on request,
+the M codes of the machine. The approach starts where the whole program starts; it passes the tool-change pose, if the
+machine file states one, crosses above everything that the program reaches above the line, and comes down along the tool
+axis, at the feed of the line if that cuts. Spindle and coolant are switched on before that last move. As a part of the
+trajectory, the approach is planned, checked for reach and collisions and certified like any move.
 
 Input: a trajectory on its machine. Output: the trajectory from the line on. Units: mm, rad, mm/s.
 """
@@ -32,6 +32,7 @@ from pkm_post.model import (
     Trajectory,
     threads,
 )
+from pkm_post.toolpath.spindle_dwells import seconds_from_rest
 from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
 
 APPROACH = "approach"
@@ -79,16 +80,23 @@ def row_of_line(trajectory: Trajectory, start: StartLine) -> int | None:
     return int(rows[0]) if len(rows) else None
 
 
-def modal_events(trajectory: Trajectory, row: int, repeat_codes: bool = False) -> tuple[Event, ...]:
-    """The modal state before a row: the events in force, in the order of the program.
+def modal_events(trajectory: Trajectory, row: int, machine: Machine, repeat_codes: bool = False) -> tuple[Event, ...]:
+    """The modal state before a row: the events in force, in the order of the program, and the wait for the spindle.
 
     Args:
         trajectory: the program.
         row: the first row to run.
+        machine: its spindle, which starts from rest.
         repeat_codes: whether to include machine-specific M codes, each once at its last place.
     """
-    kinds = (*_MODAL, EventKind.FUNCTION) if repeat_codes else _MODAL
-    return events_in_force([each for each in _before(trajectory, row) if each.kind in kinds])
+    kinds = (*_MODAL, EventKind.TOOL_CHANGE, *(EventKind.FUNCTION,) * repeat_codes)
+    before, found = _before(trajectory, row), list[Event]()
+    for each in events_in_force(each for each in before if each.kind in kinds):
+        if each.kind is not EventKind.TOOL_CHANGE:
+            found.append(each)
+        if each.kind is EventKind.SPINDLE and each.value:
+            found += _wait_after(before, each, machine)
+    return tuple(found)
 
 
 def events_in_force(events: Iterable[Event]) -> tuple[Event, ...]:
@@ -104,6 +112,8 @@ def events_in_force(events: Iterable[Event]) -> tuple[Event, ...]:
 
 
 def _replaces(event: Event, earlier: Event) -> bool:
+    if event.kind is EventKind.TOOL_CHANGE and earlier.kind is EventKind.SPINDLE:
+        return True
     if event.kind is not earlier.kind:
         return False
     is_own = event.kind in (EventKind.FUNCTION, EventKind.COOLANT)
@@ -130,9 +140,8 @@ def started_at_line(trajectory: Trajectory, start: StartLine, machine: Machine) 
     if approach is None:
         tilt = float(np.degrees(np.arccos(trajectory.axis_before()[row, 2])))
         return None, (Diagnostic("K151", trajectory.place(row), Phrase("{} degrees from upright", f"{tilt:.3f}")),)
-    return _joined(trajectory, row, approach, start.repeat_codes), (
-        () if start.repeat_codes else not_repeated(trajectory, row)
-    )
+    modal = modal_events(trajectory, row, machine, start.repeat_codes)
+    return _joined(trajectory, row, approach, modal), () if start.repeat_codes else not_repeated(trajectory, row)
 
 
 def not_repeated(trajectory: Trajectory, row: int) -> Findings:
@@ -176,7 +185,7 @@ def _moves(begin: ToolPose, approach: tuple[ToolPose, ...]) -> list[ToolPose]:
     return found
 
 
-def _joined(trajectory: Trajectory, row: int, approach: _Approach, repeat_codes: bool) -> Trajectory:
+def _joined(trajectory: Trajectory, row: int, approach: _Approach, modal: tuple[Event, ...]) -> Trajectory:
     """The approach, and the rows from a row on."""
     count, number = len(approach.poses), len(trajectory.operations)
     columns: dict[str, Any] = {
@@ -184,7 +193,7 @@ def _joined(trajectory: Trajectory, row: int, approach: _Approach, repeat_codes:
         for name, added in _columns(trajectory, row, approach, number).items()
     }
     later = (replace(each, row=each.row - row + count) for each in trajectory.events if each.row > row)
-    events = (*_events(trajectory, row, approach, repeat_codes), *later)
+    events = (*_events(trajectory, row, approach, modal), *later)
     operations = (*trajectory.operations, APPROACH)
     return replace(trajectory, **columns, events=events, operations=operations, start_tip=approach.start)
 
@@ -216,16 +225,12 @@ def _extents(trajectory: Trajectory, approach: _Approach, columns: dict[str, Arr
     return {"length": norm(columns["tip"] - before), "angle": angle_between(axes, columns["axis"])}
 
 
-def _events(trajectory: Trajectory, row: int, approach: _Approach, repeat_codes: bool) -> tuple[Event, ...]:
+def _events(trajectory: Trajectory, row: int, approach: _Approach, modal: tuple[Event, ...]) -> tuple[Event, ...]:
     """Events of the approach: the tool at its change, all others before the last move."""
-    earlier = _before(trajectory, row)
-    tools = [each for each in earlier if each.kind is EventKind.TOOL_CHANGE]
+    tools = [each for each in _before(trajectory, row) if each.kind is EventKind.TOOL_CHANGE]
     found = [replace(tools[-1], row=approach.changed)] if tools else []
     last = max(len(approach.poses) - 1, 0)
-    for one in modal_events(trajectory, row, repeat_codes):
-        found.append(replace(one, row=last))
-        if one.kind is EventKind.SPINDLE and one.value:
-            found += [replace(each, row=last) for each in _wait_after(earlier, one)]
+    found += [replace(each, row=last) for each in modal]
     begun = (
         Event(len(approach.poses), EventKind.SPINDLE_AXIS, each.lead)
         for each in threads(trajectory.events)
@@ -234,7 +239,9 @@ def _events(trajectory: Trajectory, row: int, approach: _Approach, repeat_codes:
     return (*found, *begun)
 
 
-def _wait_after(events: list[Event], spindle: Event) -> list[Event]:
-    """The dwell right after a spindle event, in which the spindle reaches its speed."""
+def _wait_after(events: list[Event], spindle: Event, machine: Machine) -> list[Event]:
+    """A dwell in which the spindle reaches its speed from rest: that of the program may begin at another speed."""
     after = events[events.index(spindle) + 1 :][:1]
-    return [each for each in after if each.kind is EventKind.DWELL and each.row == spindle.row]
+    own = [each.value for each in after if each.kind is EventKind.DWELL and each.row == spindle.row]
+    seconds = max([*own, seconds_from_rest(machine, spindle.value)])
+    return [Event(spindle.row, EventKind.DWELL, seconds)] if seconds else []

@@ -79,7 +79,16 @@ def _waited(events: tuple[Event, ...], ramp: _Ramp) -> Iterator[Event]:
 
 def _wait(row: int, seconds: float) -> Iterator[Event]:
     if seconds > 0.0:
-        yield Event(row, EventKind.DWELL, math.ceil(round(seconds * _PER_SECOND, 6)) / _PER_SECOND)
+        yield Event(row, EventKind.DWELL, _rounded_up(seconds))
+
+
+def _rounded_up(seconds: float) -> float:
+    return math.ceil(round(seconds * _PER_SECOND, 6)) / _PER_SECOND
+
+
+def seconds_from_rest(machine: Machine, speed: float) -> float:
+    """Time from rest to a speed of the spindle in 1/min, s; 0 if the machine file does not state it."""
+    return _rounded_up((machine.spin_up_time or 0.0) * abs(speed) / machine.spindle_speed)
 
 
 def _cuts_at_rest(program: Program) -> Iterator[Diagnostic]:

@@ -96,6 +96,38 @@ def test_spindle_and_coolant_are_on_above_the_line_and_stops_before_it_are_behin
 
 
 @pytest.mark.parametrize(
+    ("own", "wanted"),
+    [
+        ([], 4.0 * 3000 / 24_000),
+        ([Event(1, EventKind.DWELL, 0.1)], 4.0 * 3000 / 24_000),  # from 2000 rpm, which it had before
+        ([Event(1, EventKind.DWELL, 5.0)], 5.0),
+    ],
+)
+def test_the_spindle_is_waited_for_from_rest(own, wanted):
+    machine = replace(MACHINE, spin_up_time=4.0, spindle_speed=24_000.0)
+    whole = placed(program(STEPS, events=EVENTS[:1]))
+    events = (Event(0, EventKind.SPINDLE, 2000.0), Event(0, EventKind.DWELL, 0.4), Event(1, EventKind.SPINDLE, 3000.0))
+    whole = replace(whole, events=(*events, *own))
+    found, _ = started_at_line(whole, StartLine(int(whole.line[2])), machine)
+    assert [(each.kind, each.value) for each in found.events] == [
+        (EventKind.SPINDLE, 3000.0),
+        (EventKind.DWELL, wanted),
+    ]
+
+
+@pytest.mark.parametrize(("again", "wanted"), [((), []), ((Event(2, EventKind.SPINDLE, -700.0),), [-700.0])])
+def test_a_tool_change_before_the_line_has_stopped_the_spindle(again, wanted):
+    tools = {number: Tool(number, "", 6.0, 0.0, 120.0) for number in (1, 2)}
+    events = (Event(0, EventKind.SPINDLE, 20_000.0), Event(1, EventKind.TOOL_CHANGE, 2.0), *again)
+    whole = placed(program(STEPS, events=EVENTS[:1]))
+    whole = replace(whole, tools=tools, tool=np.where(np.arange(len(whole)) >= 1, 2, 1), events=events)
+    found = begun(whole, int(whole.line[3]))
+    assert [each.value for each in found.events if each.kind is EventKind.SPINDLE] == wanted
+    before = begun(whole, int(whole.line[1]))
+    assert [each.value for each in before.events if each.kind is EventKind.SPINDLE] == wanted
+
+
+@pytest.mark.parametrize(
     ("switched", "wanted"),
     [([1, 2], [1, 2]), ([2, 1], [2, 1]), ([1, 2, 1], [2, 1]), ([1, 2, 0], [0]), ([1, 2, 0, 2], [2]), ([0, 1], [1])],
 )

@@ -52,7 +52,7 @@ def go_to_row(task: PlayContext, row: int, feed: float = APPROACH_MM_S, repeat_c
         Refused: the approach is not certified.
         PmacError: the tool did not arrive.
     """
-    events = modal_events(task.trajectory, row, repeat_codes)
+    events = modal_events(task.trajectory, row, task.machine, repeat_codes)
     plan = approach_to_row(task, row, events, feed)
     if plan is None:
         if events:
