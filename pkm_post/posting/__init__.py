@@ -7,6 +7,7 @@ The order of the steps is in ``steps``. Either all files are written and certifi
 from typing import TYPE_CHECKING
 
 from pkm_post import at_first_use
+from pkm_post.posting.machine_reading import with_machine
 from pkm_post.posting.placement import effective_setup, trajectory_of, work_offset
 from pkm_post.posting.post_file import Prepared, post_file, prepared_file
 from pkm_post.posting.run import Log, Posted, Progress, no_log, no_progress
@@ -84,6 +85,7 @@ __all__ = [
     "no_progress",
     "verify",
     "verify_texts",
+    "with_machine",
     "work_offset",
     "write_program",
 ]

@@ -20,8 +20,7 @@ from pkm_post.geometry import Array, angle_between, norm
 from pkm_post.machine import SpinPolicy, SpinRule, forward_along_path, platform_rotation, strut_lengths
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Place, Program, Tool, Trajectory, errors
 from pkm_post.options import Options
-from pkm_post.posting import trajectory_of, work_offset
-from pkm_post.posting.machine_reading import with_machine
+from pkm_post.posting import trajectory_of, with_machine, work_offset
 from pkm_post.reading import ReadingOptions, gcode
 from pkm_post.toolpath import ToolPose, clearance_path, pose_columns
 
