@@ -173,12 +173,17 @@ def _spindle_event(state: ReaderState, row: int) -> None:
 
 
 def coolnt(state: ReaderState, row: int, statement: Statement) -> None:
-    """COOLNT/ON, FLOOD, MIST, TAP, THRU or OFF; a following pressure is ignored."""
+    """COOLNT/ON, FLOOD, MIST, TAP, THRU or OFF; a following pressure is ignored.
+
+    ON is flood with NX [UG/Post], the last coolant elsewhere [NCCS PostWorks].
+    """
     word = next(iter(statement.words), "")
     if word not in _COOLANT:
         state.report_items(row, statement, _list(_COOLANT))
         return
-    state.events.append((row, EventKind.COOLANT, _COOLANT[word]))
+    coolant = state.coolant if word == "ON" and state.dialect.name != "nx" else _COOLANT[word]
+    state.coolant = coolant or state.coolant
+    state.events.append((row, EventKind.COOLANT, coolant))
 
 
 def delay(state: ReaderState, row: int, statement: Statement) -> None:

@@ -184,6 +184,7 @@ class ReaderState:
         spindle_on: whether it turns.
         spindle_limit: of surface speeds, 1/min; 0 if none.
         surface_speed: the last speed, if it is one of the surface.
+        coolant: the last one that was on.
         tool: active tool number.
         changed_tool: tool number of the last tool change, -1 before the first.
         motions_at_change: number of motions before it.
@@ -232,6 +233,7 @@ class ReaderState:
     spindle_on: bool = False
     spindle_limit: float = 0.0
     surface_speed: SurfaceSpeed | None = None
+    coolant: float = 1.0
     tool: int = 0
     changed_tool: int = -1
     motions_at_change: int = 0

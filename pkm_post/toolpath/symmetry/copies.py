@@ -59,7 +59,7 @@ def with_copies(program: Program, copies: Copies) -> tuple[Program | None, tuple
         diagnostics += faults
         if copy is None:
             return None, tuple(diagnostics)
-        parts.append(copy)
+        parts.append(_with_first_tool(copy))
     return _without_repeated_tool_changes(concatenate(parts)), tuple(diagnostics)
 
 
@@ -75,6 +75,14 @@ def _copy(program: Program, matrix: Array, keep_climb: bool) -> tuple[Program | 
 
     reversed_, faults = reversed_passes(copy)
     return reversed_, (*diagnostics, *faults)
+
+
+def _with_first_tool(copy: Program) -> Program:
+    """The copy with its first tool from its first row on: before its first change, that tool counts as loaded."""
+    first = next((event for event in copy.events if event.kind is EventKind.TOOL_CHANGE), None)
+    if first is None or first.row == 0:
+        return copy
+    return dataclasses.replace(copy, events=(dataclasses.replace(first, row=0), *copy.events))
 
 
 def _without_repeated_tool_changes(program: Program) -> Program:

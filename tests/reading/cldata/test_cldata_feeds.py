@@ -123,6 +123,13 @@ def test_turns_of_a_stopped_spindle_are_refused(statement, code):
         program(f"{stopped}SPINDL/ON\nGOTO/5,0,0\nFINI\n", dialect="nx")
 
 
+@pytest.mark.parametrize(("dialect", "coolants"), [("apt", [2, 0, 2, 1, 0, 1]), ("nx", [2, 0, 1, 1, 0, 1])])
+def test_coolant_on_is_the_last_one_or_flood_with_nx(dialect, coolants):
+    words = "".join(f"COOLNT/{word}\nGODLTA/1,0,0\n" for word in ("MIST", "OFF", "ON", "FLOOD", "OFF", "ON"))
+    events = program(f"{HEAD}{words}FINI\n", dialect=dialect).events
+    assert [event.value for event in events if event.kind is EventKind.COOLANT] == coolants
+
+
 @pytest.mark.parametrize("motion", ["GOTO/1,2,3", "GODLTA/1,2,3", "RAPID,GOTO/1,2,3"])
 @pytest.mark.parametrize("word", ["END", "REWIND"])
 def test_no_motion_follows_the_end_of_the_program(word, motion):

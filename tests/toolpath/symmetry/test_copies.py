@@ -117,3 +117,23 @@ def test_angles_are_right_handed_about_z():
     image = copied(made, Copies((np.radians(30),))).position[len(made) :]
     matrix = rotation([0, 0, 0], [0, 0, 1], np.radians(30))
     np.testing.assert_allclose(image, made.position @ matrix[:3, :3].T, atol=1e-12)
+
+
+@pytest.mark.parametrize("keep_climb", [False, True])
+def test_a_copy_begins_with_the_first_tool_where_that_is_loaded_already(keep_climb):
+    made = passes()
+    events = (Event(5, EventKind.TOOL_CHANGE, 1), Event(10, EventKind.TOOL_CHANGE, 2))
+    two = dataclasses.replace(
+        made, events=events, tools={**made.tools, 2: dataclasses.replace(made.tools[1], number=2)}
+    )
+    moves = ("xz", "yz") if keep_climb else ("xz", np.pi)
+    changes = [event for event in copied(two, Copies(moves, keep_climb)).events]
+    assert [(each.value, each.row % len(made)) for each in changes] == [
+        (1, 5),
+        (2, 10),
+        (1, 0),
+        (2, 10),
+        (1, 0),
+        (2, 10),
+    ]
+    assert [each.row // len(made) for each in changes] == [0, 0, 1, 1, 2, 2]
