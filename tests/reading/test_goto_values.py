@@ -2,6 +2,7 @@
 """GOTO statements with surface normals: read as the option says, and compensated by them."""
 
 import argparse
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -110,3 +111,43 @@ def test_goto_values_without_a_position_are_refused():
         with pytest.raises(argparse.ArgumentTypeError, match="px,py,pz and nx,ny,nz"):
             goto_values(text)
     assert goto_values(",".join(CONTACTS)) == CONTACTS
+
+
+CONTACT = "GOTO/0,0,0,.6,0,.8,0,0,1\n"
+
+
+@pytest.mark.parametrize(
+    ("statements", "found"),
+    [
+        (f"{CONTACT}GODLTA/0,0,9\n", ("L417", 7, "GODLTA after a contact point")),
+        (f"CYCLE/DRILL,DEPTH,5,CLEAR,2,MMPM,60\n{CONTACT}", ("L412", 7, "a hole at a contact point")),
+        (f"CUTCOM/LEFT\n{CONTACT}{CONTACT}", ("L401", 7, "a contact point under CUTCOM, and 1 more")),
+        (
+            f"{CONTACT}CUTTER/10,1\n{CONTACT}",
+            ("L401", 6, "contact points with several cutters of tool 1: 10,1, 20,4 mm"),
+        ),
+    ],
+)
+def test_contact_points_are_refused_where_the_tip_would_be_another(statements, found):
+    text = f"UNITS/MM\nFEDRAT/60\nCUTTER/20,4\nLOADTL/1,LENGTH,60\nGOTO/0,0,50\n{statements}FINI\n"
+    options = ReadingOptions(goto_values=CONTACTS, contour_data="contour", wear={}, cl_dialect="apt")
+    program, diagnostics = read_content(text.encode(), "a.apt", options)
+    (fault,) = errors(diagnostics)
+    assert (program, fault.code, fault.place.line, str(fault.found)) == (None, *found)
+
+
+def test_contact_points_before_the_first_tool_change_become_tips_too():
+    head = f"UNITS/MM\nFEDRAT/60\nCUTTER/20,4\nGOTO/0,0,50\n{CONTACT}LOADTL/1,LENGTH,60\nCUTTER/8,1\n"
+    program, _ = read_content(f"{head}{CONTACT}FINI\n".encode(), "a.apt", ReadingOptions(goto_values=CONTACTS))
+    tips, _ = compensate(program, OffsetOptions(), {})
+    assert tips.position[1:] == pytest.approx(np.array([[6 + 4 * 0.6, 0, -4 * 0.2], [3 + 0.6, 0, -0.2]]))
+
+
+def test_the_first_tool_is_compensated_from_the_first_row_on():
+    text = "G21 G90 G94\nG0 X0 Y0 Z50\nG1 X1 Z0 F99\nT1 M6\nG1 X2\nT2 M6\nG1 X3\nM2\n"
+    tools = {1: Tool(1, "", 20.0, 4.0, 60.0), 2: Tool(2, "", 8.0, 1.0, 60.0)}
+    read, diagnostics = read_content(text.encode(), "a.ngc", ReadingOptions(tools=tools))
+    assert read is not None, diagnostics
+    program = replace(read, normal=np.tile([0.6, 0, 0.8], (len(read), 1)))
+    tips, _ = compensate(program, OffsetOptions(), {1: Tool(1, "", 18.0, 4.0, 60.0)})
+    assert tips.position - program.position == pytest.approx(np.array([[-1, 0, 0]] * 3 + [[0, 0, 0]]))

@@ -86,9 +86,9 @@ def _chords(state: ReaderState, motion: NurbsMotion, points: Points, mine: Array
     Raises:
         _CurveError: the curve is incomplete, or does not pass through the points.
     """
-    knots, degree, curves = _curves(motion)
     if not motion.points[1]:
         raise _CurveError("no MOVNRB/OFF after it")
+    knots, degree, curves = _curves(motion)
     if not len(mine):
         raise _CurveError("no point between NEXT and OFF")
     scale = float(scale_at(state, np.array([motion.row]))[0])

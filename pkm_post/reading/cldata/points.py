@@ -105,6 +105,9 @@ def tool_position(state: ReaderState, row: int, word: str) -> Array | None:
     if _is_drilled(state, max(goto_row, special_row)) and not (word == "GODLTA" and _is_drilled(state, row)):
         state.report("L422", row, word)
         return None
+    if goto_row > special_row and _is_contact(state, goto_row):
+        state.report("L417", row, f"{word} after a contact point")
+        return None
     if goto_row > special_row:
         return _in_current_frame(state, goto_row, _written_position(state, goto_row))
     return _in_current_frame(state, special_row, np.array(state.points[-1][1].position))
@@ -119,9 +122,19 @@ def _is_drilled(state: ReaderState, row: int) -> bool:
 
 def _written_position(state: ReaderState, row: int) -> Array:
     """The point of a GOTO as written."""
-    first, end = state.statements.number_start[row : row + 2].tolist()
-    names = _positions_named(state.options.value_names(end - first) or POINT)
+    first, names = state.statements.number_start[row], _positions_named(_names_at(state, row))
     return np.array([state.statements.numbers[first + names.index(name)] for name in POINT])
+
+
+def _is_contact(state: ReaderState, row: int) -> bool:
+    """Whether the point of a GOTO is a contact point, whose tip is known once it is compensated."""
+    return "x" not in _names_at(state, row)
+
+
+def _names_at(state: ReaderState, row: int) -> tuple[str, ...]:
+    """Meanings of the values of a GOTO."""
+    first, end = state.statements.number_start[row : row + 2].tolist()
+    return state.options.value_names(end - first) or POINT
 
 
 def _positions_named(names: tuple[str, ...]) -> tuple[str, ...]:

@@ -55,7 +55,7 @@ def build_program(
     point = rows.point
     sides = [(change.row, change.offset, change.plane, change.smaller_tool) for change in offsets]
     side_offset = _column(sides, points.row, 1, 0.0)
-    _report_offset_holes(state, points.row[holes.point[side_offset[holes.point] != 0]])
+    _report_points_aside(state, points, holes.point, side_offset != 0)
     lines = state.statements.lines.number[state.statements.index[points.row]]
     return Program(
         kind=rows.kind,
@@ -79,11 +79,23 @@ def build_program(
     )
 
 
-def _report_offset_holes(state: ReaderState, row: Array) -> None:
-    """Report the statements, (M,), of holes that CUTCOM would move aside: no cycle runs under it [NCCS PostWorks]."""
-    if len(row):
-        more = f", and {len(row) - 1} more" if len(row) > 1 else ""
-        state.report("L412", int(row[0]), f"a hole under CUTCOM{more}")
+def _report_points_aside(state: ReaderState, points: Points, hole: Array, offset: Array) -> None:
+    """Report holes that would move aside, by CUTCOM [NCCS PostWorks] or a normal, and points that both would move.
+
+    Args:
+        state: collects the faults.
+        points: resolved points.
+        hole: (H,) indices of those with a cycle.
+        offset: (P,) whether CUTCOM moves a point.
+    """
+    for code, found, which in (
+        ("L412", "a hole under CUTCOM", hole[offset[hole]]),
+        ("L412", "a hole at a contact point", hole[points.contact[hole]]),
+        ("L401", "a contact point under CUTCOM", np.flatnonzero(points.contact & offset)),
+    ):
+        more = f", and {len(which) - 1} more" if len(which) > 1 else ""
+        if len(which):
+            state.report(code, int(points.row[which[0]]), f"{found}{more}")
 
 
 def _column(changes: Sequence[tuple[float, ...]], row: Array, item: int, first: float) -> Array:

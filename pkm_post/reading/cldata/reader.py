@@ -26,7 +26,7 @@ from pkm_post.reading.cldata.program import build_program
 from pkm_post.reading.cldata.source_language import expanded
 from pkm_post.reading.cldata.state import ReaderState
 from pkm_post.reading.cldata.statements import scan
-from pkm_post.reading.cldata.tools import record_tool
+from pkm_post.reading.cldata.tools import record_tool, record_tool_if_used
 from pkm_post.reading.cldata.units_and_frames import length_unit
 
 _LARGE_INCHES = 2000.0
@@ -80,6 +80,7 @@ def _program(state: ReaderState, bulk: Array, names: ValueNames, file: str) -> P
         return None
     unit = _describe_unit(state, points)
     _check_tool_lengths(state, points)
+    _check_cutters_of_contacts(state, points)
     offsets, reading = cutcom_offsets(state, points, frames, arcs)
     if state.faults.any_errors():
         return None
@@ -117,8 +118,18 @@ def _describe_contact(points: Points) -> list[str]:
     return [f"{count} points are contact points, as the option says"] if count else []
 
 
+def _check_cutters_of_contacts(state: ReaderState, points: Points) -> None:
+    """Report tools with several cutters where there are contact points: the tip depends on the cutter."""
+    for number, shapes in sorted(state.used_cutters.items()) if points.contact.any() else ():
+        if len(shapes) > 1 and number not in state.options.tools:
+            sizes = ", ".join(f"{diameter:.6g},{corner:.6g}" for diameter, corner, *_ in sorted(shapes))
+            row = int(points.row[points.contact][0])
+            state.report("L401", row, f"contact points with several cutters of tool {number}: {sizes} mm")
+
+
 def _check_tool_lengths(state: ReaderState, points: Points) -> None:
     """Report tools with an unknown or ambiguous length, on which the position of the tip depends."""
+    record_tool_if_used(state, len(state.statements) - 1)
     record_tool(state)
     given = state.options.tools
     for number, tool in sorted(state.tools.items()):

@@ -211,6 +211,7 @@ class ReaderState:
         end_of_program: row of the last END or REWIND, -1 before.
         ended: whether FINI was read.
         tools: by number.
+        used_cutters: by number, diameter, corner radius and angles of the cutters that were used as this tool.
         stated_lengths: by number, the different gauge lengths that the file gives a tool, mm.
         operations: names; the first is that of the rows before any operation.
     """
@@ -261,6 +262,7 @@ class ReaderState:
 
     transforms: dict[str, Array] = field(default_factory=dict)
     tools: dict[int, Tool] = field(default_factory=dict)
+    used_cutters: dict[int, set[tuple[float, ...]]] = field(default_factory=dict)
     stated_lengths: dict[int, list[float]] = field(default_factory=dict)
     operations: list[str] = field(default_factory=lambda: [""])
     operation_starts: list[tuple[int, int]] = field(default_factory=list)

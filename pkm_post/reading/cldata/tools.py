@@ -130,7 +130,12 @@ def record_tool_if_used(state: ReaderState, row: int) -> None:
     motions = state.motions_before(row)
     if motions != state.motions_recorded:
         state.motions_recorded = motions
+        state.used_cutters.setdefault(state.tool, set()).add(_shape(state))
         record_tool(state)
+
+
+def _shape(state: ReaderState) -> tuple[float, float, float, float]:
+    return state.diameter, state.corner_radius, state.bottom_angle, state.side_angle
 
 
 def record_tool(state: ReaderState) -> None:
@@ -141,8 +146,8 @@ def record_tool(state: ReaderState) -> None:
     if state.tool_length and state.tool_length not in stated:
         stated.append(state.tool_length)
     length = stated[-1] if stated else default.length if default else 0.0
-    shape = (state.diameter, state.corner_radius, length, state.bottom_angle, state.side_angle)
-    known = Tool(state.tool, state.tool_name, *shape, state.corner_known)
+    diameter, corner, bottom, side = _shape(state)
+    known = Tool(state.tool, state.tool_name, diameter, corner, length, bottom, side, state.corner_known)
     if given is not None:
         known = replace(given, name=given.name or known.name, length=given.length or known.length)
     state.tools[state.tool] = known

@@ -150,6 +150,11 @@ def test_curves_that_are_refused(old, new, code):
     assert (found, errors(diagnostics)[0].code) == (None, code)
 
 
+def test_a_curve_that_has_only_begun_is_refused():
+    found, diagnostics = read(f"{HEAD}GOTO/0,0,0\nMOVNRB/M3AXIS\nGOTO/1,0,0\nFINI\n", "part.ncl", ReadOptions())
+    assert (found, [fault.code for fault in errors(diagnostics)]) == (None, ["L446"])
+
+
 @pytest.mark.parametrize("which", [slice(None, -1), slice(2, None)])
 def test_a_curve_longer_than_its_points_is_refused(which):
     points = [GOOD(at) for at in GOOD.at][which]
