@@ -23,6 +23,9 @@ _IN_WORDS = {_CENTRE: "the centre of the tool", _CONTOUR: "the contour of the pa
 _TIGHTER = 0.01
 """mm by which an arc radius must be below the tool radius to count: arcs of equal radius are no evidence."""
 
+_ALIGNED = 1e-6
+"""Cosine by which a plane may be off one between coordinates, or across the tool axis."""
+
 _SIDES = {"LEFT": 1.0, "RIGHT": -1.0}
 _PLANES = {"XYPLAN": 2, "ZXPLAN": 1, "YZPLAN": 0}
 _REGISTERS = {"ADJUST", "LENGTH", "OSETNO"}
@@ -149,6 +152,8 @@ def cutcom_offsets(state: ReaderState, points: Points, frames: Array, arcs: Arcs
     for cutcom, interpretation, axis in zip(state.cutcoms, interpretations, normal, strict=True):
         plane = int(np.argmax(np.abs(axis)))
         distance = _distance(state, cutcom, interpretation)
+        if distance and cutcom.side:
+            _report_oblique_plane(state, cutcom, axis, points.axis[_next_points(points, [cutcom.row])[0]])
         left = distance * cutcom.side * np.sign(axis[plane])
         smaller_tool = interpretation.points == _CENTRE and distance < 0
         offsets.append(Offset(cutcom.row, float(left) + 0.0, plane, smaller_tool))
@@ -156,15 +161,34 @@ def cutcom_offsets(state: ReaderState, points: Points, frames: Array, arcs: Arcs
 
 
 def _normals(state: ReaderState, points: Points, frames: Array) -> Array:
-    """Normals of the compensation planes, (C, 3): of the named plane, else the tool axis at the next point."""
-    nexts = np.searchsorted(points.row, [cutcom.row for cutcom in state.cutcoms])
-    nexts = np.minimum(nexts, len(points.row) - 1)
+    """Normals of the compensation planes, (C, 3), towards the holder: of the named plane, else the next tool axis."""
+    nexts = _next_points(points, [cutcom.row for cutcom in state.cutcoms])
     normal = points.axis[nexts]
     turn = frames[nexts] if len(frames) > 1 else np.broadcast_to(frames[0], (len(nexts), 4, 4))
     for index, cutcom in enumerate(state.cutcoms):
         if cutcom.plane is not None:
-            normal[index] = turn[index, :3, cutcom.plane]
+            named, tool_axis = turn[index, :3, cutcom.plane], normal[index]
+            normal[index] = -named if named @ tool_axis < -_ALIGNED else named
     return normal
+
+
+def _next_points(points: Points, rows: list[int]) -> Array:
+    """Indices of the points behind some statements."""
+    return np.minimum(np.searchsorted(points.row, rows), len(points.row) - 1)
+
+
+def _report_oblique_plane(state: ReaderState, cutcom: Cutcom, normal: Array, tool_axis: Array) -> None:
+    """Report a named plane that a frame has turned out of all planes in which paths are offset.
+
+    Args:
+        state: collects the fault.
+        cutcom: names the plane.
+        normal: (3,) of the plane.
+        tool_axis: (3,) at the next point.
+    """
+    if max(np.abs(normal).max(), abs(normal @ tool_axis)) < 1 - _ALIGNED:
+        found = f"{normal[0]:.4f},{normal[1]:.4f},{normal[2]:.4f}"
+        state.report("L401", cutcom.written, f"CUTCOM in a plane that a frame has turned, with the normal {found}")
 
 
 def _tight_arcs(state: ReaderState, points: Points, arcs: Arcs, normal: Array) -> dict[_Cutter, _TightArcs]:

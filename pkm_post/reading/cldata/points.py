@@ -14,6 +14,7 @@ import numpy as np
 
 from pkm_post.geometry import norm
 from pkm_post.model import Array
+from pkm_post.reading.cldata.copies import MATRIX
 from pkm_post.reading.cldata.options import AXIS, CONTACT, NORMAL, POINT, Dialect, ReadOptions
 from pkm_post.reading.cldata.state import Point, ReaderState
 from pkm_post.reading.cldata.statements import Statement, Statements
@@ -273,7 +274,26 @@ def _modal_axes(state: ReaderState, points: Points) -> Array:
     modal: Array = np.concatenate([[[0.0, 0.0, 1.0]], ordered])[np.searchsorted(row, points.row, "right")]
     axes[order] = ordered
     modal[own] = axes[: len(own)]  # several points may have one row
+    if any(template.word == MATRIX for template in state.statements.templates):
+        _report_copies_with_another_axis(state, points, own, modal)
     return modal
+
+
+def _report_copies_with_another_axis(state: ReaderState, points: Points, own: Array, axes: Array) -> None:
+    """Report copied points without an axis that would take that of the end of the path, not that of its start.
+
+    Args:
+        state: its copies repeat the lines of a path.
+        points: as written.
+        own: indices of those with an axis.
+        axes: (P, 3) unit axes in force.
+    """
+    first, of = np.unique(state.statements.index[points.row], return_index=True, return_inverse=True)[1:]
+    turned = norm(axes - axes[first[of]]) > NOT_UNIT
+    turned[own] = False
+    for index in np.flatnonzero(turned)[:1].tolist():
+        found = f"a copy of a point without a tool axis, which was {_vector(axes[first[of[index]]])}"
+        state.report("L401", int(points.row[index]), f"{found} and would be {_vector(axes[index])}")
 
 
 def _normalise(state: ReaderState, row: Array, vectors: Array, name: str) -> None:

@@ -129,6 +129,7 @@ def test_increments_and_events_are_copied():
         ("INDEX/1\nINDEX/2\nGOTO/1,2,3\nCOPY/2,SAME,4000\nCOPY/1,SAME,4000\n", "L403"),
         ("TRACUT/LAST\nGOTO/1,2,3\n", "L402"),
         ("INDEX/1\nSPINDL/9\nGODLTA/0,0,-1\nGOTO/0,0,9\nCOPY/1,TRANSL,9,0,0,1\n", "L401"),
+        ("INDEX/1\nGOTO/1,2,3\nGOTO/1,2,9,0.6,0,0.8\nCOPY/1,TRANSL,9,0,0,2\n", "L401"),
         ("INDEX/1\nGODLTA/0,0,-1\nCOPY/1,SAME,2\n", "L401"),
     ],
 )

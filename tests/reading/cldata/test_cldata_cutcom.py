@@ -382,3 +382,37 @@ def test_centre_data_without_wear_keeps_its_arcs():
 def test_options_that_are_none(wrong):
     with pytest.raises(ValueError, match="expected"):
         ReadOptions(**wrong)
+
+
+def offset_in(frame, words, axis="0,0,1"):
+    """Offset and plane of a contour under CUTCOM in a frame; or the faults."""
+    text = (
+        f"UNITS/MM\nCUTTER/10\nLOADTL/1,LENGTH,90\nFEDRAT/99\n{frame}GOTO/0,0,0,{axis}\n"
+        f"CUTCOM/{words}\nGOTO/1,2,3\nCUTCOM/OFF\nGOTO/0,0,0\nFINI\n"
+    )
+    program, diagnostics = read(text, "part.cl", ReadOptions(contour_data="contour", dialect="apt"))
+    if program is None:
+        return [fault.code for fault in errors(diagnostics)]
+    return float(program.side_offset[1]), int(program.plane[1])
+
+
+TURNED = "TRACUT/0.8,-0.6,0,0,0.6,0.8,0,0,0,0,1,0\n"
+QUARTER = "TRACUT/0,-1,0,0,1,0,0,0,0,0,1,0\n"
+
+
+@pytest.mark.parametrize(
+    ("frame", "words", "axis", "expected"),
+    [
+        (TURNED, "LEFT,XYPLAN", "0,0,1", (5, 2)),
+        (TURNED, "LEFT,ZXPLAN", "0,0,1", ["L401"]),
+        (TURNED, "RIGHT,YZPLAN", "0,0,1", ["L401"]),
+        (TURNED, "LEFT,ZXPLAN", "0,1,0", (5, 1)),  # the plane normal to the tool
+        (QUARTER, "LEFT,ZXPLAN", "0,0,1", (-5, 0)),
+        (QUARTER, "LEFT,YZPLAN", "0,0,1", (5, 1)),
+        ("", "LEFT", "0,0,-1", (-5, 2)),
+        ("", "LEFT,XYPLAN", "0,0,-1", (-5, 2)),
+        ("", "LEFT,ZXPLAN", "0,0,-1", (5, 1)),
+    ],
+)
+def test_named_planes_turn_with_the_frame_and_are_seen_from_the_holder(frame, words, axis, expected):
+    assert offset_in(frame, words, axis) == expected
