@@ -65,7 +65,7 @@ def read_tools(
         source: name of the document.
 
     Returns:
-        The tools by number, and their faults: J113 and J114.
+        The tools by number, and their faults: J113, J114 and J143.
     """
     tools: dict[int, Tool] = {}
     faults = []
@@ -75,12 +75,24 @@ def read_tools(
         if not length > 0:
             faults.append(Diagnostic("J113", place, f"T{number}"))
             continue
+        says = _other_direction(controller)
+        if says:
+            faults.append(Diagnostic("J143", place, f"SpindleDir {controller.SpindleDir}, CAM's path of it {says}"))
         tool = _tool(controller, number, length)
         if tools.setdefault(number, tool) != tool:
             faults.append(
                 Diagnostic("J114", place, f"T{number} is {_description(tools[number])} and {_description(tool)}")
             )
     return tools, tuple(faults)
+
+
+def _other_direction(controller: Any) -> str:
+    """What CAM's own posts say in place of ``SpindleDir``: FreeCAD 1.1 takes the direction from the tool bit."""
+    codes = {command.Name for command in controller.Path.Commands}
+    if not controller.SpindleSpeed or "M6" not in codes or "Touched" in controller.State:
+        return ""
+    says = "M3" if "M3" in codes else "M4" if "M4" in codes else "None"
+    return "" if says == {"Forward": "M3", "Reverse": "M4"}.get(controller.SpindleDir, "None") else says
 
 
 def _description(tool: Tool) -> str:

@@ -2779,6 +2779,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>请查看报告视图中 CAM 的消息；更正其刀具、几何体或深度，或停用它</translation>
     </message>
     <message>
+        <source>set SpindleDir of the controller and SpindleDirection of the tool bit alike; for a standing spindle, speed 0</source>
+        <translation>将控制器的 SpindleDir 与刀具的 SpindleDirection 设为一致；主轴不转时将转速设为 0</translation>
+    </message>
+    <message>
         <source>a strut would be too short</source>
         <translation>一条支链会过短</translation>
     </message>
@@ -2961,6 +2965,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>deactivate the operation; pkm-post pmac measure probes between programs</source>
         <translation>停用该操作；pkm-post pmac measure 可在程序之间进行探测</translation>
+    </message>
+    <message>
+        <source>the tool controller and its tool bit turn the spindle in different directions</source>
+        <translation>刀具控制器与其刀具使主轴沿不同方向旋转</translation>
     </message>
     <message>
         <source>add it to the machine file, or pass --work-offset, or --origin for a further fixture of a CAM job</source>

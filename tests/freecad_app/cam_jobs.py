@@ -65,6 +65,13 @@ def add_tool_controller(job, number):
     return controller
 
 
+def turn(controller, direction):
+    """Set the direction of the spindle; FreeCAD 1.1 has it in the tool bit as well, and posts that of the bit."""
+    controller.SpindleDir = direction
+    if hasattr(controller.Tool, "SpindleDirection"):
+        controller.Tool.SpindleDirection = direction
+
+
 def moves(operation):
     """The commands of an operation without comments, as (name, words)."""
     commands = operation.Path.Commands

@@ -6,7 +6,7 @@ import numpy as np
 import Path
 import Path.Op.Probe
 import pytest
-from cam_jobs import ARC, FIVE_AXIS, add_operation, add_tool_controller, moves
+from cam_jobs import ARC, FIVE_AXIS, add_operation, add_tool_controller, moves, turn
 from test_tools import stock_bit
 
 from pkm_post.freecad_app.job import read_job
@@ -106,7 +106,7 @@ def test_operations_with_the_same_tool_change_nothing(job):
 def test_spindle_and_coolant_stop_for_a_tool_change(job):
     first, second = add_operation(job, label="First"), add_operation(job, label="Second")
     second.ToolController = add_tool_controller(job, 7)
-    second.ToolController.SpindleDir = "Reverse"
+    turn(second.ToolController, "Reverse")
     first.CoolantMode = second.CoolantMode = "Flood"
     program = program_of(job)
     assert events(program)[3:8] == [
@@ -227,6 +227,26 @@ def test_faults_of_all_operations_are_reported_together(job):
     add_operation(job, [*FIVE_AXIS, "G86 X1"], "First")
     add_operation(job, ["G0 X0 Y0 Z0", "G1 X1"], "Second")
     assert faults_of(job) == [("J104", "First", 7), ("J105", "Second", 4)]
+
+
+def test_another_direction_of_the_spindle_in_cams_own_path_is_refused(job):
+    """FreeCAD 1.1 posts the direction of the tool bit, whatever the controller says."""
+    operation, controller = add_operation(job), job.Tools.Group[0]
+    turn(controller, "Reverse")
+    job.Document.recompute()
+    assert read_job(job)[1] == ()
+    if int(App.Version()[1]) > 0:
+        controller.SpindleDir = "Forward"
+        job.Document.recompute()
+    else:
+        controller.Path = Path.Path("M6 T1\nM3 S9000")
+        controller.purgeTouched()
+        operation.purgeTouched()
+    (fault,) = read_job(job)[1]
+    assert fault.code == "J143" and fault.place.operation == controller.Label and "CAM's path" in fault.found
+    controller.SpindleSpeed = 0
+    job.Document.recompute()
+    assert read_job(job)[1] == ()
 
 
 def test_operation_without_tool_controller(job):

@@ -104,4 +104,8 @@ CAM_JOB_RULES: dict[str, Rule] = {
         "probing is not part of a program, which is computed before it runs",
         "deactivate the operation; pkm-post pmac measure probes between programs",
     ),
+    "J143": error(
+        "the tool controller and its tool bit turn the spindle in different directions",
+        "set SpindleDir of the controller and SpindleDirection of the tool bit alike; for a standing spindle, speed 0",
+    ),
 }
