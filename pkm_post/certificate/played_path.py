@@ -30,6 +30,7 @@ from pkm_post.geometry import (
     hermite_accelerations,
     hermite_column_speeds,
     hermite_columns,
+    hermite_powers,
     norm,
     torsion_free_axes,
 )
@@ -37,7 +38,7 @@ from pkm_post.machine import attitude_rates, forward_along_path, jacobian_of_tip
 from pkm_post.model import Machine, StrutMotion, Trajectory
 
 _ADVANCE_SHARES = np.linspace(0.125, 1.0, 8)[:, None]
-"""Shares of each interval at which it is evaluated."""
+"""Shares of each interval at which it is evaluated, besides those at which it may turn back."""
 _INTERVALS_AT_ONCE = 8192
 _SPIN_SHARES = np.array([[0.0], [0.25], [0.5], [0.75], [1.0]])
 """Shares of each interval at which the spin is compared."""
@@ -97,6 +98,21 @@ class PlayedPath:
         begin, end = (one.T for one in hermite_accelerations(p0.T, v0.T, p1.T, v1.T, duration))
         return hermite_column_speeds(p0, v0, p1, v1, duration, share[None])[:, 0], begin + (end - begin) * share
 
+    def turns_back(self, interval: Array, ruler: TrajectoryRuler) -> Array:
+        """Shares at which the way along the chord of N intervals is longest and shortest, (2, N); 1 where nowhere.
+
+        Tip and axis count by their tolerances.
+        """
+        p0, v0, p1, v1, duration = (column[:6] if column.ndim > 1 else column for column in self._ends(interval))
+        weight = np.repeat([1 / ruler.tip_tolerance.min(), 1 / ruler.axis_tolerance], 3)[:, None] ** 2
+        _, linear, square, cube = (hermite_powers(p0, v0, p1, v1, duration) * (weight * (p1 - p0))).sum(axis=1)
+        root = np.sqrt(np.maximum(square**2 - 3 * cube * linear, 0.0))
+        steep = -square - np.where(square < 0, -root, root)  # of both solutions the one without cancellation
+        shares = np.ones((2, len(linear)))
+        np.divide(steep, 3 * cube, out=shares[0], where=cube != 0)
+        np.divide(linear, steep, out=shares[1], where=steep != 0)
+        return np.clip(shares, 0.0, 1.0)
+
     def _ends(self, interval: Array) -> tuple[Array, Array, Array, Array, Array]:
         after = interval + 1
         duration = self.time[after] - self.time[interval]
@@ -125,9 +141,11 @@ def largest_backward_motion(path: PlayedPath, ruler: TrajectoryRuler, passed: Ar
 
 def _along(path: PlayedPath, rows: Array, ruler: TrajectoryRuler, passed: Array) -> Array:
     """Times in intervals; progress of the tool, in segments; and the tolerance of that progress, (3, M)."""
-    place = path.at(rows, _ADVANCE_SHARES).transpose(0, 2, 1).reshape(7, -1)
-    begin, end = path.time[rows, None], path.time[rows + 1, None]
-    time = (begin + (end - begin) * _ADVANCE_SHARES[:, 0]).ravel()
+    even = np.broadcast_to(_ADVANCE_SHARES, (len(_ADVANCE_SHARES), len(rows)))
+    shares = np.sort(np.vstack([even, path.turns_back(rows, ruler)]), axis=0)
+    place = path.at(rows, shares).transpose(0, 2, 1).reshape(7, -1)
+    begin, end = path.time[rows], path.time[rows + 1]
+    time = (begin + (end - begin) * shares).T.ravel()
     segment = np.minimum(np.searchsorted(passed, time), len(passed) - 1)
     share, slack = ruler.share_of(place[:3].T, (place[3:6] / norm(place[3:6].T)).T, segment)
     return np.stack([time, segment + share, slack])

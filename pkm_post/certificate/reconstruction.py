@@ -16,14 +16,16 @@ from pkm_post.certificate.consistency import event_fault
 from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.certificate.joint_times import joint_times
 from pkm_post.certificate.played_path import PlayedPath, largest_backward_motion, spin_deviation
-from pkm_post.geometry import Array, norm
+from pkm_post.geometry import Array, expand_counts, norm
 from pkm_post.machine import PosePath
 from pkm_post.model import Diagnostic, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory, as_executed
 
 Findings = tuple[Diagnostic, ...]
 
-_SAMPLE_SHARES = np.array([[0.25], [0.5], [0.75], [1.0]])
-"""Shares of each interval at which its pose path is sampled."""
+_INSTANTS = 4, 1024
+"""Least and most instants of each interval at which its pose path is sampled: as many as its curvature requires."""
+_OFF_CHORD = np.array([0.01, 0.01, 0.01, 2e-5, 2e-5, 2e-5, 2e-5])[:, None]
+"""mm of the tip, and rad of axis and spin, by which the tool may leave the straight path between two instants."""
 
 
 @dataclass(frozen=True)
@@ -34,23 +36,30 @@ class ReconstructedMotion:
         motion: motion with the knots of the program.
         spin_deviation: (K + 1,) mm of a strut, deviation of the spin about each knot from the programmed one.
         path: path of the tool.
+        instants: (K,) of each interval, at which its poses are checked.
     """
 
     motion: Motion
     spin_deviation: Array
     path: PlayedPath
+    instants: Array
 
     def pose_path(self) -> tuple[PosePath, Array]:
         """The pose path through even instants of all intervals, and their segments."""
-        count = len(self.motion) - 1
+        row, number = expand_counts(self.instants)
         first = self.path.at(np.array([0]), np.zeros((1, 1)))[:, 0]
-        inside = self.path.at(np.arange(count), _SAMPLE_SHARES).transpose(0, 2, 1).reshape(7, -1)
-        place = np.hstack([first, inside])
+        place = np.hstack([first, self.path.at(row, ((number + 1) / self.instants[row])[None])[:, 0]])
         axis = (place[3:6] / norm(place[3:6].T)).T
-        samples = len(_SAMPLE_SHARES)
-        tool_length = np.append(self.motion.tool_length[:1], np.repeat(self.motion.tool_length[1:], samples))
-        segment = np.append(self.motion.segment[:1], np.repeat(self.motion.segment[1:], samples))
-        return PosePath.straight(place[:3].T, axis, place[6], tool_length), segment
+        knot = np.append(0, row + 1)
+        return PosePath.straight(place[:3].T, axis, place[6], self.motion.tool_length[knot]), self.motion.segment[knot]
+
+
+def _instants(path: PlayedPath) -> Array:
+    """Number of even instants of each interval, (K,): a cubic leaves chords of d seconds by d^2 / 8 max |x''|."""
+    intervals = np.arange(len(path.time) - 1)
+    ends = (path.rates_at(intervals, np.full(len(intervals), share))[1] / _OFF_CHORD for share in (0.0, 1.0))
+    bend = np.maximum(*(np.sqrt(np.square(end).sum(axis=0)) for end in ends))
+    return np.clip(np.ceil(np.diff(path.time) * np.sqrt(bend / 8)), *_INSTANTS).astype(np.int64)
 
 
 def reconstruct(
@@ -77,7 +86,7 @@ def reconstruct(
     if fault is not None:
         return None, _diagnostics(fault, program_name)
     off = spin_deviation(path, trajectory, machine, ruler, joint_time)
-    return ReconstructedMotion(_motion(path, joint_time), off, path), ()
+    return ReconstructedMotion(_motion(path, joint_time), off, path, _instants(path)), ()
 
 
 _Fault = tuple[str, str]

@@ -93,6 +93,26 @@ def test_joints_are_passed_when_the_plan_passes_them(machine):
     assert np.abs(found.motion.tip - motion.tip).max() < 1e-5
 
 
+def test_poses_are_checked_so_close_that_the_tool_keeps_to_the_straight_path_between_them(machine):
+    wide = Tolerances(0.2, np.radians(0.2))
+    trajectory = placed(steep_helices(), machine)
+    motion, _ = planned(trajectory, machine, wide)
+    found, _ = reconstruct(printed(motion, machine), "job.pmc", trajectory, machine, wide)
+    checked, segments = found.pose_path()
+    assert len(checked) == len(segments) == 1 + found.instants.sum()
+    assert found.instants.min() == 4 < found.instants.max()
+    last = np.append(0, np.cumsum(found.instants))
+    even = np.linspace(0, 1, 97)[:, None]
+    tips = found.path.at(np.arange(len(found.instants)), even)[:3].transpose(2, 1, 0)
+    for tip, first, end in zip(tips, last[:-1], last[1:], strict=True):
+        rows = checked.tip[first : end + 1]
+        chord = np.diff(rows, axis=0)
+        away = tip[:, None] - rows[:-1]
+        length = np.maximum((chord**2).sum(axis=1), 1e-30)
+        share = np.clip((away * chord).sum(axis=2) / length, 0.0, 1.0)
+        assert np.linalg.norm(away - share[..., None] * chord, axis=2).min(axis=1).max() < 0.01
+
+
 def test_a_spin_that_was_not_programmed_is_found(machine):
     """Tip and axis are right all the time: the platform turns about the tool axis by a little and back."""
     trajectory = placed(cone(60), machine)
@@ -146,29 +166,48 @@ ONE_DASH = [(20, 0.01, 1.0), (320, 15.16, 100.0), (618, 45.0, 100.0), (818, 55.0
 """ms, mm and mm/s: from rest to the speed of the second line, in an interval that begins on the first one."""
 
 
+def faults_of_dash(machine, feed, dash, tip=0.05):
+    """What is found in a program of two lines, of 15 mm and to where the dash ends, with one tool."""
+    wide = Tolerances(tip, np.radians(0.05))
+    time_ms, along, speed = np.array(dash).T
+    stop = Event(0, EventKind.TOOL_CHANGE, 1), Event(1, EventKind.DWELL, 0.1)
+    points = [[0, 0, 60], [15, 0, 60], [along[-1], 0, 60]]
+    trajectory = placed(program(points, feed=np.array([np.nan, feed, 100.0]), events=stop), machine)
+    motion, _ = planned(trajectory, machine, wide)
+    rest = motion.events[-1].row
+    count, still = len(along), np.zeros((len(along), 2))
+    columns = {
+        "time_ms": motion.time_ms[rest] + time_ms.astype(int), "segment": np.minimum(1 + (along > 15), 2),
+        "tip": motion.tip[rest] + np.column_stack([along, still]), "tip_rate": np.column_stack([speed, still]),
+    }  # fmt: skip
+    same = ("axis", "axis_rate", "spin", "spin_rate", "tool_length")
+    columns |= {name: np.repeat(getattr(motion, name)[[rest]], count, axis=0) for name in same}
+    joined = {name: np.concatenate([getattr(motion, name)[: rest + 1], column]) for name, column in columns.items()}
+    return refusals(printed(replace(motion, **joined), machine), trajectory, machine, wide)
+
+
 @pytest.mark.parametrize(("feed", "expected"), [(100.0, set()), (1.0, {"V108"})])
 def test_a_tool_that_is_fast_before_it_reaches_the_fast_line_is_found(machine, feed, expected):
     """An interval from a slow line of 15 mm to a fast one: at its end the tool may be fast, on the slow line not.
 
     The oracle: the mean speed of the interval is 50.5 mm/s, the first line has 1 mm/s.
     """
-    wide = Tolerances(0.05, np.radians(0.05))
-    stop = Event(0, EventKind.TOOL_CHANGE, 1), Event(1, EventKind.DWELL, 0.1)
-    lines = program([[0, 0, 60], [15, 0, 60], [55, 0, 60]], feed=np.array([np.nan, feed, 100.0]), events=stop)
-    trajectory = placed(lines, machine)
-    motion, _ = planned(trajectory, machine, wide)
-    rest = motion.events[-1].row
-    time_ms, along, speed = np.array(ONE_DASH).T
-    count, still = len(along), np.zeros((len(along), 2))
-    dash = {
-        "time_ms": motion.time_ms[rest] + time_ms.astype(int), "segment": np.minimum(1 + (along > 15), 2),
-        "tip": motion.tip[rest] + np.column_stack([along, still]), "tip_rate": np.column_stack([speed, still]),
-    }  # fmt: skip
-    same = ("axis", "axis_rate", "spin", "spin_rate", "tool_length")
-    dash |= {name: np.repeat(getattr(motion, name)[[rest]], count, axis=0) for name in same}
-    joined = {name: np.concatenate([getattr(motion, name)[: rest + 1], column]) for name, column in dash.items()}
-    faults = refusals(printed(replace(motion, **joined), machine), trajectory, machine, wide)
+    assert {fault.code for fault in faults_of_dash(machine, feed, ONE_DASH)} == expected
+
+
+@pytest.mark.parametrize(("share", "expected"), [(0.0, set()), (0.5, set()), (1.0, {"V110"})])
+def test_a_tool_that_goes_back_between_even_instants_is_found(machine, share, expected):
+    """One cubic of half a second nearly stops half way, and goes back for an eighth of its time: 16/4096 of 10 mm.
+
+    The way by the share y from the middle is 10 (4 y^3 - k y), k = 12/256 turns back at y = 1/16 and -1/16.
+    """
+    back = share * 12 / 256
+    speed, way = 20 * (3 - back), 10 * (1 - back)
+    begin = 0.2 * speed
+    dash = [(400, begin, speed), (900, begin + way, speed), (1300, way + 2 * begin, 0.0)]
+    faults = faults_of_dash(machine, 100.0, dash, tip=0.03)
     assert {fault.code for fault in faults} == expected
+    assert all("goes back on its path, by 1.3" in fault.found for fault in faults)
 
 
 @pytest.fixture(scope="module")
