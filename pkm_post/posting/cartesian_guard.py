@@ -9,7 +9,9 @@ subroutine ends a program, and the next ``R`` starts it from the beginning [Turb
 PMAC User's Manual, p. 692].
 
 Shifting the work frame by d is equivalent to shifting the base joints by -d, a longer tool to a longer spindle nose: so
-each corner is a machine.
+each corner is a machine. The vector of a strut is affine in these four values, so its length is convex: longest at a
+corner, but it may be shortest between them, by at most half the sum of the squared ranges through the length. Corners
+keep that distance from the shortest length.
 """
 
 from __future__ import annotations
@@ -58,14 +60,17 @@ class Allowance:
         return f"{length}, {origin}, Q54 zero" if self.origin else f"{length} and Q51 to Q54 zero"
 
     def corners(self, machine: Machine) -> Iterator[tuple[str, Machine]]:
-        """Yield each corner of the allowance as text, with the equivalent machine."""
+        """Yield each corner of the allowance as text, with the equivalent machine, whose struts stay longer."""
+        low, high = machine.strut_stroke
+        stroke = low + (3 * self.origin**2 + self.tool_length**2) / (2 * low), high
         shifts = (-self.origin, self.origin) if self.origin else (0.0,)
         lengths = (-self.tool_length, self.tool_length) if self.tool_length else (0.0,)
         for *shift, longer in product(shifts, shifts, shifts, lengths):
             if any(shift) or longer:
                 words = f"work frame at {', '.join(f'{value:+g}' for value in shift)}, tool {longer:+g} mm"
                 base = machine.base_joints - np.array(shift)
-                yield words, replace(machine, base_joints=base, spindle_nose=machine.spindle_nose + longer)
+                nose = machine.spindle_nose + longer
+                yield words, replace(machine, base_joints=base, spindle_nose=nose, strut_stroke=stroke)
 
 
 @dataclass(frozen=True)

@@ -166,6 +166,46 @@ def test_the_corners_are_what_the_exported_kinematics_do(posted):
         np.testing.assert_allclose(found, lengths, rtol=0, atol=1e-9)
 
 
+def test_a_strut_that_is_shortest_between_the_corners_is_within_its_stroke(posted):
+    """Random machines and poses; the lengths at points of the box, against a stroke that the corners just keep."""
+    machine, chance, shorter = posted[0], np.random.default_rng(3), 0
+    box = np.array(list(itertools.product((-1.0, -0.5, 0.0, 0.5, 1.0), repeat=3)))
+    allowance = Allowance(2.0, 20.0)
+    for _ in range(60):
+        base = machine.base_joints + chance.normal(0, 80, (6, 3))
+        tip, axis = machine.home_tip + chance.uniform(-1, 1, (1, 3)) * [150, 150, 60], np.array([[0.0, 0.0, 1.0]])
+        place = tip, axis, np.zeros(1), np.array([120.0])
+        some = dataclasses.replace(machine, base_joints=base)
+        corners = [corner for _, corner in allowance.corners(some)]
+        kept = np.min([strut_lengths(corner, *place)[0] for corner in corners], axis=0)
+        margin = corners[0].strut_stroke[0] - some.strut_stroke[0]
+        changed = [
+            dataclasses.replace(some, base_joints=base - 20.0 * at, spindle_nose=some.spindle_nose + tool)
+            for at, tool in itertools.product(box, (-2.0, 0.0, 2.0))
+        ]
+        between = np.min([strut_lengths(each, *place)[0] for each in changed], axis=0)
+        assert (between >= kept - margin * some.strut_stroke[0] / between.min()).all()
+        shorter += (between < kept - 1e-3).any()
+    assert shorter > 3
+
+
+def test_a_stroke_that_the_corners_keep_and_a_point_between_them_may_not_is_refused(posted, tmp_path):
+    machine, folder, form = posted
+    allowance = Allowance(0.0, 20.0)
+    axes = np.array(MOVE.findall(form.files[0].read_text()), dtype=float)[:, 0::2]
+    corners = [corner for _, corner in allowance.corners(machine)]
+    kept = min(float(strut_lengths(corner, *made.tool_poses(axes)).min()) for corner in corners)
+    margin = 3 * 20.0**2 / (2 * machine.strut_stroke[0])
+    for below, holds in ((1.5 * margin, True), (0.5 * margin, False)):
+        other = dataclasses.replace(machine, strut_stroke=(kept - below, machine.strut_stroke[1]))
+        files = folder / "job.pmc", folder / "job.pkmt", other, tmp_path / f"{holds}.pmc", allowance
+        if holds:
+            assert cartesian_program(*files).files
+        else:
+            with pytest.raises(Refused, match="C115"):
+                cartesian_program(*files)
+
+
 def test_an_allowance_beyond_the_machine_is_refused(posted, tmp_path):
     machine, folder, _ = posted
     with pytest.raises(Refused, match=r"C115.*tip.pmc|tip.pmc.*C115") as refused:
