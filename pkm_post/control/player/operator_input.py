@@ -7,13 +7,17 @@ the controller at once.
 
 from __future__ import annotations
 
+import logging
 import queue
 
 from pkm_post.control.link import run, stopping
+from pkm_post.control.link.errors import NotReadyError
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings
 from pkm_post.control.player.orders import Order, PlayOptions
 from pkm_post.control.player.pieces import HIGHEST_OVERRIDE
+
+_log = logging.getLogger(__name__)
 
 
 class OperatorInput:
@@ -53,10 +57,10 @@ class OperatorInput:
         self._orders.put(order)
 
     def carry_out(self, session: Session, settings: AnySettings) -> None:
-        """Execute the orders.
+        """Execute the orders; a resume of what is not held, or has a fault, is refused with a warning.
 
         Raises:
-            PmacError: a hold or a resume failed.
+            PmacError: a hold failed, or the link during a resume.
         """
         while not self._orders.empty():
             order = self._orders.get()
@@ -67,9 +71,16 @@ class OperatorInput:
             elif order.kind == "resume" and self.is_held_back:
                 self.is_held_back = False
             elif order.kind == "resume":
-                run.resume_program(session, settings)
+                self._resume(session, settings)
             else:
                 self._note(order)
+
+    @staticmethod
+    def _resume(session: Session, settings: AnySettings) -> None:
+        try:
+            run.resume_program(session, settings)
+        except NotReadyError as refused:
+            _log.warning("%s", refused)
 
     def _note(self, order: Order) -> None:
         if order.kind == "override":

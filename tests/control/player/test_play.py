@@ -54,6 +54,18 @@ def test_overrides_up_to_150_a_hold_and_an_override_of_zero(machine):
 
 
 @BOTH
+def test_a_resume_of_what_is_not_held_is_refused_and_the_play_goes_on(machine, caplog):
+    """While it runs, at M0, and twice after a hold."""
+    orders = {state: [Order("resume")] for state in (5, 20, 60)} | {30: [Order("hold")], 40: [Order("resume")] * 2}
+    playing = Playing.of(trajectory_of(RECTANGLE, events=(Event(1, EventKind.STOP, 0.0),)), at=orders, machine=machine)
+    playing.answer = lambda player: [player.order(Order(kind)) for kind in ("resume", "start")]
+    done = playing.play()
+    playing.check()
+    assert done.finished and done.log.holds and playing.arrived() < 1e-3 and not orders
+    assert [record.message for record in caplog.records if "no program is held" in record.message]
+
+
+@BOTH
 def test_a_planner_that_is_too_late_ends_in_a_stop_on_the_path(machine):
     calls = itertools.count()
     playing = Playing.of(machine=machine)
