@@ -120,6 +120,7 @@ class NumericalControl:
             return self._last  # a stop has priority; the next reading catches up
         except (NotOwnerError, OverrideError) as fault:
             _log.warning("%s", fault)
+            self._last = replace(self._last, note=str(fault))
             if isinstance(fault, NotOwnerError) and self._session.keeper is not None:
                 self._session.keeper.release()
             return self._last
@@ -128,12 +129,11 @@ class NumericalControl:
             return self._last
         self._may_move = False
         self._release_at_rest(status)
-        homing = None if self._watch is None else self._watch.see(status, self._session.now())
+        homing = self._last.homing if self._watch is None else self._watch.see(status, self._session.now())
         if homing is not None and homing.phase is not HomingPhase.SEARCHING:
             self._watch = None
-        elif homing is None:
-            homing = self._last.homing
-        self._last = ControlState(status, self._readout.pose(status), homing=homing, block=self._block)
+        note = self._last.note if status.running else ""
+        self._last = ControlState(status, self._readout.pose(status), "", (), homing, self._block, note)
         return self._last
 
     def see(self, status: Status) -> ControlState:

@@ -22,6 +22,7 @@ class ControlState:
         emergency: instructions for the operator if the link is lost while the machine may move.
         homing: of a homing started here; None otherwise.
         block: the next block; None outside single block mode.
+        note: why the machine was held from here, or given up to another client, while a program runs.
     """
 
     status: Status | None
@@ -30,3 +31,4 @@ class ControlState:
     emergency: tuple[str, ...] = ()
     homing: Homing | None = None
     block: BlockDisplay | None = None
+    note: str = ""

@@ -74,6 +74,7 @@ class Console(QtCore.QObject):
         self.calls = CallQueue(self, lambda fault: self.message.emit(exception_text(fault), True), _REPORTED)
         self.calls.changed.connect(self.refreshed)
         self._cancelled, self._homing, self._is_wanted = threading.Event(), False, True
+        self._noted = ""
         self._timer = QtCore.QTimer(self)
         self._timer.timeout.connect(self._look)
         QtCore.QCoreApplication.instance().aboutToQuit.connect(self._quit)
@@ -240,6 +241,9 @@ class Console(QtCore.QObject):
         while ended := next((each for each in self._under_way if each[0].done()), None):
             self._under_way.remove(ended)
             self._end(*ended)
+        if self.state.note not in ("", self._noted):
+            self.message.emit(self.state.note, True)
+        self._noted = self.state.note
         self._show_notes()
         if self.play is not None and self.play.done.done():
             future, self.play = self.play.done, None

@@ -379,10 +379,12 @@ def test_a_reading_that_gives_way_to_a_stop_is_no_lost_link(station):
 def test_a_program_that_another_client_speeds_up_is_held_while_the_panel_polls(station, caplog):
     plan, _ = station.control.plan_line("G91 G1 Z-20 F120")
     station.control.execute(plan)
+    assert not station.wait(0.1).note
     station.wire.controller.systems[0].set_override(150.0)
     states = [station.wait(0.1) for _ in range(30)]
     assert states[-1].status.held and states[-1].status.standing
     assert [record.message for record in caplog.records if "set from elsewhere" in record.message]
+    assert "set from elsewhere" in states[-1].note
     station.control.resume()
     assert [station.wait(0.1) for _ in range(30)][-1].status.held
-    assert not station.control.abort().running
+    assert not station.control.abort().running and not station.wait(0.1).note
