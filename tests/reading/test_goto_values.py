@@ -121,6 +121,7 @@ CONTACT = "GOTO/0,0,0,.6,0,.8,0,0,1\n"
     [
         (f"{CONTACT}GODLTA/0,0,9\n", ("L417", 7, "GODLTA after a contact point")),
         (f"CYCLE/DRILL,DEPTH,5,CLEAR,2,MMPM,60\n{CONTACT}", ("L412", 7, "a hole at a contact point")),
+        (f"FEDRAT/INVERS,5\nRAPID\n{CONTACT}GOTO/0,0,9\n", ("L416", 9, "a move to or from a contact point")),
         (f"CUTCOM/LEFT\n{CONTACT}{CONTACT}", ("L401", 7, "a contact point under CUTCOM, and 1 more")),
         (
             f"{CONTACT}CUTTER/10,1\n{CONTACT}",

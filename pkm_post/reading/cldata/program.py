@@ -180,6 +180,10 @@ def _convert_inverse_time(state: ReaderState, points: Points, rows: _Rows) -> No
         statement = np.unique(points.row[rows.point], return_inverse=True)[1]
         length = np.bincount(statement, length)[statement]
         inverse = rows.inverse & cutting
+        contact = points.contact[rows.point]
+        beside = np.flatnonzero(inverse & (contact | np.append(False, contact[:-1])))
+        for row in beside[:1].tolist():  # tips are as far apart as compensation makes them
+            state.report("L416", int(points.row[rows.point[row]]), "a move to or from a contact point")
         for row in np.flatnonzero(inverse & (length == 0)).tolist():
             state.report("L416", int(points.row[rows.point[row]]), "a move of zero length")
         rows.feed[inverse] *= length[inverse]

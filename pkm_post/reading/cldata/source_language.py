@@ -27,7 +27,7 @@ from pkm_post.reading.cldata.cycle_notation import words_of_cycles
 from pkm_post.reading.cldata.diagnostics import StatementDiagnostics
 from pkm_post.reading.cldata.feeds import FEED_WORDS
 from pkm_post.reading.cldata.interpreter import HANDLERS, IGNORED, UNSUPPORTED
-from pkm_post.reading.cldata.logical_lines import LogicalLines
+from pkm_post.reading.cldata.logical_lines import JOINT, LogicalLines
 
 MOST_LINES = 1_000_000
 """Most statements of a file, including all calls."""
@@ -240,7 +240,9 @@ class _Expander:
         if len(text) > _LONGEST_EXPRESSION:
             raise _NoValueError(f"{shown}..., too long")
         try:
-            value = self._evaluated(ast.parse(_LEADING_ZEROS.sub("", text.strip()), mode="eval").body)
+            value = self._evaluated(
+                ast.parse(_LEADING_ZEROS.sub("", text.replace(JOINT, " ").strip()), mode="eval").body
+            )
         except (SyntaxError, RecursionError, MemoryError):
             raise _NoValueError(f"{shown}, no expression of numbers and names") from None
         except (ArithmeticError, ValueError):

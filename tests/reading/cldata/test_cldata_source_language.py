@@ -29,6 +29,7 @@ def faults(text):
     ("text", "plain"),
     [
         ("A=10\nGOTO/A,-A,a/4\n", "GOTO/10,-10,2.5\n"),
+        ("A=2\nB = A $\n +1\nGOTO/B,A $ $$ two lines\n -1,0\n", "GOTO/3,1,0\n"),
         ("A = 2.\nB = A**3 + 1\nGOTO/(A+B)*2,B-A,0\n", "GOTO/22,7,0\n"),
         ("GOTO/5*SINF(30),5*COS(60),SQRTF(16)\n A=1\n", "GOTO/2.5,2.5,4\n"),
         ("P1=POINT/1,2,3\nGOTO/P1\nGOTO/P1,0,0,1\n", "GOTO/1,2,3\nGOTO/1,2,3,0,0,1\n"),
