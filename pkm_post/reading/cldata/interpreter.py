@@ -15,7 +15,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from pkm_post.model import Array
+from pkm_post.model import Array, EventKind
 from pkm_post.reading.cldata.arc_statements import (
     arcdat,
     arcmov,
@@ -88,7 +88,11 @@ def _syn(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 def _end(state: ReaderState, row: int, statement: Statement) -> None:
+    """END and REWIND stop spindle and coolant, as M2 and M30 do."""
     state.end_of_program = row
+    for kind in (EventKind.SPINDLE, EventKind.COOLANT):
+        if next((value for _, each, value in reversed(state.events) if each is kind), 0.0):
+            state.events.append((row, kind, 0.0))
 
 
 def _fini(state: ReaderState, row: int, statement: Statement) -> None:

@@ -136,6 +136,11 @@ def test_no_motion_follows_the_end_of_the_program(word, motion):
     assert codes(f"{HEAD}{word}\n{motion}\nFINI\n") == [("L401", 7)]
     ended = program(f"{HEAD}{motion}\n{word}\nFINI\nGOTO/9,9,9\n")
     assert ended.position[1:].tolist() == [[1, 2, 3]]
+    on = program(f"{HEAD}SPINDL/500,CLW\nCOOLNT/MIST\n{motion}\n{word}\nFINI\n")
+    assert [(each.kind, each.value) for each in on.events if each.row == len(on)] == [
+        (EventKind.SPINDLE, 0.0),
+        (EventKind.COOLANT, 0.0),
+    ]
 
 
 @pytest.mark.parametrize("words", ["LOCK,ON", "LOCK,OFF"])
