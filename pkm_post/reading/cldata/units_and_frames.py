@@ -115,7 +115,9 @@ def machining_frame(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 def origin(state: ReaderState, row: int, statement: Statement) -> None:
-    """ORIGIN/x,y,z[,X axis, Z axis]: the machine origin in point coordinates."""
+    """ORIGIN/x,y,z[,X axis, Z axis]: the machine origin in point coordinates; NOMORE and OFF end it."""
+    if _ends_transform(state, row, statement, statement.word):
+        return
     values = state.expect_values(row, statement, 3, 9)
     if not values:
         return
@@ -132,9 +134,7 @@ def trans(state: ReaderState, row: int, statement: Statement) -> None:
     name = statement.word
     if name == "TRACUT" and statement.items[:1] == ("LAST",):
         name, statement = _LAST, replace(statement, items=statement.items[1:])
-    if not statement.values and set(statement.words) & {"NOMORE", "OFF"}:
-        state.transforms.pop(name, None)
-        _record_frame(state, row)
+    if _ends_transform(state, row, statement, name):
         return
     values = state.expect_values(row, statement, 3, 12)
     if not values:
@@ -143,6 +143,15 @@ def trans(state: ReaderState, row: int, statement: Statement) -> None:
     if len(values) == 3:
         matrix[:3, 3] = values
     _set_transform(state, row, statement, name, matrix)
+
+
+def _ends_transform(state: ReaderState, row: int, statement: Statement, name: str) -> bool:
+    """Whether NOMORE or OFF ends the transform of a word here."""
+    ends = not statement.values and bool(set(statement.words) & {"NOMORE", "OFF"})
+    if ends:
+        state.transforms.pop(name, None)
+        _record_frame(state, row)
+    return ends
 
 
 def path_index(state: ReaderState, row: int, statement: Statement) -> None:

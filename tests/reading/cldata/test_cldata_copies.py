@@ -104,6 +104,13 @@ def test_tracut_moves_points_in_the_frame_they_are_written_in():
     assert read(text, "part.cl", ReadOptions(dialect="nx"))[0].position.tolist() == [[-2, 11, 3]]
 
 
+def test_each_word_ends_its_own_frame():
+    given = "TRACUT/1,0,0\nTRACUT/LAST,0,1,0\nORIGIN/0,0,-1\nTRANS/0,0,2\nGOTO/0,0,0\n"
+    ends = ("TRACUT/NOMORE", "TRACUT/LAST,NOMORE", "ORIGIN/NOMORE", "TRANS/OFF")
+    found = program(given + "".join(f"{word}\nGOTO/0,0,0\n" for word in ends)).position[1:].tolist()
+    assert found == [[1, 1, 3], [0, 1, 3], [0, 0, 3], [0, 0, 2], [0, 0, 0]]
+
+
 def test_increments_and_events_are_copied():
     found = program("INDEX/1\nGOTO/1,0,0\nSPINDL/500,CLW\nGODLTA/0,0,1\nCOPY/1,XYROT,90,1\n")
     assert found.position[1:] == pytest.approx(np.array([[1, 0, 0], [1, 0, 1], [0, 1, 0], [0, 1, 1]]))
