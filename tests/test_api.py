@@ -159,6 +159,22 @@ def test_a_machine_file_that_is_not_there_is_refused(folder, name):
         pkm.find_machine(name)
 
 
+@pytest.mark.parametrize("name", ["", "a\0b", "n" * 300])
+def test_files_that_cannot_be_there_are_refused(folder, name):
+    for call in (
+        lambda: pkm.read(f"x{name}.ngc"),
+        lambda: pkm.certify(f"{name}.pmc" if name else "", pkm.read_machine()),
+    ):
+        with pytest.raises(pkm.Refused, match="F103"):
+            call()
+
+
+def test_what_are_no_numbers_is_refused_by_name():
+    for points in ("abc", (point for point in [(0, 0, 0)]), [[None, {}, 1.0]]):
+        with pytest.raises(ValueError, match=r"^tip_from_contact: expected 3 arrays \(N, 3\) of numbers: "):
+            pkm.tip_from_contact(points, [[0, 0, 1]], [[0, 0, 1]], pkm.Cutter(0.0, 5.0, 0.0))
+
+
 def test_what_is_said_of_options_holds_what_was_typed():
     with pytest.raises(ValueError, match="^unknown: --unti, perhaps --unit; mm in '--unti mm'$"):
         pkm.read_options("--unti mm")

@@ -202,7 +202,8 @@ def certify(program: str | Path, machine: Machine, trajectory: str | Path | None
         True
     """
     path = Path(program)
-    verified = verify(path, Path(trajectory) if trajectory else path.with_suffix(result_files.TRAJECTORY), machine)
+    beside = path.parent / f"{path.stem}{result_files.TRAJECTORY}"
+    verified = verify(path, Path(trajectory) if trajectory else beside, machine)
     return sound_value(verified.certificate, verified.diagnostics)
 
 

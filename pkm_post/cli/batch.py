@@ -122,7 +122,7 @@ def run_batch(
         progress: called with a file and the completed share.
 
     Raises:
-        Refused: F116, the list is not valid; or the table cannot be written.
+        Refused: F103 or F116, the list cannot be read or is not valid; or the table cannot be written.
     """
     file = Path(batch_file)
     jobs, table = read_list(file), table_of(file)
@@ -146,7 +146,7 @@ def read_list(file: Path) -> list[BatchJob]:
     """The jobs of a list.
 
     Raises:
-        Refused: F116.
+        Refused: F103, F116.
     """
     from pkm_post.model import Diagnostic, Place, Refused
 
@@ -154,7 +154,8 @@ def read_list(file: Path) -> list[BatchJob]:
         content = tomllib.loads(file.read_text(encoding="utf-8"))
         jobs = list(_jobs(content, file.parent))
     except (OSError, ValueError, TypeError) as fault:
-        raise Refused([Diagnostic("F116", Place(str(file)), str(fault))]) from fault
+        code = "F103" if isinstance(fault, OSError) else "F116"
+        raise Refused([Diagnostic(code, Place(str(file)), str(fault))]) from fault
     return jobs
 
 

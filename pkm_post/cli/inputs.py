@@ -100,9 +100,18 @@ def programs_of(file: Path, namespace: argparse.Namespace) -> Iterator[Prepared]
     if is_part_program(file):
         yield prepared_file(file, reading=reading_from(namespace), arguments=given)
     else:
+        require_document(file)
         from pkm_post.freecad_app.post_job import read_document
 
         yield from read_document(file, given, namespace.job)
+
+
+def require_document(file: Path) -> None:
+    """Raise ``Refused`` if there is no such document; FreeCAD need not be started to say so."""
+    from pkm_post.model import Diagnostic, Place, Refused
+
+    if not os.path.exists(file):
+        raise Refused([Diagnostic("J101", Place(str(file)), "there is no file of this name")])
 
 
 def read_machine(name: str) -> Machine | None:

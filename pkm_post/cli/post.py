@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.inputs import add_reading, misplaced, programs_of, reading_from
+from pkm_post.cli.inputs import add_reading, misplaced, programs_of, reading_from, require_document
 from pkm_post.cli.processes import (
     DOCUMENTS,
     command_inside,
@@ -196,6 +196,7 @@ def _post_with(file: Path, namespace: argparse.Namespace, line: ProgressLine) ->
     if is_part_program(file):
         reading = reading_from(namespace)
         return (post_file(file, out=out, arguments=given, reading=reading, log=line.print, progress=line.show),)
+    require_document(file)
     from pkm_post.freecad_app.post_job import post_document
 
     job = namespace.job

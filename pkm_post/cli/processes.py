@@ -47,10 +47,11 @@ def needs_freecad(files: Sequence[Path], solids: Sequence[str] = ()) -> bool:
     """Whether one of the files needs FreeCAD, judged by name, without NumPy.
 
     Args:
-        files: documents and part programs.
+        files: documents and part programs; one that does not exist is refused without FreeCAD.
         solids: files of part, stock and fixtures.
     """
-    return not is_inside() and any(path.suffix.lower() in _READ_BY_FREECAD for path in (*files, *map(Path, solids)))
+    read = (*filter(os.path.exists, files), *map(Path, solids))
+    return not is_inside() and any(path.suffix.lower() in _READ_BY_FREECAD for path in read)
 
 
 def run_inside(arguments: Sequence[str]) -> int:

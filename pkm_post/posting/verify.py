@@ -8,6 +8,7 @@ the program and compared with the trajectory, so the verdict does not depend on 
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -69,7 +70,7 @@ def verify_texts(texts: Texts, program: Path, trajectory: Path, machine: Machine
 
 def _of_another_trajectory(texts: Texts, trajectory: Path) -> Findings:
     """F106 for each part of a program whose heading names another trajectory file."""
-    if not trajectory.is_file():  # reported where it is read
+    if not os.path.isfile(trajectory):  # also for a name that is too long, which is reported where it is read
         return ()
     digest = manifest.fingerprint_of_file(trajectory)
     return tuple(

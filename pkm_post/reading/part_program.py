@@ -111,7 +111,7 @@ def read_part_program(file: Path, reading: ReadingOptions) -> _Result:
     name = name_of(file)
     try:
         content = file.read_bytes()
-    except OSError as fault:
+    except (OSError, ValueError) as fault:  # ValueError: a zero byte in the name
         return None, (Diagnostic("F103", Place(name), str(fault)),)
     program, diagnostics = read_content(content, name, reading, file.parent)
     if program is not None:

@@ -128,3 +128,5 @@ def test_a_list_that_is_not_valid_is_refused(jobs, text, found, capsys):
     assert code == "F116" and found in said
     assert main(["batch", str(jobs)]) == 1
     assert "error F116" in capsys.readouterr().err
+    assert main(["batch", str(jobs.parent)]) == 1
+    assert "error F103" in capsys.readouterr().err

@@ -169,3 +169,5 @@ def test_files_that_are_not_read_are_refused_before_freecad_is_started(command, 
     unread, folder = capsys.readouterr().err.splitlines()
     assert "part.stp: error F122: files with this ending are not read: expected one of .FCStd, .FCBak, .ngc, " in unread
     assert "folder.ngc: error F103: the file cannot be read: it is a folder; " in folder
+    assert main([command, str(tmp_path / "none.FCStd")]) == 1
+    assert "none.FCStd: error J101: " in capsys.readouterr().err

@@ -118,7 +118,10 @@ def _by_row(place: Place) -> Callable[[int], Place]:
 
 
 def _rows(caller: str, *columns: ArrayLike) -> list[Array]:
-    arrays = [np.asarray(column, dtype=np.float64) for column in columns]
+    try:
+        arrays = [np.asarray(column, dtype=np.float64) for column in columns]
+    except (TypeError, ValueError) as fault:
+        raise ValueError(f"{caller}: expected {len(columns)} arrays (N, 3) of numbers: {fault}") from fault
     shapes = {array.shape for array in arrays}
     if len(shapes) != 1 or arrays[0].ndim != 2 or arrays[0].shape[1] != 3:
         raise ValueError(f"{caller}: expected {len(arrays)} arrays (N, 3), got {sorted(shapes)}")

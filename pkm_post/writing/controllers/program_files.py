@@ -69,10 +69,10 @@ def read_text(file: Path) -> tuple[str | None, Findings]:
     """The text of one file of a program."""
     try:
         content = file.read_bytes()
-        checkpoint()
-        return text_of(content, file.name)
-    except OSError as fault:
+    except (OSError, ValueError) as fault:  # ValueError: a zero byte in the name
         return None, (Diagnostic("F103", Place(str(file)), str(fault)),)
+    checkpoint()
+    return text_of(content, file.name)
 
 
 def read_texts(program: Path, controller: ControllerModule) -> tuple[Texts | None, Findings]:
