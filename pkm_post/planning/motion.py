@@ -34,7 +34,6 @@ from pkm_post.planning.fast_poses import fast_poses_within
 from pkm_post.planning.feed_study import feed_study
 from pkm_post.planning.interpolation import InterpolationCheck, poses_at
 from pkm_post.planning.knots import LONGEST_MS, even_marks, knots, slower_feed
-from pkm_post.planning.refinement import refined
 from pkm_post.planning.rough_limits import (
     DerivativeBounds,
     below_feed,
@@ -44,8 +43,8 @@ from pkm_post.planning.rough_limits import (
 )
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.slower import Slower, limits_jerk, required, too_coarse
+from pkm_post.planning.speed_limits import planned_share
 from pkm_post.planning.speed_profile import Stations, cell_times, stations
-from pkm_post.planning.switches import planned_share, with_lower_switches
 from pkm_post.planning.threads import share_in_threads, spindle_turns, with_slow_threads
 from pkm_post.planning.tool_path import FOR_CORNERS, ToolPath
 from pkm_post.system import columns_in_workers, in_workers
@@ -196,6 +195,9 @@ def _schedule(path: ToolPath, machine: Machine, bounds: DerivativeBounds, share:
     """
     if limits_jerk(machine):
         return _without_jumps(path, machine, bounds)
+    from pkm_post.planning.refinement import refined
+    from pkm_post.planning.switches import with_lower_switches
+
     planned = float(share.max())
     rough = rough_limits(path, machine, bounds, planned)
     close = below_feed(path, *rough) | (share < planned)

@@ -39,6 +39,15 @@ _LONGER = 1.002
 Pair = tuple[Array, Array]
 
 
+def planned_share(machine: Machine) -> float:
+    """Initial planned share of the acceleration limits.
+
+    Intervals that cannot be cut are a millisecond long. If the controller takes only longer ones, tolerances decide
+    in them: more acceleration would be taken back.
+    """
+    return PLANNED_SHARE if machine.shortest_interval == 1 else SAFE_SHARE
+
+
 @dataclass(frozen=True)
 class LimitedQuantity:
     """A vector along the path with limits on the magnitude of its rate, acceleration and jerk.

@@ -21,7 +21,7 @@ from pkm_post.planning.cell_limits import acceleration_demand
 from pkm_post.planning.fastest_profile import Steps, ceilings
 from pkm_post.planning.played_acceleration import StationMotion, Windows, cells_in_windows, covered
 from pkm_post.planning.refinement import StationProfile
-from pkm_post.planning.speed_limits import PLANNED_SHARE, SAFE_SHARE
+from pkm_post.planning.speed_limits import SAFE_SHARE
 from pkm_post.planning.speed_profile import cell_times
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import columns_in_workers
@@ -46,15 +46,6 @@ _CELLS_AT_ONCE = 8192
 _INTERVAL = 1e-3
 """s: the interval that cannot be cut."""
 _STARTS_AND_ENDS = slice(None, -1), slice(1, None)
-
-
-def planned_share(machine: Machine) -> float:
-    """Initial planned share of the acceleration limits.
-
-    Intervals that cannot be cut are a millisecond long. If the controller takes only longer ones, tolerances decide
-    in them: more acceleration would be taken back.
-    """
-    return PLANNED_SHARE if machine.shortest_interval == 1 else SAFE_SHARE
 
 
 def with_lower_switches(path: ToolPath, machine: Machine, profile: StationProfile, planned: Array) -> StationProfile:

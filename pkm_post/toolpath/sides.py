@@ -17,7 +17,6 @@ import numpy as np
 
 from pkm_post.geometry import Array, angle_between
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Phrase, Place, Program
-from pkm_post.toolpath.from_line import events_in_force
 
 HALF_TURN = np.pi - 1e-6
 """rad: a tool axis that turns by this much in one row defines no direction of rotation."""
@@ -81,6 +80,8 @@ def _events(program: Program, begin: int, end: int) -> tuple[Event, ...]:
 
     Events between the last row of a side and the first of the next prepare the next one.
     """
+    from pkm_post.toolpath.from_line import events_in_force
+
     before = events_in_force(each for each in program.events if each.row < begin and each.kind in _MODAL)
     is_last = end == len(program)
     last = len(program) if is_last else end - 1

@@ -72,6 +72,7 @@ ROOMS_NOT_NEEDED = (
     "report.plots",
     "system.document",
     "system.packages",
+    "toolpath.from_line",
     "toolpath.surface",
     "writing.controllers.power_pmac",
     "writing.gcode",
@@ -108,6 +109,8 @@ def test_what_a_short_program_does_not_need_is_not_imported(machine, imported):
     assert not of_others | imported.intersection(NOT_NEEDED)
     rooms = [f"pkm_post.{one}" for one in ROOMS_NOT_NEEDED]
     assert ("pkm_post.planning.jerk_limits" in imported) == (machine == "example_6tps")
+    for name in ("cell_limits", "fastest_profile", "played_acceleration", "refinement", "switches"):
+        assert (f"pkm_post.planning.{name}" in imported) == (machine != "example_6tps")
     assert not [name for name in imported if f"{name}.".startswith(tuple(f"{room}." for room in rooms))]
 
 
