@@ -4,6 +4,7 @@
 import argparse
 import math
 import re
+import sys
 
 import pytest
 from hypothesis import example, given
@@ -139,11 +140,16 @@ USAGE = [
     ("verify", " verify: error U102: ", "missing: PROGRAM.pmc, --against; "),
     ("pmac simulate", " pmac simulate: error U102: ", "missing: one of --pty --tcp --ssh; "),
     ("post a.ngc --out", " post: error U102: ", "missing: the value of --out; "),
-    ("post a.ngc --work-offset -1,2,3", " post: error U102: ", "of --work-offset; write --work-offset=-1,2,3; "),
     ("post a.ngc --find-place=3", " post: error U103: ", "--find-place: expected no value, got '3'; "),
     ("post a.ngc --corners cord", " post: error U103: ", "expected one of chord, arc, got 'cord', perhaps chord; "),
     ("pmac simulate --pty --tcp 1", " pmac simulate: error U103: ", "--tcp: not allowed with argument --pty; "),
 ]
+
+
+if sys.version_info < (3, 14):  # later versions take -1,2,3 for a value
+    USAGE.append(
+        ("post a.ngc --work-offset -1,2", " post: error U102: ", "of --work-offset; write --work-offset=-1,2; ")
+    )
 
 
 @pytest.mark.parametrize(("words", "start", "found"), USAGE)
