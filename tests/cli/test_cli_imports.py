@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A short program is posted soon: what takes time to import, and is not needed for it, is not imported."""
 
+import gc
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -118,3 +120,16 @@ def test_what_a_short_program_does_not_need_is_not_imported(machine, imported):
 def test_the_modules_of_the_list_are_there(name):
     path = ADDON / "pkm_post" / name.replace(".", "/")
     assert path.is_dir() or path.with_suffix(".py").is_file()
+
+
+def test_an_interrupt_of_the_imports_is_no_traceback(monkeypatch):
+    class Interrupted:
+        def __getattr__(self, name):
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(gc, "set_threshold", lambda *_: None)  # other tests shall keep theirs
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "1")
+    from pkm_post.__main__ import run
+
+    monkeypatch.setitem(sys.modules, "pkm_post.cli", Interrupted())
+    assert run() == 130
