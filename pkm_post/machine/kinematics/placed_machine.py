@@ -100,7 +100,9 @@ class StrutCapsules:
 
 
 def _rod_comes_out(machine: Machine) -> bool:
-    return machine.rod_length - machine.base_joint_radius > machine.strut_stroke[0]
+    # the joints may be nearer than the controller counts; an unkeyed screw turns by less than half a turn
+    nearest = machine.strut_stroke[0] + float(machine.length_offset.min()) - abs(machine.screw_lead) / 2
+    return machine.rod_length - machine.base_joint_radius > nearest
 
 
 def has_strut_bodies(machine: Machine) -> bool:

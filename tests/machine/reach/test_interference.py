@@ -9,7 +9,7 @@ from pose_paths import LENGTH, bodied, upright, wandering
 
 from pkm_post.geometry import unit
 from pkm_post.machine.kinematics.inverse import platform_joints, platform_rotation
-from pkm_post.machine.kinematics.placed_machine import PlacedMachine
+from pkm_post.machine.kinematics.placed_machine import PlacedMachine, StrutCapsules
 from pkm_post.machine.reach.collision_mesh import CollisionMesh
 from pkm_post.machine.reach.limit_checks import shortest_distance
 from pkm_post.machine.reach.path_checks import all_checks
@@ -71,6 +71,16 @@ def test_a_rod_that_comes_out_behind_counts_there():
     _, inside = margins_of(bodied(), path, "K113")
     _, behind = margins_of(dataclasses.replace(bodied(), rod_length=1700.0), path, "K113")
     assert np.all(behind <= inside + 1e-9) and np.any(behind < inside - 5)
+
+
+def test_a_rod_comes_out_behind_where_the_joints_are_nearer_than_the_controller_counts():
+    """Rods as long as the shortest strut by the controller: joints nearer by 5 mm leave 5 mm of them behind."""
+    machine = dataclasses.replace(bodied(), base_joint_radius=0.0)
+    least = machine.strut_stroke[0]
+    machine = dataclasses.replace(machine, rod_length=least, length_offset=np.full(6, -5.0))
+    pieces = StrutCapsules.of(machine, np.full((1, 6), least - 5.0))
+    assert pieces.start.min() == pytest.approx(-5.0)
+    assert StrutCapsules.of(machine, np.full((1, 6), least)).start.min() == 0
 
 
 def test_struts_bodies_and_boxes_are_as_far_apart_as_their_points():
