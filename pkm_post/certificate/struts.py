@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pkm_post.certificate.tool_spline import KnotKinematics
-from pkm_post.geometry import Array, hermite_accelerations
+from pkm_post.geometry import Array, cubic_ranges, hermite_accelerations
 from pkm_post.model import StrutMotion, checkpoint, in_pieces, pieces
 
 _AT_ONCE = 4096
@@ -22,8 +22,7 @@ _AT_ONCE = 4096
 def extremes(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> tuple[Array, Array, Array, Array]:
     """For N intervals of cubics: highest speed, highest acceleration, shortest and longest length, (N,) each.
 
-    Acceleration is linear in time: the speed is extreme at the ends, and where the acceleration is zero. The length is
-    extreme at the ends, and where the speed is zero: up to two times.
+    Acceleration is linear in time: the speed is extreme at the ends, and where the acceleration is zero.
     """
     accelerations = hermite_accelerations(p0, v0, p1, v1, duration)
     # strut-major in memory: the extremes of six struts are those of six long columns
@@ -31,27 +30,13 @@ def extremes(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> tup
     jerk = (a1 - a0) / duration
     turns = np.where(a0 * a1 < 0, np.divide(-a0, jerk, out=np.zeros_like(a0), where=jerk != 0), 0.0)
     speeds = np.stack([v0, v1, v0 + a0 * turns / 2])
-    stops = np.clip(np.stack(_roots(jerk / 2, a0, v0)), 0.0, duration)  # an end if there is none inside
-    at_stops = p0 + stops * (v0 + stops * (a0 / 2 + stops * jerk / 6))
-    lengths = np.concatenate([np.stack([p0, p1]), at_stops])
+    least, most = cubic_ranges(p0, v0, a0, jerk, p1, duration)
     return (
         np.abs(speeds).max(axis=(0, 1)),
         np.abs(np.stack([a0, a1])).max(axis=(0, 1)),
-        lengths.min(axis=(0, 1)),
-        lengths.max(axis=(0, 1)),
+        least.min(axis=0),
+        most.max(axis=0),
     )
-
-
-def _roots(square: Array, linear: Array, constant: Array) -> tuple[Array, Array]:
-    """Roots of quadratics; 0 for missing roots."""
-    discriminant = linear**2 - 4 * square * constant
-    there = discriminant >= 0
-    # this sum has no cancellation; one root is a quotient by it, the other follows from the product of the roots
-    half = -(linear + np.copysign(np.sqrt(np.where(there, discriminant, 0.0)), linear)) / 2
-    none = np.zeros_like(half)
-    one = np.divide(half, square, out=none.copy(), where=there & (np.abs(square) > 0))
-    other = np.divide(constant, half, out=none, where=there & (np.abs(half) > 0))
-    return one, other
 
 
 def off_plan(struts: StrutMotion, knots: KnotKinematics) -> Array:

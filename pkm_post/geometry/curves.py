@@ -90,6 +90,35 @@ def hermite_accelerations(p0: Array, v0: Array, p1: Array, v1: Array, duration: 
     return 2 * square / per_square_second, (2 * square + 6 * cube) / per_square_second
 
 
+def cubic_ranges(p0: Array, v0: Array, a0: Array, jerk: Array, p1: Array, duration: Array) -> tuple[Array, Array]:
+    """Least and greatest value of cubics, of any shape: at an end, or where the speed is zero, up to two times.
+
+    Args:
+        p0: at the start.
+        v0: speed there.
+        a0: acceleration there.
+        jerk: constant.
+        p1: at the end.
+        duration: s, of a shape that fits.
+    """
+    stops = np.clip(np.stack(_roots(jerk / 2, a0, v0)), 0.0, duration)  # an end if there is none inside
+    at_stops = p0 + stops * (v0 + stops * (a0 / 2 + stops * jerk / 6))
+    places = np.concatenate([np.stack([p0, p1]), at_stops])
+    return places.min(axis=0), places.max(axis=0)
+
+
+def _roots(square: Array, linear: Array, constant: Array) -> tuple[Array, Array]:
+    """Roots of quadratics; 0 for missing roots."""
+    discriminant = linear**2 - 4 * square * constant
+    there = discriminant >= 0
+    # this sum has no cancellation; one root is a quotient by it, the other follows from the product of the roots
+    half = -(linear + np.copysign(np.sqrt(np.where(there, discriminant, 0.0)), linear)) / 2
+    none = np.zeros_like(half)
+    one = np.divide(half, square, out=none.copy(), where=there & (np.abs(square) > 0))
+    other = np.divide(constant, half, out=none, where=there & (np.abs(half) > 0))
+    return one, other
+
+
 def hermite_powers(p0: Array, v0: Array, p1: Array, v1: Array, duration: Array) -> Array:
     """Coefficients of the powers of the share, (4, C, N), of C columns, (C, N)."""
     distance, linear, last = p1 - p0, v0 * duration, v1 * duration

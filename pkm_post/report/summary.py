@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 import pkm_post
-from pkm_post.geometry import Array
+from pkm_post.geometry import Array, cubic_ranges, hermite_accelerations
 from pkm_post.model import (
     AT_FEED,
     Certificate,
@@ -26,6 +26,7 @@ from pkm_post.model import (
     Finding,
     Kind,
     Motion,
+    StrutMotion,
     Trajectory,
     coverage_summary,
     distinct,
@@ -34,6 +35,8 @@ from pkm_post.report.results import Results
 
 _FORMAT = 1
 """Version of the report's layout, for programs that parse it."""
+_AT_ONCE = 8192
+"""Intervals per pass."""
 _AS_IT_IS = "axis values are strut lengths in mm, speeds in mm/s; do not edit: the program is certified as it is"
 
 
@@ -70,6 +73,7 @@ def report(results: Results) -> dict[str, Any]:
     """The report as data that JSON can hold."""
     trajectory, certificate, tolerances = results.trajectory, results.certificate, results.tolerances
     machine, motion, struts = results.machine, results.motion, results.struts
+    shortest, longest = _strut_ranges(struts)
     return {
         "format": _FORMAT,
         "program": {
@@ -92,8 +96,8 @@ def report(results: Results) -> dict[str, Any]:
         "motion": {
             "duration_s": certificate.duration,
             "points": len(struts),
-            "shortest_strut_mm": _by_column(np.min, struts.length),
-            "longest_strut_mm": _by_column(np.max, struts.length),
+            "shortest_strut_mm": _rounded(shortest, 3),
+            "longest_strut_mm": _rounded(longest, 3),
         },
         "machining_time": machining_time(trajectory, motion),
         "feed": {} if results.feed is None else feed_shares(trajectory, results.feed),
@@ -244,6 +248,18 @@ def _tools(trajectory: Trajectory) -> list[Any]:
 def _by_column(of: Callable[[Array], float], points: Array) -> list[float]:
     """The minimum or maximum of each column; numpy takes ten times as long along the first axis."""
     return [_rounded(of(column), 3) for column in points.T]
+
+
+def _strut_ranges(struts: StrutMotion) -> tuple[Array, Array]:
+    """Shortest and longest length of each strut on the cubics of its program, (6,) mm each."""
+    shortest, longest = struts.length[0], struts.length[0]
+    for first in range(0, len(struts) - 1, _AT_ONCE):
+        cubics = struts.cubics(np.arange(first, min(first + _AT_ONCE, len(struts) - 1)))
+        begin, end = (rate.T for rate in hermite_accelerations(*cubics))
+        p0, v0, p1, _, duration = (column.T for column in cubics)
+        least, most = cubic_ranges(p0, v0, begin, (end - begin) / duration, p1, duration)
+        shortest, longest = np.minimum(shortest, least.min(axis=1)), np.maximum(longest, most.max(axis=1))
+    return shortest, longest
 
 
 def _rounded(value: Array | float, decimals: int) -> Any:

@@ -3,6 +3,8 @@ import numpy as np
 
 from pkm_post.certificate.struts import extremes
 from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds
+from pkm_post.model import StrutMotion
+from pkm_post.report import summary
 
 SHARES = np.linspace(0, 1, 4001)
 
@@ -26,6 +28,20 @@ def test_closed_forms_are_what_dense_instants_find():
     low, high = dense_length.min(axis=(1, 2)), dense_length.max(axis=(1, 2))
     assert np.all(shortest <= low + 1e-9) and np.all(low <= shortest + bent * step**2)
     assert np.all(high <= longest + 1e-9) and np.all(longest <= high + bent * step**2)
+
+
+def test_the_report_has_the_shortest_and_longest_length_on_the_way_not_only_at_the_points(monkeypatch):
+    rng = np.random.default_rng(9)
+    time_ms = np.cumsum(np.append(0, rng.integers(1, 4096, 40)))
+    length, speed = 1000 + 5 * rng.normal(size=(41, 6)).cumsum(axis=0), rng.normal(0, 20, (41, 6))
+    struts = StrutMotion(time_ms, length, speed, ())
+    dense = hermite_lengths(*struts.cubics(np.arange(40)), SHARES)
+    for at_once in (1, 7, 8192):
+        monkeypatch.setattr(summary, "_AT_ONCE", at_once)
+        shortest, longest = summary._strut_ranges(struts)
+        np.testing.assert_allclose(shortest, dense.min(axis=(0, 1)), atol=1e-4)
+        np.testing.assert_allclose(longest, dense.max(axis=(0, 1)), atol=1e-4)
+    assert (longest - length.max(axis=0)).max() > 1
 
 
 def test_straight_standing_and_even_motion():
