@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import pkm_post
-from pkm_post.geometry import Array, cubic_ranges, hermite_accelerations
+from pkm_post.geometry import Array, across, cross, cubic_ranges, hermite_accelerations
 from pkm_post.model import (
     AT_FEED,
     Certificate,
@@ -82,7 +82,7 @@ def report(results: Results) -> dict[str, Any]:
             "operations": list(trajectory.operations),
             "segments": len(trajectory),
             "cutting_length_mm": _rounded(trajectory.length[trajectory.kind != Kind.RAPID].sum(), 3),
-            "box_mm": [_by_column(np.min, trajectory.tip), _by_column(np.max, trajectory.tip)],
+            "box_mm": _box(trajectory),
             "tools": [vars(tool) for tool in _tools(trajectory)],
         },
         "machine": {"name": machine.name, "sha256": machine.fingerprint},
@@ -245,9 +245,27 @@ def _tools(trajectory: Trajectory) -> list[Any]:
     return [trajectory.tools[number] for number in sorted(trajectory.tools)]
 
 
-def _by_column(of: Callable[[Array], float], points: Array) -> list[float]:
-    """The minimum or maximum of each column; numpy takes ten times as long along the first axis."""
-    return [_rounded(of(column), 3) for column in points.T]
+def _box(trajectory: Trajectory) -> list[list[float]]:
+    """Least and greatest coordinates of the tip, also between the ends of arcs."""
+    points = [trajectory.tip, *_turning_points(trajectory)]
+    # numpy takes ten times as long along the first axis
+    return [[_rounded(of([of(one.T[axis]) for one in points]), 3) for axis in range(3)] for of in (np.min, np.max)]
+
+
+def _turning_points(trajectory: Trajectory) -> tuple[Array, ...]:
+    """For each coordinate the places at which arcs turn back in it, (A, 3) mm twice; the start where there is none."""
+    arcs = np.flatnonzero(trajectory.kind == Kind.ARC)
+    if not len(arcs):
+        return ()
+    axis, sweep, start = trajectory.arc_axis[arcs], trajectory.sweep[arcs, None], trajectory.tip_before()[arcs]
+    ahead = across(start - trajectory.arc_centre[arcs], axis)
+    side, rise = cross(axis, ahead), (trajectory.tip[arcs] - start) * axis
+    slope = rise.sum(axis=1, keepdims=True) * axis / sweep
+    phase, size = np.arctan2(side, ahead), np.maximum(np.hypot(ahead, side), np.finfo(float).tiny)
+    lean = np.arcsin(np.clip(slope / size, -1.0, 1.0))
+    turns = (np.mod(turn, 2 * np.pi) for turn in (phase + lean, phase + np.pi - lean))
+    turns = (np.where(turn <= sweep, turn, 0.0) for turn in turns)
+    return tuple(start + (np.cos(turn) - 1) * ahead + np.sin(turn) * side + turn * slope for turn in turns)
 
 
 def _strut_ranges(struts: StrutMotion) -> tuple[Array, Array]:

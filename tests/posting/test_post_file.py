@@ -191,6 +191,26 @@ M30
 """
 
 
+CIRCLES = """\
+%
+G21 G90 G17 G94 G40
+T1 M6
+G0 X-20 Y0 Z20
+G1 Z10 F600
+G2 X-20 Y0 I20 J0 Z4
+G3 X0 Y-20 I20 J0
+G1 Z20
+M30
+%
+"""
+
+
+def test_the_box_of_a_program_has_its_arcs(tmp_path):
+    made = posted(tmp_path, "circles.ngc", CIRCLES, reading=ReadingOptions("none", {1: cutter(8.0)}))
+    box = np.array(made.report["program"]["box_mm"])
+    np.testing.assert_allclose(box[:, :2], [[-20, -20], [20, 20]], atol=2e-3)
+
+
 def test_a_compensated_contour_is_cut_beside_what_is_programmed(tmp_path):
     made = posted(tmp_path, "contour.ngc", CONTOUR, reading=ReadingOptions("none", {1: cutter(8.0)}))
     assert made.report["certificate"]["holds"]
