@@ -273,7 +273,8 @@ def test_files_of_one_name_do_not_overwrite_each_others_results(tmp_path, capsys
     for file in files:
         Path(file).write_text(CL_DATA)
     assert main(["post", *files, "--out", str(tmp_path / "out")]) == 2
-    assert "would both be posted as part.pmc: post to different folders" in capsys.readouterr().err
+    errors = capsys.readouterr().err
+    assert "would both be posted as part.pmc; " in errors and "or post to different folders" in errors
     assert not (tmp_path / "out").exists()
 
 
