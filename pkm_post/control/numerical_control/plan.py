@@ -26,7 +26,18 @@ from pkm_post.machine import (
     platform_rotation,
     reach_findings,
 )
-from pkm_post.model import Certificate, Diagnostic, Machine, Motion, Place, StrutMotion, Tolerances, Trajectory, errors
+from pkm_post.model import (
+    Certificate,
+    Diagnostic,
+    EventKind,
+    Machine,
+    Motion,
+    Place,
+    StrutMotion,
+    Tolerances,
+    Trajectory,
+    errors,
+)
 from pkm_post.options import MANUAL_MOVE_PROGRAM
 from pkm_post.planning import plan
 from pkm_post.report import heading
@@ -65,8 +76,9 @@ class MovePlan:
 
     @property
     def seconds(self) -> float:
-        """Duration at 100 %."""
-        return self.certificate.duration
+        """Duration at 100 %, with the dwells."""
+        dwells = (each.value for each in self.job.motion.events if each.kind is EventKind.DWELL)
+        return self.certificate.duration + sum(dwells)
 
 
 def planned(

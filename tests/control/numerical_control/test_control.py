@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from rig import listed
 
+from pkm_post.cli.pmac_manual import wait_for_end
 from pkm_post.control.link.errors import CancelledError, NotReadyError, PmacError
 from pkm_post.control.numerical_control.manual_moves import CartesianJog, MdiSettings, StrutJog, mdi_trajectory
 from pkm_post.machine import strut_lengths
@@ -178,6 +179,13 @@ def test_a_line_of_a_dwell_alone_takes_its_time(station):
     began = station.wire.now
     station.to_rest()
     assert station.wire.now - began >= 2.0
+
+
+def test_a_long_dwell_is_waited_for(station):
+    plan, _ = station.control.plan_line("G91 G1 X1 F600 G4 P40")
+    assert 40.0 < plan.seconds < 41.0
+    station.control.execute(plan)
+    assert not wait_for_end(station.control, plan.seconds).running and station.wire.now > 40.0
 
 
 def test_an_unknown_work_offset(station):
