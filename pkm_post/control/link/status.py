@@ -109,7 +109,8 @@ class Status:
         override: time base in %; 0 while held.
         length: (6,) strut lengths, mm.
         following_error: (6,) commanded minus actual length, mm.
-        slows_in_a_hold: whether the override follows the deceleration of a hold; a Power PMAC reports the set value.
+        may_slow: whether a hold may still slow down. A Turbo PMAC shows that by its override alone, a Power PMAC by
+            ``Coord[].FeedHold``: 1 at a time base of zero, 3 before [Power PMAC User's Manual, p. 693].
     """
 
     motors: tuple[MotorBits, ...]
@@ -117,7 +118,7 @@ class Status:
     override: float
     length: Array
     following_error: Array
-    slows_in_a_hold: bool = True
+    may_slow: bool = True
 
     @property
     def commanded(self) -> Array:
@@ -160,6 +161,7 @@ class Status:
 
 
 _ELEMENTS = ("ProgRunning", "FeedHold", "ErrorStatus")
+_TIME_STANDS = 1
 _STATUS_BITS = 64
 
 
@@ -248,7 +250,8 @@ def _power_status(answer: tuple[str, ...], settings: PowerPmacSettings) -> Statu
     for place, value in enumerate(answer[20:], start=_STATUS_BITS):
         bits |= int(parse_number(value) != 0) << place
     length, error = _lengths_and_errors(answer, settings)
-    return Status(motors, PowerSystemBits(bits), _parse_override(answer[19]), length, error, slows_in_a_hold=False)
+    may_slow = parse_number(answer[20 + _ELEMENTS.index("FeedHold")]) != _TIME_STANDS
+    return Status(motors, PowerSystemBits(bits), _parse_override(answer[19]), length, error, may_slow)
 
 
 def _power_motor(value: int) -> PowerMotorBits:

@@ -89,7 +89,7 @@ def _is_held(status: Status) -> bool:
 
 def _is_held_or_ended(status: Status) -> bool:
     """Held means a time base of 0: during deceleration, reversing struts are at rest for a moment."""
-    return not status.running or (status.held and (status.override == 0 or not status.slows_in_a_hold))
+    return not status.running or (status.held and (status.override == 0 or not status.may_slow))
 
 
 def _is_ended(status: Status) -> bool:

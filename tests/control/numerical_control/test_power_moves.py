@@ -122,3 +122,17 @@ def test_a_face_is_found_by_a_touch_probe(station):
     probe = Probe(station.control._session, station.control, settings, station.control.longest_silence_s())
     found = measure_face(probe, frame(), "z-", 2.0)
     assert abs(found.position[2] - height) <= found.half_width + COUNT and found.half_width <= 0.1
+
+
+def test_a_hold_while_the_struts_stand_waits_until_time_stands():
+    """A dwell is over before the time base is at zero, and the move behind it begins; FeedHold is 3 until then."""
+    station = power_station()
+    assert refused_line(station.wire.machine, ["Coord[1].FeedHoldSlew=0.0002"]) is None
+    station.control.execute(station.control.plan_line("G91 G4 P0.5 G1 X30 F3000")[0])
+    system = station.wire.controller.systems[0]
+    station.wire.sleep(0.1)
+    assert system.running and station.control.poll().status.standing
+    assert station.control.hold().held and system.override == 0.0
+    before = station.motors.commanded.copy()
+    station.wire.sleep(3.0)
+    assert (station.motors.commanded == before).all()
