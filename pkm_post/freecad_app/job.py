@@ -110,7 +110,8 @@ def read_job(
         faults += [each for each in found if each not in faults]  # once, not per fixture
     files = files_of_split_output(active, fixtures, job.OrderOutputBy) if job.SplitOutput else 1
     if files > 1:
-        faults.append(Diagnostic("J140", Place(builder.source, job.Label), f"{files} files by {job.OrderOutputBy}"))
+        split = Phrase("{} files by {}", files, job.OrderOutputBy)
+        faults.append(Diagnostic("J140", Place(builder.source, job.Label), split))
     builder.switch(_OFF)
     tools, tool_faults = read_tools(builder.controllers.values(), tool_lengths, builder.source)
     faults += tool_faults
@@ -118,7 +119,7 @@ def read_job(
         faults.append(Diagnostic("J103", Place(builder.source, job.Label), Phrase("nothing to post")))
     if errors(faults):
         return None, tuple(faults)
-    summary = builder.summary(job, active)
+    summary = builder.summary(job, active, len(fixtures))
     return dataclasses.replace(builder.program(tools), reading=(summary,)), tuple(faults)
 
 
@@ -236,10 +237,11 @@ class _ProgramBuilder:
         self.rows += len(program)
         return faults
 
-    def summary(self, job: Any, active: Sequence[Any]) -> str:
+    def summary(self, job: Any, active: Sequence[Any], fixtures: int) -> str:
         """Number of operations read and number listed in the job."""
         meant = f"{len(active)} meant and active"
-        return f"operations of the job: {len(job.Operations.Group)} listed, {meant}, {len(self._programs)} read"
+        read = f"{len(self._programs)} read" + (f" at {fixtures} fixtures" if fixtures > 1 else "")
+        return f"operations of the job: {len(job.Operations.Group)} listed, {meant}, {read}"
 
     def program(self, tools: Mapping[int, Tool]) -> Program:
         """All operations in sequence."""

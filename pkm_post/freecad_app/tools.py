@@ -17,7 +17,7 @@ from typing import Any
 import FreeCAD as App
 from PathScripts import PathUtils
 
-from pkm_post.model import Diagnostic, Place, Tool, corner_reach
+from pkm_post.model import Diagnostic, Phrase, Place, Tool, corner_reach
 from pkm_post.toolpath import Cutter
 
 GAUGE_LENGTH = "GaugeLength"
@@ -77,7 +77,8 @@ def read_tools(
             continue
         says = _other_direction(controller)
         if says:
-            faults.append(Diagnostic("J143", place, f"SpindleDir {controller.SpindleDir}, CAM's path of it {says}"))
+            found = Phrase("SpindleDir {}, CAM's path of it {}", controller.SpindleDir, says)
+            faults.append(Diagnostic("J143", place, found))
         tool = _tool(controller, number, length)
         if tools.setdefault(number, tool) != tool:
             faults.append(

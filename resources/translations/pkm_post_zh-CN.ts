@@ -4503,6 +4503,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>{}，机床文件有 {}</translation>
     </message>
     <message>
+        <source>{} files by {}</source>
+        <translation>{} 个文件，按 {} 拆分</translation>
+    </message>
+    <message>
         <source>nothing to post</source>
         <translation>没有可后处理的内容</translation>
     </message>
@@ -4561,6 +4565,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>{} at {}</source>
         <translation>{}，工件偏置 {}</translation>
+    </message>
+    <message>
+        <source>SpindleDir {}, CAM&apos;s path of it {}</source>
+        <translation>SpindleDir 为 {}，CAM 的轨迹中为 {}</translation>
     </message>
     <message>
         <source>{}, {} {}, by {}</source>

@@ -58,6 +58,7 @@ def at_second(points):
 def test_every_operation_is_cut_at_every_fixture(job):
     program, _ = prepared(job).sound
     assert program.operations == ("First", "First (G55)")
+    assert program.reading == ("operations of the job: 1 listed, 1 meant and active, 2 read at 2 fixtures",)
     first, second = (program.position[program.operation == each] for each in (0, 1))
     cut = [(0, 0, 10), (0, 0, 0), (10, 5, 0), (10, 5, 10)]
     np.testing.assert_allclose(first[-4:], cut, atol=1e-9)
