@@ -21,6 +21,7 @@ EXAMPLES = {
     "--origin": ("G55=100,0,0", "G55=100,0,0,90"),
     "--subprograms": ("shop", "library"),
     "--leave-out": ("M21", "M21,G187"),
+    "--delete-switches": ("2", "1,9"),
     "--optional-stops": ("stop", "leave-out"),
     "--contour-data": ("centre", "contour"),
     "--wear": ("1=0.02", "1=-0.01"),

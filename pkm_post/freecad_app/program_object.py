@@ -220,7 +220,7 @@ def _wrong(obj: Any) -> Findings:
 
 
 def set_reading(obj: Any, reading: ReadingOptions) -> None:
-    """Store reading options in the properties of a program object; wear and cutters have no property."""
+    """Store reading options in the properties of a program object; wear, cutters and switches have none."""
     choices: dict[str, str | bool | float | list[Any]] = {
         "AxisWords": reading.axis_words,
         "Flavour": reading.flavour or FROM_FILE,

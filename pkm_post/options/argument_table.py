@@ -33,6 +33,7 @@ from pkm_post.options.converters import (
     spin_words,
     start_line,
     surface_speed_or_none,
+    switches,
     work_offset,
 )
 from pkm_post.options.layers import NOTHING
@@ -152,6 +153,13 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
     "--block-delete": {
         "action": "store_true",
         "help": "leave out what stands behind / in blocks of G-code; --no-block-delete takes it back",
+    },
+    "--delete-switches": {
+        "metavar": "NUMBERS",
+        "type": switches,
+        "default": (),
+        "help": "leave out only what stands behind / with these numbers, as in 2,3 for /2 and /3; / alone is 1, in"
+        " Siemens's language 0",
     },
     "--leave-out": {
         "metavar": "CODES",

@@ -45,6 +45,7 @@ def add_part_program(parser: argparse.ArgumentParser) -> None:
             "--origin",
             "--subprograms",
             "--block-delete",
+            "--delete-switches",
             "--leave-out",
             "--contour-data",
             "--wear",

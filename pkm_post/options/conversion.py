@@ -119,6 +119,7 @@ def part_program_from(namespace: argparse.Namespace, axis_words: str) -> Reading
         work_offsets=dict(namespace.origin),
         subprograms=tuple(dict(namespace.subprograms).values()),
         block_delete=namespace.block_delete,
+        delete_switches=namespace.delete_switches,
         tool_table=namespace.tool_table,
         goto_values=namespace.goto_values,
         feed=None if namespace.feed is None else namespace.feed / 60,

@@ -149,6 +149,13 @@ def codes(text: str) -> tuple[str, ...]:
     return tuple(f"{word[0].upper()}{float(word[1:]):g}" for word in words)
 
 
+def switches(text: str) -> tuple[int, ...]:
+    """Numbers of switches of block delete, 0 to 9."""
+    if not re.fullmatch(r"[0-9](,[0-9])*", text, re.ASCII):
+        raise argparse.ArgumentTypeError(f"expected numbers from 0 to 9 such as 2,3, got {text!r}")
+    return tuple(map(int, text.split(",")))
+
+
 _ORIGIN = re.compile(
     r"(G5[4-9]|G59\.[123]|G54\.1P(?:[1-9]\d?|[12]\d\d|300)|G500|G50[5-9]|G5[1-9]\d)=(.*)", re.IGNORECASE
 )

@@ -179,6 +179,7 @@ _KINDS: dict[str, tuple[InputKind, ...]] = {
     "origin": (InputKind.GCODE, InputKind.JOB),
     "subprograms": (InputKind.GCODE,),
     "block_delete": (InputKind.GCODE,),
+    "delete_switches": (InputKind.GCODE,),
     "contour_data": (InputKind.CLDATA,),
     "cl_dialect": (InputKind.CLDATA,),
     "cycle_values": (InputKind.CLDATA,),

@@ -63,6 +63,7 @@ class ReadingOptions:
         work_offsets: by name, such as "G54" and "G54.1P7", origin in mm and rotation about z in degrees in {C}.
         machine_offsets: offsets of the machine, likewise, for a program with several.
         block_delete: whether to skip ``/`` blocks of G-code.
+        delete_switches: the only switches of block delete that are on, as 2 for ``/2``; () for ``block_delete``.
         subprograms: folders searched for subprogram files of G-code before that of the program.
         tool_table: path of a tool table, optionally with a comma and its unit, as in ``read_tool_table``; ``tools`` and
             ``lengths`` take precedence. None for none.
@@ -90,6 +91,7 @@ class ReadingOptions:
     work_offsets: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
     machine_offsets: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
     block_delete: bool = False
+    delete_switches: tuple[int, ...] = ()
     subprograms: tuple[str, ...] = ()
     tool_table: str | None = None
 
@@ -216,7 +218,7 @@ def _read_gcode(content: bytes, file: str, reading: ReadingOptions, folder: Path
         feed=reading.feed,
         work_offsets=reading.work_offsets,
         machine_offsets=reading.machine_offsets,
-        block_delete=reading.block_delete,
+        block_delete=reading.delete_switches or reading.block_delete,
         folders=(*map(Path, reading.subprograms), *([] if folder is None else [folder])),
         needs_end=not reading.allow_open_end,
     )

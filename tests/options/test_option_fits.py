@@ -24,7 +24,7 @@ GCODE = "T1 M6 G43 H1\nG21 G90 G94 S8000 M3\nG0 X0 Y0 Z30\nG4 P10\nG1 X10 Y0 Z20
 CLDATA = "UNITS/MM\nLOADTL/1\nRAPID\nGOTO/0,0,30\nFEDRAT/600,MMPM\nGOTO/10,0,20\nRAPID\nGOTO/10,0,30\nFINI\n"
 REACHED = ("--tool-length=1=60", "--work-offset=0,0,250")
 FOR_CLDATA = ("--contour-data", "--cl-dialect", "--cycle-values", "--cycle-kinds", "--goto-values")
-FOR_GCODE = ("--flavour", "--leave-out", "--origin", "--subprograms", "--block-delete")
+FOR_GCODE = ("--flavour", "--leave-out", "--origin", "--subprograms", "--block-delete", "--delete-switches")
 FOR_BOTH = ("--tool", "--tool-table", "--unit", "--feed", "--allow-open-end", "--wear", "--machine-zero")
 FOR_JOBS_TOO = {"--origin"}
 """A CAM job may have further fixtures."""

@@ -122,7 +122,7 @@ def _blocks(words: CommandWords, start: Array, source: str) -> gcode.Blocks:
         g_row=np.flatnonzero(is_g),
         m=number[~is_g],
         m_row=np.flatnonzero(~is_g),
-        deleted=np.zeros(len(rows), dtype=bool),
+        deleted=np.zeros(len(rows), dtype=np.int16),
         special={},
         comments=(),
         source=source,

@@ -34,7 +34,7 @@ class BlocksBuilder:
         self.comments: list[tuple[int, str]] = []
         self._lines, self._rows = lines, 0
         self._line = np.empty(lines, np.int32)
-        self._deleted = np.empty(lines, np.bool_)
+        self._deleted = np.empty(lines, np.int16)
         self._words: dict[str, Array] = {}
         self._g, self._m = _Codes(), _Codes()
         self._special: dict[int, Tree[Token]] = {}

@@ -4,12 +4,12 @@
 Input: the result of the scan or of the execution. Output: the same, checked and read-only. Units: as programmed
 (inches or millimetres, degrees, F as written); the resolve step converts them.
 
-Only the words that the program uses have a column: a program of X, Y, Z and F takes 37 bytes per block.
+Only the words that the program uses have a column: a program of X, Y, Z and F takes 38 bytes per block.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -29,6 +29,19 @@ MACRO_CALLS = (65.0, 66.0)
 LONGEST_LINE = 10_000
 """Bytes. Longer lines are always rejected."""
 
+SkippedSwitches = bool | tuple[int, ...]
+"""Switches of block delete that are on: all, none, or these."""
+
+
+def switch_bits(switches: Iterable[int]) -> int:
+    """Switches of block delete as the bits of a number."""
+    return sum({1 << switch for switch in switches})
+
+
+def bits_of(skipped: SkippedSwitches) -> int:
+    """The bits of the switches that are on."""
+    return -int(skipped) if isinstance(skipped, bool) else switch_bits(skipped)
+
 
 @dataclass
 class Block:
@@ -38,14 +51,14 @@ class Block:
         words: their values, by letter or name, in block order.
         g: G codes in tenths.
         m: M codes.
-        deleted: whether the block begins with the block delete character.
+        deleted: the switches of block delete that the block begins with, as bits; ``/`` is ``/1`` [Fanuc].
         tree: the parse tree if the block has more than plain words; it then has no words and codes.
     """
 
     words: dict[str, float] = field(default_factory=dict)
     g: list[int] = field(default_factory=list)
     m: list[int] = field(default_factory=list)
-    deleted: bool = False
+    deleted: int = 0
     tree: Tree[Token] | None = None
 
     def __bool__(self) -> bool:
@@ -80,7 +93,7 @@ class Blocks:
         g_row: (K,) row of each G code, non-decreasing.
         m: (L,) M codes, integers.
         m_row: (L,) row of each M code, non-decreasing.
-        deleted: (N,) whether the block begins with the block delete character ``/``.
+        deleted: (N,) the switches of block delete that the block begins with, as bits.
         special: by row, the parsed block of rows whose values are known only at execution or that have more than plain
             words: parameters, expressions, assignments, O words. Such a row has no words and codes in the columns.
         comments: line and text of operator messages and of tool descriptions.
@@ -108,7 +121,7 @@ class Blocks:
         rows = len(self.line)
         for name, dtype, count in (
             ("line", np.int32, rows),
-            ("deleted", np.bool_, rows),
+            ("deleted", np.int16, rows),
             ("g", np.int32, len(self.g)),
             ("g_row", np.int32, len(self.g)),
             ("m", np.int32, len(self.m)),

@@ -15,7 +15,7 @@ import numpy as np
 
 from pkm_post.model import Array, Diagnostic, Place
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
-from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Blocks
+from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Blocks, SkippedSwitches, bits_of
 from pkm_post.reading.gcode.call_levels import MissingProgram
 from pkm_post.reading.gcode.flavours import RS274, Flavour
 from pkm_post.reading.gcode.interpreter import PROGRAM_END, Interpreter
@@ -28,7 +28,7 @@ from pkm_post.reading.gcode.statements import OWord, Statement, statement_of
 def execute(
     blocks: Blocks,
     limits: ExecutionLimits = DEFAULT_LIMITS,
-    block_delete: bool = False,
+    block_delete: SkippedSwitches = False,
     flavour: Flavour = RS274,
 ) -> tuple[Blocks | None, tuple[Diagnostic, ...]]:
     """Execute a program.
@@ -36,7 +36,7 @@ def execute(
     Args:
         blocks: the scanned blocks; returned unchanged when there is nothing to execute.
         limits: bounds of the execution.
-        block_delete: whether to skip blocks that begin with ``/``.
+        block_delete: the switches that skip blocks that begin with their ``/``.
         flavour: flavour of the subprogram calls.
 
     Returns:
@@ -50,7 +50,7 @@ def execute(
 def execute_as_far_as_possible(
     blocks: Blocks,
     limits: ExecutionLimits = DEFAULT_LIMITS,
-    block_delete: bool = False,
+    block_delete: SkippedSwitches = False,
     flavour: Flavour = RS274,
     is_whole: bool = True,
     text: bytes = b"",
@@ -62,7 +62,7 @@ def execute_as_far_as_possible(
     Args:
         blocks: the scanned blocks.
         limits: bounds of the execution.
-        block_delete: whether to skip blocks that begin with ``/``.
+        block_delete: the switches that skip blocks that begin with their ``/``.
         flavour: flavour of the subprogram calls.
         text: of the program, where GOTO finds sequence numbers.
         is_whole: whether no block is missing; otherwise nothing is executed, and only invalid blocks are reported.
@@ -78,7 +78,7 @@ def execute_as_far_as_possible(
     """
     if blocks.is_plain:
         return blocks, ()
-    skipped = blocks.deleted if block_delete else np.zeros(len(blocks), dtype=np.bool_)
+    skipped = (blocks.deleted & bits_of(block_delete)) != 0
     statements, faults = _statements(blocks, skipped, block_delete)
     jumps, unlinked = link_o_words({row: word for row, word in statements.items() if isinstance(word, OWord)})
     faults.extend(unlinked if is_whole else ())
@@ -115,7 +115,7 @@ def _ended(blocks: Blocks, interpreter: Interpreter) -> Blocks:
 
 
 def _statements(
-    blocks: Blocks, skipped: Array, block_delete: bool
+    blocks: Blocks, skipped: Array, block_delete: SkippedSwitches
 ) -> tuple[dict[int, Statement], list[tuple[int, ExecutionFault]]]:
     """Compile the special blocks, by row in program order, and collect the invalid ones."""
     statements: dict[int, Statement] = {}

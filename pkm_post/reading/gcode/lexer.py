@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.model import Array
-from pkm_post.reading.gcode.blocks import LARGEST_CODE, MACRO_CALLS, Block
+from pkm_post.reading.gcode.blocks import LARGEST_CODE, MACRO_CALLS, Block, switch_bits
 
 _MARK = b"\x01"
 """Marker of a number in a pattern."""
@@ -152,7 +152,7 @@ class PatternTable:
 
     Attributes:
         filled: (S,) whether the block is not empty.
-        deleted: (S,) whether the block begins with ``/``.
+        deleted: (S,) switches of block delete at its beginning, as bits.
         count: (S,) count of its numbers.
         places: by letter, (S,) index of its number, from 0; -1 where absent.
         g: G codes in tenths.
@@ -168,7 +168,7 @@ class PatternTable:
 
 
 _WORD = re.compile(rb"([GM])(\d+\.?\d*|\.\d+)|([A-MP-Z@^])\x01")
-_PLAIN = re.compile(rb"%|((?:/[1-9]?)?)(?:N\x01)?((?:" + _WORD.pattern + rb")*)")
+_PLAIN = re.compile(rb"%|(/|(?:/[1-9])*)(?:N\x01)?((?:" + _WORD.pattern + rb")*)")
 """``block`` of the grammar without blanks, where each word is a letter and a number."""
 
 
@@ -181,7 +181,7 @@ def plain_block(pattern: bytes) -> Block | None:
     found = _PLAIN.fullmatch(pattern)
     if found is None:
         return None
-    block = Block(deleted=bool(found[1]))
+    block = Block(deleted=switch_bits(int(switch or 1) for switch in (found[1] or b"").split(b"/")[1:]))
     for kind, number, letter in _WORD.findall(found[2] or b""):
         if kind:
             codes, parts = (block.g, 10) if kind == b"G" else (block.m, 1)
@@ -233,7 +233,7 @@ def _parsed(pattern: bytes) -> Block | None:
 def _table_of(blocks: list[Block]) -> PatternTable:
     return PatternTable(
         filled=np.array([bool(block) for block in blocks]),
-        deleted=np.array([block.deleted for block in blocks]),
+        deleted=np.array([block.deleted for block in blocks], np.int16),
         count=np.array([len(block.words) for block in blocks]),
         places={letter: _places(letter, blocks) for letter in sorted(set().union(*(block.words for block in blocks)))},
         g=CodeLists([block.g for block in blocks]),

@@ -62,7 +62,7 @@ class ReadOptions:
         home: target of G28, in {C}, mm; ``machine_zero`` if None.
         second_home: target of G30, likewise.
         start: initial tool tip position in {C}; without it motion starts once X, Y and Z are programmed.
-        block_delete: whether to skip blocks that begin with ``/``.
+        block_delete: whether to skip blocks that begin with ``/``, or the switches whose blocks are skipped.
         unit: length unit before G20 or G21, a key of ``UNITS``.
         flavour: one of ``FLAVOUR_NAMES``; guessed from the program if None.
         dwell_unit: unit of P of G4 and of cycles, a key of ``DWELL_UNITS``; that of the flavour if None.
@@ -89,7 +89,7 @@ class ReadOptions:
     home: Point | None = None
     second_home: Point | None = None
     start: Point | None = None
-    block_delete: bool = False
+    block_delete: bool | tuple[int, ...] = False
     unit: str = "mm"
     flavour: str | None = None
     dwell_unit: str | None = None

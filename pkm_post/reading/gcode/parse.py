@@ -8,7 +8,7 @@ reference parser: the scan calls it once per line pattern, and for lines without
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from pkm_post.reading.gcode.blocks import LARGEST_CODE, LONGEST_LINE, MACRO_CALLS, Block
@@ -59,11 +59,10 @@ def _block_of(tree: Tree[Token]) -> Block:
     seen: set[str] = set()
     special = is_macro_call(tree)
     repeated = MAY_BE_REPEATED if special else "GM"
-    for place, child in enumerate(tree.children):
+    block.deleted, children = _leading_switches(tree)
+    for child in children:
         if isinstance(child, str):
-            is_delete = child.type == "DELETE"
-            block.deleted |= is_delete and place == 0
-            special |= is_delete and place > 0
+            special |= child.type == "DELETE"
             block.g.extend(dialect_codes(child))
         elif child.data in ("word", "named_word", "surface_word"):
             special |= not _add_word(block, child, seen, repeated)
@@ -72,6 +71,26 @@ def _block_of(tree: Tree[Token]) -> Block:
     if special:
         return Block(deleted=block.deleted, tree=_checked(tree))
     return block
+
+
+def _leading_switches(tree: Tree[Token]) -> tuple[int, list[Tree[Token] | Token]]:
+    """The switches of block delete at the beginning of a block, as bits, and what follows them."""
+    bits, children = 0, list(tree.children)
+    while children and switch_of(children):
+        bits |= 1 << switch_of(children)
+        children = children[2 if len(children) > 1 and _is(children[1], "SWITCH") else 1 :]
+    return bits, children
+
+
+def switch_of(children: Sequence[Tree[Token] | Token]) -> int:
+    """The switch of block delete that some children of a block begin with, 0 if none; ``/`` is ``/1`` [Fanuc]."""
+    if not _is(children[0], "DELETE"):
+        return 0
+    return int(str(children[1])) if len(children) > 1 and _is(children[1], "SWITCH") else 1
+
+
+def _is(child: Tree[Token] | Token, kind: str) -> bool:
+    return isinstance(child, str) and child.type == kind
 
 
 def dialect_codes(word: str) -> tuple[int, ...]:

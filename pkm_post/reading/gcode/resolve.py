@@ -28,7 +28,7 @@ from pkm_post.model import (
 )
 from pkm_post.reading.gcode.adapt import adapted
 from pkm_post.reading.gcode.arcs import arc_geometry, path_lengths, split_turns, with_known_ends
-from pkm_post.reading.gcode.blocks import Blocks
+from pkm_post.reading.gcode.blocks import Blocks, bits_of
 from pkm_post.reading.gcode.checks import check
 from pkm_post.reading.gcode.codes import NONE, Group
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, never_given
@@ -119,12 +119,12 @@ def _faults_behind(
 def _up_to_end(blocks: Blocks, options: ReadOptions) -> tuple[Blocks, bool]:
     """The blocks to execute, without deleted ones, up to the program end; and whether there is a program end."""
     ends = blocks.m_row[np.isin(blocks.m, ENDS)]
-    if options.block_delete:
-        ends = ends[~blocks.deleted[ends]]
+    skipped = (blocks.deleted & bits_of(options.block_delete)) != 0
+    ends = ends[~skipped[ends]]
     if len(ends):
         blocks = blocks.first(int(ends[0]) + 1)
-    if options.block_delete and blocks.deleted.any():
-        blocks = blocks.selected(np.flatnonzero(~blocks.deleted))
+    if skipped.any():
+        blocks = blocks.selected(np.flatnonzero(~skipped[: len(blocks)]))
     return blocks, blocks.closed or bool(len(ends))
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from pkm_post.reading.gcode.blocks import LARGEST_CODE, Block
+from pkm_post.reading.gcode.blocks import LARGEST_CODE, Block, SkippedSwitches, bits_of
 from pkm_post.reading.gcode.expressions import (
     AssignmentTarget,
     Expression,
@@ -21,7 +21,7 @@ from pkm_post.reading.gcode.expressions import (
     target_of,
 )
 from pkm_post.reading.gcode.parameters import ARGUMENTS, ExecutionFault, Parameters, whole_number
-from pkm_post.reading.gcode.parse import dialect_codes, is_macro_call
+from pkm_post.reading.gcode.parse import dialect_codes, is_macro_call, switch_of
 
 if TYPE_CHECKING:
     from lark import Token, Tree
@@ -123,23 +123,24 @@ class MacroCall:
 Statement = WordBlock | OWord | MacroCall
 
 
-def statement_of(tree: Tree[Token], block_delete: bool = False) -> Statement:
+def statement_of(tree: Tree[Token], block_delete: SkippedSwitches = False) -> Statement:
     """Compile a block.
 
     Args:
         tree: parse tree of the block.
-        block_delete: whether to skip the part after a ``/`` within the block.
+        block_delete: the switches that skip the part after their ``/`` within the block.
 
     Raises:
         ExecutionFault: the block is invalid.
     """
+    children, bits = tree.children, bits_of(block_delete) & ~1
+    skipped = (place for place in range(len(children)) if bits >> switch_of(children[place:]) & 1)
+    tree = type(tree)(tree.data, children[: next(skipped, len(children))])
     if is_macro_call(tree):
         return _macro_call_of(tree)
     words = WordBlock()
-    for place, child in enumerate(tree.children):
+    for child in tree.children:
         if isinstance(child, str):
-            if child.type == "DELETE" and place > 0 and block_delete:
-                break
             words.codes += dialect_codes(child)
         elif child.data == "o_word":
             return _o_word_of(child)

@@ -119,7 +119,7 @@ def _joined(blocks: Blocks, more: Blocks, file: SubprogramFile) -> Blocks:
         g_row=np.concatenate([blocks.g_row, more.g_row + rows]),
         m=np.concatenate([blocks.m, more.m]),
         m_row=np.concatenate([blocks.m_row, more.m_row + rows]),
-        deleted=column(blocks.deleted, False, more.deleted),
+        deleted=column(blocks.deleted, 0, more.deleted),
         special={**blocks.special, **{row + rows: tree for row, tree in more.special.items()}},
         comments=(*blocks.comments, *((line + file.before, text) for line, text in more.comments)),
         files=(*blocks.files, file),

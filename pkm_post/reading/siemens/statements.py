@@ -22,13 +22,13 @@ class Statement:
 
     Attributes:
         labels: before it.
-        skipped: whether it begins with ``/``.
+        skipped: the skip levels that it begins with, as bits; ``/`` is ``/0``.
         items: in their order.
         flow: instead of items.
     """
 
     labels: tuple[str, ...] = ()
-    skipped: bool = False
+    skipped: int = 0
     items: tuple[Item, ...] = ()
     flow: Flow | None = field(default=None)
 
@@ -61,13 +61,12 @@ def statement_of(line: str) -> Statement:
     return Statement(tuple(labels), skipped, tuple(items))
 
 
-def _skip_level(cursor: Cursor) -> bool:
-    """Read ``/`` or ``/1`` to ``/7``."""
+def _skip_level(cursor: Cursor) -> int:
+    """Read ``/`` or ``/0`` to ``/9``, as a bit; 0 if there is none."""
     if not cursor.takes("/"):
-        return False
-    if cursor.peek().kind == "number" and cursor.peek().text in map(str, range(10)):
-        cursor.next()
-    return True
+        return 0
+    numbered = cursor.peek().kind == "number" and cursor.peek().text in map(str, range(10))
+    return 1 << int(cursor.next().text) if numbered else 1
 
 
 def _block_number(cursor: Cursor) -> None:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from pkm_post.reading.gcode.blocks import SkippedSwitches, bits_of
 from pkm_post.reading.gcode.call_levels import rows_of_sequence_numbers
 from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
 from pkm_post.reading.siemens.flow import Flow
@@ -114,12 +115,12 @@ class Structure:
         return first, ends[0] + 1 if ends and (ends[0] < row or first > row) else row
 
 
-def structure_of(lines: ScannedLines, block_delete: bool, faults: LineDiagnostics) -> Structure:
+def structure_of(lines: ScannedLines, block_delete: SkippedSwitches, faults: LineDiagnostics) -> Structure:
     """The structure of a scanned file.
 
     Args:
         lines: of the file.
-        block_delete: whether to skip blocks that begin with ``/``.
+        block_delete: the skip levels whose blocks are skipped.
         faults: collects malformed statements and unmatched ends.
     """
     structure = Structure(lines)
@@ -138,7 +139,7 @@ def structure_of(lines: ScannedLines, block_delete: bool, faults: LineDiagnostic
         except BlockFault as fault:
             faults.add_fault(row, fault)
             continue
-        if not (statement.skipped and block_delete):
+        if not statement.skipped & bits_of(block_delete):
             structure.statements[row] = statement
     _find_programs(structure, headers)
     _find_labels(structure)

@@ -59,7 +59,7 @@ def test_plain_blocks_between_keep_words_codes_and_order():
     text = "(1)\nG21 G90 M3 S500\nG1 X1 Y2 F100\n#1=3\nG2 X0 Y0 I1 J[#1-3]\n/M8\nX4\nM30\n"
     blocks = executed(text)
     assert shown(blocks) == ["2: G21 G90 M3 S500", "3: G1 F100 X1 Y2", "5: G2 I1 J0 X0 Y0", "6: M8", "7: X4", "8: M30"]
-    assert blocks.deleted.tolist() == [False, False, False, True, False, False]
+    assert blocks.deleted.tolist() == [0, 0, 0, 1 << 1, 0, 0]
 
 
 def test_blocks_of_a_loop_keep_their_lines():

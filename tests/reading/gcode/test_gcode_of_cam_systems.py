@@ -81,6 +81,29 @@ def test_what_follows_a_stroke_within_a_block_is_left_out_as_a_deleted_block_is(
     assert [fault.code for fault in taken("G0 X1 /Y2 X3\n")[1]] == ["G202"]
 
 
+@pytest.mark.parametrize(
+    "skipped, lines, place",
+    [
+        (False, [1, 2, 3, 4, 5], (5, 7, 8)),
+        (True, [1, 5], (5, 0, 0)),
+        ((1,), [1, 2, 5], (5, 7, 8)),
+        ((2,), [1, 3, 4, 5], (5, 7, 4)),
+        ((3,), [1, 2, 4, 5], (5, 0, 4)),
+        ((4, 9), [1, 2, 3, 4, 5], (5, 7, 8)),
+    ],
+)
+def test_each_switch_leaves_out_what_stands_behind_its_number(skipped, lines, place):
+    text = "G0 X0 Y0 Z0\n/2 G0 X1\n/1/3 Y3\n/ Z4\nX5 /3 Y7 /2 Z[16/2]\n"
+    program, _ = taken(text, block_delete=skipped)
+    assert program.line.tolist() == lines and tuple(program.position[-1].tolist()) == place
+
+
+def test_arguments_behind_a_switch_within_a_block_are_left_out():
+    text = "O1\nG65 P2 X1 /2 Y5 /3 Z7\nM30\nO2\nG0 X#24 Y[#25+1] Z[#26+1]\nM99\n"
+    assert ends(text, block_delete=(3,), flavour="fanuc")[-1].tolist() == [1, 6, 1]
+    assert ends(text, block_delete=(2,), flavour="fanuc")[-1].tolist() == [1, 1, 1]
+
+
 def test_rotary_words_of_zero_leave_the_tool_upright():
     assert ends("G0 X1 Y2 Z3 A0. B0.\nC0\nX2\n")[-1].tolist() == [2, 2, 3]
     assert [fault.code for fault in taken("G0 X1 Y2 Z3 A0. B1.\n")[1]] == ["G414"]

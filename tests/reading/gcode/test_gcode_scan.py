@@ -67,17 +67,24 @@ def test_lines_that_say_nothing_are_no_rows():
 
 
 def test_block_delete_is_reported():
-    assert scanned("/N10 G1 X1\nG1 X2\n/ #1=2\n").deleted.tolist() == [True, False, True]
+    assert scanned("/N10 G1 X1\nG1 X2\n/ #1=2\n").deleted.tolist() == [1 << 1, 0, 1 << 1]
 
 
 def test_a_numbered_switch_deletes_its_block_and_is_no_number_of_it():
     blocks = scanned("/2 G1 X1 Y3\n/ 9N10 X2\n/1\nX4 (/3)\n/3 #1=8/2\n/4N8 X[8/2]\n")
     assert blocks.line.tolist() == [1, 2, 4, 5, 6]
-    assert blocks.deleted.tolist() == [True, True, False, True, True]
+    assert blocks.deleted.tolist() == [1 << 2, 1 << 9, 0, 1 << 3, 1 << 4]
     assert blocks.word("X")[:3].tolist() == [1, 2, 4] and blocks.word("Y")[0] == 3
 
 
-@pytest.mark.parametrize("line", ["/0 X1", "/10 X1", "/2.5 X1", "/-2 X1", "/2 3 X1"])
+def test_several_switches_may_delete_a_block():
+    blocks = scanned("/1/3 G1 X1\n/1 /9N10 X2\n/2/2X3\n/4 /3 X[4]\n")
+    assert blocks.deleted.tolist() == [1 << 1 | 1 << 3, 1 << 1 | 1 << 9, 1 << 2, 1 << 4 | 1 << 3]
+
+
+@pytest.mark.parametrize(
+    "line", ["//3 X1", "//X1", "/1/ X1", "X1 /Y2 /3 Z4", "X1 /0 Y2", "/0 X1", "/10 X1", "/2.5 X1", "/-2 X1", "/2 3 X1"]
+)
 def test_other_numbers_after_a_slash_are_no_switch(line):
     blocks, faults = scan(f"{line}\n", "part.ngc")
     assert blocks is None and [fault.place.line for fault in faults] == [1]

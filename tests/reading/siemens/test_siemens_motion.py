@@ -260,6 +260,9 @@ def test_blocks_that_begin_with_a_slash():
     text = HEAD + "G1 X1\n/G1 X2\nN5 /1 G1 X3"
     assert len(taken(text)) == 4
     assert len(taken(text, block_delete=True)) == 2
+    for levels, places in (((0,), [3]), ((1,), [2]), ((0, 1), []), ((2,), [2, 3])):
+        program = taken(text + "\n/0 G1 Y4", block_delete=levels)
+        assert program.position[2:, 0].tolist() == places + ([] if 0 in levels else [places[-1]])
 
 
 def test_what_has_no_effect_is_listed_with_its_reason():
