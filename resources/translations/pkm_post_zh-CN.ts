@@ -2227,8 +2227,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>旋转轴的字在此处没有意义</translation>
     </message>
     <message>
-        <source>give the rotary axes with --axis-words, and write G43.4 before cuts with a tilted tool</source>
-        <translation>用 --axis-words 给出旋转轴，并在倾斜刀具切削之前写 G43.4</translation>
+        <source>give the rotary axes with --axis-words, and write G43.4 before cuts with a tilted tool, G69 and G50.1 before words that tilt it</source>
+        <translation>用 --axis-words 给出旋转轴，并在倾斜刀具切削之前写 G43.4，并在使其倾斜的字之前写 G69 和 G50.1</translation>
     </message>
     <message>
         <source>the tool axis is unknown</source>

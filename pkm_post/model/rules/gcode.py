@@ -111,7 +111,8 @@ GCODE_RULES: dict[str, Rule] = {
     "G413": error("the reference point is unknown", "give it with --machine-zero X,Y,Z, or set it with G28.1 or G30.1"),
     "G414": error(
         "rotary words have no meaning here",
-        "give the rotary axes with --axis-words, and write G43.4 before cuts with a tilted tool",
+        "give the rotary axes with --axis-words, and write G43.4 before cuts with a tilted tool, G69 and G50.1 before"
+        " words that tilt it",
     ),
     "G415": error("the tool axis is unknown", "write I, J and K, not all zero, after G43.5"),
     "G416": error("the position of the tool is not yet known", "first move to X, Y and Z"),

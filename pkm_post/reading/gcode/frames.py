@@ -7,7 +7,7 @@ Input: points and vectors in program coordinates, mm. Output: the same in {C}: {
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,10 +21,19 @@ _OBLIQUE = 1e-12
 
 @dataclass(frozen=True)
 class ProgramFrame:
-    """{C} = turn @ program + shift; ``turn`` is a rotation, possibly with a reflection."""
+    """{C} = turn @ program + shift; ``turn`` is a rotation, possibly with a reflection.
+
+    Attributes:
+        tool: (3, 3) rotation of the tool itself, by the place of the work offset or to a tilted plane.
+        is_tilted: whether it is that of a tilted plane.
+        is_turned: whether a rotation or a mirror image of the program is in force.
+    """
 
     turn: Array
     shift: Array
+    tool: Array
+    is_tilted: bool
+    is_turned: bool
 
     def to_work(self, point: Array) -> Array:
         """Transform a (3,) point of the program to {C}."""
@@ -62,6 +71,22 @@ def plane_axes(planes: Array) -> Array:
 def normal_coordinate(planes: Array) -> Array:
     """The coordinate normal to each plane, (n,) codes to (n,)."""
     return plane_axes(planes)[:, 2]
+
+
+def tool_directions(frames: Sequence[ProgramFrame], frame: Array, axes: Array, words: Array) -> Array:
+    """Tool axes in {C}, (n, 3): frames turn coordinates, not the tool; a vector is one of the frame it is written in.
+
+    Args:
+        frames: the frames.
+        frame: (n,) frame index of each row.
+        axes: (n, 3) tool axes in program coordinates.
+        words: (n,) the row whose words are the vector of each row, -1 where there are none.
+    """
+    of_tool = RowFrames.of([replace(each, turn=each.tool) for each in frames], frame).directions(axes)
+    if all(np.array_equal(each.turn, each.tool) for each in frames) or (words < 0).all():
+        return of_tool
+    as_machine = (words < 0) | np.array([each.is_tilted for each in frames])[frame]
+    return np.where(as_machine[:, None], of_tool, RowFrames.of(frames, frame[words]).directions(axes))
 
 
 @dataclass(frozen=True)

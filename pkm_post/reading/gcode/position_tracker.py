@@ -17,7 +17,7 @@ from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import NONE, STROKES, Group, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.events import CycleEvent
-from pkm_post.reading.gcode.frames import plane_axes
+from pkm_post.reading.gcode.frames import PLANES, plane_axes
 from pkm_post.reading.gcode.modal import Modal, PositionWords, is_cycle, track_coordinate
 from pkm_post.reading.gcode.motions import KEPT, OTHERS_LOST, Motions, Section, as_slice, concatenated
 from pkm_post.reading.gcode.options import ReadOptions
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 _SAME_PLACE = 1e-6
 """mm"""
+_ALONG = 1 - 1e-9
 _ROTARY = "ABC"
 """Axes of other machines; G28 with only these moves no other axis."""
 _SECOND = 2
@@ -200,7 +201,9 @@ class PositionTracker:
 
     def _set_frame(self) -> None:
         frame = self.offset_codes.offsets.frame()
-        if not (np.array_equal(frame.turn, self.frame.turn) and np.array_equal(frame.shift, self.frame.shift)):
+        if not all(
+            np.array_equal(getattr(frame, name), getattr(self.frame, name)) for name in ("turn", "shift", "tool")
+        ):
             self.frame = frame
             self.frames.append(frame)
 
@@ -283,6 +286,10 @@ class PositionTracker:
 
     def _drill(self, row: int) -> None:
         self._check_first_move(np.array([row]))
+        normal = PLANES[int(self.modal.active[Group.PLANE][row])][2]
+        if self.frame.tool[:, 2] @ self.frame.turn[:, normal] < -_ALONG:
+            self.faults.add("G429", row, "a mirror image of the hole, from below")
+            return
         strokes = self.drilling.strokes(row, self.position, self.known, self.frame)
         if strokes is None:
             return

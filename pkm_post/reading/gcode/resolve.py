@@ -43,7 +43,7 @@ from pkm_post.reading.gcode.position_tracker import PositionTracker
 from pkm_post.reading.gcode.recovery import first_line, own_faults
 from pkm_post.reading.gcode.tapping import with_leads
 from pkm_post.reading.gcode.tilted_planes import check_cuts_from_turns, check_tilted_planes
-from pkm_post.reading.gcode.tool_axes import check_cycles, spins, surface_normals, tool_axes
+from pkm_post.reading.gcode.tool_axes import axes_in_work_frame, check_cycles, spins, surface_normals, tool_axes
 from pkm_post.reading.gcode.tools import side_offsets, spindle_speeds, tools_in_spindle
 
 _ALONG_AN_AXIS = 1 - 1e-9
@@ -145,6 +145,7 @@ class BlockStates:
         spindle: (N,) signed spindle speed, 1/min.
         sides: (N,) radius of the 2D compensation, mm.
         axes: (N, 3) unit tool axis in program coordinates.
+        written: (N,) whether the block has words for it.
         lost: (N,) knowledge of the tip position after each block, as in ``tool_axes``.
         normals: (N, 3) unit surface normal likewise, or NaN.
         spins: (N,) rotation of the platform about the tool axis, rad, or NaN.
@@ -154,6 +155,7 @@ class BlockStates:
     spindle: Array
     sides: Array
     axes: Array
+    written: Array
     lost: Array
     normals: Array
     spins: Array
@@ -163,7 +165,7 @@ def block_states(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Blo
     """The states of all blocks."""
     tools = tools_in_spindle(blocks, modal, options, faults)
     checkpoint()
-    axes, lost = tool_axes(blocks, modal, options, faults)
+    axes, lost, written = tool_axes(blocks, modal, options, faults)
     checkpoint()
     check_cycles(modal, axes, faults)
     check_tilted_planes(blocks, modal, axes, faults)
@@ -172,6 +174,7 @@ def block_states(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Blo
         spindle=spindle_speeds(blocks, modal),
         sides=side_offsets(blocks, modal, tools, options, faults),
         axes=axes,
+        written=written,
         lost=lost,
         normals=surface_normals(blocks, faults),
         spins=spins(blocks, modal, options),
@@ -201,6 +204,7 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
         _report_no_motion(blocks, first, tracker.known, faults)
         return None
     columns = _directions(blocks, modal, states, motions, axis, faults)
+    columns["tool_axis"] = axes_in_work_frame(motions, states.axes, states.written, states.spins, options, faults)
     rotates = _axis_rotates(modal, columns["tool_axis"])
     columns |= {
         "kind": _KIND[motions.motion],
@@ -246,12 +250,11 @@ def _directions(
     frames = _frames(motions)
     side, plane = _compensation(blocks, modal, motions, frames, states.sides, faults)
     return {
-        "tool_axis": frames.directions(motions.of_blocks(states.axes)),
         "arc_axis": _mirrored(frames.hand(), frames.directions(axis)),
         "side_offset": side,
         "plane": plane,
         "normal": frames.directions(motions.of_blocks(states.normals)),
-        "spin": _mirrored(frames.hand(), motions.of_blocks(states.spins)),
+        "spin": motions.of_blocks(states.spins),
     }
 
 
@@ -270,10 +273,8 @@ def _axis_rotates(modal: Modal, axis: Array) -> Array:
 
 
 def _mirrored(hand: Array, column: Array) -> Array:
-    """Spins, (n,), or arc axes, (n, 3), in {C}: a mirrored frame inverts their sense."""
-    if is_uniform(column) or (hand > 0).all():
-        return column
-    return (hand if column.ndim == 1 else hand[:, None]) * column
+    """Arc axes in {C}, (n, 3): a mirrored frame inverts their sense."""
+    return column if is_uniform(column) or (hand > 0).all() else hand[:, None] * column
 
 
 def _compensation(

@@ -16,9 +16,9 @@ from pkm_post.model import Array, checkpoint, read_only, uniform
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import NONE, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
-from pkm_post.reading.gcode.frames import normal_coordinate
+from pkm_post.reading.gcode.frames import normal_coordinate, tool_directions
 from pkm_post.reading.gcode.modal import Modal, forward_fill, is_arc, is_cycle, track_coordinate
-from pkm_post.reading.gcode.motions import KEPT, LOST, OTHERS_LOST, as_slice
+from pkm_post.reading.gcode.motions import KEPT, LOST, OTHERS_LOST, Motions, as_slice
 from pkm_post.reading.gcode.options import AXIS_WORDS, NORMAL_WORDS, VECTOR_WORDS, ReadOptions
 
 _BY_ANGLES, _BY_VECTOR = 434, 435
@@ -31,14 +31,17 @@ _LENGTH_ERROR = 1e-3
 """A normal whose length differs more from 1 is reported; less is rounding."""
 
 
-def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> tuple[Array, Array]:
+def tool_axes(
+    blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics
+) -> tuple[Array, Array, Array]:
     """Tool axes, and blocks that turn the tool while X, Y and Z are slide positions rather than the tip.
 
     Returns:
-        (N, 3) unit tool axis at the end of each block, and (N,) ``KEPT``, ``OTHERS_LOST`` or ``LOST``.
+        (N, 3) unit tool axis at the end of each block, (N,) ``KEPT``, ``OTHERS_LOST`` or ``LOST``, and (N,) whether the
+        block has words for the axis.
     """
     if options.axis_words == "none":
-        return uniform(_UPRIGHT, len(blocks)), uniform(KEPT, len(blocks), np.uint8)
+        return uniform(_UPRIGHT, len(blocks)), uniform(KEPT, len(blocks), np.uint8), uniform(False, len(blocks))
     find, code = (_vectors, _BY_VECTOR) if options.axis_words == "vector" else (_angles, _BY_ANGLES)
     axes, given = find(blocks, modal, options, faults)
     lost = uniform(KEPT, len(blocks), np.uint8)
@@ -51,7 +54,34 @@ def tool_axes(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockD
             idle &= lost == KEPT
         faults.add_where("G424", idle & ~given & _tilted(axes), lambda row: _shown(axes[row]))
     checkpoint()
-    return read_only(axes), lost
+    return read_only(axes), lost, given
+
+
+def axes_in_work_frame(
+    motions: Motions, axes: Array, written: Array, spin: Array, options: ReadOptions, faults: BlockDiagnostics
+) -> Array:
+    """Tool axes in {C}, (n, 3); reports words for rotary axes, which no rotation turns, while one is in force.
+
+    Args:
+        motions: n motions of N blocks.
+        axes: (N, 3) unit tool axis in program coordinates.
+        written: (N,) whether the block has words for it.
+        spin: (N,) rotation of the platform about it, rad, or NaN.
+        options: read options.
+        faults: collects the faults.
+    """
+    own, words = motions.of_blocks(axes), uniform(NONE, len(motions))
+    if options.axis_words == "vector" and written.any():
+        blocks = np.flatnonzero(written)
+        last = motions.of_blocks(forward_fill(blocks, blocks, NONE, len(written)))
+        words = np.where(last < 0, NONE, motions.block.searchsorted(last))
+    elif written.any():
+        in_turned = np.array([frame.is_turned for frame in motions.frames])[motions.frame]
+        wrong = np.zeros(len(written), dtype=np.bool_)
+        wrong[motions.block[in_turned]] = True
+        wrong &= written & (_tilted(axes) | (np.nan_to_num(spin) != 0))
+        faults.add_where("G414", wrong, lambda _: "rotary axes, which do not turn with the coordinates")
+    return tool_directions(motions.frames, motions.frame, own, words)
 
 
 def _tilted(axes: Array) -> Array:

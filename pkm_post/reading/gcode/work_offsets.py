@@ -46,7 +46,8 @@ class _Offsets:
     Attributes:
         system: code of the active work offset.
         origins: (3,) origin of each known work offset, by code.
-        angles: its angle about Z, by code.
+        angles: its angle about Z, by code; G10 sets it without turning the tool [LinuxCNC, rs274].
+        placed: the angle of the options likewise, which turns part and tool.
         local: (3,) offset of G52 and G92.
         kept: (3,) offset that G92.3 restores after G92.2.
         mirrored: (3,) mirrored coordinates; ``mirror_at`` holds the mirror positions.
@@ -59,6 +60,7 @@ class _Offsets:
     system: int = WORK_OFFSETS[0]
     origins: dict[int, Array] = field(default_factory=dict)
     angles: dict[int, float] = field(default_factory=dict)
+    placed: dict[int, float] = field(default_factory=dict)
     local: Array = field(default_factory=lambda: np.zeros(3))
     kept: Array = field(default_factory=lambda: np.zeros(3))
     mirrored: Array = field(default_factory=lambda: np.zeros(3, dtype=np.bool_))
@@ -83,7 +85,7 @@ class _Offsets:
         for name, (x, y, z, degrees) in poses.items():
             code = _code_of(name)
             self.origins[code] = np.array([x, y, z])
-            self.angles[code] = float(np.radians(degrees))
+            self.angles[code] = self.placed[code] = float(np.radians(degrees))
 
     def inner(self, point: Array) -> Array:
         """Apply mirror and rotation to a (3,) point of the program."""
@@ -109,7 +111,10 @@ class _Offsets:
         about = self.work_offset_turn(system)
         longer = np.zeros(3) if self.length is None else self.length - np.array([0.0, 0.0, self.own_length])
         origin = self.origins.get(system, np.zeros(3))
-        return ProgramFrame(about @ turn, about @ (shift + self.local) + origin + longer)
+        to_plane = self.rotation[0] if self.rotation is not None and self.tilted else None
+        tool = rotation(170, self.placed.get(system, 0.0)) if to_plane is None else about @ to_plane
+        shift = about @ (shift + self.local) + origin + longer
+        return ProgramFrame(about @ turn, shift, tool, self.tilted, not (self.tilted or np.allclose(turn, np.eye(3))))
 
     def set_local_here(self, words: Array, position: Array) -> None:
         """G92: set the coordinates of the current (3,) position to the (3,) words, NaN where absent."""

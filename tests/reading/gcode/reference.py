@@ -39,7 +39,7 @@ class Machine:
         self.selected = self.tool = None
         self.side = 0.0
         self.speed = self.sense = self.f = 0.0
-        self.axis = np.array([0.0, 0.0, 1.0])
+        self.axis = np.array([0.0, 0.0, 1.0])  # in {C}: a frame turns the coordinates, not the tool
         self.exact, self.tolerance = 640, 0.0
         self.cycle, self.level = {}, None
         self.rows, self.events = [], []
@@ -74,7 +74,7 @@ class Machine:
         vector = [words.get(letter, words.get(f"T{axis}")) for letter, axis in zip("IJK", "XYZ", strict=True)]
         turning = self.mode["motion"] in (0, 10) and vector[0] is not None
         if turning:
-            self.axis = np.array(vector) / np.sqrt(sum(value**2 for value in vector))
+            self.axis = self.matrix()[:3, :3] @ (np.array(vector) / np.sqrt(sum(value**2 for value in vector)))
         arc = self.mode["motion"] in (20, 30) and any(letter in words for letter in "IJKR")
         if any(value is not None for value in xyz) or turning or arc:
             self.move(line, words, scale, xyz)
@@ -251,7 +251,7 @@ class Machine:
             line=line,
             kind=kind,
             position=(matrix @ [*end, 1])[:3],
-            tool_axis=matrix[:3, :3] @ self.axis,
+            tool_axis=self.axis,
             feed=feed if kind else np.nan,
             arc_centre=np.full(3, np.nan) if centre is None else (matrix @ [*centre, 1])[:3],
             arc_axis=np.full(3, np.nan) if axis is None else hand * matrix[:3, :3] @ axis,

@@ -163,3 +163,54 @@ def test_g50_alone_changes_nothing():
 @pytest.mark.parametrize("block", ["G51 X0 Y0 Z0 P2.", "G50", "G68.2 X0 Y0 Z0 I0 J0 K0", "G53.1"])
 def test_linuxcnc_has_none_of_them(block):
     assert {code for code, _ in codes(f"{block}\nX1.\nM2\n", flavour="rs274")} <= {"G401", "G402"}
+
+
+UPRIGHT = [0.0, 0.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    "text, place",
+    [
+        ("G18 G68 X0 Z0 R30.\nG1 X10. Z0.\nG69\n", (8.660254, 0, -5)),
+        ("G19 G68 Y0 Z0 R90.\nG1 Y10. Z0.\nG69\n", (0, 0, 10)),
+        ("G51.1 Z0\nG1 X10. Z-5.\nG50.1\n", (10, 0, 5)),
+        ("G51 X0. Y0. Z0. I1. J1. K-1.\nG1 X10. Z-5.\nG50\n", (10, 0, 5)),
+    ],
+)
+@pytest.mark.parametrize("axis_words", ["none", "AC", "vector"])
+def test_rotations_and_mirror_images_turn_coordinates_and_not_the_tool(text, place, axis_words):
+    program, _ = taken(text, axis_words=axis_words)
+    np.testing.assert_allclose(program.position[-1], place, rtol=0, atol=1e-6)
+    assert program.tool_axis.tolist() == [UPRIGHT] * len(program)
+
+
+def test_a_tool_that_is_tilted_stays_so_in_a_rotation_and_words_for_rotary_axes_are_refused_there():
+    tilted = "G43.4\nG1 X1. Y0. Z50. A30. C10.\n"
+    program, _ = taken(f"{tilted}G68 X0 Y0 R90.\nX5. Y0.\nG69\nX0. Y9.\n", axis_words="AC")
+    np.testing.assert_allclose(program.position[-2:], [[0, 5, 50], [0, 9, 50]], rtol=0, atol=1e-9)
+    assert (program.tool_axis[-3:] == program.tool_axis[-1]).all() and program.tool_axis[-1, 2] < 0.9
+    for turn in ("G68 X0 Y0 R90.", "G51.1 X0"):
+        assert codes(f"G43.4\n{turn}\nG1 X1. Y0. A30.\n", axis_words="AC")[-1] == ("G414", 3)
+        assert codes(f"G43.4\n{turn}\nG1 X1. Y0. A0. C0.\n", axis_words="AC") == []
+
+
+def test_a_vector_is_one_of_the_frame_in_which_it_is_written():
+    text = "G43.5\nG68 X0 Y0 R90.\nG1 X1. Y0. Z50. I3. J0. K4.\nX2. Y1.\nG69\nX0. Y9.\nI3. J0. K4.\n"
+    axes = taken(text, axis_words="vector")[0].tool_axis
+    np.testing.assert_allclose(axes[-4:], [[0, 0.6, 0.8]] * 3 + [[0.6, 0, 0.8]], rtol=0, atol=1e-12)
+
+
+def test_the_angle_of_g10_does_not_turn_the_tool_and_that_of_an_option_does():
+    text = "G10 L2 P1 X0 Y0 Z0 R90\nG1 X5 Y0 Z50 B30\n"  # rs274 prints B30 for the move to (0, 5)
+    program, _ = taken(text, flavour="rs274", axis_words="RPY")
+    np.testing.assert_allclose(program.position[-1], [0, 5, 50], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(program.tool_axis[-1], [0.5, 0, np.sqrt(0.75)], rtol=0, atol=1e-12)
+    placed = {"G54": (0.0, 0.0, 0.0, 90.0)}
+    program, _ = taken("G1 X5 Y0 Z50 B30\n", flavour="rs274", axis_words="RPY", work_offsets=placed)
+    np.testing.assert_allclose(program.tool_axis[-1], [0, 0.5, np.sqrt(0.75)], rtol=0, atol=1e-12)
+
+
+def test_a_cycle_in_a_mirror_image_along_the_tool_is_refused():
+    hole = "G99 G81 X1. Y1. Z-5. R2.\nG80\n"
+    assert codes(f"G51.1 Z0\n{hole}") == [("G429", 2)]
+    assert codes(f"G51.1 X0\n{hole}") == []
