@@ -70,8 +70,8 @@ class WordBlock:
         """
         computed_words = {letter: value.value(parameters) for letter, value in self.values}
         values = {letter: value for letter, value in computed_words.items() if value == value}  # drops vacant ones
-        g = [*self.codes, *(_code("G", code, 10, parameters) for code in self.g)]
-        m = [_code("M", code, 1, parameters) for code in self.m]
+        g = [*self.codes, *_codes("G", self.g, 10, parameters)]
+        m = _codes("M", self.m, 1, parameters)
         computed = [(target.resolved(parameters), value.value(parameters)) for target, value in self.assignments]
         for (name, value), (target, _) in zip(computed, self.assignments, strict=True):
             try:
@@ -233,9 +233,14 @@ def label_of_number(number: float, column: int = 0) -> str:
     return str(label)
 
 
-def _code(letter: str, code: Expression, parts: int, parameters: Parameters) -> int:
-    """Evaluate a G or M code as an integer multiple of 1 / ``parts``."""
-    number = code.value(parameters)
+def _codes(letter: str, codes: list[Expression], parts: int, parameters: Parameters) -> list[int]:
+    """Evaluate G or M codes; one of a vacant variable is none [Fanuc, variables]."""
+    numbers = ((code, code.value(parameters)) for code in codes)
+    return [_code(letter, code, number, parts) for code, number in numbers if number == number]
+
+
+def _code(letter: str, code: Expression, number: float, parts: int) -> int:
+    """A G or M code as an integer multiple of 1 / ``parts``."""
     rounded = round(number * parts)
     if abs(number * parts - rounded) > _CODE_TOLERANCE or not 0 <= number <= LARGEST_CODE:
         raise ExecutionFault("G306", f"{letter}{number:.10g}", code.column)

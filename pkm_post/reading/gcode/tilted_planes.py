@@ -13,7 +13,7 @@ import numpy as np
 
 from pkm_post.model import Array, distinct, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import Group, Word, word_of
+from pkm_post.reading.gcode.codes import NONE, Group, Word, name_of, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.modal import Modal, forward_fill
 from pkm_post.reading.gcode.motions import Motions
@@ -53,7 +53,12 @@ def check_tilted_planes(blocks: Blocks, modal: Modal, axes: Array, faults: Block
     _report(faults, others[inside[others]], "G68 within the plane")
     turns = distinct(blocks.g_row[blocks.g == TURN_TO_PLANE])
     _report(faults, turns[~inside[turns]], "G53.1 without G68.2")
-    for row in np.flatnonzero(modal.programmed[Group.ROTATION] == TILTED_PLANE).tolist():
+    planes = np.flatnonzero(modal.programmed[Group.ROTATION] == TILTED_PLANE)
+    for group, kind in ((Group.ROTATION, 680), (Group.MIRROR, 511)):
+        codes = np.flatnonzero(modal.programmed[group] != NONE)
+        before = forward_fill(codes + 1, modal.programmed[group][codes], NONE, len(blocks) + 1)
+        _report(faults, planes[before[planes] == kind], f"a plane while {name_of(kind)} is in force")
+    for row in planes.tolist():
         _check_words(blocks, row, faults)
     for row in turns[inside[turns]].tolist():
         faults.add("G433", row, word_of(TURN_TO_PLANE))

@@ -74,13 +74,13 @@ def test_each_difference_has_a_row_in_the_documentation():
     "block",
     [
         *("G52 X5.", "G54", "G55", "G54.1 P1", "G92 X5.", "G92.1", "G18", "G28 X0", "G91 G28 X0 Y0 Z0", "G30 Y0"),
-        *("G53 X0", "G53 G0 Y1. Z5."),
+        *("G53 X0", "G53 G0 Y1. Z5.", "G10 L2 P1 X5."),
     ],
 )
 def test_codes_within_a_rotation_are_refused_by_name(block):
     text = f"G0 X1. Y2. Z30.\nG68 X0. Y0. R30.\nX3. Y4.\n{block}\nG69\nM30\n"
     _, faults = read(text, "part.ngc", ReadOptions(flavour="fanuc", machine_zero=(0.0, 0.0, 100.0)))
-    code = block if "P" in block else next(word for word in block.split() if word not in ("G91", "G0"))
+    code = block if "G54.1" in block else next(word for word in block.split() if word not in ("G91", "G0"))
     assert [(fault.code, fault.place.line, fault.found) for fault in faults] == [("G438", 4, f"{code} within G68")]
 
 

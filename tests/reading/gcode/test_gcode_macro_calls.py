@@ -76,6 +76,7 @@ def test_arguments(words, expected):
         ("X1. Z#1\n#1=3.\nZ#1\n#1=#0\nX2. Z#1\nM30\n", [10.0, 3.0, 3.0]),
         ("Z[#1+4.]\nIF [#1 EQ #0] THEN #2=1.\nIF [#1 EQ 0] THEN #2=2.\nZ#2\nM30\n", [4.0, 1.0]),
         ("#1=0\nIF [#1 NE #0] THEN #2=5.\nIF [#3 NE 0] THEN #2=#2+1.\nZ#2\nM30\n", [6.0]),
+        ("G#1 M#2 X1. Z5.\nM30\n", [5.0]),
         # functions
         ("Z[FIX[-1.5]]\nZ[FUP[-1.5]]\nZ[FUP[1.2]]\nM30\n", [-1.0, -2.0, 2.0]),
         ("Z[6 AND 3]\nZ[6 OR 3]\nZ[6 XOR 3]\nM30\n", [2.0, 7.0, 5.0]),
