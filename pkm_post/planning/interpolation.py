@@ -19,10 +19,11 @@ import numpy as np
 
 from pkm_post.geometry import Array, length_of, unit
 from pkm_post.machine import DRIFT_SHARES, Demand, KnotState, ToolCubics, ToolPoses, bounded_demand, measured_demand
-from pkm_post.model import Machine, Poses, Tolerances, checkpoint, distinct, pieces, uniform
+from pkm_post.model import Machine, Tolerances, checkpoint, distinct, pieces
 from pkm_post.planning.check_points import CheckPoints, Intervals, KnownIntervals
-from pkm_post.planning.fast_poses import fast_poses, fast_poses_within
-from pkm_post.planning.schedule import Schedule, by_time
+from pkm_post.planning.fast_poses import fast_poses_within
+from pkm_post.planning.knot_places import KnotPlaces
+from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.tool_path import FOR_CORNERS, ToolPath
 
 _MOST = 0.4
@@ -58,42 +59,6 @@ _INTERVALS_AT_ONCE = 2048
 _Deviation = Callable[[Intervals, ToolCubics, Array], Array]
 
 
-def poses_at(path: ToolPath, schedule: Schedule, ms: Array) -> Poses:
-    """Poses by time at whole ms, (N,); with a constant attitude second derivatives are zero, not computed."""
-    s, speed, acceleration = schedule.at(ms / 1000)
-    if path.attitude is None:
-        return by_time(path.at(s), speed, acceleration)
-    poses, still = fast_poses(path, s), np.zeros((len(s), 3))
-    zero = still[:, 0]
-    rate = poses.tip_1 * speed[:, None]
-    return Poses(
-        tip=poses.tip,
-        tip_1=rate,
-        tip_2=still,
-        axis=poses.axis,
-        axis_1=still,
-        axis_2=still,
-        spin=poses.spin,
-        spin_1=zero,
-        spin_2=zero,
-        tool_length=poses.tool_length,
-        segment=poses.segment,
-    )
-
-
-def _places(path: ToolPath, s: Array) -> tuple[Array, Array, Array]:
-    """Places, their derivatives, (7, N) each, and gauge lengths, (N,), at path lengths: tip, axis and spin.
-
-    The tip alone, (3, N), if the attitude is constant.
-    """
-    if path.attitude is not None:
-        poses = fast_poses(path, s)
-        return poses.tip.T, poses.tip_1.T, poses.tool_length
-    exact = path.at(s)
-    place = np.concatenate([exact.tip.T, exact.axis.T, exact.spin[None]])
-    return place, np.concatenate([exact.tip_1.T, exact.axis_1.T, exact.spin_1[None]]), exact.tool_length
-
-
 def _allowed(path: ToolPath, rows: slice, tolerances: Tolerances) -> Array:
     """Allowance for tip and axis on some segments, (2, N) mm and rad: what the corners at both ends leave of it."""
     programmed = path.tip_tolerance[rows]  # the program may tighten the tolerance, not widen it
@@ -110,7 +75,7 @@ def _exceeded(deviation: Array, use: Array) -> Array:
 
 
 class InterpolationCheck:
-    """Compares the controller's cubics with the plan in one stretch; caches intervals and poses at their ends."""
+    """Compares the controller's cubics with the plan in one stretch; caches intervals."""
 
     def __init__(
         self, path: ToolPath, schedule: Schedule, machine: Machine, tolerances: Tolerances, marks: Array
@@ -137,9 +102,8 @@ class InterpolationCheck:
         self._feeds_before = np.cumsum(np.diff(feed, prepend=feed[0]) != 0)
         self._negligible_drift = _NEGLIGIBLE_DRIFT * self._allowed[0].min()
         self._first = marks[0]
-        self._row = np.full(marks[-1] - marks[0] + 1, -1)
-        self._place = self._rate = np.empty((7 if path.attitude is None else 3, 0))
-        self._tool_length, self._along = np.empty(0), np.empty((2, 0))
+        self._span_ms = marks[-1] - marks[0] + 1
+        self._knots = KnotPlaces(path, schedule, marks)
         self._known = KnownIntervals()
 
     def error(self, start: Array, end: Array, group: Array | None = None) -> Array:
@@ -148,13 +112,11 @@ class InterpolationCheck:
         Up to 1 it is the deviation, which grows with interval length; other limits count only where exceeded. An
         interval that is too long, and any in the same ``group``, gets the value at which its check stopped.
         """
-        key = (start - self._first) * len(self._row) + end - self._first
+        key = (start - self._first) * self._span_ms + end - self._first
         at_joints, closely = known = self._known.of(key)
         asked = np.flatnonzero(np.isnan(closely) & ~(at_joints > 1))
         intervals = Intervals.of(self._seen_time, start[asked], end[asked])
-        first, last = self._rows(intervals.start), self._rows(intervals.end)
-        cubics = self._tool_cubics(first, last, intervals.duration)
-        backward = self._backward(first, last, intervals.duration)
+        cubics, backward = self._knots.cubics(intervals), self._knots.backward(intervals)
         at_joints[asked] = _exceeded(self._at_joints(intervals, cubics), backward)
         holds = at_joints <= 1
         if group is not None:
@@ -180,9 +142,8 @@ class InterpolationCheck:
 
     def use_of_limits(self, start: Array, end: Array) -> Array:
         """Largest use of a machine limit, speed or acceleration, in intervals of whole ms, (N,)."""
-        duration = (end - start) / 1000
-        cubics = self._tool_cubics(self._rows(start), self._rows(end), duration)
-        return self._demand(Intervals.of(self._seen_time, start, end), cubics).limits
+        intervals = Intervals.of(self._seen_time, start, end)
+        return self._demand(intervals, self._knots.cubics(intervals)).limits
 
     def _closely(self, intervals: Intervals, cubics: ToolCubics) -> Array:
         """Check machine limits, and points between joints, for intervals that pass at their joints."""
@@ -239,25 +200,13 @@ class InterpolationCheck:
     def _measured(self, intervals: Intervals, cubics: ToolCubics) -> Demand:
         """Measured demand, from the kinematics at both ends and in between."""
         ms = distinct(np.concatenate([intervals.start, intervals.end]))
-        poses = self._known_poses(ms)
+        poses = self._knots.poses(ms)
         ends, (first, last) = KnotState.of(self._machine, poses), np.searchsorted(ms, [intervals.start, intervals.end])
         places = np.stack([cubics.at(share) for share in DRIFT_SHARES], axis=2).reshape(cubics.powers.shape[1], -1)
         tool_length = np.repeat(poses.tool_length[last], len(DRIFT_SHARES))
         attitude = self._path.attitude or (unit(places[3:6].T), places[6], tool_length)
         inside = ToolPoses(places[:3].T, *attitude)
         return measured_demand(self._machine, ends[first], ends[last], cubics, inside, intervals.duration)
-
-    def _known_poses(self, ms: Array) -> Poses:
-        """Poses by time at whole ms that are interval ends, (N,), without second derivatives."""
-        row, count = self._rows(ms), len(ms)
-        place, rate, still = self._place[:, row].T, self._rate[:, row].T, np.zeros((count, 3))
-        tip, tip_1, zero, axis_1, spin_1 = place[:, :3], rate[:, :3], still[:, 0], still, still[:, 0]
-        if self._path.attitude is None:
-            axis, spin, axis_1, spin_1 = place[:, 3:6], place[:, 6], rate[:, 3:6], rate[:, 6]
-        else:
-            axis, spin = (uniform(column[0], count) for column in self._path.attitude[:2])
-        length, nowhere = self._tool_length[row], np.zeros(count, dtype=np.int64)
-        return Poses(tip, tip_1, still, axis, axis_1, still, spin, spin_1, zero, length, nowhere)
 
     def _deviation_at_joints(
         self, intervals: Intervals, cubics: ToolCubics, drift: Array, most: int | None = None
@@ -318,49 +267,18 @@ class InterpolationCheck:
         poses = fast_poses_within(self._path, segment, u)
         return np.asarray(poses.tip.T if self._path.attitude else np.concatenate([poses.tip.T, poses.axis.T]))
 
-    def _backward(self, first: Array, last: Array, duration: Array) -> Array:
-        """Above 1 where a cubic of the path length runs backward, (N,), invisible in deviations across the path.
-
-        Its speed is nowhere negative while its mean is at least (v0 + v1 - sqrt(v0 v1)) / 3.
-        """
-        (s0, v0), (s1, v1) = self._along[:, first], self._along[:, last]
-        least, way = (v0 + v1 - np.sqrt(v0 * v1)) * duration / 3, s1 - s0
-        return np.divide(least, way, out=np.zeros(len(way)), where=way > 0)
-
-    def _tool_cubics(self, first: Array, last: Array, duration: Array) -> ToolCubics:
-        """Cubics between cached places, by row."""
-        begin, end = self._place[:, first], self._place[:, last]
-        if self._path.attitude is None:  # at a tool change the platform stands still: take the tip of the new tool
-            begin[:3] += (self._tool_length[first] - self._tool_length[last]) * begin[3:6]
-        return ToolCubics.from_ends(begin, self._rate[:, first], end, self._rate[:, last], duration)
-
     def joint_times(self, time_ms: Array) -> tuple[Array, Array]:
         """Joints inside the intervals between knots, (J,), and the times at which the cubics pass them, (J,) s.
 
         Args:
             time_ms: (K,) whole ms of the knots, increasing.
         """
-        start, end = time_ms[:-1], time_ms[1:]
-        intervals = Intervals.of(self._schedule.joint_time, start, end)
+        intervals = Intervals.of(self._schedule.joint_time, time_ms[:-1], time_ms[1:])
         joints = intervals.at_joints(self._schedule.joint_time)
         if not len(joints.row):
             return joints.segment, joints.time
-        cubics = self._tool_cubics(self._rows(start), self._rows(end), intervals.duration)
-        row = joints.segment - self._first_row
+        cubics, row = self._knots.cubics(intervals), joints.segment - self._first_row
         plan, allowed = self._at_joint[:, row], self._allowed[:, row]
         share = self._nearest(cubics[joints.row], joints.share, plan, allowed, joints.duration)
-        time = start[joints.row] / 1000 + share * joints.duration
+        time = intervals.start[joints.row] / 1000 + share * joints.duration
         return joints.segment, np.maximum.accumulate(time)
-
-    def _rows(self, ms: Array) -> Array:
-        """Rows of cached places at unique whole ms; missing ones are computed."""
-        unknown = ms[self._row[ms - self._first] < 0]
-        if len(unknown):
-            self._row[unknown - self._first] = len(self._tool_length) + np.arange(len(unknown))
-            s, speed, _ = self._schedule.at(unknown / 1000)
-            place, rate, tool_length = _places(self._path, s)
-            self._place = np.concatenate([self._place, place], axis=1)
-            self._rate = np.concatenate([self._rate, rate * speed], axis=1)
-            self._along = np.concatenate([self._along, [s, speed]], axis=1)
-            self._tool_length = np.append(self._tool_length, tool_length)
-        return self._row[ms - self._first]

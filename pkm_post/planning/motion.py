@@ -32,7 +32,8 @@ from pkm_post.model import (
 )
 from pkm_post.planning.fast_poses import fast_poses_within
 from pkm_post.planning.feed_study import feed_study
-from pkm_post.planning.interpolation import InterpolationCheck, poses_at
+from pkm_post.planning.interpolation import InterpolationCheck
+from pkm_post.planning.knot_places import poses_at
 from pkm_post.planning.knots import LONGEST_MS, even_marks, knots, slower_feed
 from pkm_post.planning.rough_limits import (
     DerivativeBounds,

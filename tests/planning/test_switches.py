@@ -14,7 +14,7 @@ from pkm_post.geometry import hermite_accelerations, norm
 from pkm_post.machine import strut_rates
 from pkm_post.model import Tolerances
 from pkm_post.planning import plan_feed
-from pkm_post.planning.interpolation import poses_at
+from pkm_post.planning.knot_places import poses_at
 from pkm_post.planning.played_acceleration import Accelerations
 from pkm_post.planning.refinement import refined_profile
 from pkm_post.planning.rough_limits import DerivativeBounds, rough_limits
