@@ -74,6 +74,8 @@ _PROPERTIES: tuple[Row, ...] = (
      QT_TRANSLATE_NOOP("App::Property", "Folders with the files of subprograms, before that of the part program"), []),
     ("App::PropertyBool", "BlockDelete", _G,
      QT_TRANSLATE_NOOP("App::Property", "Whether what stands behind / in blocks of G-code is left out"), False),
+    ("App::PropertyIntegerList", "DeleteSwitches", _G,
+     QT_TRANSLATE_NOOP("App::Property", "Switches of block delete that are on, as 2 for /2; none: as BlockDelete"), []),
     ("App::PropertyFloat", "FirstFeed", _G,
      QT_TRANSLATE_NOOP("App::Property", "Feed of cutting moves before the first one of the file, mm/min; 0 for none"),
      0.0),
@@ -185,6 +187,7 @@ def reading_of(obj: Any) -> ReadingOptions:
         work_offsets=dict(_typed(obj, "Origins")),
         subprograms=tuple(obj.Subprograms),
         block_delete=obj.BlockDelete,
+        delete_switches=tuple(obj.DeleteSwitches),
         feed=next((feed / 60 for feed in _typed(obj, "FirstFeed")), None),
         goto_values=next(iter(_typed(obj, "GotoValues")), ()),
         tool_table=obj.ToolTable or None,
@@ -220,7 +223,7 @@ def _wrong(obj: Any) -> Findings:
 
 
 def set_reading(obj: Any, reading: ReadingOptions) -> None:
-    """Store reading options in the properties of a program object; wear, cutters and switches have none."""
+    """Store reading options in the properties of a program object; wear and cutters have none."""
     choices: dict[str, str | bool | float | list[Any]] = {
         "AxisWords": reading.axis_words,
         "Flavour": reading.flavour or FROM_FILE,
@@ -230,6 +233,7 @@ def set_reading(obj: Any, reading: ReadingOptions) -> None:
         "Origins": [format_value("origin", each) for each in reading.work_offsets.items()],
         "Subprograms": list(reading.subprograms),
         "BlockDelete": reading.block_delete,
+        "DeleteSwitches": list(reading.delete_switches),
         "FirstFeed": float(f"{60 * (reading.feed or 0.0):.12g}"),
         "GotoValues": ",".join(reading.goto_values),
         "ToolTable": reading.tool_table or "",

@@ -148,6 +148,10 @@
         <translation>是否略去 G 代码程序段中 / 之后的内容</translation>
     </message>
     <message>
+        <source>Switches of block delete that are on, as 2 for /2; none: as BlockDelete</source>
+        <translation>接通的跳段开关,如 2 表示 /2;空则按 BlockDelete</translation>
+    </message>
+    <message>
         <source>Feed of cutting moves before the first one of the file, mm/min; 0 for none</source>
         <translation>文件给出第一个进给之前切削移动的进给,毫米/分钟;0 表示没有</translation>
     </message>

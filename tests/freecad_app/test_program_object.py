@@ -12,8 +12,9 @@ from cam_jobs import add_tool_controller, moves, new_job, reopened
 from pkm_post.freecad_app import program_import
 from pkm_post.freecad_app.document import is_program
 from pkm_post.freecad_app.job import read_job
-from pkm_post.freecad_app.program_object import create_program, decode, read_program, reading_of
+from pkm_post.freecad_app.program_object import create_program, decode, read_program, reading_of, set_reading
 from pkm_post.model import Refused
+from pkm_post.reading import ReadingOptions
 
 GCODE = """G21 G90 G17
 T1 M6
@@ -207,6 +208,17 @@ def test_tools_come_from_a_table_that_a_property_names(document, tmp_path):
     document.recompute()
     assert not [text for text in obj.Found if "error" in text]
     assert obj.Path.Commands
+
+
+def test_switches_of_block_delete_have_a_property(document, tmp_path):
+    text = "G21\nG0 X0 Y0 Z0\n/2 G1 X10 F100\n/3 G1 X20 F100\nG1 X30 F100\nM2\n"
+    obj = create_program(document, written(tmp_path, "part.ngc", text))
+    assert obj.DeleteSwitches == [] and reading_of(obj) == ReadingOptions()
+    set_reading(obj, ReadingOptions(delete_switches=(2,)))
+    obj.touch()
+    document.recompute()
+    assert [given["X"] for name, given in moves(obj) if name == "G1"] == [20.0, 30.0]
+    assert reading_of(obj) == ReadingOptions(delete_switches=(2,))
 
 
 def test_saved_document_keeps_the_path_without_the_file(document, file, tmp_path):
