@@ -49,6 +49,10 @@ class Contacts:
     def __len__(self) -> int:
         return len(self.cell)
 
+    def joined(self, other: Contacts) -> Contacts:
+        """These contacts and the others, not in path order."""
+        return Contacts(*(np.concatenate([getattr(one, name) for one in (self, other)]) for name in vars(self)))
+
 
 class _PathIntervals:
     """Positions on the path combine cell and share in one number: cell i is from i - 1 to i."""

@@ -11,6 +11,7 @@ from pkm_post.model import Coverage, Extent, Phrase, Topic
 
 if TYPE_CHECKING:
     from pkm_post.machine.collisions.contacts import Obstacle
+    from pkm_post.machine.collisions.stock_grid import StockGrid
 
 PART_NOT_KNOWN, FIXTURES_NOT_KNOWN, STOCK_NOT_KNOWN = (
     Coverage(Topic.COLLISIONS, subject, Extent.NOT_COVERED, detail)
@@ -34,6 +35,7 @@ class CoverageRows:
     """
 
     unknown_cutters: list[str] = field(default_factory=list)
+    _behind: str = ""
     _rows: list[Coverage] = field(default_factory=list)
 
     def rows(self) -> tuple[Coverage, ...]:
@@ -66,12 +68,20 @@ class CoverageRows:
         else:
             self._add(_against(Phrase("shanks"), obstacle), Extent.PROVEN, _detail(obstacle, _WHOLE))
 
+    def points_behind(self, grid: StockGrid) -> None:
+        """Record that rapid moves were checked behind surfaces of the part that were cut before."""
+        points = f"in {int(grid.filled.sum()):,} points {grid.step:.2g} mm apart"
+        self._behind = (
+            f"; where its surface was cut before, {points if grid.filled.any() else 'not looked at: open mesh'}"
+        )
+
     def cutters(self, obstacle: Obstacle, allowance: float) -> None:
         """Record the check of cutters, if their size is known."""
         deeper = f", what is deeper than {allowance:g} mm and was not cut before"
         sampled = f"at ends of moves, 2000 at most for each tool, what is deeper than {allowance:g} mm"
+        rapid = Extent.SAMPLED if self._behind else Extent.PROVEN
         kinds = [
-            (Phrase("cutters in rapid moves"), Extent.PROVEN, _WHOLE + deeper),
+            (Phrase("cutters in rapid moves"), rapid, _WHOLE + deeper + self._behind),
             (Phrase("cutters in cutting moves"), Extent.SAMPLED, sampled),
         ]
         for subject, extent, detail in kinds:

@@ -36,7 +36,14 @@ from pkm_post.machine.collisions.moving_bodies import (
     strut_bodies,
     tool_body,
 )
-from pkm_post.machine.collisions.stock_collisions import Intruder, body_of, rapid_cutter, shank_of, stock_faults
+from pkm_post.machine.collisions.stock_collisions import (
+    Intruder,
+    body_of,
+    points_met,
+    rapid_cutter,
+    shank_of,
+    stock_faults,
+)
 from pkm_post.machine.collisions.tools_in_use import ToolUse, not_cut_before, tools_in_use
 from pkm_post.machine.kinematics.placed_machine import has_strut_bodies
 from pkm_post.model import Diagnostic, Machine, Mesh, Phrase, Place, Setup, Tolerances
@@ -84,7 +91,9 @@ class Search:
             return
         part = self._obstacle(Phrase("part"), self.setup.part)
         self._machine(part, "K117", "K121")
-        self._shanks(part, "K130", ALLOWANCE)
+        for _, mover in self._shank_movers(ALLOWANCE + self.off_tip):
+            self.found += mesh_faults(self.driven, "K130", mover, part, _TOUCH)
+        self._note_shanks(part)
         for used in self._with_size(part):
             pieces = cutter_pieces(used.tool, used.edge_length, ALLOWANCE + self.off_tip)
             self._rapid(
@@ -97,8 +106,14 @@ class Search:
 
     def _rapid(self, part: Obstacle, used: ToolUse, mover: MovingBody) -> None:
         met = contacts(self.driven.poses, mover, part.mesh, _TOUCH, self.driven.operation, _ALL)
-        met = not_cut_before(self.driven, self.used, met)
-        self.found += contact_faults(self.driven, "K131", mover, part, met, ALLOWANCE)
+        uncut = not_cut_before(self.driven, self.used, met)
+        if len(uncut) < len(met):
+            # Finishing cut the surface there, which says nothing of the material behind it.
+            assert self.setup.part is not None
+            grid, inside = points_met(self.driven, self.setup.part, rapid_cutter(used), ALLOWANCE + self.off_tip)
+            self.extents.points_behind(grid)
+            uncut = uncut.joined(not_cut_before(self.driven, self.used, inside))
+        self.found += contact_faults(self.driven, "K131", mover, part, uncut, ALLOWANCE)
 
     def fixtures(self) -> None:
         """Check everything that moves against the fixtures, in all moves."""
@@ -107,11 +122,13 @@ class Search:
         for mesh in self.setup.fixtures:
             fixture = self._obstacle(Phrase("fixture"), mesh)
             self._machine(fixture, "K133", "K133")
-            self._shanks(fixture, "K133", 0.0)
+            movers = [mover for _, mover in self._shank_movers(0.0)]
+            self._note_shanks(fixture)
             for used in self._with_size(fixture):
                 pieces = cutter_pieces(used.largest, used.edge_length, 0.0)
-                mover = tool_body(used.name, self.driven.poses, used.cells(), pieces)
-                self.found += mesh_faults(self.driven, "K133", mover, fixture, _TOUCH + self.off_tip)
+                movers.append(tool_body(used.name, self.driven.poses, used.cells(), pieces))
+            for mover in movers:
+                self.found += mesh_faults(self.driven, "K133", mover, fixture, _TOUCH + self._off_path(mover))
             self.extents.cutters_in_all_moves(fixture)
 
     def stock(self) -> None:
@@ -144,7 +161,8 @@ class Search:
         for mover, intruder in movers:
             in_points = closed and intruder is not None
             operation, enough = self.driven.operation, 1 if in_points else ENOUGH
-            met = contacts(self.driven.poses, mover, stock.mesh, _TOUCH + self.off_tip, operation, enough)
+            clearance = _TOUCH + self._off_path(mover)
+            met = contacts(self.driven.poses, mover, stock.mesh, clearance, operation, enough)
             if len(met) and closed and intruder is not None:
                 yield intruder
             elif len(met):
@@ -158,18 +176,21 @@ class Search:
         movers: Sequence[tuple[str, MovingBody]] = [(of_bodies, mover) for mover in self.bodies]
         movers = [*movers, (strut_bodies, self.struts)] if self.struts else movers
         for code, mover in movers:
-            clearance = self.machine.clearance + self.off_tip + self.tolerances.axis * mover.reach
+            clearance = self.machine.clearance + self._off_path(mover)
             self.found += mesh_faults(self.driven, code, mover, obstacle, max(clearance, _TOUCH))
         self.extents.machine(obstacle, bool(self.bodies), self.struts is not None)
 
-    def _shanks(self, obstacle: Obstacle, code: str, allowance: float) -> None:
-        for _, mover in self._shank_movers(allowance):
-            self.found += mesh_faults(self.driven, code, mover, obstacle, _TOUCH)
+    def _off_path(self, mover: MovingBody) -> float:
+        """Largest distance of a point of a mover from where the programmed path has it."""
+        return self.off_tip + self.tolerances.axis * mover.reach
+
+    def _note_shanks(self, obstacle: Obstacle) -> None:
         self.extents.shanks(obstacle, [used.name for used in self.used if used.shank is None])
 
-    def _shank_movers(self, allowance: float) -> Iterator[tuple[ToolUse, MovingBody]]:
+    def _shank_movers(self, less: float) -> Iterator[tuple[ToolUse, MovingBody]]:
+        """The known shanks, reduced by a distance on all sides."""
         for used in self.used:
-            pieces = () if used.shank is None else shank_pieces(used.tool, used.shank, allowance + self.off_tip)
+            pieces = () if used.shank is None else shank_pieces(used.tool, used.shank, less)
             if pieces:
                 yield used, tool_body(Phrase("shank of {}", used.name), self.driven.poses, used.cells(), pieces)
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array
-from pkm_post.machine.collisions.contacts import TrajectoryPath
+from pkm_post.geometry import Array, is_closed
+from pkm_post.machine.collisions.contacts import Contacts, TrajectoryPath
 from pkm_post.machine.collisions.moving_bodies import RevolvedProfile, cylinder
 from pkm_post.machine.collisions.stock_grid import StockGrid, SweptPoses, first_met, when_cut
 from pkm_post.machine.collisions.tools_in_use import ToolUse
@@ -98,6 +98,18 @@ def stock_faults(
         for code, hit in hits:
             found += _operation_faults(driven, one.name, code, stock, points[hit], met[hit])
     return grid, found
+
+
+def points_met(driven: TrajectoryPath, part: Mesh, intruder: Intruder, less: float) -> tuple[StockGrid, Contacts]:
+    """Points of a grid in a part that are inside an intruder by more than ``less``; none where the mesh is open."""
+    grid = StockGrid.of(part.triangles)
+    grid.filled[:] &= is_closed(part.triangles)
+    placed = driven.trajectory.machine_from_work
+    first = _first_met(driven, intruder, grid, np.linalg.inv(placed), less)
+    number = _some(np.flatnonzero(np.isfinite(first)))
+    cell = np.maximum(np.ceil(first[number]).astype(np.int64), 1)
+    points = grid.points(number) @ placed[:3, :3].T + placed[:3, 3]
+    return grid, Contacts(cell, first[number] - (cell - 1), points, np.zeros(len(number)))
 
 
 def _some(number: Array) -> Array:

@@ -6,9 +6,14 @@ import re
 
 import numpy as np
 import pytest
+from machines import example
 from meshes import ascii_stl, binary_stl, box
+from programs import BALL, ON_PALLET, program
 
 from pkm_post.cli import main
+from pkm_post.machine import find_collisions
+from pkm_post.model import Mesh, Setup, Shank, Tolerances
+from pkm_post.toolpath.place import place
 
 SLOT = """\
 G21 G90 G54
@@ -112,6 +117,52 @@ def test_a_rapid_move_back_through_what_was_cut_is_posted(tmp_path, capsys):
     back = SLOT.replace("G0 Z60\nM5", "G0 Y0\nG0 X-30\nG0 Z60\nM5")
     code, _, reported = posted(tmp_path, capsys, "--stock", stock, program=back)
     assert code == 0 and not reported, reported
+
+
+FACED = SLOT.replace("G0 Z60\nM5", "G0 Z20\nG0 X{0} Y0\nG0 Z{1}\nG0 Z60\nM5")
+"""The top of the part is finished, then the cutter goes down to a height, in rapid motion."""
+
+
+@pytest.mark.parametrize(
+    ("place", "height", "code"), [(0, 9.8, 0), (0, 7.0, 1), (0, -5.0, 1), (33, 7.0, 1), (50, 7.0, 0)]
+)
+def test_a_rapid_move_through_a_finished_face_is_refused(tmp_path, capsys, place, height, code):
+    part = stored(tmp_path, "part.stl", PLATE)
+    found, files, reported = posted(tmp_path, capsys, "--part", part, program=FACED.format(place, height))
+    assert (found, bool(files), "line 11: error K131" in reported) == (code, not code, bool(code)), reported
+
+
+@pytest.mark.parametrize(
+    ("mesh", "behind"),
+    [
+        (PLATE, r"sampled.*cut before, in \d\d,\d{3} points 1 mm apart"),
+        (PLATE[1:], "sampled.*not looked at: open mesh"),
+    ],
+)
+def test_a_rapid_move_out_of_a_hole_that_the_part_does_not_have_is_posted(tmp_path, capsys, mesh, behind):
+    drilled = FACED.format(0, 10.5).replace("G0 Z60\nM5", "G1 Z4\nG0 Z10.5\nG0 Z5\nG0 Z60\nM5")
+    code, _, reported = posted(tmp_path, capsys, "--part", stored(tmp_path, "p.stl", mesh), program=drilled)
+    assert code == 0 and "K132" in reported, reported
+    certificate = json.loads((tmp_path / "out/slot-report.json").read_text())["certificate"]
+    (row,) = [row for row in certificate["coverage"] if row["what"] == "cutters in rapid moves against the part"]
+    assert re.search(behind, row["extent"] + row["detail"]), row
+
+
+@pytest.mark.parametrize(("gap", "degrees", "code"), [(0.5, "0.001", 0), (0.5, "1", 1), (2.5, "1", 0)])
+def test_a_fixture_clears_the_cutter_of_any_axis_within_its_tolerance(tmp_path, capsys, gap, degrees, code):
+    clamp = stored(tmp_path, "clamp.stl", box([20, 15 + gap, 0], [40, 30, 70]))
+    found, _, reported = posted(tmp_path, capsys, "--fixture", clamp, "--axis-tolerance", degrees)
+    assert (found, "error K133" in reported) == (code, bool(code)), reported
+
+
+@pytest.mark.parametrize(("gap", "hit"), [(-0.3, True), (0.1, True), (0.4, True), (0.6, False)])
+def test_a_shank_clears_a_fixture_by_the_tolerance_of_the_tool_tip(gap, hit):
+    trajectory, faults = place(program([[-30, 0, 0], [30, 0, 0]]), example(), ON_PALLET)
+    assert not faults
+    clamp = Mesh("clamp.stl", box([-10, 8 + gap, 60], [10, 30, 68]))
+    setup = Setup(fixtures=(clamp,), shanks={BALL.number: Shank(20.0, 16.0)})
+    found = find_collisions(trajectory, example(), setup, Tolerances(0.5, 1e-6)).faults
+    assert [fault.code for fault in found] == ["K133"] * hit
 
 
 @pytest.mark.parametrize(
