@@ -171,8 +171,12 @@ def _pseudo_inverse(decomposed: tuple[Array, Array, Array], scale: Array, least_
     left, values, right = decomposed
     known = _determined(values, least_share)
     inverse = np.where(known, 1.0 / np.where(known, values, 1.0), 0.0)
-    back = (right.transpose(0, 2, 1) * inverse[:, None, :]) @ left.transpose(0, 2, 1)
-    return back / scale[..., None]
+    steps = (right.transpose(0, 2, 1) * inverse[:, None, :]) @ left.transpose(0, 2, 1) / scale[..., None]
+    for strut in np.flatnonzero(~known.all(axis=1)):
+        # Short scaled steps may be long in mm; the part along undetermined combinations changes no length.
+        free, _ = np.linalg.qr((right[strut, ~known[strut]] / scale[strut]).T)
+        steps[strut] -= free @ (free.T @ steps[strut])
+    return steps
 
 
 def _judged(

@@ -140,6 +140,19 @@ def test_few_poses_determine_one_combination_each(count):
     assert found.after < 1e-8
 
 
+@pytest.mark.parametrize("count", [1, 2, 4])
+def test_few_poses_move_no_parameter_farther_than_the_lengths_ask(count):
+    """The undetermined combinations keep their values in mm: of all machines with these lengths, the nearest."""
+    nominal, real = machines()
+    for seed in range(8):
+        exact = measured(nominal, real, poses(np.random.default_rng(seed), count))
+        found = calibrate(nominal, exact)
+        change = parameters(found.machine) - parameters(nominal)
+        farther = parameters(real) - parameters(nominal)
+        assert found.converged and found.after < 1e-4
+        assert np.all(np.linalg.norm(change, axis=1) <= 1.1 * np.linalg.norm(farther, axis=1))
+
+
 def test_poses_without_a_turn_leave_base_and_platform_apart():
     """When the platform never turns, a joint of the base and its partner may be shifted together: three for a strut."""
     nominal, real = machines()
