@@ -101,7 +101,7 @@ class SweptPoses:
         row, number = expand_counts(count)
         run = np.append(np.diff(cells[row]) > 1, True)
         stride = np.floor(np.cumsum((change / count)[row]) / step)
-        kept = np.flatnonzero(run | np.append(np.diff(stride) > 0, True))
+        kept = np.flatnonzero((run | np.append(np.diff(stride) > 0, True))[: len(row)])
         at = cells[row] - 1 + (number + 1) / count[row]
         begin = np.append(0, kept[:-1] + 1).astype(np.int64)[: len(kept)]
         tip, axis, _, _ = path.inside(cells[row[kept]], ((number + 1) / count[row])[kept])

@@ -180,6 +180,15 @@ def test_files_that_cannot_be_read_are_refused_by_name(tmp_path, capsys, name, c
     assert code == 1 and not files and reported in errors, errors
 
 
+@pytest.mark.parametrize(("height", "code"), [(25, 0), (15, 1)])
+def test_a_tool_that_only_moves_in_rapids_is_checked_with_the_stock(tmp_path, capsys, height, code):
+    stock = stored(tmp_path, "stock.stl", box([-40, -40, 0], [40, 40, 20]))
+    unused = SLOT.replace("M5\nM30", f"T2 M6\nG0 X0 Y-20\nG0 Z{height}\nG0 Z60\nM5\nM30")
+    tools = "--stock", stock, "--tool-length", "2=120", "--tool", "2=8,0"
+    found, _, reported = posted(tmp_path, capsys, *tools, program=unused)
+    assert (found, "error K136" in reported) == (code, bool(code)), reported
+
+
 def test_an_open_mesh_of_the_stock_is_reported(tmp_path, capsys):
     stock = stored(tmp_path, "stock.stl", box([-40, -40, 0], [40, 40, 20])[1:])
     code, _, reported = posted(tmp_path, capsys, "--stock", stock)
