@@ -14,7 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pkm_post.cli.processes import DOCUMENTS, diagnostic_text
+from pkm_post.cli.processes import diagnostic_text
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import (
     applicable_values,
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from pkm_post.posting import Prepared
     from pkm_post.reading import ReadingOptions
 
+_DOCUMENTS = (".FCStd", ".FCBak")
+"""Suffixes of documents, as FreeCAD writes them."""
 NO_AXIS_WORDS = "none"
 """The default: the tool axis is vertical."""
 _FOR_SOME_FILES = {"axis_words": NO_AXIS_WORDS, "dwell_unit": None, "job": None}
@@ -58,14 +60,14 @@ def reading_from(namespace: argparse.Namespace) -> ReadingOptions:
     return replace(part_program_from(namespace, namespace.axis_words), dwell_unit=namespace.dwell_unit)
 
 
-def misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> list[str]:
+def misplaced(namespace: argparse.Namespace, files: Sequence[Path], documents: Sequence[str] = _DOCUMENTS) -> list[str]:
     """Diagnostics of the files that are not read, or of the options that apply to none of the files."""
     try:
         from pkm_post.model import Diagnostic, Place
     except ImportError:  # no NumPy, or one for another Python: this command reruns inside FreeCAD, and checks there
         return []
 
-    if unread := list(_unread(files)):
+    if unread := list(_unread(files, documents)):
         return unread
     chosen = (name for name, default in _FOR_SOME_FILES.items() if getattr(namespace, name, default) != default)
     place = Place(str(files[0]) if len(files) == 1 else "arguments")
@@ -73,20 +75,23 @@ def misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> list[str]
     return [str(Diagnostic("L442", place, message)) for message in messages]
 
 
-def _unread(files: Sequence[Path]) -> Iterator[str]:
+def _unread(files: Sequence[Path], documents: Sequence[str]) -> Iterator[str]:
     """Yield the diagnostics of files that are neither documents nor part programs by their names."""
     from pkm_post.reading import SUFFIXES, is_part_program
 
+    lower = [suffix.lower() for suffix in documents]
     for file in files:
         if os.path.isdir(file):
             yield diagnostic_text("F103", str(file), "it is a folder")
-        elif file.suffix.lower() not in DOCUMENTS and not is_part_program(file):
-            yield diagnostic_text("F122", str(file), f"expected one of .FCStd, .FCBak, {', '.join(SUFFIXES)}")
+        elif file.suffix.lower() not in lower and not is_part_program(file):
+            yield diagnostic_text("F122", str(file), f"expected one of {', '.join((*documents, *SUFFIXES))}")
 
 
-def print_misplaced(namespace: argparse.Namespace, files: Sequence[Path]) -> bool:
+def print_misplaced(
+    namespace: argparse.Namespace, files: Sequence[Path], documents: Sequence[str] = _DOCUMENTS
+) -> bool:
     """Print the diagnostics of ``misplaced``; return whether there are any."""
-    faults = misplaced(namespace, files)
+    faults = misplaced(namespace, files, documents)
     print_diagnostics(faults)
     return bool(faults)
 
@@ -121,18 +126,6 @@ def read_machine(name: str) -> Machine | None:
     machine, diagnostics = machine_named(name)
     print_diagnostics(diagnostics)
     return machine
-
-
-def part_program(text: str) -> Path:
-    """Path of an existing part program."""
-    from pkm_post.reading import SUFFIXES, is_part_program
-
-    file = Path(text)
-    if not os.path.isfile(file):  # before Python 3.12 Path.is_file raises where a name is too long
-        raise argparse.ArgumentTypeError(f"there is no file {text}")
-    if not is_part_program(file):
-        raise argparse.ArgumentTypeError(f"expected a file ending in {', '.join(SUFFIXES)}, got {text}")
-    return file
 
 
 def one_of(allowed: Collection[str], text: str) -> str:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pkm_post.cli.inputs import add_reading, one_of, part_program, print_misplaced, read_machine, reading_from
+from pkm_post.cli.inputs import add_reading, one_of, print_misplaced, read_machine, reading_from
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import add_machine, add_part_program, between, whole
 
@@ -21,7 +21,7 @@ from pkm_post.options import add_machine, add_part_program, between, whole
 def add_commands(commands: Any) -> None:
     """Add the commands to a parser."""
     checking = commands.add_parser("check", help="say what is wrong with part programs, and what they hold")
-    checking.add_argument("files", nargs="+", type=part_program, metavar="FILE")
+    checking.add_argument("files", nargs="+", type=Path, metavar="FILE")
     form = checking.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="write JSON instead of text")
     form.add_argument("--listing", action="store_true", help="write every line, with what was found beneath it")
@@ -30,7 +30,7 @@ def add_commands(commands: Any) -> None:
     checking.set_defaults(run=_check)
 
     converting = commands.add_parser("convert", help="write a part program in another form of G-code")
-    converting.add_argument("file", type=part_program, metavar="FILE")
+    converting.add_argument("file", type=Path, metavar="FILE")
     forms = "gcode:vector, gcode:AC, gcode:BC, gcode:linuxcnc or gcode:3axis"
     converting.add_argument("--to", required=True, type=_target, metavar="FORM", help=forms)
     converting.add_argument("--out", required=True, type=Path, metavar="FILE", help="the file to write")
@@ -68,7 +68,7 @@ def _target(text: str) -> str:
 def _check(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.reading import check_file, checks_as_json, checks_as_text, listing_lines
 
-    if print_misplaced(namespace, namespace.files):
+    if print_misplaced(namespace, namespace.files, documents=()):
         return 2
     results = [check_file(file, reading_from(namespace)) for file in namespace.files]
     if namespace.listing:
@@ -82,7 +82,7 @@ def _convert(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.model import errors
     from pkm_post.writing import convert
 
-    if print_misplaced(namespace, [namespace.file]):
+    if print_misplaced(namespace, [namespace.file], documents=()):
         return 2
     reading = reading_from(namespace)
     diagnostics = convert(namespace.file, namespace.to, namespace.out, reading, inch=namespace.inch)

@@ -48,11 +48,12 @@ def with_spindle_waits(program: Program, machine: Machine) -> tuple[Program, tup
         machine: defines the times of its spindle.
     """
     up = machine.spin_up_time
+    faults = tuple(_cuts_at_rest(program))
     if up is None:
-        return program, ()
+        return program, faults
     down = up if machine.spin_down_time is None else machine.spin_down_time
     ramp = _Ramp(up / machine.spindle_speed, down / machine.spindle_speed)
-    return replace(program, events=tuple(_waited(program.events, ramp))), tuple(_cuts_at_rest(program))
+    return replace(program, events=tuple(_waited(program.events, ramp))), faults
 
 
 def _waited(events: tuple[Event, ...], ramp: _Ramp) -> Iterator[Event]:

@@ -1799,10 +1799,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>缺少一个结果</translation>
     </message>
     <message>
-        <source>check that nothing else removes files from the folder, and post again</source>
-        <translation>确认没有其他程序从文件夹中删除文件，然后重新后处理</translation>
-    </message>
-    <message>
         <source>run the script in FreeCADCmd, or post with python3 -m pkm_post post, which starts it</source>
         <translation>请在 FreeCADCmd 中运行该脚本，或用会启动它的 python3 -m pkm_post post 进行后处理</translation>
     </message>
@@ -2879,8 +2875,36 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>不支持此扩展名的文件</translation>
     </message>
     <message>
+        <source>no controller answers as expected</source>
+        <translation>没有控制器按预期应答</translation>
+    </message>
+    <message>
+        <source>check power, cable, address and port, --baud and --parity, and that no other program has the port open</source>
+        <translation>检查电源、电缆、地址和端口、--baud 和 --parity，并确认没有其他程序占用该端口</translation>
+    </message>
+    <message>
+        <source>the computer at this address does not prove that it is the controller</source>
+        <translation>该地址上的计算机不能证明自己是控制器</translation>
+    </message>
+    <message>
+        <source>check the address; if the host key is the controller&apos;s, add it: ssh-keyscan -p PORT HOST &gt;&gt;FILE, and --known-hosts FILE</source>
+        <translation>检查地址；如果主机密钥确是控制器的，则添加它：ssh-keyscan -p PORT HOST &gt;&gt;FILE，并使用 --known-hosts FILE</translation>
+    </message>
+    <message>
+        <source>the computer of the controller denies access</source>
+        <translation>控制器的计算机拒绝访问</translation>
+    </message>
+    <message>
+        <source>offer a key, by an agent or in ~/.ssh, or the password in PKM_PMAC_PASSWORD</source>
+        <translation>提供密钥（通过代理或在 ~/.ssh 中），或在 PKM_PMAC_PASSWORD 中提供密码</translation>
+    </message>
+    <message>
         <source>give the file the ending of its kind</source>
         <translation>为文件取与其类型相符的扩展名</translation>
+    </message>
+    <message>
+        <source>let no other post write into the folder at the same time, and nothing else remove its files, and post again</source>
+        <translation>不要让其他后处理同时写入该文件夹，也不要让其他程序删除其中的文件，然后重新后处理</translation>
     </message>
     <message>
         <source>write each code in a block of its own, with its words; @ and ^ without X and Y</source>

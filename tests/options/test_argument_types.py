@@ -177,3 +177,22 @@ def test_files_that_are_not_read_are_refused_before_freecad_is_started(command, 
     assert "folder.ngc: error F103: the file cannot be read: it is a folder; " in folder
     assert main([command, str(tmp_path / "none.FCStd")]) == 1
     assert "none.FCStd: error J101: " in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", ["check {}", "convert {} --to gcode:BC --out new.ngc", "post {}"])
+def test_part_programs_that_are_not_read_are_refused_alike(words, tmp_path, capsys):
+    def refused(name):
+        code = main([str(tmp_path / name) if word == "{}" else word for word in words.split()])
+        return code, "".join(capsys.readouterr())
+
+    (tmp_path / "folder.ngc").mkdir()
+    for name, expected, found in (
+        ("part.stp", 2, "part.stp: error F122: files with this ending are not read: expected one of "),
+        ("folder.ngc", 2, "folder.ngc: error F103: the file cannot be read: it is a folder; "),
+        ("none.ngc", 1, "none.ngc: error F103: the file cannot be read: [Errno 2] "),
+    ):
+        code, printed = refused(name)
+        assert code == expected and found in printed
+    code, printed = refused("none.FCStd")
+    expected = (1, "J101") if words.startswith("post") else (2, "F122")
+    assert (code, f"none.FCStd: error {expected[1]}: " in printed) == (expected[0], True)

@@ -61,18 +61,23 @@ def test_the_spindle_comes_to_rest_before_a_tool_is_changed():
     assert waits(Event(0, CHANGE, 1), Event(1, CHANGE, 2))[0] == [(CHANGE, 1), (CHANGE, 2)]
 
 
-def test_a_cut_after_a_change_needs_a_spindle_that_was_started():
+@pytest.mark.parametrize("machine", [MACHINE, example()], ids=["with a time", "without a time"])
+def test_a_cut_after_a_change_needs_a_spindle_that_was_started(machine):
+    def faults(*happens):
+        return waits(*happens, machine=machine)[1]
+
     runs = Event(0, SPINDLE, 12000.0)
-    assert waits(runs, Event(1, CHANGE, 2))[1] == ["K143"]
-    assert waits(runs, Event(1, CHANGE, 2), Event(2, SPINDLE, 900.0))[1] == ["K143"]
-    assert waits(runs, Event(1, CHANGE, 2), Event(1, SPINDLE, 900.0))[1] == []
-    assert waits(Event(1, CHANGE, 2))[1] == []
-    assert waits(runs, Event(3, CHANGE, 2))[1] == []
+    assert faults(runs, Event(1, CHANGE, 2)) == ["K143"]
+    assert faults(runs, Event(1, CHANGE, 2), Event(2, SPINDLE, 900.0)) == ["K143"]
+    assert faults(runs, Event(1, CHANGE, 2), Event(1, SPINDLE, 900.0)) == []
+    assert faults(Event(1, CHANGE, 2)) == []
+    assert faults(runs, Event(3, CHANGE, 2)) == []
 
 
 def test_nothing_waits_where_no_time_is_stated():
-    reported, faults = waits(Event(0, SPINDLE, 12000.0), Event(1, CHANGE, 2), machine=example())
-    assert reported == [(SPINDLE, 12000.0), (CHANGE, 2)] and not faults
+    events = Event(0, SPINDLE, 12000.0), Event(1, CHANGE, 2), Event(1, SPINDLE, 6000.0)
+    reported, faults = waits(*events, machine=example())
+    assert reported == [(SPINDLE, 12000.0), (CHANGE, 2), (SPINDLE, 6000.0)] and not faults
 
 
 def test_one_time_serves_both_ways():

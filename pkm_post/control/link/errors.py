@@ -65,10 +65,6 @@ class LinkLostError(PmacError):
     """The link was cut, or the answer was invalid even after retries."""
 
 
-class NoAccessError(PmacError):
-    """The controller's computer could not prove its identity, or denies this user access: a retry does not help."""
-
-
 class OutcomeUnknownError(LinkLostError):
     """The link failed after a set command was sent: whether it was executed is unknown.
 
@@ -91,6 +87,14 @@ class DiagnosedError(PmacError):
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(str(diagnostic))
         self.diagnostic = diagnostic
+
+
+class NoControllerError(DiagnosedError, LinkLostError):
+    """No controller answers as expected at the port, even after retries."""
+
+
+class NoAccessError(DiagnosedError):
+    """The controller's computer could not prove its identity, or denies this user access: a retry does not help."""
 
 
 class NotOwnerError(DiagnosedError):

@@ -15,9 +15,16 @@ from types import TracebackType
 from typing import Protocol, Self
 
 from pkm_post.control.link.channel import CommandChannel, OpenBufferPolicy, establish_handshake
-from pkm_post.control.link.errors import CancelledError, LinkLostError, OutcomeUnknownError, RefusedError
+from pkm_post.control.link.errors import (
+    CancelledError,
+    LinkLostError,
+    NoControllerError,
+    OutcomeUnknownError,
+    RefusedError,
+)
 from pkm_post.control.link.ports import PortInterface
 from pkm_post.control.link.protocol import Answer, CommandKind, ControllerCommand, Lost, Refusal
+from pkm_post.model import Diagnostic, Place
 
 __all__ = ["OpenBufferPolicy", "Session"]
 
@@ -103,7 +110,7 @@ class Session:
         """Connect and establish the handshake.
 
         Raises:
-            LinkLostError: no controller answers.
+            NoControllerError: no controller answers.
         """
         self._connect()
 
@@ -270,7 +277,8 @@ class Session:
                 establish_handshake(self._channel, open_buffer)
             except (LinkLostError, RefusedError) as fault:
                 if attempt == self._connect_attempts - 1:
-                    raise LinkLostError(f"no controller answers as expected: {fault}") from fault
+                    place = Place(self.port_name or "controller")
+                    raise NoControllerError(Diagnostic("C216", place, str(fault))) from fault
             else:
                 self._is_synchronized = True
                 self.has_open_buffer &= open_buffer is not OpenBufferPolicy.CLOSE

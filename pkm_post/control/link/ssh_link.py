@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 from pkm_post.control.link.errors import LinkLostError, NoAccessError
 from pkm_post.control.link.links import NO_SIGPIPE, SocketLink
+from pkm_post.model import Diagnostic, Place
 from pkm_post.system import packages
 
 if TYPE_CHECKING:
@@ -32,7 +33,6 @@ _LOG = logging.getLogger("pkm_post.paramiko")
 _LOG.setLevel(logging.CRITICAL)  # failures are raised as exceptions; the rest is noise
 _NOTHING_TO_OFFER = "No authentication methods available"
 """Message by which to recognize paramiko's exception, which has no class of its own."""
-_CURE = f"offer a key, by an agent or in ~/.ssh, or the password in {PASSWORD}"
 _COLUMNS = 1000
 """Width of the terminal: a longer line may be echoed in several pieces."""
 
@@ -69,16 +69,16 @@ class SshLink(SocketLink):
             self._log_in(ssh)
         except ssh.AuthenticationException as fault:
             if not self._asked_password():
-                raise NoAccessError(f"{self.host} does not let {self._user} in: {fault} {_CURE}") from fault
+                raise self._denied(str(fault)) from fault
             self.restart()
         except ssh.BadHostKeyException as fault:
-            raise NoAccessError(f"{self.host} IS NOT WHO IT WAS: its host key has changed. {fault}") from fault
+            raise self._unknown(f"IT IS NOT WHO IT WAS: its host key has changed. {fault}") from fault
         except (OSError, EOFError, ssh.SSHException) as fault:
             if _NOTHING_TO_OFFER in str(fault) and self._asked_password():
                 self.restart()
                 return
             if _NOTHING_TO_OFFER in str(fault):
-                raise NoAccessError(f"{self.host} wants a key or a password of {self._user}: {_CURE}") from fault
+                raise self._denied("it wants a key or a password") from fault
             raise LinkLostError(f"{self.host}, port {self.number}: {fault}") from fault
 
     def close(self) -> None:
@@ -117,29 +117,29 @@ class SshLink(SocketLink):
 
     def _trust(self, client: paramiko.SSHClient, ssh: ModuleType) -> None:
         """Make a client trust the known host keys, and no others."""
-        host, number = self.host, self.number
+        unknown = self._unknown
 
         class Refuse(ssh.MissingHostKeyPolicy):  # type: ignore[misc,name-defined]
             def missing_host_key(self, client: paramiko.SSHClient, name: str, key: paramiko.PKey) -> None:
-                raise NoAccessError(
-                    f"{host} shows a host key that is not among the known ones, {key.get_name()} {key.fingerprint}."
-                    f" If it is the controller's, add it: ssh-keyscan -p {number} {host} >>FILE, and --known-hosts FILE"
-                )
+                raise unknown(f"its host key is not among the known ones, {key.get_name()} {key.fingerprint}")
 
         client.set_missing_host_key_policy(Refuse())
-        from pkm_post.model import Diagnostic, Place
-
         file = self._known_hosts or Path("~/.ssh/known_hosts").expanduser()
         try:
-            ssh.HostKeys(str(file)).lookup(host)  # only a look-up reveals some faulty lines
+            ssh.HostKeys(str(file)).lookup(self.host)  # only a look-up reveals some faulty lines
             client.load_system_host_keys(str(file))
         except OSError as fault:
             if self._known_hosts is not None:
-                raise NoAccessError(f"{file}: {fault.strerror}") from fault
+                raise NoAccessError(Diagnostic("C215", Place(str(file)), str(fault.strerror))) from fault
         except (ssh.hostkeys.InvalidHostKey, ssh.SSHException, ValueError) as fault:
-            raise NoAccessError(
-                str(Diagnostic("C215", Place(str(file), line=_bad_line(file, ssh)), str(fault)))
-            ) from fault
+            place = Place(str(file), line=_bad_line(file, ssh))
+            raise NoAccessError(Diagnostic("C215", place, str(fault))) from fault
+
+    def _denied(self, why: str) -> NoAccessError:
+        return NoAccessError(Diagnostic("C218", Place(self.host), f"{self._user}: {why}"))
+
+    def _unknown(self, why: str) -> NoAccessError:
+        return NoAccessError(Diagnostic("C217", Place(f"{self.host}, port {self.number}"), why))
 
     def _asked_password(self) -> bool:
         """Ask the user for a password once; return whether there is one to try."""

@@ -10,6 +10,7 @@ import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.control.numerical_control import Connection, ControlState
+from pkm_post.freecad_app.core_texts import fault_text, stored_fault
 from pkm_post.freecad_gui.control_panel.buttons import line_label, show_line
 from pkm_post.freecad_gui.control_panel.connect_page import ConnectPage
 from pkm_post.freecad_gui.control_panel.console import Console
@@ -162,7 +163,9 @@ class PanelContent(QtWidgets.QWidget):
         if state.emergency:
             lines.append(emergency_text(state.emergency))
         if state.lost:
-            lines.append(translate("ControlPanel", "No link: {}").format(state.lost))
+            fault = stored_fault(state.lost)
+            lost = state.lost if fault is None else fault_text(fault)
+            lines.append(translate("ControlPanel", "No link: {}").format(lost))
         if self._console.waits:
             lines.append(translate("ControlPanel", "One moment: connecting, leaving or reading"))
         style = _RED if state.lost else _YELLOW

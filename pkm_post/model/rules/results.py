@@ -104,6 +104,19 @@ RESULT_RULES: dict[str, Rule] = {
         "the file with the known host keys cannot be read",
         "correct or remove that line, or name another file with --known-hosts",
     ),
+    "C216": error(
+        "no controller answers as expected",
+        "check power, cable, address and port, --baud and --parity, and that no other program has the port open",
+    ),
+    "C217": error(
+        "the computer at this address does not prove that it is the controller",
+        "check the address; if the host key is the controller's, add it: ssh-keyscan -p PORT HOST >>FILE, and"
+        " --known-hosts FILE",
+    ),
+    "C218": error(
+        "the computer of the controller denies access",
+        "offer a key, by an agent or in ~/.ssh, or the password in PKM_PMAC_PASSWORD",
+    ),
     "C220": error(
         "the touch probe is touched before its move",
         "jog it free; if it is free, state the value of its input with --input, as M1000=0",
@@ -236,7 +249,10 @@ RESULT_RULES: dict[str, Rule] = {
         "FreeCAD ended before the command had run in it",
         "see what was printed before, and that FREECADCMD, if it is set, names FreeCADCmd of FreeCAD 1.0 or newer",
     ),
-    "F142": error("a result is missing", "check that nothing else removes files from the folder, and post again"),
+    "F142": error(
+        "a result is missing",
+        "let no other post write into the folder at the same time, and nothing else remove its files, and post again",
+    ),
     "F143": error(
         "a FreeCAD document is read only inside FreeCAD",
         "run the script in FreeCADCmd, or post with python3 -m pkm_post post, which starts it",

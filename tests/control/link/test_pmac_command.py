@@ -138,7 +138,9 @@ def test_a_program_that_is_none(simulator, tmp_path, capsys):
 
 def test_nobody_there(capsys, job):
     assert pmac("status", "tcp:127.0.0.1:1") == 1
-    assert "no controller answers as expected" in capsys.readouterr().err
+    refused = capsys.readouterr().err
+    assert refused.startswith("tcp:127.0.0.1:1: error C216: no controller answers as expected: ")
+    assert "Connection refused; check power, cable, " in refused
 
 
 @pytest.mark.parametrize("arguments", [["--port", "usb:1"], [], ["--port", "tcp:h", "--patience", "0"]])
