@@ -180,12 +180,15 @@ def test_check_of_a_clean_file_succeeds(tmp_path, capsys):
     assert entry["diagnostics"] == []
 
 
-@pytest.mark.parametrize(
-    "arguments", [["check", "missing.ngc"], ["check", __file__], ["convert", "--to", "gcode:XY", "--out", "a.nc"]]
-)
-def test_arguments_that_make_no_sense(arguments, capsys):
+@pytest.mark.parametrize(("file", "code", "fault"), [("missing.ngc", 1, "F103"), (__file__, 2, "F122")])
+def test_files_that_are_not_read(file, code, fault, capsys):
+    assert main(["check", file]) == code
+    assert f"error {fault}: " in "".join(capsys.readouterr())
+
+
+def test_arguments_that_make_no_sense(capsys):
     with pytest.raises(SystemExit) as stopped:
-        main(arguments)
+        main(["convert", "--to", "gcode:XY", "--out", "a.nc"])
     assert stopped.value.code == 2
     assert "error" in capsys.readouterr().err
 

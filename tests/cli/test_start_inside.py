@@ -25,6 +25,8 @@ def script(path, text):
 
 def started(tmp_path, freecad, *more, files=("part.FCStd",), **environment):
     """Posting documents where FREECADCMD names something."""
+    for file in files:
+        (tmp_path / file).touch()
     command = [PYTHON, "-m", "pkm_post", "post", *files, "--out", "out", *more]
     settings = os.environ | {"PYTHONPATH": str(ADDON), "FREECADCMD": str(freecad)} | environment
     return subprocess.run(
@@ -134,12 +136,16 @@ def test_what_is_not_started_for_freecad_ends_as_it_ends(tmp_path, monkeypatch):
     [
         (["a.ngc"], [], False),
         (["a.ngc", "b.FCStd"], [], True),
+        (["a.ngc", "gone.FCStd"], [], False),
         (["a.cls"], ["wall.stl", "none"], False),
         (["a.cls"], ["wall.stl", "vice.STP"], True),
         (["a.cls"], ["wall.step"], True),
     ],
 )
-def test_names_say_it(monkeypatch, files, solids, needed):
+def test_names_of_files_that_are_there_say_it(monkeypatch, tmp_path, files, solids, needed):
+    monkeypatch.chdir(tmp_path)
+    for file in {*files} - {"gone.FCStd"}:
+        Path(file).touch()
     monkeypatch.setattr(processes, "is_inside", lambda: False)
     assert processes.needs_freecad([Path(file) for file in files], solids) is needed
 

@@ -11,6 +11,7 @@ import tty
 from pathlib import Path
 
 import pytest
+from interpreter import PYTHON
 
 from pkm_post.cli import main
 from pkm_post.control.link.errors import LinkLostError
@@ -99,7 +100,7 @@ with socket.create_server(("127.0.0.1", 0)) as server:
 """
     root = Path(__file__).parents[3]
     reported = subprocess.run(
-        ["python3", "-c", code], env=os.environ | {"PYTHONPATH": str(root)}, capture_output=True, text=True, timeout=60
+        [PYTHON, "-c", code], env=os.environ | {"PYTHONPATH": str(root)}, capture_output=True, text=True, timeout=60
     )
     assert reported.returncode != -signal.SIGPIPE
     assert reported.stdout == "lost\n", reported.stderr
