@@ -14,6 +14,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.pmac_stop import held_at_the_end
+from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import START_TOLERANCE_MM
 
 if TYPE_CHECKING:
@@ -62,8 +63,7 @@ def execute_plan(
     from pkm_post.control.link import pose_text
     from pkm_post.control.numerical_control import target_deviation
 
-    for diagnostic in diagnostics:
-        print(diagnostic, file=sys.stderr)
+    print_diagnostics(diagnostics)
     if plan is None:
         return 1
     print(f"to {pose_text(plan.end)}; {plan.seconds:.1f} s")
@@ -229,12 +229,13 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
 
     control = control_of(session, target, namespace)
     blocks, diagnostics = read_blocks(namespace.program, target.machine)
-    for diagnostic in diagnostics:
-        print(diagnostic, file=sys.stderr)
+    print_diagnostics(diagnostics)
     if blocks is None:
         return 1
     if namespace.block > len(blocks):
         raise NotReadyError([f"there is no block {namespace.block}: the program has {len(blocks)}"])
+    blocks, diagnostics = blocks.begun_at(namespace.block, target.machine)
+    print_diagnostics(diagnostics)
     control.open_blocks(blocks, namespace.block)
     for number in range(namespace.block, len(blocks) + 1):
         print(f"{blocks.shown(number)}; Enter starts it, the end of the input ends here", flush=True)

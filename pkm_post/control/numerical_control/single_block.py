@@ -34,6 +34,7 @@ from pkm_post.model import (
 )
 from pkm_post.reading import is_part_program
 from pkm_post.system import result_files
+from pkm_post.toolpath import modal_events, not_repeated
 from pkm_post.writing import manifest, trajectory_file
 
 Findings = tuple[Diagnostic, ...]
@@ -137,6 +138,26 @@ class ProgramBlocks:
             start_spin=float(with_before.spin_before()[at]),
             events=tuple(replace(each, row=each.row - first) for each in events),
         )
+
+    def begun_at(self, number: int, machine: Machine) -> tuple[ProgramBlocks, Findings]:
+        """The blocks with spindle and coolant switched in front of one as the blocks before it do; and K152.
+
+        Args:
+            number: of the block, from 1.
+            machine: its spindle, which starts from rest.
+        """
+        first, events = self._rows(number)[0], self.trajectory.events
+        if first == 0:
+            return self, ()
+        own = [each for each in events if each.row == first]
+        ended: set[EventKind] = {each.kind for each in own if each.kind is not EventKind.DWELL and not each.value}
+        if EventKind.SPINDLE in ended or any(each.kind is EventKind.TOOL_CHANGE for each in own):
+            ended |= {EventKind.SPINDLE, EventKind.DWELL}  # no start before a stop
+        modal = modal_events(self.trajectory, first - 1, machine)
+        restored = [replace(each, row=first) for each in modal if each.kind not in ended]
+        changed = sorted((*restored, *events), key=lambda each: each.row)  # stable: restored ones come first
+        blocks = replace(self, trajectory=replace(self.trajectory, events=tuple(changed)))
+        return blocks, not_repeated(self.trajectory, first - 1)
 
     def _segments(self, first: int, end: int) -> Trajectory:
         """A range of segments; their start is that of the whole."""

@@ -151,8 +151,11 @@ class ProgramPage(QtWidgets.QWidget):
             self._console.message.emit(fault_text(each), blocks is None)
         if blocks is not None and self._console.connection is not None:
             first = min(at, len(blocks))
+            begun, found = blocks.begun_at(first, self._console.connection.target.machine)
+            for each in found:
+                self._console.message.emit(fault_text(each), False)
             opened = lambda count: self._opened(count, first)  # noqa: E731
-            self._console.order(lambda control: control.open_blocks(blocks, first), opened)
+            self._console.order(lambda control: control.open_blocks(begun, first), opened)
 
     def _opened(self, count: int, first: int) -> None:
         self._console.stepping = True

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A posted program run line by line of its source, each to rest, as people see it."""
 
+import dataclasses
 import json
 
 import numpy as np
@@ -11,7 +12,7 @@ from pkm_post.control.link.errors import NotReadyError
 from pkm_post.control.link.program import read_job
 from pkm_post.control.numerical_control.execute import target_deviation
 from pkm_post.control.numerical_control.single_block import read_blocks
-from pkm_post.model import EventKind
+from pkm_post.model import Event, EventKind
 from pkm_post.posting.post_file import post_file
 from pkm_post.writing.controllers.pvt.writer import rest_knots
 
@@ -144,6 +145,48 @@ def test_a_tool_change_ends_a_block(tmp_path):
     for number in range(1, len(shown) + 1):
         assert all(each.row == 0 for each in blocks.block(number).events)
         assert len(set(blocks.block(number).tool.tolist())) == 1
+
+
+def test_spindle_and_coolant_of_the_blocks_before_are_switched_where_it_begins(tmp_path):
+    source = """G21 G90
+S1000 M3 M8
+T1 M6
+S2000 M3
+G0 X1 Y0 Z300
+G1 X2 F600
+( a comment )
+X3
+S3000 M3
+X4
+M5
+G0 X5
+T2 M6
+G0 X6
+M30
+"""
+    post(tmp_path, source, 1, 2)
+    whole = blocks_in(tmp_path)
+    machine = dataclasses.replace(MACHINE, spin_up_time=MACHINE.spindle_speed / 1000)
+    lines = [whole.shown(number).line for number in range(1, len(whole) + 1)]
+    shown = {}
+    for number, line in enumerate(lines, 1):
+        blocks, found = whole.begun_at(number, machine)
+        assert not found
+        shown.setdefault(line, blocks.shown(number).text)
+        assert [blocks.shown(each) for each in range(number + 1, len(lines) + 2)] == [
+            whole.shown(each) for each in range(number + 1, len(lines) + 2)
+        ]
+    assert shown[5].count("S2000 M3") == 1
+    assert shown[6] == "M8 S2000 M3 G4 P2 | G1 X2 F600"
+    assert shown[8] == "M8 S2000 M3 G4 P2 | X3"
+    assert shown[10] == "M8 S2000 M3 G4 P2 S3000 M3 | X4"
+    assert shown[12] == "M8 M5 | G0 X5"
+    assert "M3" not in shown[14] and "T2 M6" in shown[14]
+    events = Event(0, EventKind.FUNCTION, 64.0), *whole.trajectory.events
+    coded = dataclasses.replace(whole, trajectory=dataclasses.replace(whole.trajectory, events=events))
+    assert coded.begun_at(1, machine) == (coded, ())
+    found = coded.begun_at(3, machine)[1]
+    assert [(each.code, each.found) for each in found] == [("K152", "M64")]
 
 
 def test_a_block_that_is_held_goes_on_and_the_next_one_waits(station, posted):
