@@ -90,8 +90,8 @@ class UsageParser(argparse.ArgumentParser):
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         if action.choices is not None and value not in action.choices:
             name = "/".join(action.option_strings) or action.metavar or action.dest
-            got = f"got {value!r}{nearest(value, action.choices)}"
-            found = f"{name}: expected one of {', '.join(action.choices)}, {got}"
+            names = [*map(str, action.choices)]
+            found = f"{name}: expected one of {', '.join(names)}, got {value!r}{nearest(value, names)}"
             self.refuse(_UNKNOWN if action.nargs == argparse.PARSER else _NOT_VALID, found)
 
     def error(self, message: str) -> NoReturn:

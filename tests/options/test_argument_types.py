@@ -142,6 +142,11 @@ USAGE = [
     ("post a.ngc --out", " post: error U102: ", "missing: the value of --out; "),
     ("post a.ngc --find-place=3", " post: error U103: ", "--find-place: expected no value, got '3'; "),
     ("post a.ngc --corners cord", " post: error U103: ", "expected one of chord, arc, got 'cord', perhaps chord; "),
+    (
+        "pmac jog --port tcp:h --machine m --strut 7",
+        " pmac jog: error U103: ",
+        "--strut: expected one of 1, 2, 3, 4, 5, 6, got 7; ",
+    ),
     ("pmac simulate --pty --tcp 1", " pmac simulate: error U103: ", "--tcp: not allowed with argument --pty; "),
 ]
 

@@ -117,6 +117,18 @@ def test_each_start_runs_one_line_and_rests_at_its_end(posted, kind):
         control.plan_step()
 
 
+def test_a_stopped_spindle_turns_again_where_a_block_is_begun(station, posted):
+    control, blocks, variables = station.control, blocks_in(posted), station.wire.controller.variables
+    control.open_blocks(blocks)
+    control.execute(control.plan_step()[0])
+    station.to_rest()
+    variables.write("P", 7001, 0)
+    control.open_blocks(blocks.begun_at(2, MACHINE)[0], at=2)
+    control.execute(control.plan_step()[0])
+    station.to_rest()
+    assert variables.read("P", 7001) == 1
+
+
 def test_31_lines_that_blend_are_31_blocks(station, tmp_path):
     lines = [f"G1 X{x % 7} Y{x / 10:g} Z300 F3000" for x in range(1, 32)]
     post(tmp_path, "G21 G90 G64 P0.5\n" + "\n".join(lines) + "\nM30\n")
