@@ -140,6 +140,11 @@ def is_active(operation: Any) -> bool:
     return opProperty(operation, "Active") is not False
 
 
+def _coolant(operation: Any) -> float:
+    """The coolant of an operation, as the value of an event."""
+    return _COOLANT[opProperty(operation, "CoolantMode") or "None"]
+
+
 def _acts(program: Program) -> bool:
     """Whether a program cuts, or switches or waits for something."""
     return bool(program.events or np.any(program.kind != Kind.RAPID))
@@ -173,6 +178,7 @@ class _ProgramBuilder:
         self._events: list[Event] = []
         self._state: dict[EventKind, float] = dict(_OFF)
         self._tip = np.full(3, np.nan)
+        self._typed: dict[EventKind, tuple[str, Any]] = {}
 
     def add(self, operation: Any, work_from_fixture: Array, name: str) -> list[Diagnostic]:
         """Append an operation at a fixture, with its placement applied to points and tool axes."""
@@ -194,17 +200,50 @@ class _ProgramBuilder:
         if len(program):
             if controller is None:
                 return [*faults, Diagnostic("J112", Place(self.source, operation.Label), Phrase("none is set"))]
-            self._switch_tool(controller, _COOLANT[opProperty(operation, "CoolantMode") or "None"])
+            speed = SPINDLE_SENSES[controller.SpindleDir] * controller.SpindleSpeed
+            wanted = {EventKind.SPINDLE: speed, EventKind.COOLANT: _coolant(operation)}
+            faults += self._undone(operation, program, wanted)
+            self._switch_tool(controller, wanted)
             self._tip = program.position[-1]
-        return faults + self._append(dataclasses.replace(program, operations=(name,)))
+        faults += self._append(dataclasses.replace(program, operations=(name,)))
+        self._note_typed(operation, program)
+        return faults
 
-    def _switch_tool(self, controller: Any, coolant: float) -> None:
+    def _note_typed(self, operation: Any, program: Program) -> None:
+        """Note what an operation leaves switched: CAM's own posts keep it while the tool controller is the same.
+
+        They also write M9 after an operation with a CoolantMode, and that of the next one after an M9.
+        """
+        kinds = {event.kind for event in program.events} & set(_OFF)
+        if _coolant(operation) or not self._state[EventKind.COOLANT]:
+            kinds.discard(EventKind.COOLANT)
+        self._typed |= dict.fromkeys(kinds, (operation.Label, toolControllerForOp(operation)))
+
+    def _undone(self, operation: Any, program: Program, wanted: Mapping[EventKind, float]) -> list[Diagnostic]:
+        """What is switched back here, unless the operation switches it before its first cut, or changes controller."""
+        typed, self._typed = self._typed, {}
+        first_cut = next(iter(np.flatnonzero(program.kind != Kind.RAPID)), len(program))
+        again = {event.kind for event in program.events if event.row <= first_cut}
+        controllers = None, toolControllerForOp(operation)
+        return [
+            Diagnostic("J145", Place(self.source, label), Phrase("{}, until {}", self._code(kind), operation.Label))
+            for kind, (label, controller) in typed.items()
+            if kind not in again and controller in controllers and self._state[kind] != wanted[kind]
+        ]
+
+    def _code(self, kind: EventKind) -> str:
+        """The command that brought the present state."""
+        value = self._state[kind]
+        if kind is EventKind.COOLANT:
+            return "M8" if value == 1 else "M7"
+        return f"M{3 if value > 0 else 4} S{abs(value):g}" if value else "M5"
+
+    def _switch_tool(self, controller: Any, wanted: Mapping[EventKind, float]) -> None:
         self.controllers[controller.Name] = controller
         if self._state.get(EventKind.TOOL_CHANGE) != controller.ToolNumber:
             self.switch(_OFF)
             self.switch({EventKind.TOOL_CHANGE: float(controller.ToolNumber)})
-        speed = SPINDLE_SENSES[controller.SpindleDir] * controller.SpindleSpeed
-        self.switch({EventKind.SPINDLE: speed, EventKind.COOLANT: coolant})
+        self.switch(wanted)
 
     def switch(self, wanted: Mapping[EventKind, float]) -> None:
         """Append events that bring the machine to the requested state."""

@@ -23,7 +23,7 @@ from pkm_post.freecad_app.document_object import BASE_AND_ACTIVE, DerivedOperati
 from pkm_post.freecad_app.model_faces import FaceContacts, NamedFace, find_contacts, model_faces, nearest_face
 from pkm_post.freecad_app.tools import read_cutter
 from pkm_post.freecad_app.window import add_view
-from pkm_post.model import Diagnostic, Kind, Place, Program
+from pkm_post.model import Amount, Diagnostic, Kind, Phrase, Place, Program
 from pkm_post.toolpath import AxisRule, Cutter, with_chords
 
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
@@ -99,8 +99,9 @@ def _off_face_faults(program: Program, off_face: Any, faces: Sequence[NamedFace]
     if not rows:
         return []
     name, distance = nearest_face(faces, program.position[rows[0]])
-    text = f"{_position_text(program, rows[0])} is {distance:.4g} mm from {name}, Tolerance {tolerance:.4g} mm"
-    return [Diagnostic("N111", program.place(rows[0]), text + _count_text(rows))]
+    gap, allowed = Amount(distance, "mm"), Amount(tolerance, "mm")
+    text = Phrase("{} is {} from {}, Tolerance {}", _point(program, rows[0]), gap, name, allowed)
+    return [Diagnostic("N111", program.place(rows[0]), _counted(text, rows))]
 
 
 def _edge_faults(program: Program, contacts: FaceContacts, faces: Sequence[NamedFace]) -> list[Diagnostic]:
@@ -109,16 +110,16 @@ def _edge_faults(program: Program, contacts: FaceContacts, faces: Sequence[Named
     if not rows:
         return []
     one, other = (faces[index[rows[0]]].name for index in (contacts.face, contacts.other))
-    text = f"{_position_text(program, rows[0])} is on {one} and on {other}"
-    return [Diagnostic("N112", program.place(rows[0]), text + _count_text(rows))]
+    text = Phrase("{} is on {} and on {}", _point(program, rows[0]), one, other)
+    return [Diagnostic("N112", program.place(rows[0]), _counted(text, rows))]
 
 
-def _position_text(program: Program, row: int) -> str:
-    return "X{:.6g} Y{:.6g} Z{:.6g}".format(*(program.position[row] + 0.0))
+def _point(program: Program, row: int) -> Phrase:
+    return Phrase("X {}, Y {}, Z {}", *(Amount(value + 0.0, "mm", ".6g") for value in program.position[row].tolist()))
 
 
-def _count_text(rows: list[int]) -> str:
-    return f", and {len(rows) - 1} more like it" if len(rows) > 1 else ""
+def _counted(text: Phrase, rows: list[int]) -> Phrase:
+    return Phrase("{}, and {} more like it", text, len(rows) - 1) if len(rows) > 1 else text
 
 
 def create_normal_compensation(base: Any, label: str | None = None) -> Any:

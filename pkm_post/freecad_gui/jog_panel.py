@@ -20,7 +20,7 @@ from pkm_post.freecad_app.core_texts import shown
 from pkm_post.freecad_app.machine_object import go_home, machine_of, pose_of, violated_limits
 from pkm_post.freecad_app.user_units import amount_text
 from pkm_post.freecad_gui.icons import ICONS
-from pkm_post.freecad_gui.post_fields import quantity_field, show_quantity, tab_through
+from pkm_post.freecad_gui.post_fields import quantity_field, show_choice, show_quantity, tab_through
 from pkm_post.freecad_gui.verdict import Verdict
 from pkm_post.geometry import Array
 
@@ -68,7 +68,7 @@ class JogPanel:
         self.home = _button(translate("JogPanel", "Home"), self.go_home)
         self._lay_out()
         for unit, step in _STEPS.items():
-            show_quantity(self.steps[unit], step, unit)
+            show_choice(self.steps[unit], step, unit)
         for field in self.fields:
             field.editingFinished.connect(self.take)
         self.show()
@@ -80,12 +80,11 @@ class JogPanel:
                 grid.addWidget(part, row, column)
         grid.setColumnStretch(2, 1)
         texts = {"mm": translate("JogPanel", "Step"), "deg": translate("JogPanel", "Turn by")}
-        form = QtWidgets.QFormLayout()
-        for unit, field in self.steps.items():
-            form.addRow(texts[unit], field)
+        for row, (unit, field) in enumerate(self.steps.items(), len(AXES)):
+            grid.addWidget(QtWidgets.QLabel(texts[unit]), row, 0)
+            grid.addWidget(field, row, 2)
         layout.addWidget(self.verdict)
         layout.addLayout(grid)
-        layout.addLayout(form)
         layout.addWidget(self.home)
         layout.addWidget(self.margins)
         layout.addStretch()

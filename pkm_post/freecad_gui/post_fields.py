@@ -56,6 +56,13 @@ def show_quantity(field: Any, value: float, unit: str) -> None:
     field.setProperty("value", quantity)
 
 
+def show_choice(field: Any, value: float, unit: str) -> None:
+    """Show a free choice: its first digit in the user's unit."""
+    quantity = FreeCAD.Units.Quantity(f"{value:.9g} {unit}")
+    factor = quantity.getUserPreferred()[1]
+    show_quantity(field, float(f"{quantity.Value / factor:.1g}") * factor, unit)
+
+
 def _decimals(quantity: Any) -> int:
     """The fewest decimals that show a quantity exactly, in its display unit."""
     least = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Units").GetInt("Decimals", 2)

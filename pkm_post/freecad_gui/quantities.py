@@ -3,14 +3,19 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
 from FreeCAD import Units
 
+_ANY_DIGIT = re.compile(r"[1-9]")
+"""None for a number rounded to zero, which has no sign."""
+
 
 def _text(value: float, kind: object) -> str:
     shown = Units.Quantity(value, kind).UserString
-    return shown.decode() if isinstance(shown, bytes) else str(shown)
+    text = shown.decode() if isinstance(shown, bytes) else str(shown)
+    return text if _ANY_DIGIT.search(text) else text.removeprefix("-")
 
 
 def length_text(mm: float) -> str:

@@ -106,7 +106,7 @@ class StrutPlot(QtWidgets.QWidget):
         lengths, speeds = self._simulation.envelope(self._width())
         machine = self._simulation.machine
         limits = machine.strut_stroke, (-machine.strut_speed, machine.strut_speed)
-        titles = translate("PKM_Simulate", "Lengths in {}"), translate("PKM_Simulate", "Speeds in {}")
+        titles = translate("PKM_Simulate", "Lengths, {}"), translate("PKM_Simulate", "Speeds, {}")
         scales = scale_of(machine.strut_stroke[1], "mm"), scale_of(machine.strut_speed, "mm/s")
         curves = lengths, speeds * self._override
         for number, (values, ends, title, scale) in enumerate(zip(curves, limits, titles, scales, strict=True)):

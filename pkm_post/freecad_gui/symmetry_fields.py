@@ -42,7 +42,7 @@ def quantity(unit: str, changed: Callable[..., None]) -> Any:
     return field
 
 
-_LEAST = 70
+_LEAST = 86
 """px: least width of a vector field for most numbers; FreeCAD's own hint has room for many more digits."""
 
 

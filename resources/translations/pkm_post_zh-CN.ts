@@ -2559,10 +2559,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>删除它，或改用 G0、G1、G2 或 G3 移动</translation>
     </message>
     <message>
-        <source>set the feed in the tool controller, in mm/min above zero</source>
-        <translation>在刀具控制器中设置大于零的进给速度（mm/min）</translation>
-    </message>
-    <message>
         <source>an arc in this plane is not supported</source>
         <translation>不支持此平面内的圆弧</translation>
     </message>
@@ -2955,6 +2951,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>启用一个操作，或修正一个 CAM 计算后没有运动的操作，然后重新计算</translation>
     </message>
     <message>
+        <source>set a feed above zero in the tool controller</source>
+        <translation>在刀具控制器中设置大于零的进给速度</translation>
+    </message>
+    <message>
         <source>give the second one its own with --origin NAME=X,Y,Z</source>
         <translation>用 --origin NAME=X,Y,Z 为第二个给出其自己的位置</translation>
     </message>
@@ -2997,6 +2997,22 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>the tool controller and its tool bit turn the spindle in different directions</source>
         <translation>刀具控制器与其刀具使主轴沿不同方向旋转</translation>
+    </message>
+    <message>
+        <source>each command needs one code, at its start</source>
+        <translation>每条命令需要一个代码，位于其开头</translation>
+    </message>
+    <message>
+        <source>write G1 Y5 for Y5 and M3 S9000 for S9000, and a second code on a line of its own</source>
+        <translation>Y5 应写作 G1 Y5，S9000 应写作 M3 S9000，第二个代码另起一行</translation>
+    </message>
+    <message>
+        <source>what an operation switched is switched back at the next one</source>
+        <translation>一个操作所切换的状态在下一个操作处恢复</translation>
+    </message>
+    <message>
+        <source>set the speed in a tool controller and CoolantMode in the operation, or repeat the code there</source>
+        <translation>在刀具控制器中设置转速，在操作中设置 CoolantMode，或在该处重复此代码</translation>
     </message>
     <message>
         <source>add it to the machine file, or pass --work-offset, or --origin for a further fixture of a CAM job</source>
@@ -4539,6 +4555,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>没有可后处理的内容</translation>
     </message>
     <message>
+        <source>{}, until {}</source>
+        <translation>{}，到 {} 为止</translation>
+    </message>
+    <message>
         <source>only rapid moves</source>
         <translation>只有快速运动</translation>
     </message>
@@ -4553,6 +4573,22 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>{}: {}</source>
         <translation>{}：{}</translation>
+    </message>
+    <message>
+        <source>{} is {} from {}, Tolerance {}</source>
+        <translation>{}：{}，距 {}，公差 {}</translation>
+    </message>
+    <message>
+        <source>{} is on {} and on {}</source>
+        <translation>{} 位于 {} 和 {} 上</translation>
+    </message>
+    <message>
+        <source>X {}, Y {}, Z {}</source>
+        <translation>X {}、Y {}、Z {}</translation>
+    </message>
+    <message>
+        <source>{}, and {} more like it</source>
+        <translation>{}，另有 {} 处类似</translation>
     </message>
     <message>
         <source>{} at X {}, Y {}, Z {}</source>
@@ -5636,11 +5672,11 @@ What helps: {cure}.</source>
         <translation>刀具</translation>
     </message>
     <message>
-        <source>Lengths in {}</source>
+        <source>Lengths, {}</source>
         <translation>杆长，{}</translation>
     </message>
     <message>
-        <source>Speeds in {}</source>
+        <source>Speeds, {}</source>
         <translation>速度，{}</translation>
     </message>
 </context>

@@ -17,6 +17,7 @@ from pkm_post.freecad_app.core_texts import (
     stored_fault,
 )
 from pkm_post.freecad_app.user_units import amount_text, in_user_units
+from pkm_post.freecad_gui.quantities import length_text
 from pkm_post.model import RULES, Amount, Diagnostic, Pattern, Phrase, Place, Refused
 
 TEXTS = Path(__file__).parents[2] / "resources" / "translations" / "pkm_post_zh-CN.ts"
@@ -97,6 +98,11 @@ def test_compared_numbers_have_one_unit_of_the_user(schema, values, unit, metric
     assert in_user_units(values, unit) == metric
     schema(IMPERIAL)
     assert in_user_units(values, unit) == imperial
+
+
+def test_zero_has_no_sign(schema):
+    schema(IMPERIAL)
+    assert [length_text(value) for value in (-1e-9, -0.0, -25.4)] == ["0.00 in", "0.00 in", "-1.00 in"]
 
 
 def test_amount_has_no_blank_before_degrees(schema):

@@ -35,8 +35,8 @@ def test_point_off_the_faces_is_reported_with_its_place_and_distance(box_job):
     text = refused(dressed(box_job, lines([(5, 5, 20), (15, 5, 20.5), (15, 8, 20)])))
     assert "N111" in text
     assert f"part: Cut: line {COMMENTS + 3}" in text
-    assert "X15 Y5 Z20.5 is 0.5 mm from" in text
-    assert ".Face6, Tolerance 0.01 mm" in text
+    assert "X 15 mm, Y 5 mm, Z 20.5 mm is 0.5 mm from" in text
+    assert ".Face6, Tolerance 10 µm" in text
 
 
 def test_wider_tolerance_takes_the_point(box_job):
@@ -47,13 +47,13 @@ def test_wider_tolerance_takes_the_point(box_job):
 def test_point_beyond_the_edge_of_a_face_is_off_it(box_job):
     text = refused(dressed(box_job, lines([(5, 5, 20), (25, 5, 20)])))
     assert "N111" in text
-    assert "X25 Y5 Z20 is 5 mm from" in text
+    assert "X 25 mm, Y 5 mm, Z 20 mm is 5 mm from" in text
 
 
 def test_point_over_a_hole_in_a_face_is_off_it(document):
     plate = Part.makeBox(20, 20, 20).cut(Part.makeCylinder(5, 30, App.Vector(10, 10, 0)))
     text = refused(dressed(job_on(document, plate), lines([(2, 2, 20), (10, 10, 20)])))
-    assert "X10 Y10 Z20 is 5 mm from" in text
+    assert "X 10 mm, Y 10 mm, Z 20 mm is 5 mm from" in text
 
 
 def test_point_beyond_the_edge_within_the_tolerance_is_on_the_face(document):
@@ -65,7 +65,7 @@ def test_point_beyond_the_edge_within_the_tolerance_is_on_the_face(document):
     assert poses(valid(dressup))[0][1] == pytest.approx([10, 5.008, 20], abs=SIX_DECIMALS)
     dressup.Base.Gcode = lines([(10, 4, 20), (10, 5.012, 20)])
     document.recompute()
-    assert "is 0.012 mm from" in refused(dressup)
+    assert "is 12 µm from" in refused(dressup)
 
 
 def test_nearer_one_of_two_faces_is_reported_first(box_job):

@@ -143,12 +143,42 @@ def test_same_tool_with_another_speed_is_not_changed(job):
 def test_events_of_an_operation_come_in_between(job):
     add_operation(job, [*FIVE_AXIS[:2], "G4 P0.5", "M5", *FIVE_AXIS[2:]], "First")
     add_operation(job, FIVE_AXIS, "Second")
-    assert events(program_of(job))[2:] == [
+    program, faults = read_job(job)
+    assert [fault.found for fault in faults] == ["M5, until Second"]
+    assert events(program)[2:] == [
         (2, DWELL, 0.5),
         (2, SPINDLE, 0),
         (4, SPINDLE, 9000),
         (8, SPINDLE, 0),
     ]
+
+
+def switched_back(job):
+    """What the reader says of events in operations that end at the next one."""
+    return [(fault.code, fault.place.operation, fault.found) for fault in read_job(job)[1]]
+
+
+@pytest.mark.parametrize("code", ["M3 S800", "M4 S9000", "M5", "M7", "M8"])
+def test_what_an_operation_leaves_switched_is_switched_back_with_a_warning(job, code):
+    """CAM's own posts keep it until the tool controller changes."""
+    first = add_operation(job, [*FIVE_AXIS, code], "First")
+    add_operation(job, FIVE_AXIS, "Second")
+    add_operation(job, FIVE_AXIS, "Third")
+    assert switched_back(job) == [("J145", "First", f"{code}, until Second")]
+    first.Gcode = [code]
+    job.Document.recompute()
+    assert switched_back(job) == [("J145", "First", f"{code}, until Second")]
+
+
+def test_no_warning_where_cams_own_posts_switch_it_too(job):
+    first = add_operation(job, [*FIVE_AXIS, "M3 S800", "M7"], "First")
+    first.CoolantMode = "Flood"
+    second = add_operation(job, ["M3 S700", *FIVE_AXIS, "M3 S9000", "M9"], "Second")
+    third = add_operation(job, [*FIVE_AXIS, "M3 S800", "M8"], "Third")
+    second.CoolantMode = third.CoolantMode = "Flood"
+    add_operation(job, FIVE_AXIS, "Fourth").ToolController = add_tool_controller(job, 7)
+    job.Document.recompute()
+    assert switched_back(job) == []
 
 
 def test_stop_between_operations(job):

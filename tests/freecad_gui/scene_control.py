@@ -121,6 +121,24 @@ def jogs_move_the_tool_by_the_step():
 
 
 @step
+def jog_page_in_inches():
+    from pkm_post.freecad_gui.control_panel.motion_pages import JogPage
+
+    FreeCAD.Units.setSchema(3)
+    page = JogPage(the_panel().console)
+    page.resize(page.minimumSizeHint())
+    page.show()
+    settle()
+    found = {"width": page.width()}
+    for name in ("step", "turn", "speed"):
+        line = getattr(page, name).findChild(QtWidgets.QLineEdit)
+        found[name] = [line.text(), line.width() - line.fontMetrics().horizontalAdvance(line.text())]
+    page.close()
+    FreeCAD.Units.setSchema(0)
+    return found
+
+
+@step
 def a_jog_out_of_reach_sends_nothing():
     panel = the_panel()
     panel.panel.jog.step.setProperty("rawValue", 500.0)

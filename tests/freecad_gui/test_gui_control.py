@@ -65,6 +65,14 @@ def test_jogs_move_the_tool_by_the_step(session):
     assert found["x label"] == "2.000 mm"
 
 
+def test_jog_page_in_inches_has_round_steps_with_their_units(session):
+    found = session["jog_page_in_inches"]
+    assert found["width"] <= 333  # of the page in a panel of 380 pixels
+    texts = {name: found[name][0].replace(" ", "") for name in ("step", "turn", "speed")}
+    assert texts == {"step": "0.04in", "turn": "1.00°", "speed": "10.00in/min"}
+    assert all(found[name][1] > 0 for name in texts)
+
+
 def test_a_jog_out_of_reach_sends_nothing(session):
     found = session["a_jog_out_of_reach_sends_nothing"]
     assert "K103" in found["reported"][0] and found["reported"][1] == "Not sent: the jog is refused"

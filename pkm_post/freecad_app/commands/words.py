@@ -234,12 +234,16 @@ def check_words(words: CommandWords, diagnostics: CommandDiagnostics, spindle_ax
     """Report unsupported commands and words; tapping is supported if the spindle can be an axis."""
     for code in words.codes:
         if code not in LETTERS and code != COMMENT:
-            diagnostics.add(_REFUSED.get(code, "J104"), words.among(code), code)
+            unknown = "J104" if code[0] in "GM" else "J144"
+            diagnostics.add(_REFUSED.get(code, unknown), words.among(code), code)
     for code in TAPPING:
         diagnostics.add("J123", words.among(code) & (not spindle_axis), code)
         lacks = words.among(code) & ~(words.has("S") & words.has("F")) & spindle_axis
         diagnostics.add("J123", lacks, f"{code} without S and F")
     known = words.among(*LETTERS)
+    second = known & (words.count("GM") > 0)
+    diagnostics.add("J144", second, lambda row: f"{words.name(row)}, and another code behind it")
+    known &= ~second
     for letter, given in words.given.items():
         owners = [code for code, letters in LETTERS.items() if letter in letters]
         fault = "J115" if letter in _ROTARY else "J104"

@@ -27,7 +27,7 @@ from pkm_post.control.numerical_control import (
 from pkm_post.freecad_gui.control_panel.buttons import OrderButton, refresh_all
 from pkm_post.freecad_gui.control_panel.console import Console
 from pkm_post.freecad_gui.control_panel.texts import homing_text
-from pkm_post.freecad_gui.post_fields import quantity_field, show_quantity
+from pkm_post.freecad_gui.post_fields import quantity_field, show_choice
 from pkm_post.freecad_gui.preferences import GROUP
 
 translate = FreeCAD.Qt.translate
@@ -57,7 +57,7 @@ _FIELDS = (
     ("turn", QT_TRANSLATE_NOOP("ControlPanel", "Turn"), 1.0, "deg"),
     ("speed", QT_TRANSLATE_NOOP("ControlPanel", "Speed"), 5.0, "mm/s"),
 )
-_FIELD_WIDTH, _JOG_WIDTH = 92, 36
+_FIELD_WIDTH, _SPEED_WIDTH, _JOG_WIDTH = 92, 128, 36
 """Minimum, px: FreeCAD's own hints have room for many more digits."""
 _TURNING_AT_FIRST, _TURNING_MOST = 2.0, 90.0
 
@@ -83,6 +83,7 @@ class JogPage(QtWidgets.QWidget):
         self.buttons: dict[tuple[str, int], OrderButton] = {}
         for field in (self.step, self.turn, self.speed, self.turning):
             field.setMinimumWidth(_FIELD_WIDTH)
+        self.speed.setMinimumWidth(_SPEED_WIDTH)
         layout, both = QtWidgets.QVBoxLayout(self), QtWidgets.QHBoxLayout()
         both.addLayout(self._fields(), 1)
         both.addLayout(self._grid(), 1)
@@ -91,9 +92,10 @@ class JogPage(QtWidgets.QWidget):
 
     def _fields(self) -> QtWidgets.QFormLayout:
         form = QtWidgets.QFormLayout()
+        form.setRowWrapPolicy(QtWidgets.QFormLayout.RowWrapPolicy.WrapLongRows)
         for name, label, value, unit in _FIELDS:
             getattr(self, name).setProperty("minimum", 0.0)
-            show_quantity(getattr(self, name), value, unit)
+            show_choice(getattr(self, name), value, unit)
             form.addRow(translate("ControlPanel", label), getattr(self, name))
         form.addRow(translate("ControlPanel", "Turning"), self.turning)
         form.addRow(translate("ControlPanel", "Strut"), self.strut)

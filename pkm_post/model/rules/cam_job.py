@@ -16,7 +16,7 @@ CAM_JOB_RULES: dict[str, Rule] = {
         "activate an operation, or mend one that CAM computed without a move, and recompute",
     ),
     "J104": error("the command is unknown or not allowed here", "remove it, or use a G0, G1, G2 or G3 move"),
-    "J105": error("a cutting move has no feed", "set the feed in the tool controller, in mm/min above zero"),
+    "J105": error("a cutting move has no feed", "set a feed above zero in the tool controller"),
     "J106": error("an arc in this plane is not supported", "use XY-plane arcs (G17), or straight moves"),
     "J107": error("the arc does not fit its end points", "regenerate the operation; the radii must agree to 0.005 mm"),
     "J108": error(
@@ -107,5 +107,13 @@ CAM_JOB_RULES: dict[str, Rule] = {
     "J143": error(
         "the tool controller and its tool bit turn the spindle in different directions",
         "set SpindleDir of the controller and SpindleDirection of the tool bit alike; for a standing spindle, speed 0",
+    ),
+    "J144": error(
+        "each command needs one code, at its start",
+        "write G1 Y5 for Y5 and M3 S9000 for S9000, and a second code on a line of its own",
+    ),
+    "J145": warning(
+        "what an operation switched is switched back at the next one",
+        "set the speed in a tool controller and CoolantMode in the operation, or repeat the code there",
     ),
 }
