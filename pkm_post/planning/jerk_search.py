@@ -30,7 +30,7 @@ TOO_FAST = 5e-3
 """Relative excess of speed that is tolerated."""
 TOO_SLOW = 5e-4
 """Share of the time from rest to rest that needlessly lowered limits may cost."""
-_WASTE = 0.025
+_WASTE = 0.04
 """Share of the time from rest to rest that may pass with slack in all limits."""
 _WORTH = 3.0
 """A cell is halved if it takes this many times its part of that."""

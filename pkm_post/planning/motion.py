@@ -234,7 +234,7 @@ def _without_jumps(path: ToolPath, machine: Machine, bounds: DerivativeBounds) -
     """The schedule for a jerk-limited machine."""
     from pkm_post.planning.jerk_limits import jerk_limited
 
-    marks = stations(path, coarse=True)
+    marks = stations(path)
     profile = jerk_limited(path, marks, machine, bounds)
     _check_duration(profile.s, profile.square, marks)
     return Schedule.of(

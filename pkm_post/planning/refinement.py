@@ -160,7 +160,7 @@ def refined(
         share: (N,) planned share of the acceleration limits on each segment; rough ones are for the largest.
         span: the part of the path to plan; its segments and their neighbours are all close. Default: the whole path.
     """
-    marks = stations(path, close, coarse=True, in_half_blend=1)
+    marks = stations(path, close, coarse=True)
     marks = marks if span is None else span.of(marks, path)
     checkpoint()
     needed = close[marks.segment] | close[next_segment(path, marks.segment, marks.u)] | marks.rest

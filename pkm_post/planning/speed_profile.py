@@ -67,16 +67,13 @@ class Stations:
         return Stations(segment, u, s, rest, self.edges)
 
 
-def stations(
-    path: ToolPath, close: Array | None = None, coarse: bool = False, in_half_blend: int = _CELLS_IN_HALF_BLEND
-) -> Stations:
+def stations(path: ToolPath, close: Array | None = None, coarse: bool = False) -> Stations:
     """The stations of a path.
 
     Args:
         path: N segments.
         close: (N,) whether a segment gets all of its stations, including those in its blends; by default all do.
-        coarse: whether one cell may span the gap between blends.
-        in_half_blend: cells in a half blend.
+        coarse: whether one cell may span a half blend, or the gap between blends.
     """
     extent = path.segments.extent
     close = np.ones(len(extent), dtype=bool) if close is None else close
@@ -84,11 +81,12 @@ def stations(
     checkpoint()
     middle = extent - entry - leave
     turn = path.segments.turn() * middle
+    in_half_blend, coarser = (1, _COARSER) if coarse else (_CELLS_IN_HALF_BLEND, 1)
     stops = path.rests[:-1] & path.rests[1:]  # two rests need a station between them
     least, (first, last_piece) = 1 + (close & (stops | (not coarse))), path.segments.splines.pieces_of_rows()
     least[path.segments.splines.row] *= 1 + last_piece - first
     checkpoint()
-    widest = np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL) / (_COARSER if coarse else 1)
+    widest = np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL) / coarser
     cells = np.column_stack(
         [
             np.where(entry > 0, in_half_blend, 0),

@@ -76,7 +76,7 @@ def dense(path, machine):
     inside = ends[:-1, None] + np.diff(ends)[:, None] * np.linspace(0, 1, PLACES, endpoint=False)
     s = np.append(inside.ravel(), ends[-1])
     places = np.insert(s, np.arange(1, len(s)), (s[1:] + s[:-1]) / 2)
-    return Dense(s, Demands.at(path, machine, stations(path, coarse=True), places))
+    return Dense(s, Demands.at(path, machine, stations(path), places))
 
 
 @pytest.mark.parametrize(("name", "least"), [("waves", 0.8), ("leaning", 0.8), ("fast waves", 0.1)])
@@ -94,7 +94,7 @@ def test_nothing_is_known_where_bounds_are_missing():
 @pytest.mark.parametrize("name", JOBS)
 def test_the_motion_is_the_same_with_exact_demands_everywhere(name, monkeypatch):
     path, machine, _ = of(JOBS[name]())
-    found = [jerk_limits.jerk_limited(path, stations(path, coarse=True), machine)]
+    found = [jerk_limits.jerk_limited(path, stations(path), machine)]
 
     def unknown(*given):
         rough = steady_at_feed(*given)
@@ -102,7 +102,7 @@ def test_the_motion_is_the_same_with_exact_demands_everywhere(name, monkeypatch)
         return dataclasses.replace(rough, square=nothing, of_cell=nothing)
 
     monkeypatch.setattr(jerk_limits, "steady_at_feed", unknown)
-    found.append(jerk_limits.jerk_limited(path, stations(path, coarse=True), machine))
+    found.append(jerk_limits.jerk_limited(path, stations(path), machine))
     times = [durations(np.diff(one.s), one.square, one.acceleration).sum() for one in found]
     np.testing.assert_allclose(*times, rtol=2e-3)
 

@@ -42,7 +42,7 @@ def path_of(points, feed):
 
 def beginning(path, machine=MACHINE):
     """The iterate that a search begins with."""
-    marks = stations(path, coarse=True)
+    marks = stations(path)
     s, rest = first_places(marks)
     steady = Demands.at(path, machine, marks, with_middles(s)).steady()
     fastest, held = start(s, rest, steady)
@@ -105,10 +105,10 @@ def test_a_wide_cell_keeps_to_its_feed_in_the_middle_and_at_its_ends():
     # by a fifth when their middles were too fast.
     slow = dataclasses.replace(MACHINE, strut_speed=8.0)
     path = path_of(np.array([[-30.0, 0, 60], [30, 0, 60]]), 60.0)
-    profile = jerk_limited(path, stations(path, coarse=True), slow)
+    profile = jerk_limited(path, stations(path), slow)
     speed = np.sqrt(profile.square)
     cruise = np.abs(profile.s[:, None] - np.append(path.starts, profile.s[-1])).min(axis=1) > 2
-    allowed = np.sqrt(Demands.at(path, slow, stations(path, coarse=True), profile.s).ceiling)
+    allowed = np.sqrt(Demands.at(path, slow, stations(path), profile.s).ceiling)
     assert cruise.sum() >= 8
     np.testing.assert_allclose(speed[cruise], allowed[cruise], rtol=5e-3)
 

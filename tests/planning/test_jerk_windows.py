@@ -38,7 +38,7 @@ def searched(job, tolerance=7e-4):
     machine = dataclasses.replace(example(), strut_jerk=1e6, tip_jerk=4e5)
     trajectory, _ = place(MADE[job], machine, ON_PALLET)
     path = tool_path(trajectory, Tolerances(tolerance, np.radians(tolerance)))
-    return jerk_limits.jerk_limited(path, stations(path, coarse=True), machine)
+    return jerk_limits.jerk_limited(path, stations(path), machine)
 
 
 @cache
