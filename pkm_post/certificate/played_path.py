@@ -39,6 +39,8 @@ from pkm_post.model import Machine, StrutMotion, Trajectory
 
 _ADVANCE_SHARES = np.linspace(0.125, 1.0, 8)[:, None]
 """Shares of each interval at which it is evaluated, besides those at which it may turn back."""
+_AT_START = 1e-6
+"""Share of an interval that counts as its start: the tool cannot go back there."""
 _INTERVALS_AT_ONCE = 8192
 _SPIN_SHARES = np.array([[0.0], [0.25], [0.5], [0.75], [1.0]])
 """Shares of each interval at which the spin is compared."""
@@ -101,7 +103,7 @@ class PlayedPath:
     def turns_back(self, interval: Array, ruler: TrajectoryRuler) -> Array:
         """Shares at which the way along the chord of N intervals is longest and shortest, (2, N); 1 where nowhere.
 
-        Tip and axis count by their tolerances.
+        Tip and axis count by their tolerances. The start belongs to the interval before, which may have another tool.
         """
         p0, v0, p1, v1, duration = (column[:6] if column.ndim > 1 else column for column in self._ends(interval))
         weight = np.repeat([1 / ruler.tip_tolerance.min(), 1 / ruler.axis_tolerance], 3)[:, None] ** 2
@@ -111,7 +113,7 @@ class PlayedPath:
         shares = np.ones((2, len(linear)))
         np.divide(steep, 3 * cube, out=shares[0], where=cube != 0)
         np.divide(linear, steep, out=shares[1], where=steep != 0)
-        return np.clip(shares, 0.0, 1.0)
+        return np.where((shares > _AT_START) & (shares < 1.0), shares, 1.0)
 
     def _ends(self, interval: Array) -> tuple[Array, Array, Array, Array, Array]:
         after = interval + 1
