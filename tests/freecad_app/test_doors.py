@@ -44,7 +44,8 @@ MESHES = {"far": -5000.0, "farther": -6000.0}
 """Files with a triangle so far below the part that nothing touches it, and its height, mm."""
 FOR_PART_PROGRAMS = {"--tool", "--tool-table", "--unit", "--contour-data", "--wear", "--cl-dialect", "--cycle-values",
                      "--cycle-kinds", "--goto-values", "--allow-open-end", "--feed", "--flavour", "--machine-zero",
-                     "--leave-out", "--subprograms", "--block-delete", "--side"}  # fmt: skip
+                     "--leave-out", "--subprograms", "--block-delete", "--delete-switches",
+                     "--side"}  # fmt: skip
 """What G-code and CL data do not say; a job has nothing to be read so."""
 NORMALS = "--actual-tool"
 """Only a path with surface normals can be posted with it."""
