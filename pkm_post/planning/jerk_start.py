@@ -26,7 +26,7 @@ _START = 0.35
 """Share of the highest speed squared without jerk limits at which the search starts."""
 _EQUAL = 1e-9
 """Relative difference of speeds squared that are equal but for rounding."""
-_FAR = 3.0
+_FAR = 6.0
 """Range of anything that slows a motion, relative to the run-up from a rest to full speed."""
 _LEAST_HELD = 3
 """Least number of neighbouring fixed cells."""

@@ -30,6 +30,7 @@ from pkm_post.model import (
     Trajectory,
     coverage_summary,
     distinct,
+    pieces,
 )
 from pkm_post.report.results import Results
 
@@ -271,8 +272,8 @@ def _turning_points(trajectory: Trajectory) -> tuple[Array, ...]:
 def _strut_ranges(struts: StrutMotion) -> tuple[Array, Array]:
     """Shortest and longest length of each strut on the cubics of its program, (6,) mm each."""
     shortest, longest = struts.length[0], struts.length[0]
-    for first in range(0, len(struts) - 1, _AT_ONCE):
-        cubics = struts.cubics(np.arange(first, min(first + _AT_ONCE, len(struts) - 1)))
+    for rows in pieces(len(struts) - 1, _AT_ONCE):
+        cubics = struts.cubics(np.arange(rows.start, rows.stop))
         begin, end = (rate.T for rate in hermite_accelerations(*cubics))
         p0, v0, p1, _, duration = (column.T for column in cubics)
         least, most = cubic_ranges(p0, v0, begin, (end - begin) / duration, p1, duration)

@@ -23,7 +23,7 @@ from pkm_post.planning import interpolation, rough_limits, tool_path
 from pkm_post.posting import post_file, run
 from pkm_post.reading.gcode import scan as scanner
 from pkm_post.reading.part_program import ReadingOptions
-from pkm_post.report import page
+from pkm_post.report import page, summary
 from pkm_post.toolpath.compressor import bounds, compress
 from pkm_post.writing import manifest
 from pkm_post.writing.controllers import program_files
@@ -44,6 +44,7 @@ OTHERS = (
     (rough_limits, "_AT_ONCE"),
     (dynamics, "_MOST_KNOTS"),
     (page, "_CHART_POINTS"),
+    (summary, "_AT_ONCE"),
 )
 """Sizes of pieces that workers compute, and of samples of the whole motion."""
 PACKAGE = os.path.dirname(pkm_post.__file__)
@@ -115,7 +116,11 @@ def count(monkeypatch, tmp_path):
         monkeypatch.setattr(module, name, PIECE)
     for module, name in ((scanner, "PIECE"), (manifest, "_AT_ONCE"), (program_files, "_AT_ONCE")):
         monkeypatch.setattr(module, name, 16 * PIECE)
-    for module, name, size in ((dynamics, "_INSTANTS_AT_ONCE", 257), (playback, "_AT_ONCE", 1025)):
+    for module, name, size in (
+        (dynamics, "_INSTANTS_AT_ONCE", 257),
+        (playback, "_AT_ONCE", 257),
+        (playback, "_INSTANTS", playback._INSTANTS[:5]),
+    ):
         monkeypatch.setattr(module, name, size)  # all instants of an interval, at most
     monkeypatch.setenv("PKM_THREADS", "1")
     beat = run.beat
