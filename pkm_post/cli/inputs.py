@@ -14,7 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pkm_post.cli.processes import diagnostic_text
+from pkm_post.cli.processes import DOCUMENTS, diagnostic_text
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import (
     applicable_values,
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from pkm_post.posting import Prepared
     from pkm_post.reading import ReadingOptions
 
-_DOCUMENTS = (".FCStd", ".FCBak")
-"""Suffixes of documents, as FreeCAD writes them."""
 NO_AXIS_WORDS = "none"
 """The default: the tool axis is vertical."""
 _FOR_SOME_FILES = {"axis_words": NO_AXIS_WORDS, "dwell_unit": None, "job": None}
@@ -60,7 +58,7 @@ def reading_from(namespace: argparse.Namespace) -> ReadingOptions:
     return replace(part_program_from(namespace, namespace.axis_words), dwell_unit=namespace.dwell_unit)
 
 
-def misplaced(namespace: argparse.Namespace, files: Sequence[Path], documents: Sequence[str] = _DOCUMENTS) -> list[str]:
+def misplaced(namespace: argparse.Namespace, files: Sequence[Path], documents: Sequence[str] = DOCUMENTS) -> list[str]:
     """Diagnostics of the files that are not read, or of the options that apply to none of the files."""
     try:
         from pkm_post.model import Diagnostic, Place
@@ -87,9 +85,7 @@ def _unread(files: Sequence[Path], documents: Sequence[str]) -> Iterator[str]:
             yield diagnostic_text("F122", str(file), f"expected one of {', '.join((*documents, *SUFFIXES))}")
 
 
-def print_misplaced(
-    namespace: argparse.Namespace, files: Sequence[Path], documents: Sequence[str] = _DOCUMENTS
-) -> bool:
+def print_misplaced(namespace: argparse.Namespace, files: Sequence[Path], documents: Sequence[str] = DOCUMENTS) -> bool:
     """Print the diagnostics of ``misplaced``; return whether there are any."""
     faults = misplaced(namespace, files, documents)
     print_diagnostics(faults)

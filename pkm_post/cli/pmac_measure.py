@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from pkm_post.cli.pmac_manual import control_of
 from pkm_post.cli.pmac_stop import held_at_the_end
 from pkm_post.cli.processes import diagnostic_text
+from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import offset, positive
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ def measure(session: Session, target: Target, namespace: argparse.Namespace) -> 
     work, faults = work_offset(target.machine, Options(work_offset=namespace.work_offset))
     lacks = needs(namespace)
     if lacks:
-        print(diagnostic_text("U103", "pmac measure", lacks), file=sys.stderr)
+        print_diagnostics([diagnostic_text("U103", "pmac measure", lacks)])
         return 2
     if work is None:
         return _print_faults(faults)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.processes import diagnostic_text
+from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import between, whole, whole_from
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ def _simulate(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     from pkm_post.control.simulator import Server
 
     if namespace.probed is not None and namespace.machine is None:
-        print(diagnostic_text("U102", "--probed", "--machine"), file=sys.stderr)
+        print_diagnostics([diagnostic_text("U102", "--probed", "--machine")])
         return 2
     machine = _power_pmac(namespace) if namespace.ssh is not None else None
     controller = machine.controller if machine is not None else _turbo_pmac(namespace)

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.inputs import add_reading, misplaced, programs_of, reading_from, require_document
 from pkm_post.cli.processes import (
-    DOCUMENTS,
     command_inside,
     command_outside,
     diagnostic_text,
+    is_document,
     is_inside,
     needs_freecad,
     run_inside,
@@ -114,7 +114,7 @@ def _faults(namespace: argparse.Namespace) -> list[str]:
 
 def items_of(file: Path, job_name: str | None, also: tuple[str, ...]) -> list[PostItem]:
     """Items of a file: a part program, or the jobs of a document, with their own optional outputs."""
-    if file.suffix.lower() not in DOCUMENTS:
+    if not is_document(file):
         from pkm_post.reading import program_stem
 
         return [PostItem(str(file), program_stem(file), also)]

@@ -24,8 +24,9 @@ _IN_A_WHEEL = _PACKAGE / "tools"
 _TOOLS = _IN_A_WHEEL if _IN_A_WHEEL.is_dir() else _ADDON / "tools"
 _FINDER = _ADDON / "tools" / "freecad"
 _START_INSIDE = str(_PACKAGE / "cli" / "start_inside.py")
-DOCUMENTS = (".fcstd", ".fcbak")
-_READ_BY_FREECAD = (*DOCUMENTS, ".step", ".stp")
+DOCUMENTS = (".FCStd", ".FCBak")
+"""Suffixes of documents, as FreeCAD writes them."""
+_SOLIDS = (".step", ".stp")
 _START = "import sys; sys.path.insert(0, sys.argv.pop(1)); from pkm_post.cli import main; sys.exit(main(sys.argv[1:]))"
 """Equivalent of ``-m pkm_post`` for any location of the add-on."""
 INTERRUPTED = 130
@@ -43,6 +44,11 @@ def is_inside() -> bool:
     return "FreeCAD" in sys.modules
 
 
+def is_document(file: Path) -> bool:
+    """Whether a file is a FreeCAD document, judged by name."""
+    return file.suffix.lower() in map(str.lower, DOCUMENTS)
+
+
 def needs_freecad(files: Sequence[Path], solids: Sequence[str] = ()) -> bool:
     """Whether one of the files needs FreeCAD, judged by name, without NumPy.
 
@@ -50,8 +56,8 @@ def needs_freecad(files: Sequence[Path], solids: Sequence[str] = ()) -> bool:
         files: documents and part programs; one that does not exist is refused without FreeCAD.
         solids: files of part, stock and fixtures.
     """
-    read = (*filter(os.path.exists, files), *map(Path, solids))
-    return not is_inside() and any(path.suffix.lower() in _READ_BY_FREECAD for path in read)
+    documents = any(is_document(file) and os.path.exists(file) for file in files)
+    return not is_inside() and (documents or any(name.lower().endswith(_SOLIDS) for name in solids))
 
 
 def run_inside(arguments: Sequence[str]) -> int:

@@ -51,12 +51,9 @@ class JerkLimitedProfile:
     acceleration: Array
 
 
-def jerk_limited(
-    path: ToolPath, marks: Stations, machine: Machine, bounds: DerivativeBounds | None = None
-) -> JerkLimitedProfile:
-    """The fastest motion along a path with certain bounds; its places include all joints and rests."""
-    rough = steady_at_feed(path, machine, DerivativeBounds.of(path) if bounds is None else bounds)
-    places = _places(path, marks, machine, rough)
+def jerk_limited(path: ToolPath, marks: Stations, machine: Machine, bounds: DerivativeBounds) -> JerkLimitedProfile:
+    """The fastest motion along a path with these bounds of its derivatives; its places include all joints and rests."""
+    places = _places(path, marks, machine, steady_at_feed(path, machine, bounds))
 
     def found(window: Window) -> _Found:
         return _searched(path, marks, machine, window)

@@ -24,6 +24,7 @@ from pkm_post.model import Machine, pieces
 from pkm_post.planning import jerk_limits
 from pkm_post.planning.motion_law import MotionLaw
 from pkm_post.planning.refinement import SpanToRest
+from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.speed_limits import limited_quantities
 from pkm_post.planning.speed_profile import stations
 from pkm_post.planning.speed_spline import durations, within_cells
@@ -117,7 +118,7 @@ def fastest_motion(path: ToolPath, machine: Machine, begin: float, end: float, s
     )
     near = np.ones(len(path.feed), dtype=np.bool_)
     marks = SpanToRest(begin, end, 0.0).of(stations(path, near), path)
-    found = jerk_limits.jerk_limited(path, marks, limits)
+    found = jerk_limits.jerk_limited(path, marks, limits, DerivativeBounds.of(path))
     return SpeedLaw(found.s, found.square, found.acceleration)
 
 

@@ -94,7 +94,7 @@ def test_nothing_is_known_where_bounds_are_missing():
 @pytest.mark.parametrize("name", JOBS)
 def test_the_motion_is_the_same_with_exact_demands_everywhere(name, monkeypatch):
     path, machine, _ = of(JOBS[name]())
-    found = [jerk_limits.jerk_limited(path, stations(path), machine)]
+    found = [jerk_limits.jerk_limited(path, stations(path), machine, DerivativeBounds.of(path))]
 
     def unknown(*given):
         rough = steady_at_feed(*given)
@@ -102,7 +102,7 @@ def test_the_motion_is_the_same_with_exact_demands_everywhere(name, monkeypatch)
         return dataclasses.replace(rough, square=nothing, of_cell=nothing)
 
     monkeypatch.setattr(jerk_limits, "steady_at_feed", unknown)
-    found.append(jerk_limits.jerk_limited(path, stations(path), machine))
+    found.append(jerk_limits.jerk_limited(path, stations(path), machine, DerivativeBounds.of(path)))
     times = [durations(np.diff(one.s), one.square, one.acceleration).sum() for one in found]
     np.testing.assert_allclose(*times, rtol=2e-3)
 

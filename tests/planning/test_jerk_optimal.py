@@ -10,6 +10,7 @@ import pytest
 from time_optimal_paths import stations_of
 
 from pkm_post.planning.jerk_limits import jerk_limited
+from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.speed_spline import durations
 
 SHORTEST = json.loads((Path(__file__).parents[1] / "data" / "jerk_limited.json").read_text(encoding="ascii"))
@@ -23,6 +24,7 @@ OPTIMUM_DIGITS = 5e-3
 def test_the_plan_is_no_faster_and_little_slower_than_the_optimum(case):
     name, limits, jerk = case.split(", ")
     machine, path, marks = stations_of(name, limits)
-    profile = jerk_limited(path, marks, dataclasses.replace(machine, strut_jerk=float(jerk)))
+    limited = dataclasses.replace(machine, strut_jerk=float(jerk))
+    profile = jerk_limited(path, marks, limited, DerivativeBounds.of(path))
     time = durations(np.diff(profile.s), profile.square, profile.acceleration).sum()
     assert SHORTEST[case] * (1 - OPTIMUM_DIGITS) <= time <= FACTOR * SHORTEST[case]

@@ -18,6 +18,7 @@ from pkm_post.planning.jerk_search import Iterate
 from pkm_post.planning.jerk_start import first_places, start, with_middles
 from pkm_post.planning.jerk_windows import Places
 from pkm_post.planning.motion import tool_path
+from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.speed_profile import stations
 from pkm_post.planning.speed_spline import durations
 from pkm_post.toolpath.place import place
@@ -105,7 +106,7 @@ def test_a_wide_cell_keeps_to_its_feed_in_the_middle_and_at_its_ends():
     # by a fifth when their middles were too fast.
     slow = dataclasses.replace(MACHINE, strut_speed=8.0)
     path = path_of(np.array([[-30.0, 0, 60], [30, 0, 60]]), 60.0)
-    profile = jerk_limited(path, stations(path), slow)
+    profile = jerk_limited(path, stations(path), slow, DerivativeBounds.of(path))
     speed = np.sqrt(profile.square)
     cruise = np.abs(profile.s[:, None] - np.append(path.starts, profile.s[-1])).min(axis=1) > 2
     allowed = np.sqrt(Demands.at(path, slow, stations(path), profile.s).ceiling)

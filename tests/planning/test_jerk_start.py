@@ -12,6 +12,7 @@ from pkm_post.planning import jerk_limits
 from pkm_post.planning.jerk_demands import Demands
 from pkm_post.planning.jerk_start import first_places, long_held, start, unknowns, with_middles
 from pkm_post.planning.motion import tool_path
+from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.speed_profile import stations
 from pkm_post.planning.speed_spline import SpeedSpline, durations
 from pkm_post.toolpath.place import place
@@ -61,7 +62,7 @@ def test_the_motion_is_the_same_without_plateaus(monkeypatch):
     found = []
     for held in (start, lambda *given: (start(*given)[0], np.full(len(given[0]) - 1, np.nan))):
         monkeypatch.setattr(jerk_limits, "start", held)
-        profile = jerk_limits.jerk_limited(path, marks, machine)
+        profile = jerk_limits.jerk_limited(path, marks, machine, DerivativeBounds.of(path))
         found.append(durations(np.diff(profile.s), profile.square, profile.acceleration).sum())
     np.testing.assert_allclose(*found, rtol=5e-3)
 

@@ -14,6 +14,7 @@ from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import binding_limits, interior_point, jerk_limits, jerk_search
 from pkm_post.planning.jerk_windows import Places, windows
 from pkm_post.planning.motion import tool_path
+from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.speed_profile import stations
 from pkm_post.planning.speed_spline import durations
 from pkm_post.toolpath.place import place
@@ -38,7 +39,7 @@ def searched(job, tolerance=7e-4):
     machine = dataclasses.replace(example(), strut_jerk=1e6, tip_jerk=4e5)
     trajectory, _ = place(MADE[job], machine, ON_PALLET)
     path = tool_path(trajectory, Tolerances(tolerance, np.radians(tolerance)))
-    return jerk_limits.jerk_limited(path, stations(path), machine)
+    return jerk_limits.jerk_limited(path, stations(path), machine, DerivativeBounds.of(path))
 
 
 @cache

@@ -29,8 +29,7 @@ from pkm_post.control.link.ownership import claim
 from pkm_post.control.link.program import PmacJob
 from pkm_post.control.link.run import check_setup
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import AnySettings, Status, read_status, settled_status
-from pkm_post.control.link.stopping import emergency_text
+from pkm_post.control.link.status import AnySettings, Status, read_status
 from pkm_post.control.link.tool_pose import ToolPoseReadout, pose_from_home
 from pkm_post.control.numerical_control import execute, manual_moves
 from pkm_post.control.numerical_control.control_state import ControlState
@@ -38,7 +37,7 @@ from pkm_post.control.numerical_control.homing import (
     HomingPhase,
     HomingWatch,
     check_trigger,
-    missing_homes,
+    standing_pose,
     start_homing,
 )
 from pkm_post.control.numerical_control.plan import MovePlan, planned
@@ -112,7 +111,7 @@ class NumericalControl:
         """Read the state once and renew the watchdog of a jog; a lost link is a state, not an error."""
         try:
             status = read_status(self._session, self._settings)
-            self._watchdog = self._watchdog if status.running else None
+            self._drop_watchdog(status)
             self.renew()
             if self._session.keeper is not None:  # others watch what they started themselves
                 run.check_override(self._session, self._settings, status)
@@ -125,7 +124,7 @@ class NumericalControl:
                 self._session.keeper.release()
             return self._last
         except PmacError as fault:
-            self._last = replace(self._last, lost=str(fault), emergency=self._emergency(), block=self._block)
+            self._last = replace(self._last.without_link(str(fault), self._may_move), block=self._block)
             return self._last
         self._may_move = False
         self._release_at_rest(status)
@@ -133,7 +132,7 @@ class NumericalControl:
         if homing is not None and homing.phase is not HomingPhase.SEARCHING:
             self._watch = None
         note = self._last.note if status.running else ""
-        self._last = ControlState(status, self._readout.pose(status), "", (), homing, self._block, note)
+        self._last = ControlState(status, self._readout.pose(status), homing=homing, block=self._block, note=note)
         return self._last
 
     def see(self, status: Status) -> ControlState:
@@ -198,8 +197,7 @@ class NumericalControl:
         else:
             status = self._with_ownership("run", lambda: execute.execute(*order, start_tolerance))
         if plan.block and self._blocks is not None:
-            blocks, number = self._blocks[0], plan.block + 1
-            self._blocks, self._block = (blocks, number), blocks.shown(number)
+            self._set_next_block(self._blocks[0], plan.block + 1)
         return status
 
     @property
@@ -221,7 +219,7 @@ class NumericalControl:
     def wait_for_rest(self, seconds: float) -> Status:
         """Poll until the machine rests, and renew the watchdog of a jog; as ``execute.wait_for_rest``."""
         status = execute.wait_for_rest(self._session, self._settings, seconds, self.renew)
-        self._watchdog = self._watchdog if status.running else None
+        self._drop_watchdog(status)
         return status
 
     def load(self, job: PmacJob, progress: Progress, is_cancelled: Callable[[], bool]) -> DownloadResult:
@@ -254,7 +252,7 @@ class NumericalControl:
         """
         if not 1 <= at <= len(blocks):
             raise ValueError(f"at: expected a block from 1 to {len(blocks)}, got {at}")
-        self._blocks, self._block = (blocks, at), blocks.shown(at)
+        self._set_next_block(blocks, at)
         return len(blocks)
 
     def plan_step(self) -> tuple[MovePlan | None, Findings]:
@@ -293,10 +291,13 @@ class NumericalControl:
         check_trigger(trigger)
         self._watch = self._with_ownership("home", lambda: start_homing(self._session, self._settings, trigger))
 
-    def _emergency(self) -> tuple[str, ...]:
-        """Instructions after the link is lost; none before the first connection."""
-        is_silent = self._last.status is None and not self._may_move
-        return () if is_silent else emergency_text(None if self._may_move else self._last.status)
+    def _set_next_block(self, blocks: ProgramBlocks, number: int) -> None:
+        self._blocks, self._block = (blocks, number), blocks.shown(number)
+
+    def _drop_watchdog(self, status: Status) -> None:
+        """Drop the watchdog of a jog that has ended."""
+        if not status.running:
+            self._watchdog = None
 
     def _with_ownership(self, what: str, order: Callable[[], Done]) -> Done:
         """Execute an order that moves the machine; keep ownership until the machine is seen at rest."""
@@ -325,21 +326,8 @@ class NumericalControl:
         return done
 
     def standing_pose(self) -> ToolPose:
-        """The commanded pose of a machine at standstill.
-
-        Raises:
-            NotReadyError: a strut is not homed or moves, a program runs, or the pose is unknown.
-        """
-        status = settled_status(self._session, self._settings)
-        reasons = [f"strut {strut}: not homed" for strut in missing_homes(status)]
-        reasons += ["a program runs, or is held"] if status.running else []
-        reasons += [] if status.standing else ["a strut moves"]
-        if reasons:
-            raise NotReadyError(reasons)
-        pose = pose_from_home(self._machine, status.commanded, self.tool_length)
-        if pose is None:
-            raise NotReadyError(["no pose of the platform reachable in small steps from home has these strut lengths"])
-        return pose
+        """The commanded pose of the machine; as ``homing.standing_pose``."""
+        return standing_pose(self._session, self._settings, self._machine, self.tool_length)
 
     def _plan(
         self, trajectory: Trajectory | None, diagnostics: Findings, tolerances: Tolerances = TOLERANCES

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pkm_post.control.link.status import Status
+from pkm_post.control.link.stopping import emergency_text
 from pkm_post.control.numerical_control.homing import Homing
 from pkm_post.control.numerical_control.single_block import BlockDisplay
 from pkm_post.toolpath import ToolPose
@@ -32,3 +33,9 @@ class ControlState:
     homing: Homing | None = None
     block: BlockDisplay | None = None
     note: str = ""
+
+    def without_link(self, reason: str, may_move: bool) -> ControlState:
+        """The state after the link is lost, with instructions if the machine may move; none before the first link."""
+        if self.status is None and not may_move:
+            return replace(self, lost=reason, emergency=())
+        return replace(self, lost=reason, emergency=emergency_text(None if may_move else self.status))

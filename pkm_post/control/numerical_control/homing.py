@@ -19,6 +19,9 @@ from pkm_post.control.link.errors import NotReadyError
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import MOTORS, AnySettings, Status, settled_status
+from pkm_post.control.link.tool_pose import pose_from_home
+from pkm_post.model import Machine
+from pkm_post.toolpath import ToolPose
 
 _FORMS = {
     "ENABLE PLC n": re.compile(r"ENA(?:BLE)? ?PLC ?\d{1,2}", re.IGNORECASE),
@@ -104,6 +107,24 @@ def _check_rest(status: Status) -> None:
 def missing_homes(status: Status) -> tuple[int, ...]:
     """The struts that are not homed, from 1."""
     return tuple(motor for motor, homed in zip(MOTORS, status.homed, strict=True) if not homed)
+
+
+def standing_pose(session: Session, settings: AnySettings, machine: Machine, tool_length: float) -> ToolPose:
+    """The commanded pose of a homed machine at standstill.
+
+    Raises:
+        NotReadyError: a strut is not homed or moves, a program runs, or the pose is unknown.
+    """
+    status = settled_status(session, settings)
+    reasons = [f"strut {strut}: not homed" for strut in missing_homes(status)]
+    reasons += ["a program runs, or is held"] if status.running else []
+    reasons += [] if status.standing else ["a strut moves"]
+    if reasons:
+        raise NotReadyError(reasons)
+    pose = pose_from_home(machine, status.commanded, tool_length)
+    if pose is None:
+        raise NotReadyError(["no pose of the platform reachable in small steps from home has these strut lengths"])
+    return pose
 
 
 class HomingWatch:

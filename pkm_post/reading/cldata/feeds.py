@@ -165,9 +165,8 @@ def report_unknown_speeds(state: ReaderState) -> None:
 
 def _spindle_event(state: ReaderState, row: int) -> None:
     """Record the present speed, and the feed per revolution that follows it."""
-    state.events.append(
-        (row, EventKind.SPINDLE, state.spindle_sense * state.turning_speed if state.spindle_on else 0.0)
-    )
+    speed = state.spindle_sense * state.spindle_speed if state.spindle_on else 0.0
+    state.events.append((row, EventKind.SPINDLE, speed))
     if state.feed_per_turn:
         state.set_feed(row, _feed_per_turn(state))
 
