@@ -196,8 +196,9 @@ def _interrupted_once() -> Iterator[Callable[[], bool]]:
     pressed: list[int] = []
 
     def press(number: int, frame: FrameType | None) -> None:
-        if pressed:
-            raise KeyboardInterrupt
+        if pressed and callable(before):
+            before(number, frame)
+            return
         pressed.append(number)
         print("\nthe machine stops where it rests next; Ctrl-C again stops it now", file=sys.stderr, flush=True)
 

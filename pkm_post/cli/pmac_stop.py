@@ -11,7 +11,8 @@ import argparse
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import FrameType
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
     from pkm_post.model import Machine
     from pkm_post.writing import PmacSettings
 
-_SIGNALS = ("SIGTERM", "SIGHUP", "SIGBREAK")
-"""Termination of the process, of its terminal, and of its console on Windows; systems define some of them."""
+_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
+"""Ctrl-C, termination of the process, of its terminal, and of its console on Windows; systems define some of them."""
 
 
 @dataclass(frozen=True)
@@ -119,12 +120,13 @@ def held_at_the_end(session: Session, settings: PmacSettings) -> Iterator[None]:
     """
     from pkm_post.control.link import CancelledError, PmacError
 
-    with signals_interrupt():
+    with signals_interrupt() as begin_stop:
         try:
             yield
         except PmacError:
             raise
         except BaseException as fault:
+            begin_stop()
             _hold_machine(session, settings)
             if isinstance(fault, KeyboardInterrupt):
                 raise CancelledError("interrupted and held: resume or abort it") from None
@@ -139,19 +141,29 @@ def _hold_machine(session: Session, settings: PmacSettings) -> None:
 
 
 @contextmanager
-def signals_interrupt() -> Iterator[None]:
-    """Turn termination signals into one KeyboardInterrupt inside; a second signal does not end the hold."""
-    ended: list[int] = []
+def signals_interrupt() -> Iterator[Callable[[], None]]:
+    """Turn the first signal inside into a KeyboardInterrupt, after which the machine is stopped.
 
-    def end(number: int, frame: FrameType | None) -> None:
-        if not ended:
-            ended.append(number)
+    Later signals do not end that stop: not a terminal that closes, and Ctrl-C only after the advice of ``advised``,
+    since a hasty operator presses it twice. Yields a function that tells that a stop has begun without a signal.
+    """
+    from pkm_post.control.link import REST_DEADLINE_S
+
+    begun: list[float] = []
+
+    def begin() -> None:
+        begun.append(time.monotonic())
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        is_advised = bool(begun) and time.monotonic() >= begun[0] + REST_DEADLINE_S
+        if not begun or (number == signal.SIGINT and is_advised):
+            begin()
             raise KeyboardInterrupt
 
     known = [getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)]
-    before = {number: signal.signal(number, end) for number in known}
+    before = {number: signal.signal(number, interrupt) for number in known}
     try:
-        yield
+        yield begin
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

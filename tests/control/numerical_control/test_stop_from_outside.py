@@ -15,10 +15,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from rig import served
-from station import SETTINGS, set_up
+from station import SETTINGS, new_station, set_up
 
 from pkm_post.cli import main
+from pkm_post.cli.pmac_stop import held_at_the_end
+from pkm_post.control.link.errors import CancelledError
 from pkm_post.control.link.stopping import EMERGENCY_STEPS, NOT_AT_REST
+from pkm_post.control.numerical_control.manual_moves import CartesianJog
 from pkm_post.control.simulator import SerialPort, Server
 from pkm_post.model import StrutMotion
 from pkm_post.writing.controllers.pmac import program_text
@@ -83,6 +86,32 @@ def test_a_signal_holds_a_move_by_hand(made, action, number):
         _, said = process.communicate(timeout=LONGEST_S)
         assert process.returncode == 1 and "interrupted and held" in said
         assert made.runs_program() and not is_moving(made)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("ends", ["ctrl-c", "fault"])
+def test_a_further_signal_does_not_end_the_hold(number, ends):
+    """Whoever presses Ctrl-C twice, or closes the terminal after it, has the machine held all the same."""
+    station = new_station()
+    plan, _ = station.control.plan_jog(CartesianJog((20.0, 0.0, 0.0)), 1.0)
+    expected = CancelledError if ends == "ctrl-c" else OSError
+    with pytest.raises(expected), held_at_the_end(station.control._session, SETTINGS):
+        station.control.execute(plan)
+        station.wait(1.0)
+        again, carried = iter([number] * 3), station.wire.fault
+
+        def fault(data, out):
+            if (now := next(again, None)) is not None:
+                signal.raise_signal(now)
+            return carried(data, out)
+
+        station.wire.fault = fault
+        if ends == "fault":
+            raise OSError(28, "no space left for what is printed")
+        signal.raise_signal(signal.SIGINT)
+    station.wire.fault = carried
+    state = station.control.poll().status
+    assert state.held and state.standing
 
 
 @pytest.mark.parametrize(("kind", "number"), [("tcp", signal.SIGSTOP), ("serial", signal.SIGKILL)])
