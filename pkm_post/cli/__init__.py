@@ -80,12 +80,15 @@ def _not_installed(fault: BaseException) -> str | None:
 
 
 def _prepare_streams() -> None:
-    """Open null streams for a service, which has none; make streams escape unencodable characters."""
+    """Open null streams for a service, which has none; make streams escape what their encoding does not have.
+
+    Otherwise one byte on the standard input that is no character would end the reading of an operator's orders.
+    """
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         stream = getattr(sys, name)
         if stream is None:
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115 - it lasts as long as Python
-        elif mode == "w" and isinstance(stream, io.TextIOWrapper):
+        elif isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
 
 

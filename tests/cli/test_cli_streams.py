@@ -69,6 +69,28 @@ assert list(sys.stdin) == [] and sys.stdin.readline() == ""
     assert ran.returncode == 0, ran.stderr
 
 
+def test_a_byte_that_is_no_character_does_not_end_the_lines_of_the_input():
+    """An operator's orders are read from it, the stops among them."""
+    script = f"""
+import sys
+sys.path.insert(0, {str(ADDON)!r})
+from pkm_post.cli import main
+assert main(["machine", "list"]) == 0
+lines = list(sys.stdin)
+assert lines[1:] == ["hold\\n"], lines
+"""
+    environment = os.environ | {"PYTHONIOENCODING": "utf-8:strict"}
+    ran = subprocess.run(
+        [PYTHON, "-c", script],
+        input=b"gr\xfc\xdfe\nhold\n",
+        env=environment,
+        capture_output=True,
+        timeout=300,
+        check=False,
+    )
+    assert ran.returncode == 0, ran.stderr
+
+
 @needs_any_name
 def test_a_name_that_is_no_unicode_is_posted_as_it_is_checked(tmp_path):
     file = tmp_path / ODD
