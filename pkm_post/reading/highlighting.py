@@ -177,7 +177,8 @@ def coloured_spans(line: str, language: Language) -> Iterator[ColouredSpan]:
         row = rows[int((match.lastgroup or "r0")[1:])]
         yield ColouredSpan(match.start(), match.end(), row.colour)
         if row.rest is not None:
-            yield ColouredSpan(match.end(), len(shown), row.rest)
+            if match.end() < len(shown):
+                yield ColouredSpan(match.end(), len(shown), row.rest)
             return
 
 

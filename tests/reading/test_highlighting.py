@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from pkm_post.reading.grammar import BLOCK, STATEMENT, parser_of
@@ -164,6 +164,7 @@ def test_any_block_of_words_is_coloured_as_it_is_read(words):
     assert_coloured_as_read(line, Language.GCODE)
 
 
+@example("MACHIN", Language.CLDATA)
 @given(st.text(max_size=80), st.sampled_from(list(Language)))
 def test_any_line_has_spans_in_order(line, language):
     at = 0

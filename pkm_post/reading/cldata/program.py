@@ -34,6 +34,7 @@ class _Rows:
     inverse: Array
     centre: Array
     axis: Array
+    in_cycle: Array
 
 
 def build_program(
@@ -64,6 +65,7 @@ def build_program(
         feed=rows.feed,
         arc_centre=rows.centre,
         arc_axis=rows.axis,
+        exact_path=rows.in_cycle,  # no corner of a cycle is rounded, as in G-code
         operation=_column(state.operation_starts, points.row, 1, 0)[point].astype(np.int32),
         line=lines[point],
         events=_events(state, points, rows.start, holes),
@@ -124,7 +126,8 @@ def _rows(state: ReaderState, points: Points, arcs: Arcs, holes: HoleMoves) -> _
     kind = np.where(_rapid(state, points), Kind.RAPID, Kind.LINE)[point]
     kind[is_arc] = Kind.ARC
     position, tool_axis = points.position[point], points.axis[point]
-    rows = _Rows(start, point, kind, position, tool_axis, feeds[feed][point], inverse[feed][point], centre, axis)
+    feed, by_time, in_cycle = feeds[feed][point], inverse[feed][point], np.zeros(len(point), dtype=np.bool_)
+    rows = _Rows(start, point, kind, position, tool_axis, feed, by_time, centre, axis, in_cycle)
     _fill_turns(points, arcs, rows)
     _fill_holes(rows, holes)
     rows.feed[rows.kind == Kind.RAPID] = np.nan
@@ -158,7 +161,7 @@ def _fill_holes(rows: _Rows, holes: HoleMoves) -> None:
     """Write the moves of the holes."""
     mine = _rows_of(rows.start, holes, np.arange(len(holes.feed)))
     rows.position[mine], rows.tool_axis[mine] = holes.position, holes.axis
-    rows.feed[mine], rows.inverse[mine] = holes.feed, False
+    rows.feed[mine], rows.inverse[mine], rows.in_cycle[mine] = holes.feed, False, True
     rows.kind[mine] = np.where(np.isnan(holes.feed), Kind.RAPID, Kind.LINE)
     rows.centre[mine] = rows.axis[mine] = np.nan
 

@@ -3,10 +3,10 @@
 
 Input: F by block, in the unit of its mode: units per minute (G94), units per revolution (G95), or inverse time in
 1/min (G93); and the path control codes. Output: speeds of the tool tip in mm/s, by motion; and by block whether the
-motion stops at its end (exact stop), whether corners are followed rather than rounded (exact path), and the permitted
-deviation of the tip from the path (G64 P), mm. A change of feed mode cancels F: the next cutting move needs a new one.
-The flavour defines which of G61 and G61.1 is which. Q of G64, which merges nearly collinear moves, is ignored: no
-moves are merged.
+motion stops at its end (exact stop), whether corners are followed rather than rounded (exact path, as in all cycles),
+and the permitted deviation of the tip from the path (G64 P), mm. A change of feed mode cancels F: the next cutting
+move needs a new one. The flavour defines which of G61 and G61.1 is which. Q of G64, which merges nearly collinear
+moves, is ignored: no moves are merged.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ def path_modes(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> dict[s
         rests[once] = True
     return {
         "exact_stop": rests,
-        "exact_path": map_rows(lambda codes: codes == path, in_force),
+        "exact_path": map_rows(lambda codes: codes == path, in_force) | is_cycle(modal.active[Group.MOTION]),
         "tip_tolerance": _tolerances(blocks, modal, faults),
     }
 

@@ -105,6 +105,7 @@ def _add_motion(machine: SiemensMachine, block: Block) -> None:
 def _call_modal(machine: SiemensMachine, row: int, has_place: bool) -> None:
     """Execute the cycle of MCALL after a block with motion."""
     if machine.modal_call is not None and has_place:
+        machine.state.exact_path = True
         machine.path.flush()
         drill(machine, row, machine.modal_call)
 
@@ -219,6 +220,7 @@ def _modal(machine: SiemensMachine, block: Block, call: Call) -> None:
         check_tapping(machine, other)
         if other.name not in CYCLES:
             raise BlockFault("G602", f"MCALL {other.name}: {', '.join(CYCLES)} are read", other.column)
+    machine.path.flush()
     machine.modal_call = others[0] if others else None
 
 

@@ -65,13 +65,15 @@ class SiemensMachine:
         return turns * 60 / abs(self.state.spindle())
 
     def scratch(self) -> tuple[int, float]:
-        """Motion code and feed, to restore after a cycle."""
+        """Begin a cycle, whose corners are not rounded; return motion code and feed, to restore after it."""
+        self.state.exact_path = True
         return self.state.motion, self.state.feed
 
     def restore(self, before: tuple[int, float]) -> None:
         """Flush the moves of a cycle, and restore motion code and feed."""
         self.path.flush()
         self.state.motion, self.state.feed = before
+        self.state.exact_path = False
 
     def finish(self, row: int) -> None:
         """Flush pending moves, and stop spindle and coolant."""

@@ -225,6 +225,7 @@ class Path:
                 arc_centre=frame.points(moves.centre[pieces]),
                 arc_axis=frame.hand() * frame.directions(moves.axis[rows]),
                 stops=state.stops or stops,
+                exact_path=state.exact_path,
                 tolerance=state.tip_tolerance(),
                 side=state.side * self.radius * frame.hand() * float(np.sign(along)) if state.side else 0.0,
                 plane=plane,

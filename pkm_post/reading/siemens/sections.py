@@ -28,6 +28,7 @@ class Section:
         arc_centre: (n, 3) NaN but on arcs.
         arc_axis: (n, 3) likewise.
         stops: whether each ends at rest.
+        exact_path: whether their corners are followed rather than rounded.
         tolerance: of the tip, mm; 0 for none.
         side: radius of cutter compensation, positive to the left.
         plane: coordinate of {C} that its plane is normal to.
@@ -41,6 +42,7 @@ class Section:
     arc_centre: Array
     arc_axis: Array
     stops: bool
+    exact_path: bool
     tolerance: float
     side: float
     plane: int
@@ -79,6 +81,7 @@ class Sections:
             "line": _joined([section.row for section in sections]).astype(np.int32) + 1,
             "operation": np.zeros(len(self), np.int32),
             "exact_stop": np.repeat([section.stops for section in sections], counts),
+            "exact_path": np.repeat([section.exact_path for section in sections], counts),
             "tip_tolerance": np.repeat([section.tolerance for section in sections], counts),
             "side_offset": np.repeat([section.side for section in sections], counts),
             "plane": np.repeat(np.array([section.plane for section in sections], np.uint8), counts),

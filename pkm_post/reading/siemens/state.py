@@ -42,6 +42,7 @@ class State:
         has_offset: whether X Y Z are those of the tip: not after D0.
         side: 1 for G41, -1 for G42, 0.
         stops: whether each block ends at rest (G60).
+        exact_path: whether corners are followed rather than rounded, as in cycles.
         smoothing: the last of the codes of continuous path, 64 or 641 to 645.
         compressor: whether a compressor is on.
         contour_tolerance: CTOL or that of CYCLE832; 0 for none.
@@ -79,6 +80,7 @@ class State:
     has_offset: bool = True
     side: float = 0.0
     stops: bool = False
+    exact_path: bool = False
     smoothing: int = 64
     compressor: bool = False
     contour_tolerance: float = 0.0
@@ -130,4 +132,4 @@ class State:
     def tip_tolerance(self) -> float:
         """The active tolerance of the tip, mm; 0 for none."""
         in_force = self.high_speed or self.compressor or self.smoothing in (642, 643, 645)
-        return self.contour_tolerance if in_force and not self.stops else 0.0
+        return self.contour_tolerance if in_force and not (self.stops or self.exact_path) else 0.0

@@ -68,9 +68,16 @@ def origin(blocks):
     return blocks.trajectory.machine_from_work[:3, 3]
 
 
-def test_the_posted_program_rests_seldom_and_has_a_block_for_each_line_that_moves(posted):
-    job, _ = read_job((posted / "part.pmc").read_text(), SETTINGS, "part.pmc")
-    assert len(rest_knots(job.motion, SETTINGS)) < len(ENDS)
+def rests_in(folder):
+    job, _ = read_job((folder / "part.pmc").read_text(), SETTINGS, "part.pmc")
+    return len(rest_knots(job.motion, SETTINGS))
+
+
+def test_the_posted_program_rests_seldom_and_has_a_block_for_each_line_that_moves(posted, tmp_path):
+    without_cycle = "".join(line for line in SOURCE.splitlines(True) if not line.startswith("G81"))
+    post(tmp_path, without_cycle.replace("G80 ", ""))
+    assert rests_in(tmp_path) < len(ENDS) - 1  # without the line of the cycle
+    assert rests_in(posted) == rests_in(tmp_path) + 6  # before it, over the hole, then twice at its bottom and above
     blocks = blocks_in(posted)
     lines = SOURCE.splitlines()
     shown = [blocks.shown(number) for number in range(1, len(blocks) + 1)]
@@ -132,8 +139,7 @@ def test_a_stopped_spindle_turns_again_where_a_block_is_begun(station, posted):
 def test_31_lines_that_blend_are_31_blocks(station, tmp_path):
     lines = [f"G1 X{x % 7} Y{x / 10:g} Z300 F3000" for x in range(1, 32)]
     post(tmp_path, "G21 G90 G64 P0.5\n" + "\n".join(lines) + "\nM30\n")
-    job, _ = read_job((tmp_path / "part.pmc").read_text(), SETTINGS, "part.pmc")
-    assert len(rest_knots(job.motion, SETTINGS)) == 2
+    assert rests_in(tmp_path) == 2
     blocks = blocks_in(tmp_path)
     assert station.control.open_blocks(blocks) == 31
     for number in (1, 2):

@@ -256,8 +256,8 @@ class Machine:
             arc_centre=np.full(3, np.nan) if centre is None else (matrix @ [*centre, 1])[:3],
             arc_axis=np.full(3, np.nan) if axis is None else hand * matrix[:3, :3] @ axis,
             exact_stop=self.exact == 611,
-            exact_path=self.exact == 610,
-            tip_tolerance=0.0 if self.mode["motion"] == 810 else self.tolerance,  # LinuxCNC: cycles in exact path mode
+            exact_path=self.exact == 610 or self.mode["motion"] == 810,  # LinuxCNC: cycles in exact path mode
+            tip_tolerance=0.0 if self.mode["motion"] == 810 else self.tolerance,
             side_offset=self.side * hand * np.sign(normal[plane]),
             plane=plane,
             normal=matrix[:3, :3] @ surface / np.sqrt(surface @ surface),

@@ -54,8 +54,8 @@ def test_a_p_that_is_no_tolerance_is_reported(block):
 
 
 @pytest.mark.parametrize("cycle", ["G73 Q1", "G81", "G82 P0.5", "G83 Q1", "G85", "G86 P0.5", "G89 P0.5"])
-def test_a_tolerance_does_not_round_the_corners_of_a_cycle(cycle):
-    """The hole is not entered askew.
+def test_the_corners_of_a_cycle_are_not_rounded(cycle):
+    """The hole is not entered askew, and as deep as programmed.
 
     rs274 prints SET_MOTION_CONTROL_MODE(CANON_EXACT_PATH) before the moves of each cycle, and the mode of the program
     again after them.
@@ -65,6 +65,7 @@ def test_a_tolerance_does_not_round_the_corners_of_a_cycle(cycle):
     in_cycle = program.line - 2 == np.array([[4], [5]])
     assert in_cycle.sum(axis=1).min() >= 3
     np.testing.assert_array_equal(program.tip_tolerance[1:], np.where(in_cycle.any(axis=0), 0, 0.3)[1:])
+    np.testing.assert_array_equal(program.exact_path, in_cycle.any(axis=0))
 
 
 def test_q_alone_is_no_tolerance():
