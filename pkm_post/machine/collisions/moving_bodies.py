@@ -131,8 +131,10 @@ def _struts(machine: Machine, pose: ToolPoses) -> Cylinders:
 
 
 _ARC_CHORDS = 24
-_STEPS = 6
-"""Cylinders that approximate one slanted line of a profile."""
+_STEP = 0.1
+"""mm by which cylinders may be off a slanted outline."""
+_LEVEL = 1e-9
+"""mm: lines that rise by less are level."""
 
 
 @dataclass(frozen=True)
@@ -196,34 +198,53 @@ def cutter_profile(tool: Tool, length: float) -> RevolvedProfile:
 
 
 def cutter_pieces(tool: Tool, length: float, allowance: float) -> tuple[ToolCylinder, ...]:
-    """Cylinders inside a cutter reduced by an allowance on all sides."""
+    """Cylinders inside a cutter reduced by an allowance on all sides; ``_STEP`` less at steps of slanted ones."""
     less = min(allowance, tool.diameter / 4)
     if tool.bottom_angle == 0.0 and tool.side_angle == 0.0:
         rounding = max(min(tool.corner_radius, tool.diameter / 2) - less, 0.0)
         start = less + rounding
         return (ToolCylinder(start, max(length - rounding, start), tool.diameter / 2 - less - rounding, rounding),)
-    profile = cutter_profile(tool, length)
-    edges = np.unique(np.concatenate([np.linspace(*ends, _STEPS + 1) for ends in _sections(profile)]))
-    edges = edges[edges >= less]
-    wide = (
-        np.minimum(*(np.interp(one, profile.height, profile.radius) for one in (edges[:-1] - less, edges[1:]))) - less
-    )
-    return tuple(
-        ToolCylinder(low, high, radius)
-        for low, high, radius in zip(edges[:-1].tolist(), edges[1:].tolist(), wide.tolist(), strict=True)
-        if radius > 0
-    )
+    outline = _reduced(cutter_profile(tool, length), max(less - _STEP, 0.0))
+    edges = _stepped(outline)
+    radius = np.interp(edges, outline.height, outline.radius)
+    return _pieces(edges, np.minimum(radius[:-1], radius[1:]), 0.0)
 
 
-def _sections(profile: RevolvedProfile) -> list[tuple[float, float]]:
-    """Heights between which the radius changes along one line or the corner arc."""
-    corner = [
-        profile.height[0],
-        profile.height[min(1, len(profile.height) - 1)],
-        profile.height[-2],
-        profile.height[-1],
-    ]
-    return [(float(low), float(high)) for low, high in zip(corner[:-1], corner[1:], strict=True) if high > low]
+def _reduced(outline: RevolvedProfile, less: float) -> RevolvedProfile:
+    """A convex outline, moved inwards: it is below each of its lines moved inwards; below 0 there is nothing."""
+    rise = np.diff(outline.height)
+    start = np.flatnonzero(rise > _LEVEL)
+    slope, low = np.diff(outline.radius)[start] / rise[start], outline.height[start]
+    moved = outline.radius[start] - low * slope - less * np.hypot(1.0, slope)
+    bend = -np.diff(slope)
+    meets = np.divide(np.diff(moved), bend, out=low[1:].copy(), where=bend > _LEVEL)
+    height = np.unique(np.clip(np.concatenate([outline.height, meets]), less, outline.height[-1]))
+    return RevolvedProfile(height, (moved + height[:, None] * slope).min(axis=1))
+
+
+def cutter_hull(tool: Tool, length: float) -> tuple[ToolCylinder, ...]:
+    """Cylinders around a cutter, which add no more than ``_STEP`` to slanted outlines."""
+    if tool.bottom_angle == 0.0 and tool.side_angle == 0.0:
+        return cutter_pieces(tool, length, 0.0)
+    outline = cutter_profile(tool, length)
+    edges = _stepped(outline)
+    radius = np.interp(edges, outline.height, outline.radius)
+    bulge = tool.corner_radius * (1.0 - math.cos(math.pi / 2 / _ARC_CHORDS))
+    return _pieces(edges, np.maximum(radius[:-1], radius[1:]), bulge)
+
+
+def _stepped(outline: RevolvedProfile) -> Array:
+    """Heights between which cylinders are off an outline by ``_STEP`` at most."""
+    rise, growth = np.diff(outline.height), np.abs(np.diff(outline.radius))
+    off = rise * growth / np.maximum(np.hypot(rise, growth), _LEVEL)
+    count = np.maximum(np.ceil(off / _STEP), 1).astype(np.int64)
+    ends = zip(outline.height[:-1], outline.height[1:], count + 1, strict=True)
+    return np.unique(np.concatenate([np.linspace(*one) for one in ends]))
+
+
+def _pieces(edges: Array, radius: Array, rounding: float) -> tuple[ToolCylinder, ...]:
+    columns = zip(edges[:-1].tolist(), edges[1:].tolist(), radius.tolist(), strict=True)
+    return tuple(ToolCylinder(low, high, wide, rounding) for low, high, wide in columns if wide > 0)
 
 
 def shank_pieces(tool: Tool, shank: Shank, allowance: float) -> tuple[ToolCylinder, ...]:

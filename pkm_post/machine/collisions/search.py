@@ -30,6 +30,7 @@ from pkm_post.machine.collisions.coverage import (
 )
 from pkm_post.machine.collisions.moving_bodies import (
     MovingBody,
+    cutter_hull,
     cutter_pieces,
     platform_body,
     shank_pieces,
@@ -125,7 +126,7 @@ class Search:
             movers = [mover for _, mover in self._shank_movers(0.0)]
             self._note_shanks(fixture)
             for used in self._with_size(fixture):
-                pieces = cutter_pieces(used.largest, used.edge_length, 0.0)
+                pieces = cutter_hull(used.largest, used.edge_length)
                 movers.append(tool_body(used.name, self.driven.poses, used.cells(), pieces))
             for mover in movers:
                 self.found += mesh_faults(self.driven, "K133", mover, fixture, _TOUCH + self._off_path(mover))

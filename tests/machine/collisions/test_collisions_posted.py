@@ -148,6 +148,43 @@ def test_a_rapid_move_out_of_a_hole_that_the_part_does_not_have_is_posted(tmp_pa
     assert re.search(behind, row["extent"] + row["detail"]), row
 
 
+SLANTED = """\
+UNITS/MM
+CUTTER/20,0,{},60
+LOADTL/1
+SPINDL/RPM,1000,CLW
+RAPID
+GOTO/0,-30,60
+{}
+GOTO/0,0,60
+FEDRAT/500,MMPM
+GOTO/0,30,60
+RAPID
+GOTO/0,30,90
+FINI
+"""
+
+
+@pytest.mark.parametrize("what", ["--part", "--fixture"])
+@pytest.mark.parametrize(
+    ("angles", "beside", "top", "clear"),
+    [
+        ("0,0,45,0", 0.0, 61.0, 59.8),
+        ("0,0,45,0", 5.0, 66.0, 64.5),
+        ("0,0,0,10", 0.0, 61.0, 59.8),
+        ("0,0,0,10", 10.0, 64.0, 59.8),
+        ("0,0,0,45", 19.0, 70.0, 68.5),
+    ],
+)
+def test_a_rapid_move_of_a_slanted_cutter_meets_a_post(tmp_path, capsys, what, angles, beside, top, clear):
+    (tmp_path / "job.cls").write_text(SLANTED.format(angles, "RAPID"))
+    for height, code in ((top, 1), (clear, 0)):
+        post = stored(tmp_path, "post.stl", box([beside, -2, 0], [beside + 1, -1, height]))
+        flags = ["--machine", "example_6tps", "--out", str(tmp_path / "out"), "--tool-length", "1=120", what, post]
+        found, reported = main(["post", str(tmp_path / "job.cls"), *flags]), capsys.readouterr().err
+        assert (found, bool(re.search("K131|K133", reported))) == (code, bool(code)), reported
+
+
 @pytest.mark.parametrize(("gap", "degrees", "code"), [(0.5, "0.001", 0), (0.5, "1", 1), (2.5, "1", 0)])
 def test_a_fixture_clears_the_cutter_of_any_axis_within_its_tolerance(tmp_path, capsys, gap, degrees, code):
     clamp = stored(tmp_path, "clamp.stl", box([20, 15 + gap, 0], [40, 30, 70]))

@@ -11,12 +11,21 @@ from meshes import ball, box
 from pkm_post.geometry.distances import point_to_cylinder, segment_to_segment
 from pkm_post.geometry.polygons import subdivide
 from pkm_post.machine.collisions.contacts import contacts, contacts_at_ends
-from pkm_post.machine.collisions.moving_bodies import ToolCylinder, platform_body, strut_bodies, tool_body
+from pkm_post.machine.collisions.moving_bodies import (
+    ToolCylinder,
+    cutter_hull,
+    cutter_pieces,
+    platform_body,
+    strut_bodies,
+    tool_body,
+)
 from pkm_post.machine.kinematics.placed_machine import PlacedMachine, StrutCapsules
 from pkm_post.machine.reach.collision_mesh import CollisionMesh
 from pkm_post.machine.reach.limit_checks import HUNDREDTH
 from pkm_post.machine.reach.pose_path import PosePath
+from pkm_post.model import Tool, largest_corner_radius
 from pkm_post.model.machine import Body
+from pkm_post.toolpath.compensation.cutter import Cutter, CutterProfile
 
 LENGTH = 120.0
 HAIR, FACETS = 0.1, 0.04
@@ -171,3 +180,48 @@ def test_struts_are_those_of_the_kinematics(seed):
     apart = (segment_to_segment(start, end, far, far) - pieces.radius[:, None]).min()
     met = found(path, mover, box(far - 0.5, far + 0.5), 0.001)
     assert bool(len(met)) == (apart < 1.0) or abs(apart) < 40.0
+
+
+SLANTED = 0.1
+"""mm by which cylinders may be off a slanted outline."""
+
+
+def inside(pieces, radius, level):
+    """Whether points are in one of the pieces."""
+    met = np.zeros(len(radius), dtype=bool)
+    for piece in pieces:
+        at = np.column_stack([radius, 0 * radius, level - (piece.start + piece.end) / 2])
+        met |= (
+            point_to_cylinder(at, piece.radius, *(s * (piece.end - piece.start) / 2 for s in (-1, 1))) <= piece.rounding
+        )
+    return met
+
+
+@pytest.mark.parametrize(
+    ("bottom", "side", "corner"),
+    [
+        (0, 10, 0),
+        (45, 0, 0),
+        (31, 0, 0),
+        (0, 45, 0),
+        (0, 1.5, 1),
+        (20, 20, 0.5),
+        (5, -20, 0),
+        (10, -30, 0.2),
+        (0, 0, 0.4),
+    ],
+)
+@pytest.mark.parametrize("allowance", [0.25, 0.45])
+def test_cylinders_of_a_slanted_cutter_are_off_its_outline_by_a_tenth_at_most(bottom, side, corner, allowance):
+    bottom, side = np.radians([bottom, side]).tolist()
+    corner *= min(largest_corner_radius(12.0, bottom, side), 6.0)
+    tool, length = Tool(1, "", 12.0, corner, 100.0, bottom, side), 9.0
+    outline = CutterProfile.of(Cutter.of(tool), 1e4)
+    rng = np.random.default_rng(0)
+    radius, level = rng.uniform(0, 24, 20_000), rng.uniform(-1, 6, 20_000)  # below the rounded top
+    depth = -outline.distance(radius, level)
+    reduced, around = cutter_pieces(tool, length, allowance), cutter_hull(tool, length)
+    assert inside(reduced, radius, level)[depth > allowance].all() and (depth > allowance).sum() > 500
+    assert not inside(reduced, radius, level)[depth < allowance - SLANTED - 1e-3].any()
+    assert inside(around, radius, level)[depth > 0].all()
+    assert not inside(around, radius, level)[depth < -SLANTED - 0.02].any()
