@@ -179,6 +179,7 @@ class _ProgramBuilder:
         self._state: dict[EventKind, float] = dict(_OFF)
         self._tip = np.full(3, np.nan)
         self._typed: dict[EventKind, tuple[str, Any]] = {}
+        self._told: set[tuple[EventKind, str]] = set()
 
     def add(self, operation: Any, work_from_fixture: Array, name: str) -> list[Diagnostic]:
         """Append an operation at a fixture, with its placement applied to points and tool axes."""
@@ -202,7 +203,7 @@ class _ProgramBuilder:
                 return [*faults, Diagnostic("J112", Place(self.source, operation.Label), Phrase("none is set"))]
             speed = SPINDLE_SENSES[controller.SpindleDir] * controller.SpindleSpeed
             wanted = {EventKind.SPINDLE: speed, EventKind.COOLANT: _coolant(operation)}
-            faults += self._undone(operation, program, wanted)
+            faults += self._undone(operation, program, wanted, name)
             self._switch_tool(controller, wanted)
             self._tip = program.position[-1]
         faults += self._append(dataclasses.replace(program, operations=(name,)))
@@ -219,17 +220,25 @@ class _ProgramBuilder:
             kinds.discard(EventKind.COOLANT)
         self._typed |= dict.fromkeys(kinds, (operation.Label, toolControllerForOp(operation)))
 
-    def _undone(self, operation: Any, program: Program, wanted: Mapping[EventKind, float]) -> list[Diagnostic]:
-        """What is switched back here, unless the operation switches it before its first cut, or changes controller."""
+    def _undone(
+        self, operation: Any, program: Program, wanted: Mapping[EventKind, float], name: str
+    ) -> list[Diagnostic]:
+        """What is switched back here, unless the operation switches it before its first cut, or changes controller.
+
+        It is told once of what an operation switches, not at each fixture.
+        """
         typed, self._typed = self._typed, {}
         first_cut = next(iter(np.flatnonzero(program.kind != Kind.RAPID)), len(program))
         again = {event.kind for event in program.events if event.row <= first_cut}
         controllers = None, toolControllerForOp(operation)
-        return [
-            Diagnostic("J145", Place(self.source, label), Phrase("{}, until {}", self._code(kind), operation.Label))
+        undone = {
+            (kind, label): Diagnostic("J145", Place(self.source, label), Phrase("{}, until {}", self._code(kind), name))
             for kind, (label, controller) in typed.items()
             if kind not in again and controller in controllers and self._state[kind] != wanted[kind]
-        ]
+        }
+        new = [fault for key, fault in undone.items() if key not in self._told]
+        self._told |= set(undone)
+        return new
 
     def _code(self, kind: EventKind) -> str:
         """The command that brought the present state."""

@@ -170,6 +170,14 @@ def test_what_an_operation_leaves_switched_is_switched_back_with_a_warning(job, 
     assert switched_back(job) == [("J145", "First", f"{code}, until Second")]
 
 
+@pytest.mark.parametrize(("order", "until"), [("Fixture", "Second"), ("Tool", "Second"), ("Operation", "First (G55)")])
+def test_what_is_switched_back_at_several_fixtures_is_told_once(job, order, until):
+    add_operation(job, [*FIVE_AXIS, "M5"], "First")
+    add_operation(job, FIVE_AXIS, "Second")
+    job.Fixtures, job.OrderOutputBy = ["G54", "G55", "G56"], order
+    assert switched_back(job) == [("J145", "First", f"M5, until {until}")]
+
+
 def test_no_warning_where_cams_own_posts_switch_it_too(job):
     first = add_operation(job, [*FIVE_AXIS, "M3 S800", "M7"], "First")
     first.CoolantMode = "Flood"
