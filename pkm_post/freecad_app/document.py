@@ -18,8 +18,13 @@ def document_name(document: Any) -> str:
 
 
 def is_job(item: Any) -> bool:
-    """Whether an object is a CAM job."""
-    return hasattr(item, "Operations") and hasattr(item, "PostProcessor")
+    """Whether an object is a CAM job; a link to one has its properties as well."""
+    return hasattr(item, "Operations") and hasattr(item, "PostProcessor") and item.isDerivedFrom("Path::Feature")
+
+
+def members(group: Any) -> list[Any]:
+    """The objects in a group of a job, such as its ``Operations``; none if the user deleted the group."""
+    return [] if group is None else list(group.Group)
 
 
 def is_program(item: Any) -> bool:

@@ -17,12 +17,17 @@ from functools import lru_cache
 from pathlib import Path as FilePath
 from typing import Any
 
+import numpy as np
+
 from pkm_post.freecad_app.commands.words import CommandWords, undecodable_command
-from pkm_post.freecad_app.document import document_name
-from pkm_post.model import Diagnostic, Phrase, Place, Refused
+from pkm_post.freecad_app.document import document_name, job_of, members
+from pkm_post.geometry import Array
+from pkm_post.model import Diagnostic, Kind, Phrase, Place, Program, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
 
 _PACKAGE = "pkm_post."
+_STANDS = 1e-6
+"""mm"""
 _NOT_READ, _NOT_COMPUTED = "Restore", "Touched"
 """Entries of ``State``. The first remains until the document is closed, whatever is computed."""
 
@@ -50,7 +55,7 @@ def check_operations(document: Any, content: DocumentContent) -> None:
     place, faults = Place(document.FileName), []
     for job in content.jobs:
         item = document.getObject(job.name)
-        read = [each.Name for each in item.Operations.Group] if hasattr(item, "Operations") else []
+        read = [each.Name for each in members(getattr(item, "Operations", None))]
         if read != list(job.operations):
             missing = ", ".join(sorted(set(job.operations) - set(read))) or "none is missing, the order differs"
             found = f"{len(read)} of {len(job.operations)} operations of {job.label}: {missing}"
@@ -110,6 +115,31 @@ def state_faults(operation: Any, source: str) -> list[Diagnostic]:
         return [undecodable_command(fault, source, operation.Label)]
 
 
+def feed_faults(operation: Any, controller: Any, program: Program, start: Array, source: str) -> Iterator[Diagnostic]:
+    """Yield J105 for an operation whose moves across the tool get no feed from its tool controller.
+
+    CAM leaves F out of them: the feed of the plunge would stay in force. That of a Custom operation is as typed.
+
+    Args:
+        operation: of a job.
+        controller: its tool controller, or None.
+        program: of the operation, in its own frame.
+        start: (3,) where the tool is before it, mm; NaN if unknown.
+        source: name of the document.
+    """
+    if controller is None or controller.HorizFeed.Value or _is_typed(operation):
+        return
+    steps = np.abs(np.diff(program.position[:, :2], axis=0, prepend=start[None, :2])).max(axis=1)
+    if np.any((program.kind == Kind.ARC) | (program.kind == Kind.LINE) & (steps > _STANDS)):
+        found = Phrase("HorizFeed of {} is 0", controller.Label)
+        yield Diagnostic("J105", Place(source, operation.Label), found)
+
+
+def _is_typed(operation: Any) -> bool:
+    """Whether an operation is Custom, or is made from such."""
+    return hasattr(operation, "Gcode") or any(map(_is_typed, base_operations(operation)))
+
+
 def _has_no_path(operation: Any) -> str:
     return "" if operation.isDerivedFrom("Path::Feature") else f"a {operation.TypeId}"
 
@@ -121,7 +151,27 @@ def _not_read(operation: Any) -> str:
 def _not_valid(operation: Any) -> str:
     if not operation.isValid():
         return str(operation.getStatusString())
-    return "its base operation no longer exists" if is_pkm_object(operation) and operation.Base is None else ""
+    if is_pkm_object(operation) and operation.Base is None:
+        return "its base operation no longer exists"
+    return _kept_by_cam(operation)
+
+
+def _kept_by_cam(operation: Any) -> str:
+    """Why CAM left an operation, or one below it, as it was [FreeCAD 1.1, Path/Op/Base.py, execute].
+
+    It says so in the Report view alone, and the operation, with an earlier path, is in order in the tree.
+    """
+    job, controller = job_of(operation), getattr(operation, "ToolController", None)
+    if hasattr(operation, "OpToolDiameter") and operation.Active:
+        if job is not None and not members(job.Model):
+            return Phrase("its job has no model")
+        if controller is not None and controller.ToolNumber == 0:
+            return Phrase("the number of its tool is 0")
+        if controller is not None and controller.Tool is None:
+            return Phrase("its tool controller has no tool")
+        if controller is not None and float(getattr(controller.Tool, "Diameter", 1.0)) == 0.0:
+            return Phrase("the diameter of its tool is 0")
+    return next(filter(None, map(_kept_by_cam, base_operations(operation))), "")
 
 
 def _not_computed(operation: Any) -> str:

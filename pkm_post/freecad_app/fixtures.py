@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from Path.Base.Util import toolControllerForOp
 
+from pkm_post.freecad_app.document import members
 from pkm_post.freecad_app.frames import apply
 from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Machine, Mesh, Phrase, Place
@@ -149,7 +150,6 @@ def operation_name(label: str, fixture: str, fixtures: Sequence[str]) -> str:
 def operation_named(job: Any, name: str) -> Any:
     """The operation of a job with this name in a program; None if there is none."""
     fixtures = list(job.Fixtures) or [DEFAULT]
-    names = (
-        (operation_name(each.Label, fixture, fixtures), each) for fixture in fixtures for each in job.Operations.Group
-    )
+    own = members(job.Operations)
+    names = ((operation_name(each.Label, fixture, fixtures), each) for fixture in fixtures for each in own)
     return dict(reversed(list(names))).get(name)

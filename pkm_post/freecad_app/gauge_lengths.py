@@ -20,7 +20,7 @@ from typing import Any
 import FreeCAD as App
 from Path.Base.Util import toolControllerForOp
 
-from pkm_post.freecad_app.document import document_name
+from pkm_post.freecad_app.document import document_name, members
 from pkm_post.freecad_app.job import is_active
 from pkm_post.freecad_app.tools import bit_length, gauge_length, set_gauge_length
 from pkm_post.model import Diagnostic, Place
@@ -63,7 +63,7 @@ def tool_rows(job: Any) -> tuple[ToolRow, ...]:
     """The tool controllers of a job, in tree order."""
     used = {
         controller.Name
-        for operation in job.Operations.Group
+        for operation in members(job.Operations)
         if is_active(operation) and (controller := toolControllerForOp(operation))
     }
     source = document_name(job.Document)
@@ -77,7 +77,7 @@ def tool_rows(job: Any) -> tuple[ToolRow, ...]:
             bit_length(controller),
             controller.Name in used,
         )
-        for controller in job.Tools.Group
+        for controller in members(job.Tools)
     )
 
 
@@ -94,7 +94,7 @@ def store_gauge_lengths(job: Any, lengths: Mapping[str, float]) -> None:
     for name, mm in lengths.items():
         if not mm >= 0.0:
             raise ValueError(f"expected gauge lengths of 0 or more, got {mm} mm for {name}")
-    for controller in job.Tools.Group:
+    for controller in members(job.Tools):
         if lengths.get(controller.Name, gauge_length(controller)) != gauge_length(controller):
             set_gauge_length(controller, lengths[controller.Name])
 

@@ -22,8 +22,8 @@ import numpy as np
 from Path.Base.Util import opProperty, toolControllerForOp
 
 from pkm_post.freecad_app.commands import read_commands
-from pkm_post.freecad_app.document import document_name
-from pkm_post.freecad_app.document_checks import file_faults, has_inactive_base, state_faults
+from pkm_post.freecad_app.document import document_name, members
+from pkm_post.freecad_app.document_checks import feed_faults, file_faults, has_inactive_base, state_faults
 from pkm_post.freecad_app.fixtures import DEFAULT, ONE_PLACE, cutting_order, files_of_split_output, operation_name
 from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.tools import SPINDLE_SENSES, read_tools
@@ -59,12 +59,12 @@ class Selection:
 
     def operations_of(self, job: Any) -> list[Any]:
         """The selected operations, in the order of the job."""
-        own = list(job.Operations.Group)
+        own = members(job.Operations)
         return own if self.operations is None else [each for each in own if each in self.operations]
 
     def foreign_operations(self, job: Any) -> list[Any]:
         """Selected operations that do not belong to the job."""
-        return [each for each in self.operations or () if each not in job.Operations.Group]
+        return [each for each in self.operations or () if each not in members(job.Operations)]
 
     def fixtures_of(self, job: Any) -> list[str]:
         """The selected fixtures, in the order of the job; at least one."""
@@ -173,7 +173,7 @@ class _ProgramBuilder:
         self.source = document_name(job.Document)
         self.rows = 0
         self.controllers: dict[str, Any] = {}
-        self._in_job, self._spindle_axis = job.Tools.Group, spindle_axis
+        self._in_job, self._spindle_axis = members(job.Tools), spindle_axis
         self._programs: list[Program] = []
         self._events: list[Event] = []
         self._state: dict[EventKind, float] = dict(_OFF)
@@ -192,10 +192,11 @@ class _ProgramBuilder:
         faults = list(read_faults)
         if program is None:
             return faults
+        controller = toolControllerForOp(operation)
+        faults += feed_faults(operation, controller, program, start, self.source)
         program, placement_faults = transform(program, work_from_operation)
         if program is None:
             return [*faults, *placement_faults]
-        controller = toolControllerForOp(operation)
         if controller is not None and not (_acts(program) or _may_do_nothing(operation)):
             faults.append(Diagnostic("J141", Place(self.source, operation.Label), Phrase("only rapid moves")))
         if len(program):
@@ -289,7 +290,7 @@ class _ProgramBuilder:
         """Number of operations read and number listed in the job."""
         meant = f"{len(active)} meant and active"
         read = f"{len(self._programs)} read" + (f" at {fixtures} fixtures" if fixtures > 1 else "")
-        return f"operations of the job: {len(job.Operations.Group)} listed, {meant}, {read}"
+        return f"operations of the job: {len(members(job.Operations))} listed, {meant}, {read}"
 
     def program(self, tools: Mapping[int, Tool]) -> Program:
         """All operations in sequence."""

@@ -15,7 +15,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from pkm_post.freecad_app.arguments import own_arguments
-from pkm_post.freecad_app.document import document_name
+from pkm_post.freecad_app.document import document_name, members
 from pkm_post.freecad_app.fixtures import unused_origins
 from pkm_post.freecad_app.job import EVERYTHING, Selection
 from pkm_post.freecad_app.tools import gauge_length
@@ -171,7 +171,7 @@ def _with_fixture(layer: ArgumentValues, fixture: str) -> ArgumentValues:
 def _overridden_lengths(job: Any, lengths: Mapping[int, float]) -> Iterator[Diagnostic]:
     """Yield J125 for each tool controller whose gauge length an option replaces."""
     source = document_name(job.Document)
-    for controller in job.Tools.Group:
+    for controller in members(job.Tools):
         stored, number = gauge_length(controller), int(controller.ToolNumber)
         if stored > 0.0 and lengths.get(number, stored) != stored:
             override = Override(
@@ -184,8 +184,8 @@ def _overridden_lengths(job: Any, lengths: Mapping[int, float]) -> Iterator[Diag
 
 def _unknown_tools(job: Any, given: ArgumentValues, other_jobs: Sequence[Any]) -> Iterator[Diagnostic]:
     """Yield J126 for each gauge length whose number no tool controller has."""
-    own = {int(controller.ToolNumber) for controller in job.Tools.Group}
-    known = own.union(int(controller.ToolNumber) for other in other_jobs for controller in other.Tools.Group)
+    own = {int(controller.ToolNumber) for controller in members(job.Tools)}
+    known = own.union(int(controller.ToolNumber) for other in other_jobs for controller in members(other.Tools))
     for number, mm in given.get("tool_length", ()):
         if number not in known:
             found = f"{flag_of('tool_length')} {format_value('tool_length', (number, mm))}, {_tools_text(own)}"

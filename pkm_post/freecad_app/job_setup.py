@@ -21,7 +21,7 @@ import numpy as np
 from Path.Main.Stock import StockType
 
 from pkm_post.freecad_app.arguments import POST_PROCESSORS, replace_arguments
-from pkm_post.freecad_app.document import document_name
+from pkm_post.freecad_app.document import document_name, members
 from pkm_post.freecad_app.document_checks import require_computed
 from pkm_post.freecad_app.document_object import print_diagnostics
 from pkm_post.freecad_app.fixtures import ONE_PLACE, at_fixtures, fixture_places
@@ -133,9 +133,9 @@ def _machine_differences(
 
 def setup_of(job: Any, places: Mapping[str, Array] = ONE_PLACE) -> Setup:
     """The set-up of a recomputed job, with a part and a stock at each of several fixtures."""
-    shanks = dict(_shanks(job.Tools.Group))
+    shanks = dict(_shanks(members(job.Tools)))
     stock = _mesh([job.Stock] if job.Stock else [], StockType.FromStock(job.Stock) == StockType.FromBase)
-    return Setup(at_fixtures(_mesh(job.Model.Group), places), at_fixtures(stock, places), shanks=shanks)
+    return Setup(at_fixtures(_mesh(members(job.Model)), places), at_fixtures(stock, places), shanks=shanks)
 
 
 def _mesh(items: Iterable[Any], assumed: bool = False) -> Mesh | None:

@@ -19,6 +19,7 @@ from Path.Base.Util import toolControllerForOp
 from PathScripts import PathUtils
 
 from pkm_post.freecad_app.cutter_contact import Compensation, compensate_contacts, guide_rows
+from pkm_post.freecad_app.document import members
 from pkm_post.freecad_app.document_object import BASE_AND_ACTIVE, DerivedOperation, Row
 from pkm_post.freecad_app.model_faces import FaceContacts, NamedFace, find_contacts, model_faces, nearest_face
 from pkm_post.freecad_app.tools import read_cutter
@@ -82,7 +83,7 @@ class NormalCompensation(DerivedOperation):
         """Return the base to the job: FreeCAD calls this before the object is deleted."""
         job, base = PathUtils.findParentJob(obj), obj.Base
         if job is not None and base is not None:
-            job.Proxy.addOperation(base, obj if obj in job.Operations.Group else None)
+            job.Proxy.addOperation(base, obj if obj in members(job.Operations) else None)
             base.Visibility = True
 
 
@@ -133,7 +134,7 @@ def create_normal_compensation(base: Any, label: str | None = None) -> Any:
         ValueError: the operation is in no job's list, or already has another dress-up.
     """
     job = PathUtils.findParentJob(base)
-    if job is None or base not in job.Operations.Group:
+    if job is None or base not in members(job.Operations):
         raise ValueError(f"expected an operation in the list of a CAM job, got {base.Label}")
     obj = base.Document.addObject("Path::FeaturePython", "DressupPkmNormals")
     NormalCompensation(obj)

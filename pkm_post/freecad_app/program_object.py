@@ -20,6 +20,7 @@ import Path
 import Path.Op.Custom
 
 from pkm_post.freecad_app.commands import commands_of
+from pkm_post.freecad_app.document import members
 from pkm_post.freecad_app.document_object import PropertyProxy, Row, print_diagnostics
 from pkm_post.freecad_app.tools import preselected
 from pkm_post.freecad_app.window import add_view
@@ -298,9 +299,9 @@ def decode(obj: Any, job: Any) -> Any:
 def _first_controller(program: Program, job: Any) -> Any:
     """The tool controller of the first tool that a program calls; the job's first one if it calls none."""
     called = next((event.value for event in program.events if event.kind is EventKind.TOOL_CHANGE), None)
-    fitting = [each for each in job.Tools.Group if called in (None, each.ToolNumber)]
+    fitting = [each for each in members(job.Tools) if called in (None, each.ToolNumber)]
     if not fitting:
-        known = ", ".join(f"T{each.ToolNumber}" for each in job.Tools.Group)
+        known = ", ".join(f"T{each.ToolNumber}" for each in members(job.Tools))
         found = f"the program calls T{called:g}, {job.Label} has {known or 'no tools'}"
         raise Refused([Diagnostic("J112", Place(program.source), found)])
     return fitting[0]

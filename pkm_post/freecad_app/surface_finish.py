@@ -18,7 +18,7 @@ import Path
 import Path.Op.Base
 
 from pkm_post.freecad_app.commands import commands_of
-from pkm_post.freecad_app.document import document_name
+from pkm_post.freecad_app.document import document_name, members
 from pkm_post.freecad_app.document_object import value_of, without_traceback
 from pkm_post.freecad_app.face_surface import face_surface
 from pkm_post.freecad_app.model_faces import NamedFace, model_faces
@@ -106,12 +106,21 @@ def create_surface_finish(
         controller: the tool controller; if None, the first one of the job with a supported tool; if there is none, CAM
             opens its dialog in the GUI; without a GUI the first one is taken.
         fit: whether to choose lead and cone limit by faces, tool and machine, like the button.
+
+    Raises:
+        Refused: the job has no tool controller with a tool, or none is chosen in the dialog, J112.
     """
-    fitting = (each for each in job.Tools.Group if has_upright_side(each.Tool))
-    controller = controller or next(fitting, None)
+    usable = [each for each in members(job.Tools) if each.Tool is not None]
+    controller = controller or next((each for each in usable if has_upright_side(each.Tool)), None)
+    none = Refused([Diagnostic("J112", Place(document_name(job.Document), job.Label), Phrase("none is set"))])
+    if controller is None and not usable:
+        raise none
     obj = job.Document.addObject("Path::FeaturePython", "SurfaceFinish")
-    with preselected(controller or (None if App.GuiUp else next(iter(job.Tools.Group), None))):
-        obj.Proxy = SurfaceFinish(obj, "SurfaceFinish", job)
+    with preselected(controller or (None if App.GuiUp else usable[0])):
+        try:
+            obj.Proxy = SurfaceFinish(obj, "SurfaceFinish", job)
+        except Path.Op.Base.PathNoTCException as cancelled:
+            raise none from cancelled
     obj.Label, obj.Base = label, [(thing, tuple(names)) for thing, names in faces]
     if controller is not None:
         obj.ToolController = controller

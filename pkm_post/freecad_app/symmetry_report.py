@@ -20,6 +20,7 @@ import numpy as np
 from Path.Base.Util import toolControllerForOp
 from PathScripts import PathUtils
 
+from pkm_post.freecad_app.document import members
 from pkm_post.freecad_app.document_object import program_of
 from pkm_post.freecad_app.tools import SPINDLE_SENSES
 from pkm_post.geometry import Array
@@ -165,7 +166,7 @@ def family_of(obj: Any) -> Family:
         Refused: the commands of the original cannot be read.
     """
     root, job = _root(obj), PathUtils.findParentJob(obj)
-    operations = [root] if job is None else job.Operations.Group
+    operations = [root] if job is None else members(job.Operations)
     others = [each for each in operations if _root(each) == root and each != root and _is_valid(each)]
     programs = [program for each in (root, *others) for program in _images(each)]
     axis = _axis(others)

@@ -65,12 +65,15 @@ def read_tools(
         source: name of the document.
 
     Returns:
-        The tools by number, and their faults: J113, J114 and J143.
+        The tools by number, and their faults: J112, J113, J114 and J143.
     """
     tools: dict[int, Tool] = {}
     faults = []
     for controller in controllers:
         place, number = Place(source, controller.Label), int(controller.ToolNumber)
+        if controller.Tool is None:
+            faults.append(Diagnostic("J112", place, Phrase("it has no tool")))
+            continue
         length = tool_lengths.get(number, gauge_length(controller))
         if not length > 0:
             faults.append(Diagnostic("J113", place, f"T{number}"))
@@ -189,7 +192,8 @@ def read_cutter(controller: Any, place: Place) -> tuple[Cutter | None, tuple[Dia
         The cutter, or None; and the faults: J112, N116.
     """
     if controller is None or controller.Tool is None:
-        return None, (Diagnostic("J112", place, "none is set" if controller is None else "it has no tool"),)
+        found = Phrase("none is set") if controller is None else Phrase("it has no tool")
+        return None, (Diagnostic("J112", place, found),)
     bit, number = controller.Tool, int(controller.ToolNumber)
     if not has_upright_side(bit):
         return None, (Diagnostic("N116", place, f"{bit.Label} is of the shape {_shape(bit)}"),)

@@ -15,10 +15,11 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtWidgets
 
-from pkm_post.freecad_app.core_texts import fault_text
+from pkm_post.freecad_app.core_texts import exception_text, fault_text
 from pkm_post.freecad_app.document import job_for, transaction
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.observers import is_panel_open
+from pkm_post.model import Refused
 from pkm_post.system import MEMORY_FAULTS, memory_diagnostic
 
 translate = FreeCAD.Qt.translate
@@ -28,14 +29,16 @@ PAGES = Path(__file__).parents[2] / "docs"
 
 
 @contextmanager
-def show_lack_of_memory(title: str) -> Iterator[None]:
-    """Show a lack of memory during an action in a window; other exceptions propagate.
+def show_faults(title: str) -> Iterator[None]:
+    """Show a refusal, or a lack of memory, of an action in a window; other exceptions propagate.
 
     Args:
         title: of the window.
     """
     try:
         yield
+    except Refused as refused:
+        QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), title, exception_text(refused))
     except MEMORY_FAULTS as fault:
         diagnostic = memory_diagnostic(fault, title)
         if diagnostic is None:
@@ -110,7 +113,7 @@ class Command:
         """Run the command; a fault restores the previous state."""
         subject = self._selected()
         document = subject.Document if subject else FreeCAD.ActiveDocument
-        with show_lack_of_memory(translate(self.name, self.text)):
+        with show_faults(translate(self.name, self.text)):
             with transaction(document, translate(self.name, self.text)):
                 self.action(subject)
             if self.computes:
@@ -127,7 +130,7 @@ class WindowCommand(Command):
 
     def Activated(self) -> None:
         """Open the window."""
-        with show_lack_of_memory(translate(self.name, self.text)):
+        with show_faults(translate(self.name, self.text)):
             self.action(next(iter(FreeCADGui.Selection.getSelection()), None))
 
 
@@ -141,7 +144,7 @@ class JobPanelCommand(Command):
     def Activated(self) -> None:
         """Recompute if needed, and open the panel."""
         subject = self._selected()
-        with show_lack_of_memory(translate(self.name, self.text)):
+        with show_faults(translate(self.name, self.text)):
             self.action(subject)
             if self.computes:
                 subject.Document.recompute()
@@ -160,7 +163,7 @@ class PanelCommand(Command):
             return
         subject = self._selected()
         document, before = subject.Document, set(subject.Document.Objects)
-        with show_lack_of_memory(translate(self.name, self.text)):
+        with show_faults(translate(self.name, self.text)):
             self._add(subject, document, before)
 
     def _add(

@@ -14,6 +14,7 @@ import FreeCADGui
 from PySide import QtCore
 
 from pkm_post.freecad_app.document import is_job, is_simulation, job_of
+from pkm_post.freecad_gui.observers import view_of
 
 _A_MOMENT = 50
 """ms between two checks whether a document is still recomputing."""
@@ -73,8 +74,8 @@ def machine(job: FreeCAD.DocumentObject | None) -> None:
 
 def _show_whole(name: str) -> None:
     """Fit the whole document, with the new machine, into the view."""
-    view = FreeCADGui.getDocument(name).activeView() if name in FreeCAD.listDocuments() else None
-    if hasattr(view, "fitAll"):
+    view = view_of(name) if name in FreeCAD.listDocuments() else None
+    if view is not None:
         view.fitAll()
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import FreeCADGui
 import numpy as np
 from PySide import QtCore, QtWidgets
 
@@ -19,7 +18,7 @@ from pkm_post.freecad_app.job_setup import placed_job
 from pkm_post.freecad_app.job_study import JobStudy
 from pkm_post.freecad_app.reach_object import machine_for
 from pkm_post.freecad_gui.job_choices import show_place
-from pkm_post.freecad_gui.observers import is_shown
+from pkm_post.freecad_gui.observers import is_shown, scene_graph_of
 from pkm_post.freecad_gui.shapes import OUT, points_through
 from pkm_post.freecad_gui.shown_pose import ShownPose, look_at
 from pkm_post.model import Place, Refused
@@ -57,11 +56,9 @@ class FindingView:
         point = apply(np.linalg.inv(study.reach.trajectory.machine_from_work), study.reach.tip[row][None])[0]
         self._strike()
         self._mark = points_through([tuple(point.tolist())], OUT, _MARK_SIZE)
-        view = FreeCADGui.getDocument(self._document).activeView()
-        if hasattr(view, "getSceneGraph"):
-            self._graph = view.getSceneGraph()
-            self._graph.addChild(self._mark)
-        look_at(FreeCADGui.getDocument(self._document), point.tolist())
+        self._graph = scene_graph_of(self._document)
+        self._graph.addChild(self._mark)
+        look_at(self._document, point.tolist())
         self._pose.show(study, row)
 
     def end(self) -> None:

@@ -10,11 +10,11 @@ from __future__ import annotations
 import re
 from typing import Any
 
-import FreeCADGui
 import numpy as np
 from pivy import coin
 
 from pkm_post.freecad_app.simulation import Problem, Simulation
+from pkm_post.freecad_gui.observers import scene_graph_of
 from pkm_post.freecad_gui.shapes import Colour, aim, ball, beam, cutter, cylinder, fade, group, material, mill
 from pkm_post.geometry import Array, norm
 from pkm_post.machine import ToolPoses, platform_joints, platform_rotation, reach_margins
@@ -186,7 +186,7 @@ class MovingMachine:
             self._owner.played, self._scene = True, self._owner.scene
         else:
             self._scene = MachineScene(simulation.machine)
-            self._graph = FreeCADGui.getDocument(document.Name).activeView().getSceneGraph()
+            self._graph = scene_graph_of(document.Name)
             self._graph.addChild(self._scene.root)
         self._scene.place(np.linalg.inv(simulation.trajectory.machine_from_work))
 

@@ -13,6 +13,7 @@ from typing import Any
 
 import FreeCAD
 import FreeCADGui
+from pivy import coin
 from PySide import QtCore, QtGui, QtWidgets
 
 translate = FreeCAD.Qt.translate
@@ -171,6 +172,19 @@ def is_shown(document: str) -> bool:
         return FreeCADGui.getDocument(document) is not None
     except NameError:
         return False
+
+
+def view_of(document: str) -> Any:
+    """The active 3D view of a document; another 3D view of it while a sheet or a page is active, None without one."""
+    shown = FreeCADGui.getDocument(document)
+    views = [shown.activeView(), *shown.mdiViewsOfType("Gui::View3DInventor")]
+    return next((each for each in views if hasattr(each, "getSceneGraph")), None)
+
+
+def scene_graph_of(document: str) -> Any:
+    """The scene graph of that view; without a view, one that is not shown."""
+    view = view_of(document)
+    return coin.SoSeparator() if view is None else view.getSceneGraph()
 
 
 def is_panel_open(title: str) -> bool:

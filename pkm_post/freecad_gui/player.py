@@ -23,7 +23,7 @@ from pkm_post.freecad_app.user_units import in_user_units
 from pkm_post.freecad_gui.animation import Animation, ask_for_animation, ask_for_pictures
 from pkm_post.freecad_gui.job_choices import show_place
 from pkm_post.freecad_gui.machine_scene import MovingMachine
-from pkm_post.freecad_gui.observers import DeletionWatch, RecomputeWatch
+from pkm_post.freecad_gui.observers import DeletionWatch, RecomputeWatch, view_of
 from pkm_post.freecad_gui.player_content import PlayerContent
 from pkm_post.freecad_gui.quantities import time_text
 from pkm_post.model import Place, Refused
@@ -211,7 +211,7 @@ class PlayerDock(QtWidgets.QDockWidget):
         """The motion as pictures, at the current speed."""
         self.pause()
         return Animation(
-            view=FreeCADGui.getDocument(self._document).activeView(),
+            view=view_of(self._document),
             show=self._show_finished,
             caption=lambda: caption_text(self.simulation, self.seconds),
             now=self.seconds,

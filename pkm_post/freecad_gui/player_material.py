@@ -11,13 +11,14 @@ import time
 from typing import Any
 
 import FreeCAD
-import FreeCADGui
 import numpy as np
 from PySide import QtCore, QtWidgets
 
+from pkm_post.freecad_app.document import members
 from pkm_post.freecad_app.material import RESOLUTIONS, Material, can_be_cut, material_of, step_of
 from pkm_post.freecad_app.simulation import Simulation
 from pkm_post.freecad_gui.material_scene import MaterialScene
+from pkm_post.freecad_gui.observers import scene_graph_of
 from pkm_post.freecad_gui.quantities import length_text, volume_text
 
 translate = FreeCAD.Qt.translate
@@ -44,7 +45,7 @@ class MaterialPage(QtWidgets.QWidget):
     def __init__(self, job: Any) -> None:
         super().__init__()
         self._document, self._seconds = job.Document.Name, 0.0
-        models = [each for item in job.Model.Group for each in (item, *getattr(item, "Objects", ()))]
+        models = [each for item in members(job.Model) for each in (item, *getattr(item, "Objects", ()))]
         self._covered = [item.Name for item in (job.Stock, *models) if item is not None]
         self._simulation: Simulation | None = None
         self._graph: Any = None
@@ -135,7 +136,7 @@ class MaterialPage(QtWidgets.QWidget):
         finally:
             QtWidgets.QApplication.restoreOverrideCursor()
         self.compared.setEnabled(self.material.part is not None)
-        self._graph = FreeCADGui.getDocument(self._document).activeView().getSceneGraph()
+        self._graph = scene_graph_of(self._document)
         self._graph.addChild(self._scene.root)
         self._hide_objects()
         self._recolour()

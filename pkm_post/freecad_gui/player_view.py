@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import Any
 
 import FreeCAD
-import FreeCADGui
 import numpy as np
 from pivy import coin
 from PySide import QtWidgets
@@ -18,6 +17,7 @@ from PySide import QtWidgets
 from pkm_post.freecad_app.simulation import Simulation
 from pkm_post.freecad_gui.axis_vectors import axis_vectors
 from pkm_post.freecad_gui.machine_scene import COMPONENTS, MachineScene
+from pkm_post.freecad_gui.observers import scene_graph_of, view_of
 from pkm_post.freecad_gui.preferences import EveryField
 from pkm_post.geometry import Array
 
@@ -69,15 +69,16 @@ class ViewPage(QtWidgets.QWidget):
         """Show another simulation on its machine."""
         self._simulation, self._scene, self._tip = simulation, scene, None
         if self._graph is None:
-            self._graph = self._view().getSceneGraph()
+            self._graph = scene_graph_of(self._document)
             self._graph.addChild(self._axes)
         self._show_components()
         self._draw_axes()
 
     def show_tip(self, tip: Array) -> None:
         """Move a following camera with the tool tip, (3,) in the document."""
-        if self.follows.isChecked() and self._tip is not None:
-            camera = self._view().getCameraNode()
+        view = view_of(self._document) if self.follows.isChecked() and self._tip is not None else None
+        if view is not None:
+            camera = view.getCameraNode()
             moved = np.array(camera.position.getValue().getValue()) + tip - self._tip
             camera.position = tuple(moved.tolist())
         self._tip = tip
@@ -101,15 +102,14 @@ class ViewPage(QtWidgets.QWidget):
     def _cut_open(self, on: bool) -> None:
         tip = FreeCAD.Vector(*(self._tip if self._tip is not None else (0.0, 0.0, 0.0)))
         across = FreeCAD.Rotation(FreeCAD.Vector(0, 0, 1), FreeCAD.Vector(0, 1, 0))
-        self._view().toggleClippingPlane(int(on), False, False, FreeCAD.Placement(tip, across))
+        view = view_of(self._document)
+        if view is not None:
+            view.toggleClippingPlane(int(on), False, False, FreeCAD.Placement(tip, across))
 
     def _draw_axes(self) -> None:
         self._axes.removeAllChildren()
         if self._simulation is not None and self.every.value():
             self._axes.addChild(axis_vectors(self._simulation.trajectory, self.every.value()))
-
-    def _view(self) -> Any:
-        return FreeCADGui.getDocument(self._document).activeView()
 
 
 def _titles() -> dict[str, str]:

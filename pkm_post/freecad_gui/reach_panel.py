@@ -121,7 +121,7 @@ class ReachPanel:
     def _look(self, point: Any, pose_row: int | None) -> None:
         """Mark a point and move the camera to it; draw the machine there if the job is unchanged since its check."""
         self.obj.ViewObject.Proxy.mark(point)
-        look_at(FreeCADGui.getDocument(self.obj.Document.Name), point)
+        look_at(self.obj.Document.Name, point)
         if pose_row is not None:
             self._pose.show(self.obj.Proxy.study, pose_row)
 

@@ -14,6 +14,7 @@ import numpy as np
 from pivy import coin
 
 from pkm_post.freecad_app.job_study import JobStudy
+from pkm_post.freecad_gui.observers import view_of
 
 _CLOSE = 300.0
 """mm: largest height of the view at a finding."""
@@ -48,10 +49,10 @@ class ShownPose:
         self._view = None
 
 
-def look_at(document: Any, point: Any) -> None:
+def look_at(document: str, point: Any) -> None:
     """Centre the 3D view on a point of the document and zoom in if needed; the orientation stays."""
-    view = document.activeView()
-    if not hasattr(view, "getCameraNode"):
+    view = view_of(document)
+    if view is None:
         return
     camera = view.getCameraNode()
     direction = camera.orientation.getValue().multVec(coin.SbVec3f(0.0, 0.0, -1.0))

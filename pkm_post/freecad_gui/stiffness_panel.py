@@ -23,7 +23,7 @@ from pkm_post.freecad_app.user_units import amount_text
 from pkm_post.freecad_gui.finding_view import FindingView
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.margin_colours import colour_bar, coloured_path, coloured_surface, colours_of
-from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed, is_panel_open, is_shown
+from pkm_post.freecad_gui.observers import DeletionWatch, OnceClosed, is_panel_open, is_shown, scene_graph_of
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
 from pkm_post.geometry import Array
 from pkm_post.machine import StiffnessMap
@@ -69,7 +69,7 @@ class StiffnessPanel:
         self.table.setEnabled(self.found is not None)
         self.table.toggled.connect(lambda _on: self._draw())
         self.rows.picked.connect(self._show_softest)
-        self._graph = FreeCADGui.getDocument(self._document).activeView().getSceneGraph()
+        self._graph = scene_graph_of(self._document)
         self._graph.addChild(self._drawn)
         self._hidden = [each.Name for each in job.InList if hasattr(each, "Violations") and each.Visibility]
         self._show_reach(False)

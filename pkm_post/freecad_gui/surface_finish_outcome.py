@@ -24,7 +24,7 @@ from pkm_post.freecad_app.user_units import amount_text
 from pkm_post.freecad_gui.background import BackgroundCall
 from pkm_post.freecad_gui.deviation_map import measured_map
 from pkm_post.freecad_gui.finding_view import FindingView
-from pkm_post.freecad_gui.observers import RecomputeWatch
+from pkm_post.freecad_gui.observers import RecomputeWatch, scene_graph_of
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
 from pkm_post.model import Diagnostic, Refused, Severity, errors
 
@@ -60,10 +60,8 @@ class SurfaceFinishOutcome:
         obj, measured = self._obj, self._obj.Proxy.measured
         if measured is not None:
             self._map = measured_map(measured, obj.ChordTolerance.Value)
-            view = FreeCADGui.getDocument(self._document).activeView()
-            if hasattr(view, "getSceneGraph"):
-                self._graph = view.getSceneGraph()
-                self._graph.addChild(self._map)
+            self._graph = scene_graph_of(self._document)
+            self._graph.addChild(self._map)
         self._verdict.say(*_verdict(obj))
         self._again.setVisible(measured is None and obj.CheckSpacing.Value > 0.0 and "Touched" not in obj.State)
         if obj.isValid() and obj.Path.Size and job_of(obj).PostProcessor in POST_PROCESSORS:

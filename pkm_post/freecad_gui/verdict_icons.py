@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import FreeCAD
 from PySide import QtCore, QtGui
 
-from pkm_post.freecad_app.document import is_job, is_operation, job_of
+from pkm_post.freecad_app.document import is_job, is_operation, job_of, members
 from pkm_post.freecad_app.startup import when_imported
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ def verdict_of(item: Any) -> bool | None:
         return None
     if is_job(item):
         return all(said)
-    if getattr(item, "Active", True) is False or item not in job.Operations.Group:
+    if getattr(item, "Active", True) is False or item not in members(job.Operations):
         return None
     named = post.faulty if post is not None else ()
     return not (any(_is_faulty(item, job, each) for each in known) or _is_named(item, job, named))
@@ -237,5 +237,5 @@ class _Watch:
         self._documents &= set(FreeCAD.listDocuments())
         for name in self._documents:
             for job in filter(is_job, FreeCAD.getDocument(name).Objects):
-                for item in (job, *job.Operations.Group, *filter(_knows, job.InList)):
+                for item in (job, *members(job.Operations), *filter(_knows, job.InList)):
                     item.ViewObject.signalChangeIcon()

@@ -4535,6 +4535,26 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>共 {} 个点，这是第一个</translation>
     </message>
     <message>
+        <source>HorizFeed of {} is 0</source>
+        <translation>{} 的 HorizFeed 为 0</translation>
+    </message>
+    <message>
+        <source>its job has no model</source>
+        <translation>其作业没有模型</translation>
+    </message>
+    <message>
+        <source>the number of its tool is 0</source>
+        <translation>其刀具编号为 0</translation>
+    </message>
+    <message>
+        <source>its tool controller has no tool</source>
+        <translation>其刀具控制器没有刀具</translation>
+    </message>
+    <message>
+        <source>the diameter of its tool is 0</source>
+        <translation>其刀具直径为 0</translation>
+    </message>
+    <message>
         <source>a recompute is under way</source>
         <translation>正在重新计算</translation>
     </message>
@@ -4633,6 +4653,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>SpindleDir {}, CAM&apos;s path of it {}</source>
         <translation>SpindleDir 为 {}，CAM 的轨迹中为 {}</translation>
+    </message>
+    <message>
+        <source>it has no tool</source>
+        <translation>它没有刀具</translation>
     </message>
     <message>
         <source>{}, {} {}, by {}</source>

@@ -16,7 +16,8 @@ from Path.Post.Utils import FilenameGenerator
 import pkm_post
 from pkm_post.cli import main
 from pkm_post.freecad_app.arguments import job_arguments
-from pkm_post.freecad_app.post_job import find_job, post_document, post_job
+from pkm_post.freecad_app.document import job_of
+from pkm_post.freecad_app.post_job import find_job, find_jobs, post_document, post_job
 from pkm_post.freecad_app.progress import Progress, Stopped
 from pkm_post.freecad_app.symmetry import create_mirror
 from pkm_post.machine import find_machine
@@ -183,6 +184,14 @@ def test_job_by_name_or_label(ready):
     other.Label = "Other"
     assert [find_job(ready.Document, name) for name in (ready.Name, "Other", other.Name)] == [ready, other, other]
     assert refusal(find_job, ready.Document) == ["J102"]
+
+
+def test_link_to_a_job_is_no_second_job(ready, tmp_path):
+    link = ready.Document.addObject("App::Link", "Link")
+    link.LinkedObject = ready
+    ready.Document.recompute()
+    assert find_jobs(ready.Document) == [ready] and job_of(ready.Operations.Group[0]) == ready
+    assert job_of(link) is None
 
 
 # CAM's post command

@@ -3,13 +3,18 @@
 
 import FreeCAD as App
 import numpy as np
+import Part
 import Path
 import Path.Op.Probe
 import pytest
 from cam_jobs import ARC, FIVE_AXIS, add_operation, add_tool_controller, moves, turn
+from part_jobs import job_on
+from test_dressups_of_cam import operation_on
 from test_tools import stock_bit
 
 from pkm_post.freecad_app.job import read_job
+from pkm_post.freecad_app.job_settings import settings_of
+from pkm_post.freecad_app.job_setup import prepared_job
 from pkm_post.freecad_app.symmetry import create_mirror
 from pkm_post.freecad_app.tools import preselected, set_gauge_length
 from pkm_post.model import EventKind, Kind
@@ -333,6 +338,48 @@ def test_operation_that_cannot_be_computed(job):
     assert faults_of(job) == [("J116", "Broken", 0)]
 
 
+KEPT = {
+    "its job has no model": lambda job: [job.Document.removeObject(each.Name) for each in job.Model.Group],
+    "the number of its tool is 0": lambda job: setattr(job.Tools.Group[0], "ToolNumber", 0),
+    "its tool controller has no tool": lambda job: job.Document.removeObject(job.Tools.Group[0].Tool.Name),
+    "the diameter of its tool is 0": lambda job: setattr(job.Tools.Group[0].Tool, "Diameter", 0),
+}
+
+
+@pytest.mark.parametrize("found", KEPT)
+def test_operation_that_cam_leaves_as_it_was_is_refused_with_its_copies(job, found):
+    """CAM says in the Report view alone that it did not compute it; the earlier path is still there."""
+    operation = add_operation(job)
+    mirror = create_mirror(operation, App.Vector(1, 0, 0))
+    assert len(program_of(job)) == 8
+    operation.Gcode = ARC
+    KEPT[found](job)
+    job.Document.recompute()
+    assert operation.isValid() and len(moves(operation)) == len(FIVE_AXIS)
+    program, faults = read_job(job)
+    assert program is None
+    refused = [(fault.code, fault.place.operation, fault.found) for fault in faults if fault.code == "J116"]
+    assert refused == [("J116", each.Label, found) for each in (operation, mirror)]
+
+
+def test_operation_called_for_by_m6_without_a_tool_is_refused(job):
+    add_operation(job, [*FIVE_AXIS, "M6 T5"])
+    other = add_tool_controller(job, 5)
+    other.Tool = None
+    assert [(code, place) for code, place, _ in faults_of(job)] == [("J112", other.Label)]
+
+
+@pytest.mark.parametrize(("group", "expected"), [("Operations", ["J103"]), ("Tools", []), ("Model", ["J116"])])
+def test_job_without_one_of_its_groups(job, group, expected):
+    job.GeometryTolerance = 0.01
+    add_operation(job)
+    job.Document.removeObject(getattr(job, group).Name)
+    job.Document.recompute()
+    job.PostProcessor, job.PostProcessorArgs = "hexapod_pmac", "--machine example_6tps --work-offset=0,0,250"
+    found = prepared_job(job, settings_of(job)).found
+    assert [fault.code for fault in found if fault.severity.value == "error"] == expected
+
+
 def test_long_tool_axis_is_a_warning(job):
     add_operation(job, ["G0 X0 Y0 Z9", "G1 X1 I0 J0 K2 F1"])
     assert faults_of(job) == [("J118", "Cut", 4)]
@@ -412,6 +459,18 @@ def test_stock_profile_is_read(job):
     assert {name for name, _ in moves(profile)} & {"G2", "G3"}
     low, high = program.position.min(axis=0), program.position.max(axis=0)
     np.testing.assert_allclose(high[:2] - low[:2], 20 + profile.ToolController.Tool.Diameter.Value, atol=1e-4)
+
+
+def test_moves_that_would_go_on_at_the_feed_of_the_plunge_are_refused(document):
+    job = job_on(document, Part.makeBox(30, 20, 10), "endmill.fcstd", Diameter=6)
+    job.Tools.Group[0].HorizFeed = 0
+    profile = operation_on(job, "Profile", lambda box: box.ZMax < 0.01)
+    mirror = create_mirror(profile, App.Vector(1, 0, 0))
+    assert faults_of(job) == [("J105", each.Label, 0) for each in (profile, mirror)]
+    cuts = [words for name, words in moves(profile) if name in ("G1", "G2", "G3")]
+    assert {words.get("F") for words in cuts} == {5.0, None}
+    job.Tools.Group[0].HorizFeed = "10 mm/s"
+    assert faults_of(job) == []
 
 
 @pytest.mark.parametrize("order", ["Fixture", "Tool", "Operation"])

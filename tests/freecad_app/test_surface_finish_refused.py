@@ -12,6 +12,8 @@ from test_tools import stock_bit
 
 from pkm_post.freecad_app import progress
 from pkm_post.freecad_app.job import read_job
+from pkm_post.freecad_app.surface_finish import create_surface_finish
+from pkm_post.model import Refused
 
 
 @pytest.fixture
@@ -51,6 +53,17 @@ def test_tool_controller_that_lacks_something_is_reported(job):
     job.Document.recompute()
     assert "J112" in operation.getStatusString()
     assert moves(operation) == []
+
+
+@pytest.mark.parametrize("gone", ["Tools", "Tool"])
+def test_job_without_a_tool_gets_no_operation(job, gone):
+    controller, document = job.Tools.Group[0], job.Document
+    document.removeObject(controller.Tool.Name if gone == "Tool" else controller.Name)
+    before = len(document.Objects)
+    with pytest.raises(Refused) as refused:
+        create_surface_finish(job)
+    assert [each.code for each in refused.value.diagnostics] == ["J112"]
+    assert len(document.Objects) == before
 
 
 def test_operation_without_faces_is_reported(job):
