@@ -4,6 +4,7 @@
 import doctest
 import inspect
 import math
+import pickle
 import runpy
 import subprocess
 import sys
@@ -19,8 +20,7 @@ from pkm_post import api
 ROOT = Path(__file__).parents[1]
 PART = "T1 M6\nS9000 M3\nG0 X0 Y0 Z60\nG1 Z50 F600\nX10\nG2 X20 Y0 I5 J0\nG0 Z60\nM5\nM2\n"
 CONTOUR = "T1 M6\nS9000 M3\nG0 X-20 Y20 Z50\nG41 D1 G1 X-10 Y0 F600\nX30\nG40 Y30\nG0 Z60\nM5\nM2\n"
-FUNCTIONS = [each for each in vars(api).values() if inspect.isfunction(each)]
-PUBLIC = [each for each in FUNCTIONS if each.__module__.startswith("pkm_post.api.")]
+PUBLIC = [each for each in vars(api).values() if inspect.isfunction(each)]
 WITHOUT_FREECAD = [each for each in PUBLIC if "# in FreeCAD" not in (each.__doc__ or "")]
 """The others are run by tests/freecad_app/test_api_in_freecad.py."""
 
@@ -146,6 +146,69 @@ def test_gauge_lengths_are_checked_as_on_the_command_line(folder, lengths):
             call("part.ngc", tool_lengths=lengths)
 
 
+@pytest.mark.parametrize(
+    ("choice", "error"),
+    [
+        ({"tip_tolerance": 0.0}, ValueError),
+        ({"tip_tolerance": -1.0}, ValueError),
+        ({"tip_tolerance": math.nan}, ValueError),
+        ({"tip_tolerance": "0.1"}, ValueError),
+        ({"axis_tolerance": math.inf}, ValueError),
+        ({"work_offset": (0.0, 0.0, 250.0)}, ValueError),
+        ({"work_offset": np.full((4, 4), math.nan)}, ValueError),
+        ({"work_offset": np.diag([1.0, 1.0, -1.0, 1.0])}, ValueError),
+        ({"optional_stops": "skip"}, ValueError),
+        ({"report_unit": "cm"}, ValueError),
+        ({"also": "csv"}, TypeError),
+        ({"spin": "zero"}, TypeError),
+        ({"actual_tools": None}, TypeError),
+    ],
+)
+def test_options_are_checked_as_on_the_command_line(choice, error):
+    """A tolerance of 0 used to plan without end, one below it to ask for terabytes."""
+    with pytest.raises(error, match=f"^{next(iter(choice))}: expected "):
+        pkm.Options(**choice)
+    assert pkm.Options(work_offset=np.eye(4), tip_tolerance=np.float64(0.1)).tip_tolerance == 0.1
+
+
+@pytest.mark.parametrize(
+    ("choice", "error"),
+    [
+        ({"machine_zero": (math.nan, 0.0, 0.0)}, ValueError),
+        ({"machine_zero": (0.0, 0.0)}, ValueError),
+        ({"work_offsets": {"G54": (0.0, 0.0, 0.0)}}, ValueError),
+        ({"work_offsets": {"G54": (0.0, 0.0, math.inf, 0.0)}}, ValueError),
+        ({"left_out": "M21"}, TypeError),
+        ({"subprograms": "folder"}, TypeError),
+    ],
+)
+def test_facts_about_a_part_program_are_checked(choice, error):
+    with pytest.raises(error, match=f"^{next(iter(choice))}: .*expected "):
+        pkm.ReadingOptions(**choice)
+
+
+def test_what_does_not_apply_to_the_source_is_refused(folder):
+    with pytest.raises(ValueError, match="job_name: expected None except for a FreeCAD document, got 'Job'"):
+        pkm.post("part.ngc", tool_lengths={1: 120.0}, job_name="Job")
+    with pytest.raises(ValueError, match="reading: expected none except for a part program"):
+        pkm.post("part.FCStd", reading=pkm.ReadingOptions(unit="mm"))
+
+
+def test_a_plan_is_not_written_over_by_its_trajectory(folder):
+    machine = pkm.read_machine()
+    trajectory = pkm.place(pkm.read("part.ngc", tool_lengths={1: 120.0}), machine)
+    with pytest.raises(ValueError, match=r"expected a motion program, .* got part\.PKMT"):
+        pkm.write(pkm.plan(trajectory, machine), "part.PKMT", machine, trajectory)
+    assert not (folder / "part-setup.pmc").exists()
+
+
+def test_a_refusal_reads_the_same_behind_a_pool_of_processes():
+    with pytest.raises(pkm.Refused) as refused:
+        pkm.read("no_such_file.ngc")
+    again = pickle.loads(pickle.dumps(refused.value))
+    assert str(again) == str(refused.value) and again.diagnostics == refused.value.diagnostics
+
+
 def test_numbers_of_numpy_and_paths_of_both_kinds_are_taken(folder):
     program = pkm.read(folder / "part.ngc", {np.int64(1): np.float32(120.0)})
     assert program.tools[1].length == 120.0
@@ -170,6 +233,8 @@ def test_files_that_cannot_be_there_are_refused(folder, name):
 
 
 def test_what_are_no_numbers_is_refused_by_name():
+    with pytest.raises(TypeError, match="^tip_from_contact: cutter: expected Cutter, got NoneType"):
+        pkm.tip_from_contact([[0, 0, 0]], [[0, 0, 1]], [[0, 0, 1]], None)
     for points in ("abc", (point for point in [(0, 0, 0)]), [[None, {}, 1.0]]):
         with pytest.raises(ValueError, match=r"^tip_from_contact: expected 3 arrays \(N, 3\) of numbers: "):
             pkm.tip_from_contact(points, [[0, 0, 1]], [[0, 0, 1]], pkm.Cutter(0.0, 5.0, 0.0))

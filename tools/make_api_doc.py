@@ -36,9 +36,7 @@ This page is made from `pkm_post/api` by `tools/make_api_doc.py`: do not edit it
 def page(api):
     """The text of the page."""
     preamble = inspect.getdoc(api).split("\n\n", 1)[1].partition(". ")[2]
-    ours = (each for each in vars(api).values() if inspect.isfunction(each))
-    functions = [each for each in ours if each.__module__.startswith(f"{api.__name__}.")]
-    sections = [_section(each) for each in functions if not each.__name__.startswith("_")]
+    sections = [_section(each) for each in vars(api).values() if inspect.isfunction(each)]
     return HEAD.format(preamble=_plain(preamble)) + "".join(sections)
 
 

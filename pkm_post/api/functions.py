@@ -155,7 +155,7 @@ def write(
 
     Raises:
         Refused: G-code in this dialect or the controller cannot express it, or the folder is not writable.
-        ValueError: a plan without its machine or its trajectory.
+        ValueError: a plan without its machine or its trajectory, or with the name of a trajectory file.
 
     Example:
         >>> [path.name for path in pkm.write(pkm.read("part.ngc", tool_lengths={1: 120.0}), "copy.ngc")]
@@ -171,6 +171,10 @@ def write(
                 trajectory_file.write(what, target)
             elif machine is None or trajectory is None:
                 raise ValueError("expected the machine and the trajectory of the plan, got None")
+            elif path.suffix.lower() == result_files.TRAJECTORY:
+                raise ValueError(
+                    f"file: expected a motion program, whose trajectory file goes beside it, got {path.name}"
+                )
             else:
                 sound_value(*write_program(target, trajectory, what, machine))
             names = sorted(each.name for each in folder.iterdir())
@@ -243,8 +247,8 @@ def post(
     Raises:
         Refused: the input or the folder has errors, a document is to be posted outside FreeCAD (F143), or memory runs
             out (F130). Jobs of a document that are already posted remain; otherwise nothing is written.
-        ValueError: the suffix of the file is unknown, a tool length is not above 0, or both options and arguments are
-            given.
+        ValueError: the suffix of the file is unknown, a tool length is not above 0, both options and arguments are
+            given, ``job_name`` without a document, or ``reading`` without a part program.
 
     Example:
         >>> (posted,) = pkm.post("part.ngc", tool_lengths={1: 120.0}, out="results")
@@ -256,6 +260,7 @@ def post(
         "progress": progress,
     }  # fmt: skip
     with memory_guard(str(source) if is_path(source) else source.Label):
+        _require_use(source, job_name, reading)
         if is_path(source) and Path(source).suffix.lower() != ".fcstd":
             return (post_file(Path(source), machine, out, reading=reading, **common),)
         if is_path(source) and "FreeCAD" not in sys.modules and find_spec("FreeCAD") is None:
@@ -265,3 +270,12 @@ def post(
         if is_path(source):
             return jobs.post_document(Path(source), machine, out, job_name=job_name, **common)
         return (jobs.post_job(source, machine, out, **common),)
+
+
+def _require_use(source: Source, job_name: str | None, reading: ReadingOptions) -> None:
+    """Check that a part program is given no job, and a CAM job or a document no facts of part programs."""
+    document = is_path(source) and Path(source).suffix.lower() == ".fcstd"
+    if job_name is not None and not document:
+        raise ValueError(f"job_name: expected None except for a FreeCAD document, got {job_name!r}")
+    if reading != AS_WRITTEN and (document or not is_path(source)):
+        raise ValueError("reading: expected none except for a part program")

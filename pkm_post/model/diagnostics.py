@@ -87,6 +87,10 @@ class Refused(Exception):  # noqa: N818 - it is no error of the program
         self.diagnostics = tuple(diagnostics)
         super().__init__("\n".join(str(item) for item in self.diagnostics))
 
+    def __reduce__(self) -> tuple[type[Refused], tuple[tuple[Diagnostic, ...]]]:
+        # Exceptions are pickled with the text that they pass to their base, as on the way out of a process of a pool.
+        return type(self), (self.diagnostics,)
+
 
 @dataclass
 class DiagnosticLog:

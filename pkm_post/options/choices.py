@@ -6,13 +6,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.machine import ZERO_TORSION, SpinPolicy
 from pkm_post.model import EMPTY_SETUP, Setup, Tolerances, Tool
 from pkm_post.system import result_files
-from pkm_post.toolpath import Copies, OffsetOptions
+from pkm_post.toolpath import OPTIONAL_STOPS, Copies, OffsetOptions
 
 if TYPE_CHECKING:
     from pkm_post.toolpath import StartLine, SurfaceSpeed
@@ -67,6 +69,10 @@ class Options:
         report_date: text on the page of the report, such as a date; empty for none.
         mesh_files: mesh files of the bodies in the collision check.
         setup: the set-up known without files, as from a CAM job.
+
+    Raises:
+        TypeError: a value is of another type.
+        ValueError: a tolerance is out of range, the work offset is no pose, or a name is unknown.
     """
 
     work_offset: str | Array = "G54"
@@ -87,11 +93,45 @@ class Options:
     setup: Setup = EMPTY_SETUP
 
     def __post_init__(self) -> None:
-        known = result_files.SIDE_OUTPUTS
-        if not set(self.also) <= set(known):
-            raise ValueError(f"also: expected names out of {', '.join(known)}, got {', '.join(self.also)}")
+        for name, kind in _KINDS.items():
+            value = getattr(self, name)
+            if not isinstance(value, kind):
+                raise TypeError(f"{name}: expected {kind.__name__}, got {type(value).__name__} {value!r:.60}")
+        for name, (least, most, unit) in _RANGES.items():
+            value = getattr(self, name)
+            if not isinstance(value, int | float | np.number) or not least <= value <= most:
+                raise ValueError(f"{name}: expected {least:g} to {most:.4g} {unit}, got {value!r}")
+        for name, known in _NAMES.items():
+            if getattr(self, name) not in known:
+                raise ValueError(f"{name}: expected one of {', '.join(map(str, known))}, got {getattr(self, name)!r}")
+        outputs = result_files.SIDE_OUTPUTS
+        if not set(self.also) <= set(outputs):
+            raise ValueError(f"also: expected names out of {', '.join(outputs)}, got {', '.join(self.also)}")
+        if not isinstance(self.work_offset, str) and not _is_pose(self.work_offset):
+            raise ValueError(f"work_offset: expected a name or a (4, 4) pose, in mm, got {self.work_offset!r:.60}")
 
     @property
     def tolerances(self) -> Tolerances:
         """Both tolerances."""
         return Tolerances(self.tip_tolerance, self.axis_tolerance)
+
+
+_KINDS: dict[str, type] = {
+    "spin": SpinPolicy, "contours": OffsetOptions, "actual_tools": Mapping, "copies": Copies, "also": tuple,
+    "report_date": str, "mesh_files": MeshFiles, "setup": Setup,
+}  # fmt: skip
+_RANGES = {"tip_tolerance": (1e-9, 100.0, "mm"), "axis_tolerance": (1e-9, math.pi / 4, "rad")}
+_NAMES = {"optional_stops": (None, *OPTIONAL_STOPS), "report_unit": ("mm", "inch")}
+
+
+def _is_pose(value: Any) -> bool:
+    """Whether a value is a rotation and a shift, as in a machine file."""
+    try:
+        pose = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        return False
+    if pose.shape != (4, 4) or not np.isfinite(pose).all():
+        return False
+    turn = pose[:3, :3]
+    same = np.allclose(turn @ turn.T, np.eye(3), atol=1e-6) and np.array_equal(pose[3], [0.0, 0.0, 0.0, 1.0])
+    return bool(same and np.linalg.det(turn) > 0)

@@ -15,7 +15,7 @@ from __future__ import annotations
 import hashlib
 import math
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -68,6 +68,10 @@ class ReadingOptions:
         tool_table: path of a tool table, optionally with a comma and its unit, as in ``read_tool_table``; ``tools`` and
             ``lengths`` take precedence. None for none.
         allow_open_end: whether a file may lack an end statement, such as M2 or FINI.
+
+    Raises:
+        TypeError: a text stands for a tuple of texts.
+        ValueError: a position or an offset is not of three or four finite numbers.
     """
 
     axis_words: str = "none"
@@ -94,6 +98,21 @@ class ReadingOptions:
     delete_switches: tuple[int, ...] = ()
     subprograms: tuple[str, ...] = ()
     tool_table: str | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("cycle_values", "left_out", "goto_values", "subprograms"):
+            if isinstance(getattr(self, name), str):
+                raise TypeError(f"{name}: expected a tuple of texts, got {getattr(self, name)!r}")
+        if self.machine_zero is not None:
+            _require_finite("machine_zero", self.machine_zero, 3)
+        for name in ("work_offsets", "machine_offsets"):
+            for offset, numbers in getattr(self, name).items():
+                _require_finite(f"{name}: {offset}", numbers, 4)
+
+
+def _require_finite(name: str, numbers: Sequence[float], count: int) -> None:
+    if len(numbers) != count or not all(map(math.isfinite, numbers)):
+        raise ValueError(f"{name}: expected {count} finite numbers, got {numbers!r}")
 
 
 AS_WRITTEN = ReadingOptions()

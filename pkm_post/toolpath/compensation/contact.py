@@ -62,10 +62,19 @@ def tip_from_contact(
         The tips (N, 3) in mm, or None when a row cannot be compensated; and the diagnostics: N101 to N106.
 
     Raises:
+        TypeError: the cutter is none.
         ValueError: the arrays are not all of one shape (N, 3).
 
     Source: [paper eq. 7], which is the case k = z with tip + R1 k = T.
+
+    Example:
+        >>> cutter = pkm.Cutter(corner_radius=4.0, radial_offset=4.0, axial_offset=4.0)  # a bull nose, 16 mm across
+        >>> tips, faults = pkm.tip_from_contact([[0, 0, 0]], [[1, 0, 0]], [[0, 0, 1]], cutter)
+        >>> tips, faults
+        (array([[ 8.,  0., -4.]]), ())
     """
+    if not isinstance(cutter, Cutter):
+        raise TypeError(f"tip_from_contact: cutter: expected Cutter, got {type(cutter).__name__}")
     contact, n, k = _rows("tip_from_contact", points, normals, axes)
     sizes = (cutter.corner_radius, cutter.radial_offset, cutter.axial_offset)
     shift, diagnostics = tip_offsets(contact, n, k, sizes, (cutter,), _by_row(place))
