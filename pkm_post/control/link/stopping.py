@@ -27,7 +27,7 @@ SHOWN_S = 0.5
 """Seconds for the state to reflect a stop, before it is resent."""
 POLL_S = 0.02
 NEXT_SEGMENT_S = 1.0
-"""Seconds within which a stream with a working link releases its next segment."""
+"""Seconds within which a stream or a play with a working link starts its next motion."""
 _log = logging.getLogger(__name__)
 
 EMERGENCY_STEPS = (
@@ -134,13 +134,15 @@ def abort(session: Session, settings: AnySettings, at_once: bool = False) -> Sta
         NoAccessError: the controller's computer denies this user access.
     """
     _, *rungs = _ladder(settings)
+    seen: Status | None = None
     if not at_once:
         try:
             with session.short_timeouts():
-                _try(session, settings, HOLD, _is_held_or_ended)
+                seen = _try(session, settings, HOLD, _is_held_or_ended)
         except CancelledError:
             _log.warning("aborted without coming to rest before: another stop waits")
-    return _climb(session, settings, tuple(rungs), _is_ended)
+    was_held = seen is not None and seen.held  # then it is this abort that ends the program, and its owner sees that
+    return _climb(session, settings, tuple(rungs), _is_ended, may_go_on=not was_held)
 
 
 def _ladder(settings: AnySettings) -> tuple[Rung, ...]:
@@ -148,7 +150,11 @@ def _ladder(settings: AnySettings) -> tuple[Rung, ...]:
 
 
 def _climb(
-    session: Session, settings: AnySettings, rungs: tuple[Rung, ...], is_stopped: Callable[[Status], bool]
+    session: Session,
+    settings: AnySettings,
+    rungs: tuple[Rung, ...],
+    is_stopped: Callable[[Status], bool],
+    may_go_on: bool = True,
 ) -> Status:
     """Climb until a state shows the machine at rest; at the top, repeat the upper two rungs."""
     seen: Status | None = None
@@ -157,7 +163,8 @@ def _climb(
             if not rung.blindly and (seen is None or seen.standing):
                 continue
             seen = _try(session, settings, rung, is_stopped)
-            if seen is not None and _rests(seen, is_stopped) and _is_continued(session, settings, seen):
+            rests = seen is not None and _rests(seen, is_stopped)
+            if seen is not None and rests and may_go_on and _is_continued(session, settings, seen):
                 seen = _try(session, settings, rungs[0], is_stopped)
             if seen is not None and _rests(seen, is_stopped):
                 return seen
@@ -166,8 +173,8 @@ def _climb(
 
 
 def _is_continued(session: Session, settings: AnySettings, status: Status) -> bool:
-    """Whether another client's stream releases its next segment: between segments the machine is at rest anyway."""
-    if status.held or session.keeper is not None or not _is_streamed(session):
+    """Whether another client's stream or play starts its next motion: between them the machine is at rest anyway."""
+    if status.held or session.keeper is not None or not _is_in_pieces(session):
         return False
     until = session.now() + NEXT_SEGMENT_S
     while session.now() < until:
@@ -179,8 +186,8 @@ def _is_continued(session: Session, settings: AnySettings, status: Status) -> bo
     return False
 
 
-def _is_streamed(session: Session) -> bool:
-    """Whether a stream owns the machine, or the owner is unknown."""
+def _is_in_pieces(session: Session) -> bool:
+    """Whether a stream or a play owns the machine, or the owner is unknown."""
     if not session.has_handshake:
         return False
     try:
@@ -188,9 +195,9 @@ def _is_streamed(session: Session) -> bool:
     except (CancelledError, NoAccessError):
         raise
     except PmacError as fault:
-        _log.warning("whether a program is streamed is unknown: %s", fault)
+        _log.warning("whether a program runs in pieces is unknown: %s", fault)
         return True
-    return bool(record.owner) and record.action == "stream"
+    return bool(record.owner) and record.action in ("stream", "play")
 
 
 def _endless(rungs: tuple[Rung, ...]) -> Iterator[Rung]:

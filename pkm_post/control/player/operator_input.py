@@ -31,6 +31,7 @@ class OperatorInput:
         is_over: whether to end at the next stop on the path.
         may_start: whether a start was ordered since this was cleared.
         is_held_back: whether a hold is a planned stop, or came when nothing ran: nothing starts until a resume.
+        holds_move: whether a hold of this operator stands in a move by hand.
     """
 
     def __init__(self, choices: PlayOptions, holds_on_path: bool = False) -> None:
@@ -44,7 +45,7 @@ class OperatorInput:
         self.single_block = choices.single_block
         self.optional_stop = choices.optional_stop
         self.block_skip, self.retract_mm = choices.block_skip, 0.0
-        self.is_over = self.may_start = self.is_held_back = False
+        self.is_over = self.may_start = self.is_held_back = self.holds_move = False
         self._orders: queue.SimpleQueue[Order] = queue.SimpleQueue()
 
     @property
@@ -56,22 +57,29 @@ class OperatorInput:
         """Give an order, from any thread."""
         self._orders.put(order)
 
-    def carry_out(self, session: Session, settings: AnySettings) -> None:
+    def carry_out(self, session: Session, settings: AnySettings, by_hand: bool = False) -> None:
         """Execute the orders; a resume of what is not held, or has a fault, is refused with a warning.
+
+        Args:
+            session: an open session.
+            settings: of the controller.
+            by_hand: whether an approach, a retract or codes run, for which no stop is planned.
 
         Raises:
             PmacError: a hold failed, or the link during a resume.
         """
         while not self._orders.empty():
             order = self._orders.get()
-            if order.kind == "hold" and self._holds_on_path:
+            if order.kind == "hold" and self._holds_on_path and not by_hand:
                 self.is_held_back = True
             elif order.kind == "hold":
-                self.is_held_back = not stopping.hold(session, settings).held
+                held = stopping.hold(session, settings).held
+                self.is_held_back, self.holds_move = not held, held and by_hand
             elif order.kind == "resume" and self.is_held_back:
                 self.is_held_back = False
             elif order.kind == "resume":
                 self._resume(session, settings)
+                self.holds_move = False
             else:
                 self._note(order)
 

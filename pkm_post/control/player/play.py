@@ -113,11 +113,11 @@ class Player:
         self._choices = choices or PlayOptions()
         self._whole, self._tolerances, skipped = self._choices.applied_to(trajectory), tolerances, self._choices.skipped
         self._skipped = None if skipped is None else self._choices.applied_to(skipped)
+        self._operator, self._timing = OperatorInput(self._choices, limits_jerk(machine)), Timing()
         self._follow(self._whole)
         self._planning_machine = replace(machine, block_rate=min(machine.block_rate, _MOST_RATE))
         self._host = host or Host()
         self._show, self._planning = show, planning
-        self._operator, self._timing = OperatorInput(self._choices, limits_jerk(machine)), Timing()
         self._layout = Layout(self._choices.first_variable)
         self._feed = ListFeed(session, settings, self._layout)
         self._program = resident_program(self._layout, settings, self._choices.program)
@@ -166,7 +166,8 @@ class Player:
     def _follow(self, trajectory: Trajectory) -> None:
         """Switch to the rows of another posting."""
         self._trajectory, self._way = trajectory, PathProgress(trajectory)
-        self._task = PlayContext(self._session, self._machine, self._settings, trajectory, self._choices.setup)
+        setup, operator = self._choices.setup, self._operator
+        self._task = PlayContext(self._session, self._machine, self._settings, trajectory, setup, operator)
 
     def _begin(self) -> None:
         """For a start inside the program, go there once the operator has loaded the tool."""
@@ -300,7 +301,9 @@ class Player:
     def _wait(self, what: str, row: int | None = None, until: Callable[[], bool] = lambda: False) -> None:
         """Wait until the operator starts or ends, or a condition holds."""
         operator = self._operator
-        operator.may_start, operator.retract_mm, self._is_waiting = False, 0.0, True
+        self._is_waiting = True
+        self._look(False)
+        operator.may_start, operator.retract_mm = False, 0.0  # orders given before it waits are not for this wait
         while not (operator.may_start or operator.is_over or until()):
             self._look(False)
             if operator.retract_mm:

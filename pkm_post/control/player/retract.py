@@ -14,7 +14,7 @@ import logging
 from pkm_post.control.link.errors import NotReadyError, PmacError
 from pkm_post.control.link.status import settled_status
 from pkm_post.control.link.tool_pose import pose_from_home
-from pkm_post.control.numerical_control.execute import execute, wait_for_rest
+from pkm_post.control.numerical_control.execute import execute
 from pkm_post.control.numerical_control.manual_moves import (
     CartesianJog,
     approach_trajectory,
@@ -103,7 +103,7 @@ class Retract:
         if plan is None:
             return errors(diagnostics)
         execute(task.session, task.machine, task.settings, plan.job)
-        status = wait_for_rest(task.session, task.settings, _MORE_S + plan.seconds / _SLOWEST)
+        status = task.wait_for_rest(_MORE_S + plan.seconds / _SLOWEST)
         if status.running or status.fault_texts():
             raise PmacError("the retract did not end: " + "; ".join(status.fault_texts() or ("it is held",)))
         return ()

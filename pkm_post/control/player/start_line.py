@@ -20,7 +20,7 @@ import numpy as np
 from pkm_post.control.link.errors import NotReadyError, PmacError
 from pkm_post.control.link.status import settled_status
 from pkm_post.control.link.tool_pose import pose_from_home
-from pkm_post.control.numerical_control.execute import execute, wait_for_rest
+from pkm_post.control.numerical_control.execute import execute
 from pkm_post.control.numerical_control.manual_moves import approach_trajectory
 from pkm_post.control.numerical_control.plan import MovePlan, planned
 from pkm_post.control.player.approach_check import approach_faults
@@ -59,7 +59,7 @@ def go_to_row(task: PlayContext, row: int, feed: float = APPROACH_MM_S, repeat_c
             run_events(task, row, events)
         return
     execute(task.session, task.machine, task.settings, plan.job)
-    status = wait_for_rest(task.session, task.settings, _MORE_S + plan.seconds / _SLOWEST)
+    status = task.wait_for_rest(_MORE_S + plan.seconds / _SLOWEST)
     if status.running or status.fault_texts():
         raise PmacError("the approach did not arrive: " + "; ".join(status.fault_texts() or ("it is held",)))
 

@@ -2,26 +2,30 @@
 """Stop events: tool change, spindle, coolant and dwell between two parts of a program, while the machine rests.
 
 The codes are those of posted programs, and are sent the same way: as a program that moves the tip by a millionth of a
-millimetre, so that it can be certified, listed and started.
+millimetre, so that it can be certified, listed and started. Its last line sets the P-variable with its number, since
+nothing else in the state of a controller tells its end from an abort.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pkm_post.control.link.errors import PmacError
+from pkm_post.control.link.queries import read_number
 from pkm_post.control.link.session import Session
-from pkm_post.control.link.status import AnySettings
+from pkm_post.control.link.status import AnySettings, Status
 from pkm_post.control.numerical_control.execute import execute, wait_for_rest
 from pkm_post.control.numerical_control.manual_moves import stationary_trajectory
 from pkm_post.control.numerical_control.plan import planned
+from pkm_post.control.player.operator_input import OperatorInput
 from pkm_post.control.player.sections import rows_of
 from pkm_post.model import EMPTY_SETUP, Event, EventKind, Machine, Refused, Setup, Tolerances, Trajectory
 from pkm_post.toolpath import ToolPose
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
+_POLL_S = 0.05
 _LONGEST_S = 120.0
 """Longest time of a code of the machine: a tool change."""
 
@@ -45,6 +49,7 @@ class PlayContext:
         settings: of its controller.
         trajectory: the program.
         setup: part, stock and fixtures, where known.
+        operator: orders that are executed while a move by hand runs; None if there are none.
     """
 
     session: Session
@@ -52,6 +57,26 @@ class PlayContext:
     settings: AnySettings
     trajectory: Trajectory
     setup: Setup = EMPTY_SETUP
+    operator: OperatorInput | None = None
+
+    def attend(self) -> None:
+        """Execute the orders of the operator during a move by hand."""
+        if self.operator is not None:
+            self.operator.carry_out(self.session, self.settings, by_hand=True)
+
+    def wait_for_rest(self, seconds: float) -> Status:
+        """The state at the end of a move by hand; a hold of the operator lasts until the resume or the end of the play.
+
+        Raises:
+            PmacError: as ``execute.wait_for_rest``.
+        """
+        while True:
+            status = wait_for_rest(self.session, self.settings, seconds, self.attend)
+            operator = self.operator
+            if not status.held or operator is None or not operator.holds_move or operator.is_over:
+                return status
+            self.session.sleep(_POLL_S)
+            self.attend()
 
 
 def run_events(task: PlayContext, row: int, events: tuple[Event, ...]) -> None:
@@ -61,14 +86,20 @@ def run_events(task: PlayContext, row: int, events: tuple[Event, ...]) -> None:
         Refused: the events cannot be planned.
         PmacError: machine or link are not ready, or the events take too long.
     """
-    session, machine, settings = task.session, task.machine, task.settings
+    machine, settings = task.machine, task.settings
     here, length = pose_before(task.trajectory, row)
     at_rest = tuple(Event(0, each.kind, each.value) for each in events)
     plan, diagnostics = planned(stationary_trajectory(machine, here, length, at_rest), machine, settings, TOLERANCES)
     if plan is None:
         raise Refused(diagnostics)
-    execute(session, machine, settings, plan.job)
+    program = plan.job.program
+    done = f"P{program.number}"
+    task.session.query(f"{done}=0")  # harmless if repeated
+    marked = replace(plan.job, program=replace(program, lines=(*program.lines, f"{done}=1")))
+    execute(task.session, machine, settings, marked)
     dwells = sum(each.value for each in events if each.kind is EventKind.DWELL)
-    status = wait_for_rest(session, settings, dwells + _LONGEST_S)
+    status = task.wait_for_rest(dwells + _LONGEST_S)
     if status.running or status.fault_texts():
         raise PmacError("the codes between two moves did not end: " + "; ".join(status.fault_texts() or ("held",)))
+    if read_number(task.session, done) != 1:
+        raise PmacError("the codes between two moves were ended from elsewhere; go on with --from-line")

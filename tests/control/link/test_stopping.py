@@ -14,6 +14,7 @@ from pkm_post.control.link import run as operate
 from pkm_post.control.link import stopping
 from pkm_post.control.link.download import download
 from pkm_post.control.link.errors import CancelledError
+from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.status import read_status
 
 _QUICK = small_program(100)
@@ -54,6 +55,27 @@ def test_a_hold_rests_on_the_path_and_goes_on(moving):
     assert status.held and status.standing
     assert_at_rest(wire)
     assert operate.resume_program(session, SETTINGS).running
+
+
+@pytest.mark.parametrize("action", ["stream", "play"])
+@pytest.mark.parametrize("stop", [stopping.hold, stopping.abort])
+def test_a_stop_between_two_motions_of_another_client_stops_the_next_one(stop, action):
+    """Between them the machine rests and no program runs, but the other client is about to start one."""
+    wire = Wire(controller(), "tcp", moves=True)
+    other, begun = Wire(wire.controller, "tcp", moves=True, line=wire.line), []
+    with wire.session() as owner, other.session() as session, owned(owner, action):
+        download(owner, SLOW)
+        stopped_at, passed = other.now, other.sleep
+
+        def sleep(seconds):
+            passed(seconds)
+            if other.now > stopped_at + 0.5 and not begun:
+                begun.append(operate.start_program(owner, SETTINGS, SLOW, FIRST))
+
+        other.sleep = session._sleep = sleep
+        status = stop(session, SETTINGS)
+    assert begun[0].running and (status.held or not status.running)
+    assert_at_rest(wire)
 
 
 def test_an_abort_ends_the_program(moving):

@@ -224,6 +224,70 @@ def test_an_m_code_before_the_first_line_is_repeated_where_that_is_wanted(repeat
     assert playing.wire.controller.variables.read("P", 7004) == (21 if repeats else 0)
 
 
+def during_a_move_by_hand(playing, act):
+    """Let something happen when codes or an approach have run for a second."""
+    passed, ms = playing.wire.sleep, [0.0]
+
+    def sleep(seconds):
+        passed(seconds)
+        before = ms[0]
+        if playing.wire.controller.runs_program() and playing.states[-1].phase != "runs":
+            ms[0] += 1000 * seconds
+        if before < 1000 <= ms[0]:
+            act()
+
+    playing.wire.sleep = sleep
+
+
+DWELL = (Event(1, EventKind.DWELL, 4.0),)
+
+
+@pytest.mark.parametrize("at_once", [False, True])
+def test_an_abort_from_elsewhere_while_codes_run_ends_the_play(at_once):
+    playing = Playing.of(trajectory_of(events=DWELL))
+    during_a_move_by_hand(playing, lambda: stopping.abort(playing.player._session, SETTINGS, at_once))
+    with pytest.raises(PmacError, match="codes between two moves were ended from elsewhere"):
+        playing.play()
+    assert playing.arrived() > 10.0
+
+
+@BOTH
+@pytest.mark.parametrize(("events", "row"), [(DWELL, 0), ((), 2)], ids=["codes", "approach"])
+def test_a_hold_while_codes_or_an_approach_run_is_immediate_and_lasts_until_the_resume(events, row, machine):
+    playing = Playing.of(trajectory_of(events=events), machine=machine)
+    passed, held = playing.wire.sleep, []
+
+    def sleep(seconds):
+        passed(seconds)
+        if playing.wire.controller.systems[0].holding and len(held) < 2:
+            held[:] = held or [playing.wire.now]
+            if playing.wire.now - held[0] > 4.0:
+                assert np.ptp(playing.lengths[-2000:], axis=0).max() == 0.0  # its deceleration takes a second
+                held.append(playing.wire.now)
+                playing.player.order(Order("resume"))
+
+    playing.wire.sleep = sleep
+    during_a_move_by_hand(playing, lambda: playing.player.order(Order("hold")))
+    assert playing.play(first_row=row).finished
+    assert playing.arrived() < 1e-3 and held[1:]
+
+
+def test_an_end_while_a_hold_stands_in_codes_ends_the_play():
+    playing = Playing.of(trajectory_of(events=DWELL))
+    during_a_move_by_hand(playing, lambda: [playing.player.order(Order(kind)) for kind in ("hold", "end")])
+    with pytest.raises(PmacError, match="did not end: held"):
+        playing.play()
+    assert playing.wire.controller.systems[0].holding
+
+
+def test_a_start_while_codes_run_is_not_for_the_stop_behind_them():
+    playing = Playing.of(trajectory_of(events=(*DWELL, Event(1, EventKind.STOP, 0.0))))
+    asked = []
+    playing.answer = lambda player: asked.append(player.order(Order("start")))
+    during_a_move_by_hand(playing, lambda: playing.player.order(Order("start")))
+    assert playing.play().finished and asked
+
+
 def test_optional_stops_are_switched_while_it_plays():
     events = (Event(1, EventKind.STOP, 1), Event(2, EventKind.STOP, 1))
 
