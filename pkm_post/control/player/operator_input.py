@@ -17,6 +17,8 @@ from pkm_post.control.link.status import AnySettings
 from pkm_post.control.player.orders import Order, PlayOptions
 from pkm_post.control.player.pieces import HIGHEST_OVERRIDE
 
+LOWEST_OVERRIDE = 0.01
+"""Least override above 0: a slower motion is planned no faster than it runs."""
 _log = logging.getLogger(__name__)
 
 
@@ -41,7 +43,7 @@ class OperatorInput:
             choices: initial settings.
             holds_on_path: whether a hold is a planned stop; by default it is a feed hold of the controller.
         """
-        self._asked, self._holds_on_path = choices.override, holds_on_path
+        self._asked, self._holds_on_path = _within(choices.override), holds_on_path
         self.single_block = choices.single_block
         self.optional_stop = choices.optional_stop
         self.block_skip, self.retract_mm = choices.block_skip, 0.0
@@ -92,7 +94,7 @@ class OperatorInput:
 
     def _note(self, order: Order) -> None:
         if order.kind == "override":
-            self._asked = min(max(order.value, 0.0), HIGHEST_OVERRIDE)
+            self._asked = _within(order.value)
         elif order.kind == "single":
             self.single_block = bool(order.value)
         elif order.kind == "optional":
@@ -107,3 +109,8 @@ class OperatorInput:
             self.is_over = True
         else:
             raise ValueError(f"kind: expected an order, got {order.kind!r}")
+
+
+def _within(override: float) -> float:
+    """An override that can be planned: 0, or from the lowest to the highest one."""
+    return min(max(override, LOWEST_OVERRIDE), HIGHEST_OVERRIDE) if override > 0 else 0.0

@@ -13,7 +13,7 @@ from playing import BOTH, JUMPING, RECTANGLE, SETTINGS, TOLERANCES, Playing, dis
 from pkm_post.control.link import stopping
 from pkm_post.control.link.errors import LinkLostError, PmacError
 from pkm_post.control.player.knot_list import Layout
-from pkm_post.control.player.operator_input import OperatorInput
+from pkm_post.control.player.operator_input import LOWEST_OVERRIDE, OperatorInput
 from pkm_post.control.player.orders import Order, PlayOptions
 from pkm_post.control.player.run_to_rest import RunToRest
 from pkm_post.control.simulator import function_programs
@@ -222,6 +222,13 @@ def test_an_m_code_before_the_first_line_is_repeated_where_that_is_wanted(repeat
     playing.wire.controller.load(function_programs([21]))
     assert playing.play(first_row=2, repeat_codes=repeats).finished and playing.arrived() < 1e-3
     assert playing.wire.controller.variables.read("P", 7004) == (21 if repeats else 0)
+
+
+@pytest.mark.parametrize("asked", [1e-300, 1e-11, 0.009])
+def test_an_override_that_cannot_be_planned_is_the_lowest_one(asked):
+    playing = Playing.of(at={30: [Order("override", asked)], 60: [Order("override", 1.0)]})
+    assert playing.play(override=asked).finished
+    assert {state.override for state in playing.states} == {LOWEST_OVERRIDE, 1.0}
 
 
 def during_a_move_by_hand(playing, act):
