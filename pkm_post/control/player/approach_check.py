@@ -10,6 +10,7 @@ Input: a program, an approach to one of its rows. Output: the collisions of the 
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from typing import Any
 
@@ -25,6 +26,7 @@ from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.toolpath import ToolPose, clearance_path, pose_columns
 
 _APPROACH, _BETWEEN = "approach", "between"
+_STRAIGHT_MM = 1e-6
 
 
 def approach_faults(task: PlayContext, row: int, approach: Trajectory) -> tuple[Diagnostic, ...]:
@@ -37,8 +39,14 @@ def approach_faults(task: PlayContext, row: int, approach: Trajectory) -> tuple[
     """
     if task.setup.is_empty:
         return ()
-    found = find_collisions(_with_rows_before(task, row, approach), task.machine, task.setup, TOLERANCES)
-    return tuple(each for each in found.faults if each.place.operation == _APPROACH)
+    # How much stock is left around the tool where it stands is not known, as after an abort: it may cut on its way up.
+    solids, stock = replace(task.setup, stock=None), replace(task.setup, part=None, fixtures=())
+    found = [
+        find_collisions(_with_rows_before(task, row, approach, upwards), task.machine, setup, TOLERANCES).faults
+        for setup, upwards in ((solids, Kind.RAPID), (stock, Kind.LINE))
+        if not setup.is_empty
+    ]
+    return tuple(each for faults in found for each in faults if each.place.operation == _APPROACH)
 
 
 def check_start(task: PlayContext, first: Array, tool_length: float | None) -> None:
@@ -62,19 +70,20 @@ def check_start(task: PlayContext, first: Array, tool_length: float | None) -> N
         raise NotReadyError([f"the trajectory begins elsewhere than the program: a strut is {off:.3f} mm off there"])
 
 
-def _with_rows_before(task: PlayContext, row: int, approach: Trajectory) -> Trajectory:
-    """The rows before a row, and the approach to it, which may cut along the axis if the row does."""
+def _with_rows_before(task: PlayContext, row: int, approach: Trajectory, upwards: Kind) -> Trajectory:
+    """The rows before a row, and the approach to it, which cuts nothing, but perhaps where it begins upwards."""
     program = task.trajectory
-    cuts = Kind.RAPID if program.kind[row] == Kind.RAPID else Kind.LINE
-    number = np.arange(len(approach))
-    kinds = np.where(number == 0, Kind.LINE, np.where(number == len(approach) - 1, cuts, Kind.RAPID))
+    way, up = approach.tip[0] - approach.start_tip, approach.start_axis
+    begins_upwards = way @ up > norm(way) - _STRAIGHT_MM
+    kinds = np.where(begins_upwards & (np.arange(len(approach)) == 0), upwards, Kind.RAPID)
     start = ToolPose(approach.start_tip, approach.start_axis, approach.start_spin)
     without = max(program.tools) + 1
     parts = [_moves(program, row, approach, kinds, len(program.operations))]
     if row:
         before = rows_of(program, 0, row)
         end = ToolPose(before.tip[-1], before.axis[-1], float(before.spin[-1]))
-        over = [pose for pose in clearance_path(end, start, _height(task, approach)) if not pose.is_at(end)]
+        route = (end, *clearance_path(end, start, _height(task, approach)))
+        over = [pose for last, pose in itertools.pairwise(route) if not last.is_at(pose)]
         between = _moves(
             program, row, _through(approach, over), np.full(len(over), Kind.RAPID), len(program.operations) + 1
         )

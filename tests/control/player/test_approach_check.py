@@ -10,7 +10,7 @@ from pkm_post.control.numerical_control.manual_moves import approach_trajectory
 from pkm_post.control.player.approach_check import approach_faults
 from pkm_post.control.player.orders import Order
 from pkm_post.control.player.stop_events import PlayContext, pose_before
-from pkm_post.model import Kind, Mesh, Refused, Setup
+from pkm_post.model import Kind, Mesh, Refused, Setup, Shank
 from pkm_post.toolpath import ToolPose
 
 STOCK = Mesh("stock.stl", box([-10, -10, 60], [40, 30, 95]))
@@ -50,6 +50,23 @@ def test_a_clamp_on_the_way_across(top, found):
     clamp = Mesh("clamp.stl", box([5, 40, 0], [20, 60, top]))
     assert codes(trajectory_of(), 2, Setup(fixtures=(clamp,)), (-12.0, 90.0, 0.0)) >= found
     assert bool(codes(trajectory_of(), 2, Setup(fixtures=(clamp,)), (-12.0, 90.0, 0.0))) == bool(found)
+
+
+SLOT = np.concatenate([box([0, -20, 60], [40, -4, 95]), box([0, 4, 60], [40, 20, 95])])
+"""A slot of 8 mm, into which a ball of 12 mm with a thin shank goes from its end, 15 mm below the top."""
+T_SLOT = trajectory_of(
+    [[60, 0, 120], [60, 0, 80], [20, 0, 80], [30, 0, 80]], kind=[Kind.RAPID, Kind.RAPID, Kind.LINE, Kind.LINE]
+)
+
+
+@pytest.mark.parametrize(
+    ("row", "shift"), [(3, (40, 0, 60)), (3, (0, 0, 20)), (3, (0, 0, 65)), (2, (-30, 0, 0)), (2, (-5, 0, 0))]
+)
+def test_the_way_neither_cuts_down_into_a_slot_nor_up_out_of_it_through_the_part(row, shift):
+    shanks = {tool: Shank(12.0, 6.0) for tool in T_SLOT.tools}
+    into, stock, part = row == 3, Mesh("stock.stl", SLOT), Mesh("part.stl", SLOT)
+    assert codes(T_SLOT, row, Setup(stock=stock, shanks=shanks), shift) == ({"K136"} if into else set())
+    assert codes(T_SLOT, row, Setup(part=part, shanks=shanks), shift) == ({"K131"} if into or shift[0] < -20 else set())
 
 
 def test_a_play_whose_way_is_not_free_does_not_begin():
