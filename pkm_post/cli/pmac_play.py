@@ -72,9 +72,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def add_solids(parser: argparse.ArgumentParser) -> None:
     """Add the options for the collision check of the approach."""
     for name, what in _SOLIDS.items():
-        help_text = (
-            f"STL or STEP file of {what}, mm in the work frame, which the way to the beginning is checked against"
-        )
+        checked = "which the way to the beginning is checked against, and with other offsets the program"
+        help_text = f"STL or STEP file of {what}, mm in the work frame, {checked}"
         parser.add_argument(
             f"--{name}", metavar="FILE", action="append" if name == "fixture" else "store", help=help_text
         )
@@ -91,8 +90,8 @@ def setup_of(namespace: argparse.Namespace) -> tuple[Setup, tuple[Diagnostic, ..
 
 def play(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Play a trajectory, with orders from the standard input."""
-    from pkm_post.control.player import Player, read_playable
-    from pkm_post.model import Refused
+    from pkm_post.control.player import Player, collisions_at_offsets, read_playable
+    from pkm_post.model import Refused, errors
     from pkm_post.toolpath import MachineOffsets
 
     offsets = MachineOffsets(namespace.shift, dict(namespace.tool_length))
@@ -108,6 +107,12 @@ def play(session: Session, target: Target, namespace: argparse.Namespace) -> int
     if choices is None or (skipped is None and namespace.skipped is not None):
         return 1
     choices = replace(choices, skipped=skipped)
+    met = [
+        collisions_at_offsets(made, target.machine, offsets, choices.setup) for made in (trajectory, skipped) if made
+    ]
+    _print_faults(diagnostics := tuple(each for found in met for each in found))
+    if errors(diagnostics):
+        return 1
     shown = _Shown(session.now)
     player = Player(session, target.machine, target.settings, trajectory, tolerances, choices, shown.show)
     shown.listen(player)

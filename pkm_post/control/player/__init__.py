@@ -10,7 +10,7 @@ motion, each with a stop. Both are a ``certified_motion``, compared with its sub
 from pkm_post.control.player.approach_check import approach_faults, check_start
 from pkm_post.control.player.orders import Order, OrderKind, PlayOptions, PlayState
 from pkm_post.control.player.play import Player, PlayResult
-from pkm_post.control.player.playable import first_row, read_playable
+from pkm_post.control.player.playable import collisions_at_offsets, first_row, read_playable
 from pkm_post.control.player.stop_events import PlayContext
 from pkm_post.control.player.window_play import WindowPlay
 
@@ -25,6 +25,7 @@ __all__ = [
     "WindowPlay",
     "approach_faults",
     "check_start",
+    "collisions_at_offsets",
     "first_row",
     "read_playable",
 ]

@@ -9,7 +9,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from pkm_post.certificate import machine_fault, values_beyond_machine
-from pkm_post.model import Diagnostic, Machine, Place, Tolerances, Trajectory, errors, threads
+from pkm_post.control.player.stop_events import TOLERANCES
+from pkm_post.machine import find_collisions
+from pkm_post.model import Diagnostic, Machine, Place, Setup, Tolerances, Trajectory, errors, threads
 from pkm_post.toolpath import MachineOffsets, StartLine, not_repeated, row_of_line, with_machine_offsets
 from pkm_post.writing import trajectory_file
 
@@ -40,6 +42,13 @@ def read_playable(
         return None, None, faults
     moved, found = with_machine_offsets(trajectory, machine, offsets or MachineOffsets())
     return moved, trajectory.tolerances, (*faults, *found)
+
+
+def collisions_at_offsets(trajectory: Trajectory, machine: Machine, offsets: MachineOffsets, setup: Setup) -> Findings:
+    """Collisions of a whole trajectory, with these offsets; none without offsets: the posting has looked for them."""
+    if offsets.is_empty or setup.is_empty:
+        return ()
+    return find_collisions(trajectory, machine, setup, trajectory.tolerances or TOLERANCES).faults
 
 
 def thread_faults(trajectory: Trajectory, file: Path) -> Findings:

@@ -14,7 +14,7 @@ from pathlib import Path
 import FreeCAD
 from PySide import QtWidgets
 
-from pkm_post.control.player import read_playable
+from pkm_post.control.player import collisions_at_offsets, read_playable
 from pkm_post.freecad_app.core_texts import fault_text
 from pkm_post.freecad_gui.control_panel.buttons import FilesField, set_usable, side_by_side
 from pkm_post.freecad_gui.control_panel.console import Console
@@ -222,6 +222,8 @@ class PlaySetup(QtWidgets.QGroupBox):
             moved, found = with_machine_offsets(trajectory, machine, offsets)
             skipped, also = (None, ()) if without is None else with_machine_offsets(without, machine, offsets)
             diagnostics += (*found, *also)
+            for made in (moved, skipped):
+                diagnostics += () if made is None else collisions_at_offsets(made, machine, offsets, setup)
             if moved is None or errors(diagnostics):
                 raise Refused(diagnostics)
             return Ready(moved, skipped, setup, diagnostics)

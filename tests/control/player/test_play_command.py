@@ -100,6 +100,19 @@ def test_a_clamp_on_the_way_to_a_line(posted, tmp_path, capsys, starts_where_it_
     assert "K133" in capsys.readouterr().err and made.systems[0].path.abrupt_stops == 0
 
 
+@pytest.mark.parametrize(("top", "length", "code"), [(164.0, 120.0, 0), (164.0, 100.0, 1), (140.0, 100.0, 0)])
+def test_a_shorter_tool_whose_holder_meets_the_part_is_not_played(
+    posted, tmp_path, capsys, starts_where_it_waits, top, length, code
+):
+    (tmp_path / "part.stl").write_bytes(binary_stl(box([30, -20, 0], [40, 20, top])))
+    made = copy.deepcopy(set_up())
+    with served(made, "tcp") as port:
+        offsets = "--approach", "--tool-length", f"0={length}"
+        assert play(port, posted, "--part", str(tmp_path / "part.stl"), *offsets) == code
+    reported = capsys.readouterr().err
+    assert ("K117" in reported) == bool(code) and made.systems[0].path.abrupt_stops == 0, reported
+
+
 def approach(port, folder, *arguments):
     order = [str(folder / "part.pmc"), "--port", port, "--machine", NAME, *arguments]
     return main(["pmac", "approach", *order])
