@@ -95,10 +95,10 @@ def post(
         results = staged(program_path.parent, manifest.manifest_name(program_path.stem))
         with memory_guard(str(program_path)), results as folder:
             settings = run.value(controller_settings(machine))
-            frame = PostContext(folder / program_path.name, machine, *settings, options, search)
-            parts, report = _all_steps(run, frame, program, setup)
+            context = PostContext(folder / program_path.name, machine, *settings, options, search)
+            parts, report = _all_steps(run, context, program, setup)
             with run.goes_on():
-                manifest.write(folder, program_path.stem, {frame.trajectory.name: frame.trajectory_hash})
+                manifest.write(folder, program_path.stem, {context.trajectory.name: context.trajectory_hash})
             run.end()
             posted = _posted(run, program_path, sorted(os.listdir(folder)), parts, report)
     except OSError as fault:
@@ -131,26 +131,26 @@ def _another(name: str) -> str:
     return f"also {name}"
 
 
-def _all_steps(run: Run, frame: PostContext, program: Program, setup: Setup) -> tuple[list[str], dict[str, Any]]:
+def _all_steps(run: Run, context: PostContext, program: Program, setup: Setup) -> tuple[list[str], dict[str, Any]]:
     """Run the steps in order; return the names of the parts of the program, and the content of the report."""
-    trajectory = _stored_trajectory(run, frame, program)
-    motion, feed, names, covered = _written_program(run, frame, trajectory, setup)
-    played, certificate, files = _certificate(run, frame, trajectory, motion, covered)
+    trajectory = _stored_trajectory(run, context, program)
+    motion, feed, names, covered = _written_program(run, context, trajectory, setup)
+    played, certificate, files = _certificate(run, context, trajectory, motion, covered)
     results = Results(
-        trajectory, frame.machine, motion, played, certificate, frame.tolerances, feed, program.reading, files,
-        setup, _work_offset(frame), frame.options.report_unit, frame.options.report_date,
+        trajectory, context.machine, motion, played, certificate, context.tolerances, feed, program.reading, files,
+        setup, _work_offset(context), context.options.report_unit, context.options.report_date,
     )  # fmt: skip
-    report = _report(run, frame, results)
-    for name in frame.options.also:
-        _write_another(run, frame, name, results)
+    report = _report(run, context, results)
+    for name in context.options.also:
+        _write_another(run, context, name, results)
     return names, report
 
 
-def _stored_trajectory(run: Run, frame: PostContext, program: Program) -> Trajectory:
+def _stored_trajectory(run: Run, context: PostContext, program: Program) -> Trajectory:
     """The trajectory as read back from its file: the plan is made from the stored data."""
     with run.step(_TRAJECTORY) as notes:
-        trajectory = run.value(trajectory_file.read(_store(run, frame, program)))
-        run.accept(_outputs_without_threads(trajectory, frame.options))
+        trajectory = run.value(trajectory_file.read(_store(run, context, program)))
+        run.accept(_outputs_without_threads(trajectory, context.options))
         notes.append(f"{len(trajectory)} segments")
     return trajectory
 
@@ -163,47 +163,47 @@ def _outputs_without_threads(trajectory: Trajectory, options: Options) -> tuple[
     return (Diagnostic("K157", trajectory.place(found[0].first), f"with {', '.join(others)}"),)
 
 
-def _store(run: Run, frame: PostContext, program: Program) -> Path:
+def _store(run: Run, context: PostContext, program: Program) -> Path:
     """Place a program and write its trajectory; return the path of the file."""
-    placed = run.value(trajectory_of(program, frame.machine, frame.options))
-    trajectory_file.write_in_private(replace(placed, tolerances=frame.tolerances), frame.trajectory)
-    return frame.trajectory
+    placed = run.value(trajectory_of(program, context.machine, context.options))
+    trajectory_file.write_in_private(replace(placed, tolerances=context.tolerances), context.trajectory)
+    return context.trajectory
 
 
 def _written_program(
-    run: Run, frame: PostContext, trajectory: Trajectory, setup: Setup
+    run: Run, context: PostContext, trajectory: Trajectory, setup: Setup
 ) -> tuple[Motion, FeedStudy, list[str], tuple[Coverage, ...]]:
     """Plan and write the program: its motion and feed, the names of its parts, and the coverage.
 
     Schedule and struts are freed before the program is read back: a long one needs the memory.
     """
-    plan, covered = _planned(run, frame, trajectory, setup)
-    return plan.motion, plan.feed, _motion_program(run, frame, trajectory, plan.struts), covered
+    plan, covered = _planned(run, context, trajectory, setup)
+    return plan.motion, plan.feed, _motion_program(run, context, trajectory, plan.struts), covered
 
 
-def _planned(run: Run, frame: PostContext, trajectory: Trajectory, setup: Setup) -> tuple[Plan, tuple[Coverage, ...]]:
+def _planned(run: Run, context: PostContext, trajectory: Trajectory, setup: Setup) -> tuple[Plan, tuple[Coverage, ...]]:
     """Tool poses and strut lengths by time, and the coverage."""
     with (
         in_background(
-            lambda: frame.search(trajectory, frame.machine, setup, frame.tolerances), not setup.is_empty
+            lambda: context.search(trajectory, context.machine, setup, context.tolerances), not setup.is_empty
         ) as found,
-        in_background(lambda: frame.trajectory_hash, len(trajectory) > _SHORT) as fingerprint,
+        in_background(lambda: context.trajectory_hash, len(trajectory) > _SHORT) as fingerprint,
     ):
-        feed_plan = _feed_plan(run, frame, trajectory)
+        feed_plan = _feed_plan(run, context, trajectory)
         covered = _collisions(run, found, setup)
         fingerprint()  # cached in the context
-    return _interpolation(run, frame, feed_plan), covered
+    return _interpolation(run, context, feed_plan), covered
 
 
-def _feed_plan(run: Run, frame: PostContext, trajectory: Trajectory) -> FeedPlan:
+def _feed_plan(run: Run, context: PostContext, trajectory: Trajectory) -> FeedPlan:
     """The path with rounded corners, and its schedule."""
     with run.step(_FEED_PLAN) as notes:
-        feed_plan, faults = plan_feed(trajectory, frame.machine, frame.tolerances)
+        feed_plan, faults = plan_feed(trajectory, context.machine, context.tolerances)
         if errors(faults):
             from pkm_post.posting.machine_check import home_faults
 
             # if home itself is out of reach, moving the part does not help
-            faults = (*home_faults(frame.machine, frame.machine.name), *faults)
+            faults = (*home_faults(context.machine, context.machine.name), *faults)
         feed_plan = run.value((feed_plan, faults))
         notes.append(f"{feed_plan.schedule.rests_ms[-1] / 1000:.1f} s of motion")
     return feed_plan
@@ -218,33 +218,33 @@ def _collisions(run: Run, found: Callable[[], Collisions], setup: Setup) -> tupl
     return collisions.coverage
 
 
-def _interpolation(run: Run, frame: PostContext, feed_plan: FeedPlan) -> Plan:
+def _interpolation(run: Run, context: PostContext, feed_plan: FeedPlan) -> Plan:
     """Tool poses and strut lengths by time, valid for the controller."""
     with run.step(_INTERPOLATION) as notes:
         plan = interpolate(feed_plan)
-        run.accept(frame.controller.faults(plan.struts, frame.settings, frame.path.name))
+        run.accept(context.controller.faults(plan.struts, context.settings, context.path.name))
         notes.append(f"{len(plan.motion)} points")
     return plan
 
 
-def _motion_program(run: Run, frame: PostContext, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
+def _motion_program(run: Run, context: PostContext, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
     """Write the program and the set-up it relies on; return the names of its parts."""
     with run.step(_PROGRAM) as notes:
-        names = _write_parts(frame, trajectory, struts)
-        size = sum(frame.path.with_name(name).stat().st_size for name in names)
+        names = _write_parts(context, trajectory, struts)
+        size = sum(context.path.with_name(name).stat().st_size for name in names)
         notes.append(f"{size / 1e6:.1f} MB" + f" in {len(names)} parts" * (len(names) > 1))
     return names
 
 
-def _write_parts(frame: PostContext, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
-    controller, settings, machine = frame.controller, frame.settings, frame.machine
-    records = program_files.source_hash_lines(frame.trajectory_hash, machine.fingerprint)
+def _write_parts(context: PostContext, trajectory: Trajectory, struts: StrutMotion) -> list[str]:
+    controller, settings, machine = context.controller, context.settings, context.machine
+    records = program_files.source_hash_lines(context.trajectory_hash, machine.fingerprint)
     heading = [*summary.heading(trajectory), *records]
     parts = tuple(map(program_files.with_own_hash, controller.program_parts(struts, settings, heading)))
-    names = outputs.write_parts(frame.path, parts)
+    names = outputs.write_parts(context.path, parts)
     setup = controller.setup_text(settings, machine.name, machine.strut_stroke)
     if setup is not None:
-        outputs.write_parts(frame.sibling(controller.SETUP_SUFFIX), (setup,))
+        outputs.write_parts(context.sibling(controller.SETUP_SUFFIX), (setup,))
     return names
 
 
@@ -265,70 +265,70 @@ def write_program(
     found, faults = controller_settings(machine)
     if found is None:
         return None, faults
-    frame = PostContext(path, machine, *found, Options())
-    faults = (*faults, *frame.controller.faults(plan.struts, frame.settings, path.name))
+    context = PostContext(path, machine, *found, Options())
+    faults = (*faults, *context.controller.faults(plan.struts, context.settings, path.name))
     if errors(faults):
         return None, faults
-    trajectory_file.write(trajectory, frame.trajectory)
-    return _write_parts(frame, trajectory, plan.struts), faults
+    trajectory_file.write(trajectory, context.trajectory)
+    return _write_parts(context, trajectory, plan.struts), faults
 
 
-def _work_offset(frame: PostContext) -> tuple[str, Array]:
+def _work_offset(context: PostContext) -> tuple[str, Array]:
     """Name of the work offset, and the (4, 4) pose of {C} in {M}; a trajectory exists, so a name is valid."""
-    offset = frame.options.work_offset
-    return (offset, frame.machine.work_offsets[offset]) if isinstance(offset, str) else ("as given", offset)
+    offset = context.options.work_offset
+    return (offset, context.machine.work_offsets[offset]) if isinstance(offset, str) else ("as given", offset)
 
 
 def _certificate(
-    run: Run, frame: PostContext, trajectory: Trajectory, motion: Motion, covered: tuple[Coverage, ...]
+    run: Run, context: PostContext, trajectory: Trajectory, motion: Motion, covered: tuple[Coverage, ...]
 ) -> tuple[StrutMotion, Certificate, dict[str, Any]]:
     """The program read back from its text, its certificate, and the hashes of both files for the report."""
     with run.step(_CERTIFICATE) as notes:
-        played, digests = _read_back(run, frame)
-        measured = certify(played, frame.path.name, trajectory, frame.machine, motion, frame.tolerances, covered)
+        played, digests = _read_back(run, context)
+        measured = certify(played, context.path.name, trajectory, context.machine, motion, context.tolerances, covered)
         certificate = run.value(measured)
         notes.append(f"{certificate.instants} instants")
-        files = summary.hashes(digests, frame.trajectory_hash)
+        files = summary.hashes(digests, context.trajectory_hash)
     return played, certificate, files
 
 
-def _read_back(run: Run, frame: PostContext) -> tuple[StrutMotion, list[str]]:
+def _read_back(run: Run, context: PostContext) -> tuple[StrutMotion, list[str]]:
     """The motion of the program and the hashes of its parts; the texts are freed before it is measured."""
-    texts = run.value(read_texts(frame.path, frame.controller))
-    played = run.value(frame.controller.read_parts(texts, frame.settings))
+    texts = run.value(read_texts(context.path, context.controller))
+    played = run.value(context.controller.read_parts(texts, context.settings))
     return played, [program_files.program_hash(text) for _, text in texts]
 
 
-def _report(run: Run, frame: PostContext, results: Results) -> dict[str, Any]:
+def _report(run: Run, context: PostContext, results: Results) -> dict[str, Any]:
     """Write the report as JSON and as a page; return its content."""
     with run.step(_REPORT) as notes:
         report = summary.report(results)
-        summary.write(report, frame.sibling(result_files.REPORT))
-        write_page(frame.sibling(result_files.PAGE), report, results)
+        summary.write(report, context.sibling(result_files.REPORT))
+        write_page(context.sibling(result_files.PAGE), report, results)
         notes.extend(summary.verdict(results.certificate))
     run.print([*results.reading, *report["certificate"]["meaning"]])
     return report
 
 
-def _write_another(run: Run, frame: PostContext, name: str, results: Results) -> None:
+def _write_another(run: Run, context: PostContext, name: str, results: Results) -> None:
     """Write an additional output."""
     trajectory = results.trajectory
     with run.step(_another(name)) as notes:
         if name == LINUXCNC:
-            run.accept(outputs.write_for_linuxcnc(frame.path, trajectory, frame.tolerances.tip))
+            run.accept(outputs.write_for_linuxcnc(context.path, trajectory, context.tolerances.tip))
             return
         if name == PICTURE:
             from pkm_post.report import draw_report
 
-            run.accept(draw_report(frame.sibling(result_files.PICTURE), results))
+            run.accept(draw_report(context.sibling(result_files.PICTURE), results))
             return
         if name == CARTESIAN:
             from pkm_post.posting.cartesian_form import write_cartesian
 
-            file = frame.sibling(result_files.SIDE_OUTPUTS[CARTESIAN])
-            off = write_cartesian(file, results.struts, frame.trajectory, frame.machine)
+            file = context.sibling(result_files.SIDE_OUTPUTS[CARTESIAN])
+            off = write_cartesian(file, results.struts, context.trajectory, context.machine)
             notes.append(f"struts at most {off:.1e} mm from those of the program at its points")
             return
-        note, faults = outputs.write_table(frame.path, TABLES[name], results.struts, summary.origin(trajectory))
+        note, faults = outputs.write_table(context.path, TABLES[name], results.struts, summary.origin(trajectory))
         run.accept(faults)
         notes.append(note)
