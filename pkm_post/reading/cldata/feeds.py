@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 
 from pkm_post.model import EventKind
 from pkm_post.reading.cldata.state import Feed, ReaderState, SurfaceSpeed
@@ -106,7 +107,8 @@ def spindl(state: ReaderState, row: int, statement: Statement) -> None:
     words = {item for item in items if isinstance(item, str)}
     unclear = "LOCK" in words and bool(words & {"ON", "OFF"})  # of the spindle, or of its override
     known = words <= _SPINDLE_WORDS | {*_SENSES, *_SURFACE_SPEEDS}
-    if len(numbers) > 1 or not known or not statement.items or unclear:
+    lacking = not numbers and bool(words & {"RPM", *_SURFACE_SPEEDS})
+    if len(numbers) > 1 or not known or not statement.items or unclear or lacking:
         state.report_items(row, statement, "one number, RPM, SFM or SMM, CLW or CCLW")
         return
     state.spindle_limit = statement.number_after("MAXRPM") or state.spindle_limit
@@ -115,7 +117,7 @@ def spindl(state: ReaderState, row: int, statement: Statement) -> None:
     state.spindle_on = not words & _STOPPED
     if state.spindle_on:  # with the last sense and speed where there are no others [NCCS PostWorks]
         state.spindle_sense = next((_SENSES[word] for word in _SENSES if word in words), state.spindle_sense)
-        if numbers and not _new_speed(state, row, numbers[0], statement):
+        if not (_new_speed(state, row, numbers[0], statement) if numbers else _last_speed(state, row, statement)):
             return
     _spindle_event(state, row)
 
@@ -133,8 +135,21 @@ def _new_speed(state: ReaderState, row: int, value: float, statement: Statement)
     diameter = 2 * statement.number_after("RADIUS") * state.scale
     if not diameter:
         motions, sense = state.motions_before(row), state.spindle_sense
-        state.surface_speed = SurfaceSpeed(len(state.events), motions, value * surface, sense)
+        state.surface_speed = SurfaceSpeed(len(state.events), motions, value * surface, sense, state.changed_tool)
     state.spindle_speed = _turns_per_minute(state, value * surface, diameter or state.diameter)
+    return True
+
+
+def _last_speed(state: ReaderState, row: int, statement: Statement) -> bool:
+    """Start at the last speed; False after a surface speed of another tool: are its turns kept, or computed again?"""
+    surface = state.surface_speed
+    if surface is None:
+        return True
+    if surface.motions != state.motions_before(row) and surface.tool != state.changed_tool:
+        words = statement.items_text()
+        state.report("L403", row, f"SPINDL/{words} after the surface speed of tool {surface.tool}; write a speed")
+        return False
+    state.surface_speed = replace(surface, event=len(state.events), sense=state.spindle_sense)
     return True
 
 

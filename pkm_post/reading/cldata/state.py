@@ -47,12 +47,13 @@ class Feed:
 
 @dataclass(frozen=True)
 class SurfaceSpeed:
-    """A SPINDL in SMM or SFM: its event, motions before it, mm/min at the edge of the cutter, and sense."""
+    """A SPINDL in SMM or SFM: its event, motions before it, mm/min at the edge of the cutter, sense, and tool."""
 
     event: int
     motions: int
     speed: float
     sense: float
+    tool: int
 
 
 @dataclass(frozen=True)

@@ -158,6 +158,23 @@ def test_a_surface_speed_is_that_of_the_cutter_it_is_used_with():
     assert codes("UNITS/MM\nLOADTL/2\nSPINDL/100,SMM\nGOTO/1,0,0\nGOTO/2,0,0\n") == [("L403", 3)]
 
 
+@pytest.mark.parametrize("again", ["ON", "CLW"])
+def test_the_last_surface_speed_of_another_tool_is_refused(again):
+    """A control may keep its turns, a post compute new ones; before any motion it is that of the next cutter."""
+    change = f"LOADTL/2\nSPINDL/{again}\nCUTTER/4\n"
+    assert codes(f"{HEAD}CUTTER/2\nSPINDL/100,SMM,CLW\nGOTO/1,0,0\n{change}GOTO/2,0,0\nFINI\n") == [("L403", 10)]
+    turns = 100_000 / math.pi
+    found = speeds(f"{HEAD}CUTTER/2\nSPINDL/100,SMM,CLW\n{change}GOTO/2,0,0\nFINI\n")
+    assert [value for _, value in found][-1] == pytest.approx(turns / 4)
+    same = speeds(f"{HEAD}CUTTER/2\nSPINDL/100,SMM,CLW\nGOTO/1,0,0\nSPINDL/OFF\nSPINDL/{again}\nGOTO/2,0,0\nFINI\n")
+    assert [value for _, value in same] == pytest.approx([turns / 2, 0, turns / 2])
+
+
+@pytest.mark.parametrize("word", ["RPM", "SMM", "SFM,CLW"])
+def test_a_unit_of_speed_without_a_speed_is_refused(word):
+    assert codes(f"{HEAD}SPINDL/500,CLW\nGOTO/1,0,0\nSPINDL/{word}\nGOTO/2,0,0\n") == [("L402", 8)]
+
+
 @pytest.mark.parametrize("words", ["/ON", "/OFF", "/XAXIS", "/MODIFY,ON"])
 def test_rapid_with_words_is_refused(words):
     assert codes(f"{HEAD}RAPID{words}\nGOTO/1,0,0\n") == [("L401", 6)]
