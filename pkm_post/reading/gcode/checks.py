@@ -16,6 +16,7 @@ from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import (
     NONE,
     SPINDLE_SYNCHRONISED,
+    TO_REFERENCE,
     WORDS_OF_ANY_BLOCK,
     Code,
     Group,
@@ -124,6 +125,8 @@ def _unused_words(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Bl
     for letter in blocks.words:
         if letter not in WORDS_OF_ANY_BLOCK and letter not in rotary:
             unused = blocks.has(letter) & ~_used_by_motion(letter, modal, options)
+            if letter in "ABC":  # tool_axes checks them
+                unused &= ~np.isin(modal.takes_axes, TO_REFERENCE)
             if unused.any():
                 unused[_rows_that_use(letter, blocks, modal.flavour)] = False
                 useless[letter] = unused
@@ -243,7 +246,7 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     )
     both = (modal.takes_axes != NONE) & (explicit != NONE) & (explicit != 800)
     if modal.flavour.moves_beside_reference:
-        both &= ~(np.isin(modal.takes_axes, (280, 300)) & np.isin(explicit, (0, 10)))
+        both &= ~(np.isin(modal.takes_axes, TO_REFERENCE) & np.isin(explicit, (0, 10)))
     faults.add_where(
         "G407", both, lambda row: (word_of(modal.takes_axes[row]), " and ", word_of(explicit[row]), " in one block")
     )

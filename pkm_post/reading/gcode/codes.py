@@ -171,6 +171,7 @@ STROKES = (*CYCLES, RIGID_TAP)
 """Codes of more than one move."""
 CANCEL_CYCLE = 800
 ARCS = (20, 30)
+TO_REFERENCE = (280, 300)
 WORDS_OF_ANY_BLOCK = "FNSTO"
 
 

@@ -43,6 +43,7 @@ class Flavour:
         stores_cycle: whether a cycle repeated 0 times only stores its words.
         pecks_by_i: whether I, J and K of G73 and G83 are the first peck, the reduction, and the smallest.
         moves_beside_reference: whether G0 or G1 may share a block with G28 and G30, which take the axis words.
+        may_drill_along_z: whether some controls drill along Z in G18 and G19 as well.
         g53_is_rapid: whether G53 moves at rapid whatever the active motion.
         offsets_add_up: whether G10 L2 adds to an offset under G91; then L20 sets those of G54.1, and no P is in force.
         stops_first: whether M5 acts before the move of its block, rather than whenever the machine's builder decided.
@@ -76,6 +77,7 @@ class Flavour:
     stores_cycle: bool
     pecks_by_i: bool
     moves_beside_reference: bool
+    may_drill_along_z: bool
     g53_is_rapid: bool
     offsets_add_up: bool
     stops_first: bool
@@ -114,6 +116,7 @@ RS274 = Flavour(
     stores_cycle=False,
     pecks_by_i=False,
     moves_beside_reference=False,
+    may_drill_along_z=False,
     g53_is_rapid=False,
     offsets_add_up=False,
     stops_first=True,
@@ -188,6 +191,7 @@ FANUC = replace(
     stores_cycle=True,
     pecks_by_i=True,
     moves_beside_reference=True,
+    may_drill_along_z=True,
     g53_is_rapid=True,
     offsets_add_up=True,
     stops_first=False,

@@ -14,7 +14,7 @@ import numpy as np
 from pkm_post.geometry import torsion
 from pkm_post.model import Array, checkpoint, read_only, uniform
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import NONE, Group, Word, word_of
+from pkm_post.reading.gcode.codes import NONE, TO_REFERENCE, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.frames import normal_coordinate, tool_directions
 from pkm_post.reading.gcode.modal import Modal, forward_fill, is_arc, is_cycle, track_coordinate
@@ -123,7 +123,11 @@ def check_cycles(modal: Modal, axes: Array, faults: BlockDiagnostics) -> None:
     axis, across = axes[rows], normal_coordinate(modal.active[Group.PLANE][rows])
     along = np.abs(np.take_along_axis(axis, across[:, None].astype(np.int64), axis=1)[:, 0])
     for row in rows[(along < _ALONG) & (axis[:, 2] < _ALONG)].tolist():
-        faults.add("G429", row, f"tool axis ({axes[row, 0]:.6f}, {axes[row, 1]:.6f}, {axes[row, 2]:.6f})")
+        faults.add("G429", row, f"tool axis {_shown(axes[row])}")
+    upright = rows[(along < _ALONG) & (axis[:, 2] >= _ALONG)] if modal.flavour.may_drill_along_z else rows[:0]
+    for row in upright.tolist():
+        plane = word_of(int(modal.active[Group.PLANE][row]))
+        faults.add("G429", row, (plane, ", where parameter 5101#0 may say Z: write G17"))
 
 
 def _vectors(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> tuple[Array, Array]:
@@ -190,12 +194,28 @@ def _angles(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDia
     words = _rotary_words(blocks, modal, options)
     axes = axis_of(_in_rad(modal, words))
     given: Array = np.any([~np.isnan(word) for word in words.values()], axis=0)
+    _check_references(blocks, modal, words, faults)
     if options.axis_words != "RPY":
         # Without G43.4 a machine with such a head takes X Y Z as slide positions, not as the tip position.
         inactive = given & (modal.active[Group.LENGTH] != _BY_ANGLES) & (modal.active[Group.MOTION] != 0)
         inactive &= _tilted(axes)
         faults.add_where("G414", inactive, lambda row: (_first(words, row), " without ", word_of(_BY_ANGLES)))
     return axes, given
+
+
+def _check_references(blocks: Blocks, modal: Modal, words: dict[str, Array], faults: BlockDiagnostics) -> None:
+    """Report rotary words of G28 and G30, unless they and the angles in force are 0: then nothing turns."""
+    rows = np.flatnonzero(np.isin(modal.takes_axes, TO_REFERENCE))
+    if not len(rows):
+        return
+    here = {letter: blocks.word(letter)[rows] for letter in words}
+    turns = _in_rad(modal, words)[rows].any(axis=1) | np.any(
+        [np.nan_to_num(word) != 0 for word in here.values()], axis=0
+    )
+    for index in np.flatnonzero(turns & np.any([~np.isnan(word) for word in here.values()], axis=0)).tolist():
+        code = word_of(int(modal.takes_axes[rows[index]]))
+        found = _first(here, index), " of ", code, ", a way to a place that is not known: turn with G0"
+        faults.add("G404", int(rows[index]), found)
 
 
 def spins(blocks: Blocks, modal: Modal, options: ReadOptions) -> Array:

@@ -5,7 +5,9 @@ python3 tests/reading/gcode/test_gcode_fanuc_by_block.py [PROGRAMS]    compares 
 """
 
 import sys
+from dataclasses import replace
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -17,16 +19,20 @@ from random_fanuc import program  # noqa: E402
 
 from pkm_post.model import EventKind, Tool  # noqa: E402
 from pkm_post.reading.gcode import ReadOptions, read  # noqa: E402
+from pkm_post.reading.gcode.flavours import FANUC, FLAVOURS  # noqa: E402
 
 ZERO = (3.0, -4.0, 250.0)
 ROUNDING = 1e-9
 DWELL = 4
+BY_PLANE = {"fanuc": replace(FANUC, may_drill_along_z=False)}
+"""A control whose parameter 5101#0 lets cycles in G18 and G19 drill along the normal of the plane."""
 
 
 def ours(text):
     """The rows of the reader as the second one has them, and its diagnostics."""
     options = ReadOptions(default_tool=Tool(0, "any", 6.0, 0.0, 50.0), machine_zero=ZERO, needs_end=True)
-    given, faults = read(text, "part.nc", options)
+    with patch.dict(FLAVOURS, BY_PLANE):
+        given, faults = read(text, "part.nc", options)
     if given is None:
         return None, faults
     rows, events = [], [event for event in given.events if event.kind is EventKind.DWELL]

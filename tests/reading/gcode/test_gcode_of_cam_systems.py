@@ -113,6 +113,30 @@ def test_the_reference_point_of_rotary_axes_moves_nothing():
     assert ends("G0 X1 Y2 Z3\nG91 G28 B0.\nG28 A0 Z0\n")[-1].tolist() == [1, 2, 300]
 
 
+@pytest.mark.parametrize("notation", ["AC", "BC", "AB", "RPY"])
+@pytest.mark.parametrize("flavour", ["fanuc", "rs274"])
+def test_the_reference_point_of_rotary_axes_of_the_notation_is_that_of_an_upright_tool(notation, flavour):
+    first, last = notation[0].replace("R", "A"), notation[1].replace("P", "B")
+    options = {"axis_words": notation, "flavour": flavour}
+    way = ends(f"G0 X1 Y2 Z3\nG28 {first}0\nG91 G28 Z0 {first}0. {last}0.\nG90 G43.4 H1 G0 X5\n", **options)
+    assert way[-2:].tolist() == [[1, 2, 300], [5, 2, 300]]
+    for before, code in ((f"{last}90.", f"G28 {first}0"), (f"{last}0", f"G30 {first}5.")):
+        _, faults = taken(f"G43.4 H1 G0 X1 Y2 Z3 {before}\n{code}\n", **options)
+        found = f"{code.split()[1].rstrip('.')} of {code[:3]}, a way to a place that is not known: turn with G0"
+        assert [(each.code, each.found) for each in faults if each.code != "G214"] == [("G404", found)]
+
+
+def test_a_hole_of_an_upright_tool_outside_g17_is_refused_where_a_parameter_of_the_control_decides():
+    text = "G0 X1. Y2. Z3. F100 S500 M3\nG18 G81 X5. Y-5. Z3. R2.\nG80\nM5\n"
+    program, faults = taken(text, flavour="fanuc")
+    assert program is None
+    found = "G18, where parameter 5101#0 may say Z: write G17"
+    assert [(each.code, each.found) for each in faults] == [("G429", found)]
+    assert ends(text, flavour="rs274")[-2:].tolist() == [[5, -5, 3], [5, 2, 3]]
+    along_y = "G43.5 H1 G0 X1. Y2. Z3. I0 J1 K0 F100 S500 M3\n" + text.split("\n", 1)[1]
+    assert ends(along_y, flavour="fanuc", axis_words="vector")[-2:].tolist() == [[5, -5, 3], [5, 2, 3]]
+
+
 TILTED = """G21
 G0 G54 X0 Y0 Z100 A0. C0. S900 M3
 G0 A30. C90.
