@@ -23,6 +23,11 @@ def length_text(mm: float) -> str:
     return _text(mm, Units.Length)
 
 
+def angle_text(degrees: float) -> str:
+    """An angle, without a blank: FreeCAD 1.0 has one, at which lines break."""
+    return _text(degrees, Units.Angle).replace(" °", "°")
+
+
 def volume_text(cubic_mm: float) -> str:
     """A volume."""
     return _text(cubic_mm, Units.Volume)

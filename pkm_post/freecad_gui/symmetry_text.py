@@ -12,6 +12,7 @@ from typing import Any
 import FreeCAD
 
 from pkm_post.freecad_app.symmetry_report import Family, family_of
+from pkm_post.freecad_gui.quantities import angle_text, length_text
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -35,7 +36,8 @@ def report_lines(obj: Any) -> list[str]:
     if obj.Base is None or not obj.Active:
         return [translate("SymmetryPanel", "Nothing is copied")]
     own = _mirror(obj) if hasattr(obj, "Normal") else _turns(obj)
-    return [*_cuts(obj), *own, *_joints(obj.Joints, obj.JointDistance, obj.JointTurn), *_family(obj, family_of(obj))]
+    joints = _joints(obj.Joints, obj.JointDistance.Value, obj.JointTurn.Value)
+    return [*_cuts(obj), *own, *joints, *_family(obj, family_of(obj))]
 
 
 def _cuts(obj: Any) -> list[str]:
@@ -54,10 +56,11 @@ def _mirror(obj: Any) -> list[str]:
     if obj.SwappedArcs:
         lines.append(translate("SymmetryPanel", "Arcs that turn the other way: {}").format(obj.SwappedArcs))
     if obj.GapToBase.Value:
-        lines.append(translate("SymmetryPanel", "Between original and copy: {}").format(obj.GapToBase.UserString))
+        text = translate("SymmetryPanel", "Between original and copy: {}")
+        lines.append(text.format(length_text(obj.GapToBase.Value)))
     if obj.OverlapWithBase.Value:
         text = translate("SymmetryPanel", "Both cut over a width of {}")
-        lines.append(text.format(obj.OverlapWithBase.UserString))
+        lines.append(text.format(length_text(obj.OverlapWithBase.Value)))
     return lines
 
 
@@ -71,14 +74,10 @@ def _covered(covered: float, overlap: float, gap: float, tiles: bool) -> str:
     if tiles:
         return str(translate("SymmetryPanel", "all round, none on another"))
     text = translate("SymmetryPanel", "{} covered, {} covered twice, widest gap {}")
-    return str(text.format(*(_quantity(value).UserString for value in (covered, overlap, gap))))
+    return str(text.format(*map(angle_text, (covered, overlap, gap))))
 
 
-def _quantity(degrees: float) -> Any:
-    return FreeCAD.Units.Quantity(degrees, FreeCAD.Units.Angle)
-
-
-def _joints(count: int, distance: Any, turn: Any) -> list[str]:
+def _joints(count: int, distance: float, turn: float) -> list[str]:
     if not count:
         return [
             translate("SymmetryPanel", "No path of one ends where a path of another begins: the tool is lifted between"
@@ -86,7 +85,7 @@ def _joints(count: int, distance: Any, turn: Any) -> list[str]:
                       " its sector.")
         ]  # fmt: skip
     text = translate("SymmetryPanel", "Where they meet ({}): tips {} apart, tool axes by {}")
-    return [text.format(count, distance.UserString, turn.UserString)]
+    return [text.format(count, length_text(distance), angle_text(turn))]
 
 
 def _family(obj: Any, family: Family) -> list[str]:
@@ -102,5 +101,5 @@ def _family(obj: Any, family: Family) -> list[str]:
     if family.joints:
         distance = max(each.distance for each in family.joints)
         turn = math.degrees(max(each.turn for each in family.joints))
-        lines += _joints(len(family.joints), FreeCAD.Units.Quantity(distance, FreeCAD.Units.Length), _quantity(turn))
+        lines += _joints(len(family.joints), distance, turn)
     return lines
