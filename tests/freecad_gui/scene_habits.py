@@ -3,7 +3,7 @@
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, answer, main, new_document, press, select, settle, step
+from gui import FOLDER, answer, main, new_document, press, select, settle, simulate, step
 from PySide import QtWidgets
 
 PROGRAM = "G21 G90 G17\nT1 M6\nG0 X0 Y0 Z30\nG1 Z5 F600\nG1 X10 F900\nM2\n"
@@ -281,6 +281,41 @@ def mirror_beside_an_open_panel():
     SymmetryPanel.opened.reject()
     settle()
     return found | {"left": [document.getObject(name) is not None for name in (first, second)]}
+
+
+@step
+def commands_draw_while_a_sheet_is_active():
+    document = new_document("sheet")
+    job, sheet = document.getObject("Job"), document.addObject("Spreadsheet::Sheet", "Sheet")
+    drawn = FreeCADGui.getDocument("sheet").activeView().getSceneGraph()
+    FreeCADGui.getDocument("sheet").setEdit(sheet.ViewObject, 0)
+    settle()
+    found = {"3D": hasattr(FreeCADGui.getDocument("sheet").activeView(), "getSceneGraph")}
+    before = drawn.getNumChildren()
+    press("PKM_Stiffness", job)
+    found["stiffness"] = drawn.getNumChildren() - before
+    FreeCADGui.Control.closeDialog()
+    settle()
+    found["closed"] = drawn.getNumChildren() - before
+    simulate(job)
+    found["simulation"] = drawn.getNumChildren() > before
+    for dock in _docks("PkmPlayer"):
+        dock.close()
+    settle()
+    found["left"] = drawn.getNumChildren() - before
+    return found
+
+
+@step
+def finish_without_a_tool():
+    document, said = new_document("bare"), []
+    job = document.getObject("Job")
+    document.removeObject(job.Tools.Group[0].Name)
+    document.recompute()
+    before = len(document.Objects)
+    answer(said)
+    press("PKM_SurfaceFinish", job)
+    return {"said": said, "made": len(document.Objects) - before, "state": _state(document)}
 
 
 main()

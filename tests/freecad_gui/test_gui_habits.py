@@ -109,3 +109,15 @@ def test_work_offset_with_a_mistake_is_refused_by_the_panel_and_kept_once_mended
     assert found["kept"] == [0.0, 0.0, 250.0]
     assert found["fields"] == ["0,0,250", "--surface-speed=100"]
     assert found["job"]
+
+
+def test_commands_draw_in_the_3d_view_while_a_sheet_is_active(session):
+    found = session["commands_draw_while_a_sheet_is_active"]
+    assert found == {"3D": False, "stiffness": 1, "closed": 0, "simulation": True, "left": 0}
+
+
+def test_surface_finish_without_a_tool_is_refused_in_a_window(session):
+    found = session["finish_without_a_tool"]
+    (said,) = found["said"]
+    assert "J112" in said
+    assert (found["made"], found["state"]) == (0, [False, False, False])
