@@ -261,4 +261,5 @@ def write_fault(path: Path, fault: OSError) -> Diagnostic:
     from pkm_post.model import Diagnostic, Place
 
     code = next(code for kind, code in _CODES if isinstance(fault, kind))
+    code = "F114" if fault.errno == errno.ENAMETOOLONG else code
     return Diagnostic(code, Place(str(path)), str(fault))

@@ -62,3 +62,9 @@ def test_a_result_that_nothing_could_open_is_refused_by_name(tmp_path, monkeypat
         (private / name).write_text("does not")
     assert write_fault(folder / name, fault.value).code == "F114"
     assert [path.name for path in Path(folder).iterdir()] == [name[1:]]
+
+
+def test_a_name_that_the_file_system_cannot_hold_is_refused_by_name(tmp_path):
+    with pytest.raises(OSError) as fault, staged(tmp_path) as private:
+        (private / f"{'x' * 300}.pmc").write_text("does not fit")
+    assert write_fault(tmp_path / "long.pmc", fault.value).code == "F114"
