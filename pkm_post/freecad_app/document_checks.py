@@ -153,7 +153,16 @@ def _not_valid(operation: Any) -> str:
         return str(operation.getStatusString())
     if is_pkm_object(operation) and operation.Base is None:
         return "its base operation no longer exists"
-    return _kept_by_cam(operation)
+    return _kept_by_cam(operation) or failed_input(operation)
+
+
+def failed_input(item: Any) -> str:
+    """Which object that another is made from has an error; FreeCAD then leaves the other one as it was, unmarked."""
+    try:
+        failed = next((each for each in item.OutListRecursive if not each.isValid()), None)
+    except IndexError as circle:
+        return str(circle)
+    return "" if failed is None else Phrase("{} has an error", failed.Label)
 
 
 def _kept_by_cam(operation: Any) -> str:
@@ -171,7 +180,8 @@ def _kept_by_cam(operation: Any) -> str:
             return Phrase("its tool controller has no tool")
         if controller is not None and float(getattr(controller.Tool, "Diameter", 1.0)) == 0.0:
             return Phrase("the diameter of its tool is 0")
-    return next(filter(None, map(_kept_by_cam, base_operations(operation))), "")
+    below = (each for each in base_operations(operation) if each.isValid())  # invalid: perhaps in a circle
+    return next(filter(None, map(_kept_by_cam, below)), "")
 
 
 def _not_computed(operation: Any) -> str:

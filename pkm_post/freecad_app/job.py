@@ -23,7 +23,7 @@ from Path.Base.Util import opProperty, toolControllerForOp
 
 from pkm_post.freecad_app.commands import read_commands
 from pkm_post.freecad_app.document import document_name, members
-from pkm_post.freecad_app.document_checks import feed_faults, file_faults, has_inactive_base, state_faults
+from pkm_post.freecad_app.document_checks import failed_input, feed_faults, file_faults, has_inactive_base, state_faults
 from pkm_post.freecad_app.fixtures import DEFAULT, ONE_PLACE, cutting_order, files_of_split_output, operation_name
 from pkm_post.freecad_app.frames import matrix_of
 from pkm_post.freecad_app.tools import SPINDLE_SENSES, read_tools
@@ -115,6 +115,10 @@ def read_job(
     builder.switch(_OFF)
     tools, tool_faults = read_tools(builder.controllers.values(), tool_lengths, builder.source)
     faults += tool_faults
+    shapes = [each for each in (*members(job.Model), job.Stock) if each is not None]
+    failed = next(filter(None, map(failed_input, shapes)), "")
+    if failed and not errors(faults):
+        faults.append(Diagnostic("J116", Place(builder.source, job.Label), failed))
     if not builder.rows and not errors(faults):
         faults.append(Diagnostic("J103", Place(builder.source, job.Label), Phrase("nothing to post")))
     if errors(faults):

@@ -4539,6 +4539,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>{} 的 HorizFeed 为 0</translation>
     </message>
     <message>
+        <source>{} has an error</source>
+        <translation>{} 有错误</translation>
+    </message>
+    <message>
         <source>its job has no model</source>
         <translation>其作业没有模型</translation>
     </message>

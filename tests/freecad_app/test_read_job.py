@@ -5,6 +5,7 @@ import FreeCAD as App
 import numpy as np
 import Part
 import Path
+import Path.Main.Job
 import Path.Op.Probe
 import pytest
 from cam_jobs import ARC, FIVE_AXIS, add_operation, add_tool_controller, moves, turn
@@ -360,6 +361,33 @@ def test_operation_that_cam_leaves_as_it_was_is_refused_with_its_copies(job, fou
     assert program is None
     refused = [(fault.code, fault.place.operation, fault.found) for fault in faults if fault.code == "J116"]
     assert refused == [("J116", each.Label, found) for each in (operation, mirror)]
+
+
+@pytest.mark.parametrize("kind", ["Profile", "Custom"])
+def test_job_on_a_model_that_fails_is_refused(document, kind):
+    """FreeCAD leaves what depends on it as it was, and calls it up to date."""
+    box, fillet = document.addObject("Part::Box", "Box"), document.addObject("Part::Fillet", "Fillet")
+    box.Length, fillet.Base, fillet.Edges = 30, box, [(1, 1.0, 1.0)]
+    document.recompute()
+    job = Path.Main.Job.Create("Job", [fillet], None)
+    controller = job.Tools.Group[0]
+    set_gauge_length(controller, 120)
+    controller.HorizFeed = controller.VertFeed = "10 mm/s"
+    made = operation_on(job, "Profile", lambda box: box.ZMax < 0.01) if kind == "Profile" else add_operation(job)
+    assert faults_of(job) == []
+    box.Length, fillet.Edges = 60, [(1, 50.0, 50.0)]
+    assert faults_of(job) == [("J116", made.Label if kind == "Profile" else job.Label, 0)]
+    assert made.State == ["Up-to-date"] and job.Model.Group[0].Shape.BoundBox.XLength < 31
+    fillet.Edges = [(1, 1.0, 1.0)]
+    assert faults_of(job) == []
+
+
+def test_copies_in_a_circle_are_refused(job):
+    first = create_mirror(add_operation(job), App.Vector(1, 0, 0))
+    second = create_mirror(first, App.Vector(0, 1, 0))
+    job.Document.recompute()
+    first.Base = second
+    assert faults_of(job) == [("J116", each.Label, 0) for each in (first, second)]
 
 
 def test_operation_called_for_by_m6_without_a_tool_is_refused(job):
