@@ -99,9 +99,10 @@ class CoverageRows:
         else:
             self._add(_against(Phrase("cutters"), obstacle), Extent.PROVEN, _detail(obstacle, _WHOLE))
 
-    def stock(self, obstacle: Obstacle, step: float, points: int) -> None:
-        """Record the check of the stock by grid points."""
+    def stock(self, obstacle: Obstacle, step: float, points: int, apart: float, deeper: float) -> None:
+        """Record the check of the stock by grid points, in poses that far apart, and the depth that counts, mm."""
         detail = f"as it is left by the cuts before, in {points:,} points {step:.2g} mm apart"
+        detail += f", what is deeper than {deeper:.2g} mm, every {apart:.2g} mm of the way"
         self._add(Phrase("machine and rapid moves against the stock"), Extent.SAMPLED, _detail(obstacle, detail))
 
     def stock_open(self, obstacle: Obstacle) -> None:

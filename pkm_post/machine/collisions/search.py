@@ -145,9 +145,9 @@ class Search:
         intruders = [*self._in_stock(stock, closed)]
         intruders += [rapid_cutter(used) for used in self.used if used.has_size and len(used.rapid)]
         if closed and intruders:
-            grid, found = stock_faults(self.driven, mesh, intruders, self.used, self.off_tip)
+            grid, apart, deeper, found = stock_faults(self.driven, mesh, intruders, self.used, self.off_tip)
             self.found += found
-            self.extents.stock(stock, grid.step, int(grid.filled.sum()))
+            self.extents.stock(stock, grid.step, int(grid.filled.sum()), apart, deeper)
         elif not closed:
             self.extents.stock_open(stock)
 

@@ -17,11 +17,16 @@ from pkm_post.machine.collisions.contacts import Contacts, TrajectoryPath
 from pkm_post.machine.collisions.moving_bodies import RevolvedProfile, cylinder
 from pkm_post.machine.collisions.stock_grid import StockGrid, SweptPoses, first_met, when_cut
 from pkm_post.machine.collisions.tools_in_use import ToolUse
+from pkm_post.machine.reach.pose_path import PosePath
 from pkm_post.model import Body, Diagnostic, Machine, Mesh, Phrase
 
 _SCALLOP = 0.1
 """mm: largest ridge between two poses of a cutter, which is taken to cut everything between them."""
 
+_BESIDE = 5.0
+"""mm: cuts farther beside the stock are left out."""
+_MOST_CUTS, _MOST_PAIRS = 200_000, 60_000_000
+"""Poses of cuts, and pairs of a pose and a point of other bodies; a path with more is looked at in longer steps."""
 _MOST_MET = 4000
 """Most intruded points whose cutting time is determined."""
 
@@ -67,8 +72,8 @@ def body_of(machine: Machine, body: Body, used: Sequence[ToolUse]) -> Intruder:
 
 def stock_faults(
     driven: TrajectoryPath, stock: Mesh, intruders: Sequence[Intruder], used: Sequence[ToolUse], tolerance: float
-) -> tuple[StockGrid, list[Diagnostic]]:
-    """Intrusions into the stock, one fault for each operation; and the grid of points checked.
+) -> tuple[StockGrid, float, float, list[Diagnostic]]:
+    """The grid, the farthest motion between two poses, the depth from which a point counts, one fault an operation.
 
     Args:
         driven: the trajectory.
@@ -85,8 +90,10 @@ def stock_faults(
     unsized = (one.cutting for one in used if not one.has_size and len(one.cutting))
     unknown = min((float(cells[0]) - 1 for cells in unsized), default=np.inf)
     found: list[Diagnostic] = []
+    apart = 0.0
     for one in intruders:
-        first = _first_met(driven, one, grid, work_from_machine, less)
+        first, moved = _first_met(driven, one, grid, work_from_machine, less)
+        apart = max(apart, moved)
         number = _some(np.flatnonzero(np.isfinite(first)))
         points, met = grid.points(number), first[number]
         may, sure = np.full(len(met), unknown), np.full(len(met), np.inf)
@@ -97,7 +104,7 @@ def stock_faults(
         hits = [(one.codes[0], certain)] if certain.any() else [(one.codes[1], ~(sure <= met))]
         for code, hit in hits:
             found += _operation_faults(driven, one.name, code, stock, points[hit], met[hit])
-    return grid, found
+    return grid, apart, less, found
 
 
 def points_met(driven: TrajectoryPath, part: Mesh, intruder: Intruder, less: float) -> tuple[StockGrid, Contacts]:
@@ -105,7 +112,7 @@ def points_met(driven: TrajectoryPath, part: Mesh, intruder: Intruder, less: flo
     grid = StockGrid.of(part.triangles)
     grid.filled[:] &= is_closed(part.triangles)
     placed = driven.trajectory.machine_from_work
-    first = _first_met(driven, intruder, grid, np.linalg.inv(placed), less)
+    first, _ = _first_met(driven, intruder, grid, np.linalg.inv(placed), less)
     number = _some(np.flatnonzero(np.isfinite(first)))
     cell = np.maximum(np.ceil(first[number]).astype(np.int64), 1)
     points = grid.points(number) @ placed[:3, :3].T + placed[:3, 3]
@@ -120,33 +127,46 @@ def _some(number: Array) -> Array:
 def _cuts(driven: TrajectoryPath, used: ToolUse, grid: StockGrid, work_from_machine: Array) -> SweptPoses:
     """Poses in which a tool cuts, in steps whose ridges stay within ``_SCALLOP``."""
     step = float(np.sqrt(4 * used.tool.diameter * _SCALLOP))
-    return _swept(driven, used.cutting, used.largest_profile(), grid, work_from_machine, step)
+    profile = used.largest_profile()
+    cells = _near(driven.poses, used.cutting, work_from_machine, profile, grid, _BESIDE)
+    return SweptPoses.of(driven.poses, cells, work_from_machine, profile.farthest, step, _MOST_CUTS)
 
 
 def _first_met(
     driven: TrajectoryPath, intruder: Intruder, grid: StockGrid, work_from_machine: Array, less: float
-) -> Array:
-    """First positions at which stock points are inside an intruder by more than ``less``, (points,)."""
-    first = np.full(grid.filled.size, np.inf)
-    for profile, cells in intruder.shapes:
-        swept = _swept(driven, cells, profile, grid, work_from_machine, grid.step)
+) -> tuple[Array, float]:
+    """First positions at which stock points are inside an intruder by more than ``less``, (points,), and ``moved``."""
+    first, apart = np.full(grid.filled.size, np.inf), 0.0
+    box = [len(axis) * grid.step for axis in grid.axes]
+    for profile, every in intruder.shapes:
+        wide, length = 2 * float(profile.radius.max()), float(profile.height[-1] - profile.height[0])
+        pairs = min(wide, box[0]) * min(wide, box[1]) * min(length, max(box)) / grid.step**3
+        cells = _near(driven.poses, every, work_from_machine, profile, grid)
+        most = _MOST_PAIRS / max(pairs, 1.0)
+        swept = SweptPoses.of(driven.poses, cells, work_from_machine, profile.farthest, grid.step, most)
         first = np.minimum(first, first_met(grid, swept, profile, -less))
-    return first
+        apart = max(apart, swept.moved)
+    return first, apart
 
 
-def _swept(
-    driven: TrajectoryPath,
+def _near(
+    path: PosePath,
     cells: Array,
+    work_from_machine: Array,
     profile: RevolvedProfile,
     grid: StockGrid,
-    work_from_machine: Array,
-    step: float,
-) -> SweptPoses:
-    box = [len(axis) * grid.step for axis in grid.axes]
-    wide = 2 * float(profile.radius.max())
-    length = float(profile.height[-1] - profile.height[0])
-    pairs = min(wide, box[0]) * min(wide, box[1]) * min(length, max(box)) / grid.step**3
-    return SweptPoses.of(driven.poses, cells, work_from_machine, profile.farthest, step, pairs)
+    beside: float = 0.0,
+) -> Array:
+    """The cells in which a solid of revolution may come within a distance of the grid."""
+    rotation, shift = work_from_machine[:3, :3].T, work_from_machine[:3, 3]
+    ends = [np.array([axis[at] if len(axis) else np.inf for axis in grid.axes]) for at in (0, -1)]
+    half, radius = float(profile.height[-1] - profile.height[0]) / 2, float(profile.radius.max())
+    axis = path.axis[cells] @ rotation
+    middle = path.tip[cells] @ rotation + shift + (float(profile.height[0]) + half) * axis
+    change = path.travel[cells] + path.angle[cells] * profile.farthest
+    extent = half * np.abs(axis) + radius * np.sqrt(np.maximum(1 - axis**2, 0.0)) + (change + beside)[:, None]
+    near: Array = ((middle + extent > ends[0]) & (middle - extent < ends[1])).all(axis=1)
+    return cells[near]
 
 
 def _operation_faults(

@@ -16,6 +16,7 @@ import numpy as np
 from pkm_post.geometry import Array, dot, expand_counts, grid_points_inside
 from pkm_post.machine.collisions.moving_bodies import RevolvedProfile
 from pkm_post.machine.reach.pose_path import PosePath
+from pkm_post.model import checkpoint
 
 _POINTS = 60_000
 """Approximate number of grid points."""
@@ -25,12 +26,12 @@ _PAIRS = 2_000_000
 """Pairs of poses and points per pass."""
 _CHORDS = 0.05
 """mm: chord error of the cutter profile at its corner."""
+_AT_ONCE = 64
+"""Points per pass."""
 _JUST_BEFORE = 32
 """Poses of a cutter searched first."""
 _ROUNDING, _SQUARED_ROUNDING = 1e-6, 1e-3
 """mm and mm^2: rounding errors of differences of large squares."""
-_MOST_PAIRS = 6_000_000
-"""If a path has more at its finest step, the step is increased."""
 
 
 @dataclass(frozen=True)
@@ -83,9 +84,9 @@ class SweptPoses:
 
     @classmethod
     def of(
-        cls, path: PosePath, cells: Array, work_from_machine: Array, farthest: float, step: float, pairs: float
+        cls, path: PosePath, cells: Array, work_from_machine: Array, farthest: float, step: float, most: float
     ) -> SweptPoses:
-        """Poses spaced so no point moves by more than a step, unless that needs too many.
+        """Poses spaced so no point moves by more than a step, unless that needs too many; ``moved`` is the step then.
 
         Args:
             path: poses in {M}.
@@ -93,10 +94,10 @@ class SweptPoses:
             work_from_machine: (4, 4) transform from {M} to {C}.
             farthest: distance from the tip to the farthest point of the solid, mm.
             step: largest motion between poses, mm.
-            pairs: points of the grid that one pose may touch.
+            most: approximate largest number of poses.
         """
         change = path.travel[cells] + path.angle[cells] * farthest
-        step = max(step, float(change.sum()) * pairs / _MOST_PAIRS) / 2
+        step = max(step, float(change.sum()) / most) / 2
         count = np.maximum(np.ceil(change / step), 1).astype(np.int64)
         row, number = expand_counts(count)
         run = np.append(np.diff(cells[row]) > 1, True)
@@ -159,14 +160,17 @@ def when_cut(
         point, number = np.nonzero(just_before[rows] >= 0)
         _cut(may, sure, points, rows[point], just_before[rows[point], number], swept, smallest, largest, grown)
     left = np.flatnonzero(~(sure <= met))
-    for some in _chunks(len(left), _PAIRS // max(len(swept.at), 1)):
-        rows = left[some]
-        high = points[rows] @ swept.axis.T - dot(swept.tip, swept.axis)
-        square = dot(points[rows], points[rows])[:, None] - 2 * points[rows] @ swept.tip.T + dot(swept.tip, swept.tip)
-        beside = square - high * high < (float(largest.radius.max()) + grown) ** 2 + _SQUARED_ROUNDING
-        level = (high > -grown - _ROUNDING) & (high < largest.height[-1] + grown + _ROUNDING)
-        point, number = np.nonzero(beside & level & (np.arange(len(swept.at)) < last[rows][:, None]))
-        _cut(may, sure, points, rows[point], number, swept, smallest, largest, grown)
+    for some in _chunks(len(swept.at), _PAIRS // _AT_ONCE):
+        tip, axis = swept.tip[some], swept.axis[some]
+        for rows in (left[few] for few in _chunks(len(left), _AT_ONCE)):
+            high = points[rows] @ axis.T - dot(tip, axis)
+            square = dot(points[rows], points[rows])[:, None] - 2 * points[rows] @ tip.T + dot(tip, tip)
+            beside = square - high * high < (float(largest.radius.max()) + grown) ** 2 + _SQUARED_ROUNDING
+            level = (high > -grown - _ROUNDING) & (high < largest.height[-1] + grown + _ROUNDING)
+            point, number = np.nonzero(beside & level & (some < last[rows][:, None]))
+            _cut(may, sure, points, rows[point], some[number], swept, smallest, largest, grown)
+        left = left[~(sure[left] <= met[left])]
+        checkpoint()
     return may, sure
 
 

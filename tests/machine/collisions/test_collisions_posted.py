@@ -12,7 +12,7 @@ from programs import BALL, ON_PALLET, program
 
 from pkm_post.cli import main
 from pkm_post.machine import find_collisions
-from pkm_post.model import Mesh, Setup, Shank, Tolerances
+from pkm_post.model import Kind, Mesh, Setup, Shank, Tolerances, Tool
 from pkm_post.toolpath.place import place
 
 SLOT = """\
@@ -230,3 +230,21 @@ def test_an_open_mesh_of_the_stock_is_reported(tmp_path, capsys):
     stock = stored(tmp_path, "stock.stl", box([-40, -40, 0], [40, 40, 20])[1:])
     code, _, reported = posted(tmp_path, capsys, "--stock", stock)
     assert code == 0 and "stock.stl: warning K139" in reported
+
+
+def test_a_long_program_is_looked_at_in_steps_as_short_as_a_short_one():
+    """Three thousand passes beside the stock, then a rapid move through a thin wall, in the middle of its 100 mm."""
+    passes = np.linspace(-40, 40, 3000)
+    rows = [[-60, 29.9], [-45, 29.9], [-60, 29.9], [-60, 45], [60, 45], [-60, 45]]
+    tips = np.array([[x, y, z] for y in passes for x, z in rows] + [[-60, 0, 20], [60, 0, 20]])
+    kinds = [Kind.RAPID, Kind.LINE, Kind.LINE, Kind.RAPID, Kind.RAPID, Kind.RAPID] * 3000 + [Kind.RAPID] * 2
+    trajectory, faults = place(
+        program(tips, kind=kinds, tools={1: Tool(1, "mill", 10.0, 0.0, 120.0)}), example(), ON_PALLET
+    )
+    assert not faults
+    wall = Mesh("s.stl", np.concatenate([box([-50, -50, 0], [50, 50, 10]), box([-2.5, -50, 10.001], [2.5, 50, 32])]))
+    found = find_collisions(trajectory, example(), Setup(stock=wall), Tolerances(0.001, 1e-5))
+    assert "K136" in {fault.code for fault in found.faults}
+    (row,) = [row for row in found.coverage if row.subject == "machine and rapid moves against the stock"]
+    deeper, apart = re.search(r"deeper than (\S+) mm, every (\S+) mm", row.detail).groups()
+    assert float(deeper) < 0.3 and float(apart) < 2.0, row.detail
