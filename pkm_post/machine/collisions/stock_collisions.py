@@ -24,7 +24,7 @@ _SCALLOP = 0.1
 """mm: largest ridge between two poses of a cutter, which is taken to cut everything between them."""
 
 _BESIDE = 5.0
-"""mm: cuts farther beside the stock are left out."""
+"""mm: moves farther beside the stock are left out."""
 _MOST_CUTS, _MOST_PAIRS = 200_000, 60_000_000
 """Poses of cuts, and pairs of a pose and a point of other bodies; a path with more is looked at in longer steps."""
 _MOST_MET = 4000
@@ -73,7 +73,7 @@ def body_of(machine: Machine, body: Body, used: Sequence[ToolUse]) -> Intruder:
 def stock_faults(
     driven: TrajectoryPath, stock: Mesh, intruders: Sequence[Intruder], used: Sequence[ToolUse], tolerance: float
 ) -> tuple[StockGrid, float, float, list[Diagnostic]]:
-    """The grid, the farthest motion between two poses, the depth from which a point counts, one fault an operation.
+    """The grid, the motion between two poses, the depth from which points count, and a fault for each operation.
 
     Args:
         driven: the trajectory.
@@ -128,7 +128,7 @@ def _cuts(driven: TrajectoryPath, used: ToolUse, grid: StockGrid, work_from_mach
     """Poses in which a tool cuts, in steps whose ridges stay within ``_SCALLOP``."""
     step = float(np.sqrt(4 * used.tool.diameter * _SCALLOP))
     profile = used.largest_profile()
-    cells = _near(driven.poses, used.cutting, work_from_machine, profile, grid, _BESIDE)
+    cells = _near(driven.poses, used.cutting, work_from_machine, profile, grid)
     return SweptPoses.of(driven.poses, cells, work_from_machine, profile.farthest, step, _MOST_CUTS)
 
 
@@ -149,22 +149,15 @@ def _first_met(
     return first, apart
 
 
-def _near(
-    path: PosePath,
-    cells: Array,
-    work_from_machine: Array,
-    profile: RevolvedProfile,
-    grid: StockGrid,
-    beside: float = 0.0,
-) -> Array:
-    """The cells in which a solid of revolution may come within a distance of the grid."""
+def _near(path: PosePath, cells: Array, work_from_machine: Array, profile: RevolvedProfile, grid: StockGrid) -> Array:
+    """The cells in which a solid of revolution may come within ``_BESIDE`` of the grid."""
     rotation, shift = work_from_machine[:3, :3].T, work_from_machine[:3, 3]
     ends = [np.array([axis[at] if len(axis) else np.inf for axis in grid.axes]) for at in (0, -1)]
     half, radius = float(profile.height[-1] - profile.height[0]) / 2, float(profile.radius.max())
     axis = path.axis[cells] @ rotation
     middle = path.tip[cells] @ rotation + shift + (float(profile.height[0]) + half) * axis
     change = path.travel[cells] + path.angle[cells] * profile.farthest
-    extent = half * np.abs(axis) + radius * np.sqrt(np.maximum(1 - axis**2, 0.0)) + (change + beside)[:, None]
+    extent = half * np.abs(axis) + radius * np.sqrt(np.maximum(1 - axis**2, 0.0)) + (change + _BESIDE)[:, None]
     near: Array = ((middle + extent > ends[0]) & (middle - extent < ends[1])).all(axis=1)
     return cells[near]
 
