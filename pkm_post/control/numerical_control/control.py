@@ -140,6 +140,11 @@ class NumericalControl:
         self._last = replace(self._last, status=status, pose=self._readout.pose(status), lost="", emergency=())
         return self._last
 
+    def lose(self, reason: str) -> ControlState:
+        """The state while an order in progress, such as a play, has no link."""
+        self._last = self._last.without_link(reason, may_move=True)
+        return self._last
+
     def plan_jog(self, jog: manual_moves.Jog, feed: float) -> tuple[MovePlan | None, Findings]:
         """Plan a jog from the current pose; ``feed`` in mm/s, for a turn in place in degrees per second.
 

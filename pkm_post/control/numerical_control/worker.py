@@ -110,6 +110,10 @@ class Worker:
         """Publish a status read by an order in progress; in the worker's thread."""
         self._state = self._control.see(status)
 
+    def lose(self, reason: str) -> None:
+        """Publish that an order in progress has no link; in the worker's thread."""
+        self._state = self._control.lose(reason)
+
     def close(self) -> None:
         """End the thread after the current order; cancel waiting orders. This does not stop the machine.
 

@@ -70,10 +70,12 @@ class Host:
 
     Attributes:
         see: called with each status read.
+        lose: called with the reason while there is no link.
         give_way: executes waiting stops (``Session.preempt_when``); returns whether to continue afterwards.
     """
 
     see: Callable[[Status], None] = lambda status: None
+    lose: Callable[[str], None] = lambda reason: None
     give_way: Callable[[], bool] = lambda: False
 
 
@@ -295,6 +297,7 @@ class Player:
             _log.warning("%s", Phrase("the link is lost; the machine comes to rest on the path: {}", lost))
         if now - self._lost_at > self._choices.patience_s:
             raise lost
+        self._host.lose(str(lost))
         self._show(self._state("no link"))
         self._session.sleep(_POLL_S)
 

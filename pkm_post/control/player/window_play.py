@@ -57,7 +57,7 @@ class WindowPlay:
         worker, target = connection.worker, connection.target
         self.state: PlayState | None = None
         self.notes: queue.SimpleQueue[logging.LogRecord] = queue.SimpleQueue()
-        host = Host(worker.see, worker.give_way)
+        host = Host(worker.see, worker.lose, worker.give_way)
         self._player = Player(
             connection.session,
             target.machine,

@@ -168,7 +168,7 @@ class PanelContent(QtWidgets.QWidget):
             lines.append(translate("ControlPanel", "No link: {}").format(lost))
         if self._console.waits:
             lines.append(translate("ControlPanel", "One moment: connecting, leaving or reading"))
-        style = _RED if state.lost else _YELLOW
+        style = _RED if state.lost or state.emergency else _YELLOW
         if self.banner.styleSheet() != style:
             self.banner.setStyleSheet(style)
         self.banner.setText("\n".join(lines))

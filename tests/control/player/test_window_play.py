@@ -8,7 +8,9 @@ import pytest
 from playing import RECTANGLE, TOLERANCES, trajectory_of
 
 from pkm_post.control.link.errors import CancelledError as StoppedError
-from pkm_post.control.link.errors import PmacError
+from pkm_post.control.link.errors import LinkLostError, PmacError
+from pkm_post.control.link.status import read_status
+from pkm_post.control.link.stopping import EMERGENCY_STEPS
 from pkm_post.control.numerical_control.connection import SIMULATED_HOMING, connect, connection_target
 from pkm_post.control.player.orders import Order, PlayOptions
 from pkm_post.control.player.window_play import WindowPlay
@@ -102,6 +104,29 @@ def test_an_abort_ends_it_and_the_worker_goes_on(connection):
         assert "ended from elsewhere" in str(fault)
     moves(connection)
     assert not connection.worker.state.status.running and connection.worker.state.status.standing
+
+
+def test_a_link_that_is_lost_while_it_plays_is_a_state_of_the_worker(connection, monkeypatch):
+    """The last position is not shown as the present one, and the operator is told what to do."""
+    is_cut = []
+
+    def read(*order):
+        if is_cut:
+            raise LinkLostError("the cable is out")
+        return read_status(*order)
+
+    monkeypatch.setattr("pkm_post.control.player.play.read_status", read)
+    play = playing(connection)
+    until(lambda: phase(play) == "runs")
+    is_cut.append(True)
+    until(lambda: connection.worker.state.lost)
+    assert (connection.worker.state.lost, connection.worker.state.emergency) == ("the cable is out", EMERGENCY_STEPS)
+    is_cut.clear()
+    until(lambda: not connection.worker.state.lost)
+    assert not connection.worker.state.emergency
+    for order in TO_THE_END:
+        play.order(order)
+    assert play.done.result(LONGEST_S).finished
 
 
 def test_what_waits_behind_it_is_cancelled_by_a_stop_and_the_end_of_the_worker_ends_it(connection):
