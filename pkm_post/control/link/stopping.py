@@ -18,8 +18,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from pkm_post.control.link.errors import CancelledError, NoAccessError, PmacError
-from pkm_post.control.link.owner_record import read_record
-from pkm_post.control.link.session import Session
+from pkm_post.control.link.owner_record import Owner, exchange_owner, read_record
+from pkm_post.control.link.session import Session, free_memory
 from pkm_post.control.link.status import MOTORS, AnySettings, Status, read_status
 from pkm_post.writing import PowerPmacSettings
 
@@ -28,6 +28,7 @@ SHOWN_S = 0.5
 POLL_S = 0.02
 NEXT_SEGMENT_S = 1.0
 """Seconds within which a stream or a play with a working link starts its next motion."""
+_UNKNOWN_OWNER = Owner(0, 0, 0, 0, 0)
 _log = logging.getLogger(__name__)
 
 EMERGENCY_STEPS = (
@@ -164,7 +165,8 @@ def _climb(
                 continue
             seen = _try(session, settings, rung, is_stopped)
             rests = seen is not None and _rests(seen, is_stopped)
-            if seen is not None and rests and may_go_on and _is_continued(session, settings, seen):
+            ends = is_stopped is _is_ended
+            if seen is not None and rests and may_go_on and _is_continued(session, settings, seen, ends):
                 seen = _try(session, settings, rungs[0], is_stopped)
             if seen is not None and _rests(seen, is_stopped):
                 return seen
@@ -172,12 +174,18 @@ def _climb(
     raise AssertionError("the ladder has no end")
 
 
-def _is_continued(session: Session, settings: AnySettings, status: Status) -> bool:
-    """Whether another client's stream or play starts its next motion: between them the machine is at rest anyway."""
-    if status.held or session.keeper is not None or not _is_in_pieces(session):
+def _is_continued(session: Session, settings: AnySettings, status: Status, ends: bool) -> bool:
+    """Whether another client's stream or play starts its next motion: between them the machine is at rest anyway.
+
+    Between two pieces a play does not see an abort, and plans as long as needed; so its right to move is ended as well.
+    """
+    other = None if status.held else _other_owner(session)
+    if other is None:
         return False
-    until = session.now() + NEXT_SEGMENT_S
+    until, ends = session.now() + NEXT_SEGMENT_S, ends and other.action == "play"
     while session.now() < until:
+        if ends and _end_play(session, other):
+            until, ends = session.now() + NEXT_SEGMENT_S, False  # until it sees that
         seen = _read(session, settings)
         if seen is not None and seen.running:
             return True
@@ -186,18 +194,32 @@ def _is_continued(session: Session, settings: AnySettings, status: Status) -> bo
     return False
 
 
-def _is_in_pieces(session: Session) -> bool:
-    """Whether a stream or a play owns the machine, or the owner is unknown."""
-    if not session.has_handshake:
-        return False
+def _other_owner(session: Session) -> Owner | None:
+    """Another client that streams or plays, or may do so as its record cannot be read; None if there is none."""
+    if session.keeper is not None:
+        return None
     try:
         record = read_record(session)
     except (CancelledError, NoAccessError):
         raise
     except PmacError as fault:
         _log.warning("whether a program runs in pieces is unknown: %s", fault)
-        return True
-    return bool(record.owner) and record.action in ("stream", "play")
+        return _UNKNOWN_OWNER
+    return record if record.owner and record.action in ("stream", "play") else None
+
+
+def _end_play(session: Session, other: Owner) -> bool:
+    """End the right of a client to move, unless it loads: the assignment might become a line of its program."""
+    try:
+        if session.has_handshake and free_memory(session) < 0:
+            return False
+        session.query(exchange_owner(other.owner, 0))
+    except (CancelledError, NoAccessError):
+        raise
+    except PmacError as fault:
+        _log.warning("the play of another client was not ended: %s", fault)
+        return False
+    return True
 
 
 def _endless(rungs: tuple[Rung, ...]) -> Iterator[Rung]:

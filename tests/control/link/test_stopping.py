@@ -13,7 +13,7 @@ from rig import SETTINGS, Noise, Wire, controller
 from pkm_post.control.link import run as operate
 from pkm_post.control.link import stopping
 from pkm_post.control.link.download import download
-from pkm_post.control.link.errors import CancelledError
+from pkm_post.control.link.errors import CancelledError, NotOwnerError
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.status import read_status
 
@@ -75,6 +75,19 @@ def test_a_stop_between_two_motions_of_another_client_stops_the_next_one(stop, a
         other.sleep = session._sleep = sleep
         status = stop(session, SETTINGS)
     assert begun[0].running and (status.held or not status.running)
+    assert_at_rest(wire)
+
+
+def test_an_abort_between_two_pieces_ends_a_play_that_plans_for_long():
+    """No program runs, and none is started while somebody waits; but the player is about to, and would not notice."""
+    wire = Wire(controller(), "tcp", moves=True)
+    other = Wire(wire.controller, "tcp", moves=True, line=wire.line)
+    with wire.session() as owner, other.session() as session, owned(owner, "play"):
+        download(owner, SLOW)
+        assert not stopping.abort(session, SETTINGS).running
+        wire.sleep(2.0)
+        with pytest.raises(NotOwnerError, match="C211"):
+            operate.start_program(owner, SETTINGS, SLOW, FIRST)
     assert_at_rest(wire)
 
 
