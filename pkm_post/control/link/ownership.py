@@ -117,7 +117,8 @@ class Ownership:
             self._session.query(exchange_owner(0, self._owner))  # after a reset of the controller the record is gone
             there = read_record(self._session)
         if there.owner != self._owner:
-            raise NotOwnerError(owner_diagnostic(self._session, "C211", str(there)), there.action)
+            by = str(there) if there.owner else "an abort from elsewhere has ended what it did"
+            raise NotOwnerError(owner_diagnostic(self._session, "C211", by), there.action)
         self._verified_at, self._connections = self._session.now(), self._session.connections
 
     def _is_older_than(self, seconds: float) -> bool:
