@@ -76,6 +76,9 @@ def execute_plan(
         status = wait_for_end(control, plan.seconds)
     if ended_elsewhere(status, plan.lengths):
         return 1
+    if not control.has_ended(plan):
+        print("its codes were ended from elsewhere", file=sys.stderr)
+        return 1
     print(f"arrived; no strut is off by more than {target_deviation(status, plan.lengths):.4f} mm")
     return 0
 

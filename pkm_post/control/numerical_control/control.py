@@ -200,10 +200,14 @@ class NumericalControl:
             silence = self.longest_silence_s()
             status, self._watchdog = self._with_ownership("jog", lambda: execute.execute_watched(*order, silence))
         else:
-            status = self._with_ownership("run", lambda: execute.execute(*order, start_tolerance))
+            status = self._with_ownership("run", lambda: execute.execute_marked(*order, start_tolerance))
         if plan.block and self._blocks is not None:
             self._set_next_block(self._blocks[0], plan.block + 1)
         return status
+
+    def has_ended(self, plan: MovePlan) -> bool:
+        """Whether an executed plan at rest has run to its end; of a jog its target lengths tell that."""
+        return plan.is_jog or execute.has_ended(self._session, plan.job)
 
     @property
     def silence_s(self) -> float | None:

@@ -17,6 +17,7 @@ from pkm_post.control.link.download import download
 from pkm_post.control.link.errors import NotReadyError, PmacError
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.program import PmacJob, read_job
+from pkm_post.control.link.queries import read_number
 from pkm_post.control.link.run import check_override, check_setup, check_start
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings, Array, Status, read_status
@@ -67,6 +68,21 @@ def execute_watched(
     """
     watchdog = watchdog_of(settings, job.program, silence_s)
     return execute(session, machine, settings, replace(job, program=watchdog.program)), watchdog
+
+
+def execute_marked(
+    session: Session, machine: Machine, settings: AnySettings, job: PmacJob, start_tolerance: float = START_TOLERANCE_MM
+) -> Status:
+    """As ``execute``, with a last line that sets the P-variable with its number: an abort does not get there."""
+    program = job.program
+    session.query(f"P{program.number}=0")  # harmless if repeated
+    lines = (*program.lines, f"P{program.number}=1")
+    return execute(session, machine, settings, replace(job, program=replace(program, lines=lines)), start_tolerance)
+
+
+def has_ended(session: Session, job: PmacJob) -> bool:
+    """Whether a marked job has run to its end; nothing else in the state of a controller tells that from an abort."""
+    return read_number(session, f"P{job.program.number}") == 1
 
 
 def wait_for_rest(

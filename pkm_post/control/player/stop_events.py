@@ -2,21 +2,19 @@
 """Stop events: tool change, spindle, coolant and dwell between two parts of a program, while the machine rests.
 
 The codes are those of posted programs, and are sent the same way: as a program that moves the tip by a millionth of a
-millimetre, so that it can be certified, listed and started. Its last line sets the P-variable with its number, since
-nothing else in the state of a controller tells its end from an abort.
+millimetre, so that it can be certified, listed and started.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from pkm_post.control.link.errors import PmacError
-from pkm_post.control.link.queries import read_number
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings, Status
-from pkm_post.control.numerical_control.execute import execute, wait_for_rest
+from pkm_post.control.numerical_control.execute import execute_marked, has_ended, wait_for_rest
 from pkm_post.control.numerical_control.manual_moves import stationary_trajectory
 from pkm_post.control.numerical_control.plan import planned
 from pkm_post.control.player.operator_input import OperatorInput
@@ -92,14 +90,10 @@ def run_events(task: PlayContext, row: int, events: tuple[Event, ...]) -> None:
     plan, diagnostics = planned(stationary_trajectory(machine, here, length, at_rest), machine, settings, TOLERANCES)
     if plan is None:
         raise Refused(diagnostics)
-    program = plan.job.program
-    done = f"P{program.number}"
-    task.session.query(f"{done}=0")  # harmless if repeated
-    marked = replace(plan.job, program=replace(program, lines=(*program.lines, f"{done}=1")))
-    execute(task.session, machine, settings, marked)
+    execute_marked(task.session, machine, settings, plan.job)
     dwells = sum(each.value for each in events if each.kind is EventKind.DWELL)
     status = task.wait_for_rest(dwells + _LONGEST_S)
     if status.running or status.fault_texts():
         raise PmacError("the codes between two moves did not end: " + "; ".join(status.fault_texts() or ("held",)))
-    if read_number(task.session, done) != 1:
+    if not has_ended(task.session, plan.job):
         raise PmacError("the codes between two moves were ended from elsewhere; go on with --from-line")

@@ -14,7 +14,7 @@ import pytest
 from rig import served
 from station import PER_BLOCK, SETTINGS, TOOL, job, set_up
 
-from pkm_post.cli import main
+from pkm_post.cli import main, pmac_manual
 from pkm_post.cli.pmac_manual import print_emergency_steps
 from pkm_post.model import Event, EventKind
 from pkm_post.posting.post_file import post_file
@@ -61,6 +61,23 @@ def test_jogs_and_lines(simulator, capsys):
     capsys.readouterr()
     assert pmac("monitor", port, "--seconds", 0.1) == 0
     assert "spin" in capsys.readouterr().out
+
+
+def test_codes_that_another_client_aborts_have_not_been_carried_out(simulator, capsys, monkeypatch):
+    """They do not move the tool, so the place where it rests does not tell."""
+    _, port = simulator
+    assert pmac("mdi", port, "G4 P0.1 M8") == 0
+    waits, aborted = pmac_manual.wait_for_end, []
+
+    def aborted_meanwhile(control, seconds):
+        aborted.append(pmac("abort", port))
+        return waits(control, seconds)
+
+    monkeypatch.setattr(pmac_manual, "wait_for_end", aborted_meanwhile)
+    capsys.readouterr()
+    assert pmac("mdi", port, "G4 P600") == 1 and aborted == [0]
+    reported = capsys.readouterr()
+    assert "ended from elsewhere" in reported.err and "arrived" not in reported.out
 
 
 def test_nothing_is_sent_that_is_refused_or_only_checked(simulator, capsys):
