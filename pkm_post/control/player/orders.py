@@ -122,7 +122,8 @@ class PlayState:
     def __str__(self) -> str:
         where = " ".join(filter(None, (self.operation, f"line {self.line}")))
         speed = f"{self.override:.0%} asked, {self.reached:.0%} reached" if self.reached else f"{self.override:.0%}"
-        return f"{self.phase}, {where}: {self.to_go:.1f} mm, {self.remaining:.0f} s to go; {speed}"
+        left = f"{self.to_go:.1f} mm" + (f", {self.remaining:.0f} s" if np.isfinite(self.remaining) else "")
+        return f"{self.phase}, {where}: {left} to go; {speed}"
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,9 @@ def test_a_program_is_played_without_rests(machine):
     assert done.finished and done.log.holds and (done.stops, done.losses) == (0, 0)
     playing.check()
     assert playing.arrived() < 1e-3
+    state = playing.states[0]
+    assert f" mm, {state.remaining:.0f} s to go; 100%" in str(state)
+    assert f": {state.to_go:.1f} mm to go; 0%" in str(replace(state, override=0.0, remaining=np.inf))
     to_go = [state.to_go for state in playing.states]
     assert to_go == sorted(to_go, reverse=True) and to_go[-1] < 1e-3
     assert {state.line for state in playing.states} == {1, 2, 3}
