@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from pkm_post.reading.gcode.codes import (
+    ARCS,
     DRILLING,
     FURTHER_OFFSETS,
     G_CODES,
@@ -142,6 +143,7 @@ _FANUC_CODES: dict[int, Code] = {
     **{code: meaning for code, meaning in G_CODES.items() if code not in (281, 301, 431, 432, 922, 923)},
     40: Code(Group.ONCE, "PX", takes_axes=True),
     921: Code(Group.ONCE, "XYZ", takes_axes=True),
+    **{code: replace(G_CODES[code], letters=G_CODES[code].letters.replace("P", "")) for code in ARCS},
     90: Code(Group.ONCE),
     **{code: Code(Group.POLAR) for code in (150, 160)},
     300: replace(G_CODES[300], letters="XYZP"),

@@ -46,15 +46,24 @@ def tool_axes(
     axes, given = find(blocks, modal, options, faults)
     lost = uniform(KEPT, len(blocks), np.uint8)
     if options.axis_words != "RPY":
-        # Without tip control, X Y Z are slide positions, and the tip position depends on the machine.
+        # Without tip control, X Y Z are slide positions, and the tip position depends on the machine; the place of
+        # rapid moves with G53 is the tip's.
         checkpoint()
         idle = modal.moves & (modal.active[Group.LENGTH] != code)
+        if idle.any():
+            idle &= given | ~_to_machine_positions(modal)
         if find is _angles and idle.any():
             lost = _unknown_positions(modal, axes, given, idle, faults)
             idle &= lost == KEPT
         faults.add_where("G424", idle & ~given & _tilted(axes), lambda row: _shown(axes[row]))
     checkpoint()
     return read_only(axes), lost, given
+
+
+def _to_machine_positions(modal: Modal) -> Array:
+    """Whether each block is a rapid move with G53, (N,)."""
+    rapid = modal.flavour.g53_is_rapid | (modal.active[Group.MOTION] == 0)
+    return np.asarray((modal.programmed[Group.ONCE] == 530) & rapid)
 
 
 def axes_in_work_frame(

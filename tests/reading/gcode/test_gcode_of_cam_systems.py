@@ -163,6 +163,24 @@ def test_rapid_moves_may_tilt_the_tool_before_the_control_of_its_tip():
     )
 
 
+@pytest.mark.parametrize("flavour", ["fanuc", "rs274"])
+def test_a_tilted_tool_may_go_to_the_machine_zero_without_the_control_of_its_tip(flavour):
+    options = {"axis_words": "AC", "flavour": flavour}
+    program, _ = taken(TILTED.replace("G91 G28 Z0\nG90 ", "G53 G0 Z0\n"), **options)
+    assert program.line.tolist() == [2, 5, 6, 7, 9, 12, 13]
+    np.testing.assert_allclose(program.position[[3, 4, 5]], [[5, 6, 50], [5, 6, 300], [7, 1, 100]])
+    np.testing.assert_allclose(program.tool_axis[4], [0.5, 0, np.sqrt(0.75)], atol=1e-9)
+    _, faults = taken(TILTED.replace("G91 G28 Z0\n", "G53 G0 Z0\nG1 X2\n"), **options)
+    assert ("G424", 10) in [(each.code, each.place.line) for each in faults]
+
+
+def test_turns_of_an_arc_are_linuxcnc_s():
+    text = "G0 X0. Y0. Z3.\nG2 X0. Y0. Z0. I5. P2 F100\n"
+    assert taken(text, flavour="rs274")[0].position[-2:, 2].tolist() == [1.5, 0]
+    program, faults = taken(text, flavour="fanuc")
+    assert program is None and [(each.code, each.found) for each in faults] == [("G404", "P2")]
+
+
 def test_cuts_do_not_tilt_it_there():
     text = TILTED.replace("G0 A30. C90.", "G1 F100 A30. C90.")
     codes = [fault.code for fault in taken(text, axis_words="AC", flavour="fanuc")[1]]
