@@ -151,6 +151,8 @@ def _holes(points: Points, point: Array, cycle: Array, series: Array, cycles: li
         previous=points.position[before].copy(),
         previous_axis=points.axis[before],
     )
+    if not holes.known.all():  # a program that begins with a hole: its clearance is the height before it
+        holes.previous[0] += cycles[holes.cycle[0]].clearance * holes.axis[0]
     holes.top[:] = holes.position + _return_heights(holes, follows_hole, same_series, cycles)[:, None] * holes.axis
     holes.previous[follows_hole] = holes.top[np.flatnonzero(follows_hole) - 1]
     return holes

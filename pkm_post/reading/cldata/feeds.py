@@ -106,6 +106,8 @@ def spindl(state: ReaderState, row: int, statement: Statement) -> None:
     numbers = [item for item in items if isinstance(item, float)]
     words = {item for item in items if isinstance(item, str)}
     unclear = "LOCK" in words and bool(words & {"ON", "OFF"})  # of the spindle, or of its override
+    stops = bool(words & _STOPPED) and bool("ON" in words or (numbers and "ORIENT" not in words))
+    unclear = unclear or stops or len(words & {*_SENSES}) > 1 or len(words & {"RPM", *_SURFACE_SPEEDS}) > 1
     known = words <= _SPINDLE_WORDS | {*_SENSES, *_SURFACE_SPEEDS}
     lacking = not numbers and bool(words & {"RPM", *_SURFACE_SPEEDS})
     if len(numbers) > 1 or not known or not statement.items or unclear or lacking:
@@ -187,14 +189,17 @@ def _spindle_event(state: ReaderState, row: int) -> None:
 
 
 def coolnt(state: ReaderState, row: int, statement: Statement) -> None:
-    """COOLNT/ON, FLOOD, MIST, TAP, THRU or OFF; a following pressure is ignored.
+    """COOLNT/ON, FLOOD, MIST, TAP, THRU or OFF; ON beside a kind is that kind, a following pressure is ignored.
 
     ON is flood with NX [UG/Post], the last coolant elsewhere [NCCS PostWorks].
     """
-    word = next(iter(statement.words), "")
-    if word not in _COOLANT:
-        state.report_items(row, statement, _list(_COOLANT))
+    words = statement.words
+    kinds = [word for word in words if _COOLANT.get(word) and word != "ON"]
+    both = len(kinds) > 1 or (bool(kinds or "ON" in words) and "OFF" in words)  # one of several may go on
+    if both or not words or words[0] not in _COOLANT:
+        state.report_items(row, statement, f"one of {_list(_COOLANT)}")
         return
+    word = kinds[0] if kinds else words[0]
     coolant = state.coolant if word == "ON" and state.dialect.name != "nx" else _COOLANT[word]
     state.coolant = coolant or state.coolant
     state.events.append((row, EventKind.COOLANT, coolant))

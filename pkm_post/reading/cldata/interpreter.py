@@ -33,6 +33,7 @@ from pkm_post.reading.cldata.copies import MATRIX
 from pkm_post.reading.cldata.cutcom import cutcom, geometry_type, points_comment
 from pkm_post.reading.cldata.cycle_statement import cycle, cycle_goes_on
 from pkm_post.reading.cldata.feeds import coolnt, delay, fedrat, rapid, report_unknown_speeds, spindl, stop
+from pkm_post.reading.cldata.logical_lines import JOINT
 from pkm_post.reading.cldata.nurbs import movnrb
 from pkm_post.reading.cldata.points import from_or_godlta, goto, multax, numbers_only, tlaxis
 from pkm_post.reading.cldata.state import ReaderState
@@ -51,6 +52,9 @@ from pkm_post.reading.cldata.units_and_frames import (
 _LARGEST = 1e9
 """Numbers beyond this are not plausible lengths, feeds or speeds."""
 _END = re.compile(r"\s*(?:END-OF-PATH|PPRINT\s*/\s*END-SECTION\s*,\s*PROCESS-END-PATH)\s*", re.IGNORECASE)
+
+_CONTINUED = re.compile(rf"{JOINT}\s*(\w+)\s*(?:/|$|{JOINT})")
+"""A line that continues a text, as a statement: a word with a slash, or alone."""
 
 _Handler = Callable[[ReaderState, int, Statement], None]
 
@@ -131,6 +135,8 @@ HANDLERS: dict[str, _Handler] = {
 _PACE = frozenset({"FEDRAT", "SPINDL", "CUTTER", "TLDATA"})
 """Words that may change the feed, or the spindle speed, which a speed of the surface takes from the cutter."""
 
+_BEGUN = (EventKind.TOOL_CHANGE, EventKind.SPINDLE, EventKind.COOLANT)
+
 IGNORED = frozenset({
     "PARTNO", "PPRINT", "TPRINT", "LETTER", "DISPLY", "REMARK", "MACHIN", "PPWORD", "PAINT", "END-OF-PATH", "SETUP",
     "SELECT", "SWITCH", "LINTOL", "INTOL", "OUTTOL", "TOLER", "SET",
@@ -175,6 +181,7 @@ def interpret(state: ReaderState, bulk: Array) -> Array:
             state.report("L401", row, word)
         elif word not in IGNORED:
             unknown.setdefault(word, []).append(row)
+        _report_statement_in_text(state, row)
         if state.ended:
             valid[row + 1 :] = False
             _report_after_end(state, row)
@@ -187,6 +194,19 @@ def interpret(state: ReaderState, bulk: Array) -> Array:
         times = f", {len(rows)} times" if len(rows) > 1 else ""
         state.report("L404", rows[0], f"{word[:60]}{times}")
     return bulk & valid
+
+
+def _report_statement_in_text(state: ReaderState, row: int) -> None:
+    """Report a statement that a $ or ~ at the end of a text would make part of that text, and so lose."""
+    statements = state.statements
+    text = statements.lines.text[statements.index[row]]
+    if JOINT not in text or not statements.templates[statements.template[row]].takes_text:
+        return
+    for match in _CONTINUED.finditer(text):
+        word = match[1].upper()
+        if word in HANDLERS or word in UNSUPPORTED:
+            state.report("L401", row, f"{statements.word(row)} that continues in a line with the statement {word}")
+            return
 
 
 def _known_parts(word: str) -> bool:
@@ -231,7 +251,7 @@ def _report_missing_end(state: ReaderState) -> None:
 
 
 def _report_motion_after_program(state: ReaderState, goto: Array) -> None:
-    """Report a motion after END or REWIND: the NC program does not reach it.
+    """Report a motion, a tool change or a start of spindle or coolant after END or REWIND, which is never reached.
 
     Args:
         state: with all statements read.
@@ -239,9 +259,12 @@ def _report_motion_after_program(state: ReaderState, goto: Array) -> None:
     """
     end = state.end_of_program
     rows = [*(np.flatnonzero(goto[end + 1 :]) + end + 1)[:1].tolist(), *(row for row, _ in state.points if row > end)]
-    if end >= 0 and rows:
+    begun = [row for row, kind, value in state.events if row > end and value and kind in _BEGUN]
+    if end >= 0 and (rows or begun):
         word, line = state.statements.word(end), state.statements.place(end)[0]
-        state.report("L401", min(rows), f"a motion after {word} in line {line}, the end of the program")
+        first = min((*rows, *begun))
+        what = "a motion" if first in rows else state.statements.word(first)
+        state.report("L401", first, f"{what} after {word} in line {line}, the end of the program")
 
 
 def _is_closed(state: ReaderState) -> bool:

@@ -105,8 +105,11 @@ def load(state: ReaderState, row: int, statement: Statement) -> None:
     if not isinstance(number, float) or number != int(number) or not 0 <= number < 2**31:
         state.report_items(row, statement, "the number of a tool")
         return
-    record_tool_if_used(state, row)
     length = statement.number_after("LENGTH") * state.scale
+    if length < 0:
+        state.report("L403", row, f"{statement.word}: length {length:g} mm")
+        return
+    record_tool_if_used(state, row)
     if int(number) == state.changed_tool and state.motions_recorded == state.motions_at_change:
         state.tool_length = length or state.tool_length
         return

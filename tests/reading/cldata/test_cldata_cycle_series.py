@@ -230,3 +230,16 @@ def test_any_cycle_gives_a_program_or_diagnostics():
             assert np.isfinite(program.position).all()
             assert (program.feed[program.kind == Kind.LINE] > 0).all()
     assert kept > 100
+
+
+@pytest.mark.parametrize(
+    ("dialect", "cycle"),
+    [("creo", "DRILL,DEPTH,5,CLEAR,2,RETURN,0"), ("nx", "DRILL,FEDTO,-5,RAPTO,2,RTRCTO,AUTO")],
+)
+def test_a_program_that_begins_with_a_hole_keeps_clear_of_it_on_the_way_to_lower_ones(dialect, cycle):
+    """The height before the first hole is its clearance: from the lower holes the tool rose to its surface only."""
+    head = f"UNITS/MM\nLOADTL/1\nFEDRAT/100,MMPM\nCYCLE/{cycle}\n"
+    found, _ = read(f"{head}GOTO/0,0,10\nGOTO/50,0,0\nGOTO/80,0,0\nCYCLE/OFF\nFINI\n", "a.cl", ReadOptions(dialect))
+    rapid = found.position[found.kind == Kind.RAPID]
+    sideways = np.abs(np.diff(rapid[:, 0])) > 0
+    assert rapid[1:][sideways][:, 2].tolist() == rapid[:-1][sideways][:, 2].tolist() == [12, 12]

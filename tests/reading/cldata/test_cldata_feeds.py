@@ -143,6 +143,29 @@ def test_no_motion_follows_the_end_of_the_program(word, motion):
     ]
 
 
+@pytest.mark.parametrize("statement", ["SPINDL/500,CLW", "COOLNT/MIST", "LOADTL/2"])
+def test_nothing_begins_after_the_end_of_the_program(statement):
+    assert codes(f"{HEAD}GOTO/1,2,3\nEND\n{statement}\nFINI\n") == [("L401", 8)]
+    program(f"{HEAD}GOTO/1,2,3\nEND\nSPINDL/OFF\nCOOLNT/OFF\nSTOP\nREWIND\nFINI\n")
+
+
+@pytest.mark.parametrize("words", ["500,OFF", "ON,OFF", "500,RPM,SFM", "10,SFM,SMM", "CLW,CCLW,500"])
+def test_speeds_that_contradict_themselves_are_refused(words):
+    assert codes(f"{HEAD}SPINDL/{words}\nGOTO/1,0,0\nFINI\n") == [("L402", 6)]
+
+
+@pytest.mark.parametrize(("words", "coolant"), [("ON,MIST", 2), ("MIST,ON", 2), ("FLOOD,HIGH", 1), ("THRU,70", 1)])
+def test_on_beside_a_coolant_is_that_coolant(words, coolant):
+    events = program(f"{HEAD}COOLNT/FLOOD\nGOTO/1,0,0\nCOOLNT/{words}\nGOTO/2,0,0\nFINI\n").events
+    assert [event.value for event in events if event.kind is EventKind.COOLANT] == [1, coolant]
+
+
+@pytest.mark.parametrize("words", ["MIST,OFF", "OFF,MIST", "FLOOD,MIST", "ON,OFF"])
+def test_one_coolant_of_several_is_refused(words):
+    """MIST,OFF was mist on."""
+    assert codes(f"{HEAD}COOLNT/{words}\nGOTO/1,0,0\nFINI\n") == [("L402", 6)]
+
+
 @pytest.mark.parametrize("words", ["LOCK,ON", "LOCK,OFF"])
 def test_a_lock_of_spindle_or_override_is_refused(words):
     assert codes(f"{HEAD}SPINDL/{words}\nGOTO/1,0,0\n") == [("L402", 6)]

@@ -357,6 +357,22 @@ def test_words_beside_the_motion_leave_it_alone_or_are_refused(statement, code):
     assert code or found.position[-1].tolist() == [1, 2, 3]
 
 
+@pytest.mark.parametrize("text", ["PPRINT COST 5 $", "INSERT G4 X5 $", "REMARK a ~", "PPRINT 'A $"])
+@pytest.mark.parametrize("lost", ["GOTO/1,2,3", "RAPID", " fedrat / 5", "CALSUB/1"])
+def test_a_statement_that_a_text_would_swallow_is_refused(text, lost):
+    diagnostics = read(f"{HEAD}{text}\n{lost}\nGOTO/4,5,6\n", "part.cl")[1]
+    line = HEAD.count("\n") + 1
+    assert [(fault.code, fault.place.line) for fault in errors(diagnostics)] == [("L401", line)]
+    assert lost.strip().partition("/")[0].strip().upper() in str(errors(diagnostics)[0].found)
+    goes_on = program(f"{HEAD}{text}\nand more: GOTO it\nGOTO/4,5,6\n")
+    assert goes_on.position[-1].tolist() == [4, 5, 6]
+
+
+def test_a_gauge_length_below_zero_is_refused():
+    diagnostics = read(f"{HEAD}LOADTL/2,LENGTH,-100\nGOTO/1,2,3\n", "part.cl")[1]
+    assert [fault.code for fault in errors(diagnostics)] == ["L403"]
+
+
 def test_rapid_passes_a_from():
     found = program(f"{HEAD}GOTO/0,0,9\nRAPID\nFROM/0,0,10\nGOTO/1,2,3\nGOTO/1,2,0\n")
     assert found.kind[-2:].tolist() == [Kind.RAPID, Kind.LINE]
