@@ -67,8 +67,8 @@ def movarc(state: ReaderState, row: int, statement: Statement) -> None:
     if values is None or not {"CENTER", "AXIS"} <= values.keys():
         state.report_items(row, statement, "x,y,z,i,j,k,r,ANGLE,a")
         return
-    angle = math.radians(abs(values["ANGLE"][0])) if "ANGLE" in values else math.nan
-    if angle > 2 * math.pi * (1 + 1e-9):
+    angle = math.radians(values["ANGLE"][0]) if "ANGLE" in values else math.nan
+    if angle <= 0 or angle > 2 * math.pi * (1 + 1e-9):
         state.report("L401", row, f"MOVARC by {math.degrees(angle):g} degrees")
         return
     radius = values.get("RADIUS", (math.nan,))[0]

@@ -26,6 +26,9 @@ MOST_STATEMENTS = 10_000_000
 """Statements of a file with all its copies."""
 
 _MOTIONS = frozenset({"GOTO", "FROM", "GOHOME", "GODLTA", "ARCMOV", "GOCLW", "GOCCLW", "CW", "CCW", "HELICAL"})
+_UNITS = ("UNITS", "UNIT")
+_PLACED_BY = ((_UNITS, False), (("TRACUT",), False), (("TRACUT",), True), (("MSYS", "CSYS", "CATIA0"), False))
+"""Words of which one is in force, and decides where the points after it are before they are copied; whether LAST."""
 _SAME = 1e-6
 """Tolerance of equal matrices, in units of the file."""
 _PLANES = {"XYROT": (0, 1), "YZROT": (1, 2), "ZXROT": (2, 0)}
@@ -97,6 +100,10 @@ def _copies_at(
     if _begins_with_godlta(statements, path):
         faults.add("L401", place, f"COPY/{statement.items_text()} of a path that begins with GODLTA")
         return []
+    changed = _changed_within(statements, mine[0], row)
+    if changed:
+        faults.add("L401", place, f"COPY/{statement.items_text()} of a path that begins before another {changed}")
+        return []
     if count * sum(map(_size, path)) > MOST_STATEMENTS:
         faults.add("L403", place, f"COPY/{statement.items_text()}: more than {MOST_STATEMENTS} statements")
         return []
@@ -125,6 +132,28 @@ def _begins_with_godlta(statements: Statements, path: list[_Part]) -> bool:
     """Whether the first motion of a path is an increment: APT copies its end point [aptos], other systems may not."""
     words = (statements.word(row) for part in path if isinstance(part, np.ndarray) for row in part.tolist())
     return next((word for word in words if word in _MOTIONS), "") == "GODLTA"
+
+
+def _changed_within(statements: Statements, begin: int, end: int) -> str:
+    """The word of a unit or frame that changes behind the first motion of a path, whose copies it would change."""
+    motion = next((row for row in range(begin + 1, end) if statements.word(row) in _MOTIONS), end)
+    for group, is_last in _PLACED_BY:
+        rows = [row for word in group for row in _rows(statements, word) if row < end]
+        rows = [row for row in rows if ("LAST" in statements.statement(row).items) is is_last]
+        before, within = [row for row in rows if row < begin], [row for row in rows if row > begin]
+        if group is _UNITS and not before:  # what precedes the first one is in its unit as well
+            before = within[:1]
+        if within and min(within) > motion:
+            last = _in_force(statements, max(within))
+            if last != (_in_force(statements, max(before)) if before else ()):
+                return statements.word(max(within))
+    return ""
+
+
+def _in_force(statements: Statements, row: int) -> tuple[object, ...]:
+    """What a statement of a unit or frame sets, () where it ends one."""
+    items = statements.statement(row).items
+    return () if {"NOMORE", "OFF"} & set(items) else items
 
 
 def _commute(one: Array, other: Array) -> bool:

@@ -293,3 +293,11 @@ def test_how_far_a_circle_in_a_comment_reaches(text, arcs):
 
 def test_comments_of_other_dialects_are_comments():
     assert (program(START + COMMENT + STEPS, dialect="catia").kind[1:] == Kind.LINE).all()
+
+
+@pytest.mark.parametrize("angle", ["0", "-90", "-180", "361"])
+def test_an_angle_of_movarc_that_is_no_arc_is_refused(angle):
+    """0 degrees were a full turn, and a sign was ignored."""
+    end = {"-90": "0,-10,0", "-180": "-10,0,0"}.get(angle, "10,0,0")
+    diagnostics = read(f"{START}MOVARC/0,0,0,0,0,1,10,ANGLE,{angle}\nGOTO/{end}\n", "part.cl", ReadOptions("catia"))[1]
+    assert [fault.code for fault in errors(diagnostics)][:1] == ["L401"]

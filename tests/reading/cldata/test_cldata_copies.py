@@ -169,3 +169,26 @@ def test_a_file_without_copies_keeps_its_table():
 
     statements = scan(logical_lines(HEAD), StatementDiagnostics("part.cl"))
     assert copies.with_copies(statements, StatementDiagnostics("part.cl")) is statements
+
+
+@pytest.mark.parametrize("change", ["UNITS/INCHES", "TRACUT/5,0,0", "TRACUT/LAST,5,0,0"])
+def test_a_unit_or_frame_that_changes_within_a_path_is_refused(change):
+    """The first points of the copies would be in those of the end: copies in inches were 25.4 times as big."""
+    path = "INDEX/1\nGOTO/1,0,0\nGOTO/2,1,0\n"
+    assert codes(f"{path}{change}\nCOPY/1,TRANSL,10,0,0,1\nGOTO/0,0,60\n") == ["L401"]
+
+
+@pytest.mark.parametrize(
+    ("before", "first", "last", "x"),
+    [
+        ("", "", "UNITS/MM", [1, 2, 11, 12]),
+        ("", "UNITS/INCHES", "", [25.4, 50.8, 279.4, 304.8]),
+        ("TRACUT/5,0,0", "", "", [6, 7, 16, 17]),
+        ("", "TRACUT/5,0,0", "TRACUT/7,0,0", [6, 7, 16, 17]),
+        ("", "", "TRACUT/5,0,0\nTRACUT/NOMORE", [1, 2, 11, 12]),
+        ("TRACUT/LAST,1,0,0", "", "TRACUT/5,0,0\nTRACUT/OFF", [2, 3, 12, 13]),
+    ],
+)
+def test_a_unit_or_frame_that_holds_for_the_whole_path_is_copied(before, first, last, x):
+    found = program(f"{before}\nINDEX/1\n{first}\nGOTO/1,0,0\nGOTO/2,0,0\n{last}\nCOPY/1,TRANSL,10,0,0,1\n")
+    assert found.position[-4:, 0] == pytest.approx(x)
