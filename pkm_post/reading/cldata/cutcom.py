@@ -41,11 +41,12 @@ def cutcom(state: ReaderState, row: int, statement: Statement) -> None:
     """CUTCOM/LEFT or RIGHT[,plane][,register], CUTCOM/OFF; CUTCOM/ON the last side; with ADJUST or LENGTH no side."""
     words = statement.words
     sides = [_SIDES[word] for word in words if word in _SIDES]
-    if not words or not set(words) <= _KNOWN or len(sides) > 1:
+    planes = {_PLANES[word] for word in words if word in _PLANES}
+    contradict = len(sides) > 1 or len(planes) > 1 or ("OFF" in words and bool(sides or "ON" in words))
+    if not words or not set(words) <= _KNOWN or contradict:
         state.report("L401", row, f"CUTCOM/{statement.items_text()}")
     elif sides:
-        plane = next((_PLANES[word] for word in words if word in _PLANES), None)
-        _record(state, row, sides[0], plane)
+        _record(state, row, sides[0], next(iter(planes), None))
     elif not set(words) & _OTHER_OFFSETS:
         _on_or_off(state, row, statement)
 

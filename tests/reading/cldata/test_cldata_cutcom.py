@@ -416,3 +416,12 @@ QUARTER = "TRACUT/0,-1,0,0,1,0,0,0,0,0,1,0\n"
 )
 def test_named_planes_turn_with_the_frame_and_are_seen_from_the_holder(frame, words, axis, expected):
     assert offset_in(frame, words, axis) == expected
+
+
+@pytest.mark.parametrize("words", ["OFF,LEFT", "LEFT,OFF", "ON,OFF", "LEFT,XYPLAN,YZPLAN", "LEFT,RIGHT"])
+def test_words_that_contradict_each_other_are_refused(words):
+    """OFF,LEFT was LEFT."""
+    text = f"{HEADS['apt']}UNITS/MM\nFEDRAT/100\nGOTO/0,0,0\nCUTCOM/{words}\nGOTO/9,0,0\nCUTCOM/OFF\nGOTO/9,9,0\nFINI\n"
+    found, diagnostics = read(text, "part.apt", ReadOptions(contour_data="contour"))
+    assert found is None
+    assert [(fault.code, fault.place.line) for fault in errors(diagnostics)] == [("L401", 7)]
