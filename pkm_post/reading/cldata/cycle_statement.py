@@ -277,7 +277,7 @@ class _CycleItems:
             self.to_initial, self._pending = True, ""
         elif self.notation.down < 0 and word == MANUAL and not self._pending and "return" in self.values:
             pass
-        elif word == "REV" and self._pending_means("dwell"):
+        elif word == "REV" and word in self.notation.words and self._pending_means("dwell"):
             self._pending = word
         else:
             if word not in FEED_WORDS and word not in self.notation.known_words(self.kind):

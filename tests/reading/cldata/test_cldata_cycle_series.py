@@ -243,3 +243,14 @@ def test_a_program_that_begins_with_a_hole_keeps_clear_of_it_on_the_way_to_lower
     rapid = found.position[found.kind == Kind.RAPID]
     sideways = np.abs(np.diff(rapid[:, 0])) > 0
     assert rapid[1:][sideways][:, 2].tolist() == rapid[:-1][sideways][:, 2].tolist() == [12, 12]
+
+
+@pytest.mark.parametrize(
+    ("dialect", "code"), [("apt", "L419"), ("catia", "L419"), ("makino", "L419"), ("solidworks", "L412")]
+)
+def test_a_dwell_in_turns_is_refused_where_the_cam_system_has_none(dialect, code):
+    """It ended in a KeyError."""
+    cycle = "SPINDL/500,CLW\nCYCLE/DRILL,FEDTO,5,RAPTO,2,DWELL,REV,3\nGOTO/1,0,0\nCYCLE/OFF\nFINI\n"
+    found, diagnostics = read(f"UNITS/MM\nLOADTL/1\nFEDRAT/100,MMPM\n{cycle}", "a.cl", ReadOptions(dialect))
+    assert found is None
+    assert [(fault.code, fault.place.line) for fault in errors(diagnostics)] == [(code, 5)]
