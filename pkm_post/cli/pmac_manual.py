@@ -14,7 +14,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.pmac_stop import held_at_the_end
-from pkm_post.cli.terminal import print_diagnostics
+from pkm_post.cli.terminal import drop_typed_ahead, print_diagnostics
 from pkm_post.options import START_TOLERANCE_MM
 
 if TYPE_CHECKING:
@@ -241,6 +241,7 @@ def step(session: Session, target: JobTarget, namespace: argparse.Namespace) -> 
     print_diagnostics(diagnostics)
     control.open_blocks(blocks, namespace.block)
     for number in range(namespace.block, len(blocks) + 1):
+        drop_typed_ahead()
         print(f"{blocks.shown(number)}; Enter starts it, the end of the input ends here", flush=True)
         if not sys.stdin.readline():
             return 0

@@ -10,6 +10,11 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable
 
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import termios
+
 _CLEAR = "\r\x1b[K"
 
 
@@ -17,6 +22,17 @@ def print_diagnostics(diagnostics: Iterable[object]) -> None:
     """Print diagnostics or other messages on stderr, one a line."""
     for diagnostic in diagnostics:
         print(diagnostic, file=sys.stderr)
+
+
+def drop_typed_ahead() -> None:
+    """Drop what was typed at a terminal before it is asked for: a key that bounces must not start a machine."""
+    if not sys.stdin.isatty():
+        return
+    if sys.platform == "win32":
+        while msvcrt.kbhit():
+            msvcrt.getwch()
+    else:
+        termios.tcflush(sys.stdin.fileno(), termios.TCIFLUSH)
 
 
 class ProgressLine:

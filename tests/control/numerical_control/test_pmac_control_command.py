@@ -3,11 +3,15 @@
 
 import copy
 import io
+import os
 import re
+import select
+import sys
 import threading
 import time
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -162,6 +166,30 @@ def test_line_by_line(simulator, capsys, monkeypatch, tmp_path):
     (tmp_path / "part-manifest.json").unlink()
     assert pmac("step", port, file) == 1
     assert "C205" in capsys.readouterr().err and not made.runs_program()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="has no pseudo terminals")
+def test_enter_pressed_twice_starts_one_line(simulator, capsys, monkeypatch, tmp_path):
+    _, port = simulator
+    source = tmp_path / "part.ngc"
+    source.write_text("G21 G90 G54\n" + "\n".join(LINES) + "\nM30\n")
+    post_file(source, MACHINE, tmp_path, tool_lengths={0: TOOL})
+    keyboard, terminal = os.openpty()
+
+    def readline():
+        if not asked:
+            os.write(keyboard, b"\n\n")
+        asked.append(True)
+        is_typed = select.select([terminal], [], [], 0)[0]
+        return os.read(terminal, 1).decode() if is_typed else ""
+
+    asked = []
+    monkeypatch.setattr("sys.stdin", SimpleNamespace(isatty=lambda: True, fileno=lambda: terminal, readline=readline))
+    assert pmac("step", port, tmp_path / "part.pmc") == 0
+    reported = capsys.readouterr().out
+    assert reported.count("arrived") == 1 and "block 2 of 3" in reported
+    os.close(keyboard)
+    os.close(terminal)
 
 
 def test_behind_a_stop(simulator, capsys, tmp_path):
