@@ -77,6 +77,8 @@ class OperatorInput:
             elif order.kind == "hold":
                 held = stopping.hold(session, settings).held
                 self.is_held_back, self.holds_move = not held, held and by_hand
+                if self.holds_move:  # no state of the play is shown meanwhile
+                    _log.warning("held: resume goes on, end ends the play")
             elif order.kind == "resume" and self.is_held_back:
                 self.is_held_back = False
             elif order.kind == "resume":

@@ -263,7 +263,7 @@ def test_an_abort_from_elsewhere_while_codes_run_ends_the_play(at_once):
 
 @BOTH
 @pytest.mark.parametrize(("events", "row"), [(DWELL, 0), ((), 2)], ids=["codes", "approach"])
-def test_a_hold_while_codes_or_an_approach_run_is_immediate_and_lasts_until_the_resume(events, row, machine):
+def test_a_hold_while_codes_or_an_approach_run_is_immediate_and_lasts_until_the_resume(events, row, machine, caplog):
     playing = Playing.of(trajectory_of(events=events), machine=machine)
     passed, held = playing.wire.sleep, []
 
@@ -280,6 +280,7 @@ def test_a_hold_while_codes_or_an_approach_run_is_immediate_and_lasts_until_the_
     during_a_move_by_hand(playing, lambda: playing.player.order(Order("hold")))
     assert playing.play(first_row=row).finished
     assert playing.arrived() < 1e-3 and held[1:]
+    assert [record.message for record in caplog.records if record.message.startswith("held: resume goes on")]
 
 
 def test_an_end_while_a_hold_stands_in_codes_ends_the_play():
