@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Make a whole lap of the first operation in the active document's job, which cuts the quadrant x > 0, y > 0.
+"""Complete a lap around the part from the first operation of the active document's job, which cuts x > 0, y > 0.
 
-The copies stand in the order of one lap, and the mirrored ones are run the other way, so that all of them cut alike and
-each begins where the one before ended. What they cover together is printed in the Report view.
+The copies follow each other around the lap. The mirrored ones run in reverse, so that all of them climb mill or none
+does, and each begins where the previous one ended. The Report view shows the angle that they cover together.
 """
 
 import math
@@ -20,7 +20,7 @@ document.recompute()
 
 family = pkm.symmetry(quadrant)
 if family.coverage is None:
-    FreeCAD.Console.PrintError(f"{quadrant.Label} cuts nothing that goes round the z axis\n")
+    FreeCAD.Console.PrintError(f"{quadrant.Label} does not go around the z axis\n")
 else:
     covered, overlap = (math.degrees(angle) for angle in (family.coverage.covered, family.coverage.overlap))
     apart = max((joint.distance for joint in family.joints), default=math.inf)

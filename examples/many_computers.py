@@ -5,7 +5,7 @@
     python3 examples/many_computers.py jobs.toml --with dask --scheduler tcp://first:8786
     mpiexec -n 9 python3 -m mpi4py.futures examples/many_computers.py jobs.toml --with mpi
 
-Whichever executor runs the work, the files have the same bytes. The workers see the same folders, and import pkm_post.
+All executors write files with the same bytes. The workers need access to the same folders, and to pkm_post.
 """
 
 import argparse
@@ -34,7 +34,7 @@ def processes(options):
 
 @contextlib.contextmanager
 def dask(options):
-    """A Dask cluster that runs already, or one on this computer: python3 -m pip install distributed."""
+    """A running Dask cluster, or a new one on this computer: python3 -m pip install distributed."""
     from distributed import Client, LocalCluster
 
     with contextlib.ExitStack() as stack:
@@ -48,7 +48,7 @@ def dask(options):
 
 @contextlib.contextmanager
 def mpi(options):
-    """The processes that mpiexec has started: python3 -m pip install mpi4py."""
+    """The processes that mpiexec started: python3 -m pip install mpi4py."""
     from mpi4py.futures import MPIPoolExecutor
 
     with MPIPoolExecutor() as executor:
@@ -59,13 +59,15 @@ EXECUTORS = {"processes": processes, "dask": dask, "mpi": mpi}
 
 
 def main():
-    """Post and map; the exit code says whether every job was posted."""
+    """Post the files and map the reach; the exit code is 0 if every job was posted."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("list", type=Path, metavar="JOBS.toml")
-    parser.add_argument("--with", dest="executor", choices=EXECUTORS, default="processes", help="who does the work")
-    parser.add_argument("--workers", type=int, default=os.cpu_count(), help="workers that share this computer")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster that runs already")
-    parser.add_argument("--machine", default="example_6tps", help="whose reach is mapped")
+    parser.add_argument(
+        "--with", dest="executor", choices=EXECUTORS, default="processes", help="executor (default: processes)"
+    )
+    parser.add_argument("--workers", type=int, default=os.cpu_count(), help="number of workers on this computer")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="address of a running Dask cluster")
+    parser.add_argument("--machine", default="example_6tps", help="machine to map")
     options = parser.parse_args()
     with EXECUTORS[options.executor](options) as executor:
         try:

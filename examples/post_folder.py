@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Post every FreeCAD document of a folder, with the arguments that each job has; refused ones do not stop it.
+"""Post every FreeCAD document in a folder, each job with its own arguments; a refused document does not stop the rest.
 
 The folder is that of the active document. For many documents, `python3 -m pkm_post post *.FCStd` is faster: it posts
 several at a time.

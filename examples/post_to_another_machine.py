@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Post the first CAM job of the active document for a machine that a machine file describes, with looser tolerances.
 
-The job keeps its own arguments, and all that is not said here is as they say it. The machine here is the example one,
-moved at 20 mm/s at most.
+The arguments of the job apply, except for those given here. The machine is the example machine, limited to 20 mm/s.
 """
 
 import re
