@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import arc_sweep, dot, move_lengths
+from pkm_post.geometry import angle_between, arc_sweep, dot, move_lengths
 from pkm_post.model import Array, Event, EventKind, Kind, Program
 from pkm_post.reading.cldata.arcs import Arcs
 from pkm_post.reading.cldata.cutcom import Offset
@@ -181,7 +181,9 @@ def _convert_inverse_time(state: ReaderState, points: Points, rows: _Rows) -> No
         length = move_lengths(before, rows.position, rows.kind == Kind.ARC, rows.centre, rows.axis)
         # The time is that of a statement: the turns of a helix, or the chords of a curve, share it.
         statement = np.unique(points.row[rows.point], return_inverse=True)[1]
-        length = np.bincount(statement, length)[statement]
+        turned = np.degrees(angle_between(np.vstack([rows.tool_axis[:1], rows.tool_axis[:-1]]), rows.tool_axis))
+        length, turned = (np.bincount(statement, each)[statement] for each in (length, turned))
+        length = np.where(length > 0, length, turned)  # a turn in place has its speed in degrees
         inverse = rows.inverse & cutting
         contact = points.contact[rows.point]
         beside = np.flatnonzero(inverse & (contact | np.append(False, contact[:-1])))

@@ -30,11 +30,11 @@ def feeds(
     spindle: Array,
     motions: Motions,
     path_length: Array,
-    rotates: Array,
+    angle: Array,
     options: ReadOptions,
     faults: BlockDiagnostics,
 ) -> Array:
-    """Speed of each motion, (n,), mm/s; NaN on rapids.
+    """Speed of each motion, (n,), mm/s, of a turn in place degrees/s; NaN on rapids.
 
     Args:
         blocks: the program.
@@ -42,7 +42,7 @@ def feeds(
         spindle: (N,) signed spindle speed, 1/min.
         motions: of the program.
         path_length: (n,) distance travelled by the tip, mm; used with G93 only.
-        rotates: (n,) whether the tool axis rotates; used with G93 only.
+        angle: (n,) by which the tool axis turns, degrees; used with G93 only.
         options: read options: the feed before the first F, and the unit of time of F.
         faults: collects cutting moves without a feed.
     """
@@ -58,10 +58,10 @@ def feeds(
         speed = np.where(by_turn, speed * np.abs(motions.of_blocks(spindle)), speed)
     of_block = np.bincount(motions.block, weights=path_length, minlength=len(blocks)) if by_time.any() else np.zeros(0)
     if by_time.any():
-        value = motions.of_blocks(word)
-        speed = np.where(by_time, value * motions.of_blocks(of_block) / 60, speed)
-        # A block without motion takes no time, even with G93; one that only rotates the tool has no tip speed.
-        still = by_time & (speed == 0) & (value > 0) & ~rotates
+        value, way = motions.of_blocks(word), motions.of_blocks(of_block)
+        # A turn in place has its speed in degrees; a block without motion takes no time, even with G93.
+        speed = np.where(by_time, value * np.where(way > 0, way, angle) / 60, speed)
+        still = by_time & (speed == 0) & (value > 0)
         moving = np.flatnonzero(cuts & (speed > 0))
         speed = np.where(still, forward_fill(moving, speed[moving], np.nan, len(speed)), speed)
     taps = map_rows(lambda codes: codes == RIGID_TAP, modal.active[Group.MOTION])

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pkm_post.geometry import angle_between
 from pkm_post.model import (
     Array,
     Diagnostic,
@@ -205,11 +206,11 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
         return None
     columns = _directions(blocks, modal, states, motions, axis, faults)
     columns["tool_axis"] = axes_in_work_frame(motions, states.axes, states.written, states.spins, options, faults)
-    rotates = _axis_rotates(modal, columns["tool_axis"])
+    angle = _axis_angles(modal, columns["tool_axis"])
     columns |= {
         "kind": _KIND[motions.motion],
         "position": _frames(motions).points(motions.end),
-        "feed": feeds(blocks, modal, states.spindle, motions, path_length, rotates, options, faults),
+        "feed": feeds(blocks, modal, states.spindle, motions, path_length, angle, options, faults),
         "arc_centre": _frames(motions).points(centre),
         "operation": uniform(0, len(motions), np.int32),
         "line": motions.of_blocks(blocks.line),
@@ -265,11 +266,11 @@ def _path_lengths(modal: Modal, motions: Motions, centre: Array, axis: Array) ->
     return uniform(0.0, len(motions))
 
 
-def _axis_rotates(modal: Modal, axis: Array) -> Array:
-    """Whether the tool axis rotates, (n,); all true in a program without G93, where it is unused."""
+def _axis_angles(modal: Modal, axis: Array) -> Array:
+    """Angles by which the motions turn the tool axis, (n,), degrees; 0 in a program without G93: unused there."""
     if (modal.active[Group.FEED_MODE] == INVERSE_TIME).any():
-        return np.append(True, np.any(axis[1:] != axis[:-1], axis=1))
-    return uniform(True, len(axis))
+        return np.degrees(np.append(0.0, angle_between(axis[:-1], axis[1:])))
+    return uniform(0.0, len(axis))
 
 
 def _mirrored(hand: Array, column: Array) -> Array:

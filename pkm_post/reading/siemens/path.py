@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pkm_post.geometry import angle_between
 from pkm_post.model import Array, EventKind
 from pkm_post.reading.gcode.modal import forward_fill
 from pkm_post.reading.siemens import orientation
@@ -180,13 +181,14 @@ class Path:
     def _move(self, blocks: _Blocks, stops: bool) -> None:
         """Execute blocks whose X Y Z are those of the tip."""
         state = self.state
+        axis_before = state.axis
         moves = motions_of(blocks.columns, blocks.motion, state, self._faults)
         axes = np.broadcast_to(state.axis, (len(blocks), 3))
         if state.traori:
             relative = self._relative(blocks.columns)
             axes = orientation.tool_axes(blocks.columns.words, relative, state, self._notation)
         self._check_lost(moves)
-        speed = self._speeds(moves, blocks.feed)
+        speed = self._speeds(moves, blocks.feed, angle_between(np.vstack([axis_before, axes[:-1]]), axes))
         tangents = moves.tangents(slice(None))
         moved = np.flatnonzero(tangents.any(axis=1) & moves.known & moves.start_known)
         if len(moved):
@@ -244,11 +246,12 @@ class Path:
             for index in np.flatnonzero(~moves.known & (moves.motion != RAPID)).tolist():
                 self._faults.add(int(moves.row[index]), "G416", "a cut after the place of the tip was lost")
 
-    def _speeds(self, moves: Motions, feed: Array) -> Array:
-        """Speeds of the tip, (n,), mm/s; NaN on rapid moves."""
+    def _speeds(self, moves: Motions, feed: Array, angle: Array) -> Array:
+        """Speeds of the tip, (n,), mm/s, of a turn in place degrees/s; NaN on rapid moves."""
         state, cuts = self.state, moves.motion != RAPID
         if state.feed_mode == _INVERSE_TIME:
-            speed = feed * moves.lengths(state) / 60
+            way = moves.lengths(state)
+            speed = feed * np.where(way > 0, way, np.degrees(angle)) / 60
             moving = np.flatnonzero(cuts & (speed > 0))
             still = cuts & (speed == 0) & (feed > 0)
             speed = np.where(still, forward_fill(moving, speed[moving], np.nan, len(speed)), speed)

@@ -49,6 +49,11 @@ def test_a_unit_alone_is_that_of_the_next_values(statements, feed):
     assert program(f"{HEAD}SPINDL/1200,CLW\n{statements}\nGOTO/30,0,0\n").feed[-1] == pytest.approx(feed)
 
 
+def test_a_turn_in_place_takes_the_time_of_its_statement():
+    text = f"{HEAD}FEDRAT/INVERS,5\nGOTO/0,0,0,0,1,0\nGOTO/0,0,0,0,1,1\nGOTO/6,0,0,0,1,0\n"
+    assert program(text).feed[-3:] == pytest.approx([90 * 5 / 60, 45 * 5 / 60, 6 * 5 / 60])  # degrees/s, and mm/s
+
+
 @pytest.mark.parametrize("statements", ["FEDRAT/INVERS", "FEDRAT/MMPR", "FEDRAT/INVERS,5\nFEDRAT/INVERS,OFF"])
 def test_another_mode_without_a_value_has_no_feed(statements):
     text = f"{HEAD}SPINDL/1200,CLW\n{statements}\nGOTO/30,0,0\n"

@@ -169,6 +169,11 @@ def test_feeds_of_all_modes():
     near(program.feed[1:], [1, 10, 5])
 
 
+def test_a_turn_in_place_takes_the_time_of_its_block():
+    text = "T1 M6\nG43.5 H1 G0 X0 Y0 Z0 I0 J0 K1\nG93 G1 I1 K1 J0 F5\nX6 F5\nI1 J0 K0 F10\nX0 I0 J0 K1 F2\nX0 F3\n"
+    near(read(text, axis_words="vector").feed[1:5], [45 * 5 / 60, 0.5, 45 * 10 / 60, 6 * 2 / 60])
+
+
 def test_exact_stop_is_marked():
     assert read("G0 X0 Y0 Z0\nG61.1 G1 X1 F60\nG64 X2\n").exact_stop.tolist() == [False, True, False]
 

@@ -169,6 +169,11 @@ def test_feeds():
     assert np.allclose(program.feed[1:], [20, 1, 20, 0.5, 100 / 60, 254 / 60])
 
 
+def test_a_turn_in_place_takes_the_time_of_its_block():
+    text = "TRAORI\nG93 G1 X6 F5\nA3=1 C3=1 F5\nA3=1 C3=0 F10\nX0 A3=0 C3=1 F2"
+    assert np.allclose(taken(HEAD + text, axis_words="vector").feed[1:], [0.5, 45 * 5 / 60, 45 * 10 / 60, 6 * 2 / 60])
+
+
 def test_the_feed_of_g70_stays_in_mm():
     """[NC] G70 changes lengths alone, G700 feeds as well."""
     assert np.allclose(taken(HEAD + "G70 G1 X1 F600\nG700 X2 F1").feed[1:], [10, 25.4 / 60])
