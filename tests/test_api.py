@@ -162,6 +162,11 @@ def test_gauge_lengths_are_checked_as_on_the_command_line(folder, lengths):
         ({"also": "csv"}, TypeError),
         ({"spin": "zero"}, TypeError),
         ({"actual_tools": None}, TypeError),
+        ({"actual_tools": {1: 9.6}}, TypeError),
+        ({"surface_speed": 100.0}, TypeError),
+        ({"from_line": 12}, TypeError),
+        ({"side": 0}, ValueError),
+        ({"side": "1"}, ValueError),
     ],
 )
 def test_options_are_checked_as_on_the_command_line(choice, error):

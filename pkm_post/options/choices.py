@@ -107,8 +107,22 @@ class Options:
         outputs = result_files.SIDE_OUTPUTS
         if not set(self.also) <= set(outputs):
             raise ValueError(f"also: expected names out of {', '.join(outputs)}, got {', '.join(self.also)}")
+        if self.side is not None and (not isinstance(self.side, int) or self.side < 1):
+            raise ValueError(f"side: expected a whole number from 1, got {self.side!r}")
+        self._require_parts()
         if not isinstance(self.work_offset, str) and not _is_pose(self.work_offset):
             raise ValueError(f"work_offset: expected a name or a (4, 4) pose, in mm, got {self.work_offset!r:.60}")
+
+    def _require_parts(self) -> None:
+        """Check the values whose classes are imported where they are used."""
+        if any(not isinstance(tool, Tool) for tool in self.actual_tools.values()):
+            raise TypeError("actual_tools: expected a Tool for each number")
+        if self.surface_speed is not None or self.from_line is not None:
+            from pkm_post.toolpath import StartLine, SurfaceSpeed
+
+            for name, kind in (("surface_speed", SurfaceSpeed), ("from_line", StartLine)):
+                if not isinstance(value := getattr(self, name), kind | None):
+                    raise TypeError(f"{name}: expected {kind.__name__}, got {type(value).__name__} {value!r:.60}")
 
     @property
     def tolerances(self) -> Tolerances:
