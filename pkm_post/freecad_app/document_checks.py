@@ -116,16 +116,9 @@ def state_faults(operation: Any, source: str) -> list[Diagnostic]:
 
 
 def feed_faults(operation: Any, controller: Any, program: Program, start: Array, source: str) -> Iterator[Diagnostic]:
-    """Yield J105 for an operation whose moves across the tool get no feed from its tool controller.
+    """Yield J105 for moves across the tool without a feed: CAM leaves F out, and that of the plunge would go on.
 
-    CAM leaves F out of them: the feed of the plunge would stay in force. That of a Custom operation is as typed.
-
-    Args:
-        operation: of a job.
-        controller: its tool controller, or None.
-        program: of the operation, in its own frame.
-        start: (3,) where the tool is before it, mm; NaN if unknown.
-        source: name of the document.
+    Feeds of Custom operations are as typed. ``program`` and ``start``, (3,), are in the frame of the operation, mm.
     """
     if controller is None or controller.HorizFeed.Value or _is_typed(operation):
         return
@@ -166,20 +159,15 @@ def failed_input(item: Any) -> str:
 
 
 def _kept_by_cam(operation: Any) -> str:
-    """Why CAM left an operation, or one below it, as it was [FreeCAD 1.1, Path/Op/Base.py, execute].
-
-    It says so in the Report view alone, and the operation, with an earlier path, is in order in the tree.
-    """
+    """Why CAM left an operation, or one below it, as it was, and in order [Path/Op/Base.py, execute]."""
     job, controller = job_of(operation), getattr(operation, "ToolController", None)
     if hasattr(operation, "OpToolDiameter") and operation.Active:
         if job is not None and not members(job.Model):
             return Phrase("its job has no model")
-        if controller is not None and controller.ToolNumber == 0:
-            return Phrase("the number of its tool is 0")
         if controller is not None and controller.Tool is None:
             return Phrase("its tool controller has no tool")
-        if controller is not None and float(getattr(controller.Tool, "Diameter", 1.0)) == 0.0:
-            return Phrase("the diameter of its tool is 0")
+        if controller is not None and not (controller.ToolNumber and float(getattr(controller.Tool, "Diameter", 1))):
+            return Phrase("number or diameter of its tool is 0")
     below = (each for each in base_operations(operation) if each.isValid())  # invalid: perhaps in a circle
     return next(filter(None, map(_kept_by_cam, below)), "")
 

@@ -4547,16 +4547,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>其作业没有模型</translation>
     </message>
     <message>
-        <source>the number of its tool is 0</source>
-        <translation>其刀具编号为 0</translation>
-    </message>
-    <message>
         <source>its tool controller has no tool</source>
         <translation>其刀具控制器没有刀具</translation>
-    </message>
-    <message>
-        <source>the diameter of its tool is 0</source>
-        <translation>其刀具直径为 0</translation>
     </message>
     <message>
         <source>a recompute is under way</source>
@@ -4621,6 +4613,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>FreeCAD reads only files with Unicode names</source>
         <translation>FreeCAD 只能读取 Unicode 文件名的文件</translation>
+    </message>
+    <message>
+        <source>number or diameter of its tool is 0</source>
+        <translation>其刀具编号或直径为 0</translation>
     </message>
     <message>
         <source>OpenCASCADE cannot read it as STEP</source>

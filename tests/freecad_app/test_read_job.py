@@ -339,22 +339,26 @@ def test_operation_that_cannot_be_computed(job):
     assert faults_of(job) == [("J116", "Broken", 0)]
 
 
-KEPT = {
-    "its job has no model": lambda job: [job.Document.removeObject(each.Name) for each in job.Model.Group],
-    "the number of its tool is 0": lambda job: setattr(job.Tools.Group[0], "ToolNumber", 0),
-    "its tool controller has no tool": lambda job: job.Document.removeObject(job.Tools.Group[0].Tool.Name),
-    "the diameter of its tool is 0": lambda job: setattr(job.Tools.Group[0].Tool, "Diameter", 0),
-}
+NOTHING = "number or diameter of its tool is 0"
 
 
-@pytest.mark.parametrize("found", KEPT)
-def test_operation_that_cam_leaves_as_it_was_is_refused_with_its_copies(job, found):
+@pytest.mark.parametrize(
+    ("found", "change"),
+    [
+        ("its job has no model", lambda job: [job.Document.removeObject(each.Name) for each in job.Model.Group]),
+        ("its tool controller has no tool", lambda job: job.Document.removeObject(job.Tools.Group[0].Tool.Name)),
+        (NOTHING, lambda job: setattr(job.Tools.Group[0], "ToolNumber", 0)),
+        (NOTHING, lambda job: setattr(job.Tools.Group[0].Tool, "Diameter", 0)),
+    ],
+    ids=["model", "tool", "number", "diameter"],
+)
+def test_operation_that_cam_leaves_as_it_was_is_refused_with_its_copies(job, found, change):
     """CAM says in the Report view alone that it did not compute it; the earlier path is still there."""
     operation = add_operation(job)
     mirror = create_mirror(operation, App.Vector(1, 0, 0))
     assert len(program_of(job)) == 8
     operation.Gcode = ARC
-    KEPT[found](job)
+    change(job)
     job.Document.recompute()
     assert operation.isValid() and len(moves(operation)) == len(FIVE_AXIS)
     program, faults = read_job(job)
