@@ -49,6 +49,7 @@ def finish(item: FreeCAD.DocumentObject) -> None:
     FreeCADGui.addModule(module)
     FreeCADGui.doCommand(f"{module}.create_surface_finish({document}.getObject({job.Name!r}), [{chosen}], fit=True)")
     made = job.Operations.Group[-1]
+    made.ViewObject.Proxy.deleteOnReject = True  # by Cancel of the panel that opens now
     QtCore.QTimer.singleShot(0, lambda: made.ViewObject.Document.setEdit(made.ViewObject, 0))
 
 

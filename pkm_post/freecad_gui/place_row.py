@@ -95,8 +95,8 @@ class PlaceRow(QtWidgets.QWidget):
         self.clear()
         try:
             search = place_search(self._job, self._machine)
-        except Refused as refused:
-            self.result.say(exception_text(refused), holds=False)
+        except (Refused, ReferenceError) as fault:  # FreeCAD says so of an object that was deleted
+            self.result.say(exception_text(fault), holds=False)
             return
         task = BackgroundCall(lambda: search(task.report), self)
         self._task = task

@@ -17,6 +17,7 @@ from PathScripts import PathUtils
 from PySide import QtWidgets
 
 from pkm_post.freecad_gui.observers import OnceClosed
+from pkm_post.freecad_gui.post_fields import show_quantity
 from pkm_post.freecad_gui.surface_finish_outcome import SurfaceFinishOutcome
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict
 
@@ -123,6 +124,9 @@ class SurfaceFinishPage(CamGui.TaskPanelPage):
                 field.setChecked(getattr(obj, name))
             else:
                 _refresh(self.form.quantities[name])
+                if all(bound != name for bound, _ in obj.ExpressionEngine):
+                    unit = "deg" if obj.getTypeIdOfProperty(name).endswith("Angle") else "mm"
+                    show_quantity(field, getattr(obj, name).Value, unit)  # Apply would round to what CAM shows
 
     def getFields(self, obj: Any) -> None:
         """Set the properties that differ from the fields."""

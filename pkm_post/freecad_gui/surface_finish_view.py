@@ -25,7 +25,7 @@ class SurfaceFinishView(CamGui.ViewProvider):
     def __init__(self, vobj: Any) -> None:
         resources = CamGui.CommandResources("Surface Finish", None, SurfaceFinishPage, "", "", None, "")
         super().__init__(vobj, resources)
-        self.OpIcon = _ICON
+        self.OpIcon, self.deleteOnReject = _ICON, False  # else CAM's panel begins without the faces it was made for
         vobj.Proxy = self
 
     def getSelectionFactory(self) -> Any:

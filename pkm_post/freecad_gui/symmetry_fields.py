@@ -38,8 +38,21 @@ def quantity(unit: str, changed: Callable[..., None]) -> Any:
     """A field with a unit, or for a plain number; it reports edits."""
     field = FreeCADGui.UiLoader().createWidget("Gui::QuantitySpinBox")
     field.setProperty("unit", unit)
+    field.shown = 0.0, ""
     field.editingFinished.connect(changed)
     return field
+
+
+def show_value(field: Any, value: float) -> None:
+    """Show a number in such a field, which may have fewer decimals."""
+    field.setProperty("rawValue", value)
+    field.shown = value, field.property("text")
+
+
+def value_of(field: Any) -> float:
+    """The number of a field: that shown, with all of its decimals, until the user types another."""
+    value, text = field.shown
+    return float(value if field.property("text") == text else field.property("rawValue"))
 
 
 _LEAST = 86
@@ -61,12 +74,12 @@ class Three(QtWidgets.QWidget):
     def show_values(self, values: Iterable[float], enabled: bool) -> None:
         """Show a vector, and whether it can be edited."""
         for field, value in zip(self.fields, values, strict=True):
-            field.setProperty("rawValue", value)
+            show_value(field, value)
         self.setEnabled(enabled)
 
     def vector(self) -> FreeCAD.Vector:
         """The displayed vector."""
-        return FreeCAD.Vector(*(field.property("rawValue") for field in self.fields))
+        return FreeCAD.Vector(*map(value_of, self.fields))
 
 
 def angles_of(text: str, before: Sequence[float]) -> list[float]:

@@ -15,7 +15,15 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui, QtWidgets
 
-from pkm_post.freecad_gui.symmetry_fields import angles_of, angles_text, property_tip, quantity, text_of
+from pkm_post.freecad_gui.symmetry_fields import (
+    angles_of,
+    angles_text,
+    property_tip,
+    quantity,
+    show_value,
+    text_of,
+    value_of,
+)
 from pkm_post.freecad_gui.symmetry_placement import PLANE, SymmetryPlace
 from pkm_post.freecad_gui.symmetry_text import report_lines
 
@@ -96,7 +104,7 @@ class SymmetryPanel:
         if self.place.reference is PLANE:
             self.keep_climb.setChecked(obj.KeepClimb)
         else:
-            self.angle.setProperty("rawValue", obj.Angle.Value)
+            show_value(self.angle, obj.Angle.Value)
             self.copies.setValue(obj.Copies)
             self.angles.setText(angles_text(obj.Angles))
         self.side.setCurrentIndex(obj.getEnumerationsOfProperty("MaterialSide").index(obj.MaterialSide))
@@ -115,7 +123,7 @@ class SymmetryPanel:
         if self.place.reference is PLANE:
             values["KeepClimb"] = self.keep_climb.isChecked()
         else:
-            values |= {"Angle": FreeCAD.Units.Quantity(self.angle.property("rawValue"), FreeCAD.Units.Angle)}
+            values |= {"Angle": FreeCAD.Units.Quantity(value_of(self.angle), FreeCAD.Units.Angle)}
             values |= {"Copies": self.copies.value(), "Angles": angles_of(self.angles.text(), list(self.obj.Angles))}
         for name, value in values.items():
             if getattr(self.obj, name) != value:

@@ -3,7 +3,8 @@
 
 import FreeCAD
 import FreeCADGui
-from gui import FOLDER, answer, main, new_document, press, select, settle, simulate, step
+import Part
+from gui import FOLDER, answer, job_on, main, new_document, press, select, settle, simulate, step
 from PySide import QtWidgets
 
 PROGRAM = "G21 G90 G17\nT1 M6\nG0 X0 Y0 Z30\nG1 Z5 F600\nG1 X10 F900\nM2\n"
@@ -304,6 +305,23 @@ def commands_draw_while_a_sheet_is_active():
     settle()
     found["left"] = drawn.getNumChildren() - before
     return found
+
+
+@step
+def finish_of_a_macro_is_opened():
+    from pkm_post.freecad_app.surface_finish import create_surface_finish
+
+    _, job = job_on("macro", Part.makeBox(20, 20, 5), "600 mm/min")
+    document = job.Document
+    made = create_surface_finish(job, [(job.Model.Group[0], ["Face6"])])
+    made.Active = False
+    document.recompute()
+    FreeCADGui.getDocument("macro").setEdit(made.ViewObject, 0)
+    settle()
+    faces = [list(names) for _, names in made.Base]
+    FreeCADGui.getDocument("macro").resetEdit()
+    settle()
+    return {"faces": faces, "left": [list(names) for _, names in made.Base], "there": made in job.Operations.Group}
 
 
 @step

@@ -126,6 +126,35 @@ def edit_by_double_click():
 
 
 @step
+def fields_keep_decimals_that_they_do_not_show():
+    from pkm_post.freecad_app.symmetry import create_mirror, create_rotation
+
+    document, base = quadrant("decimals")
+    mirror, turned = create_mirror(base, (0.6, 0.8, 0)), create_rotation(base, axis=(0, 0, 1), angle=1.23456789)
+    mirror.Point = turned.Point = FreeCAD.Vector(1.23456, 2.34567, 0.12345)
+    document.recompute()
+    angle = turned.Angle.Value
+    FreeCAD.Units.setSchema(3)
+    reported = {}
+    for made in (mirror, turned):
+        made.ViewObject.Proxy.doubleClicked(made.ViewObject)
+        settle()
+        panel = panel_of()
+        for field in panel.place.point.fields:
+            field.setFocus()
+            settle()
+            field.editingFinished.emit()
+        reported[made.Name] = list(made.Point)
+        panel.place.point.fields[1].setProperty("rawValue", 25.4)
+        panel.place.point.fields[1].editingFinished.emit()
+        panel.accept()
+        settle()
+        reported[made.Name] += list(made.Point)
+    FreeCAD.Units.setSchema(0)
+    return reported | {"angle": turned.Angle.Value - angle, "normal": list(mirror.Normal)}
+
+
+@step
 def plane_by_a_picked_face_and_a_datum_plane():
     from pkm_post.freecad_app.symmetry import create_mirror
 

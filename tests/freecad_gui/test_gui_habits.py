@@ -121,3 +121,8 @@ def test_surface_finish_without_a_tool_is_refused_in_a_window(session):
     (said,) = found["said"]
     assert "J112" in said
     assert (found["made"], found["state"]) == (0, [False, False, False])
+
+
+def test_surface_finish_of_a_macro_keeps_its_faces_when_its_panel_opens_and_is_left(session):
+    found = session["finish_of_a_macro_is_opened"]
+    assert found == {"faces": [["Face6"]], "left": [["Face6"]], "there": True}

@@ -71,6 +71,13 @@ def test_a_panel_that_another_edit_closes_watches_no_longer(session):
     assert found == {"panel": False, "dialog": False, "picks": 0, "open": False}
 
 
+def test_fields_keep_the_decimals_that_they_do_not_show(session):
+    found = session["fields_keep_decimals_that_they_do_not_show"]
+    for name in ("PkmMirror", "PkmRotation"):
+        assert found[name] == [1.23456, 2.34567, 0.12345, 1.23456, pytest.approx(25.4), 0.12345]
+    assert (found["angle"], found["normal"]) == (0, [0.6, 0.8, 0])
+
+
 def test_turns_by_number_and_by_list(session):
     found = session["turns_with_their_report"]
     half, three, listed = (found[name] for name in ("half turn", "three quarters", "list report"))
