@@ -47,6 +47,7 @@ class Flavour:
         may_drill_along_z: whether some controls drill along Z in G18 and G19 as well.
         g53_is_rapid: whether G53 moves at rapid whatever the active motion.
         offsets_add_up: whether G10 L2 adds to an offset under G91; then L20 sets those of G54.1, and no P is in force.
+        one_local_offset: whether G52 and G92 set one offset, rather than two that add up.
         stops_first: whether M5 acts before the move of its block, rather than whenever the machine's builder decided.
         needs_both_after_turns: whether controls differ in the first move after G68 that has one coordinate of its
             plane, and in one by distances after G69.
@@ -81,6 +82,7 @@ class Flavour:
     may_drill_along_z: bool
     g53_is_rapid: bool
     offsets_add_up: bool
+    one_local_offset: bool
     stops_first: bool
     needs_both_after_turns: bool
     outside_turns: tuple[int, ...]
@@ -120,6 +122,7 @@ RS274 = Flavour(
     may_drill_along_z=False,
     g53_is_rapid=False,
     offsets_add_up=False,
+    one_local_offset=True,
     stops_first=True,
     needs_both_after_turns=False,
     outside_turns=(),
@@ -196,9 +199,10 @@ FANUC = replace(
     may_drill_along_z=True,
     g53_is_rapid=True,
     offsets_add_up=True,
+    one_local_offset=False,
     stops_first=False,
     needs_both_after_turns=True,
-    outside_turns=(100, 170, 180, 190, 280, 300, 520, 530, 920, 921, *_ORIGINS),
+    outside_turns=(100, 170, 180, 190, 280, 300, 501, 511, 520, 530, 920, 921, *_ORIGINS),
     owns_axes=(51, 220),
     counts_in_p=True,
     programs_apart=True,

@@ -49,7 +49,7 @@ class _Offsets:
         angles: its angle about Z, by code; G10 sets it without turning the tool [LinuxCNC, rs274].
         placed: the angle of the options likewise, which turns part and tool.
         local: (3,) offset of G52 and G92.
-        kept: (3,) offset that G92.3 restores after G92.2.
+        kept: (3,) offset that G92.3 restores after G92.2, or that of G92, where G52 adds to it.
         mirrored: (3,) mirrored coordinates; ``mirror_at`` holds the mirror positions.
         rotation: (3, 3) turn and (3,) shift of G68 or G68.2.
         tilted: whether it is that of a tilted plane, G68.2.
@@ -119,7 +119,7 @@ class _Offsets:
     def set_local_here(self, words: Array, position: Array) -> None:
         """G92: set the coordinates of the current (3,) position to the (3,) words, NaN where absent."""
         coordinates = np.where(np.isnan(words), position, words)
-        self.local = self.kept = self.local + self.inner(position) - self.inner(coordinates)
+        self.local = self.local + self.inner(position) - self.inner(coordinates)
 
     def set_origin_here(self, system: int, words: Array, place: Array) -> None:
         """G10 L20: set a work offset so that the (3,) ``place`` in {C} has the coordinates of the words."""
@@ -298,19 +298,22 @@ class OffsetCodes:
             self._faults.add("G402", row, (word_of(code), " with S: the highest speed for constant cutting speed"))
         elif code in (520, 920) and not given.any():
             self._faults.add("G405", row, (word_of(code), " without X, Y or Z"))
+        one = self._modal.flavour.one_local_offset
         if code == 520:
-            offsets.local = offsets.kept = np.where(given, words, offsets.local)
+            offsets.local = np.where(given, words + (0.0 if one else offsets.kept), offsets.local)
         elif code == 920:
             self.require_position(row, known[given], word_of(code))
             offsets.set_local_here(words, position)
         elif code == 921:
-            offsets.local = offsets.kept = self._without_local_offset(row, words)
+            offsets.local = self._without_local_offset(row, words)
         elif code == 922:
             offsets.local = np.zeros(3)
         elif code == 923:
             offsets.local = offsets.kept
         else:
             self._set_system(row, words, position, known)
+        if code in (520, 920, 921) and (one or code != 520):
+            offsets.kept = np.where(one | given | ~given.any(), offsets.local, offsets.kept)
 
     def _without_local_offset(self, row: int, words: Array) -> Array:
         """The local offset after G92.1: none, or none in the axes that it names with 0 [Fanuc, G92.1 IP0]."""

@@ -67,13 +67,45 @@ def test_each_difference_has_a_row_in_the_documentation():
     assert rows == differ
 
 
+@pytest.mark.parametrize(
+    "codes, fanucs, linuxcncs",
+    [
+        ("G92 X5. Y5.\nG52 X1.\n", (6, 5), (11, 5)),
+        ("G92 X5. Y5.\nG52 X1.\nG52 X0. Y0.\n", (5, 5), (10, 10)),
+        ("G52 X1. Y1.\nG92 X5.\nG52 X0. Y0.\n", (5, 10), (10, 10)),
+        ("G52 X1.\nG92 X5. Y5.\nG52 X2. Y3.\nG92.1 X0\nG52 Y0.\n", (10, 5), None),
+        ("G92 X5. Y5.\nG52 X1. Y1.\nG92.1\nG52 X2.\n", (12, 10), (12, 10)),
+    ],
+)
+def test_local_coordinates_and_those_of_g92(codes, fanucs, linuxcncs):
+    """[Fanuc] G52 is a system within that of G92, which ends it in its axes; in LinuxCNC they share one offset."""
+    text = f"G0 X0. Y0. Z0.\n{codes}X10. Y10.\n"
+    for flavour, place in (("fanuc", fanucs), ("rs274", linuxcncs)):
+        if place is not None:
+            program, _ = read(text, "part.nc", ReadOptions(default_tool=ANY, flavour=flavour))
+            assert program.position[-1, :2].tolist() == list(place), flavour
+
+
 # Coordinate system rotation: codes for reference points and coordinate systems are forbidden in it [Fanuc, Mach4]
 
 
 @pytest.mark.parametrize(
     "block",
     [
-        *("G52 X5.", "G54", "G55", "G54.1 P1", "G92 X5.", "G92.1", "G18", "G28 X0", "G91 G28 X0 Y0 Z0", "G30 Y0"),
+        *(
+            "G51.1 X5.",
+            "G50.1 X0",
+            "G52 X5.",
+            "G54",
+            "G55",
+            "G54.1 P1",
+            "G92 X5.",
+            "G92.1",
+            "G18",
+            "G28 X0",
+            "G91 G28 X0 Y0 Z0",
+            "G30 Y0",
+        ),
         *("G53 X0", "G53 G0 Y1. Z5.", "G10 L2 P1 X5."),
     ],
 )
