@@ -86,6 +86,10 @@ class Motions:
         return index
 
 
+_SHIFTED = 1e-9
+"""mm by which a new frame changes a coordinate: less is rounding."""
+
+
 def motions_of(columns: Columns, motion: Array, state: State, faults: LineDiagnostics) -> Motions:
     """Motions of blocks whose X Y Z are those of the tip; the state keeps their last point.
 
@@ -116,6 +120,8 @@ def motions_of(columns: Columns, motion: Array, state: State, faults: LineDiagno
     if (motion > LINE).any():
         _Arcs(moves, columns, lengths, state, faults).fill()
     state.position, state.known = moves.end[-1], known_at_end
+    given = [name in lengths and not np.isnan(lengths[name]).all() for name in AXES]
+    state.placed = np.where(given, state.position, state.placed)
     return moves
 
 
@@ -129,6 +135,11 @@ def _ends(columns: Columns, lengths: dict[str, Array], state: State) -> tuple[Ar
             end[:, k], known_from[k] = state.position[k], count
         else:
             relative = columns.relative(name, state.relative)
+            first = np.flatnonzero(~np.isnan(word))[:1]
+            if relative[first].any() and state.known[k] and abs(state.position[k] - state.placed[k]) > _SHIFTED:
+                raise BlockFault(
+                    "G602", f"{name} by distances, where setting data 42440 may add a new frame: write G90"
+                )
             end[:, k], known_from[k] = track_coordinate(word, relative, float(state.position[k]))
     known_from[state.known] = 0
     return end, np.arange(count) >= known_from.max(), known_from < count

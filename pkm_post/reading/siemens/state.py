@@ -59,6 +59,7 @@ class State:
         swivel: frame of CYCLE800.
         programmed: programmable frame.
         position: (3,) of the tool tip.
+        placed: (3,) the same in the frame of the last word for each coordinate.
         known: (3,) which coordinates are known.
         has_moved: whether it was known before.
         tangent: (3,) direction of the last motion at its end in {C}; zero before the first.
@@ -97,6 +98,7 @@ class State:
     swivel: ProgrammableFrame = field(default_factory=ProgrammableFrame)
     programmed: ProgrammableFrame = field(default_factory=ProgrammableFrame)
     position: Array = field(default_factory=lambda: np.zeros(3))
+    placed: Array = field(default_factory=lambda: np.zeros(3))
     known: Array = field(default_factory=lambda: np.zeros(3, dtype=np.bool_))
     has_moved: bool = False
     tangent: Array = field(default_factory=lambda: np.zeros(3))

@@ -174,6 +174,17 @@ def test_a_turn_in_place_takes_the_time_of_its_block():
     assert np.allclose(taken(HEAD + text, axis_words="vector").feed[1:], [0.5, 45 * 5 / 60, 45 * 10 / 60, 6 * 2 / 60])
 
 
+@pytest.mark.parametrize("frame", ["TRANS X10", "ATRANS X10 Y1", "ROT RPL=30", "MIRROR X0", "SCALE X2 Y2"])
+@pytest.mark.parametrize("move", ["X=IC(5)", "G91 X5", "Y=AC(3)\nX=IC(5)"])
+def test_distances_after_a_new_frame_are_refused_where_setting_data_decide(frame, move):
+    text = f"{HEAD}G1 X4 Y2 F600\n{frame}\n"
+    program, faults = read(text + move + "\nM30\n", "part.mpf", ReadOptions(default_tool=TOOL))
+    assert program is None
+    assert [each.code for each in faults] == ["G602"] and "X by distances" in faults[0].found
+    taken(f"{text}X4\n{move}\nM30\n")  # G90 has set X in the new frame
+    taken(f"{HEAD}G1 X4 Y2 F600\nTRANS Z5\n{move}\nM30\n")  # X is where it was
+
+
 def test_the_feed_of_g70_stays_in_mm():
     """[NC] G70 changes lengths alone, G700 feeds as well."""
     assert np.allclose(taken(HEAD + "G70 G1 X1 F600\nG700 X2 F1").feed[1:], [10, 25.4 / 60])
