@@ -110,7 +110,9 @@ def tool_position(state: ReaderState, row: int, word: str) -> Array | None:
         state.report("L417", row, f"{word} after a contact point")
         return None
     if goto_row > special_row:
-        return _in_current_frame(state, goto_row, _written_position(state, goto_row))
+        written = _written_position(state, goto_row)
+        # A coordinate beyond all numbers, as 1e999, is reported where it is written.
+        return _in_current_frame(state, goto_row, written) if np.isfinite(written).all() else None
     return _in_current_frame(state, special_row, np.array(state.points[-1][1].position))
 
 

@@ -368,6 +368,12 @@ def test_a_statement_that_a_text_would_swallow_is_refused(text, lost):
     assert goes_on.position[-1].tolist() == [4, 5, 6]
 
 
+def test_an_increment_after_a_point_that_is_no_number_has_no_fault_of_its_own():
+    """NumPy warned of its matrix product."""
+    diagnostics = read(f"{HEAD}GOTO/1e999,2,3\nTRACUT/1,2,3\nGODLTA/1,1,1\n", "part.cl")[1]
+    assert [fault.code for fault in errors(diagnostics)] == ["L103"]
+
+
 def test_a_gauge_length_below_zero_is_refused():
     diagnostics = read(f"{HEAD}LOADTL/2,LENGTH,-100\nGOTO/1,2,3\n", "part.cl")[1]
     assert [fault.code for fault in errors(diagnostics)] == ["L403"]
