@@ -30,6 +30,7 @@ from pkm_post.machine.collisions.coverage import (
 )
 from pkm_post.machine.collisions.moving_bodies import (
     MovingBody,
+    ToolCylinder,
     cutter_hull,
     cutter_pieces,
     platform_body,
@@ -97,10 +98,16 @@ class Search:
         self._note_shanks(part)
         for used in self._with_size(part):
             pieces = cutter_pieces(used.tool, used.edge_length, ALLOWANCE + self.off_tip)
+            if not pieces:  # no point of the cutter is that deep in it
+                continue
             self._rapid(
                 part, used, tool_body(Phrase("{} in a rapid move", used.name), self.driven.poses, used.rapid, pieces)
             )
-            mover = tool_body(used.name, self.driven.poses, _sampled(used.cutting), pieces)
+            # Few of many poses are so near that the many pieces of a slanted cutter matter.
+            around = [ToolCylinder(0.0, used.edge_length, max(piece.radius + piece.rounding for piece in pieces))]
+            mover = tool_body(used.name, self.driven.poses, _sampled(used.cutting), around)
+            cells = contacts_at_ends(self.driven.poses, mover, part.mesh, _TOUCH).cell
+            mover = tool_body(used.name, self.driven.poses, cells, pieces)
             met = contacts_at_ends(self.driven.poses, mover, part.mesh, _TOUCH)
             self.found += contact_faults(self.driven, "K132", mover, part, met, ALLOWANCE)
         self.extents.cutters(part, ALLOWANCE)

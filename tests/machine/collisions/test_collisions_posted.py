@@ -248,3 +248,11 @@ def test_a_long_program_is_looked_at_in_steps_as_short_as_a_short_one():
     (row,) = [row for row in found.coverage if row.subject == "machine and rapid moves against the stock"]
     deeper, apart = re.search(r"deeper than (\S+) mm, every (\S+) mm", row.detail).groups()
     assert float(deeper) < 0.3 and float(apart) < 2.0, row.detail
+
+
+def test_a_point_that_is_thinner_than_the_allowance_is_checked_without_a_cutter():
+    tool = Tool(1, "point", 1.0, 0.0, 120.0, bottom_angle=np.radians(75))
+    trajectory, faults = place(program([[-30, 0, 0], [30, 0, 0]], tools={1: tool}), example(), ON_PALLET)
+    assert not faults
+    setup = Setup(part=Mesh("part.stl", PLATE - [0, 0, 10.2]), shanks={1: Shank(0.5, 6.0)})
+    assert not find_collisions(trajectory, example(), setup, Tolerances(0.001, 1e-5)).faults
