@@ -24,6 +24,9 @@ _AT_REST = 1e-3
 """Width of the first cell after a rest, relative to that between the stations."""
 _START = 0.35
 """Share of the highest speed squared without jerk limits at which the search starts."""
+_STEEPEST = 8.0
+"""Most by which the search starts above the speed squared at the slower end of a cell: before a joint to a far lower
+feed it would need more steps than it has to come down to it."""
 _EQUAL = 1e-9
 """Relative difference of speeds squared that are equal but for rounding."""
 _FAR = 6.0
@@ -85,7 +88,9 @@ def start(s: Array, rest: Array, steady: Steady) -> tuple[Array, Array]:
 
 def unknowns(spline: SpeedSpline, fastest: Array, held: Array) -> Array:
     """Initial unknowns, (N,): fixed values, and elsewhere below the motion without jerk limits, (M,)."""
-    below = _START * (fastest[1:] + fastest[:-1]) / 2
+    lower = np.minimum(fastest[1:], fastest[:-1])
+    steepest = np.where(lower > 0, _STEEPEST * lower, np.inf)
+    below = _START * np.minimum((fastest[1:] + fastest[:-1]) / 2, steepest)
     return np.where(np.isnan(held), below, held)[spline.left]
 
 

@@ -158,6 +158,14 @@ def test_a_single_move_takes_little_more_than_its_s_curve(distance, feed, jerk):
     assert shortest <= time <= 1.05 * shortest + 1e-3  # whole milliseconds
 
 
+@pytest.mark.parametrize("feed", [0.2, 1.0, 3.0])
+@pytest.mark.parametrize("depth", [10.0, 30.0, 40.0])
+def test_a_cut_in_mm_per_minute_after_a_rapid_move_is_planned(feed, depth):
+    """Speeds squared of 10,000 and 1e-5 mm^2/s^2 meet at a joint; the search began so far above that it gave up."""
+    machine, _, schedule = planned(program([[0, 0, 80], [0, 0, 80 - depth]], feed=feed / 60))
+    assert depth / feed * 60 <= schedule.rests_ms[-1] / 1000 <= 1.02 * depth / feed * 60
+
+
 def test_what_the_s_curve_of_the_test_says():
     # 4 phases of 0.1 s at the jerk 1000: 2 j t^3 = 2 mm
     np.testing.assert_allclose(s_curve(2.0, 1e9, 1e9, 1000.0), 0.4)

@@ -192,3 +192,17 @@ def test_joints_within_one_piece_of_a_curve_are_those_between_its_bounds():
         here, after = np.searchsorted(splines.row, [row, row + 1])
         assert first[here] == first[after] == last[here]
     np.testing.assert_array_equal(segments.in_one_piece(50, 90), within[50:90])
+
+
+@pytest.mark.parametrize("aside", [0.0, 1e-4])
+@pytest.mark.parametrize("rows", [3, 4])
+def test_a_tool_that_turns_back_within_the_tolerance_is_planned(rows, aside):
+    """The derivative of the curve vanishes where it turns back; its nearest place came out as NaN."""
+    there = np.column_stack([-0.0045 * np.arange(rows + 1), np.zeros(rows + 1)])
+    back = there[-2::-1] + [0.0, aside]
+    plane = np.concatenate([there[:1], there, back, back[-1:]])
+    height = np.full(len(plane), 60.0)
+    height[[0, -1]] = 70.0
+    made = program(np.column_stack([plane, height]), feed=60.0)
+    feed_plan, _ = planned(place(made, example(), ON_PALLET)[0], Tolerances(0.5, THOUSANDTH))
+    assert np.isfinite(feed_plan.path.segments.extent).all()

@@ -40,7 +40,8 @@ def deviation(point: Array, curve: Array, slope: Array) -> tuple[Array, Array]:
         slope: (C, N) its derivative there.
     """
     off = point - curve
-    ahead = _dot(off[TIP], slope[TIP]) / _dot(slope[TIP], slope[TIP])
+    along, square = _dot(off[TIP], slope[TIP]), _dot(slope[TIP], slope[TIP])
+    ahead = np.divide(along, square, out=np.zeros_like(along), where=square > 0)  # 0 where the tip turns back
     off -= ahead * slope
     if len(off[AXIS]):
         axis = curve[AXIS] / length_of(*curve[AXIS])
