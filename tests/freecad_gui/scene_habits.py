@@ -291,6 +291,10 @@ def commands_draw_while_a_sheet_is_active():
     drawn = FreeCADGui.getDocument("sheet").activeView().getSceneGraph()
     FreeCADGui.getDocument("sheet").setEdit(sheet.ViewObject, 0)
     settle()
+    area = FreeCADGui.getMainWindow().findChild(QtWidgets.QMdiArea)
+    (shown,) = [each for each in area.subWindowList() if "SheetView" in each.widget().metaObject().className()]
+    area.setActiveSubWindow(shown)
+    settle()
     found = {"3D": hasattr(FreeCADGui.getDocument("sheet").activeView(), "getSceneGraph")}
     before = drawn.getNumChildren()
     press("PKM_Stiffness", job)
