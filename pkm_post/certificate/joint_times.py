@@ -18,7 +18,7 @@ import numpy as np
 from pkm_post.certificate.played_path import PlayedPath
 from pkm_post.geometry import Array, hermite_lengths, norm
 from pkm_post.machine import forward
-from pkm_post.model import Machine, Tolerances, Trajectory
+from pkm_post.model import Machine, Tolerances, Trajectory, pieces
 
 _LOOKS = 4
 """Sampled instants of each interval."""
@@ -30,12 +30,19 @@ _FITS = 1.5
 """Deviation by tolerance within which a joint counts as found; the certificate allows 1."""
 _WELL = 0.6
 """Deviation by tolerance at which the search for a better time stops."""
+_FOR_FEED = 0.95
+"""Deviation by tolerance up to which a joint may be passed at another time for its feed."""
 _NEWTON_STEPS = 8
-_STEPS_TO_FEED = 4
+_TRIED, _TRIED_IN_ONE = 24, 2
+"""Times tried on one side of a joint, and their number per sampled instant: they reach three intervals."""
+_SPEEDS = 8
+"""Parts of an interval at whose ends its speed is compared with a feed ..."""
+_TOO_FAST = 1.005
+"""... which it exceeds by more than plans do where one cubic has an even feed."""
 _SPIN_COUNTS = 1e-3
 """Weight of the spin relative to the tool axis: in a pure turn about the tool axis, only the spin gives the time."""
 _AT_ONCE = 1 << 18
-"""Pairs of joints and instants in one pass."""
+"""Pairs of joints and instants, or times, in one pass."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +93,8 @@ def joint_times(
     moving = np.setdiff1d(np.arange(len(trajectory)), joints)
     time[moving] = search.settled(moving, np.maximum.accumulate(time)[moving])
     time = np.maximum.accumulate(np.clip(time, 0.0, path.time[-1]))
-    time[moving] = search.at_feed(moving, time)
+    time[moving] = search.balanced(moving, time)
+    time[moving] = search.at_feed(moving, np.maximum.accumulate(time))
     return np.asarray(np.maximum.accumulate(time))
 
 
@@ -169,6 +177,28 @@ class _Search:
         step = (self._path.time[interval + 1] - self._path.time[interval]) / _LOOKS
         return np.where(pose.converged & (np.abs(late) < step), time - late, time)
 
+    def balanced(self, rows: Array, time: Array) -> Array:
+        """Times of joints that fit badly, moved to the best of those around them.
+
+        Newton's method takes tip and axis together; the certificate measures each by its own tolerance.
+
+        Args:
+            rows: (M,) segments that have a successor.
+            time: (N,) times of all joints, never decreasing.
+        """
+        found = time[rows]
+        bad = np.flatnonzero(self._fit(rows, found) > _WELL)
+        if len(bad):
+            tried = np.vstack([self._around(rows[bad], time, side) for side in (-1.0, 1.0)])
+            best = np.argmin([self._fit(rows[bad], one) for one in tried], axis=0)
+            found[bad] = tried[best, np.arange(len(bad))]
+        return found
+
+    def _around(self, rows: Array, time: Array, side: Array | float) -> Array:
+        """Times from joints onwards to a side, -1 or 1, up to their neighbours, (_TRIED + 1, M)."""
+        instant = self._instant_of(time[rows]) + side * np.linspace(0.0, _TRIED / _TRIED_IN_ONE, _TRIED + 1)[:, None]
+        return np.clip(self._time_at(*self._place(instant / _LOOKS)), time[rows - 1] * (rows > 0), time[rows + 1])
+
     def at_feed(self, rows: Array, time: Array) -> Array:
         """Times of joints, moved into the faster segment where the tool is too fast for the slower one.
 
@@ -176,18 +206,47 @@ class _Search:
             rows: (M,) segments that have a successor.
             time: (N,) times of all joints, never decreasing.
         """
+        found, changes = time[rows], np.flatnonzero(self._feed[rows] != self._feed[rows + 1])
+        for part in pieces(len(changes), _AT_ONCE // _TRIED) if len(changes) else ():
+            found[changes[part]] = self._at_slower_feed(rows[changes[part]], time)
+        return found
+
+    def _at_slower_feed(self, rows: Array, time: Array) -> Array:
+        """The same for joints between two feeds."""
         before, after = self._feed[rows], self._feed[rows + 1]
-        begin, end, slower = time[rows - 1] * (rows > 0), time[rows + 1], np.minimum(before, after)
-        later, found = np.where(before > after, 1.0, -1.0), time[rows]
-        for _ in range(_STEPS_TO_FEED):
-            interval, share = self._place(self._instant_of(found) / _LOOKS)
-            rate, bend = (one[:3] for one in self._path.rates_at(interval, share))
-            speed = norm(rate.T)
-            brakes = -later * (rate * bend).sum(axis=0)  # times the speed
-            excess = (before != after) & (speed > slower) & (brakes > 0)
-            step = np.divide((speed - slower) * speed, brakes, out=np.zeros(len(rows)), where=excess)
-            found = np.clip(found + later * step, begin, end)
-        return np.where(self._fit(rows, found) <= _WELL, found, time[rows])
+        side, slower = np.where(before > after, 1.0, -1.0), np.minimum(before, after)
+        tried, each = self._around(rows, time, side), np.arange(len(rows))
+        fits = np.logical_and.accumulate([self._fit(rows, one) <= _FOR_FEED for one in tried])
+        speed = np.stack([self._speed(*self._place(self._instant_of(one) / _LOOKS)) for one in tried])
+        fast = fits & (speed > slower)
+        last = np.where(fast.any(axis=0), _TRIED - np.argmax(fast[::-1], axis=0), -1)
+        beyond = np.minimum(last + 1, _TRIED)
+        drop = speed[last, each] - speed[beyond, each]
+        share = np.divide(
+            speed[last, each] - slower, drop, out=np.zeros(len(rows)), where=fits[beyond, each] & (drop > 0)
+        )
+        found = tried[last, each] + np.minimum(share, 1.0) * (tried[beyond, each] - tried[last, each])
+        found = np.where(last < 0, time[rows], found)
+        knot = self._at_slower_interval(side, found, slower)
+        inside = (time[rows - 1] * (rows > 0) < knot) & (knot < time[rows + 1])
+        return np.where(inside & (self._fit(rows, knot) <= _FOR_FEED), knot, found)
+
+    def _speed(self, interval: Array, share: Array) -> Array:
+        """Speed of the tip, mm/s."""
+        return norm(self._path.rates_at(interval, share)[0][:3].T)
+
+    def _at_slower_interval(self, later: Array, time: Array, slower: Array) -> Array:
+        """Times of changes of the feed, moved to the knot at which an interval begins that is too fast for the slower.
+
+        With the change inside it, as in the plan, the certificate allows its one cubic more than with an even feed.
+        """
+        interval = self._place(self._instant_of(time) / _LOOKS)[0]
+        beyond = np.clip(interval + later.astype(np.int64), 0, self._count - 1)
+        shares = np.linspace(0.0, 1.0, _SPEEDS + 1)
+        speeds = [self._speed(beyond, np.full(len(beyond), share)) for share in shares]
+        too_fast = np.max(speeds, axis=0) > _TOO_FAST * slower
+        knot = self._path.time[interval + (later > 0)]
+        return np.where(too_fast & (beyond != interval), knot, time)
 
     def _fit(self, rows: Array, time: Array) -> Array:
         """Deviations of the tool from joints, by tolerance."""

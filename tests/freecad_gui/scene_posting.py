@@ -267,7 +267,7 @@ def lack_of_memory_is_reported_and_leaves_nothing():
     reported.append(panel.rows())
     close()
     shown = mock.patch.object(command.QtWidgets.QMessageBox, "warning", lambda *what: boxes.append(what[2]))
-    with shown, command.show_lack_of_memory("Mirror"):
+    with shown, command.show_faults("Mirror"):
         lacking()
     return {"files": names_in(folder), "reported": reported, "boxes": boxes}
 
