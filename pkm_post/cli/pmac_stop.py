@@ -145,7 +145,7 @@ def signals_interrupt() -> Iterator[Callable[[], None]]:
     """Turn the first signal inside into a KeyboardInterrupt, after which the machine is stopped.
 
     Later signals do not end that stop: not a terminal that closes, and Ctrl-C only after the advice of ``advised``,
-    since a hasty operator presses it twice. Yields a function that tells that a stop has begun without a signal.
+    since a hasty operator presses it twice. Yields a function to call when a stop begins without a signal.
     """
     from pkm_post.control.link import REST_DEADLINE_S
 

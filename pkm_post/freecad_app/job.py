@@ -183,7 +183,7 @@ class _ProgramBuilder:
         self._state: dict[EventKind, float] = dict(_OFF)
         self._tip = np.full(3, np.nan)
         self._typed: dict[EventKind, tuple[str, Any]] = {}
-        self._told: set[tuple[EventKind, str]] = set()
+        self._reported: set[tuple[EventKind, str]] = set()
 
     def add(self, operation: Any, work_from_fixture: Array, name: str) -> list[Diagnostic]:
         """Append an operation at a fixture, with its placement applied to points and tool axes."""
@@ -230,7 +230,7 @@ class _ProgramBuilder:
     ) -> list[Diagnostic]:
         """What is switched back here, unless the operation switches it before its first cut, or changes controller.
 
-        It is told once of what an operation switches, not at each fixture.
+        What an operation switches is reported once, not at each fixture.
         """
         typed, self._typed = self._typed, {}
         first_cut = next(iter(np.flatnonzero(program.kind != Kind.RAPID)), len(program))
@@ -241,8 +241,8 @@ class _ProgramBuilder:
             for kind, (label, controller) in typed.items()
             if kind not in again and controller in controllers and self._state[kind] != wanted[kind]
         }
-        new = [fault for key, fault in undone.items() if key not in self._told]
-        self._told |= set(undone)
+        new = [fault for key, fault in undone.items() if key not in self._reported]
+        self._reported |= set(undone)
         return new
 
     def _code(self, kind: EventKind) -> str:
