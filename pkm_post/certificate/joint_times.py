@@ -197,7 +197,7 @@ class _Search:
     def _around(self, rows: Array, time: Array, side: Array | float) -> Array:
         """Times from joints onwards to a side, -1 or 1, up to their neighbours, (_TRIED + 1, M)."""
         instant = self._instant_of(time[rows]) + side * np.linspace(0.0, _TRIED / _TRIED_IN_ONE, _TRIED + 1)[:, None]
-        return np.clip(self._time_at(*self._place(instant / _LOOKS)), time[rows - 1] * (rows > 0), time[rows + 1])
+        return np.clip(self._time_at(*self._place(instant / _LOOKS)), *_neighbours(rows, time))
 
     def at_feed(self, rows: Array, time: Array) -> Array:
         """Times of joints, moved into the faster segment where the tool is too fast for the slower one.
@@ -215,21 +215,13 @@ class _Search:
         """The same for joints between two feeds."""
         before, after = self._feed[rows], self._feed[rows + 1]
         side, slower = np.where(before > after, 1.0, -1.0), np.minimum(before, after)
-        tried, each = self._around(rows, time, side), np.arange(len(rows))
+        tried = self._around(rows, time, side)
         fits = np.logical_and.accumulate([self._fit(rows, one) <= _FOR_FEED for one in tried])
         speed = np.stack([self._speed(*self._place(self._instant_of(one) / _LOOKS)) for one in tried])
-        fast = fits & (speed > slower)
-        last = np.where(fast.any(axis=0), _TRIED - np.argmax(fast[::-1], axis=0), -1)
-        beyond = np.minimum(last + 1, _TRIED)
-        drop = speed[last, each] - speed[beyond, each]
-        share = np.divide(
-            speed[last, each] - slower, drop, out=np.zeros(len(rows)), where=fits[beyond, each] & (drop > 0)
-        )
-        found = tried[last, each] + np.minimum(share, 1.0) * (tried[beyond, each] - tried[last, each])
-        found = np.where(last < 0, time[rows], found)
+        found = _last_crossing(tried, fits, speed, slower)
         knot = self._at_slower_interval(side, found, slower)
-        inside = (time[rows - 1] * (rows > 0) < knot) & (knot < time[rows + 1])
-        return np.where(inside & (self._fit(rows, knot) <= _FOR_FEED), knot, found)
+        begin, end = _neighbours(rows, time)
+        return np.where((begin < knot) & (knot < end) & (self._fit(rows, knot) <= _FOR_FEED), knot, found)
 
     def _speed(self, interval: Array, share: Array) -> Array:
         """Speed of the tip, mm/s."""
@@ -278,6 +270,26 @@ class _Search:
         interval = np.clip(np.searchsorted(self._path.time, time) - 1, 0, self._count - 1)
         begin, end = self._path.time[interval], self._path.time[interval + 1]
         return np.asarray(_LOOKS * (interval + (time - begin) / (end - begin)))
+
+
+def _neighbours(rows: Array, time: Array) -> tuple[Array, Array]:
+    """Times of the joints before and after some joints, (M,) each; before the first joint the start."""
+    return time[rows - 1] * (rows > 0), time[rows + 1]
+
+
+def _last_crossing(tried: Array, fits: Array, speed: Array, slower: Array) -> Array:
+    """Where the tool comes down to the slower feed for the last time, or else the first time tried, (M,).
+
+    ``tried``, ``fits`` and ``speed`` are (T, M), onwards from each joint. A crossing where the joint does not fit is
+    moved back to the last time that fits.
+    """
+    fast, each, end = fits & (speed > slower), np.arange(len(slower)), len(tried) - 1
+    last = np.where(fast.any(axis=0), end - np.argmax(fast[::-1], axis=0), 0)
+    beyond = np.minimum(last + 1, end)
+    drop = speed[last, each] - speed[beyond, each]
+    crosses = fast[last, each] & fits[beyond, each] & (drop > 0)
+    share = np.divide(speed[last, each] - slower, drop, out=np.zeros(len(slower)), where=crosses)
+    return np.asarray(tried[last, each] + np.minimum(share, 1.0) * (tried[beyond, each] - tried[last, each]))
 
 
 def _sampled_path(path: PlayedPath, turn: float) -> _SampledPath:
