@@ -310,9 +310,6 @@ def _first_controller(program: Program, job: Any) -> Any:
 def _left_out(program: Program) -> Findings:
     """Warnings for data that CAM commands cannot express."""
     rows = {
-        "exact stops": program.exact_stop,
-        "exact paths": program.exact_path,
-        "tolerances of the path": program.tip_tolerance > 0,
         "surface normals": np.isfinite(program.normal).all(axis=1),
         "turns of the platform": np.isfinite(program.spin),
     }

@@ -52,6 +52,13 @@ def written(folder, name, text):
     return path
 
 
+@pytest.fixture
+def printed(monkeypatch):
+    reported = []
+    monkeypatch.setattr("pkm_post.freecad_app.program_object.print_diagnostics", reported.extend)
+    return reported
+
+
 @pytest.mark.parametrize("suffix", ["ngc", "nc"])
 def test_gcode_is_opened_in_a_document_of_its_own(tmp_path, suffix):
     document = program_import.open(str(written(tmp_path, f"part.{suffix}", GCODE)))
@@ -254,16 +261,34 @@ def test_decoded_with_the_controller_of_its_tool(document, tmp_path):
     assert decode(obj, job).ToolController == controller
 
 
-@pytest.mark.parametrize(
-    ("code", "lost"), [("G61.1", "exact stops"), ("G61", "exact paths"), ("G64 P0.05", "tolerances of the path")]
-)
-def test_what_an_operation_cannot_say_is_reported(document, tmp_path, monkeypatch, code, lost):
-    reported = []
-    monkeypatch.setattr("pkm_post.freecad_app.program_object.print_diagnostics", reported.extend)
-    obj = create_program(document, written(tmp_path, "a.ngc", GCODE.replace("G17", f"{code}\nG17", 1)))
+_CODES = ["G61.1", "G61", "G64 P0.05", "G0 Z2\nG81 X1 Y1 Z-3 R2 F300\nX3\nG80", "G61\nG4 P1\nG61.1"]
+
+
+@pytest.mark.parametrize("code", _CODES)
+def test_exact_stops_exact_paths_and_tolerances_are_decoded(document, tmp_path, printed, code):
+    obj = create_program(document, written(tmp_path, "a.ngc", GCODE.replace("Z30\n", f"Z30\n{code}\n", 1)))
+    wanted, _ = read_program(obj)
+    job = new_job(document)
+    decode(obj, job)
+    program, faults = read_job(job)
+    assert faults == ()
+    assert printed == []
+    modes = [(wanted.exact_stop, program.exact_stop), (wanted.exact_path, program.exact_path),
+             (wanted.tip_tolerance, program.tip_tolerance)]  # fmt: skip
+    assert any(np.any(before) for before, _ in modes)
+    for before, after in modes:
+        np.testing.assert_array_equal(after, before)
+
+
+def test_what_an_operation_cannot_say_is_reported(document, tmp_path, printed):
+    text = CLDATA.replace("0,0,30,0,0,1", "0,0,30,0,0,1,0,0,1").replace("0.96\n", "0.96,0,0,1\n")
+    obj = create_program(document, written(tmp_path, "a.ncl", text))
+    obj.GotoValues = "x,y,z,i,j,k,nx,ny,nz"
+    document.recompute()
+    printed.clear()
     decode(obj, new_job(document))
-    assert [each.code for each in reported] == ["J120"]
-    assert lost in reported[0].found
+    assert [each.code for each in printed] == ["J120"]
+    assert "surface normals of 3 moves" in str(printed[0])
 
 
 def test_a_program_without_an_end_has_no_path_unless_it_may(document, tmp_path):

@@ -114,6 +114,18 @@ def test_arc_turned_out_of_its_plane_becomes_chords(job):
     np.testing.assert_allclose(axes, [[0, -np.sin(np.radians(20)), np.cos(np.radians(20))]] * len(tips), atol=1e-9)
 
 
+def test_copied_holes_are_as_exact_as_drilled_ones(job):
+    base = add_operation(job, ["G0 Z10", "G0 X1 Y2", "G83 X3 Y2 Z-4 R2 Q2 F5", "G80", "G0 Z10", "G1 X9 F5"], "Holes")
+    copy = create_mirror(base, normal=(0, 1, 0))
+    job.Document.recompute()
+    program, faults = read_job(job)
+    assert faults == ()
+    first, second = (program.exact_path[program.operation == number] for number in (0, 1))
+    assert 0 < np.count_nonzero(first) == np.count_nonzero(second) < len(second)
+    lines = [command.toGCode() for command in copy.Path.Commands]
+    assert [line for line in lines if line.startswith("G6")] == ["G61", "G64"]
+
+
 def test_copy_is_an_operation_of_the_job_beside_its_base(job, base):
     copy = create_mirror(base, (0, 1, 0))
     assert job.Operations.Group == [base, copy]

@@ -41,7 +41,7 @@ _UNIT_TOLERANCE = 1e-3
 _SIX_DECIMALS = 1e-6
 """FreeCAD stores six decimals: a shorter vector has no direction, and a shorter radius counts as zero."""
 
-_CODES = (*MOVES, *CYCLES, *TAPPING, *EVENTS, "G80", "G98", "G99")
+_CODES = (*MOVES, *CYCLES, *TAPPING, *EVENTS, "G61", "G61.1", "G64", "G80", "G98", "G99")
 """The codes with an effect; other permitted codes only confirm the default state."""
 _ANY_TOOL = Tool(number=0, name="", diameter=0.0, corner_radius=0.0, length=0.0)
 """The tools of a job are not read from its commands."""
@@ -113,14 +113,14 @@ def _blocks(words: CommandWords, start: Array, source: str) -> gcode.Blocks:
     for letter, before in zip("XYZ", start, strict=True) if idle.any() else ():
         columns[letter][idle] = forward_fill(columns[letter], before)[idle]
     meant = [code if code in _CODES else "G0" for code in words.codes]  # no row has one of the others
-    number = np.array([int(code[1:]) for code in meant], dtype=np.int32)[words.code[rows]]
+    tenths = np.array([round(10 * float(code[1:])) for code in meant], dtype=np.int32)[words.code[rows]]
     is_g = np.array([code.startswith("G") for code in meant], dtype=np.bool_)[words.code[rows]]
     return gcode.Blocks(
         line=words.line[rows],
         words={letter: column[rows] for letter, column in columns.items() if letter in words.values},
-        g=10 * number[is_g],
+        g=tenths[is_g],
         g_row=np.flatnonzero(is_g),
-        m=number[~is_g],
+        m=tenths[~is_g] // 10,
         m_row=np.flatnonzero(~is_g),
         deleted=np.zeros(len(rows), dtype=np.int16),
         special={},

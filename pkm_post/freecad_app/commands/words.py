@@ -50,6 +50,9 @@ _OTHERS: dict[str, str] = {
     "G17": "",
     "G18": "",
     "G19": "",
+    "G61": "",
+    "G61.1": "",
+    "G64": "P",
 } | dict.fromkeys(("G21", "G40", "G49", "G54", "G80", "G90", "G94", "G98", "G99"), "")
 LETTERS: dict[str, str] = MOVES | CYCLES | TAPPING | _OTHERS
 """Every supported code with its permitted letters; all others are refused."""

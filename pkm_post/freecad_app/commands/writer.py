@@ -26,6 +26,11 @@ _STRAIGHT = np.array(["G0", "G1", ""])
 """The code by ``Kind``; an arc has two codes."""
 _LETTERS = {"G0": "XYZIJK", "G1": "XYZIJKF", "G2": "XYZIJKF", "G3": "XYZIJKF"}
 _LETTERS_UPRIGHT = {"G0": "XYZ", "G1": "XYZF"}
+_BLEND, _EXACT_PATH, _REST = 0.0, -1.0, -2.0
+_MODES = {_BLEND: "G64", _EXACT_PATH: "G61", _REST: "G61.1"}
+"""Path modes; a number above 0 is the tolerance of G64 P."""
+_LEAST = 1e-6
+"""mm: the smallest number that FreeCAD stores."""
 _CODES = {(kind, value): code for code, (kind, letter, value) in EVENTS.items() if not letter}
 """Events that consist of their code alone."""
 
@@ -34,7 +39,7 @@ def commands_of(program: Program) -> list[Any]:
     """Convert a program, events included, to commands.
 
     Arcs about +z and -z with a constant tool axis become G3 and G2; others become chords, with a deviation of at most
-    0.001 mm.
+    0.001 mm. G61.1, G61 and G64 stand where exact stops, exact paths or tolerances change, and G64 at the end.
 
     Raises:
         ValueError: the first row is an arc, which has no start point.
@@ -43,13 +48,15 @@ def commands_of(program: Program) -> list[Any]:
         raise ValueError("commands_of: expected a first row that is no arc, got one")
     program = with_chords(program, np.flatnonzero(_needs_chords(program)))
     commands: list[Any] = []
+    modes = _path_modes(program)
     events = sorted(program.events, key=lambda event: event.row)
     done = 0
     for event in events:
-        commands += _moves(program, done, event.row)
+        commands += _moves(program, modes, done, event.row)
         commands.append(_event_command(event))
         done = event.row
-    return commands + _moves(program, done, len(program))
+    commands += _moves(program, modes, done, len(program))
+    return commands + [_mode_command(_BLEND)] * bool(modes[-1] != _BLEND)
 
 
 def _needs_chords(program: Program) -> Array:
@@ -61,7 +68,17 @@ def _needs_chords(program: Program) -> Array:
     return result
 
 
-def _moves(program: Program, first: int, last: int) -> list[Any]:
+def _path_modes(program: Program) -> Array:
+    """What a command before the program and each of its rows have in force, (N + 1,): a tolerance in mm, or a mode."""
+    tolerance = np.where(program.tip_tolerance > 0, np.maximum(program.tip_tolerance, _LEAST), _BLEND)
+    return np.append(_BLEND, np.select([program.exact_stop, program.exact_path], [_REST, _EXACT_PATH], tolerance))
+
+
+def _mode_command(mode: float) -> Any:
+    return Path.Command(_MODES[mode]) if mode in _MODES else Path.Command("G64", {"P": mode})
+
+
+def _moves(program: Program, modes: Array, first: int, last: int) -> list[Any]:
     """The commands of rows first to last - 1."""
     rows = slice(first, last)
     arc = program.kind[rows] == Kind.ARC
@@ -72,7 +89,10 @@ def _moves(program: Program, first: int, last: int) -> list[Any]:
     name = np.where(arc, np.where(program.arc_axis[rows, 2] < 0, "G2", "G3"), _STRAIGHT[program.kind[rows]])
     letters = _LETTERS if np.any(norm(program.tool_axis - _UP) > _EXACT) else _LETTERS | _LETTERS_UPRIGHT
     commands = []
-    for code, row in zip(name.tolist(), numbers.tolist(), strict=True):
+    before_row, mode_of_row = modes[first:last].tolist(), modes[first + 1 : last + 1].tolist()
+    for code, row, old, mode in zip(name.tolist(), numbers.tolist(), before_row, mode_of_row, strict=True):
+        if mode != old:
+            commands.append(_mode_command(mode))
         words = dict(zip("XYZIJKF", row, strict=True))
         commands.append(Path.Command(code, {letter: words[letter] for letter in letters[code]}))
     return commands
