@@ -3683,6 +3683,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>按 docs/g-code.md 所述书写：LinuxCNC 的 .tbl 或带单位的 .csv，例如 --tool-table tools.tbl,mm，或 FreeCAD 的 .fctl</translation>
     </message>
     <message>
+        <source>check it; times of CL data are in s, and with REV in turns of the spindle</source>
+        <translation>请检查；CL 数据中的时间以秒为单位，带 REV 时以主轴转数为单位</translation>
+    </message>
+    <message>
         <source>the machine file cannot be read</source>
         <translation>机床文件不能读取</translation>
     </message>

@@ -85,6 +85,10 @@ CLDATA_RULES: dict[str, Rule] = {
         "the strokes of this kind of cycle are not known",
         "give them with --cycle-kinds, such as BORE=ream, or let the CAM system write single moves",
     ),
+    "L448": warning(
+        "a dwell lasts longer than a minute",
+        "check it; times of CL data are in s, and with REV in turns of the spindle",
+    ),
     "L447": error(
         "the tool table is not valid",
         "write it as docs/g-code.md describes it: LinuxCNC's .tbl or .csv with the unit, as in --tool-table"

@@ -30,7 +30,7 @@ from pkm_post.reading.cldata.cycle_notation import (
     notation_by_words,
     notation_of_dialect,
 )
-from pkm_post.reading.cldata.feeds import FEED_WORDS, feed_of
+from pkm_post.reading.cldata.feeds import FEED_WORDS, LONG_DWELL, feed_of
 from pkm_post.reading.cldata.state import ReaderState
 from pkm_post.reading.cldata.statements import Statement
 
@@ -55,7 +55,9 @@ class _CycleError(Exception):
 def cycle(state: ReaderState, row: int, statement: Statement) -> None:
     """CYCLE/kind,items; INIT and CLEAR set the return height; ON and OFF."""
     word = next(iter(statement.words), "")
-    if word == "OFF":
+    if word in ("OFF", "ON") and len(statement.items) > 1:
+        state.report_items(row, statement, f"CYCLE/{word} alone")
+    elif word == "OFF":
         state.cycles.append((row, None))
     elif word == "ON" and state.cycle is not None:
         state.cycles.append((row, _at_feed_and_speed(state, state.cycle)))
@@ -66,6 +68,8 @@ def cycle(state: ReaderState, row: int, statement: Statement) -> None:
             state.cycle, interpretation = _interpret(state, statement)
             state.cycles.append((row, state.cycle))
             state.cycle_interpretations.setdefault(interpretation, []).append(row)
+            if LONG_DWELL < state.cycle.dwell < math.inf:
+                state.report("L448", row, f"CYCLE/{statement.items_text()}: {state.cycle.dwell:g} s")
         except _CycleError as fault:
             state.report(fault.code, row, fault.found)
 

@@ -21,12 +21,16 @@ MM_PER_TURN: dict[str, float | None] = {"MMPR": 1.0, "IPR": 25.4, "FPR": 304.8, 
 FEED_WORDS = frozenset({*MM_PER_MINUTE, *MM_PER_TURN, "INVERS"})
 _FEED_MODES = frozenset({"AUTO", "ON", "OFF"})
 
+LONG_DWELL = 60.0
+"""s: a longer dwell may be in another unit."""
+
 _SENSES = {"CLW": 1.0, "CCLW": -1.0}
 _SURFACE_SPEEDS = {"SMM": 1000.0, "SFM": 304.8}
 _SPINDLE_PAIRS = frozenset({"MAXRPM", "RADIUS", "RANGE"})
 _STOPPED = frozenset({"OFF", "ORIENT", "LOCK", "NEUTRL"})
 _SPINDLE_WORDS = frozenset({"RPM", "ON", "LOW", "MEDIUM", "HIGH", "AUTO", *_SPINDLE_PAIRS, *_STOPPED})
 _COOLANT = {"ON": 1.0, "FLOOD": 1.0, "MIST": 2.0, "TAP": 1.0, "TAPKUL": 1.0, "THRU": 1.0, "OFF": 0.0}
+_PRESSURES = frozenset({"LOW", "MEDIUM", "HIGH"})
 
 
 def feed_of(state: ReaderState, word: str, value: float) -> Feed:
@@ -64,7 +68,9 @@ def fedrat(state: ReaderState, row: int, statement: Statement) -> None:
     words = [item for item in items if isinstance(item, str)]
     units = [word for word in words if word in FEED_WORDS]
     modes = {word for word in words if word in _FEED_MODES}
-    if len(numbers) > 1 or len(units) > 1 or not set(words) <= FEED_WORDS | _FEED_MODES:
+    stray = bool(modes) and (bool(numbers) or len(modes) > 1 or units != ["INVERS"])
+    stray = stray or not _numbered(statement, "LENGTH")
+    if len(numbers) > 1 or len(units) > 1 or stray or not set(words) <= FEED_WORDS | _FEED_MODES:
         state.report_items(row, statement, f"one number and one of {_list(FEED_WORDS)}")
     elif numbers and not numbers[0] > 0:
         state.report("L403", row, f"feed {numbers[0]:g}")
@@ -73,7 +79,7 @@ def fedrat(state: ReaderState, row: int, statement: Statement) -> None:
         state.set_feed(row, feed_of(state, state.feed_word, numbers[0]))
     elif units and not modes:
         _set_feed_word(state, row, units[0])
-    elif units == ["INVERS"] and "OFF" in modes and state.feed_word == "INVERS":
+    elif "OFF" in modes and state.feed_word == "INVERS":
         _set_feed_word(state, row, "PERMIN")
     elif not words and len(items) == len(statement.items):
         state.report("L402", row, "FEDRAT, expected a number")
@@ -110,6 +116,7 @@ def spindl(state: ReaderState, row: int, statement: Statement) -> None:
     unclear = unclear or stops or len(words & {*_SENSES}) > 1 or len(words & {"RPM", *_SURFACE_SPEEDS}) > 1
     known = words <= _SPINDLE_WORDS | {*_SENSES, *_SURFACE_SPEEDS}
     lacking = not numbers and bool(words & {"RPM", *_SURFACE_SPEEDS})
+    lacking = lacking or not _numbered(statement, "MAXRPM", "RADIUS")
     if len(numbers) > 1 or not known or not statement.items or unclear or lacking:
         state.report_items(row, statement, "one number, RPM, SFM or SMM, CLW or CCLW")
         return
@@ -189,14 +196,14 @@ def _spindle_event(state: ReaderState, row: int) -> None:
 
 
 def coolnt(state: ReaderState, row: int, statement: Statement) -> None:
-    """COOLNT/ON, FLOOD, MIST, TAP, THRU or OFF; ON beside a kind is that kind, a following pressure is ignored.
+    """COOLNT/ON, FLOOD, MIST, TAP, THRU or OFF; ON beside a kind is that kind, a pressure is ignored.
 
     ON is flood with NX [UG/Post], the last coolant elsewhere [NCCS PostWorks].
     """
     words = statement.words
     kinds = [word for word in words if _COOLANT.get(word) and word != "ON"]
     both = len(kinds) > 1 or (bool(kinds or "ON" in words) and "OFF" in words)  # one of several may go on
-    if both or not words or words[0] not in _COOLANT:
+    if both or not words or words[0] not in _COOLANT or not set(words) <= {*_COOLANT, *_PRESSURES}:
         state.report_items(row, statement, f"one of {_list(_COOLANT)}")
         return
     word = kinds[0] if kinds else words[0]
@@ -215,7 +222,10 @@ def delay(state: ReaderState, row: int, statement: Statement) -> None:
             "L403", row, f"{statement.word} {numbers[0]:g}" + (" revolutions of a stopped spindle" if turns else "")
         )
     else:
-        state.events.append((row, EventKind.DWELL, numbers[0] * 60 / state.spindle_speed if turns else numbers[0]))
+        seconds = numbers[0] * 60 / state.spindle_speed if turns else numbers[0]
+        if seconds > LONG_DWELL:
+            state.report("L448", row, f"{statement.word}/{statement.items_text()}: {seconds:g} s")
+        state.events.append((row, EventKind.DWELL, seconds))
 
 
 def stop(state: ReaderState, row: int, statement: Statement) -> None:
@@ -236,6 +246,11 @@ def _without_pairs(statement: Statement, names: frozenset[str]) -> list[object]:
         else:
             after = False
     return items
+
+
+def _numbered(statement: Statement, *names: str) -> bool:
+    """Whether a number above zero follows each of the names in a statement."""
+    return all(statement.number_after(name) > 0 for name in names if name in statement.words)
 
 
 def _list(words: Iterable[str]) -> str:

@@ -132,6 +132,14 @@ HANDLERS: dict[str, _Handler] = {
 }  # fmt: skip
 """Words with a handler."""
 
+_NESTED = frozenset({"TLON,GOFWD", "PSIS"})
+"""Words with statements in parentheses among their items."""
+
+_ALONE: dict[str, frozenset[str]] = {
+    "MULTAX": frozenset({"ON", "OFF"}), "AUTOPS": frozenset(), "STOP": frozenset(), "OPSTOP": frozenset(),
+}  # fmt: skip
+"""Words with at most one item, and the words that it may be."""
+
 _PACE = frozenset({"FEDRAT", "SPINDL", "CUTTER", "TLDATA"})
 """Words that may change the feed, or the spindle speed, which a speed of the surface takes from the cutter."""
 
@@ -174,7 +182,7 @@ def interpret(state: ReaderState, bulk: Array) -> Array:
         word = statements.word(row)
         handler = _handler(state, word)
         if handler is not None:
-            handler(state, row, statements.statement(row))
+            _handle(state, row, handler)
             if word in _PACE:
                 cycle_goes_on(state, row)
         elif word in UNSUPPORTED or _known_parts(word):
@@ -194,6 +202,19 @@ def interpret(state: ReaderState, bulk: Array) -> Array:
         times = f", {len(rows)} times" if len(rows) > 1 else ""
         state.report("L404", rows[0], f"{word[:60]}{times}")
     return bulk & valid
+
+
+def _handle(state: ReaderState, row: int, handler: _Handler) -> None:
+    """Let its handler read a statement, unless it has items that no handler of its word reads."""
+    statement = state.statements.statement(row)
+    word, items = statement.word, [item for item in statement.items if item is not None]
+    alone = _ALONE.get(word)
+    if alone is not None and (len(items) > 1 or not set(items) <= alone):
+        state.report_items(row, statement, " or ".join(["no items", *sorted(alone)]))
+    elif word not in _NESTED and any(isinstance(item, Statement) for item in items):
+        state.report_items(row, statement, "no parentheses")
+    else:
+        handler(state, row, statement)
 
 
 def _report_statement_in_text(state: ReaderState, row: int) -> None:

@@ -19,6 +19,9 @@ from pkm_post.reading.cldata.statements import Statement
 _TANGENT_TOLERANCE = 2e-3
 """Tolerance in mm of e and f from those of a tangent corner: files round to three decimals."""
 
+_CUTTER_VALUES = 7
+"""Values of CUTTER."""
+
 _OTHER_PROCESSES = frozenset({"TURN", "GROOVE", "THREAD", "WEDM"})
 """Tools of TLDATA whose first number is no diameter of a cutter."""
 
@@ -27,8 +30,8 @@ def cutter(state: ReaderState, row: int, statement: Statement) -> None:
     """CUTTER/d[,r[,e,f,a,b,h]], angles in degrees; e and f follow from the others."""
     if statement.items[:1] == ("DISPLY",):  # display setting of NCL
         return
-    numbers = statement.numbers
-    if not numbers or statement.words:
+    numbers = statement.values
+    if not 0 < len(numbers) <= _CUTTER_VALUES:
         state.report_items(row, statement, "d[,r[,e,f,a,b,h]]")
         return
     d, r, e, f, a, b = _padded(numbers, 6)

@@ -90,7 +90,7 @@ def _first_words(
 def units(state: ReaderState, row: int, statement: Statement) -> None:
     """UNITS/MM or INCHES; an option takes precedence."""
     name = _UNIT_WORDS.get(next(iter(statement.words), ""))
-    if name is None:
+    if name is None or len(statement.items) > 1:
         state.report_items(row, statement, "MM or INCHES")
         return
     if state.options.units is None:
@@ -147,7 +147,7 @@ def trans(state: ReaderState, row: int, statement: Statement) -> None:
 
 def _ends_transform(state: ReaderState, row: int, statement: Statement, name: str) -> bool:
     """Whether NOMORE or OFF ends the transform of a word here."""
-    ends = not statement.values and bool(set(statement.words) & {"NOMORE", "OFF"})
+    ends = statement.items in (("NOMORE",), ("OFF",))
     if ends:
         state.transforms.pop(name, None)
         _record_frame(state, row)
@@ -177,8 +177,8 @@ def _set_transform(state: ReaderState, row: int, statement: Statement, name: str
 
 
 def trntyp(state: ReaderState, row: int, statement: Statement) -> None:
-    """TRNTYP/WORLD,...: the points are in one frame; no other type is supported."""
-    if "WORLD" not in statement.words:
+    """TRNTYP/WORLD,0,...: the points are in one frame; no other type, and none that is moved, is supported."""
+    if statement.words != ["WORLD"] or any(statement.numbers):
         state.report("L401", row, f"TRNTYP/{statement.items_text()}")
 
 

@@ -17,6 +17,7 @@ from pkm_post.reading.cldata.diagnostics import EXPECTED, MAX_REPORTED
 from pkm_post.reading.grammar import STATEMENT, parser_of
 
 BAD_PROGRAMS = sorted((Path(__file__).parents[2] / "data" / "bad_cldata").glob("*.cl"))
+HEAD = "UNITS/MM\nLOADTL/1,LENGTH,100\nCUTTER/10\nFEDRAT/600,MMPM\nGOTO/0,0,0\n"
 EXPECTATION = re.compile(rb"\$\$ expects (.+)")
 
 
@@ -155,3 +156,42 @@ def test_ten_megabytes_in_one_line(piece):
     program, diagnostics = read(piece * (10_000_000 // len(piece)), "long.cl")
     assert program is None
     assert errors(diagnostics)
+
+
+@pytest.mark.parametrize("statement", [
+    "MULTAX/ON,5", "MULTAX/ON,OFF", "AUTOPS/1", "STOP/3", "OPSTOP/OFF", "UNITS/MM,INCHES", "TRNTYP/WORLD,0,0,5",
+    "TRANS/NOMORE,1,2,3", "TRANS/1,2,3,NOMORE", "TRACUT/NOMORE,OFF", "TRACUT/LAST,NOMORE,7", "ORIGIN/OFF,1",
+    "CYCLE/OFF,DRILL,DEPTH,5", "CYCLE/OFF,ON", "CYCLE/ON,2", "FEDRAT/INVERS,5,OFF", "FEDRAT/AUTO", "FEDRAT/MMPM,OFF",
+    "FEDRAT/100,LENGTH", "FEDRAT/100,(POINT/1,2,3)", "SPINDL/30,SMM,RADIUS,CLW", "SPINDL/30,SMM,MAXRPM",
+    "SPINDL/MAXRPM,-3", "SPINDL/500,(POINT/1,2,3)", "COOLNT/ON,AIR", "COOLNT/FLOOD,XX", "DELAY/2,(POINT/1,2,3)",
+    "CUTTER/8,,1", "CUTTER/8,1,3,1,0,0,30,7",
+])  # fmt: skip
+def test_items_that_no_form_of_a_statement_has_are_faults(statement):
+    (fault,) = errors(read(f"{HEAD}{statement}\nGOTO/5,0,0\n", "part.cl")[1])
+    assert (fault.code in ("L401", "L402"), fault.place.line) == (True, 6)
+
+
+@pytest.mark.parametrize(
+    "statement",
+    ["MULTAX", "MULTAX/OFF", "STOP", "TRNTYP/WORLD,0,0,0", "TRANS/NOMORE", "COOLNT/ON,HIGH", "FEDRAT/9,LENGTH,80"],
+)
+def test_statements_of_these_forms_are_read(statement):
+    program, diagnostics = read(f"{HEAD}{statement}\nGOTO/5,0,0\n", "part.cl")
+    assert (len(program), errors(diagnostics)) == (2, ())
+
+
+@pytest.mark.parametrize(
+    "statement, reported",
+    [
+        ("DELAY/60", False),
+        ("DELAY/61", True),
+        ("DWELL/1500", True),
+        ("DELAY/1200,REV", False),
+        ("DELAY/1300,REV", True),
+        ("CYCLE/DRILL,DEPTH,5,CLEAR,3,DWELL,500", True),
+        ("CYCLE/DRILL,DEPTH,5,CLEAR,3,DWELL,5", False),
+    ],
+)
+def test_dwells_of_more_than_a_minute_are_reported(statement, reported):
+    _, diagnostics = read(f"{HEAD}SPINDL/1200,CLW\n{statement}\nGOTO/5,0,0\n", "part.cl")
+    assert [fault.place.line for fault in diagnostics if fault.code == "L448"] == [7] * reported
