@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from pkm_post.geometry import dot
-from pkm_post.model import Diagnostic, EventKind, Kind, Phrase, Place, Program, Tool
+from pkm_post.model import Diagnostic, EventKind, Kind, Phrase, Place, Program, Shank, Tool
 from pkm_post.reading import gcode, siemens
 from pkm_post.reading.language import Language, language_of, unread_encoding
 
@@ -67,6 +67,7 @@ class ReadingOptions:
         subprograms: folders searched for subprogram files of G-code before that of the program.
         tool_table: path of a tool table, optionally with a comma and its unit, as in ``read_tool_table``; ``tools`` and
             ``lengths`` take precedence. None for none.
+        shanks: those of the tools of the table, by number.
         allow_open_end: whether a file may lack an end statement, such as M2 or FINI.
 
     Raises:
@@ -98,6 +99,7 @@ class ReadingOptions:
     delete_switches: tuple[int, ...] = ()
     subprograms: tuple[str, ...] = ()
     tool_table: str | None = None
+    shanks: Mapping[int, Shank] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name in ("cycle_values", "left_out", "goto_values", "subprograms"):
@@ -186,7 +188,8 @@ def with_tool_table(reading: ReadingOptions, language: Language) -> tuple[Readin
         return reading, faults
     cutters = table.tools if language is Language.GCODE else {}
     tools, lengths = cutters | dict(reading.tools), table.lengths | dict(reading.lengths)
-    return replace(reading, tools=tools, lengths=lengths, tool_table=None), ()
+    shanks = {number: shank for number, shank in table.shanks.items() if number not in reading.tools}
+    return replace(reading, tools=tools, lengths=lengths, shanks=shanks, tool_table=None), ()
 
 
 FLAVOUR_NAMES = (*gcode.FLAVOUR_NAMES, SIEMENS)

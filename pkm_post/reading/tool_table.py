@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pkm_post.model import Diagnostic, Place, Tool
+from pkm_post.model import Diagnostic, Place, Shank, Tool
 from pkm_post.reading.units import UNITS
 
 MOST_BYTES = 10_000_000
@@ -32,10 +32,12 @@ class ToolTable:
     Attributes:
         tools: cutters by number; only those with a stated diameter.
         lengths: gauge lengths by number, mm; only stated ones.
+        shanks: by number; only those whose cutting edge height and diameter are stated.
     """
 
     tools: dict[int, Tool] = field(default_factory=dict)
     lengths: dict[int, float] = field(default_factory=dict)
+    shanks: dict[int, Shank] = field(default_factory=dict)
 
 
 class _TableError(ValueError):
@@ -56,6 +58,7 @@ class _ToolEntry:
     diameter: float | None = None
     corner: float | None = None
     length: float | None = None
+    shank: Shank | None = None
 
 
 def read_tool_table(named: str) -> tuple[ToolTable | None, tuple[Diagnostic, ...]]:
@@ -101,6 +104,8 @@ def _table_of(rows: Iterator[_ToolEntry]) -> ToolTable:
             table.tools[row.number] = _cutter(row, row.diameter)
         if row.length is not None:
             table.lengths[row.number] = _within(row, "length", row.length)
+        if row.shank is not None:
+            table.shanks[row.number] = row.shank
     if not seen:
         raise _TableError("no tools")
     return table
@@ -184,15 +189,21 @@ def _csv(text: str, _: Path, unit: str) -> Iterator[_ToolEntry]:
             _number(cells[name], line) * scale if cells.get(name) else None
             for name in ("diameter", "corner_radius", "length")
         ]
-        yield _ToolEntry(line, _tool_number(cells["number"], line), cells.get("name", ""), *lengths)
+        yield _ToolEntry(
+            line, _tool_number(cells["number"], line), cells.get("name", ""), lengths[0], lengths[1], lengths[2]
+        )
 
 
-_QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)) ?(mm|cm|m|in|\")")
-_OF_FREECAD = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, '"': 25.4}
+_OF_FREECAD = {"nm": 1e-6, "µm": 1e-3, "mm": 1.0, "cm": 10.0, "m": 1000.0, "thou": 0.0254, "in": 25.4, '"': 25.4,
+               "ft": 304.8, "'": 304.8}  # fmt: skip
+"""Units of FreeCAD's unit systems, in mm."""
+_TERM = re.compile(rf"(\d+(?:[.,]\d*)?|[.,]\d+)(?:/([1-9]\d*))? ?({'|'.join(_OF_FREECAD)})")
+"""A number as 6.35, in many countries 6,35, or in US building units 1/4."""
+_QUANTITY = re.compile(rf"[+-]?{_TERM.pattern}(?: (?:\+ )?{_TERM.pattern})*")
 
 
 def _freecad(text: str, file: Path, unit: str) -> Iterator[_ToolEntry]:
-    """The numbers of a library, and the diameter and corner of each bit, which has its own file."""
+    """The numbers of a library, and the sizes of each bit, which has its own file."""
     if unit:
         raise _TableError(f"a library of FreeCAD states its units: leave out {unit}")
     entries = _json(text, file).get("tools")
@@ -202,8 +213,9 @@ def _freecad(text: str, file: Path, unit: str) -> Iterator[_ToolEntry]:
         number, path = entry.get("nr"), str(entry.get("path", ""))
         bit = _bit_file(file, path)
         content = _json(_content(bit), bit)
-        diameter, corner = _sizes(content, bit)
-        yield _ToolEntry(0, _tool_number(str(number), 0), str(content.get("name", "")), diameter, corner)
+        name, parameters = str(content.get("name", "")), content.get("parameter")
+        sizes = _sizes(content, parameters if isinstance(parameters, dict) else {}, bit)
+        yield _ToolEntry(0, _tool_number(str(number), 0), name, sizes[0], sizes[1], None, sizes[2])
 
 
 def _json(text: str, file: Path) -> dict[str, Any]:
@@ -225,30 +237,35 @@ def _bit_file(library: Path, path: str) -> Path:
     return found
 
 
-def _sizes(content: dict[str, Any], bit: Path) -> tuple[float | None, float | None]:
-    """Diameter and corner radius in mm, None if not stated or if the shape has another bottom.
+def _sizes(
+    content: dict[str, Any], parameters: dict[str, Any], bit: Path
+) -> tuple[float | None, float | None, Shank | None]:
+    """Diameter and corner radius in mm, and the shank; None if not stated or if the shape has another bottom.
 
     FreeCAD 1.0 stores the radius of the flat of a bull nose, newer versions that of its corner.
     """
-    stated = content.get("parameter")
-    parameters = stated if isinstance(stated, dict) else {}
-    diameter = _quantity(parameters, "Diameter", bit)
+    names = ("Diameter", "CornerRadius", "FlatRadius", "CuttingEdgeHeight", "ShankDiameter")
+    diameter, corner, flat, start, across = (_quantity(parameters, name, bit) for name in names)
+    shank = Shank(start, across) if start and across and min(start, across) > 0 else None
     shape = str(content.get("shape-type") or Path(str(content.get("shape", ""))).stem).lower()
     if diameter is None:
-        return None, None
+        return None, None, shank
     if shape == "bullnose":
-        corner, flat = (_quantity(parameters, name, bit) for name in ("CornerRadius", "FlatRadius"))
-        return diameter, corner if corner is not None or flat is None else diameter / 2 - flat
-    return diameter, {"endmill": 0.0, "ballend": diameter / 2}.get(shape)
+        return diameter, corner if corner is not None or flat is None else diameter / 2 - flat, shank
+    return diameter, {"endmill": 0.0, "ballend": diameter / 2}.get(shape), shank
 
 
 def _quantity(parameters: dict[str, Any], name: str, bit: Path) -> float | None:
     if name not in parameters:
         return None
-    found = _QUANTITY.fullmatch(str(parameters[name]).strip())
-    if found is None:
+    text = str(parameters[name]).strip()
+    if text == "0":  # how US building units write it
+        return 0.0
+    if _QUANTITY.fullmatch(text) is None:
         raise _TableError(f"{name} {parameters[name]!r} in {bit.name}, expected a length such as 6.0 mm")
-    return float(found[1]) * _OF_FREECAD[found[2]]
+    terms = _TERM.findall(text)
+    mm = sum(float(top.replace(",", ".")) / int(bottom or 1) * _OF_FREECAD[unit] for top, bottom, unit in terms)
+    return -mm if text.startswith("-") else mm
 
 
 _READERS: dict[str, Callable[[str, Path, str], Iterator[_ToolEntry]]] = {

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tool bits of FreeCAD 1.0 and newer: both name the same cutter in their own way."""
 
+import json
 import math
 
 import FreeCAD as App
@@ -10,7 +11,9 @@ import pytest
 from cam_jobs import add_operation
 
 from pkm_post.freecad_app.job import read_job
+from pkm_post.freecad_app.job_setup import setup_of
 from pkm_post.freecad_app.tools import read_tools, set_gauge_length
+from pkm_post.reading.tool_table import read_tool_table
 from pkm_post.toolpath.compensation.cutter import Cutter, CutterProfile
 
 
@@ -146,3 +149,32 @@ def test_gauge_length_is_one_property_that_is_saved(job):
     assert controller.GaugeLength.UserString.startswith("90")
     assert controller.getGroupOfProperty("GaugeLength") == "PKM Post"
     assert controller.getTypeIdOfProperty("GaugeLength") == "App::PropertyLength"
+
+
+def written_by_freecad(bit):
+    """The content of the file of a bit, as this FreeCAD writes it."""
+    try:
+        from Path.Tool.toolbit.serializers.fctb import FCTBSerializer
+    except ImportError:
+        return json.dumps(bit.Proxy.templateAttrs(bit))
+    return FCTBSerializer.serialize(bit.Proxy).decode()
+
+
+@pytest.mark.parametrize("system", range(len(App.Units.listSchemas())))
+def test_a_library_that_freecad_writes_in_any_unit_system_has_the_sizes_of_a_job(job, tmp_path, system):
+    bit = stock_bit(job.Document, "endmill.fcstd", Diameter=25.4, ShankDiameter=12.7, CuttingEdgeHeight=50.8)
+    App.Units.setSchema(system)
+    try:
+        (tmp_path / "end.fctb").write_text(written_by_freecad(bit), encoding="utf-8")
+    finally:
+        App.Units.setSchema(0)
+    (tmp_path / "shop.fctl").write_text(json.dumps({"tools": [{"nr": 1, "path": "end.fctb"}]}), encoding="utf-8")
+    table, faults = read_tool_table(str(tmp_path / "shop.fctl"))
+    assert not faults
+    cutter = tool_of(job, bit)
+    (shank,) = setup_of(job).shanks.values()
+    inches, centimetres, feet, metres = 3, 4, 7, 9
+    rounding = {inches: 0.13, centimetres: 0.051, feet: 1.6, metres: 5.1}  # mm, half of 0.01
+    off = pytest.approx([cutter.diameter, shank.start, shank.diameter], abs=rounding.get(system, 0.0051))
+    found = table.shanks[1]
+    assert [table.tools[1].diameter, found.start, found.diameter] == off

@@ -6,7 +6,7 @@ import json
 import pytest
 
 from pkm_post.machine import find_machine
-from pkm_post.model import Tool, errors
+from pkm_post.model import Shank, Tool, errors
 from pkm_post.posting.post_file import prepared_file
 from pkm_post.reading import ReadingOptions, read_part_program
 from pkm_post.reading.tool_table import read_tool_table
@@ -48,7 +48,9 @@ def bit(shape, **parameters):
 
 
 BITS = {
-    "end.fctb": bit("endmill", Diameter="5.0000 mm", Length="50.0000 mm"),
+    "end.fctb": bit(
+        "endmill", Diameter="5.0000 mm", Length="50.0000 mm", CuttingEdgeHeight="30 mm", ShankDiameter="3 mm"
+    ),
     "ball.fctb": bit("ballend", Diameter="0.25 in"),
     # FreeCAD 1.0 keeps the radius of the flat, 1.1 that of the corner
     "bull.fctb": bit("bullnose", Diameter="10.0 mm", FlatRadius="3.0 mm"),
@@ -69,9 +71,48 @@ def test_a_library_of_freecad(tmp_path):
     assert not faults
     assert found.lengths == {}
     sizes = [(tool.diameter, tool.corner_radius, tool.corner_known) for tool in found.tools.values()]
+    assert found.shanks == {1: Shank(30.0, 3.0)}
     assert sizes == [(5, 0, True), (6.35, 3.175, True), (10, 2, True), (10, 1, True), (5, 0, False)]
     (tmp_path / "Bit" / "end.fctb").unlink()
     assert "'end.fctb'" in read_tool_table(str(library))[1][0].found
+
+
+def library_of(folder, **parameters):
+    """A library of one end mill, T1."""
+    (folder / "end.fctb").write_text(json.dumps(bit("endmill", **parameters)), encoding="utf-8")
+    library = folder / "shop.fctl"
+    library.write_text(json.dumps({"tools": [{"nr": 1, "path": "end.fctb"}]}), encoding="utf-8")
+    return library
+
+
+QUANTITIES = {"6,35 mm": 6.35, '1/4"': 6.35, "1' 2\" + 3/8\"": 365.125, '2" + 3/8"': 60.325, "62.50 thou": 1.5875,
+              "0.5 ft": 152.4, "50.00 \u00b5m": 0.05, '.5"': 12.7, "0.64 cm": 6.4, "0.01 m": 10.0}  # fmt: skip
+"""Lengths as FreeCAD writes them in its unit systems, and in countries with a decimal comma."""
+
+
+@pytest.mark.parametrize("text", QUANTITIES)
+def test_lengths_in_every_unit_system_of_freecad(tmp_path, text):
+    found, faults = read_tool_table(str(library_of(tmp_path, Diameter=text)))
+    assert not faults
+    assert found.tools[1].diameter == pytest.approx(QUANTITIES[text], rel=1e-12)
+
+
+@pytest.mark.parametrize("text", ["6", "1/0 in", '1/4" 3', "6 mm mm", "1,5,5 mm", "", "0", "-3 mm"])
+def test_what_is_no_length_above_zero_is_refused(tmp_path, text):
+    found, ((fault),) = read_tool_table(str(library_of(tmp_path, Diameter=text)))
+    assert (found, fault.code) == (None, "L447")
+
+
+def test_the_shank_is_that_of_the_table_unless_the_tool_is_another(tmp_path):
+    part = tmp_path / "part.ngc"
+    part.write_text("G21\nT1 M6\nS1000 M3\nG0 X0 Y0 Z30\nG1 X10 F300\nM5\nM2\n", encoding="ascii")
+    stated = {"Diameter": "5 mm", "CuttingEdgeHeight": "30 mm", "ShankDiameter": "8 mm"}
+    table = f"--tool-table {library_of(tmp_path, **stated)} --tool-length 1=60"
+    assert prepared_file(part, arguments=table).options.setup.shanks == {1: Shank(30.0, 8.0)}
+    assert prepared_file(part, arguments=f"{table} --tool 1=6").options.setup.shanks == {}
+    for name in ("CuttingEdgeHeight", "ShankDiameter"):
+        library_of(tmp_path, **(stated | {name: "0.00 mm"}))
+        assert prepared_file(part, arguments=table).options.setup.shanks == {}
 
 
 FAULTS = {
