@@ -57,67 +57,91 @@ def findings(
     task: PlaybackTask, played: PlaybackBounds, passed: JointDeviations, trajectory: Trajectory, tolerances: Tolerances
 ) -> tuple[Finding, ...]:
     """One row for each quantity: code, name, unit, values, limit, and the time and place of each value."""
-    struts, machine, motion = task.struts, task.machine, task.motion
-    starts = partial(_start, motion)
-    knots = _at_knots(task)
-    joints = partial(_of_columns, motion.joint_time, np.arange(len(trajectory)))
-    at_ends = trajectory.tip_tolerances(tolerances.tip)
-    axis_limit = math.degrees(tolerances.axis)
-    at_worst = partial(_largest_sample, task, passed, played)
-    checkpoint()
-    axis_speed, tip_acceleration = tool_limits(task)
-    turning, axis_degrees = math.degrees(machine.axis_speed), np.degrees(played.axis)
-    checkpoint()
-    off = off_plan(struts, task.knots) + task.spin_deviation
-    checkpoint()
-    rows: tuple[_Row, ...] = (
-        ("V107", Phrase("interval without a pose"), "", 1.0 - played.found, 0.0, starts),
-        ("V101", Phrase("deviation of the tool tip"), "mm", *at_worst(Quantity.TIP, played.tip, played.tip_tolerance)),
-        ("V102", Phrase("deviation of the tool axis"), "degrees", *at_worst(Quantity.AXIS, axis_degrees, axis_limit)),
-        ("V110", Phrase("tool tip off a programmed point"), "mm", passed.tip, at_ends, joints),
-        ("V110", Phrase("tool axis off a programmed one"), "degrees", np.degrees(passed.axis), axis_limit, joints),
-        ("V111", Phrase("strut off its plan"), "mm", off, tolerances.tip, knots),
-        ("V108", Phrase("tip speed"), "mm/s", *at_worst(Quantity.SPEED, played.tip_speed, played.ceiling)),
-        ("V103", Phrase("strut speed"), "mm/s", played.strut_speed, machine.strut_speed, starts),
-        ("V104", Phrase("strut acceleration"), "mm/s^2", played.strut_acceleration, machine.strut_acceleration, starts),
-        ("V113", Phrase("turning rate of the tool axis"), "degrees/s", np.degrees(axis_speed), turning, starts),
-        ("V114", Phrase("tip acceleration"), "mm/s^2", tip_acceleration, machine.tip_acceleration, starts),
-        ("V106", Phrase("shortest strut"), "mm", played.shortest, machine.strut_stroke[0], starts),
-        ("V106", Phrase("longest strut"), "mm", played.longest, machine.strut_stroke[1], starts),
-        ("V116", Phrase("shortest interval"), "ms", np.diff(struts.time_ms), machine.shortest_interval, starts),
-    )
-    if math.isfinite(machine.block_rate):
-        blocks = blocks_in_a_second(struts.time_ms)
-        rows = (*rows, ("V117", Phrase("blocks in one second"), "1/s", blocks, machine.block_rate, knots))
-    if math.isfinite(machine.strut_jerk):
-        jerk = strut_jerk(struts, task.adjacent, task.points)
-        rows = (*rows, ("V112", Phrase("strut jerk"), "mm/s^3", jerk, machine.strut_jerk, knots))
-    if math.isfinite(machine.tip_jerk):
-        rows = (*rows, ("V115", Phrase("tip jerk"), "mm/s^3", tip_jerk(task), machine.tip_jerk, knots))
+    rows = [
+        *_deviations(task, played, passed, trajectory, tolerances),
+        *_rates(task, played, passed),
+        *_lengths_and_intervals(task, played),
+        *_jerks(task),
+    ]
     if any(event.kind is EventKind.SPINDLE_AXIS for event in trajectory.events):
-        rows = (*rows, *_of_threads(task, trajectory, starts))
+        rows += _of_threads(task, trajectory)
     return tuple(_worst(trajectory, *row) for row in rows)
 
 
-def _of_threads(task: PlaybackTask, trajectory: Trajectory, starts: _When) -> tuple[_Row, ...]:
+def _deviations(
+    task: PlaybackTask, played: PlaybackBounds, passed: JointDeviations, trajectory: Trajectory, tolerances: Tolerances
+) -> list[_Row]:
+    """Rows of the deviations of tip, tool axis and struts."""
+    joints = partial(_of_columns, task.motion.joint_time, np.arange(len(trajectory)))
+    at_worst = partial(_largest_sample, task, passed, played)
+    axis, axis_limit = np.degrees(played.axis), math.degrees(tolerances.axis)
+    at_ends = trajectory.tip_tolerances(tolerances.tip)
+    checkpoint()
+    off = off_plan(task.struts, task.knots) + task.spin_deviation
+    checkpoint()
+    return [
+        ("V107", Phrase("interval without a pose"), "", 1.0 - played.found, 0.0, _at_starts(task)),
+        ("V101", Phrase("deviation of the tool tip"), "mm", *at_worst(Quantity.TIP, played.tip, played.tip_tolerance)),
+        ("V102", Phrase("deviation of the tool axis"), "degrees", *at_worst(Quantity.AXIS, axis, axis_limit)),
+        ("V110", Phrase("tool tip off a programmed point"), "mm", passed.tip, at_ends, joints),
+        ("V110", Phrase("tool axis off a programmed one"), "degrees", np.degrees(passed.axis), axis_limit, joints),
+        ("V111", Phrase("strut off its plan"), "mm", off, tolerances.tip, _at_knots(task)),
+    ]
+
+
+def _rates(task: PlaybackTask, played: PlaybackBounds, passed: JointDeviations) -> list[_Row]:
+    """Rows of the speeds and accelerations of tip, tool axis and struts."""
+    machine, starts = task.machine, _at_starts(task)
+    tip_speed = _largest_sample(task, passed, played, Quantity.SPEED, played.tip_speed, played.ceiling)
+    axis_speed, tip_acceleration = tool_limits(task)
+    turning, most_turning = np.degrees(axis_speed), math.degrees(machine.axis_speed)
+    return [
+        ("V108", Phrase("tip speed"), "mm/s", *tip_speed),
+        ("V103", Phrase("strut speed"), "mm/s", played.strut_speed, machine.strut_speed, starts),
+        ("V104", Phrase("strut acceleration"), "mm/s^2", played.strut_acceleration, machine.strut_acceleration, starts),
+        ("V113", Phrase("turning rate of the tool axis"), "degrees/s", turning, most_turning, starts),
+        ("V114", Phrase("tip acceleration"), "mm/s^2", tip_acceleration, machine.tip_acceleration, starts),
+    ]
+
+
+def _lengths_and_intervals(task: PlaybackTask, played: PlaybackBounds) -> list[_Row]:
+    """Rows of the strut lengths, and of the intervals between the points of the program."""
+    machine, starts, time_ms = task.machine, _at_starts(task), task.struts.time_ms
+    rows: list[_Row] = [
+        ("V106", Phrase("shortest strut"), "mm", played.shortest, machine.strut_stroke[0], starts),
+        ("V106", Phrase("longest strut"), "mm", played.longest, machine.strut_stroke[1], starts),
+        ("V116", Phrase("shortest interval"), "ms", np.diff(time_ms), machine.shortest_interval, starts),
+    ]
+    if math.isfinite(machine.block_rate):
+        blocks = blocks_in_a_second(time_ms)
+        rows.append(("V117", Phrase("blocks in one second"), "1/s", blocks, machine.block_rate, _at_knots(task)))
+    return rows
+
+
+def _jerks(task: PlaybackTask) -> list[_Row]:
+    """Rows of the jerks that the machine limits."""
+    machine, knots, rows = task.machine, _at_knots(task), list[_Row]()
+    if math.isfinite(machine.strut_jerk):
+        jerk = strut_jerk(task.struts, task.adjacent, task.points)
+        rows.append(("V112", Phrase("strut jerk"), "mm/s^3", jerk, machine.strut_jerk, knots))
+    if math.isfinite(machine.tip_jerk):
+        rows.append(("V115", Phrase("tip jerk"), "mm/s^3", tip_jerk(task), machine.tip_jerk, knots))
+    return rows
+
+
+def _of_threads(task: PlaybackTask, trajectory: Trajectory) -> list[_Row]:
     """Rows of a spindle as an axis; a machine without one has been refused (T107)."""
     from pkm_post.certificate.lead import thread_bounds
 
     axis, bounds = task.machine.spindle_axis, thread_bounds(task, trajectory)
     if axis is None:
         raise ValueError("machine: expected a spindle that is an axis, as the trajectory has threads, got none")
-    return (
+    starts, rise = _at_starts(task), Phrase("spindle acceleration in a thread")
+    return [
         ("V120", Phrase("depth of a thread off its turns"), "mm", bounds.lead, axis.lead_tolerance, starts),
         ("V121", Phrase("spindle speed in a thread"), "1/min", 60 * bounds.speed, 60 * axis.speed, starts),
-        (
-            "V122",
-            Phrase("spindle acceleration in a thread"),
-            "turns/s^2",
-            bounds.acceleration,
-            axis.acceleration,
-            starts,
-        ),
-    )
+        ("V122", rise, "turns/s^2", bounds.acceleration, axis.acceleration, starts),
+    ]
 
 
 def figures(task: PlaybackTask, trajectory: Trajectory) -> tuple[Figure, ...]:
@@ -138,7 +162,7 @@ def figures(task: PlaybackTask, trajectory: Trajectory) -> tuple[Figure, ...]:
         cuts = trajectory.kind[task.motion.segment[1:]] != Kind.RAPID
         checkpoint()
         error = np.where(cuts, contour_error(task, machine.velocity_gain), 0.0)
-        rows.append((Phrase("contour error by following errors"), "um", error, partial(_start, task.motion)))
+        rows.append((Phrase("contour error by following errors"), "um", error, _at_starts(task)))
     return tuple(_figure(trajectory, *row) for row in rows)
 
 
@@ -176,6 +200,10 @@ def _start(motion: Motion, interval: int) -> tuple[float, int]:
     """The start of an interval, s, and the segment executed just after it."""
     time = float(motion.time_ms[interval]) / 1000
     return time, int(np.searchsorted(motion.joint_time, time, side="right"))
+
+
+def _at_starts(task: PlaybackTask) -> _When:
+    return partial(_start, task.motion)
 
 
 def _at_knots(task: PlaybackTask) -> _When:

@@ -48,6 +48,27 @@ def arc_points(start: Array, centre: Array, axis: Array, angle: Array, rise: Arr
     return start - radius + turned + rise[..., None] * axis
 
 
+def arc_turning_points(start: Array, end: Array, centre: Array, axis: Array, sweep: Array) -> Array:
+    """For each coordinate the two places at which an arc turns back in it, (2, A, 3); its start where there is none.
+
+    A coordinate at the angle t is a cos t + b sin t + c t + const: it turns back where a sin t - b cos t = c.
+
+    Args:
+        start: (A, 3) start points.
+        end: (A, 3) end points.
+        centre: (A, 3) points on the axis.
+        axis: (A, 3) unit axes.
+        sweep: (A,) angles turned.
+    """
+    radius = across(start - centre, axis)
+    side, slope = cross(axis, radius), (dot(end - start, axis) / sweep)[:, None] * axis
+    phase, size = np.arctan2(side, radius), np.maximum(np.hypot(radius, side), np.finfo(float).tiny)
+    lean = np.arcsin(np.clip(slope / size, -1.0, 1.0))
+    turn = np.mod(np.stack([phase + lean, phase + np.pi - lean]), 2 * np.pi)
+    turn = np.where(turn <= sweep[:, None], turn, 0.0)
+    return np.asarray(start - radius + np.cos(turn) * radius + np.sin(turn) * side + turn * slope)
+
+
 def arc_length(start: Array, end: Array, centre: Array, axis: Array) -> Array:
     """Lengths of arcs and helices, mm, with the mean of start and end radius."""
     radius = (norm(across(start - centre, axis)) + norm(across(end - centre, axis))) / 2

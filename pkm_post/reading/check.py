@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry import across, arc_points, arc_sweep, cross, dot, move_lengths
-from pkm_post.model import Array, Diagnostic, Kind, Program, errors
+from pkm_post.geometry import arc_sweep, arc_turning_points, move_lengths
+from pkm_post.model import Diagnostic, Kind, Program, errors
 from pkm_post.reading.part_program import AS_WRITTEN, ReadingOptions, name_of, read_part_program
 
 _LONGEST_LINE = 200
@@ -81,7 +81,8 @@ def size_of(program: Program) -> Size:
     arc = program.kind[1:] == Kind.ARC
     centre, axis = program.arc_centre[1:], program.arc_axis[1:]
     length = move_lengths(start, end, arc, centre, axis)
-    points = np.concatenate([program.position, _extreme_points(start[arc], end[arc], centre[arc], axis[arc])])
+    arcs = start[arc], end[arc], centre[arc], axis[arc]
+    points = np.concatenate([program.position, *arc_turning_points(*arcs, arc_sweep(*arcs))])
     return Size(
         blocks=len(program),
         arcs=int(arc.sum()),
@@ -89,21 +90,6 @@ def size_of(program: Program) -> Size:
         lowest=tuple(points.min(axis=0).tolist()),
         highest=tuple(points.max(axis=0).tolist()),
     )
-
-
-def _extreme_points(start: Array, end: Array, centre: Array, axis: Array) -> Array:
-    """Extreme points of arcs along X, Y and Z, between their end points, (m, 3).
-
-    A coordinate of the point at angle t is a cos t + b sin t + const: extreme at atan2(b, a) and half a turn later.
-    """
-    radius = across(start - centre, axis)
-    angle = np.arctan2(cross(axis, radius), radius)
-    angle = np.mod(np.concatenate([angle, angle + np.pi], axis=1), 2 * np.pi)
-    sweep = arc_sweep(start, end, centre, axis)[:, None]
-    arc, _ = np.nonzero(angle < sweep)
-    turned = angle[angle < sweep]
-    rise = dot(end - start, axis)[arc] * turned / sweep[arc, 0]
-    return arc_points(start[arc], centre[arc], axis[arc], turned, rise)
 
 
 def checks_as_text(results: Iterable[CheckedFile]) -> str:

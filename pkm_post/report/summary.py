@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 import pkm_post
-from pkm_post.geometry import Array, across, cross, cubic_ranges, hermite_accelerations
+from pkm_post.geometry import Array, arc_turning_points, cubic_ranges, hermite_accelerations
 from pkm_post.model import (
     AT_FEED,
     Certificate,
@@ -27,6 +27,7 @@ from pkm_post.model import (
     Kind,
     Motion,
     StrutMotion,
+    Tolerances,
     Trajectory,
     coverage_summary,
     distinct,
@@ -72,45 +73,61 @@ def origin(trajectory: Trajectory) -> list[str]:
 
 def report(results: Results) -> dict[str, Any]:
     """The report as data that JSON can hold."""
-    trajectory, certificate, tolerances = results.trajectory, results.certificate, results.tolerances
-    machine, motion, struts = results.machine, results.motion, results.struts
-    shortest, longest = _strut_ranges(struts)
+    trajectory, machine, motion = results.trajectory, results.machine, results.motion
     return {
         "format": _FORMAT,
-        "program": {
-            "source": trajectory.source,
-            "reading": list(results.reading),
-            "operations": list(trajectory.operations),
-            "segments": len(trajectory),
-            "cutting_length_mm": _rounded(trajectory.length[trajectory.kind != Kind.RAPID].sum(), 3),
-            "box_mm": _box(trajectory),
-            "tools": [vars(tool) for tool in _tools(trajectory)],
-        },
+        "program": _program(trajectory, results.reading),
         "machine": {"name": machine.name, "sha256": machine.fingerprint},
         "setup": _setup(results),
         "files": dict(results.files),
-        "tolerances": {
-            "tip_mm": tolerances.tip,
-            "axis_deg": _rounded(np.degrees(tolerances.axis), 9),
-            "tip_of_program_mm": _rounded(distinct(trajectory.tip_tolerance[trajectory.tip_tolerance > 0]), 9),
-        },
-        "motion": {
-            "duration_s": certificate.duration,
-            "points": len(struts),
-            "shortest_strut_mm": _rounded(shortest, 3),
-            "longest_strut_mm": _rounded(longest, 3),
-        },
+        "tolerances": _tolerances(trajectory, results.tolerances),
+        "motion": _motion(results.struts, results.certificate.duration),
         "machining_time": machining_time(trajectory, motion),
         "feed": {} if results.feed is None else feed_shares(trajectory, results.feed),
         "hold_points": hold_points(trajectory, motion),
-        "certificate": {
-            "holds": certificate.holds,
-            "instants": certificate.instants,
-            "meaning": list(coverage_summary(certificate.coverage)),
-            "findings": [_finding(finding) for finding in certificate.findings],
-            "figures": [_figure(figure) for figure in certificate.figures],
-            "coverage": [_coverage(row) for row in certificate.coverage],
-        },
+        "certificate": _certificate(results.certificate),
+    }
+
+
+def _program(trajectory: Trajectory, reading: Sequence[str]) -> dict[str, Any]:
+    return {
+        "source": trajectory.source,
+        "reading": list(reading),
+        "operations": list(trajectory.operations),
+        "segments": len(trajectory),
+        "cutting_length_mm": _rounded(trajectory.length[trajectory.kind != Kind.RAPID].sum(), 3),
+        "box_mm": _box(trajectory),
+        "tools": [vars(tool) for tool in _tools(trajectory)],
+    }
+
+
+def _tolerances(trajectory: Trajectory, tolerances: Tolerances) -> dict[str, Any]:
+    own = trajectory.tip_tolerance
+    return {
+        "tip_mm": tolerances.tip,
+        "axis_deg": _rounded(np.degrees(tolerances.axis), 9),
+        "tip_of_program_mm": _rounded(distinct(own[own > 0]), 9),
+    }
+
+
+def _motion(struts: StrutMotion, duration: float) -> dict[str, Any]:
+    shortest, longest = _strut_ranges(struts)
+    return {
+        "duration_s": duration,
+        "points": len(struts),
+        "shortest_strut_mm": _rounded(shortest, 3),
+        "longest_strut_mm": _rounded(longest, 3),
+    }
+
+
+def _certificate(certificate: Certificate) -> dict[str, Any]:
+    return {
+        "holds": certificate.holds,
+        "instants": certificate.instants,
+        "meaning": list(coverage_summary(certificate.coverage)),
+        "findings": [_finding(finding) for finding in certificate.findings],
+        "figures": [_figure(figure) for figure in certificate.figures],
+        "coverage": [_coverage(row) for row in certificate.coverage],
     }
 
 
@@ -158,30 +175,31 @@ def feed_shares(trajectory: Trajectory, feed: FeedStudy) -> dict[str, Any]:
     the tool most.
     """
     programmed, possible, planned = (column[feed.cutting] for column in (feed.programmed, feed.possible, feed.planned))
-    limit, row = feed.limit[feed.cutting], feed.row[feed.cutting]
-    if not len(programmed):
+    limit = feed.limit[feed.cutting]
+    if not len(limit):
         return {}
-    limits = []
-    for number in distinct(limit[limit >= 0]).tolist():
-        these = np.flatnonzero(limit == number)
-        slowest = these[np.argmin(planned[these] / programmed[these])]
-        place = trajectory.place(int(row[slowest]))
-        limits.append(
-            {
-                "limit": feed.limits[number],
-                "share": _rounded(len(these) / len(limit), 4),
-                "slowest_mm_s": _significant(float(planned[slowest])),
-                "asked_mm_s": _significant(float(programmed[slowest])),
-                "time_s": _rounded(feed.time[feed.cutting][slowest], 3),
-                "operation": place.operation,
-                "line": place.line,
-            }
-        )
+    limits = [_limit_share(trajectory, feed, number) for number in distinct(limit[limit >= 0]).tolist()]
     return {
         "at_feed": _share(planned >= AT_FEED * programmed),
         "feed_possible": _share(possible >= AT_FEED * programmed),
         "as_possible": _share(planned >= AT_FEED * np.minimum(programmed, possible)),
         "limits": sorted(limits, key=lambda row: -row["share"]),
+    }
+
+
+def _limit_share(trajectory: Trajectory, feed: FeedStudy, number: int) -> dict[str, Any]:
+    """Share of the cutting time that a limit has, and the place where it slows the tool most."""
+    cells = np.flatnonzero(feed.cutting & (feed.limit == number))
+    slowest = cells[np.argmin(feed.planned[cells] / feed.programmed[cells])]
+    place = trajectory.place(int(feed.row[slowest]))
+    return {
+        "limit": feed.limits[number],
+        "share": _rounded(len(cells) / np.count_nonzero(feed.cutting), 4),
+        "slowest_mm_s": _significant(float(feed.planned[slowest])),
+        "asked_mm_s": _significant(float(feed.programmed[slowest])),
+        "time_s": _rounded(feed.time[slowest], 3),
+        "operation": place.operation,
+        "line": place.line,
     }
 
 
@@ -248,25 +266,12 @@ def _tools(trajectory: Trajectory) -> list[Any]:
 
 def _box(trajectory: Trajectory) -> list[list[float]]:
     """Least and greatest coordinates of the tip, also between the ends of arcs."""
-    points = [trajectory.tip, *_turning_points(trajectory)]
+    points, arc = [trajectory.tip], np.flatnonzero(trajectory.kind == Kind.ARC)
+    if len(arc):
+        columns = trajectory.tip_before(), trajectory.tip, trajectory.arc_centre, trajectory.arc_axis, trajectory.sweep
+        points += [*arc_turning_points(*(column[arc] for column in columns))]
     # numpy takes ten times as long along the first axis
     return [[_rounded(of([of(one.T[axis]) for one in points]), 3) for axis in range(3)] for of in (np.min, np.max)]
-
-
-def _turning_points(trajectory: Trajectory) -> tuple[Array, ...]:
-    """For each coordinate the places at which arcs turn back in it, (A, 3) mm twice; the start where there is none."""
-    arcs = np.flatnonzero(trajectory.kind == Kind.ARC)
-    if not len(arcs):
-        return ()
-    axis, sweep, start = trajectory.arc_axis[arcs], trajectory.sweep[arcs, None], trajectory.tip_before()[arcs]
-    ahead = across(start - trajectory.arc_centre[arcs], axis)
-    side, rise = cross(axis, ahead), (trajectory.tip[arcs] - start) * axis
-    slope = rise.sum(axis=1, keepdims=True) * axis / sweep
-    phase, size = np.arctan2(side, ahead), np.maximum(np.hypot(ahead, side), np.finfo(float).tiny)
-    lean = np.arcsin(np.clip(slope / size, -1.0, 1.0))
-    turns = (np.mod(turn, 2 * np.pi) for turn in (phase + lean, phase + np.pi - lean))
-    turns = (np.where(turn <= sweep, turn, 0.0) for turn in turns)
-    return tuple(start + (np.cos(turn) - 1) * ahead + np.sin(turn) * side + turn * slope for turn in turns)
 
 
 def _strut_ranges(struts: StrutMotion) -> tuple[Array, Array]:

@@ -4,6 +4,7 @@ import numpy as np
 from pkm_post.geometry import (
     arc_points,
     arc_sweep,
+    arc_turning_points,
     hermite_accelerations,
     hermite_column_speeds,
     hermite_columns,
@@ -38,6 +39,21 @@ def test_points_end_where_the_arc_ends():
     sweep, rise = rng.uniform(0.01, 6.2, 200), rng.normal(size=200)
     end = arc_points(start, centre, axis, sweep, rise)
     np.testing.assert_allclose(arc_sweep(start, end, centre, axis), sweep, atol=1e-12)
+
+
+def test_no_point_of_an_oblique_helix_is_beyond_its_ends_and_turning_points():
+    rng = np.random.default_rng(22)
+    axis, centre = unit(rng.normal(size=(200, 3))), rng.normal(size=(200, 3))
+    start = centre + rng.normal(size=(200, 3)) * 10
+    sweep, rise = rng.uniform(0.01, 6.2, 200), rng.normal(size=200) * 20
+    end = arc_points(start, centre, axis, sweep, rise)
+    places = np.stack([start, end, *arc_turning_points(start, end, centre, axis, sweep)])
+    share = np.linspace(0, 1, 4001)[:, None]
+    points = arc_points(start, centre, axis, share * sweep, share * rise)
+    beyond = np.maximum(places.min(0) - points.min(0), points.max(0) - places.max(0))
+    inside = np.maximum(points.min(0) - places.min(0), places.max(0) - points.max(0))
+    assert beyond.max() < 1e-12
+    assert inside.max() < 1e-4  # mm: the sag between two of the points
 
 
 def test_length_of_a_helix():
