@@ -241,7 +241,7 @@ def certify(
     motion: Motion,
     tolerances: Tolerances,
     collisions: tuple[Coverage, ...] = NO_SETUP,
-    spin_deviation: Array | float = 0.0,
+    spin_deviation: Array | None = None,
     rests: tuple[bool, bool] = (True, True),
     adjacent: AdjacentMotion | None = None,
     points: ProgramPoints | None = None,
@@ -256,8 +256,8 @@ def certify(
         motion: the plan, or the recovered motion; program and plan must have the same knots.
         tolerances: the requested tolerances.
         collisions: coverage of the checks against part, stock and fixtures.
-        spin_deviation: (K + 1,) mm of a strut due to spin error, if the motion was reconstructed and so has the spin
-            of the program itself.
+        spin_deviation: (K + 1,) mm of a strut due to spin error, if the motion was reconstructed; by default that of
+            the plan at its knots. A piece of a motion has none: its first segment does not show how it was rounded.
         rests: whether the program is at rest at its start and end; a piece of a motion may not be.
         adjacent: the motion before and after such a piece; the jerk at its ends depends on it.
         points: of the program, if the struts have knots between them; all knots by default.
@@ -273,15 +273,28 @@ def certify(
         return None, faults
     ruler = TrajectoryRuler(trajectory, tolerances)
     feeds = FeedRuler(trajectory, motion, (2 * machine.shortest_interval - 1) / 1000)
+    off = _planned_spin(trajectory, machine, motion, ruler, rests) if spin_deviation is None else spin_deviation
 
     def measured(struts: StrutMotion) -> Certificate:
         spline, knots = ToolSpline.of(machine, struts, motion)
         before = adjacent or AdjacentMotion()
-        task = PlaybackTask(struts, machine, ruler, motion, knots, spline, feeds, spin_deviation, before, points)
+        task = PlaybackTask(struts, machine, ruler, motion, knots, spline, feeds, off, before, points)
         return _certificate(task, trajectory, tolerances, collisions)
 
     certificate = measured(struts)
     return certificate, diagnose(certificate, struts, machine, motion, measured)
+
+
+def _planned_spin(
+    trajectory: Trajectory, machine: Machine, motion: Motion, ruler: TrajectoryRuler, rests: tuple[bool, bool]
+) -> Array | float:
+    """Deviation of the spin of a plan, mm of a strut: limits are proven for the programmed one."""
+    spin = trajectory.start_spin
+    if rests != (True, True) or ((trajectory.spin == spin).all() and (motion.spin == spin).all()):
+        return 0.0
+    from pkm_post.certificate.played_path import planned_spin_deviation  # only a changing spin needs it
+
+    return planned_spin_deviation(motion, trajectory, machine, ruler)
 
 
 def _certificate(

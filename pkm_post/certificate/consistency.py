@@ -10,13 +10,26 @@ unbounded. Times: whole ms, as in the program.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from itertools import zip_longest
 from typing import TypeVar
 
 import numpy as np
 
 from pkm_post.geometry import norm
-from pkm_post.model import Diagnostic, Event, EventKind, Kind, Machine, Motion, Place, StrutMotion, Trajectory, threads
+from pkm_post.model import (
+    Diagnostic,
+    Event,
+    EventKind,
+    Kind,
+    Machine,
+    Motion,
+    Place,
+    StrutMotion,
+    Trajectory,
+    as_executed,
+    threads,
+)
 
 _Thing = TypeVar("_Thing")
 _FARTHEST = 10
@@ -42,20 +55,33 @@ def structure_faults(
         program_name: names the program in diagnostics.
         trajectory: the programmed trajectory.
         machine: the machine to check the program on.
-        motion: the plan.
+        motion: the plan; its times of the joints are used, its events are not.
         rests: whether the program is at rest at its start and end.
     """
     another, found = machine_fault(trajectory, machine, program_name), []
     if not np.array_equal(struts.time_ms, motion.time_ms):
         times = struts.time_ms.tolist(), motion.time_ms.tolist()
         found.append(("V110", _first_difference("knot", *times, "{} ms".format)))
-    if struts.events != motion.events:
-        found.append(("V109", event_fault(struts.events, motion.events)))
+    else:
+        found += _faults_at_rests(struts, trajectory, motion)
     for which, speed, rest in zip(("first", "last"), struts.speed[[0, -1]], rests, strict=True):
         if rest and speed.any():
             found.append(("V105", f"{which} speeds {speed.tolist()} mm/s"))
     diagnostics = (Diagnostic(code, Place(program_name), text) for code, text in found)
     return (another, *diagnostics) if another else tuple(diagnostics)
+
+
+def _faults_at_rests(struts: StrutMotion, trajectory: Trajectory, motion: Motion) -> Iterator[tuple[str, str]]:
+    """Exact stops at which the program moves, and events that are not those of the trajectory, at their rests."""
+    passed = np.rint(1000 * np.append(0.0, motion.joint_time)).astype(np.int64)
+    knots = np.searchsorted(struts.time_ms[:-1], passed)
+    stops = np.flatnonzero(trajectory.exact_stop[:-1]) + 1
+    moves = stops[(struts.time_ms[knots[stops]] != passed[stops]) | struts.speed[knots[stops]].any(axis=1)]
+    if len(moves):
+        yield "V110", f"no rest at {passed[moves[0]]} ms, at the end of line {trajectory.line[moves[0] - 1]}"
+    planned = tuple(replace(event, row=int(knots[event.row])) for event in as_executed(trajectory.events))
+    if struts.events != planned:
+        yield "V109", event_fault(struts.events, planned)
 
 
 def machine_fault(trajectory: Trajectory, machine: Machine, name: str) -> Diagnostic | None:

@@ -13,6 +13,7 @@ Spin: it does not affect the cut, so tip and axis do not show its deviation; con
 depend on it. The programmed spin is that of the best-fitting programmed pose. The allowed deviation is the sum of
 
 * the change of spin when that pose moves within the tolerances;
+* the axis tolerance between two rests where the spin changes: a smooth curve may be off by so much in spin as well;
 * the rounding of a joint, over less than half of the shorter of its two segments: with the change D of the spin's
   rate by path length, half width d and the distance x from the joint D 2 d (v^3 - v^4 / 2), v = (d - x) / 2 d.
 """
@@ -35,7 +36,7 @@ from pkm_post.geometry import (
     torsion_free_axes,
 )
 from pkm_post.machine import attitude_rates, forward_along_path, jacobian_of_tip, platform_rotation, solve_regular
-from pkm_post.model import Machine, StrutMotion, Trajectory
+from pkm_post.model import Machine, Motion, StrutMotion, Trajectory, in_pieces
 
 _ADVANCE_SHARES = np.linspace(0.125, 1.0, 8)[:, None]
 """Shares of each interval at which it is evaluated, besides those at which it may turn back."""
@@ -176,6 +177,21 @@ def spin_deviation(
     return np.maximum(np.append(by_interval, 0.0), np.append(0.0, by_interval))
 
 
+def planned_spin_deviation(motion: Motion, trajectory: Trajectory, machine: Machine, ruler: TrajectoryRuler) -> Array:
+    """Deviation of a plan's spin at its knots from the programmed one, (K + 1,) mm of a strut.
+
+    With the spin, a strut changes by no more than the distance of its platform joint from the tool axis.
+    """
+    lever = np.hypot(*machine.platform_joints[:, :2].T).max()
+    allowed, last = _Allowed(trajectory, ruler), len(trajectory) - 1
+
+    def off(rows: slice) -> tuple[Array]:
+        segment = np.minimum(np.searchsorted(motion.joint_time, motion.time_ms[rows] / 1000), last)
+        return (lever * allowed.outside(motion.tip[rows], motion.axis[rows], motion.spin[rows], segment),)
+
+    return in_pieces(len(motion), _AT_ONCE, off)[0]
+
+
 def _off(path: PlayedPath, rows: Array, allowed: _Allowed, passed: Array) -> Array:
     """Largest excess of the spin in intervals over its allowed range, (M,) rad."""
     place = path.at(rows, _SPIN_SHARES).reshape(7, -1)
@@ -204,6 +220,8 @@ class _Allowed:
         self._change = np.concatenate([[0.0], np.where(rests, 0.0, np.abs(np.diff(rate))), [0.0]])
         width = _ROUNDED * np.minimum(self._extent[:-1], self._extent[1:])
         self._width = np.concatenate([[1.0], width, [1.0]])
+        stretch = np.cumsum(np.append(0, rests))
+        self._of_curve = np.where(np.bincount(stretch, self._turn != 0)[stretch] > 0, ruler.axis_tolerance, 0.0)
 
     def outside(self, tip: Array, axis: Array, spin: Array, segment: Array) -> Array:
         """Excess of spins over the allowed range at their poses, (M,) rad."""
@@ -214,7 +232,7 @@ class _Allowed:
         expected = self._before[segment] + turn * np.where(still, ahead, share)
         distance = share * self._extent[segment], (1 - share) * self._extent[segment]
         rounding = sum(self._rounding(segment + side, distance[side]) for side in (0, 1))
-        most = np.abs(turn) * np.where(still, 0.0, slack) + rounding
+        most = np.abs(turn) * np.where(still, 0.0, slack) + rounding + self._of_curve[segment]
         return np.maximum(np.abs(spin - expected) - most, 0.0)
 
     def _rounding(self, joint: Array, distance: Array) -> Array:

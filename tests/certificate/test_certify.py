@@ -27,6 +27,15 @@ def planned(jerk=np.inf, job=lambda: cone(80, turns=0.25), tolerances=TOLERANCES
     return machine, trajectory, made.motion, made.struts
 
 
+@cache
+def planned_with_a_dwell(dwell=True):
+    """A straight line in two moves, and a dwell between them; else no rest there."""
+    events = Event(0, EventKind.TOOL_CHANGE, 1), Event(2, EventKind.DWELL, 0.5)
+    job = program([[0, 0, 60], [0, 0, 50], [0, 0, 40]], events=events if dwell else events[:1])
+    machine, trajectory, motion, _ = planned(job=lambda: job)
+    return machine, trajectory, motion
+
+
 def verdict(struts=None, machine=None, tolerances=TOLERANCES):
     made_for, trajectory, motion, planned_struts = planned()
     return certify(struts or planned_struts, "x.pmc", trajectory, machine or made_for, motion, tolerances)
@@ -123,6 +132,50 @@ def test_the_first_event_that_is_another_is_reported_as_found_and_as_planned():
     ):
         _, (fault,) = verdict(changed(events=events))
         assert (fault.code, fault.found) == ("V109", f"{found}; {len(events)} found, 1 planned")
+
+
+@pytest.mark.parametrize(
+    ("of_plan", "reported"),
+    [
+        (lambda events: (), "event 0: none, planned tool change 1 at knot 0; 0 found, 2 planned"),
+        (lambda events: events[:1], "event 1: none, planned dwell 0.5 at knot {}; 1 found, 2 planned"),
+        (
+            lambda events: events[1:],
+            "event 0: dwell 0.5 at knot {}, planned tool change 1 at knot 0; 1 found, 2 planned",
+        ),
+        (
+            lambda events: (events[0], dataclasses.replace(events[1], row=0)),
+            "event 1: dwell 0.5 at knot 0, planned dwell 0.5 at knot {}; 2 found, 2 planned",
+        ),
+    ],
+)
+def test_events_that_the_plan_itself_has_wrong_are_found(of_plan, reported):
+    """A plan decides nothing about events: those of the trajectory count, at the rests before their rows."""
+    machine, trajectory, motion = planned_with_a_dwell()
+    wrong = dataclasses.replace(motion, events=of_plan(motion.events))
+    _, (fault,) = certify(strut_motion(wrong, machine), "x.pmc", trajectory, machine, wrong, TOLERANCES)
+    assert (fault.code, fault.found) == ("V109", reported.format(motion.events[1].row))
+
+
+def test_an_exact_stop_at_which_the_program_moves_is_found():
+    """A straight line through a programmed point: neither tip nor axis shows whether it stops there."""
+    machine, trajectory, motion = planned_with_a_dwell(dwell=False)
+    struts, stops = strut_motion(motion, machine), dataclasses.replace(trajectory, exact_stop=np.array([1, 1, 1], bool))
+    _, (fault,) = certify(struts, "x.pmc", stops, machine, motion, TOLERANCES)
+    at = round(1000 * motion.joint_time[0])
+    assert (fault.code, fault.found) == ("V110", f"no rest at {at} ms, at the end of line 1")
+
+
+def test_a_spin_that_the_plan_itself_has_wrong_is_found():
+    """Tip and axis are right all the time, and so is the program by its plan: only the trajectory knows the spin."""
+    machine, trajectory, motion, _ = planned()
+    share = motion.time_ms / motion.time_ms[-1]
+    for most, expected in ((0.5e-5, set()), (np.radians(0.02), {"V111"})):
+        spin = motion.spin + most * np.sin(np.pi * share) ** 2
+        rate = most * np.pi * np.sin(2 * np.pi * share) * 1000 / motion.time_ms[-1]
+        turned = dataclasses.replace(motion, spin=spin, spin_rate=np.where(motion.tip_rate.any(axis=1), rate, 0.0))
+        result = certify(strut_motion(turned, machine), "x.pmc", trajectory, machine, turned, TOLERANCES)
+        assert codes(result) == expected
 
 
 def test_turning_back_too_early_is_found():

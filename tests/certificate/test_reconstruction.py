@@ -117,6 +117,20 @@ def test_poses_are_checked_so_close_that_the_tool_keeps_to_the_straight_path_bet
         assert np.linalg.norm(away - share[..., None] * chord, axis=2).min(axis=1).max() < 0.01
 
 
+def test_a_smooth_curve_through_a_changing_spin_holds(machine):
+    """The curve in place of short lines is off by up to the axis tolerance in spin as well."""
+    asked = Tolerances(0.2, np.radians(2.0))
+    trajectory, _ = place(random_job(np.random.default_rng(10)), machine, offset(machine))
+    way = np.maximum(trajectory.length, np.degrees(trajectory.angle))
+    turns = np.random.default_rng(1).choice([-1, 0, 0.3, 1], len(way)) * np.radians(0.5) * way
+    trajectory = dataclasses.replace(trajectory, spin=np.clip(np.cumsum(turns), -0.5, 0.5))
+    motion, faults = planned(trajectory, machine, asked)
+    struts = printed(motion, machine)
+    assert not faults
+    assert not errors(certify(struts, "job.pmc", trajectory, machine, motion, asked)[1])
+    assert not refusals(struts, trajectory, machine, asked)
+
+
 def test_a_spin_that_was_not_programmed_is_found(machine):
     """Tip and axis are right all the time: the platform turns about the tool axis by a little and back."""
     trajectory = placed(cone(60), machine)
