@@ -5,7 +5,7 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo test addon oldest lint format translations fuzz soak conformance linuxcnc package docs release-check clean
+.PHONY: help demo test slow addon oldest lint format translations fuzz soak conformance linuxcnc package docs release-check clean
 
 PYTHON ?= python3
 VENV := .venv
@@ -51,10 +51,14 @@ demo: ## post-process the tapered column; its files and pictures are in out/ the
 	@$(FREECAD) examples/tapered_column/demo.py --out "$(OUT)"
 
 test: export PKM_MODULES = numpy lark serial paramiko pytest hypothesis matplotlib
-test: ## run the tests inside FreeCAD, then `make oldest` (ARGS="-k feed -x" for pytest, OLDEST=no: only inside FreeCAD)
-	@$(FREECAD) tools/run_tests.py $(ARGS)
+test: ## run the tests but slow ones inside FreeCAD, then `make oldest` (ARGS="-k feed -x": these, slow or not; OLDEST=no)
+	@$(FREECAD) tools/run_tests.py $(if $(ARGS),$(ARGS),-m "not slow")
 	@$(if $(ARGS),,$(if $(filter yes,$(OLDEST)),$(if $(shell $(FIND_OLDEST)),$(MAKE) --no-print-directory oldest,\
 		echo "Not run: make oldest, since NumPy 1.26 has no wheel for Pythons beyond 3.12, and there is no other.")))
+
+slow: export PKM_MODULES = numpy lark serial paramiko pytest hypothesis matplotlib
+slow: ## run the slow tests inside FreeCAD: long series, damage of every kind, programs played to their end
+	@$(FREECAD) tools/run_tests.py -m slow
 
 lint: $(VENV)/made ## check style, layout and types
 	@failed=0; \

@@ -54,6 +54,7 @@ SERIES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "seed", "tolerances", "decimals"), SERIES)
 def test_a_job_that_decimals_spoil_is_posted_with_those_advised(name, seed, tolerances, decimals):
     faults = faults_of(name, seed, tolerances, decimals)

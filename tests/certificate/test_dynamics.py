@@ -44,6 +44,7 @@ def densely(job):
     return np.degrees(highest[0]), highest[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "seed", "tolerances", "decimals"), [*CASES, *FEW_DECIMALS])
 def test_no_instant_is_above_the_figures(name, seed, tolerances, decimals):
     job = posted(name, seed, tolerances, decimals)
@@ -94,6 +95,7 @@ def test_struts_keep_their_acceleration_where_a_blend_bends_the_most(seed):
     assert faults == () and certificate.holds
 
 
+@pytest.mark.slow
 def test_the_tip_keeps_a_limit_of_jerk_and_is_reported_where_it_does_not():
     limited = dataclasses.replace(preset("example_6tps"), tip_jerk=50_000.0)
     for tolerances in (NARROW, WIDE):
@@ -186,6 +188,7 @@ def test_equal_gains_draw_a_smaller_circle():
     assert found.max() <= figure(certificate, "contour error")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gains", [30.0, [30, 33, 30, 30, 30, 30], [40, 30, 35, 45, 38, 50]])
 def test_six_loops_leave_the_circle_by_what_is_reported(gains):
     machine, _, motion, struts, certificate, faults = of(with_gains(gains), circle(15.0, turns=2), WIDE)

@@ -65,6 +65,7 @@ def bound_of(struts, trajectory, machine, motion, tolerances):
     return finding(certificate, "depth of a thread off its turns").value
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tilt", [0.0, 17.0])
 @pytest.mark.parametrize(("decimals", "tolerances"), [((6, 4), NARROW), ((3, 2), WIDE)], ids=["fine", "coarse"])
 def test_the_deviation_is_never_above_its_bound_and_not_far_below(tilt, decimals, tolerances):

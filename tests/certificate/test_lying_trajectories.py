@@ -38,6 +38,7 @@ def trajectory(files):
     return found
 
 
+@pytest.mark.slow
 def test_lies_are_refused_by_name_or_change_nothing_that_is_run(files):
     program, file, sound = files
     assert verified(program, file, sound)[0] == 0

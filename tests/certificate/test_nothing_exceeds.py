@@ -133,6 +133,7 @@ def found(certificate, name):
     return next(finding for finding in certificate.findings if finding.name == name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("job", JOBS)
 def test_dense_instants_find_nothing_above_the_figures(job):
     if certified(job) is None:

@@ -51,6 +51,7 @@ def placed(job, machine):
     return trajectory
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("job", [cone(120), square_with_arc(), steep_helices()], ids=["cone", "square", "helices"])
 @pytest.mark.parametrize("feed", [1.0, 0.7, 0.2])
 def test_programs_of_planners_that_drive_slower_hold(machine, job, feed):
@@ -67,6 +68,7 @@ def test_programs_of_planners_that_round_corners_otherwise_hold(machine, share):
     assert not refusals(printed(motion, machine), trajectory, machine)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tolerances", [NARROW, WIDE, UNEQUAL])
 @pytest.mark.parametrize("seed", range(6))
 def test_random_jobs_hold_when_their_plan_does(machine, tolerances, seed):
@@ -79,6 +81,7 @@ def test_random_jobs_hold_when_their_plan_does(machine, tolerances, seed):
         assert not refusals(struts, trajectory, machine, asked)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [13, 16, 35, 39, 89, 124, 283])
 def test_wide_corners_between_two_feeds_are_passed_where_the_slower_one_holds(machine, seed):
     """The tool brakes in the corner: at the nearest place to the joint it is still faster than the next line allows.

@@ -62,6 +62,7 @@ def posted_alone(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EXECUTORS)
 def test_the_bytes_are_those_of_any_executor_and_of_posting(posted_alone, name):
     jobs = posted_alone / f"{name}.toml"
@@ -75,6 +76,7 @@ def test_the_bytes_are_those_of_any_executor_and_of_posting(posted_alone, name):
     assert contents(posted_alone / f"by {name}") == contents(posted_alone / "alone")
 
 
+@pytest.mark.slow
 def test_it_goes_on_where_it_was_interrupted(jobs, tmp_path, posted_files, capsys):
     def stop(name, share):
         raise KeyboardInterrupt
@@ -97,6 +99,7 @@ def test_it_goes_on_where_it_was_interrupted(jobs, tmp_path, posted_files, capsy
     assert "posted: a.ngc" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_refused_file_stops_no_other_and_is_in_the_table(jobs, tmp_path, monkeypatch, posted_files):
     monkeypatch.setenv("PKM_THREADS", "6")
     (tmp_path / "a.ngc").write_text("G21 G90\nG1 X1\nM30\n")

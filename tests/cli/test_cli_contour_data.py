@@ -46,6 +46,7 @@ def corner(capsys, folder, header, *arguments):
     return program["box_mm"][1][:2], program["reading"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "header, arguments, place, words",
     [

@@ -50,6 +50,7 @@ def part(tmp_path):
     return file
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("closed", [(0, 1, 2), (2,), (1,)])
 def test_posting_needs_no_streams(part, tmp_path, closed):
     assert run_without(closed, "post", part, *TOOL, "--out", tmp_path / "out") == (0, "")
@@ -171,6 +172,7 @@ def answers(tmp_path_factory):
     return dict(zip(commands, zip(codes, folders, strict=True), strict=True))
 
 
+@pytest.mark.slow
 @needs_any_name
 @pytest.mark.parametrize(("code", "words"), [(code, each) for code in ODD_NAMES for each in ODD_NAMES[code]])
 def test_no_name_is_a_traceback(answers, code, words):
@@ -188,6 +190,7 @@ def odd(text):
     return os.fsdecode(text.encode().replace(b"@", b"\xe9"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_a_name_that_the_terminal_cannot_show_is_reported_by_codes(tmp_path, jobs):
     files = [tmp_path / f"{name}.ngc" for name in "日b"]

@@ -151,6 +151,7 @@ def refused_by_verify(program, machine, text):
     return False
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["turbo_pmac", "power_pmac"])
 def test_no_mutant_is_certified_that_verify_refuses(kind, tmp_path):
     machine = machine_of(kind)

@@ -76,6 +76,7 @@ def test_the_tool_keeps_to_the_programmed_path_within_the_certificate(kind, post
     assert followed.end < COUNT
 
 
+@pytest.mark.slow
 @LINKS
 def test_the_same_when_it_is_played_and_its_operator_never_rests(kind, posted):
     program = posted("example_6tps")

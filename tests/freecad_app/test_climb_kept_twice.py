@@ -42,6 +42,7 @@ def plunges(program):
     return np.linalg.norm(program.position[begins] - program.position[begins - 1], axis=1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "choices",
     [

@@ -138,7 +138,9 @@ def doors_for(flag, where):
     return [by_command_line] if where == "both" else [by_command_line, (by_macro, by_macro_with_the_file)[turn % 2]]
 
 
-@pytest.mark.parametrize("where", WHERE)
+@pytest.mark.parametrize(
+    "where", [pytest.param(where, marks=() if where == "both" else pytest.mark.slow) for where in WHERE]
+)
 @pytest.mark.parametrize("flag", [flag for flag in FLAGS if flag not in {NORMALS, *FOR_PART_PROGRAMS}])
 def test_every_option_is_taken_at_a_door(job, tmp_path, flag, where, capsys):
     others = [text for name, text in ALWAYS.items() if name != flag]
@@ -291,6 +293,7 @@ def test_a_machine_file_lies_beside_the_document_wherever_freecad_was_started(jo
         assert contents(folder) == wanted
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_arguments_by_chance(job, tmp_path, seed):
     """Some options in the job; in every second series some typed, some in both, in any order."""

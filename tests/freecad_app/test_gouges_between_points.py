@@ -65,6 +65,7 @@ def test_a_gouge_between_two_points_of_the_grid_is_found():
     assert np.linalg.norm(found.gouge_point - [*place, TOP]) < away
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cutter", [BALL, BULL_NOSE, SHARP], ids=["ball", "bull nose", "sharp"])
 @pytest.mark.parametrize("few", [False, True], ids=["close points", "few"])
 def test_no_gouge_is_deeper_than_what_was_found_and_what_is_unseen(monkeypatch, cutter, few):

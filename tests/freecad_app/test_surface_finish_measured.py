@@ -110,6 +110,7 @@ def column():
     App.closeDocument(document.Name)
 
 
+@pytest.mark.slow
 def test_column_is_neither_gouged_nor_left_beyond_the_tolerance(column):
     """Measured by OpenCASCADE, at the ends and in the middle of moves."""
     operation, _, wall = column

@@ -27,7 +27,11 @@ OVERLAY = 380
 """Width of the task overlay of FreeCAD 1.1, in px."""
 
 
-@pytest.fixture(scope="module", params=PROFILES)
+def profile(name):
+    return pytest.param(name, marks=() if name == "chinese_dark" else pytest.mark.slow)
+
+
+@pytest.fixture(scope="module", params=map(profile, PROFILES))
 def session(request, scene, tmp_path_factory):
     language, theme, screen, scale = PROFILES[request.param]
     settings = tmp_path_factory.mktemp(request.param)

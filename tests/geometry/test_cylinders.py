@@ -28,6 +28,7 @@ def distance_of_points(points, some):
     return point_to_cylinder(flat, some.radius[:, None], -some.half[:, None], some.half[:, None])
 
 
+@pytest.mark.slow
 def test_boxes_are_never_nearer_than_the_bound_and_the_bound_is_close():
     rng, count = np.random.default_rng(1), 2000
     some = cylinders(rng, count)

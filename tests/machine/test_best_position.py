@@ -51,6 +51,7 @@ def test_no_small_move_improves_it(machine):
             assert least_shares(placed(machine, moved), machine)[STROKE] < found.after[STROKE] + 1e-4
 
 
+@pytest.mark.slow
 def test_it_does_not_matter_where_the_search_begins(machine):
     worst = [
         best_position(placed(machine, shifted(by)), machine).after[STROKE]
@@ -79,6 +80,7 @@ def test_a_job_out_of_reach_is_brought_into_reach(machine):
     assert found.before.min() < 0 < found.after.min()
 
 
+@pytest.mark.slow
 def test_the_work_offset_stays_a_rotation_with_a_shift(machine):
     found = best_position(placed(machine, ON_PALLET), machine, free="xyzabc").machine_from_work
     assert found[:3, :3] @ found[:3, :3].T == pytest.approx(np.eye(3))

@@ -57,6 +57,7 @@ def test_symmetric_places_have_the_same_cone(machine):
     assert found.cone[0] == found.cone[1]
 
 
+@pytest.mark.slow
 def test_an_executor_gives_the_same(machine):
     places = np.tile(grid(), (8, 1))
     with ThreadPoolExecutor(2) as executor:

@@ -128,6 +128,7 @@ def numbers_in(values):
 LETTERS = "=,-. 0179eaxZ'\"\\\u00b5\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 def test_mutated_options_are_refused_or_can_be_typed_again(seed):
     """Text with letters left out, put in and exchanged: never another exception than that of text, never infinity."""

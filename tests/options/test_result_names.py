@@ -31,6 +31,7 @@ def part(tmp_path):
     return file
 
 
+@pytest.mark.slow
 def test_everything_that_is_written_is_named(part, tmp_path):
     out = tmp_path / "out"
     assert main(["post", str(part), "--out", str(out), "--tool-length", "1=120", "--also", ",".join(SIDE_OUTPUTS)]) == 0

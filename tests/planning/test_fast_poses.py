@@ -61,6 +61,7 @@ def test_a_glimpse_agrees_with_the_poses(make, rounded):
     np.testing.assert_array_equal(seen.segment, poses.segment)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", PATHS.values(), ids=PATHS)
 def test_what_is_seen_of_a_place_does_not_depend_on_the_other_places(make):
     path = path_of(make, 1e-3, 1e-5)

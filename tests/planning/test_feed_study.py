@@ -81,6 +81,7 @@ def test_a_program_without_cuts_has_no_shares():
     assert feed_shares(trajectory, study) == {}
 
 
+@pytest.mark.slow
 def test_a_feed_lowered_for_the_blocks_of_the_controller_is_named():
     machine = slow(block_rate=12.0, shortest_interval=20)
     trajectory, _ = place(cone(400), machine, ON_PALLET)

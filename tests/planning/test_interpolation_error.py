@@ -125,6 +125,7 @@ def test_intervals_that_were_asked_for_before_have_the_errors_that_they_have_at_
     np.testing.assert_array_equal(fresh.error(start, end, group), in_groups)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", JOBS.values(), ids=JOBS)
 @pytest.mark.parametrize("singular", [0.0, 0.2], ids=["drift measured", "drift bounded"])
 def test_dense_instants_find_little_more_than_was_seen(make, singular):

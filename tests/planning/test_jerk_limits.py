@@ -147,6 +147,7 @@ def s_curve(distance, speed, acceleration, jerk):
 SINGLE = [(0.01, 20), (1, 100), (5, 20), (20, 100), (60, 200), (120, 30)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jerk", [1e4, 1e5, 1e6])
 @pytest.mark.parametrize("distance, feed", SINGLE)
 def test_a_single_move_takes_little_more_than_its_s_curve(distance, feed, jerk):

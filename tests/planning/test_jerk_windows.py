@@ -71,6 +71,7 @@ def time_of(profile):
     return durations(np.diff(profile.s), profile.square, profile.acceleration).sum()
 
 
+@pytest.mark.slow
 @JOBS
 def test_the_motion_in_many_windows_is_little_slower_than_in_one(job):
     whole, (profile, used) = in_one(job), in_many(job)

@@ -116,6 +116,7 @@ def middles(least, most, times):
     return [*middles(least, middle, times - 1), middle, *middles(middle, most, times - 1)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("made", [cone(60), square_with_arc(), scan()], ids=["cone", "arcs", "scan"])
 def test_there_are_little_more_intervals_than_a_search_from_the_left_finds(made):
     trajectory, _ = place(made, example(), ON_PALLET)

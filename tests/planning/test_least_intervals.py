@@ -35,6 +35,7 @@ def blocks_of_busiest_second(time_ms):
     return max(np.count_nonzero((time_ms >= begin) & (time_ms < begin + 1000)) for begin in time_ms)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize(("shortest", "tolerances"), [(2, NARROW), (4, NARROW), (10, ROUGH)])
 @pytest.mark.parametrize("name", ["example_6tps", "linuxcnc_genhexkins"])
@@ -46,6 +47,7 @@ def test_no_interval_is_shorter_than_the_controller_takes(seed, shortest, tolera
     assert finding(certificate, "shortest interval").value == least
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("rate", [50.0, 20.0])
 def test_no_second_has_more_blocks_than_the_controller_takes(seed, rate):
@@ -72,6 +74,7 @@ def test_plans_are_as_slow_as_long_intervals_require(seed, shortest):
     assert motion.time_ms[-1] > free(seed).time_ms[-1]
 
 
+@pytest.mark.slow
 def test_a_path_that_needs_closer_points_is_refused_for_that(monkeypatch):
     monkeypatch.setattr(motion_of_plan, "_MOST_ROUNDS", 1)
     *_, faults = of(on(100), job(2), NARROW)

@@ -62,6 +62,7 @@ def check(along, schedule, start, before):
     assert norm(third[:, 6:]).max(initial=0) <= JERK
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_any_override_at_any_place_and_a_stop_from_anywhere(name):
     along, random = course_of(name), np.random.default_rng(4)

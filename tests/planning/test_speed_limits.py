@@ -72,6 +72,7 @@ def everywhere(path, machine):
     return marks, limits_within(path, machine, marks.segment, marks.u).speed, plan
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", JOBS)
 def test_the_screened_plan_is_the_whole_plan(name):
     path, trajectory, machine = path_of(JOBS[name])
@@ -104,6 +105,7 @@ def test_rough_limits_are_below_the_true_ones(name):
         assert np.all(demand(limits, acceleration, part * square, share) <= 1 + SINGLE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", [5, 64])
 def test_blocks_do_not_show(block, monkeypatch):
     _, trajectory, machine = path_of(JOBS["slow machine"])

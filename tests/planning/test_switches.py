@@ -103,6 +103,7 @@ def test_no_cubic_exceeds_the_limits_wherever_it_begins(name):
     assert struts < HIDDEN and 0.9 < tip < HIDDEN
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_no_cubic_exceeds_the_limits_of_struts(seed):
     weak = dataclasses.replace(example(), strut_acceleration=800.0)
@@ -110,6 +111,7 @@ def test_no_cubic_exceeds_the_limits_of_struts(seed):
     assert struts < HIDDEN and tip < HIDDEN
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [3, 9, 10])
 def test_no_cubic_exceeds_the_limits_where_struts_bend_within_blends(seed):
     calibrated = preset("nategh_agheli_nominal")

@@ -49,6 +49,7 @@ def check(along, schedule, start, override):
     assert (schedule.at(time)[1] <= along.feed(override).max() * (1 + 1e-9)).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PROGRAMS)
 @pytest.mark.parametrize("seed", range(2))
 def test_any_override_at_any_place_and_a_stop_from_anywhere(name, seed):

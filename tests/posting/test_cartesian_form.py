@@ -138,6 +138,7 @@ def allowed(posted, tmp_path_factory):
     return cartesian_program(folder / "job.pmc", folder / "job.pkmt", machine, out, ALLOWANCE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("switches", "runs"),
     [("Q50=121.9 Q51=1.4 Q52=-1.4 Q53=1.4", True), ("Q50=118.1", True), ("Q50=122.1", False), ("Q53=1.6", False)],

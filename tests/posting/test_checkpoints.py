@@ -150,6 +150,7 @@ def count(monkeypatch, tmp_path):
     return counted
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("leans", [False, True])
 def test_few_columns_are_made_between_checkpoints(count, leans):
     """By the difference of two lengths: what does not depend on the length, as the pieces themselves, is in both."""

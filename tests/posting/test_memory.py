@@ -37,6 +37,7 @@ def post(folder, lines, leans=False, name="scan", machine="example_6tps"):
     return {path.name: path for path in made.files}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("leans", [False, True])
 def test_pieces_of_any_size_give_the_same_files(monkeypatch, tmp_path, leans):
     def posted(size):
@@ -70,6 +71,7 @@ def assert_alike(found, expected):
         assert found == expected
 
 
+@pytest.mark.slow
 def test_memory_for_a_line_is_bounded(tmp_path):
     """The difference of two jobs: what does not depend on their length, as the pieces themselves, is in both."""
     few, many = 4000, 12000

@@ -120,6 +120,7 @@ def cuts(content):
     return sorted({*lines, *(chance.randrange(len(content)) for _ in range(60))})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_program_that_is_cut_is_refused_or_the_same(name):
     content = PROGRAMS[name]

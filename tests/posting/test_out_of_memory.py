@@ -80,6 +80,7 @@ def reported(errors):
     return line
 
 
+@pytest.mark.slow
 def test_memory_runs_out_in_each_module_once(files, tmp_path, capsys):
     done, found = {"cli.__init__.main"}, 0  # what catches it
     for name in COMMANDS:
@@ -115,6 +116,7 @@ STEPS = {
 """What each step calls."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("step", step_names(Options(also=("csv", "linuxcnc"))))
 def test_the_step_that_lacked_memory_is_named(files, tmp_path, capsys, monkeypatch, step):
     def lack(*_, **__):
@@ -126,6 +128,7 @@ def test_the_step_that_lacked_memory_is_named(files, tmp_path, capsys, monkeypat
     assert left_in(tmp_path / "out") == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("call", range(6))
 @pytest.mark.parametrize("name", ["fsync", "replace", "listdir"])
 def test_memory_runs_out_while_files_get_their_names(files, tmp_path, capsys, monkeypatch, name, call):
@@ -148,6 +151,7 @@ def test_memory_runs_out_while_files_get_their_names(files, tmp_path, capsys, mo
     assert left_in(tmp_path / "out") == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", ["report.page.write_page", "report.plots.draw_report", "report.animated_png.no_such"])
 def test_memory_runs_out_while_the_report_is_drawn(files, tmp_path, capsys, place):
     with lacking(place) as met:
@@ -260,6 +264,7 @@ def long_program(tmp_path_factory):
     return file
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such limit")
 @pytest.mark.parametrize(
     ("loaded", "megabytes"),

@@ -47,6 +47,7 @@ def test_everything_is_written_and_certified(machine, tmp_path):
     assert played.time_ms[-1] == pytest.approx(1000 * posted.report["motion"]["duration_s"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(30))
 def test_whatever_the_job_and_the_tolerances_the_certificate_holds(machine, tmp_path, seed):
     # Planner and certificate know nothing of each other's thresholds but the tolerances: none may be refused.
@@ -203,6 +204,7 @@ def test_turns_that_rise_by_about_what_is_allowed_are_posted(machine, tmp_path, 
     assert post(made, machine, tmp_path / "ramp.pmc").report["certificate"]["holds"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("radius", [0.2, 1.0, 5.0])
 @pytest.mark.parametrize("allowed", [0.01, 0.3])
 def test_the_tip_keeps_to_the_feed_on_arcs_with_wide_tolerances(machine, tmp_path, radius, allowed):
@@ -234,6 +236,7 @@ GONE = ConnectionError("no listener")
 """What a watcher raises that is elsewhere, and what printing raises when the terminal is closed: no fault of files."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("raised", [Cancelled("enough"), GONE])
 @pytest.mark.parametrize("at", [*step_names(Options(also=("csv",))), ""])
 def test_what_the_progress_raises_stops_the_run_and_leaves_nothing(machine, tmp_path, at, raised):

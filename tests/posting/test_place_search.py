@@ -88,6 +88,7 @@ def test_a_freedom_that_is_not_given_is_kept(machine):
     assert found.shift[1:] == pytest.approx([0.0, 0.0]) and found.turn == pytest.approx([0.0] * 3)
 
 
+@pytest.mark.slow
 def test_a_program_too_large_for_the_machine_is_said_not_to_fit(machine):
     program = cone(12)
     huge = type(program)(**{**vars(program), "position": program.position * np.array([30.0, 30.0, 1.0])})
@@ -128,6 +129,7 @@ def test_a_refused_post_says_the_place_and_the_options_that_post_it(tmp_path, ca
     assert out / "part.pmc" in out.iterdir()
 
 
+@pytest.mark.slow
 def test_a_post_without_a_place_says_what_was_tried_last(tmp_path, capsys, monkeypatch):
     """Points two metres apart: no shift and no turn brings both into reach; few places are tried, to save time."""
     for name in ("_MORE_STARTS", "_MOST_JUDGED"):
@@ -159,6 +161,7 @@ def test_options_of_a_place_keep_other_fixtures_beside_the_first():
     assert place_options(found, {"G54": np.eye(4), "G55": tilted}) == []
 
 
+@pytest.mark.slow
 def test_where_the_best_place_collides_another_good_one_is_taken(machine):
     """A block stands beside the machine's home, where the platform would be at the place with the largest margins."""
     program, options = cone(60), Options(work_offset=shifted(300.0))

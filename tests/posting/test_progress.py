@@ -52,6 +52,7 @@ def test_steps_come_in_their_order(calls):
     assert list(dict.fromkeys(names)) == list(step_names())
 
 
+@pytest.mark.slow
 def test_a_callback_stops_the_run_at_any_call_and_nothing_is_left(calls, tmp_path):
     for call in np.random.default_rng(3).choice(len(calls), 12, replace=False).tolist():
         left = iter(range(call))

@@ -46,6 +46,7 @@ def test_a_part_that_is_turned_over_is_refused_and_the_cure_names_the_option(tmp
     assert "--side N" in str(refused.value)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("side", "offset", "alone", "alone_offset"),
     [(1, UPRIGHT, UPPER, UPRIGHT), (2, TURNED_OVER, LOWER, TURNED_OVER), (2, TURNED_OVER, LOWER_BY_HAND, UPRIGHT)],

@@ -55,6 +55,7 @@ def covered(report):
     return {row["what"]: row["extent"] for row in rows if row["topic"] == "approach, tool change, spindle"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(16))
 def test_whatever_the_tools_the_certificate_holds_and_the_struts_are_at_the_pose(machine, tmp_path, seed):
     rng = np.random.default_rng(seed)

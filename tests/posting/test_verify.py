@@ -89,6 +89,7 @@ def changed_digits(text, seed=7):
             yield text[:begin] + made + text[begin + len(line[0]) :]
 
 
+@pytest.mark.slow
 def test_every_changed_digit_is_found(posted, judge):
     text = posted.program.read_text()
     assert judge(text)
@@ -97,6 +98,7 @@ def test_every_changed_digit_is_found(posted, judge):
     assert not passed
 
 
+@pytest.mark.slow
 def test_a_dropped_or_doubled_line_is_found(posted, judge):
     text = posted.program.read_text()
     for begin, line in knots(text)[1:-1:3]:

@@ -61,6 +61,7 @@ def given(section):
     return rows_of(program)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("section", ALL, ids=[f"{each.file}: {each.title.split(' | ')[0]}" for each in ALL])
 def test_the_motion_is_the_one_of_the_corpus(section):
     assert given(section) == section.rows()

@@ -164,6 +164,7 @@ def test_any_block_of_words_is_coloured_as_it_is_read(words):
     assert_coloured_as_read(line, Language.GCODE)
 
 
+@pytest.mark.slow
 @example("MACHIN", Language.CLDATA)
 @given(st.text(max_size=80), st.sampled_from(list(Language)))
 def test_any_line_has_spans_in_order(line, language):

@@ -84,6 +84,7 @@ def test_times_are_close_where_the_tool_goes_far_and_none_where_it_rests():
     assert len(cutting_times(seconds[:2], np.zeros((2, 3)), turned, FLAT, 1.0)) > 0.5 * 40 / 2
 
 
+@pytest.mark.slow
 def test_what_is_left_and_what_is_missing_are_measured():
     stock = Stock.of(BLOCK, 0.5)
     part = part_distances(stock, box([-20, -15, -20], [20, 15, -4]))

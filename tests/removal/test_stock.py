@@ -86,12 +86,14 @@ def test_a_slot_of_a_ball_is_half_round_below():
     assert found == pytest.approx(40 * (math.pi * 25 / 2 + 10 * 3), rel=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("depth", [2.0, 3.5, 5.0])
 def test_a_ball_that_dips_in_takes_a_cap(depth):
     found = taken(0.5, [0.3, 0.2, -depth], Z, BALL)
     assert found == pytest.approx(math.pi * depth**2 * (RADIUS - depth / 3), rel=0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("degrees", [15.0, 30.0, 50.0])
 def test_a_slot_of_a_tilted_end_mill_is_a_tilted_rectangle_below_the_top(degrees):
     axis, side = tilted(degrees)
@@ -101,6 +103,7 @@ def test_a_slot_of_a_tilted_end_mill_is_a_tilted_rectangle_below_the_top(degrees
     assert found == pytest.approx(30 * area_below_top(corners[:, [0, 2]]), rel=0.015)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("degrees", [15.0, 30.0, 50.0])
 def test_a_slot_of_a_tilted_ball_is_a_tilted_half_round_below_the_top(degrees):
     axis, side = tilted(degrees)

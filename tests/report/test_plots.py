@@ -81,6 +81,7 @@ BROKEN = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", BROKEN, ids=lambda fault: type(fault).__name__)
 def test_a_matplotlib_that_cannot_be_imported_costs_the_picture_alone(tmp_path, monkeypatch, fault):
     for name in [name for name in sys.modules if name.partition(".")[0] == "matplotlib"]:

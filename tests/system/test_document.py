@@ -101,6 +101,7 @@ def read_as_freecad_does(content):
     return members
 
 
+@pytest.mark.slow
 def test_a_bit_that_flips_is_seen_or_means_nothing(file):
     """Every third bit of the file, and what a reader that goes from member to member makes of it."""
     whole = file.read_bytes()

@@ -30,6 +30,7 @@ def started(folder, *words):
     return subprocess.Popen(command, env=found, stdout=subprocess.PIPE, text=True)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="it kills copies of a process")
 def test_no_kill_leaves_a_mixture(tmp_path):
     process = started(tmp_path, KILLS)
@@ -43,6 +44,7 @@ def test_no_kill_leaves_a_mixture(tmp_path):
     assert {"refused, none", "refused, new ones", "new ones"} <= set(found["at random"])
 
 
+@pytest.mark.slow
 def test_two_that_post_at_once_end_one_after_the_other(tmp_path):
     ends = {tuple(manifest.fingerprint(name, written(text, name)) for name in NAMES): text for text in ("one", "two")}
     with started(tmp_path, "post", "one", POSTS) as one, started(tmp_path, "post", "two", POSTS) as two:

@@ -52,6 +52,7 @@ def locked_by_another_program(monkeypatch, when):
     monkeypatch.setattr("os.replace", call)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["part.pmc", "part.pkmt", "part-report.html", "part-manifest.json"])
 def test_earlier_results_stay_whole_when_one_is_open_elsewhere(posted, tmp_path, monkeypatch, capsys, name):
     before = contents(posted)

@@ -95,6 +95,7 @@ def test_the_manifest_with_the_longer_stem_is_that_of_a_file(folder, tmp_path_fa
     assert refusal(folder / "part.pmc") == ("F106", "part-part2.pmc has changed")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("content", "words"),
     [

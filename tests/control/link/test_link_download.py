@@ -67,6 +67,7 @@ def test_the_refused_line_is_named(kind, program):
         download(session, program)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "first"), [(kind, place) for place, kind in enumerate(KINDS)])
 @pytest.mark.parametrize("mends", [True, False])
 def test_the_link_is_cut_at_any_byte(kind, first, mends):

@@ -249,6 +249,7 @@ def test_a_machine_that_is_not_ready_is_sent_nothing():
     assert b"OPEN ROT" not in wire.sent
 
 
+@pytest.mark.slow
 @KINDS
 @pytest.mark.parametrize("open_buffer", [OpenBufferPolicy.STOP, OpenBufferPolicy.LEAVE])
 def test_who_connects_meanwhile_takes_no_line_from_a_running_program(kind, open_buffer):

@@ -59,6 +59,7 @@ def typed(monkeypatch, port, *lines):
     assert pmac("terminal", port, machine=None) == 0
 
 
+@pytest.mark.slow
 def test_from_the_first_word_to_the_end_of_a_job(simulator, job, capsys, monkeypatch):
     made, port = simulator
     assert pmac("probe", port) == 0
@@ -150,6 +151,7 @@ def test_arguments_without_sense(arguments):
     assert refused.value.code == 2
 
 
+@pytest.mark.slow
 def test_one_client_has_the_machine_and_the_others_watch_and_stop(simulator, job, capsys, monkeypatch):
     made, port = simulator
     typed(monkeypatch, port, *(f"#{motor}J/ #{motor}HMZ" for motor in range(1, 7)))

@@ -64,6 +64,7 @@ def pmac(posted, tmp_path, monkeypatch):
     server.close()
 
 
+@pytest.mark.slow
 def test_a_posted_program_is_loaded_verified_and_run(pmac, posted, capsys):
     machine, program = posted
     assert pmac("probe", "--machine", str(machine)) == 0
@@ -131,6 +132,7 @@ def test_a_set_up_line_that_is_refused_is_reported_with_its_place(tmp_path, monk
     assert capsys.readouterr().err == f"{file}:2: error #20, ILLEGAL CMD: Coord[1].Foo=1\n"
 
 
+@pytest.mark.slow
 def test_a_posted_trajectory_is_played(pmac, posted, capsys, monkeypatch):
     machine, program = posted
     monkeypatch.setattr("sys.stdin", io.StringIO("override 120\n"))
@@ -141,6 +143,7 @@ def test_a_posted_trajectory_is_played(pmac, posted, capsys, monkeypatch):
     assert not system.running and not system.runtime_error and system.path.abrupt_stops == 0
 
 
+@pytest.mark.slow
 def test_the_tool_is_jogged_and_moved_by_a_line(pmac, posted, capsys):
     machine = ["--machine", str(posted[0])]
     assert pmac("jog", *machine, "--x", "2", "--feed", "600") == 0

@@ -7,6 +7,7 @@ import pytest
 import sessions
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(40))
 def test_the_machine_rests_or_moves_as_was_certified(seed):
     luck, how = sessions.by_chance(seed)

@@ -99,6 +99,7 @@ def test_an_abort_ends_the_program(moving):
     assert_at_rest(wire)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stop", [stopping.hold, stopping.abort, lambda *of: stopping.abort(*of, at_once=True)])
 @pytest.mark.parametrize("noise", [b"\x80", b"\xff", b"\x00", b"x", b"\x18"])
 def test_a_byte_of_noise_before_the_order_stops_nothing_else(stop, noise):
@@ -192,6 +193,7 @@ def test_a_link_that_comes_back_stops_the_machine_then(moving):
     assert_at_rest(wire)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(40))
 def test_over_a_noisy_line_a_stop_ends_at_rest(seed):
     choice = random.Random(seed)

@@ -154,6 +154,7 @@ ASKING = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", ASKING)
 def test_every_question_ends_in_a_fault_of_the_link_or_of_the_machine(what):
     choice, wire = random.Random(what), Wire(controller(), "tcp")

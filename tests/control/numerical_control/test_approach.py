@@ -68,6 +68,7 @@ JOGS = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", JOGS)
 def test_a_program_does_not_start_from_elsewhere_and_does_after_the_planned_approach(station, posted, how):
     station.control.load(posted, lambda done, lines: None, lambda: False)

@@ -34,6 +34,7 @@ def test_the_readout_at_home(station):
     assert not state.lost and state.emergency == () and state.homing is None and state.status.homed == (True,) * 6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("jog", "tip", "axis", "spin"),
     [
@@ -154,6 +155,7 @@ def test_a_line_that_is_refused_is_not_sent(station, line, code):
     assert b"OPEN" not in station.sent()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("line", "variable", "value"),
     [("M3 S1000", 7001, 1), ("S300 M4", 7001, -1), ("M8", 7002, 1), ("G20 M7", 7002, 2), ("G91 M9", 7002, 0)],

@@ -71,6 +71,7 @@ def test_nobody_answers():
         connect(ConnectionTarget(Port("tcp", "127.0.0.1", number, timeout=0.2), MACHINE, SETTINGS), TOOL)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["turbo", "power"])
 def test_a_simulated_machine_is_homed_and_jogged(kind, power_file):
     target, _ = connection_target(None, "example_6tps" if kind == "turbo" else power_file)

@@ -97,6 +97,7 @@ def test_nothing_is_sent_that_is_refused_or_only_checked(simulator, capsys):
     assert 999 not in made.memory.programs
 
 
+@pytest.mark.slow
 def test_the_way_to_the_start_of_a_program(simulator, capsys, tmp_path):
     made, port = simulator
     file = tmp_path / "job.pmc"
@@ -136,6 +137,7 @@ def test_override(simulator, capsys):
 LINES = ("G1 X2 Y0 Z300 F3000", "X2 Y1", "X0 Y0")
 
 
+@pytest.mark.slow
 def test_line_by_line(simulator, capsys, monkeypatch, tmp_path):
     made, port = simulator
     source = tmp_path / "part.ngc"

@@ -47,6 +47,7 @@ def silent_until_rest(station):
     return station.wire.now - before
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("slew", "jog", "feed"), [(0.0001, LONG, FEED), (0.0004, StrutJog(2, 20.0), 4.0)])
 def test_a_jog_without_a_computer_comes_to_rest_within_the_time_that_was_found_out(station, slew, jog, feed):
     assert refused_line(station.wire.machine, [f"Coord[1].FeedHoldSlew={slew}"]) is None
@@ -113,6 +114,7 @@ def test_a_line_of_gcode_goes_to_its_end(station):
     assert starts(station) == 1  # itself: what goes to its end needs no rehearsal
 
 
+@pytest.mark.slow
 def test_a_face_is_found_by_a_touch_probe(station):
     height = 296.8345
     assert refused_line(station.wire.machine, ["Coord[1].FeedHoldSlew=0.002"]) is None

@@ -46,6 +46,7 @@ def frame(degrees=0.0, origin=(0.0, 0.0, 0.0)):
     return made
 
 
+@pytest.mark.slow
 def test_a_face_is_found_within_its_half_width(station):
     height = 295.8345
     found = measure_face(probe_at(station, plane(height)), frame(), "z-", 10.0)
@@ -113,6 +114,7 @@ def test_a_boss_is_found_by_free_ways_and_the_probe_ends_above_its_centre(degree
     assert probe.tip == pytest.approx([*centre[:2], HOME[2]])
 
 
+@pytest.mark.slow
 def test_it_is_pushed_no_further_than_it_allows(station, monkeypatch):
     height, tips = 296.0, []
     probe = probe_at(station, plane(height), 0.05, overtravel=0.8)
@@ -199,6 +201,7 @@ def test_inputs_by_name(text, expected):
         assert dataclasses.astuple(ProbeInput.from_text(text)) == expected
 
 
+@pytest.mark.slow
 def test_a_face_is_measured_over_tcp(capsys, monkeypatch):
     monkeypatch.setattr(watchdog, "CREDIT_MS", 60_000)  # this computer may be late, in the fast time of the machine
     made = copy.deepcopy(set_up())

@@ -100,6 +100,7 @@ def test_the_blocks_are_the_way_of_the_program_without_its_stops(posted):
     assert events == [(each.kind, each.value) for each in whole.events if each.kind is not EventKind.STOP]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["tcp", "serial"])
 def test_each_start_runs_one_line_and_rests_at_its_end(posted, kind):
     station, blocks = new_station(kind), blocks_in(posted)

@@ -74,6 +74,7 @@ def is_moving(made):
 JOG, MDI = ("jog", "--x", "20", "--feed", SLOW), ("mdi", f"G91 G1 X20 F{SLOW}")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("action", "number"), [(JOG, signal.SIGTERM), (JOG, signal.SIGINT), (MDI, signal.SIGHUP), (MDI, signal.SIGINT)]
 )
@@ -114,6 +115,7 @@ def test_a_further_signal_does_not_end_the_hold(number, ends):
     assert state.held and state.standing
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "number"), [("tcp", signal.SIGSTOP), ("serial", signal.SIGKILL)])
 def test_a_jog_whose_computer_dies_or_hangs_comes_to_rest_by_itself(made, kind, number):
     """Nothing is sent any more: the controller holds the program within the time that was stated."""
@@ -143,6 +145,7 @@ def process_is_still(process, number):
     return state == ("Z" if number == signal.SIGKILL else "T")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_a_stream_at_rest(made, tmp_path, number):
     assert not SerialPort(made).refusal("&1DEFINE ROT 8000")
@@ -155,6 +158,7 @@ def test_a_signal_ends_a_stream_at_rest(made, tmp_path, number):
         assert not made.runs_program() and not is_moving(made)
 
 
+@pytest.mark.slow
 def test_a_closed_terminal_holds_a_jog(made):
     """The process leads a session of its own on a pseudo terminal, which is closed under it."""
     primary, secondary = os.openpty()

@@ -53,6 +53,7 @@ def test_the_lines_of_the_program_are_untouched(station):
     assert sum(taken) == plan.job.motion.time_ms[-1] and max(taken) <= LONGEST_MOVE_MS
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["tcp", "serial"])
 @pytest.mark.parametrize(("jog", "feed"), [(LONG, FEED), (LONG, 40.0), (StrutJog(2, 20.0), FEED)])
 def test_a_jog_without_a_computer_comes_to_rest(kind, jog, feed):
@@ -67,6 +68,7 @@ def test_a_jog_without_a_computer_comes_to_rest(kind, jog, feed):
         assert np.linalg.norm(state.pose.tip - start) <= feed * (within - 0.5)  # half of the speed in its last second
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("override", [20, 60])
 def test_a_slower_override_takes_it_no_farther(station, override):
     station.control.override(override)
@@ -76,6 +78,7 @@ def test_a_slower_override_takes_it_no_farther(station, override):
     assert np.linalg.norm(station.control.poll().pose.tip - start) <= FEED * 0.9
 
 
+@pytest.mark.slow
 def test_a_jog_that_is_looked_at_goes_to_its_end(station):
     plan = begun(station)
     status = station.control.wait_for_rest(60.0)
@@ -102,6 +105,7 @@ def test_a_window_that_hangs_is_silence(station):
     assert station.control.poll().status.held and station.control.poll().status.standing
 
 
+@pytest.mark.slow
 def test_renewing_late_does_not_start_it_again_and_resuming_does(station):
     plan = begun(station)
     silent_until_rest(station)

@@ -69,6 +69,7 @@ def test_the_way_neither_cuts_down_into_a_slot_nor_up_out_of_it_through_the_part
     assert codes(T_SLOT, row, Setup(part=part, shanks=shanks), shift) == ({"K131"} if into or shift[0] < -20 else set())
 
 
+@pytest.mark.slow
 def test_a_play_whose_way_is_not_free_does_not_begin():
     clamp = Mesh("clamp.stl", box([20, -5, 60], [30, 5, 200]))
     playing = Playing.of(trajectory_of(HOOK), at={})

@@ -65,6 +65,7 @@ def test_all_ways_through_the_program():
     assert [part.first for part in whole] == sorted(part.first for part in whole)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("skips", [False, True])
 def test_it_is_switched_while_it_plays(skips):
     playing = Playing.of(WHOLE, at={2: [Order("skip", float(skips))]})

@@ -47,6 +47,7 @@ def short_blocks(monkeypatch):
     monkeypatch.setattr(sections, "_CHOICE", 8)
 
 
+@pytest.mark.slow
 @BOTH
 @pytest.mark.parametrize("trajectory", [trajectory_of(HOOK), wave()], ids=["corners", "wave"])
 def test_the_certificates_of_the_pieces_are_that_of_the_whole(trajectory, machine, short_blocks):
@@ -90,6 +91,7 @@ def test_sections_have_the_same_path_and_bounded_size(short_blocks):
         np.testing.assert_allclose(poses[0].tip_2, poses[1].tip_2, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_five_axes_at_changing_overrides():
     trajectory, _ = place(cone(24, 0.2), MACHINE, np.eye(4) + np.outer([0, 0, 150, 0], [0, 0, 0, 1]))
     random = np.random.default_rng(3)

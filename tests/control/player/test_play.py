@@ -36,6 +36,7 @@ def test_a_program_is_played_without_rests(machine):
     assert {state.line for state in playing.states} == {1, 2, 3}
 
 
+@pytest.mark.slow
 @BOTH
 def test_overrides_up_to_150_a_hold_and_an_override_of_zero(machine):
     orders = {
@@ -77,6 +78,7 @@ def test_a_planner_that_is_too_late_ends_in_a_stop_on_the_path(machine):
     assert done.finished and done.stops >= 1 and playing.arrived() < 1e-3
 
 
+@pytest.mark.slow
 def test_a_list_too_short_for_so_slow_a_planner_is_started_when_it_is_full():
     playing = Playing.of(trajectory_of(RECTANGLE))
     done = playing.play(delay=lambda: 1.2, first_variable=7600)
@@ -113,6 +115,7 @@ def test_an_end_takes_the_stop_of_a_piece_near_by():
     assert moves[-1] - given[0] < 1000 * playing.states[19].ahead  # the last stop begins there
 
 
+@pytest.mark.slow
 @BOTH
 def test_a_stop_that_is_not_wanted_any_more_is_not_taken(machine):
     seen = []
@@ -125,11 +128,13 @@ def test_a_stop_that_is_not_wanted_any_more_is_not_taken(machine):
     assert {state.phase for state in playing.states[5:-1]} == {"runs"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", (*range(6), 11))
 def test_bad_luck(seed):
     by_chance(seed)
 
 
+@pytest.mark.slow
 @BOTH
 @pytest.mark.parametrize("at", (18_000, 24_000))
 def test_a_link_that_is_cut_and_comes_back(at, machine):
@@ -197,6 +202,7 @@ def test_single_block_rests_at_the_end_of_each_line(machine):
     assert done.finished and phases.count("waits: single block") == 3 and playing.arrived() < 1e-3
 
 
+@pytest.mark.slow
 def test_events_between_moves_and_stops_that_wait():
     events = (Event(1, EventKind.SPINDLE, 1000.0), Event(2, EventKind.STOP, 0), Event(3, EventKind.STOP, 1))
     playing = Playing.of(trajectory_of(events=events))
@@ -218,6 +224,7 @@ def test_an_m_code_of_the_machine_is_carried_out(monkeypatch):
     assert playing.wire.controller.variables.read("P", 7004) == 21
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("repeats", (False, True))
 def test_an_m_code_before_the_first_line_is_repeated_where_that_is_wanted(repeats, monkeypatch):
     monkeypatch.setattr("playing.SETTINGS", replace(SETTINGS, codes=SETTINGS.codes | {"M21": "M21"}))
@@ -314,6 +321,7 @@ def test_optional_stops_are_switched_while_it_plays():
     assert phases.count("waits: M1") == 1 and playing.arrived() < 1e-3
 
 
+@pytest.mark.slow
 def test_after_an_abort_the_program_goes_on_at_a_line():
     playing = Playing.of(at={40: [lambda player: stopping.abort(player._session, SETTINGS, at_once=True)]})
     with pytest.raises(PmacError, match="ended from elsewhere in Finish line"):
@@ -338,6 +346,7 @@ def up_then_start(way):
     return answer
 
 
+@pytest.mark.slow
 def test_a_retract_goes_up_along_the_tool_axis_and_back_before_the_play_goes_on():
     axis = np.array([np.sin(0.1), 0.0, np.cos(0.1)])
     playing = Playing.of(trajectory_of(axis=np.tile(axis, (3, 1))), at={12: [Order("retract", 5.0)]})  # nothing waits

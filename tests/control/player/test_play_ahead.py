@@ -63,6 +63,7 @@ def every(count, long, short):
     return lambda: short if next(calls) % count else long
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("takes", "answer_s"),
     [
@@ -80,6 +81,7 @@ def test_the_motion_does_not_rest_while_planning_keeps_to_twice_its_longest(take
     assert least_ahead(playing) >= LONGEST_MS / 1000
 
 
+@pytest.mark.slow
 def test_ends_of_sections_do_not_use_up_the_lead(monkeypatch):
     monkeypatch.setattr(sections, "BLOCK_ROWS", 48)
     monkeypatch.setattr(sections, "_CHOICE", 8)
@@ -96,6 +98,7 @@ def test_a_list_without_room_for_the_lead_is_kept_full():
     assert done.stops == 0
 
 
+@pytest.mark.slow
 def test_a_planning_beyond_the_lead_rests_once_and_is_counted_on_from_then_on():
     slower = [0.1] * 10 + [3.0] + [0.1] * 5 + [1.4] + [0.1] * 5 + [1.4]
     _, done = played(trajectory_of(RECTANGLE, feed=SLOW), scripted(slower, 0.1, each=1))
@@ -114,6 +117,7 @@ def test_lead_and_length_of_pieces_follow_the_longest_times():
     assert timing.piece_ms == 2000
 
 
+@pytest.mark.slow
 def test_the_time_that_is_left_has_corners_and_limits_of_the_machine():
     steps = np.arange(1, 61)
     stairs = trajectory_of(np.column_stack([steps // 2, (steps + 1) // 2, 0 * steps + 80]) * [1.5, 1.5, 1.0], feed=80.0)

@@ -39,6 +39,7 @@ def play(port, file, *arguments):
     return main(["pmac", "play", str(file), "--port", port, "--machine", NAME, "--patience", "10", *arguments])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["tcp", "serial"])
 def test_a_trajectory_is_played_over_a_link(kind, posted, capsys, monkeypatch):
     made = copy.deepcopy(set_up())
@@ -78,6 +79,7 @@ def starts_where_it_waits(monkeypatch):
     ended.set()
 
 
+@pytest.mark.slow
 def test_a_work_offset_and_a_tool_that_were_changed_at_the_machine(posted, capsys, starts_where_it_waits):
     made = copy.deepcopy(set_up())
     with served(made, "tcp") as port:
@@ -118,6 +120,7 @@ def approach(port, folder, *arguments):
     return main(["pmac", "approach", *order])
 
 
+@pytest.mark.slow
 def test_a_clamp_on_the_way_to_the_start_of_a_program(posted, tmp_path, capsys):
     clamp, made = tmp_path / "clamp.stl", copy.deepcopy(set_up())
     start = read_playable(posted, MACHINE)[0].start_tip - [0, 0, MACHINE.work_offsets["G54"][2, 3]]

@@ -2,6 +2,7 @@
 """Trajectories played on a simulated Power PMAC over gpascii, in its own words."""
 
 import numpy as np
+import pytest
 from playing import LONGEST_S, RECTANGLE, Playing, trajectory_of
 from power_rig import DRIVES
 from power_rig import Wire as PowerWire
@@ -49,6 +50,7 @@ def test_the_resident_program_is_in_words_of_the_power_pmac():
     )
 
 
+@pytest.mark.slow
 def test_a_program_is_played_with_overrides_and_a_hold(monkeypatch):
     orders = {5: [Order("override", 1.5)], 20: [Order("hold")], 21: [Order("resume")], 30: [Order("override", 0.6)]}
     playing = power_playing(monkeypatch, trajectory_of(RECTANGLE), orders)

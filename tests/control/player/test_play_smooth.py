@@ -38,6 +38,7 @@ def speed_of(piece):
     return piece.motion.end.state.speed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
 def test_jerk_across_pieces_is_that_of_the_whole_at_changing_overrides(seed):
     trajectory, chance = wave(), np.random.default_rng(seed)
@@ -60,6 +61,7 @@ def test_jerk_across_pieces_is_that_of_the_whole_at_changing_overrides(seed):
         assert of_pieces[code] == pytest.approx(of_whole[code], rel=0.02) and of_whole[code] <= JERK
 
 
+@pytest.mark.slow
 def test_an_override_shows_and_rests_are_not_needed_for_it():
     found = pieces_of(wave(150.0), [1.0] * 3 + [0.3] * 6 + [1.5] * 4 + [1.0])
     speeds = [speed_of(piece) for piece in found]
@@ -75,6 +77,7 @@ def test_single_block_rests_at_ends_of_lines():
     assert len(shares) == 3 and all(share in (0.0, 1.0) for share in shares)
 
 
+@pytest.mark.slow
 def test_holds_overrides_and_a_late_planner_keep_the_limits_on_the_simulated_machine():
     orders = {
         5: [Order("override", 1.5)],

@@ -58,6 +58,7 @@ def moves(connection):
     return connection.worker.state.pose.tip
 
 
+@pytest.mark.slow
 def test_a_hold_of_the_worker_comes_first_and_the_play_goes_on_behind_it(connection):
     trajectory = trajectory_of(RECTANGLE)
     play = playing(connection, trajectory)
@@ -76,6 +77,7 @@ def test_a_hold_of_the_worker_comes_first_and_the_play_goes_on_behind_it(connect
     until(lambda: abs(connection.worker.state.pose.tip - trajectory.tip[-1]).max() < 1e-3)
 
 
+@pytest.mark.slow
 def test_a_hold_before_anything_runs_keeps_it_from_starting(connection):
     stopped = trajectory_of(RECTANGLE, events=(Event(1, EventKind.STOP, 0.0),))
     play = playing(connection, stopped, override=1.5)  # nothing comes first here: it rests, and it plays to its end

@@ -32,6 +32,7 @@ def measured(machine, count=24, tilt_deg=20.0, noise=LENGTH_NOISE, seed=1):
     return MeasuredPoses(tip, axis, spin, np.zeros(count), lengths + random.normal(0, noise, lengths.shape))
 
 
+@pytest.mark.slow
 def test_with_noise_of_lengths_alone_it_is_the_linear_estimate(real):
     poses = measured(real)
     found = calibrate(real, poses)
@@ -42,6 +43,7 @@ def test_with_noise_of_lengths_alone_it_is_the_linear_estimate(real):
     assert spread / found.deviation == pytest.approx(1.0, abs=0.15)
 
 
+@pytest.mark.slow
 def test_the_tip_is_off_as_often_as_it_says(real):
     """Calibrate a machine that is known, by measurements with noise, and compare with what one of them predicts."""
     poses = measured(real, noise=0.0)

@@ -53,6 +53,7 @@ def stored(folder, name, mesh):
     return str(folder / name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("gap", "code"), [(CLEARANCE + 0.1, 0), (CLEARANCE - 0.1, 1), (-15.0, 1)])
 @pytest.mark.parametrize("name", ["binary.stl", "ascii.stl"])
 def test_a_holder_that_goes_into_the_part_is_refused_and_one_that_clears_is_posted(tmp_path, capsys, gap, code, name):
@@ -97,6 +98,7 @@ def test_nothing_known_is_said(tmp_path, capsys):
         ("--fixture", box([20, -30, 0], [24, -20, 120]), ("", ""), "error K133"),
     ],
 )  # fmt: skip
+@pytest.mark.slow
 def test_each_kind_of_collision_is_refused(tmp_path, capsys, flag, mesh, change, reported):
     mesh = stored(tmp_path, "mesh.stl", mesh)
     code, files, errors = posted(tmp_path, capsys, flag, mesh, program=SLOT.replace(*change, 1) if change[0] else SLOT)

@@ -56,6 +56,7 @@ def found(path, mover, mesh, clearance, longest=25.0):
         (ball([0, 55, 190], 18.0, 40), 12.0),  # beside it: 55 - 18 - 25
     ],
 )  # fmt: skip
+@pytest.mark.slow
 def test_a_holder_that_just_clears_is_clear_and_one_that_does_not_is_found(mesh, distance, clearance):
     path = straight([[-30, 0, 100], [40, 0, 100]])
     mover = platform_body(example(), path, HOLDER)
@@ -128,6 +129,7 @@ def sampled_distance(path, cells, shares, cylinders_of, pieces, points):
     return np.reshape(least, (-1, pieces)).min(axis=1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_nothing_is_missed_and_nothing_is_found_that_is_not_there(seed):
     rng = np.random.default_rng(seed)

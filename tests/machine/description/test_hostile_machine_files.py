@@ -140,6 +140,7 @@ def with_numbers(text):
                 yield row + 1, "\n".join([*lines[:row], changed, *lines[row + 1 :]])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", presets())
 def test_any_number_of_any_machine_may_be_anything(name):
     """Without a warning of NumPy: the machine is refused at that line, or it can be looked at."""

@@ -58,6 +58,7 @@ def shown(value):
     return json.dumps(value) if isinstance(value, str) else str(value)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.entry)
 @pytest.mark.parametrize("foreign", [datetime.date(2024, 1, 31), [[]], True])
 def test_every_entry_turns_away_a_value_of_foreign_type(tmp_path, field, foreign):

@@ -38,6 +38,7 @@ def poses_for(path):
     return sum(map(sum, looked_at))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("machine", [bodied(), screwed(bodied())], ids=["keyed", "screwed"])
 def test_what_is_proven_holds_everywhere(machine):
     # Limits of all checks are set to what they have on random ways, less or more by a little: two tools, any attitude.

@@ -39,6 +39,7 @@ def named(findings, name):
     return next(finding for finding in findings if finding.subject.name == name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("machine", [bodied(), screwed(bodied())], ids=["keyed", "screwed"])
 def test_no_margin_changes_faster_than_its_slope(machine):
     path = wandering(np.random.default_rng(1), 40)
@@ -54,6 +55,7 @@ def test_no_margin_changes_faster_than_its_slope(machine):
         assert fastest.max() > 0 or check.name == "spindle and part"  # too far away to be reported
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("code", ["K101", "K102", "K103", "K104", "K105", "K113", "K114", "K115", "K117", "K121"])
 def test_findings_agree_with_looking_everywhere(code):
     """Limits of every check are set so that a cell just does not hold them in its middle, or just does."""
@@ -151,6 +153,7 @@ def test_a_way_of_one_row_has_findings():
     assert all(finding.at_least == finding.margin[0] for finding in findings)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("machine", [bodied(), screwed(bodied())], ids=["keyed", "screwed"])
 def test_faults_alone_are_those_of_looking_at_every_row(machine):
     # Limits of all checks are set within what they have on random ways, so that some rows break them and others do not.

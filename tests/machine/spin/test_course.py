@@ -21,6 +21,7 @@ def by_trying(candidates, scores, start, limit, extent):
     return min(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(25))
 def test_against_every_course(seed):
     random = np.random.default_rng(seed)

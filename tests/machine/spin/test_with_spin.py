@@ -35,6 +35,7 @@ def test_a_rule_that_leaves_the_spin_open_is_refused_with_its_place(machine):
     assert [(fault.code, fault.place.line) for fault in faults] == [("K120", 2)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "policy",
     [

@@ -98,6 +98,7 @@ SOURCES = [(dialect, points, "comment") for dialect, points in COMMENTS]
 SOURCES += [(dialect, points, "option") for dialect in DIALECTS for points in CONTOUR_DATA]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dialect, points, source", SOURCES)
 def test_pockets_are_cut_where_both_readings_have_them(dialect, points, source):
     options = {"contour_data": points} if source == "option" else {}
@@ -117,6 +118,7 @@ def test_pockets_are_cut_where_both_readings_have_them(dialect, points, source):
         assert {"centre": "centre of the tool", "contour": "contour of the part"}[points] in line
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dialect", DIALECTS)
 @pytest.mark.parametrize("wear", [0.25, -0.25])
 def test_wear_alone_offsets_the_centre(dialect, wear):
@@ -249,6 +251,7 @@ def rotation(seed):
     return matrix * np.sign(np.linalg.det(matrix))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("points", CONTOUR_DATA)
 @pytest.mark.parametrize("turn", ["LEFT", "RIGHT"])
 def test_left_and_right_are_seen_from_the_tool_whichever_way_it_points(points, turn):
@@ -287,6 +290,7 @@ def written_rounded(dialect, corners, radius, comment=""):
     return f"{head}FEDRAT/300.,MMPM\nGOTO/0,0,-1\nCUTCOM/LEFT\n{body}\nCUTCOM/OFF\nGOTO/0,0,-1\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dialect, points, source", SOURCES)
 def test_fillets_are_those_of_the_reading(dialect, points, source):
     options = {"contour_data": points} if source == "option" else {}

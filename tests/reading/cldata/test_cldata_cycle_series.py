@@ -121,6 +121,7 @@ def programs(dialect):
         yield text, ByHand(MAKERS[dialect], text), program
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dialect", MAKERS)
 def test_moves_are_those_of_the_reader_by_hand(dialect):
     for text, by_hand, program in programs(dialect):
@@ -141,6 +142,7 @@ def height(places, hole):
     return (places - hole.point) @ hole.axis - hole.clear
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dialect", MAKERS)
 def test_no_rapid_move_goes_sideways_below_what_its_holes_need(dialect):
     crossings = 0
@@ -162,6 +164,7 @@ def test_no_rapid_move_goes_sideways_below_what_its_holes_need(dialect):
     assert crossings > PROGRAMS
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dialect", MAKERS)
 def test_every_hole_is_reached_at_its_depth_and_cut_at_the_feed(dialect):
     for text, by_hand, program in programs(dialect):
@@ -209,6 +212,7 @@ CYCLE_ITEMS = [
 SOUND_CYCLES = ["DRILL,FEDTO,-9,RAPTO,2", "DRILL,DEPTH,9,CLEAR,5,RAPTO,2", "DRILL,FEDTO,9,RAPTO,3", "DRILL,9,60,2"]
 
 
+@pytest.mark.slow
 def test_any_cycle_gives_a_program_or_diagnostics():
     random = np.random.default_rng(7)
     kept = 0

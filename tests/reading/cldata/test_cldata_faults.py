@@ -140,6 +140,7 @@ SOUND = st.sampled_from([
 RECORDS = st.one_of(st.builds("{}/{}".format, MAJORS, st.one_of(COUNTED, ITEMS)), COUNTED, TLON, SOUND)
 
 
+@pytest.mark.slow
 @settings(deadline=None, derandomize=True)
 @given(st.one_of(st.lists(RECORDS, max_size=12), st.lists(SOUND, max_size=12)), st.sampled_from([None, *DIALECTS]))
 def test_any_records_give_a_program_or_diagnostics(records, dialect):

@@ -58,6 +58,7 @@ def test_there_are_arcs():
         assert 40 < sum(taken) < len(taken) - 30
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", ARCS, ids=lambda case: case["block"])
 def test_takes_the_same_arcs(case):
     assert is_ours(case["block"]) == case["taken"]

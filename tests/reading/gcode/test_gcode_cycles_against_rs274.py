@@ -51,6 +51,7 @@ def test_there_are_cases():
         assert text.count(word) > 5, word
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", TAKEN, ids=range(len(TAKEN)))
 def test_same_motion(case):
     rows, faults = ours(text_of(case))

@@ -114,6 +114,7 @@ def test_words_of_other_dialects_stand_for_codes():
     ]
 
 
+@pytest.mark.slow
 def test_a_long_loop_takes_bounded_time():
     begin = time.perf_counter()
     blocks = executed(f"#1=0\no1 while [#1 lt {LONG_LOOP}]\n#1=[#1+1]\nG1 X#1\no1 endwhile\n")

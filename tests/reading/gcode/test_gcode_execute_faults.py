@@ -137,6 +137,7 @@ def test_endless_programs_end(text):
     assert (fault[0], fault[3]) == ("G313", "more than 10000 executed blocks")
 
 
+@pytest.mark.slow
 def test_endless_programs_end_by_the_default_limit():
     assert faults_of("o1 while [1]\no1 endwhile")[0][0] == "G313"
 
@@ -184,6 +185,7 @@ def program_by_chance(chance, depth=3):
     return text
 
 
+@pytest.mark.slow
 def test_programs_put_together_by_chance_end_in_blocks_or_faults():
     chance = random.Random(274)
     outcomes = set()

@@ -67,6 +67,7 @@ def difference(text):
     return "" if len(one) == len(other) else f"{len(other)} rows where the second reader has {len(one)}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(60))
 def test_same_motions_and_dwells(seed):
     text = program(seed)

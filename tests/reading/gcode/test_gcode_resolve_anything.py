@@ -36,6 +36,7 @@ def table(rows):
     return Blocks(lines, columns, g, g_row, m, m_row, [row[3] for row in rows], {}, (), "part.ngc")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("axis_words", AXIS_WORDS)
 @seed(7)
 @settings(deadline=None, database=None)

@@ -2,6 +2,7 @@
 """Columns against the plain way: both read the same Program from programs made by hypothesis."""
 
 import numpy as np
+import pytest
 from hypothesis import given, seed, settings
 from hypothesis import strategies as st
 from reference import resolve_by_block
@@ -98,6 +99,7 @@ def same(text, axis_words="none"):
     assert [(event.row, int(event.kind), event.value) for event in read.events] == events
 
 
+@pytest.mark.slow
 @seed(20240611)
 @settings(deadline=None, derandomize=False, database=None)
 @given(programs)

@@ -249,12 +249,14 @@ PROGRAMS = st.builds(
 )
 
 
+@pytest.mark.slow
 @settings(derandomize=True, deadline=None)
 @given(PROGRAMS)
 def test_both_ways_give_the_same(program):
     assert_same(scan(program, "part.ngc"), scan_by_block(program, "part.ngc"))
 
 
+@pytest.mark.slow
 @settings(derandomize=True, deadline=None)
 @given(PROGRAMS)
 def test_both_ways_give_the_same_of_the_lines_that_are_good(program):
@@ -286,6 +288,7 @@ def test_numbers_are_the_nearest_doubles():
     assert blocks.word("X").tolist() == [float(text) for text in texts]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_any_bytes_give_blocks_or_diagnostics(seed):
     chance = random.Random(seed)

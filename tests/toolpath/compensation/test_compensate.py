@@ -147,6 +147,7 @@ def compensated(file, *arguments):
     return compensate(read.program, read.options.contours, read.options.actual_tools)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("upright", [True, False], ids=["upright", "leaning"])
 @pytest.mark.parametrize("kind", CORNERS)
 @pytest.mark.parametrize("surface", SURFACES)

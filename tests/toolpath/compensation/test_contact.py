@@ -89,6 +89,7 @@ def test_direction_of_the_paper_gouges_under_a_leaning_tool_where_ours_does_not(
     assert np.min((own_tip + surface) @ normal) == pytest.approx(0.0, abs=0.2 * MICRON)
 
 
+@pytest.mark.slow
 @CUTTERS
 def test_cutter_touches_the_tangent_plane_and_does_not_cut_it(cutter):
     turn_steps, arc_steps = 1440, 361

@@ -125,6 +125,7 @@ def test_a_reversal_goes_round_the_end(offset, options):
         np.testing.assert_allclose(path[1:3], [(5, offset), (5, -offset)], atol=ROUNDING)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("offset", [5.0, -3.0])
 def test_the_kind_follows_from_the_turn(offset):
     for turn in np.random.default_rng(1).uniform(-179, 179, 200):

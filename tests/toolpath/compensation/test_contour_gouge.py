@@ -120,6 +120,7 @@ def test_each_contour_has_its_own_walls_and_its_own_diagnostic():
     assert codes(offset_contours(both)[1]) == [("N204", 5), ("N204", 5 + count)]
 
 
+@pytest.mark.slow
 def test_rounded_end_points_and_centres_are_no_gouge():
     """With three decimals the radii of an arc differ by up to 0.001 mm, and so do directions at joints."""
     taken = 0

@@ -51,6 +51,7 @@ def moved_and_source(given, options):
     return _with_offsets(given, elements, element_offsets(elements, options))
 
 
+@pytest.mark.slow
 @EVERY_OPTION
 def test_the_tool_keeps_its_radius_from_contours_of_chance(options):
     kept = 0
@@ -75,6 +76,7 @@ def test_the_tool_keeps_its_radius_from_contours_of_chance(options):
     assert kept > 35
 
 
+@pytest.mark.slow
 @EVERY_OPTION
 def test_what_is_refused_would_cut_into_the_part(options):
     """A path that is refused for a gouge, measured by closed forms, is too near to the contour; no other is refused."""
@@ -95,6 +97,7 @@ def test_what_is_refused_would_cut_into_the_part(options):
     assert refused > 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("corners", ["chord", "arc"])
 def test_left_of_the_reversed_path_is_right_of_the_path(corners):
     compared = 0
@@ -117,6 +120,7 @@ def test_left_of_the_reversed_path_is_right_of_the_path(corners):
     assert compared > 40
 
 
+@pytest.mark.slow
 def test_a_mirrored_path_changes_its_side():
     plane_of_mirror = mirror([3.0, 0.0, 0.0], [1.0, 0.0, 0.0])
     compared = 0

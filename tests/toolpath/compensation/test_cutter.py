@@ -151,6 +151,7 @@ def winding(point, ring):
     return round(np.sum((np.diff(angle) + np.pi) % (2 * np.pi) - np.pi) / (2 * np.pi))
 
 
+@pytest.mark.slow
 @CUTTERS
 def test_distance_and_side_are_those_of_the_outline(cutter):
     solid = CutterProfile.of(cutter, TALLEST)

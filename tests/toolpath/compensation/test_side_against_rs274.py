@@ -10,6 +10,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 from contour_programs import clearance, cutting_rows, samples
 
 from pkm_post.model import Kind, Tool
@@ -48,6 +49,7 @@ def same(expected, moved):
     )
 
 
+@pytest.mark.slow
 def test_contours_are_offset_as_by_rs274():
     compared = 0
     for case in CASES:

@@ -42,6 +42,7 @@ def radii(moved, row):
     return [np.linalg.norm(np.cross(moved.position[i] - centre, axis)) for i in (row - 1, row)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("corners", "swallowed"), list(itertools.product(("chord", "arc"), ("refuse", "remove"))))
 def test_an_answer_or_diagnostics(corners, swallowed):
     answered = 0

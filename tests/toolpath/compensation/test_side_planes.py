@@ -41,6 +41,7 @@ def lean(about, angle_deg):
     return rotation
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("corners", ["chord", "arc"])
 @pytest.mark.parametrize("plane", [1, 0], ids=["ZX", "YZ"])
 def test_all_planes_do_the_same(plane, corners):
@@ -72,6 +73,7 @@ def test_a_tool_that_lies_in_the_plane_is_offset_in_the_plane():
             np.testing.assert_array_equal(moved.position, of_upright.position)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("corners", ["chord", "arc"])
 @pytest.mark.parametrize(("about", "angle"), [(0, 20.0), (1, -35.0), (0, 55.0), (1, 180.0)])
 def test_side_milling_with_a_leaning_tool_is_the_same_in_the_plane_normal_to_it(about, angle, corners):

@@ -49,6 +49,7 @@ def test_row_is_that_of_the_pass_beside_the_point():
     assert stock_left(tips, upright(10), BALL, points, normals).row.tolist() == [1, 3, 5, 7, 9]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cutter", [BALL, BULL_NOSE, TAPERED_BALL, ALL["coned bottom"], ALL["flat"]])
 def test_dipped_tool_gouges_as_deep_as_it_dips(cutter):
     dip = 0.05
@@ -103,6 +104,7 @@ def first_entry(profile, tips, axes, point, normal, reach):
     return np.min(high, initial=np.inf)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cutter", ALL.values(), ids=ALL.keys())
 def test_value_is_the_first_entry_into_any_pose(cutter):
     rng = np.random.default_rng(7)

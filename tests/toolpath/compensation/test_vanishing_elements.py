@@ -95,6 +95,7 @@ def test_events_and_plunges_between_rows_that_are_gone_stay():
     np.testing.assert_allclose(moved.position[2:6], expected, atol=ROUNDING)
 
 
+@pytest.mark.slow
 def test_contours_of_many_small_steps_are_refused_or_kept_clear():
     """With what is too small taken out, the tool keeps its radius or the program is refused."""
     rng = np.random.default_rng(3)

@@ -52,6 +52,7 @@ def test_sharp_corner_leaves_no_more_than_wanted():
     assert left.max() < 0.05 + TOLERANCE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lines", [PassLines.ALONG_U, PassLines.PLANES])
 def test_torus_is_neither_gouged_nor_left(lines):
     chord, height = 0.02, 0.1

@@ -120,6 +120,7 @@ def test_tool_that_cannot_be_lifted_is_reported():
     assert refused(plate(), safe_height=-1.0, clearance_height=-1.0) == {"N307"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lean", [AxisRule(), LEAN], ids=["upright", "leaning"])
 @pytest.mark.parametrize("order", [PassOrder.ONE_WAY, PassOrder.ZIGZAG])
 @pytest.mark.parametrize(

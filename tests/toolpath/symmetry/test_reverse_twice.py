@@ -158,6 +158,7 @@ def mirrored_climbing(made, matrix):
     return turned
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(60))
 def test_mirrored_twice_with_climb_kept_is_the_original(kind, seed):
@@ -169,6 +170,7 @@ def test_mirrored_twice_with_climb_kept_is_the_original(kind, seed):
         np.testing.assert_allclose(getattr(twice, name), getattr(made, name), atol=ROUNDING, err_msg=name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(60))
 def test_what_comes_down_to_a_pass_has_the_feed_of_the_plunge(kind, seed):
@@ -185,6 +187,7 @@ def test_what_comes_down_to_a_pass_has_the_feed_of_the_plunge(kind, seed):
     assert {*map(tuple, np.round(once.position[np.isin(once.feed, (LEAD, CUT))], 6).tolist())} & {*cuts}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(60))
 def test_no_rapid_move_comes_nearer_to_a_pass_than_one_did(kind, seed):

@@ -179,6 +179,7 @@ def _line_by_line(motion, settings):
         yield from ("DWELL500" for event in motion.events if event.row == knot)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("decimals", [(6, 4), (1, 9), (9, 1)])
 @pytest.mark.parametrize("farthest", [1500.0, 1e12], ids=["a machine", "beyond what is printed at once"])
 def test_a_long_program_is_that_of_one_line_after_the_other(settings, decimals, farthest):

@@ -45,6 +45,7 @@ def _same(first, second):
     return same_columns and first.events == second.events
 
 
+@pytest.mark.slow
 @hypothesis_settings(derandomize=True, deadline=None)
 @given(motions())
 def test_what_was_written_reads_back_to_the_printed_decimals(motion):
@@ -194,6 +195,7 @@ def _mutations(text, characters, replacements, count):
         yield text[:place] + others[rng.integers(len(others))] + text[place + 1 :]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("characters", "replacements"),
     [(r"[0-9]", "0123456789"), (r".", "".join(map(chr, range(32, 127))) + "\n")],
@@ -221,6 +223,7 @@ def test_long_runs_and_times_that_change_at_every_knot_read_back():
         np.testing.assert_allclose(read.length, motion.length, rtol=0, atol=HALF_LENGTH_DIGIT)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [1, 90, 1000])
 def test_it_does_not_matter_where_a_text_is_cut_to_be_read(job, monkeypatch, size):
     changed = [_program(job).replace(old, new, 1) for old, new, _, _ in FAULTS.values()]

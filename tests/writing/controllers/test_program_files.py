@@ -16,6 +16,7 @@ def text(job):
     return pmac.program_text(job, SETTINGS, ["heading"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("byte", sorted(set(range(256)) - ALLOWED))
 @pytest.mark.parametrize("line", [1, 12])
 def test_a_character_that_does_not_belong_is_named_with_its_place(text, byte, line):

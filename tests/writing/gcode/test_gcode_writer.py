@@ -132,6 +132,7 @@ def test_a_random_job_is_read_back_as_it_was(form, seed):
     assert_same(round_trip(given, form), given, 1e-4, error + POLE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("form", GcodeDialect)
 def test_arcs_and_events_are_read_back_as_they_were(form, seed):

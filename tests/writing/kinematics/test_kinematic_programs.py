@@ -54,6 +54,7 @@ def counts_of(machine, axes):
     return scale * (strut_lengths(machine, *made.tool_poses(axes, OFFSET)) - zero)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "bits", "tolerance"), [("turbo", DOUBLE, ROUNDING), ("turbo", TURBO, PRINTED), ("power", DOUBLE, ROUNDING)]
 )
@@ -98,6 +99,7 @@ def reached(machine, axes):
     return np.min([*least, margins.singular], axis=0)[1:] > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "bits", "tolerance"), [("turbo", DOUBLE, 1e-9), ("turbo", TURBO, 2e-6), ("power", DOUBLE, 1e-9)]
 )
@@ -112,6 +114,7 @@ def test_forward_program_finds_every_pose_of_a_grid_within_reach(machine, kind, 
     assert steps.max() <= MOST_STEPS - 1
 
 
+@pytest.mark.slow
 def test_forward_program_finds_random_poses_within_reach(machine, axes):
     there = axes[reached(machine, axes)]
     assert len(there) > 0.9 * POSES

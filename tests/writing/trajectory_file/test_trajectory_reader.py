@@ -320,6 +320,7 @@ DAMAGES = [(flip_bits, False), (cut, False), (flip_bits, True), (cut, True), (li
 MUTATIONS = 2500
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("damage", "seal"), DAMAGES)
 def test_thousands_of_damaged_files_of_each_sort_are_reported_or_sound(path, sound, damage, seal):
     """All in all 15,000: without the right checksums none is taken, and with them only what violates no invariant."""
