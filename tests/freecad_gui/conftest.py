@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from pictures import painted
+from profiles import write_profile
 
 ADDON = Path(__file__).parents[2]
 LONGEST_S = 2400
@@ -63,12 +64,13 @@ def scene(tmp_path_factory):
 
     @functools.cache
     def run(name, screen=_SCREEN, environment=()):
-        folder = tmp_path_factory.mktemp(name)
+        folder, settings = tmp_path_factory.mktemp(name), tmp_path_factory.mktemp("settings")
+        write_profile(settings, start_page=False)
         window = shutil.which("freecad") or shutil.which("FreeCAD")
         assert window and shutil.which("xvfb-run"), "FreeCAD's window program and xvfb-run are needed"
         script = Path(__file__).with_name(f"scene_{name}.py")
         command = [*_XVFB_RUN, f"-screen 0 {screen}x24", "-n", _first_display(), window, "-M", str(ADDON), str(script)]
-        here = {"PKM_FOLDER": str(folder), "QT_SCALE_FACTOR": _SCALE}
+        here = {"PKM_FOLDER": str(folder), "FREECAD_USER_HOME": str(settings), "QT_SCALE_FACTOR": _SCALE}
         how = {
             "env": os.environ | here | dict(environment),
             "capture_output": True,

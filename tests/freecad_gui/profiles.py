@@ -12,28 +12,29 @@ ENGLISH = "English"
 DARK, LIGHT = "FreeCAD Dark", "FreeCAD Light"
 
 
-def write_profile(folder, language=ENGLISH, theme=None):
+def write_profile(folder, language=ENGLISH, theme=None, start_page=True):
     """Write the settings of a user who chose a language and a theme, and changed nothing else.
 
     Args:
         folder: becomes the value of FREECAD_USER_HOME.
         language: name that FreeCAD has for it.
         theme: name of a preference pack; None for the look of an unthemed FreeCAD.
+        start_page: whether FreeCAD shows it; in 1.1 it takes longer than all the rest of the start.
     """
     root = ElementTree.Element("FCParameters")
     if theme is not None:
         packs = Path(FreeCAD.getResourceDir()) / "Gui" / "PreferencePacks"
         root = ElementTree.parse(packs / theme / f"{theme}.cfg").getroot()
-    general = root
-    for name in ("Root", "BaseApp", "Preferences", "General"):
-        general = _group(general, name)
-    ElementTree.SubElement(general, "FCText", Name="Language").text = language
+    preferences = _group(root, "Root", "BaseApp", "Preferences")
+    ElementTree.SubElement(_group(preferences, "General"), "FCText", Name="Language").text = language
+    if not start_page:
+        ElementTree.SubElement(_group(preferences, "Mod", "Start"), "FCBool", Name="ShowOnStartup", Value="0")
     ElementTree.ElementTree(root).write(Path(folder) / "user.cfg", encoding="utf-8", xml_declaration=True)
 
 
-def _group(parent, name):
-    """The group of settings with this name, made if there is none."""
-    for child in parent.iterfind("FCParamGroup"):
-        if child.get("Name") == name:
-            return child
-    return ElementTree.SubElement(parent, "FCParamGroup", Name=name)
+def _group(parent, *names):
+    """The group of settings at this path of names, made if there is none."""
+    for name in names:
+        there = [child for child in parent.iterfind("FCParamGroup") if child.get("Name") == name]
+        parent = there[0] if there else ElementTree.SubElement(parent, "FCParamGroup", Name=name)
+    return parent

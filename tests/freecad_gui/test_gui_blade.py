@@ -12,6 +12,8 @@ from pathlib import Path
 import FreeCAD
 import pytest
 
+pytestmark = pytest.mark.slow  # the other tutorial, and each command, are tried in each FreeCAD
+
 PAGE = Path(__file__).parents[2] / "docs" / "tutorial-blade.md"
 PICTURE = re.compile(r"\]\(pictures/(blade_\w+\.png)\)")
 SNIPPET = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)

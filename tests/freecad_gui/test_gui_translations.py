@@ -14,7 +14,7 @@ TEXTS = Path(__file__).parents[2] / "resources" / "translations" / "pkm_post_zh-
 @pytest.fixture(scope="module")
 def session(scene, tmp_path_factory):
     settings = tmp_path_factory.mktemp("chinese")
-    write_profile(settings, CHINESE)
+    write_profile(settings, CHINESE, start_page=False)
     return scene("translations", environment=(("FREECAD_USER_HOME", str(settings)),))
 
 
