@@ -8,6 +8,7 @@ import pickle
 import runpy
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -212,6 +213,14 @@ def test_a_refusal_reads_the_same_behind_a_pool_of_processes():
         pkm.read("no_such_file.ngc")
     again = pickle.loads(pickle.dumps(refused.value))
     assert str(again) == str(refused.value) and again.diagnostics == refused.value.diagnostics
+
+
+def test_a_reach_report_reads_the_same_behind_a_pool_of_processes(folder):
+    machine = replace(pkm.read_machine(), strut_speed=1.0)  # so that each kind of finding occurs
+    report = pkm.reach(pkm.place(pkm.read("part.ngc", tool_lengths={1: 120.0}), machine), machine)
+    again = pickle.loads(pickle.dumps(report))
+    assert again.as_dict() == report.as_dict() and again.text() == report.text()
+    assert again.faults() == report.faults() != ()
 
 
 def test_numbers_of_numpy_and_paths_of_both_kinds_are_taken(folder):

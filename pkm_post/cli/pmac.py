@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _HIGHEST_PROGRAM = 999
 """Numbers from 1000 are the subprograms of the codes."""
-_percent = above_zero(100)
+_percent = between(0.01, 100)
 _jog_mm = between(-LONGEST_TOOL, LONGEST_TOOL)
 _turn = between(-360, 360)
 
@@ -120,7 +120,7 @@ def _add_number(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_override(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("percent", type=_percent, metavar="PERCENT", help="a number above 0 and up to 100")
+    parser.add_argument("percent", type=_percent, metavar="PERCENT", help="a number from 0.01 to 100")
 
 
 def _trigger(text: str) -> str:

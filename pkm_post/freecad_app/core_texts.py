@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 import FreeCAD as App
 
 from pkm_post.freecad_app.user_units import amount_text
-from pkm_post.model import RULES, Amount, Diagnostic, Extent, Phrase, Place, Refused, Severity
+from pkm_post.model import RULES, Amount, Diagnostic, Extent, Phrase, Place, Refused, Severity, in_one_line
 
 translate = App.Qt.translate
 QT_TRANSLATE_NOOP = App.Qt.QT_TRANSLATE_NOOP
@@ -70,7 +70,7 @@ def fault_text(fault: Diagnostic) -> str:
     """A diagnostic in one line, like its ``str``, in the language of the user."""
     severity = translate("CoreTexts", _SEVERITIES[fault.severity])
     pattern = translate("CoreTexts", "{place}: {severity} {code}: {cause}: {found}; {cure}")
-    return str(
+    return in_one_line(
         pattern.format(
             place=place_text(fault.place),
             severity=severity,

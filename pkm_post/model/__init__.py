@@ -32,7 +32,7 @@ from pkm_post.model.columns import (
     shifted,
     uniform,
 )
-from pkm_post.model.diagnostics import Diagnostic, DiagnosticLog, Place, Refused, errors, severity_of
+from pkm_post.model.diagnostics import Diagnostic, DiagnosticLog, Place, Refused, errors, in_one_line, severity_of
 from pkm_post.model.machine import Body, Box, Machine, SpindleAxis, ToolChange
 from pkm_post.model.motion import AT_FEED, NO_TURNS, FeedStudy, Motion, Poses, SpindleTurns, StrutMotion
 from pkm_post.model.phrase import Amount, Pattern, Phrase
@@ -124,6 +124,7 @@ __all__ = [
     "gauge_lengths",
     "checkpoint",
     "checkpoints",
+    "in_one_line",
     "in_pieces",
     "is_among",
     "is_uniform",

@@ -8,12 +8,20 @@ a million blocks may have the same fault in each. Errors of the caller are ``Val
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from pkm_post.model.rules import Severity
+
+_BREAKING = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]")
+
+
+def in_one_line(text: str) -> str:
+    """A text with its line breaks and other control characters as escapes: names of files and operations have any."""
+    return _BREAKING.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
 
 
 @dataclass(frozen=True)
@@ -34,7 +42,8 @@ class Place:
 
     def __str__(self) -> str:
         position = ":".join(str(number) for number in (self.line, self.column) if number)
-        return ": ".join(part for part in (self.file, self.operation, position and f"line {position}") if part)
+        parts = (self.file, self.operation, position and f"line {position}")
+        return in_one_line(": ".join(part for part in parts if part))
 
 
 @dataclass(frozen=True)
@@ -62,7 +71,7 @@ class Diagnostic:
         from pkm_post.model.rules import RULES
 
         rule = RULES[self.code]
-        return f"{rule.severity.value} {self.code}: {rule.cause}: {self.found}; {rule.cure}"
+        return f"{rule.severity.value} {self.code}: {rule.cause}: {in_one_line(self.found)}; {rule.cure}"
 
     def __str__(self) -> str:
         return f"{self.place}: {self.text}"

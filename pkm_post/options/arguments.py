@@ -83,6 +83,8 @@ class UsageParser(argparse.ArgumentParser):
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Parse, and refuse what is left over; argparse calls it for the parser of a command, too."""
         self._words = sys.argv[1:] if args is None else args
+        if nul := [repr(word) for word in self._words if "\0" in word]:
+            self.refuse(_NOT_VALID, f"{', '.join(nul)}: expected no character NUL, which no name of a file has")
         found, left = super().parse_known_args(args, namespace)
         self._refuse_unknown(left)
         return found, left

@@ -209,3 +209,14 @@ def test_help_names_every_form(capsys):
         main(["convert", "--help"])
     reported = capsys.readouterr().out
     assert all(target in reported for target in TARGETS)
+
+
+@pytest.mark.parametrize("option", ["--out", "--part", "--subprograms", "--tool-table"])
+def test_a_character_that_no_name_of_a_file_has_is_refused(option, tmp_path, capsys):
+    """No shell passes it, but a batch list or another program may."""
+    for written in ([option, "a\0b"], [f"{option}=a\0b"]):
+        with pytest.raises(SystemExit) as refused:
+            main(["post", str(tmp_path / "part.ngc"), *written])
+        assert refused.value.code == 2
+        assert "error U103: an argument is not valid: " in (reported := capsys.readouterr().err)
+        assert "a\\x00b': expected no character NUL" in reported

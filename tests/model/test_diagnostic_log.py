@@ -54,3 +54,11 @@ def test_counting_nothing_changes_nothing():
     log.add(fault(1))
     log.count(0)
     assert log.more() == 0 and log.in_order(by_line) == (fault(1),)
+
+
+def test_a_name_of_several_lines_leaves_a_diagnostic_in_one():
+    place = Place("part\n.ngc", "Profile\r\nof\u2028the \u00e4u\u00dfere edge \u5916", 3)
+    text = str(Diagnostic("G102", place, "T1 \x1b[31m\tend mill\x85"))
+    assert len(text.splitlines()) == 1 and text.isprintable()
+    assert text.startswith("part\\n.ngc: Profile\\r\\nof\\u2028the \u00e4u\u00dfere edge \u5916: line 3: error G102: ")
+    assert "T1 \\x1b[31m\\tend mill\\x85; " in text

@@ -36,6 +36,8 @@ _UNSIGNED = r"(?:\d+(?:\.\d*)?|\.\d+)"
 """Digits belong to one part of it only: a long answer of nothing else is refused in time in proportion to it."""
 _DEFINITION = re.compile(rf"([-+]?{_UNSIGNED})?([A-Z])([-+]{_UNSIGNED})?")
 _ROTARY = "ABC"
+LOWEST_OVERRIDE = 0.01
+"""%: the last decimal sent; anything less would arrive as 0, which is a stop."""
 HIGHEST_OVERRIDE = 100.0
 """%: programs are planned to the limits of the machine, and certified, up to this override."""
 
@@ -228,7 +230,7 @@ def set_feed_override(
     Args:
         session: an open session.
         settings: of the machine's controller.
-        percent: above 0 and up to 100: programs are planned to the limits of the machine at 100 %.
+        percent: from 0.01 to 100: programs are planned to the limits of the machine at 100 %.
         meanwhile: called after each reading.
 
     Raises:
@@ -238,8 +240,8 @@ def set_feed_override(
         CancelledError: a stop came first.
         NotOwnerError: another client owns the machine.
     """
-    if not 0 < percent <= HIGHEST_OVERRIDE:
-        raise ValueError(f"percent: expected above 0 and up to 100, got {percent:g}")
+    if not LOWEST_OVERRIDE <= percent <= HIGHEST_OVERRIDE:
+        raise ValueError(f"percent: expected {LOWEST_OVERRIDE:g} to {HIGHEST_OVERRIDE:g}, got {percent:g}")
     with owned(session, "override", concurrent=RESUMED_BY_ALL):
         return _override(session, settings, percent, meanwhile)
 
@@ -250,7 +252,7 @@ def _override(session: Session, settings: AnySettings, percent: float, meanwhile
     session.command(f"&{settings.coordinate_system}%{percent:.2f}")
 
     def is_reached(status: Status) -> bool:
-        return abs(status.override - percent) <= _OVERRIDE_REACHED
+        return abs(status.override - percent) <= min(_OVERRIDE_REACHED, percent / 2)  # 0 is none
 
     status = _wait_until(session, settings, is_reached, OVERRIDE_S, session.stop_pending, meanwhile)
     if is_reached(status):

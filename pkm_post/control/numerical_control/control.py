@@ -292,7 +292,7 @@ class NumericalControl:
         return stopping.abort(self._session, self._settings, at_once)
 
     def override(self, percent: float) -> Status:
-        """Set the feed override, above 0 and up to 100 %."""
+        """Set the feed override, 0.01 to 100 %."""
         return run.set_feed_override(self._session, self._settings, percent, self.renew)
 
     def home(self, trigger: str) -> None:

@@ -15,7 +15,7 @@ and refines only where one is possible.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -52,6 +52,10 @@ class Check(CheckedLimit):
     by_turn: float
     resolution: float
     comfort: float = np.inf
+
+    def subject(self) -> CheckedLimit:
+        """What is checked, without the functions that check it: a report is passed to other processes."""
+        return CheckedLimit(**{each.name: getattr(self, each.name) for each in fields(CheckedLimit)})
 
 
 def check_path(
@@ -96,7 +100,7 @@ class _PathCheck:
         """Build the finding; skipped rows must not appear as bad as the worst computed row."""
         beyond = np.nextafter(self.margin[self.computed].min(), np.inf)
         margin = np.where(self.computed, self.margin, np.maximum(self.margin, beyond))
-        return ReachFinding(self.check, margin, self.part, at_least)
+        return ReachFinding(self.check.subject(), margin, self.part, at_least)
 
     def note(self, rows: Array, margins: Array) -> None:
         """Store the worst margin of each row."""

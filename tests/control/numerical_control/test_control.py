@@ -292,11 +292,21 @@ def test_hold_resume_override_and_abort(station):
     assert not state.status.running and abs(state.pose.tip[1]) < 10 * MICRON  # held on its path before
 
 
-@pytest.mark.parametrize("percent", [0, -1, 100.1, math.nan])
+@pytest.mark.parametrize("percent", [0, -1, 100.1, math.nan, 0.001, 0.0099])
 def test_overrides_beyond_the_plan_are_refused(station, percent):
-    with pytest.raises(ValueError, match="above 0 and up to 100"):
+    """Below the last decimal of the command, an override would arrive as 0, which is a stop."""
+    with pytest.raises(ValueError, match=r"expected 0\.01 to 100, got"):
         station.control.override(percent)
     assert station.sent() == b""
+
+
+def test_the_least_override_is_none_of_zero(station):
+    assert station.control.override(0.01).override == pytest.approx(0.01)
+    system = station.wire.controller.systems[0]
+    system.set_override(0.0)
+    system.override, system.set_override = 0.0, lambda percent: None  # another source has selected a stop
+    with pytest.raises(PmacError, match=r"stays at 0 % after %0\.01"):
+        station.control.override(0.01)
 
 
 def test_an_override_that_does_not_come_is_reported(station):

@@ -262,6 +262,7 @@ def until_it_rests(made):
         ["approach", "x.pmc", "--feed", "0"],
         ["home", "--trigger", "I5190=1"],
         ["override", "120"],
+        ["override", "0.001"],
         ["step", "x.pmc", "--block", "0"],
         ["mdi"],
         ["continue", "x.pmc"],
