@@ -15,13 +15,15 @@ from pkm_post.model import Diagnostic, Place
 
 VARIABLES = range(8187, 8192)
 """Numbers of the P-variables: owner, count, address of its computer, time since 1970 in s, operation."""
-OWNER, COUNT, *_ = VARIABLES
+OWNER, COUNT, *_, OPERATION = VARIABLES
 RECORD = f"P{VARIABLES[0]}..{VARIABLES[-1]}"
 
 OPERATIONS = ("download", "run", "stream", "jog", "home", "resume", "override", "terminal", "play")
 """Operations of an owner; the controller stores the index in this list, from 1. Append new ones at its end."""
 RESUMED_BY_ALL = ("stream", "play")
 """Operations that another client may resume after a hold, while the owner keeps feeding them."""
+_HELD = 64
+"""Added to the operation while another client holds it between two motions."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,7 @@ class Owner:
         count: heartbeat.
         address: of its computer, IPv4 as a number; 0 if it has none.
         since: seconds since 1970.
-        what: index in ``OPERATIONS``, from 1.
+        what: index in ``OPERATIONS``, from 1, and whether it is held between two motions.
     """
 
     owner: int
@@ -45,7 +47,13 @@ class Owner:
     @property
     def action(self) -> str:
         """The owner's operation; empty if unknown."""
-        return OPERATIONS[self.what - 1] if 0 < self.what <= len(OPERATIONS) else ""
+        index = self.what % _HELD
+        return OPERATIONS[index - 1] if 0 < index <= len(OPERATIONS) else ""
+
+    @property
+    def is_held(self) -> bool:
+        """Whether another client holds it between two motions: it starts none until a resume."""
+        return self.what >= _HELD
 
     def __str__(self) -> str:
         if not self.what:
@@ -75,7 +83,25 @@ def read_record(session: Session) -> Owner:
 
 def exchange_owner(old: int, new: int) -> str:
     """Replace the owner if it is the expected one: INT is then 1, else 0."""
-    return f"P{OWNER}=P{OWNER}+({new}-{old})*INT(1/(ABS(P{OWNER}-{old})+1))"
+    return _exchange(OWNER, old, new)
+
+
+def exchange_hold(record: Owner, is_held: bool) -> str:
+    """Hold an operation between two motions, or let it go on, unless it has changed meanwhile."""
+    index = record.what % _HELD
+    return _exchange(OPERATION, index + _HELD * (not is_held), index + _HELD * is_held)
+
+
+def let_go(session: Session) -> bool:
+    """Let an operation go on that is held between two motions; return whether one was."""
+    record = read_record(session)
+    if record.is_held:
+        session.query(exchange_hold(record, False))
+    return record.is_held
+
+
+def _exchange(number: int, old: int, new: int) -> str:
+    return f"P{number}=P{number}+({new}-{old})*INT(1/(ABS(P{number}-{old})+1))"
 
 
 def owner_diagnostic(session: Session, code: str, found: str) -> Diagnostic:

@@ -20,7 +20,7 @@ import numpy as np
 from pkm_post.control.link import stopping
 from pkm_post.control.link.download import verify_listing
 from pkm_post.control.link.errors import NotReadyError, OutcomeUnknownError, OverrideError, PmacError
-from pkm_post.control.link.owner_record import RESUMED_BY_ALL
+from pkm_post.control.link.owner_record import RESUMED_BY_ALL, let_go
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.power_setup import setup_faults
 from pkm_post.control.link.program import PmacProgram
@@ -200,7 +200,7 @@ def start_program(
 
 
 def resume_program(session: Session, settings: AnySettings) -> Status:
-    """Resume a held program.
+    """Resume a held program, or a play that was held between two motions.
 
     Raises:
         NotReadyError: no program is held, or there is a fault.
@@ -215,10 +215,13 @@ def resume_program(session: Session, settings: AnySettings) -> Status:
 def _resume(session: Session, settings: AnySettings) -> Status:
     status = read_status(session, settings)
     reasons = list(status.fault_texts())
-    if not status.held:
+    is_let_go = not reasons and let_go(session)
+    if not (status.held or is_let_go):
         reasons.append("no program is held; after a stop (M0, M1) continue it, otherwise start it from its beginning")
     if reasons:
         raise NotReadyError(reasons)
+    if not status.held:
+        return status  # its play starts the next motion
     return _start_motion(session, settings, "R", lambda status: status.running and not status.held)
 
 

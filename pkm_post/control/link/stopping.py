@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from pkm_post.control.link.errors import CancelledError, NoAccessError, PmacError
-from pkm_post.control.link.owner_record import Owner, exchange_owner, read_record
+from pkm_post.control.link.owner_record import Owner, exchange_hold, exchange_owner, read_record
 from pkm_post.control.link.session import Session, free_memory
 from pkm_post.control.link.status import MOTORS, AnySettings, Status, read_status
 from pkm_post.writing import PowerPmacSettings
@@ -177,15 +177,19 @@ def _climb(
 def _is_continued(session: Session, settings: AnySettings, status: Status, ends: bool) -> bool:
     """Whether another client's stream or play starts its next motion: between them the machine is at rest anyway.
 
-    Between two pieces a play does not see an abort, and plans as long as needed; so its right to move is ended as well.
+    Between two motions a play sees neither a hold nor an abort, and plans, or waits for people, as long as needed; so
+    the record of its owner tells it as well.
     """
     other = None if status.held else _other_owner(session)
     if other is None:
         return False
-    until, ends = session.now() + NEXT_SEGMENT_S, ends and other.action == "play"
+    until, is_told = session.now() + NEXT_SEGMENT_S, other.action != "play"
+    order = exchange_owner(other.owner, 0) if ends else exchange_hold(other, True)
     while session.now() < until:
-        if ends and _end_play(session, other):
-            until, ends = session.now() + NEXT_SEGMENT_S, False  # until it sees that
+        if not is_told and _tell_play(session, order):
+            until, is_told = session.now() + NEXT_SEGMENT_S, True  # until it sees that
+            if not ends:
+                _log.warning("the play of another client is held where it rests: resume lets it go on")
         seen = _read(session, settings)
         if seen is not None and seen.running:
             return True
@@ -208,16 +212,16 @@ def _other_owner(session: Session) -> Owner | None:
     return record if record.owner and record.action in ("stream", "play") else None
 
 
-def _end_play(session: Session, other: Owner) -> bool:
-    """End the right of a client to move, unless it loads: the assignment might become a line of its program."""
+def _tell_play(session: Session, order: str) -> bool:
+    """Change the record of a play, unless it loads: the assignment might become a line of its program."""
     try:
         if session.has_handshake and free_memory(session) < 0:
             return False
-        session.query(exchange_owner(other.owner, 0))
+        session.query(order)
     except (CancelledError, NoAccessError):
         raise
     except PmacError as fault:
-        _log.warning("the play of another client was not ended: %s", fault)
+        _log.warning("the play of another client is not told of the stop: %s", fault)
         return False
     return True
 

@@ -93,19 +93,23 @@ def wait_for_rest(
     Args:
         session: an open session.
         settings: of the controller.
-        seconds: timeout; a program at rest in a feed hold also ends the wait.
+        seconds: timeout of the motion; a program at rest in a feed hold also ends the wait. While the struts stand, its
+            codes wait, perhaps for a person who changes a tool, and only the link must live.
         meanwhile: called after each reading.
 
     Raises:
         PmacError: timeout, or an override above that of the plan; then the machine is held.
     """
-    until = session.now() + seconds
+    until = before = session.now()
+    until += seconds
     while True:
         status = read_status(session, settings)
         check_override(session, settings, status)
         if status.standing and (status.held or not status.running):
             return status
-        if session.now() > until:
+        until += session.now() - before if status.standing else 0.0
+        before = session.now()
+        if before > until:
             raise PmacError(
                 f"the machine does not come to rest within {seconds:g} s; HOLD IT, OR USE THE EMERGENCY STOP"
             )

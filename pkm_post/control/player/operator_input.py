@@ -12,6 +12,7 @@ import queue
 
 from pkm_post.control.link import run, stopping
 from pkm_post.control.link.errors import NotReadyError
+from pkm_post.control.link.owner_record import let_go, read_record
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings
 from pkm_post.control.player.orders import Order, PlayOptions
@@ -33,6 +34,7 @@ class OperatorInput:
         is_over: whether to end at the next stop on the path.
         may_start: whether a start was ordered since this was cleared.
         is_held_back: whether a hold is a planned stop, or came when nothing ran: nothing starts until a resume.
+        is_held_elsewhere: whether another client holds the play between two motions: only a resume lets it go on.
         holds_move: whether a hold of this operator stands in a move by hand.
     """
 
@@ -47,7 +49,7 @@ class OperatorInput:
         self.single_block = choices.single_block
         self.optional_stop = choices.optional_stop
         self.block_skip, self.retract_mm = choices.block_skip, 0.0
-        self.is_over = self.may_start = self.is_held_back = self.holds_move = False
+        self.is_over = self.may_start = self.is_held_back = self.is_held_elsewhere = self.holds_move = False
         self._orders: queue.SimpleQueue[Order] = queue.SimpleQueue()
 
     @property
@@ -58,6 +60,18 @@ class OperatorInput:
     def order(self, order: Order) -> None:
         """Give an order, from any thread."""
         self._orders.put(order)
+
+    def look_elsewhere(self, session: Session) -> None:
+        """Between two motions: whether another client holds the play there, or has resumed it.
+
+        Raises:
+            PmacError: the link failed.
+        """
+        before, self.is_held_elsewhere = self.is_held_elsewhere, read_record(session).is_held
+        if before or self.is_held_elsewhere:
+            self.is_held_back = self.is_held_elsewhere
+        if self.is_held_elsewhere:
+            self.may_start, self.retract_mm = False, 0.0
 
     def carry_out(self, session: Session, settings: AnySettings, by_hand: bool = False) -> None:
         """Execute the orders; a resume of what is not held, or has a fault, is refused with a warning.
@@ -80,7 +94,8 @@ class OperatorInput:
                 if self.holds_move:  # no state of the play is shown meanwhile
                     _log.warning("held: resume goes on, end ends the play")
             elif order.kind == "resume" and self.is_held_back:
-                self.is_held_back = False
+                let_go(session)
+                self.is_held_back = self.is_held_elsewhere = False
             elif order.kind == "resume":
                 self._resume(session, settings)
                 self.holds_move = False

@@ -259,6 +259,8 @@ class Player:
                 self._check_override(status)
                 for motion in self._feed.poll():
                     self.log.add(motion)
+            else:
+                self._operator.look_elsewhere(self._session)
         except LinkLostError as lost:
             self._lose(lost)
             return None
@@ -307,12 +309,12 @@ class Player:
         self._is_waiting = True
         self._look(False)
         operator.may_start, operator.retract_mm = False, 0.0  # orders given before it waits are not for this wait
-        while not (operator.may_start or operator.is_over or until()):
+        while not operator.is_over and (operator.is_held_elsewhere or not (operator.may_start or until())):
             self._look(False)
             if operator.retract_mm:
                 self._retract.lift(operator.retract_mm, self._tool_length(row))
                 operator.retract_mm = 0.0
-            self._show(self._state(WAITS + what, row))
+            self._show(self._state(WAITS + (HELD_BACK if operator.is_held_elsewhere else what), row))
             self._session.sleep(_POLL_S)
         if not operator.is_over:
             self._retract.back(self._tool_length(row))
@@ -326,8 +328,9 @@ class Player:
         return float(self._trajectory.tool_length()[min(row, len(self._trajectory) - 1)])
 
     def _wait_if_held_back(self, row: int | None = None) -> None:
-        """If a hold came when nothing ran, wait for the resume."""
+        """If a hold came when nothing ran, here or from another client, wait for the resume."""
         operator = self._operator
+        operator.look_elsewhere(self._session)
         if operator.is_held_back:
             self._wait(HELD_BACK, row, lambda: not operator.is_held_back)
 

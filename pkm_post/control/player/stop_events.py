@@ -19,13 +19,13 @@ from pkm_post.control.numerical_control.manual_moves import stationary_trajector
 from pkm_post.control.numerical_control.plan import planned
 from pkm_post.control.player.operator_input import OperatorInput
 from pkm_post.control.player.sections import rows_of
-from pkm_post.model import EMPTY_SETUP, Event, EventKind, Machine, Refused, Setup, Tolerances, Trajectory
+from pkm_post.model import EMPTY_SETUP, Event, Machine, Refused, Setup, Tolerances, Trajectory
 from pkm_post.toolpath import ToolPose
 
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 _POLL_S = 0.05
-_LONGEST_S = 120.0
-"""Longest time of a code of the machine: a tool change."""
+_LONGEST_S = 30.0
+"""Longest time in which the struts may move while codes run: by a millionth of a millimetre."""
 
 
 def pose_before(trajectory: Trajectory, row: int) -> tuple[ToolPose, float]:
@@ -82,7 +82,7 @@ def run_events(task: PlayContext, row: int, events: tuple[Event, ...]) -> None:
 
     Raises:
         Refused: the events cannot be planned.
-        PmacError: machine or link are not ready, or the events take too long.
+        PmacError: machine or link are not ready, or a fault ends the events.
     """
     machine, settings = task.machine, task.settings
     here, length = pose_before(task.trajectory, row)
@@ -91,8 +91,7 @@ def run_events(task: PlayContext, row: int, events: tuple[Event, ...]) -> None:
     if plan is None:
         raise Refused(diagnostics)
     execute_marked(task.session, machine, settings, plan.job)
-    dwells = sum(each.value for each in events if each.kind is EventKind.DWELL)
-    status = task.wait_for_rest(dwells + _LONGEST_S)
+    status = task.wait_for_rest(_LONGEST_S)
     if status.running or status.fault_texts():
         raise PmacError("the codes between two moves did not end: " + "; ".join(status.fault_texts() or ("held",)))
     if not has_ended(task.session, plan.job):

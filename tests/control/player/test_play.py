@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from bad_luck import by_chance
 from playing import BOTH, JUMPING, RECTANGLE, SETTINGS, TOLERANCES, Playing, distance, trajectory_of
+from rig import Wire
 
-from pkm_post.control.link import stopping
-from pkm_post.control.link.errors import LinkLostError, PmacError
+from pkm_post.control.link import run, stopping
+from pkm_post.control.link.errors import LinkLostError, NotReadyError, PmacError
+from pkm_post.control.player import stop_events
 from pkm_post.control.player.knot_list import Layout
 from pkm_post.control.player.operator_input import LOWEST_OVERRIDE, OperatorInput
 from pkm_post.control.player.orders import Order, PlayOptions
@@ -254,6 +256,83 @@ def during_a_move_by_hand(playing, act):
             act()
 
     playing.wire.sleep = sleep
+
+
+def test_a_code_that_waits_for_a_person_takes_as_long_as_it_takes(monkeypatch):
+    """A tool changed by hand; the struts stand, and the link lives: no limit of time applies."""
+    monkeypatch.setattr(stop_events, "_LONGEST_S", 1.0)
+    monkeypatch.setattr("playing.SETTINGS", replace(SETTINGS, codes=SETTINGS.codes | {"M21": "M21"}))
+    playing = Playing.of(trajectory_of(events=(Event(1, EventKind.FUNCTION, 21.0),)))
+    label, *_, end = function_programs([21])[2:]
+    assert label == "N21000 P7004=21 RETURN"
+    code = ["N21000 P7004=21", "DWELL5000", "RETURN"]
+    playing.wire.controller.load(["CLOSE", "OPEN PROG 1001", *code, end])
+    done = playing.play()
+    assert done.finished and done.log.holds and playing.arrived() < 1e-3
+    playing.check()
+    stood = np.abs(np.diff(playing.struts(), axis=0)).max(axis=1) < 1e-9
+    assert playing.wire.controller.variables.read("P", 7004) == 21 and stood.sum() >= 5000
+
+
+STOP = Event(1, EventKind.STOP, 0.0)
+
+
+def held_by_another_client(playing, seconds):
+    """Hold a play between two motions from another client, and resume after some seconds; return when both were."""
+    other, times = Wire(playing.wire.controller, "tcp", moves=True, line=playing.wire.line), []
+
+    def sleep(seconds):
+        other.now += seconds
+
+    def hold():
+        with other.session() as session:
+            session._sleep = sleep
+            status = stopping.hold(session, SETTINGS)
+            assert status.standing and not status.running
+        times.append(playing.wire.now)
+
+    def look():
+        if len(times) == 1 and playing.wire.now > times[0] + seconds:
+            times.append(playing.wire.now)
+            with other.session() as session:
+                assert not run.resume_program(session, SETTINGS).held
+                with pytest.raises(NotReadyError, match="no program is held"):
+                    run.resume_program(session, SETTINGS)
+
+    passed = playing.wire.sleep
+    playing.wire.sleep = lambda seconds: (passed(seconds), look())
+    return hold, times
+
+
+@BOTH
+@pytest.mark.parametrize("where", ["planning", "M0"])
+@pytest.mark.parametrize("resumed", ["here", "there"])
+def test_a_hold_of_another_client_between_two_motions_lasts_until_a_resume(where, resumed, machine):
+    """Longer than the second in which another motion might begin; a start is none."""
+    playing = Playing.of(trajectory_of(events=(STOP,)), machine=machine)
+    hold, times = held_by_another_client(playing, 6.0 if resumed == "there" else np.inf)
+    ran = []
+
+    def delay():
+        if where == "planning" and not times:
+            hold()
+        return 0.0
+
+    def answer(player):
+        if where == "M0" and not times:
+            hold()
+        player.order(Order("start"))
+        if resumed == "here" and times and playing.wire.now > times[0] + 6.0:
+            times.append(playing.wire.now)
+            player.order(Order("resume"))
+        if len(times) == 1 and playing.wire.now > times[0] + 1.0:
+            ran.append(playing.wire.controller.runs_program() or np.ptp(playing.lengths[-100:], axis=0).max() > 0)
+
+    playing.answer = answer
+    assert playing.play(delay=delay).finished and playing.arrived() < 1e-3
+    playing.check()
+    assert times[1] > times[0] + 6.0 and len(ran) > 100 and not any(ran)
+    assert "waits: hold" in {state.phase for state in playing.states}
 
 
 DWELL = (Event(1, EventKind.DWELL, 4.0),)
