@@ -58,7 +58,7 @@ from pkm_post.model.setup import (
     valid_cutter_angles,
 )
 from pkm_post.model.thread import Thread, as_executed, cuts_by_speed, threads
-from pkm_post.model.trajectory import MAX_SPIN, MIN_TOLERANCE, TRAJECTORY_COLUMNS, Trajectory
+from pkm_post.model.trajectory import APPROACH, MAX_SPIN, MIN_TOLERANCE, TRAJECTORY_COLUMNS, Trajectory
 
 if TYPE_CHECKING:
     from pkm_post.model.rules import RULES
@@ -66,6 +66,7 @@ else:
     __getattr__ = at_first_use(__name__, {"rules": "RULES"})
 
 __all__ = [
+    "APPROACH",
     "AT_FEED",
     "EMPTY_SETUP",
     "MAX_SPIN",

@@ -16,13 +16,15 @@ import numpy as np
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.columns import RowType, freeze, is_uniform, map_rows, shifted, uniform
 from pkm_post.model.diagnostics import Place
-from pkm_post.model.program import MOTION_COLUMNS, Array, Event
+from pkm_post.model.program import MOTION_COLUMNS, Array, Event, Kind
 from pkm_post.model.setup import Tool, gauge_lengths
 
 MAX_SPIN = 1e6
 """rad: a platform rotates by less than one turn; larger numbers leave too few digits for planning."""
 MIN_TOLERANCE = 1e-9
 """mm and rad: a tolerance below a thousandth of a nanometre is a typing error that no plan could meet."""
+APPROACH = "approach"
+"""Name of the operation of the way to a line in which a program begins: the last operation, with the first rows."""
 
 TRAJECTORY_COLUMNS: dict[str, RowType] = MOTION_COLUMNS | {
     "tip": (np.float64, (3,)),
@@ -116,6 +118,15 @@ class Trajectory:
     def place(self, row: int) -> Place:
         """Position of segment ``row`` in the source."""
         return Place(self.source, self.operations[self.operation[row]], int(self.line[row]))
+
+    def cutting(self) -> Array:
+        """Rows at a feed where the program has it, (N,): no rapid moves, nor the way to a line in which it begins.
+
+        The end of that way has the feed of the line, since it may touch what the rows before would have cut.
+        """
+        last = len(self.operations) - 1
+        is_begun = last > 0 and len(self) > 0 and self.operation[0] == last and self.operations[last] == APPROACH
+        return (self.kind != Kind.RAPID) & (self.operation != (last if is_begun else -1))
 
     def tool_length(self) -> Array:
         """Gauge length of the tool in use, (N,) in mm."""

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from pkm_post.geometry import Array, norm
-from pkm_post.model import AT_FEED, FeedStudy, Kind, Machine, Trajectory
+from pkm_post.model import AT_FEED, FeedStudy, Machine, Trajectory
 from pkm_post.planning.schedule import Schedule
 from pkm_post.planning.speed_limits import LimitedQuantity, limited_quantities
 from pkm_post.planning.tool_path import ToolPath
@@ -53,7 +53,7 @@ def feed_study(path: ToolPath, schedule: Schedule, trajectory: Trajectory, machi
         limit=np.where(planned >= AT_FEED * programmed, -1, np.argmax(used, axis=0)),
         limits=names,
         row=row,
-        cutting=trajectory.kind[row] != Kind.RAPID,
+        cutting=trajectory.cutting()[row],
     )
 
 

@@ -95,7 +95,7 @@ def _program(trajectory: Trajectory, reading: Sequence[str]) -> dict[str, Any]:
         "reading": list(reading),
         "operations": list(trajectory.operations),
         "segments": len(trajectory),
-        "cutting_length_mm": _rounded(trajectory.length[trajectory.kind != Kind.RAPID].sum(), 3),
+        "cutting_length_mm": _rounded(trajectory.length[trajectory.cutting()].sum(), 3),
         "box_mm": _box(trajectory),
         "tools": [vars(tool) for tool in _tools(trajectory)],
     }

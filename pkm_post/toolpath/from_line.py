@@ -21,6 +21,7 @@ import numpy as np
 
 from pkm_post.geometry import Array, angle_between, norm
 from pkm_post.model import (
+    APPROACH,
     TRAJECTORY_COLUMNS,
     Diagnostic,
     Event,
@@ -35,8 +36,6 @@ from pkm_post.model import (
 from pkm_post.toolpath.spindle_dwells import seconds_from_rest
 from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
 
-APPROACH = "approach"
-"""Name of the operation of the approach."""
 _MODAL = (EventKind.SPINDLE, EventKind.COOLANT)
 Findings = tuple[Diagnostic, ...]
 

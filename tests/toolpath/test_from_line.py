@@ -75,6 +75,18 @@ def test_it_comes_down_along_the_axis_from_above_the_whole_program_and_cuts_with
     assert (found.kind[:down] == Kind.RAPID).all() and found.exact_stop[: down + 1].all()
 
 
+def test_the_way_to_the_line_is_no_cut_of_the_program():
+    """Its end has a feed, as it may touch what was not cut; the figures of the program's cuts leave it out."""
+    whole = placed(cone(40))
+    found = begun(whole, int(whole.line[20]))
+    kept = len(whole) - 20
+    assert not found.cutting()[:-kept].any() and (found.kind[:-kept] == Kind.LINE).sum() == 1
+    np.testing.assert_array_equal(found.cutting()[-kept:], whole.kind[20:] != Kind.RAPID)
+    np.testing.assert_array_equal(whole.cutting(), whole.kind != Kind.RAPID)
+    named = replace(whole, operations=tuple("approach" for _ in whole.operations))
+    np.testing.assert_array_equal(named.cutting(), whole.cutting())  # an operation of that name is none
+
+
 @pytest.mark.parametrize(
     ("row", "wanted"),
     [
