@@ -31,10 +31,10 @@ from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.job_study import JobStudy, study_of
 from pkm_post.freecad_app.machine_object import machine_of
 from pkm_post.freecad_app.mesh import mesh_of
-from pkm_post.freecad_app.tools import millimetres
+from pkm_post.freecad_app.tools import read_shank
 from pkm_post.geometry import Array
 from pkm_post.machine import CollisionMesh, find_machine, machine_named, placed_workpiece
-from pkm_post.model import Diagnostic, Machine, Mesh, Place, Refused, Setup, Shank, Tolerances, Trajectory, errors
+from pkm_post.model import Diagnostic, Machine, Mesh, Place, Refused, Setup, Tolerances, Trajectory, errors
 from pkm_post.options import Options, Override, argument_values, flag_of, format_value
 from pkm_post.posting import (
     FoundPlace,
@@ -133,7 +133,8 @@ def _machine_differences(
 
 def setup_of(job: Any, places: Mapping[str, Array] = ONE_PLACE) -> Setup:
     """The set-up of a recomputed job, with a part and a stock at each of several fixtures."""
-    shanks = dict(_shanks(members(job.Tools)))
+    known = ((int(each.ToolNumber), read_shank(each.Tool)) for each in members(job.Tools))
+    shanks = {number: shank for number, shank in known if shank is not None}
     stock = _mesh([job.Stock] if job.Stock else [], StockType.FromStock(job.Stock) == StockType.FromBase)
     return Setup(at_fixtures(_mesh(members(job.Model)), places), at_fixtures(stock, places), shanks=shanks)
 
@@ -143,13 +144,6 @@ def _mesh(items: Iterable[Any], assumed: bool = False) -> Mesh | None:
     shaped = [item for item in items if hasattr(item, "Shape")]
     triangles = np.concatenate([np.empty((0, 3, 3)), *(mesh_of(item.Shape) for item in shaped)])
     return Mesh(", ".join(item.Label for item in shaped), triangles, assumed) if len(triangles) else None
-
-
-def _shanks(controllers: Iterable[Any]) -> Iterator[tuple[int, Shank]]:
-    for controller in controllers:
-        start, diameter = (millimetres(controller.Tool, name) for name in ("CuttingEdgeHeight", "ShankDiameter"))
-        if start > 0 and diameter > 0:
-            yield int(controller.ToolNumber), Shank(start, diameter)
 
 
 def placed_job(job: Any, machine_object: Any = None) -> PlacedJob:

@@ -17,7 +17,7 @@ from typing import Any
 import FreeCAD as App
 from PathScripts import PathUtils
 
-from pkm_post.model import Diagnostic, Phrase, Place, Tool, corner_reach
+from pkm_post.model import Diagnostic, Phrase, Place, Shank, Tool, corner_reach
 from pkm_post.toolpath import Cutter
 
 GAUGE_LENGTH = "GaugeLength"
@@ -27,6 +27,8 @@ _UPRIGHT_SHAPES = ("endmill", "ballend", "bullnose")
 """Shapes with a flat bottom and an upright side. ``read_tools`` does not return the angle of a tapered one."""
 _ANY_LENGTH = 1.0
 """mm: the gauge length does not matter for a cutter."""
+
+_CONE = "CuttingEdgeAngle"
 
 Sizes = dict[str, float]
 
@@ -105,13 +107,17 @@ def _description(tool: Tool) -> str:
 
 def _tool(controller: Any, number: int, length: float) -> Tool:
     bit = controller.Tool
-    sizes = _SHAPES.get(_shape(bit).lower().replace("_", ""), _flat)
+    sizes = _SHAPES.get(_plain_shape(bit), _flat)
     return Tool(number, bit.Label, length=length, **sizes(bit))
 
 
 def _shape(bit: Any) -> str:
     """The name of the shape of a tool bit, which FreeCAD 1.0 stores in another property."""
     return str(getattr(bit, "ShapeType", None) or getattr(bit, "ShapeName", ""))
+
+
+def _plain_shape(bit: Any) -> str:
+    return _shape(bit).lower().replace("_", "").replace("-", "")
 
 
 def has_upright_side(bit: Any) -> bool:
@@ -157,15 +163,31 @@ def _pointed(bit: Any) -> Sizes:
 
 def _conical(bit: Any) -> Sizes:
     """A cone is the tool's side if it ends in a flat of its own diameter, and its bottom if it ends in a point."""
-    tip, half = millimetres(bit, "TipDiameter"), _half_angle(bit, "CuttingEdgeAngle")
+    tip, half = millimetres(bit, "TipDiameter"), _half_angle(bit, _CONE)
     if tip > 0.0:
         return {"diameter": tip, "corner_radius": 0.0, "side_angle": half}
     return _flat(bit) | {"bottom_angle": math.pi / 2 - half}
 
 
+def read_shank(bit: Any) -> Shank | None:
+    """The shank of a tool bit; None if it does not state where its cutting edges end, or how thick it is.
+
+    The ``CuttingEdgeHeight`` of a V-bit is that of the cylinder above its cone. The cone of one with a flat tip has no
+    end in a ``Tool``: its shank begins where the cone does end, and is as wide.
+    """
+    height, diameter = millimetres(bit, "CuttingEdgeHeight"), millimetres(bit, "ShankDiameter")
+    if _plain_shape(bit) == "vbit":
+        widest, tip, half = millimetres(bit, "Diameter"), millimetres(bit, "TipDiameter"), _half_angle(bit, _CONE)
+        if not (widest > tip and 0 < half < math.pi / 2):
+            return None
+        cone = (widest - tip) / 2 / math.tan(half)
+        height, diameter = (cone, max(widest, diameter)) if tip > 0 else (cone + height, diameter)
+    return Shank(height, diameter) if height > 0 and diameter > 0 else None
+
+
 def _dovetail(bit: Any) -> Sizes:
     """Its angle is measured to the bottom."""
-    return _flat(bit) | {"side_angle": 2 * _half_angle(bit, "CuttingEdgeAngle") - math.pi / 2}
+    return _flat(bit) | {"side_angle": 2 * _half_angle(bit, _CONE) - math.pi / 2}
 
 
 _SHAPES: dict[str, Callable[[Any], Sizes]] = {

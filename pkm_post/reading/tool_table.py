@@ -237,6 +237,10 @@ def _bit_file(library: Path, path: str) -> Path:
     return found
 
 
+_EDGES_ABOVE_CONE = ("v-bit", "v_bit", "vbit")
+"""Shapes whose CuttingEdgeHeight does not begin at the tip."""
+
+
 def _sizes(
     content: dict[str, Any], parameters: dict[str, Any], bit: Path
 ) -> tuple[float | None, float | None, Shank | None]:
@@ -244,10 +248,10 @@ def _sizes(
 
     FreeCAD 1.0 stores the radius of the flat of a bull nose, newer versions that of its corner.
     """
-    names = ("Diameter", "CornerRadius", "FlatRadius", "CuttingEdgeHeight", "ShankDiameter")
-    diameter, corner, flat, start, across = (_quantity(parameters, name, bit) for name in names)
-    shank = Shank(start, across) if start and across and min(start, across) > 0 else None
+    diameter, corner, flat = (_quantity(parameters, name, bit) for name in ("Diameter", "CornerRadius", "FlatRadius"))
+    start, across = (_quantity(parameters, name, bit) or 0.0 for name in ("CuttingEdgeHeight", "ShankDiameter"))
     shape = str(content.get("shape-type") or Path(str(content.get("shape", ""))).stem).lower()
+    shank = Shank(start, across) if min(start, across) > 0 and shape not in _EDGES_ABOVE_CONE else None
     if diameter is None:
         return None, None, shank
     if shape == "bullnose":

@@ -6,7 +6,8 @@ import numpy as np
 import Part
 import Path.Main.Job
 import pytest
-from cam_jobs import add_operation, new_job
+from cam_jobs import ON_EXAMPLE, add_operation, new_job
+from part_jobs import job_on
 
 from pkm_post.freecad_app.job_setup import setup_of, study_job
 from pkm_post.freecad_app.post_job import post_job
@@ -85,3 +86,18 @@ def test_a_shank_thicker_than_the_cutter_is_refused_where_it_goes_into_the_part(
         post_job(job, out=tmp_path)
     assert "K130" in {fault.code for fault in refused.value.diagnostics}
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("tip", [0.0, 1.0])
+def test_a_v_bit_cuts_as_deep_as_its_cone(document, tmp_path, tip):
+    """Its CuttingEdgeHeight, 1 mm, is above the cone: the groove of 3 mm, and the way out of it, are no collisions."""
+    sizes = {"TipDiameter": tip, "CuttingEdgeHeight": 1, "ShankDiameter": 5}
+    job = job_on(document, Part.makeBox(60, 20, 10), "v-bit.fcstd", **sizes)
+    stock = document.addObject("Part::Feature", "Blank")
+    stock.Shape = Part.makeBox(60, 20, 10)
+    job.Stock, job.PostProcessor = stock, "hexapod_pmac"
+    job.PostProcessorArgs = ON_EXAMPLE.format("0,0,250") + " --part none"
+    add_operation(job, ["G0 X-8 Y10 Z20", "G1 Z7 F10", "G1 X68", "G0 X60", "G0 X10", "G0 Z20"])
+    posted = post_job(job, out=tmp_path)
+    assert posted.files
+    assert [str(each) for each in posted.diagnostics if each.code.startswith("K13")] == []

@@ -13,6 +13,7 @@ from cam_jobs import add_operation
 from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_setup import setup_of
 from pkm_post.freecad_app.tools import read_tools, set_gauge_length
+from pkm_post.machine.collisions.moving_bodies import cutter_profile
 from pkm_post.reading.tool_table import read_tool_table
 from pkm_post.toolpath.compensation.cutter import Cutter, CutterProfile
 
@@ -149,6 +150,36 @@ def test_gauge_length_is_one_property_that_is_saved(job):
     assert controller.GaugeLength.UserString.startswith("90")
     assert controller.getGroupOfProperty("GaugeLength") == "PKM Post"
     assert controller.getTypeIdOfProperty("GaugeLength") == "App::PropertyLength"
+
+
+V_BITS = [(90, 1.0, 1.0), (60, 0.2, 3.0), (90, 0.0, 1.0), (30, 0.0, 4.0)]
+"""Cutting edge angles, tip diameters and heights of the cylinder above the cone."""
+
+
+@pytest.mark.parametrize(("angle", "tip", "height"), V_BITS)
+def test_the_shank_of_a_v_bit_is_above_its_cone(job, angle, tip, height):
+    sizes = {"Diameter": 10, "TipDiameter": tip, "CuttingEdgeAngle": angle, "CuttingEdgeHeight": height}
+    bit = stock_bit(job.Document, "v-bit.fcstd", **sizes, Length=60, ShankDiameter=5)
+    tool, (shank,) = tool_of(job, bit), setup_of(job).shanks.values()
+    cone = (10 - tip) / 2 / math.tan(math.radians(angle) / 2)
+    assert (shank.start, shank.diameter) == pytest.approx((cone, 10) if tip else (cone + height, 5))
+    edges = cutter_profile(tool, shank.start)
+    for z in np.linspace(0.1, cone + height + 5, 40):
+        solid = _radius_of(bit, z)
+        if z < shank.start:
+            assert np.interp(z, edges.height, edges.radius) == pytest.approx(solid, abs=2e-3)
+        else:
+            assert solid <= shank.diameter / 2 + 2e-3
+
+
+def _radius_of(bit, z):
+    """The radius of the solid of a bit at a height, by halving."""
+    low, high = 0.0, 50.0
+    for _ in range(30):
+        middle = (low + high) / 2
+        inside = bit.Shape.isInside(App.Vector(middle, 1e-4, z), 1e-7, False)
+        low, high = (middle, high) if inside else (low, middle)
+    return low
 
 
 def written_by_freecad(bit):

@@ -55,6 +55,7 @@ BITS = {
     # FreeCAD 1.0 keeps the radius of the flat, 1.1 that of the corner
     "bull.fctb": bit("bullnose", Diameter="10.0 mm", FlatRadius="3.0 mm"),
     "new.fctb": bit("bullnose", Diameter="10.0 mm", CornerRadius="1.0 mm") | {"shape-type": "Bullnose"},
+    "v.fctb": bit("v-bit", Diameter="10 mm", CuttingEdgeHeight="1 mm", ShankDiameter="5 mm", TipDiameter="1 mm"),
     "drill.fctb": bit("drill", Diameter="5 mm", TipAngle="119.0 \u00b0"),
 }
 
@@ -72,7 +73,7 @@ def test_a_library_of_freecad(tmp_path):
     assert found.lengths == {}
     sizes = [(tool.diameter, tool.corner_radius, tool.corner_known) for tool in found.tools.values()]
     assert found.shanks == {1: Shank(30.0, 3.0)}
-    assert sizes == [(5, 0, True), (6.35, 3.175, True), (10, 2, True), (10, 1, True), (5, 0, False)]
+    assert sizes == [(5, 0, True), (6.35, 3.175, True), (10, 2, True), (10, 1, True), (10, 0, False), (5, 0, False)]
     (tmp_path / "Bit" / "end.fctb").unlink()
     assert "'end.fctb'" in read_tool_table(str(library))[1][0].found
 

@@ -7,6 +7,7 @@ certainly cut may remain: a warning. Units: mm.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -18,7 +19,7 @@ from pkm_post.machine.collisions.moving_bodies import RevolvedProfile, cylinder
 from pkm_post.machine.collisions.stock_grid import StockGrid, SweptPoses, first_met, when_cut
 from pkm_post.machine.collisions.tools_in_use import ToolUse
 from pkm_post.machine.reach.pose_path import PosePath
-from pkm_post.model import Body, Diagnostic, Machine, Mesh, Phrase
+from pkm_post.model import Body, Diagnostic, Machine, Mesh, Phrase, Tool
 
 _SCALLOP = 0.1
 """mm: largest ridge between two poses of a cutter, which is taken to cut everything between them."""
@@ -85,7 +86,7 @@ def stock_faults(
     grid = StockGrid.of(stock.triangles)
     work_from_machine = np.linalg.inv(driven.trajectory.machine_from_work)
     cuts = [(one, _cuts(driven, one, grid, work_from_machine)) for one in used if one.has_size]
-    ridge = max((swept.moved**2 / (4 * one.tool.diameter) for one, swept in cuts), default=0.0)
+    ridge = max((_ridge(one.tool, swept.moved) for one, swept in cuts), default=0.0)
     less = max(_SCALLOP, ridge) + tolerance
     unsized = (one.cutting for one in used if not one.has_size and len(one.cutting))
     unknown = min((float(cells[0]) - 1 for cells in unsized), default=np.inf)
@@ -127,9 +128,15 @@ def _some(number: Array) -> Array:
 def _cuts(driven: TrajectoryPath, used: ToolUse, grid: StockGrid, work_from_machine: Array) -> SweptPoses:
     """Poses in which a tool cuts, in steps whose ridges stay within ``_SCALLOP``."""
     step = float(np.sqrt(4 * used.tool.diameter * _SCALLOP))
+    step *= min(1.0, _SCALLOP / _ridge(used.tool, step))
     profile = used.largest_profile()
     cells = _near(driven.poses, used.cutting, work_from_machine, profile, grid)
     return SweptPoses.of(driven.poses, cells, work_from_machine, profile.farthest, step, _MOST_CUTS)
+
+
+def _ridge(tool: Tool, moved: float) -> float:
+    """Largest depth of what a tool leaves between two poses apart: between round sides, or between points."""
+    return max(moved**2 / (4 * tool.diameter), moved / 2 * math.sin(tool.bottom_angle))
 
 
 def _first_met(

@@ -29,6 +29,7 @@ M5
 M30
 """
 """Upright, gauge length 120: the holder of the example machine, of 25 mm radius, begins 70 mm above the tip."""
+NARROW = Tolerances(0.001, 1e-5)
 PLATE, CLEARANCE = box([-40, -40, 0], [40, 40, 10]), 2.0
 
 POST = np.concatenate([PLATE, box([38, -5, 10], [42, 12, 30])])
@@ -258,3 +259,18 @@ def test_a_point_that_is_thinner_than_the_allowance_is_checked_without_a_cutter(
     assert not faults
     setup = Setup(part=Mesh("part.stl", PLATE - [0, 0, 10.2]), shanks={1: Shank(0.5, 6.0)})
     assert not find_collisions(trajectory, example(), setup, Tolerances(0.001, 1e-5)).faults
+
+
+@pytest.mark.parametrize("half", [10, 30, 45, 70])
+@pytest.mark.parametrize(("aside", "found"), [(0.0, set()), (4.0, {"K136"})])
+def test_a_rapid_move_in_the_groove_of_a_pointed_cutter_meets_nothing(half, aside, found):
+    """A point cuts less than the widest diameter promises: between two poses as far apart as for that, ridges stay."""
+    tool = Tool(1, "v", 16.0, 0.0, 120.0, bottom_angle=np.radians(90 - half))
+    groove, back = [[-20, 0, 9.9], [20, 0, 9.9]], [[20, aside, 10], [-20, aside, 10]]
+    rows = [[-20, 0, 40], *groove, [20, 0, 40], [20, aside, 40], *back, [-20, aside, 40]]
+    kinds = [Kind.RAPID, Kind.LINE, Kind.LINE, *[Kind.RAPID] * 5]
+    trajectory, faults = place(program(rows, kind=kinds, tools={1: tool}), example(), ON_PALLET)
+    assert not faults
+    stock = Mesh("stock.stl", box([-15, -7, 5], [15, 7, 13]))
+    collisions = find_collisions(trajectory, example(), Setup(stock=stock, shanks={1: Shank(30.0, 16.0)}), NARROW)
+    assert {fault.code for fault in collisions.faults} == found
