@@ -80,19 +80,10 @@ def stations(path: ToolPath, close: Array | None = None, coarse: bool = False) -
     entry, leave = np.where(close, path.blend[:-1], 0.0), np.where(close, path.blend[1:], 0.0)
     checkpoint()
     middle = extent - entry - leave
-    turn = path.segments.turn() * middle
-    in_half_blend, coarser = (1, _COARSER) if coarse else (_CELLS_IN_HALF_BLEND, 1)
-    stops = path.rests[:-1] & path.rests[1:]  # two rests need a station between them
-    least, (first, last_piece) = 1 + (close & (stops | (not coarse))), path.segments.splines.pieces_of_rows()
-    least[path.segments.splines.row] *= 1 + last_piece - first
-    checkpoint()
-    widest = np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL) / coarser
+    in_half_blend = 1 if coarse else _CELLS_IN_HALF_BLEND
+    between = _cells_between_blends(path, middle, close, coarse)
     cells = np.column_stack(
-        [
-            np.where(entry > 0, in_half_blend, 0),
-            np.maximum(least, np.ceil(widest)).astype(np.int64),
-            np.where(leave > 0, in_half_blend, 0),
-        ]
+        [np.where(entry > 0, in_half_blend, 0), between, np.where(leave > 0, in_half_blend, 0)]
     ).ravel()
     checkpoint()
     begin = np.column_stack([0 * entry, entry, extent - leave]).ravel()
@@ -113,6 +104,17 @@ def stations(path: ToolPath, close: Array | None = None, coarse: bool = False) -
         rest=np.concatenate([[True], last & path.rests[segment + 1]]),
         edges=(path.starts[joint, None] + path.blend[joint, None] * [-1.0, 1.0]).ravel(),
     )
+
+
+def _cells_between_blends(path: ToolPath, middle: Array, close: Array, coarse: bool) -> Array:
+    """Number of cells of each segment between its blends, (N,), which are ``middle`` apart, (N,) mm."""
+    stops = path.rests[:-1] & path.rests[1:]  # two rests need a station between them
+    least, (first, last) = 1 + (close & (stops | (not coarse))), path.segments.splines.pieces_of_rows()
+    least[path.segments.splines.row] *= 1 + last - first
+    checkpoint()
+    turn = path.segments.turn() * middle
+    widest = np.maximum(middle / _LONGEST_CELL, turn / _WIDEST_CELL) / (_COARSER if coarse else 1)
+    return np.maximum(least, np.ceil(widest)).astype(np.int64)
 
 
 def speed_profile(s: Array, ceiling: Array, acceleration: Array) -> Array:

@@ -220,14 +220,28 @@ def _read_gcode(content: bytes, file: str, reading: ReadingOptions, folder: Path
     faults = tuple(_unreadable_folders(reading))
     if faults:
         return None, faults
+    program, diagnostics = _read_flavour(content, file, _gcode_options(reading, folder), reading.flavour)
+    if reading.wear:
+        found = "this is G-code: give the diameter of the cutter with --tool"
+        return None, (*diagnostics, Diagnostic("L432", Place(file), found))
+    if program is None:
+        return None, diagnostics
+    missing = np.flatnonzero(np.isnan(program.side_offset))
+    if len(missing):
+        found = Phrase("cutter compensation with a tool of unknown diameter")
+        return None, (*diagnostics, Diagnostic("G411", program.place(int(missing[0])), found))
+    known = {number: _zero_where_unknown(tool) for number, tool in program.tools.items()}
+    return replace(program, tools=known), diagnostics
+
+
+def _gcode_options(reading: ReadingOptions, folder: Path | None) -> gcode.ReadOptions:
     # NaN as diameter or length is reported where it is used.
     unknown = Tool(0, "", math.nan, 0.0, math.nan, corner_known=False)
-    numbers = {*reading.tools, *reading.lengths}
     tools = {
         number: replace(reading.tools.get(number, unknown), number=number, length=reading.lengths.get(number, math.nan))
-        for number in numbers
+        for number in {*reading.tools, *reading.lengths}
     }
-    options = gcode.ReadOptions(
+    return gcode.ReadOptions(
         tools=tools,
         default_tool=unknown,
         axis_words=reading.axis_words,
@@ -244,21 +258,6 @@ def _read_gcode(content: bytes, file: str, reading: ReadingOptions, folder: Path
         folders=(*map(Path, reading.subprograms), *([] if folder is None else [folder])),
         needs_end=not reading.allow_open_end,
     )
-    program, diagnostics = _read_flavour(content, file, options, reading.flavour)
-    if reading.wear:
-        found = "this is G-code: give the diameter of the cutter with --tool"
-        return None, (*diagnostics, Diagnostic("L432", Place(file), found))
-    if program is None:
-        return None, diagnostics
-    missing = np.flatnonzero(np.isnan(program.side_offset))
-    if len(missing):
-        place = program.place(int(missing[0]))
-        return None, (
-            *diagnostics,
-            Diagnostic("G411", place, Phrase("cutter compensation with a tool of unknown diameter")),
-        )
-    known = {number: _zero_where_unknown(tool) for number, tool in program.tools.items()}
-    return replace(program, tools=known), diagnostics
 
 
 def _zero_where_unknown(tool: Tool) -> Tool:

@@ -13,8 +13,7 @@ from pkm_post.system.freecad_command import VARIABLE as FREECADCMD
 from pkm_post.system.freecad_command import FreeCADCommand, freecad_command
 from pkm_post.system.lock import Lock, OwnerRecord, lock_owner, try_lock
 from pkm_post.system.out_of_memory import MEMORY_FAULTS, memory_diagnostic, memory_guard
-from pkm_post.system.staged import staged, write_fault
-from pkm_post.system.staged_folder import staged_folder
+from pkm_post.system.staged import staged, staged_folder, write_fault
 from pkm_post.system.thread_count import VARIABLE as THREADS
 from pkm_post.system.thread_count import ThreadCountError, threads
 from pkm_post.system.thread_count import share as thread_share

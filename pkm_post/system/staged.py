@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Staged files: results are written to a private folder and get their final names when all are complete.
 
-Input: the target folder. Output: all files in it, or none. A machine must never receive half a program, nor a program
-with the report of another one. All earlier files are moved aside before any new one arrives: a process that is killed
-leaves earlier files or new files, perhaps not all of them, but no mixture.
+Input: the target folder, or the name of a new folder. Output: all files in it, or none. A machine must never receive
+half a program, nor a program with the report of another one. All earlier files are moved aside before any new one
+arrives: a process that is killed leaves earlier files or new files, perhaps not all of them, but no mixture.
 """
 
 from __future__ import annotations
@@ -22,7 +22,6 @@ from typing import TYPE_CHECKING
 
 from pkm_post.system.file_names import ReplacedSourceError, UnusableNameError, prefixed, require_short
 from pkm_post.system.lock import Lock, try_lock
-from pkm_post.system.staged_folder import FolderExistsError
 
 if TYPE_CHECKING:
     from pkm_post.model import Diagnostic
@@ -33,6 +32,7 @@ _Move = tuple[Path, Path]
 _PREFIX = ".staged-"
 _LONGEST_NAME = 150
 """Characters of the longest path in a folder of results, including the private folder."""
+_FOLDER_PREFIX = ".staged-folder-"
 _PRIVATE = re.compile(re.escape(_PREFIX) + "[a-z0-9_]{8}")
 """Names of private folders, as ``tempfile.mkdtemp`` makes them."""
 _LOCK = _PREFIX + "lock"
@@ -49,6 +49,10 @@ _OPEN_ELSEWHERE = (5, 32, 33)
 """Windows errors for a file that another program has open: access denied, sharing violation, lock violation."""
 _PATIENCE_WITH_OPEN_FILES = 3.0
 """s, timeout for virus scanners and indexers, which open new files for a moment."""
+
+
+class FolderExistsError(OSError):
+    """The name is in use."""
 
 
 class BusyError(OSError):
@@ -99,6 +103,26 @@ def staged(folder: Path, last: str = "") -> Iterator[Path]:
             _synchronise(new / name)
         with _lock_of(folder / _LOCK):
             _move_files(new, folder, aside, last)
+
+
+@contextmanager
+def staged_folder(folder: Path) -> Iterator[Path]:
+    """Yield a new private folder, which becomes ``folder`` when the block ends; if the block raises, nothing appears.
+
+    Raises:
+        FolderExistsError: the name is in use; the existing item is unchanged.
+        OSError: a folder cannot be created or renamed.
+    """
+    if folder.exists():
+        raise FolderExistsError(f"{folder} is there already")
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    private = Path(tempfile.mkdtemp(prefix=_FOLDER_PREFIX, dir=folder.parent))
+    try:
+        private.chmod(0o755)
+        yield private
+        private.rename(folder)
+    finally:
+        shutil.rmtree(private, ignore_errors=True)
 
 
 def _any_length(folder: Path) -> Path:

@@ -4,7 +4,7 @@
 q_M = D q, k_M = R_D k with the work offset D, the pose of {C} in {M} [paper eq. 1, 2]. The path starts at the machine's
 home pose; rows without motion are dropped, and their events kept. The spin stays at zero: the platform has the spin of
 the program, and zero torsion where the program gives none. Segments that continue into the next one without a corner
-are marked smooth; both tip and tool axis count.
+are marked smooth.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry import Array, angle_between, arc_length, arc_sweep, cross, dot, norm, towards
+from pkm_post.geometry import Array, angle_between, arc_length, arc_sweep, norm
 from pkm_post.model import (
     MAX_SPIN,
     MIN_TOLERANCE,
@@ -32,25 +32,15 @@ from pkm_post.model import (
     distinct,
     errors,
     gauge_lengths,
-    pieces,
     threads,
 )
+from pkm_post.toolpath.continuity import NO_MOVE, corners, smooth
 from pkm_post.toolpath.sides import HALF_TURN
 from pkm_post.toolpath.spindle_dwells import with_spindle_waits
 from pkm_post.toolpath.symmetry.transform import mirrors, transform
 from pkm_post.toolpath.threads import thread_faults, thread_feeds
 from pkm_post.toolpath.tool_change import with_tool_changes
 
-_NO_MOVE = 1e-9
-"""mm and rad: a row that moves less is dropped."""
-_NO_CORNER = 1e-6
-"""rad, and rad/mm of the tool axis: smaller changes count as none."""
-_AT_ONCE = 1 << 14
-"""Joints in one pass: the working arrays take more memory than the result."""
-_AT_JOINTS = ("kind", "tip", "axis", "arc_centre", "arc_axis", "sweep", "length", "angle")
-"""Columns that determine whether the path continues smoothly."""
-_TANGENT = np.radians(0.1)
-"""rad: rounding of tangents by the decimals of a program; an exact path does not stop for it."""
 _BEYOND_REACH = 10
 """Multiple of the longest strut: positions farther from the base are out of reach and need no closer check."""
 _DAY = 86400.0
@@ -82,47 +72,44 @@ def place(
     checkpoint()
     way = _path_columns(placed, machine)
     checkpoint()
-    keep = (way["length"] > _NO_MOVE) | (way["angle"] > _NO_MOVE)
+    keep = (way["length"] > NO_MOVE) | (way["angle"] > NO_MOVE)
     faults = (*_faults(placed, machine, way, keep), *added, *waits)
     checkpoint()
     if errors(faults):
         return None, faults
+    return _trajectory(placed, machine, machine_from_work, way, keep), faults
+
+
+def _trajectory(
+    placed: Program, machine: Machine, machine_from_work: Array, way: dict[str, Any], keep: Array
+) -> Trajectory:
+    """The trajectory: the rows that move, from the home pose of the machine."""
     events = _events_on_kept_rows(placed.events, keep)
-    trajectory = Trajectory(
+    return Trajectory(
         **_columns(placed, way, keep, events),
         start_tip=machine.home_tip,
         start_axis=machine.home_axis,
         start_spin=machine.home_spin,
         events=events,
         operations=placed.operations,
-        tools=program.tools,
+        tools=placed.tools,
         machine_from_work=machine_from_work,
         machine=machine.name,
         machine_fingerprint=machine.fingerprint,
-        source=program.source,
-        source_fingerprint=program.source_fingerprint,
+        source=placed.source,
+        source_fingerprint=placed.source_fingerprint,
     )
-    return trajectory, faults
 
 
 def _path_columns(placed: Program, machine: Machine) -> dict[str, Any]:
     """Path columns by row of the program: start, end and length of each row."""
-    tip, axis, centre, turn = placed.position, placed.tool_axis, placed.arc_centre, placed.arc_axis
-    tool = _tool_by_row(placed)
+    tip, axis, tool = placed.position, placed.tool_axis, _tool_by_row(placed)
     axis_before = np.vstack([machine.home_axis, axis[:-1]])
-    angle = np.zeros(len(placed))
-    x, y, z = (axis != axis_before).T
-    turns = x | y | z
-    checkpoint()
-    angle[turns] = angle_between(axis_before[turns], axis[turns])
     # At a tool change the platform is at rest: the tip of a longer tool starts lower.
     longer = np.diff(gauge_lengths(placed.tools, tool), prepend=placed.tools[int(tool[0])].length)
     tip_before = np.vstack([machine.home_tip, tip[:-1]]) - longer[:, None] * axis_before
     checkpoint()
-    arc = placed.kind == Kind.ARC
-    sweep, length = np.zeros(len(placed)), norm(tip - tip_before)
-    sweep[arc] = arc_sweep(tip_before[arc], tip[arc], centre[arc], turn[arc])
-    length[arc] = arc_length(tip_before[arc], tip[arc], centre[arc], turn[arc])
+    sweep, length = _sweeps_and_lengths(placed, tip_before)
     checkpoint()
     return {
         "kind": placed.kind,
@@ -132,16 +119,35 @@ def _path_columns(placed: Program, machine: Machine) -> dict[str, Any]:
         "axis": axis,
         "spin": np.nan_to_num(placed.spin),
         "feed": np.fmin(placed.feed, _highest_feeds(placed, machine)),
-        "arc_centre": centre,
-        "arc_axis": turn,
+        "arc_centre": placed.arc_centre,
+        "arc_axis": placed.arc_axis,
         "sweep": sweep,
         "length": length,
-        "angle": angle,
+        "angle": _angles(axis_before, axis),
         "longer": longer,
         "tool": tool,
         "operation": placed.operation,
         "line": placed.line,
     }
+
+
+def _sweeps_and_lengths(placed: Program, tip_before: Array) -> tuple[Array, Array]:
+    """Sweep of each row, rad, 0 for lines, and length of its path, mm, (N,) each."""
+    arc = placed.kind == Kind.ARC
+    sweep, length = np.zeros(len(placed)), norm(placed.position - tip_before)
+    ends = tip_before[arc], placed.position[arc], placed.arc_centre[arc], placed.arc_axis[arc]
+    sweep[arc], length[arc] = arc_sweep(*ends), arc_length(*ends)
+    return sweep, length
+
+
+def _angles(before: Array, after: Array) -> Array:
+    """Angles between axes, (N,) rad; exactly 0 where they are equal, and computed only elsewhere."""
+    angle = np.zeros(len(after))
+    x, y, z = (after != before).T
+    turns = x | y | z
+    checkpoint()
+    angle[turns] = angle_between(before[turns], after[turns])
+    return angle
 
 
 def _highest_feeds(placed: Program, machine: Machine) -> Array:
@@ -185,7 +191,7 @@ def _of_moves(program: Program, machine: Machine, way: dict[str, Any]) -> Iterat
     for code, wrong, values, text in (
         ("K106", angle > HALF_TURN, np.degrees(angle), "{:.3f} degrees"),
         ("K102", ~(away < longest), away, "{:.6g} mm from the middle of the base"),
-        ("K126", arc & (np.abs(way["longer"]) > _NO_MOVE), way["longer"], "{:.6g} mm longer"),
+        ("K126", arc & (np.abs(way["longer"]) > NO_MOVE), way["longer"], "{:.6g} mm longer"),
         ("K146", (tolerance > 0) & (tolerance < MIN_TOLERANCE), tolerance, "{:.3g} mm"),
         ("K147", np.abs(way["spin"]) > MAX_SPIN, way["spin"], "{:.6g} rad"),
         ("K127", (seconds > _DAY) & (away < longest), seconds / 3600, "{:.6g} hours"),
@@ -261,70 +267,3 @@ def _exact_corners(exact_path: Array, columns: dict[str, Any], tip_before: Array
     if not exact_path.any():
         return exact_path
     return corners(columns, tip_before) & (exact_path | np.append(exact_path[1:], False))
-
-
-def corners(columns: dict[str, Any], tip_before: Array) -> Array:
-    """Segments with a corner of the tip path at their end, (N,); never the last.
-
-    A turn in place has a corner at both ends. The tool axis does not count.
-
-    Args:
-        columns: kind, tip, arc_centre, arc_axis, sweep of N segments.
-        tip_before: (N, 3) tips at their starts.
-    """
-    at_start, at_end = _tangents(columns, tip_before)
-    return np.append(norm(at_start[1:] - at_end[:-1]) > _TANGENT, False)
-
-
-def smooth(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Array:
-    """Segments after which the tip keeps its direction, and the axis its rate by path length, (N,).
-
-    Args:
-        columns: kind, tip, axis, arc_centre, arc_axis, sweep, length and angle of N segments.
-        tip_before: (N, 3) tips at their starts.
-        axis_before: (N, 3) unit tool axes at their starts.
-    """
-    goes_on = np.zeros(len(tip_before), dtype=np.bool_)
-    for joints in pieces(len(goes_on) - 1, _AT_ONCE):
-        rows = slice(joints.start, joints.stop + 1)
-        part = {name: columns[name][rows] for name in _AT_JOINTS}
-        goes_on[joints] = _goes_on(part, tip_before[rows], axis_before[rows])
-    return goes_on
-
-
-def _goes_on(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Array:
-    """The same for the joints between N segments, (N - 1,)."""
-    at_start, at_end = _tangents(columns, tip_before)
-    corner = norm(at_start[1:] - at_end[:-1]) + _jump_of_rate(columns, axis_before)
-    moves = columns["length"] > _NO_MOVE
-    return np.asarray((corner < _NO_CORNER) & moves[1:] & moves[:-1])
-
-
-def _jump_of_rate(columns: dict[str, Any], axis_before: Array) -> Array:
-    """Jump of the rate of the tool axis by path length after each segment but the last, (N - 1,) in rad/mm."""
-    turns = np.flatnonzero(columns["angle"] > 0)
-    before, after = axis_before[turns], columns["axis"][turns]
-    length = np.maximum(columns["length"][turns], _NO_MOVE)[:, None]
-    at_start, at_end = np.zeros_like(axis_before), np.zeros_like(axis_before)
-    at_start[turns] = towards(before, after) / length
-    at_end[turns] = -towards(after, before) / length
-    return norm(at_start[1:] - at_end[:-1])
-
-
-def _tangents(columns: dict[str, Any], tip_before: Array) -> tuple[Array, Array]:
-    """Unit tangents of the tip path at start and end of the segments, (N, 3) each; zero where the tip does not move."""
-    way = columns["tip"] - tip_before
-    at_start = _directions(way)
-    at_end = at_start.copy()
-    arc = np.flatnonzero(columns["kind"] == Kind.ARC)
-    turn, centre = columns["arc_axis"][arc], columns["arc_centre"][arc]
-    rise = (dot(way[arc], turn) / columns["sweep"][arc])[:, None] * turn
-    for tangent, tip in ((at_start, tip_before), (at_end, columns["tip"])):
-        tangent[arc] = _directions(cross(turn, tip[arc] - centre) + rise)
-    return at_start, at_end
-
-
-def _directions(vectors: Array) -> Array:
-    """(N, 3) unit vectors; zero where the vectors are too short to have a direction."""
-    length = norm(vectors)
-    return vectors / np.where(length > _NO_MOVE, length, np.inf)[:, None]

@@ -40,7 +40,7 @@ OTHERS = (
     (tool_path, "_JOINTS_AT_ONCE"),
     (interpolation, "_POINTS_AT_ONCE"),
     (playback, "_TO_FIND_THE_WORST"),
-    (sys.modules["pkm_post.toolpath.place"], "_AT_ONCE"),
+    (sys.modules["pkm_post.toolpath.continuity"], "_AT_ONCE"),
     (rough_limits, "_AT_ONCE"),
     (dynamics, "_MOST_KNOTS"),
     (page, "_CHART_POINTS"),

@@ -183,39 +183,19 @@ def block_states(blocks: Blocks, modal: Modal, options: ReadOptions, faults: Blo
 
 
 def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagnostics) -> Program | None:
+    """The program, or None with the faults added that prevent it."""
     states = block_states(blocks, modal, options, faults)
     checkpoint()
     modes = path_modes(blocks, modal, faults)
     checkpoint()
     dwells = dwell_words(blocks, modal, options)
     tracker = PositionTracker(blocks, modal, states.tools, states.spindle, dwells, states.lost, options, faults)
-    motions = tracker.motions()
-    checkpoint()
-    _check_unknown_positions(motions, states.lost, faults)
-    check_cuts_from_turns(blocks, motions, faults)
-    centre, axis = arc_geometry(blocks, modal, motions, faults)
-    if faults.has_errors():
+    path = _path(blocks, modal, tracker, states.lost, options, faults)
+    if path is None:
         return None
-    motions, centre, axis = split_turns(blocks, modal, motions, centre, axis)
-    checkpoint()
-    path_length = _path_lengths(modal, motions, centre, axis)
-    first = motions.block[:1].tolist()
-    motions, (centre, axis, path_length) = with_known_ends(motions, [centre, axis, path_length])
-    if not len(motions) and options.needs_motion:
-        _report_no_motion(blocks, first, tracker.known, faults)
-        return None
-    columns = _directions(blocks, modal, states, motions, axis, faults)
-    columns["tool_axis"] = axes_in_work_frame(motions, states.axes, states.written, states.spins, options, faults)
-    angle = _axis_angles(modal, columns["tool_axis"])
-    columns |= {
-        "kind": _KIND[motions.motion],
-        "position": _frames(motions).points(motions.end),
-        "feed": feeds(blocks, modal, states.spindle, motions, path_length, angle, options, faults),
-        "arc_centre": _frames(motions).points(centre),
-        "operation": uniform(0, len(motions), np.int32),
-        "line": motions.of_blocks(blocks.line),
-        **{name: motions.of_blocks(column) for name, column in modes.items()},
-    }
+    motions = path.motions
+    columns = _columns(blocks, modal, states, path, options, faults)
+    columns |= {name: motions.of_blocks(column) for name, column in modes.items()}
     events = ordered_events(
         events_of_blocks(blocks, modal, states.tools, states.spindle, dwells), motions.in_cycles, motions.block
     )
@@ -229,6 +209,64 @@ def _program(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDi
         reading=(),
         length_offsets=frozenset(tracker.offset_codes.length_offsets),
     )
+
+
+@dataclass(frozen=True)
+class _Path:
+    """Motions with known end points, in program coordinates.
+
+    Attributes:
+        motions: n motions.
+        arc_centre: (n, 3) mm, NaN for lines.
+        arc_axis: (n, 3) unit axes likewise.
+        length: (n,) mm; zeros in a program without G93, where they are unused.
+    """
+
+    motions: Motions
+    arc_centre: Array
+    arc_axis: Array
+    length: Array
+
+
+def _path(
+    blocks: Blocks, modal: Modal, tracker: PositionTracker, lost: Array, options: ReadOptions, faults: BlockDiagnostics
+) -> _Path | None:
+    """The path of a program, or None with the faults added that prevent it."""
+    motions = tracker.motions()
+    checkpoint()
+    _check_unknown_positions(motions, lost, faults)
+    check_cuts_from_turns(blocks, motions, faults)
+    centre, axis = arc_geometry(blocks, modal, motions, faults)
+    if faults.has_errors():
+        return None
+    motions, centre, axis = split_turns(blocks, modal, motions, centre, axis)
+    checkpoint()
+    length = _path_lengths(modal, motions, centre, axis)
+    first = motions.block[:1].tolist()
+    motions, columns = with_known_ends(motions, [centre, axis, length])
+    if not len(motions) and options.needs_motion:
+        _report_no_motion(blocks, first, tracker.known, faults)
+        return None
+    return _Path(motions, *columns)
+
+
+def _columns(
+    blocks: Blocks, modal: Modal, states: BlockStates, path: _Path, options: ReadOptions, faults: BlockDiagnostics
+) -> dict[str, Array]:
+    """Columns of the program, in {C}."""
+    motions, frames = path.motions, _frames(path.motions)
+    columns = _directions(blocks, modal, states, motions, path.arc_axis, faults)
+    tool_axis = axes_in_work_frame(motions, states.axes, states.written, states.spins, options, faults)
+    angle = _axis_angles(modal, tool_axis)
+    return columns | {
+        "tool_axis": tool_axis,
+        "kind": _KIND[motions.motion],
+        "position": frames.points(motions.end),
+        "feed": feeds(blocks, modal, states.spindle, motions, path.length, angle, options, faults),
+        "arc_centre": frames.points(path.arc_centre),
+        "operation": uniform(0, len(motions), np.int32),
+        "line": motions.of_blocks(blocks.line),
+    }
 
 
 def _check_unknown_positions(motions: Motions, lost: Array, faults: BlockDiagnostics) -> None:
