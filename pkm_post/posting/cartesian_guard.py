@@ -11,7 +11,7 @@ PMAC User's Manual, p. 692].
 Shifting the work frame by d is equivalent to shifting the base joints by -d, a longer tool to a longer spindle nose: so
 each corner is a machine. The vector of a strut is affine in these four values, so its length is convex: longest at a
 corner, but it may be shortest between them, by at most half the sum of the squared ranges through the length. Corners
-keep that distance from the shortest length.
+keep that distance from the shortest length. Fixtures stay with the base: at each corner a box holds all their places.
 """
 
 from __future__ import annotations
@@ -63,6 +63,9 @@ class Allowance:
         """Yield each corner of the allowance as text, with the equivalent machine, whose struts stay longer."""
         low, high = machine.strut_stroke
         stroke = low + (3 * self.origin**2 + self.tool_length**2) / (2 * low), high
+        fixtures = tuple(
+            replace(box, lowest=box.lowest - self.origin, highest=box.highest + self.origin) for box in machine.fixtures
+        )
         shifts = (-self.origin, self.origin) if self.origin else (0.0,)
         lengths = (-self.tool_length, self.tool_length) if self.tool_length else (0.0,)
         for *shift, longer in product(shifts, shifts, shifts, lengths):
@@ -70,7 +73,8 @@ class Allowance:
                 words = f"work frame at {', '.join(f'{value:+g}' for value in shift)}, tool {longer:+g} mm"
                 base = machine.base_joints - np.array(shift)
                 nose = machine.spindle_nose + longer
-                yield words, replace(machine, base_joints=base, spindle_nose=nose, strut_stroke=stroke)
+                moved = replace(machine, base_joints=base, spindle_nose=nose, fixtures=fixtures)
+                yield words, replace(moved, strut_stroke=stroke)
 
 
 @dataclass(frozen=True)

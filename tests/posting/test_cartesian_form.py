@@ -14,7 +14,7 @@ import pytest
 from pkm_post.cli import main
 from pkm_post.control.simulator import Controller
 from pkm_post.machine import machine_named, strut_lengths
-from pkm_post.model import Event, EventKind, Refused
+from pkm_post.model import Box, Event, EventKind, Refused
 from pkm_post.options import Options
 from pkm_post.posting import Allowance, cartesian_program, post
 from pkm_post.posting.verify import read_motion
@@ -205,6 +205,22 @@ def test_a_stroke_that_the_corners_keep_and_a_point_between_them_may_not_is_refu
         else:
             with pytest.raises(Refused, match="C115"):
                 cartesian_program(*files)
+
+
+@pytest.mark.parametrize(
+    ("lowest", "highest", "allowed", "refused"),
+    [([-50, -50, 0], [50, 50, 265], 2.9, 3.1), ([36, -0.5, 0], [37, 0.5, 290], 8.9, 10.0)],
+    ids=["below the holder", "a pin beside it, which it meets between two corners only"],
+)
+def test_fixtures_stay_with_the_machine_when_the_work_frame_moves(tmp_path, lowest, highest, allowed, refused):
+    """The holder, of 25 mm radius, goes down to 270 mm, with a clearance of 2 mm."""
+    vice = Box("vice", np.array(lowest, float), np.array(highest, float))
+    machine = dataclasses.replace(machine_named("example_6tps")[0], fixtures=(vice,))
+    files = tmp_path / "job.pmc", tmp_path / "job.pkmt", machine, tmp_path / "tip.pmc"
+    post(programs.program([[0, 0, 60], [0, 0, 50]]), machine, files[0], Options(work_offset=programs.ON_PALLET))
+    assert cartesian_program(*files, Allowance(0.0, allowed)).files
+    with pytest.raises(Refused, match=r"(?s)C115.*K116"):
+        cartesian_program(*files, Allowance(0.0, refused))
 
 
 def test_an_allowance_beyond_the_machine_is_refused(posted, tmp_path):
