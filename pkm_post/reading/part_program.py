@@ -289,9 +289,10 @@ def end_warnings(program: Program) -> tuple[Diagnostic, ...]:
 
 
 def _turning(program: Program) -> Iterator[Diagnostic]:
-    speeds = [event.value for event in program.events if event.kind is EventKind.SPINDLE]
-    if speeds and speeds[-1]:
-        yield Diagnostic("V130", program.place(len(program) - 1), f"{abs(speeds[-1]):g} rpm")
+    changes = (EventKind.SPINDLE, EventKind.TOOL_CHANGE)  # which leaves it stopped
+    last = next((event for event in reversed(program.events) if event.kind in changes), None)
+    if last is not None and last.kind is EventKind.SPINDLE and last.value:
+        yield Diagnostic("V130", program.place(len(program) - 1), f"{abs(last.value):g} rpm")
 
 
 def _low(program: Program) -> Iterator[Diagnostic]:

@@ -105,6 +105,9 @@ def _codes_of_one_group(blocks: Blocks, flavour: Flavour, faults: BlockDiagnosti
             here = (blocks.g_of(row) if letter == "G" else blocks.m_of(row)).tolist()
             words = [word_of(code, letter) for code in here if code in known and known[code].group is groups[of_group]]
             faults.add("G403", row, (*_spaced(words), f" ({groups[of_group].value})"))
+    off = _marked(blocks, blocks.m_row[blocks.m == 9])  # M7 and M8 may both be on
+    on = _marked(blocks, blocks.m_row[(blocks.m == 7) | (blocks.m == 8)])
+    faults.add_where("G403", off & on, lambda _: (Word("M", 9), " with M7 or M8"))
 
 
 def _functions(modal: Modal, faults: BlockDiagnostics) -> None:
@@ -145,7 +148,10 @@ def _used_by_motion(letter: str, modal: Modal, options: ReadOptions) -> Array:
             takes[code] = code == 800 or letter in meaning.letters or turns or letter in NORMAL_WORDS
             if code not in (0, 10, 800) and letter in VECTOR_WORDS:  # on an arc they are its centre or invalid
                 takes[code] = letter in meaning.letters
-    return modal.moves & map_rows(takes.__getitem__, modal.active[Group.MOTION])
+    motion, directly = modal.active[Group.MOTION], modal.programmed[Group.ONCE] == 530
+    if modal.flavour.g53_is_rapid and directly.any():
+        motion = np.where(directly, 0, motion)
+    return modal.moves & map_rows(takes.__getitem__, motion)
 
 
 def _rows_that_use(letter: str, blocks: Blocks, flavour: Flavour) -> Array:
@@ -256,6 +262,8 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     directly = modal.programmed[Group.ONCE] == 530
     wrong = directly & (motion != 0) & (motion != 10) & (not modal.flavour.g53_is_rapid)
     faults.add_where("G439", wrong, lambda row: (word_of(530), " while ", word_of(motion[row]), " is in force"))
+    polar = directly & (blocks.has("@") | blocks.has("^"))
+    faults.add_where("G407", polar, lambda _: (word_of(530), " and polar coordinates in one block"))
     relative = directly & modal.moves & (modal.active[Group.DISTANCE] == 910)
     faults.add_where("G440", relative, lambda _: (word_of(530), " while ", word_of(910), " is in force"))
     both = modal.moves & (modal.programmed[Group.LENGTH] == 432)

@@ -45,7 +45,7 @@ def events_of_blocks(blocks: Blocks, modal: Modal, tools: Array, spindle: Array,
     tool_changes, stops = modal.programmed[Group.CHANGE], modal.programmed[Group.STOP]
     for row in np.flatnonzero(tool_changes == 6).tolist():
         events.append((row, -4, EventKind.TOOL_CHANGE, float(tools[row])))
-    switched = (modal.programmed[Group.SPINDLE] != NONE) | changed(spindle, 0.0)
+    switched = (modal.programmed[Group.SPINDLE] != NONE) | (changed(spindle, 0.0) & (tool_changes == NONE))
     for row in np.flatnonzero(switched).tolist():
         events.append((row, -3, EventKind.SPINDLE, float(spindle[row])))
     on_coolant = is_among(blocks.m, _COOLANT)
@@ -58,21 +58,16 @@ def events_of_blocks(blocks: Blocks, modal: Modal, tools: Array, spindle: Array,
         events.append((row, -1, EventKind.DWELL, float(dwells[row])))
     for row in np.flatnonzero(stops != NONE).tolist():
         if stops[row] in ENDS:
-            events.extend(_at_program_end(row, spindle, events))
+            events.extend(_at_program_end(row, events))
         else:
             events.append((row, 1, EventKind.STOP, _STOPS[int(stops[row])]))
     return sorted(events, key=lambda event: event[:2])
 
 
-def _at_program_end(row: int, spindle: Array, before: list[BlockEvent]) -> list[BlockEvent]:
+def _at_program_end(row: int, before: list[BlockEvent]) -> list[BlockEvent]:
     """Events that M2 and M30 imply: spindle and coolant off."""
-    coolant = [value for _, _, kind, value in sorted(before, key=lambda event: event[:2]) if kind is EventKind.COOLANT]
-    off: list[BlockEvent] = []
-    if spindle[row]:
-        off.append((row, 2, EventKind.SPINDLE, 0.0))
-    if coolant and coolant[-1]:
-        off.append((row, 2, EventKind.COOLANT, 0.0))
-    return off
+    last = {kind: value for _, _, kind, value in sorted(before, key=lambda event: event[:2])}
+    return [(row, 2, kind, 0.0) for kind in (EventKind.SPINDLE, EventKind.COOLANT) if last.get(kind)]
 
 
 def ordered_events(of_blocks: list[BlockEvent], of_cycles: list[CycleEvent], block: Array) -> tuple[Event, ...]:

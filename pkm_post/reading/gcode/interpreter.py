@@ -222,6 +222,8 @@ class Interpreter(FlowControl):
 
     def _leave_program(self, block: Block) -> int:
         level = self._levels[-1]
+        if "L" in block.words:
+            raise ExecutionFault("G312", "M99 L, which changes the number of passes on some controls")
         to = label_of_number(block.words["P"]) if "P" in block.words and self._flavour.restarts else ""
         if self._flavour.restarts and len(self._levels) == 1:
             if to:

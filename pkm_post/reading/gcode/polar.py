@@ -102,7 +102,10 @@ class PolarWords:
         self, row: int, from_tool: bool, by_mode: bool, from_here: bool, known: Array, here: Array
     ) -> tuple[str, int, Found] | None:
         """The fault that prevents a position from being computed."""
-        letter = POLAR_WORDS[0] if self._blocks.has(POLAR_WORDS[0])[row] else POLAR_WORDS[1]
+        letters = [letter for letter in POLAR_WORDS if self._blocks.has(letter)[row]]
+        if by_mode and letters:
+            return "G407", row, (Word(letters[0]), " while ", Word("G", _ON / 10), " is in force")
+        letter = letters[0] if letters else POLAR_WORDS[1]
         name = Word("G", _ON / 10) if by_mode else Word(letter)
         if from_tool:
             return "G440", row, (name, " with ", Word("G", 91), ": polar coordinates from the place of the tool")

@@ -70,6 +70,8 @@ def _centre_and_factor(blocks: Blocks, modal: Modal, row: int, faults: BlockDiag
     if text is None or pointless:
         letter = (pointless or ["P"])[0].upper()
         faults.add("G434", row, Word(letter, given.get(letter, 1.0)))
+    if "P" in given and {*given} & {*_CENTRE}:
+        faults.add("G404", row, (word_of(SCALING), " with P and I, J or K: a parameter decides which it takes"))
     if "P" in given:
         factor = np.full(3, given["P"])
     else:

@@ -39,11 +39,15 @@ def tool_in_use(number: int, options: ReadOptions) -> Tool | None:
 
 
 def spindle_speeds(blocks: Blocks, modal: Modal) -> Array:
-    """Signed spindle speed in each block, (N,), 1/min, positive clockwise, 0 when stopped."""
+    """Signed spindle speed in each block, (N,), 1/min, positive clockwise, 0 when stopped.
+
+    A tool change leaves the spindle stopped until M3 or M4 [NGC 3.6.3, rs274]: S alone does not start it.
+    """
     codes = modal.programmed[Group.SPINDLE]
-    rows = np.flatnonzero((codes != NONE) | blocks.has("S"))
+    switches = (codes != NONE) | (modal.programmed[Group.CHANGE] != NONE)
+    rows = np.flatnonzero(switches | blocks.has("S"))
     speed = modal_word(blocks, "S", 0.0)[rows]
-    switched = np.flatnonzero(codes != NONE)
+    switched = np.flatnonzero(switches)
     turns = np.select([codes[switched] == 3, codes[switched] == 4], [1.0, -1.0], 0.0)
     sense = forward_fill(switched, turns, 0.0, len(blocks))[rows]
     return forward_fill(rows, speed * sense + 0.0, 0.0, len(blocks))

@@ -78,7 +78,8 @@ class SiemensMachine:
     def finish(self, row: int) -> None:
         """Flush pending moves, and stop spindle and coolant."""
         self.path.flush()
-        if self.state.spindle():
+        speeds = [event.value for event in self.path.sections.events if event.kind is EventKind.SPINDLE]
+        if speeds and speeds[-1]:
             self.path.add_event(EventKind.SPINDLE, 0.0)
         if self.state.coolant:
             self.path.add_event(EventKind.COOLANT, 0.0)

@@ -99,6 +99,7 @@ def _change_tool(machine: SiemensMachine) -> None:
         raise BlockFault("G411", f"T{number}")
     machine.state.tool = number
     machine.state.has_offset = True
+    machine.state.sense = 0.0  # a tool change leaves the spindle stopped until M3 or M4 [NGC 3.6.3]
     machine.path.add_event(EventKind.TOOL_CHANGE, float(number))
 
 

@@ -88,6 +88,7 @@ FAULTS = [
     ("X1\nM99", "G312", 2, 0, "M99 outside of a subprogram called by M98"),
     ("o1 sub\nM99\no1 endsub\no1 call", "G312", 2, 0, "M99 outside of a subprogram called by M98"),
     ("M98 P7\nM2\nO7\nM99 P3", "G312", 4, 0, "M99 P"),
+    ("M98 P7\nM2\nO7\nM99 L0", "G312", 4, 0, "M99 L, which changes the number of passes on some controls"),
     ("o1 sub\no1 endsub\no1 call" + " [1]" * 31, "G315", 3, 130, "31 arguments"),
     ("M98", "G316", 1, 0, "M98"),
     ("M98 P1.5 L2", "G316", 1, 0, "M98 P1.5 L2"),

@@ -379,3 +379,19 @@ def test_a_program_of_another_flavour_is_the_same_motion_where_they_agree():
     text = "G17 G90 G1 X1 Y2 F50\nG2 X3 Y2 I1 J0\nG91 G1 X1\nG90 Z5\nG83 X5 Z-3 R1 Q1\n"
     one, other = (taken(text, flavour=flavour)[0] for flavour in FLAVOURS)
     np.testing.assert_array_equal(one.position, other.position)
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("G17 G3 X1. Y1. R2. F60.\nG53 Z40. I1.\nM30\n", "G404"),  # G53 is rapid, and takes no word of the arc in force
+        ("G17 G3 X1. Y1. R2. F60.\nG53 Z40. R1.\nM30\n", "G404"),
+        ("G16\nG1 X10. Y30. @1 F60.\nG15\nM30\n", "G407"),
+        ("G1 X1. F60. M8 M9\nM30\n", "G403"),
+        ("G1 X1. F60. M9 M7\nM30\n", "G403"),
+    ],
+)
+def test_words_that_would_have_no_effect_are_faults(text, fault):
+    zero = (0.0, 0.0, 0.0)
+    assert codes(text, flavour="fanuc", machine_zero=zero) == [fault]
+    assert codes("G1 X1. F60. M8 M7\nG53 Z40.\nM30\n", flavour="fanuc", machine_zero=zero) == []

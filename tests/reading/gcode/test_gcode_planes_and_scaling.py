@@ -150,6 +150,7 @@ def test_factors_below_zero_mirror_and_arcs_and_sides_turn_round():
         ("G51 X0. Y0. P2.\nX1.\nG50\nM30\n", [("G405", 1)]),
         ("G51 X0. Y0. Z0.\nX1.\nG50\nM30\n", [("G405", 1)]),
         ("G51 X0. Y0. I2. J3.\nX1.\nG2 X2. Y0. I.5 J0.\nG50\nM30\n", [("G435", 3)]),
+        ("G51 X0. Y0. Z0. P2. I1.\nX1.\nG50\nM30\n", [("G404", 1)]),
         ("G51 X0. Y0. Z0. P2.\nG55\nX1.\nG50\nM30\n", [("G435", 2)]),
         ("G51 X0. Y0. Z0. P2.\nG68 X0. Y0. R20.\nX1.\nG50\nM30\n", [("G435", 2)] * 2),
         ("G51 X0. Y0. Z0. P2.\nG81 X1. Z-1. R2.\nG50\nM30\n", [("G435", 2)]),

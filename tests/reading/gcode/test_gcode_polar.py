@@ -53,6 +53,13 @@ def test_repeated_holes_go_round_as_those_of_rs274():
     np.testing.assert_allclose(bottoms[bottoms[:, 2] == 0, :2], around, rtol=0, atol=PRINTED)
 
 
+@pytest.mark.parametrize("word", ["@1", "^30"])
+def test_machine_coordinates_have_no_polar_words(word):
+    # rs274: "Cannot use polar coordinates with G53"
+    program, faults = taken(f"G21 F100\nG0 X15 Y0 Z3\nG53 G0 Z4 {word}\nM2\n", machine_zero=(0, 0, 0))
+    assert program is None and [(fault.code, fault.place.line) for fault in faults] == [("G407", 3)]
+
+
 def test_the_centre_of_a_polar_arc_is_that_of_rs274():
     program, _ = taken(MOVES)
     np.testing.assert_allclose(program.arc_centre[-1], [-14.9992, 19.8413, 0], rtol=0, atol=PRINTED)

@@ -164,6 +164,17 @@ def test_what_happens_in_a_block_has_an_order():
     assert sorted(program.tools) == [1, 2]
 
 
+@pytest.mark.parametrize("again, speed", [("", []), ("M3\n", [900]), ("M4 S600\n", [-600])])
+@pytest.mark.parametrize("change", ["T2 M6 S900\n", "S900 T2 M6\n", "T2 M6\nS900\n", "T2 M6\nM0\nS900\n"])
+def test_a_tool_change_leaves_the_spindle_stopped_until_it_is_started(change, again, speed):
+    # rs274: STOP_SPINDLE_TURNING, CHANGE_TOOL; SET_SPINDLE_SPEED(900), and no START_SPINDLE before M3
+    program = read(f"T1 M6\nG0 X0 Y0 Z0\nS500 M3\nG1 X1 F60\n{change}{again}X2\nM2\n")
+    started = [value for row, kind, value in happened(program) if kind is EventKind.SPINDLE and row == 2]
+    assert started == speed
+    last = [value for _, kind, value in happened(program) if kind is EventKind.SPINDLE][-1]
+    assert last == 0
+
+
 def test_feeds_of_all_modes():
     program = read("G0 X0 Y0 Z0\nG93 G1 X30 F2\nG94 X0 F600\nG95 M3 S600 X1 F.5\n")
     near(program.feed[1:], [1, 10, 5])

@@ -200,6 +200,15 @@ def test_events():
     ]  # fmt: skip
 
 
+def test_a_tool_change_leaves_the_spindle_stopped_until_it_is_started():
+    text = 'T="MILL 8" D1\nM6\nS500 M3\nG1 X1 F60\nM6\nS900\nX2\n{}X3\nM30'
+    speeds = [
+        [(event.row, event.value) for event in taken(HEAD + text.format(again)).events if event.kind.name == "SPINDLE"]
+        for again in ("", "M4\n")
+    ]
+    assert speeds == [[(1, 500), (4, 0)], [(1, 500), (3, -900), (4, 0)]]
+
+
 def test_tools_by_name_get_free_numbers_and_the_report_says_so():
     program = taken(
         HEAD + 'T1\nM6\nG1 X1\nT="MILL"\nM6\nX2\nT="DRILL"\nM6\nX3', tools={3: Tool(3, "Drill", 5.0, 0.0, 80.0)}
