@@ -185,6 +185,7 @@ def test_every_entry_stands_in_one_place():
     assert sorted(placed) == sorted(field.entry for field in FIELDS)
 
 
+@pytest.mark.slow
 def test_certified_limits_are_findings_of_a_certificate():
     *_, certificate, faults = of(all_stated(), random_job(np.random.default_rng(3)), NARROW)
     assert faults == ()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 import numpy as np
+import pytest
 
 from pkm_post.certificate.struts import extremes
 from pkm_post.geometry import hermite_accelerations, hermite_lengths, hermite_speeds
@@ -15,6 +16,7 @@ def ends(count, seed):
     return lengths[0], speeds[0], lengths[1], speeds[1], rng.uniform(0.001, 0.1, count)
 
 
+@pytest.mark.slow
 def test_closed_forms_are_what_dense_instants_find():
     cubic = ends(300, 4)
     speed, acceleration, shortest, longest = extremes(*cubic)

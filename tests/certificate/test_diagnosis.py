@@ -82,6 +82,7 @@ def test_an_edited_program_is_not_excused_by_its_decimals():
     assert not any("rounding" in fault.found for fault in faults)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("decimals", [(6, 4), (1, 1)])
 def test_a_plan_beyond_a_limit_stays_the_fault_of_the_planner(decimals):
     name = "example_6tps"

@@ -200,6 +200,7 @@ def test_six_loops_leave_the_circle_by_what_is_reported(gains):
     assert reported <= figure(certificate, "contour error")
 
 
+@pytest.mark.slow
 def test_unequal_gains_leave_a_straight_line_and_equal_ones_do_not():
     line = program([[-40, 0, 60], [40, 0, 60]], feed=40.0)
     errors = []

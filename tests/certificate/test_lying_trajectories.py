@@ -51,6 +51,7 @@ def test_lies_are_refused_by_name_or_change_nothing_that_is_run(files):
     assert sum(codes) > SEEDS / 2
 
 
+@pytest.mark.slow
 def test_reading_a_lie_takes_no_more_memory_than_its_size_allows(files):
     decode(files[2], "part.pkmt")
     for seed in range(SEEDS):

@@ -202,6 +202,7 @@ def test_most_intervals_have_a_course():
     assert np.isfinite(np.concatenate([course.missed[0] for course in courses])).mean() > 0.9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("job", JOBS)
 def test_no_instant_is_farther_from_the_course_than_is_said(job):
     machine, motion, struts, course = course_of(job)

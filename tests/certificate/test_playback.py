@@ -89,6 +89,7 @@ def assert_alike(one, other):
     np.testing.assert_allclose(one.worst[1] * TOLERANCES.axis, other.worst[1] * TOLERANCES.axis, atol=SAME)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("job", JOBS)
 def test_linear_steps_and_newtons_method_agree(job):
     one, other = task_of(job), task_of(job)

@@ -122,6 +122,7 @@ def played(job, knot, time):
     return pose, np.linalg.solve(jacobian, speed[..., None])[:, :3, 0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("job", JOBS)
 def test_no_moment_of_the_interval_is_worse_than_the_one_reported(job):
     _, _, motion, struts, certificate = certified_or_skipped(job)

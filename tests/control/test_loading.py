@@ -184,6 +184,7 @@ def worst_of(text, trajectory, machine):
     return tip.max(), max(np.abs(one).max() for one in hermite_accelerations(*cubics))
 
 
+@pytest.mark.slow
 def test_without_seal_and_manifest_mutants_are_taken_only_when_they_do_what_was_programmed(program, machine):
     """As of an earlier version: what it does decides. An interval may be a little longer, for instance."""
     program.with_name("cone-manifest.json").unlink()
@@ -203,6 +204,7 @@ def test_without_seal_and_manifest_mutants_are_taken_only_when_they_do_what_was_
         assert tip <= trajectory.tolerances.tip and acceleration <= machine.strut_acceleration
 
 
+@pytest.mark.slow
 def test_each_part_is_certified_and_none_of_its_mutants(in_parts):
     posted, machine = in_parts
     assert len(posted.parts) > 1

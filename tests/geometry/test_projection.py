@@ -106,6 +106,7 @@ def test_points_beside_the_surface_find_back(surface):
     assert np.max(np.linalg.norm(surface.points(*at.T) - start, axis=1)) < NANOMETRE
 
 
+@pytest.mark.slow
 def test_no_sample_of_the_surface_is_nearer():
     surface = waves()
     points = np.random.default_rng(3).uniform([-20, -20, -15], [120, 100, 15], (400, 3))

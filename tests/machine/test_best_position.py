@@ -34,6 +34,7 @@ def placed(machine, offset):
     return place(cone(120), machine, offset)[0]
 
 
+@pytest.mark.slow
 def test_what_is_reported_is_what_the_new_work_offset_gives(machine):
     trajectory = placed(machine, shifted([120.0, -60.0, 40.0]))
     found = best_position(trajectory, machine)
@@ -42,6 +43,7 @@ def test_what_is_reported_is_what_the_new_work_offset_gives(machine):
     assert found.after[STROKE] > found.before[STROKE] + 0.1
 
 
+@pytest.mark.slow
 def test_no_small_move_improves_it(machine):
     found = best_position(placed(machine, ON_PALLET), machine)
     for column in range(3):
@@ -68,12 +70,14 @@ def test_what_is_not_free_stays(machine):
     assert np.abs(found[:2, 3] - start[:2, 3]).max() > 1.0
 
 
+@pytest.mark.slow
 def test_another_share_may_count(machine):
     trajectory = placed(machine, shifted([80.0, 0.0, 0.0]))
     found = best_position(trajectory, machine, weights={JOINTS: 1.0})
     assert found.after[JOINTS] > found.before[JOINTS]
 
 
+@pytest.mark.slow
 def test_a_job_out_of_reach_is_brought_into_reach(machine):
     far = placed(machine, shifted([320.0, 0.0, 0.0]))
     found = best_position(far, machine)

@@ -104,6 +104,7 @@ def test_a_document_has_nothing_to_be_read_so(files, capsys):
     assert "--job is for CAM jobs" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_in_a_batch_each_option_is_for_the_files_that_it_fits(files, capsys):
     mixed = ["a.ngc", "b.apt", "--contour-data=centre", "--dwell-unit=ms"]
     assert main(["check", *mixed]) == 0

@@ -234,6 +234,7 @@ def test_what_is_kept_of_ends_does_not_matter():
     np.testing.assert_allclose(kept.error(start, end), new.error(start, end), rtol=ROUNDING, atol=ROUNDING)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", PATHS.values(), ids=PATHS)
 @pytest.mark.parametrize("stretch_ms", [1, 3000, 10**6])
 def test_stretches_of_other_lengths_give_the_same_motion(monkeypatch, make, stretch_ms):
@@ -244,6 +245,7 @@ def test_stretches_of_other_lengths_give_the_same_motion(monkeypatch, make, stre
         np.testing.assert_array_equal(getattr(found, field.name), getattr(expected, field.name))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 5])
 def test_the_number_of_threads_does_not_matter(monkeypatch, workers):
     feed_plan = example_plan(cone)

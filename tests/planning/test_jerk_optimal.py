@@ -20,6 +20,7 @@ OPTIMUM_DIGITS = 5e-3
 """Relative: the limits of the reference hold at its nodes only."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", SHORTEST)
 def test_the_plan_is_no_faster_and_little_slower_than_the_optimum(case):
     name, limits, jerk = case.split(", ")

@@ -2,6 +2,7 @@
 import dataclasses
 
 import numpy as np
+import pytest
 from machines import example
 from programs import BALL, ON_PALLET, cone, program
 
@@ -59,6 +60,7 @@ def test_limits_hold_in_what_the_controller_plays():
     assert norm(motion.tip_rate).max() <= 250.0
 
 
+@pytest.mark.slow
 def test_slower_machines_take_longer():
     times = [
         planned(cone(), dataclasses.replace(example(), strut_acceleration=limit))[2].time_ms[-1]

@@ -59,12 +59,14 @@ def test_noise_within_the_tolerance_costs_at_most_five_percent():
     assert duration(noisy) < 1.05 * duration(smooth)
 
 
+@pytest.mark.slow
 def test_noise_bends_the_struts_of_five_axes_little():
     tolerances = Tolerances(0.01, 10 * THOUSANDTH)
     smooth, noisy = (planned(scan(noise=noise, lean=0.2), tolerances)[0] for noise in (0.0, 0.005))
     assert duration(noisy) < 1.05 * duration(smooth)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("noise", [0.0005, 0.005])
 def test_noise_beyond_the_tolerance_is_followed(noise):
     feed_plan, _ = planned(scan(2, noise=noise, lean=0.1), Tolerances(MICRON, THOUSANDTH))
@@ -155,6 +157,7 @@ def test_an_unreachable_place_on_a_curve_is_named_by_its_line():
     assert abs(faults[0].place.line - longest) <= 1
 
 
+@pytest.mark.slow
 def test_a_wider_tolerance_of_the_program_smooths_more():
     trajectory = scan(2, noise=0.005)
     wide = dataclasses.replace(trajectory, tip_tolerance=np.full(len(trajectory), 0.02))

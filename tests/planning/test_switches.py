@@ -90,6 +90,7 @@ def played(feed_plan):
     return worst
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PATHS)
 def test_plans_take_little_longer_than_the_whole_limits_need(name):
     feed_plan = planned_path(name)
@@ -165,6 +166,7 @@ def test_the_cubics_are_those_through_the_integrals_of_the_acceleration(seed):
         np.testing.assert_allclose(found[1, :, row], ((6 * share - 2) * g).mean(axis=1), atol=1e-4)
 
 
+@pytest.mark.slow
 def test_a_machine_whose_limits_have_no_bounds_is_planned():
     struts, tip = played(planned(cone(20), screwed(example())))
     assert struts < HIDDEN and tip < HIDDEN

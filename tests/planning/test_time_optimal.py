@@ -34,6 +34,7 @@ def time_of(profile):
     return float(cell_times(profile.marks.s, profile.square).sum())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("limits_name", LIMITS)
 @pytest.mark.parametrize("name", PATHS)
 def test_under_whole_limits_the_plan_is_the_optimum(name, limits_name):
@@ -42,6 +43,7 @@ def test_under_whole_limits_the_plan_is_the_optimum(name, limits_name):
     assert time_of(profile) == pytest.approx(shortest, rel=SAME)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("limits_name", LIMITS)
 @pytest.mark.parametrize("name", PATHS)
 def test_the_plan_is_no_faster_and_not_much_slower_than_the_optimum(name, limits_name):

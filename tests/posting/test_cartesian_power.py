@@ -77,6 +77,7 @@ def words_of(text):
     return [np.array(way) for way in ways if way]
 
 
+@pytest.mark.slow
 def test_without_segments_the_exported_inverse_program_makes_the_struts_of_the_program(posted):
     """``--also cartesian`` of a posting: words of the text, through the kinematic program of ``machine export``."""
     machine, folder, _ = posted
@@ -218,6 +219,7 @@ def test_another_segment_time_ends_it(posted):
     assert on_the_simulator((posted[1] / "job-tip.pmc").read_text(), "") == (False, 2)
 
 
+@pytest.mark.slow
 def test_command_takes_the_segment_time(posted, tmp_path, capsys):
     machine, folder, form = posted
     file = tmp_path / "power.toml"

@@ -38,6 +38,7 @@ def posted(tmp_path, text, arguments, machine=None):
     return [line for line in lines if line in ("M0", "M1")], result.report["program"]["reading"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("arguments", FATES)
 def test_the_option_says_what_becomes_of_them(tmp_path, arguments):
     stops, reading = posted(tmp_path, WITH_STOPS, arguments)

@@ -80,6 +80,7 @@ def test_the_machining_time_is_that_of_the_program(machine, tmp_path):
     assert reported["total_s"] == pytest.approx(milliseconds / 1000 + 0.75, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_work_offset_by_name_and_by_matrix(machine, tmp_path):
     by_name = post(cone(60, turns=0.3), machine, tmp_path / "a.pmc")
     by_matrix = post(cone(60, turns=0.3), machine, tmp_path / "b.pmc", Options(work_offset=ON_PALLET))
@@ -120,6 +121,7 @@ def unreachable():
     return program([[0, 0, 60], [10, 0, 60], [600, 0, 60]])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("code", "made", "options"),
     [
@@ -172,6 +174,7 @@ def test_a_program_of_another_suffix_beside_the_new_report_is_reported(machine, 
     assert (warning.code, warning.found) == ("F104", "cone.ngc")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jerk", [math.inf, 25000.0])
 @pytest.mark.parametrize("lean", [0.0, 10.0])
 def test_tools_of_different_lengths_are_posted(machine, tmp_path, jerk, lean):
@@ -191,6 +194,7 @@ def test_tools_of_different_lengths_are_posted(machine, tmp_path, jerk, lean):
     assert [tool["number"] for tool in posted.report["program"]["tools"]] == [1, 2, 3]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rise", [0.05, 0.1, 0.2, 0.25, 0.3])
 def test_turns_that_rise_by_about_what_is_allowed_are_posted(machine, tmp_path, rise):
     """Both ends of such a turn are within the tolerance of each other, or nearly."""

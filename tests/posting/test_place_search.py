@@ -55,6 +55,7 @@ def far():
     return options, *find_place(cone(60), machine_named("example_6tps")[0], options)
 
 
+@pytest.mark.slow
 def test_a_place_is_found_with_its_amounts(machine):
     program, before = cone(60), shifted(500.0)
     options, found, diagnostics = far()
@@ -73,6 +74,7 @@ def test_a_place_is_found_with_its_amounts(machine):
     assert 0.0 < spare <= min(strokes) + 0.05
 
 
+@pytest.mark.slow
 def test_the_place_holds_as_its_offset_is_typed(machine):
     found, _ = find_place(cone(60), machine, Options(work_offset=shifted(500.0, 20.0)))
     typed = [float(word) for word in work_offset_text(found.options.work_offset).partition("=")[2].split(",")]
@@ -98,6 +100,7 @@ def test_a_program_too_large_for_the_machine_is_said_not_to_fit(machine):
     assert found.options.spin.rule is SpinRule.OPTIMISED and found.spins
 
 
+@pytest.mark.slow
 def test_the_command_says_the_amounts_and_the_option(tmp_path, capsys):
     part = tmp_path / "part.ngc"
     part.write_text(LONG)
@@ -114,6 +117,7 @@ def test_the_command_says_the_amounts_and_the_option(tmp_path, capsys):
     assert main([*arguments[:-1], offset]) == 0
 
 
+@pytest.mark.slow
 def test_a_refused_post_says_the_place_and_the_options_that_post_it(tmp_path, capsys):
     part = tmp_path / "part.ngc"
     part.write_text(LONG)
@@ -176,6 +180,7 @@ def test_where_the_best_place_collides_another_good_one_is_taken(machine):
     assert not np.allclose(found.options.work_offset, offset)
 
 
+@pytest.mark.slow
 def test_good_positions_are_apart_and_leave_something(machine):
     placed, _ = trajectory_of(cone(60), machine, Options(work_offset=ON_PALLET))
     best = best_position(placed, machine)

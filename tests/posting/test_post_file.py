@@ -91,6 +91,7 @@ def posted(folder, name, text, **choices):
     return post_file(file, choices.pop("machine", "example_6tps"), folder / "out", **choices)
 
 
+@pytest.mark.slow
 def test_g_code_siemens_s_language_and_cl_data_of_one_path_give_one_report(tmp_path):
     reports = [
         posted(tmp_path, "a.mpf", SIEMENS, reading=ReadingOptions("none", {1: cutter(10.0)})).report,
@@ -151,6 +152,7 @@ def fine_machine(tmp_path):
     return str(file)
 
 
+@pytest.mark.slow
 def test_canned_cycles_and_cycles_of_cl_data_give_one_report(tmp_path, fine_machine):
     reading = ReadingOptions("vector", {1: cutter(10.0)})
     canned = posted(tmp_path, "a.ngc", G_HOLES, reading=reading, machine=fine_machine).report
@@ -278,6 +280,7 @@ def test_files_of_one_name_do_not_overwrite_each_others_results(tmp_path, capsys
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_the_command_line_needs_no_freecad_for_part_programs(tmp_path):
     (tmp_path / "a.ncl.7").write_text(CL_DATA)
     arguments = ["post", "a.ncl.7", "--out", "made", "--work-offset=0,0,250", "--tool-length", "1=60"]
@@ -317,6 +320,7 @@ def test_a_length_for_a_tool_that_is_not_there_is_refused(tmp_path, name, text):
     assert not list((tmp_path / "out").glob("*"))
 
 
+@pytest.mark.slow
 def test_the_length_of_the_file_is_replaced_and_that_is_reported(tmp_path):
     own = posted(tmp_path, "a.cls", WITH_A_LENGTH, tool_lengths={})
     assert own.diagnostics == ()
@@ -332,6 +336,7 @@ def tips(made):
     return trajectory_file.read(made.program.with_suffix(".pkmt"))[0].tip
 
 
+@pytest.mark.slow
 def test_an_offset_of_another_number_lifts_the_tip_by_what_it_is_longer(tmp_path):
     # rs274 of LinuxCNC 2.9 with T1 Z60 and T11 Z75 in its tool table: T1 M6 G43 H11 prints USE_TOOL_LENGTH_OFFSET 75
     # and with H1 60: H alone counts, whatever is in the spindle, so the spindle and the tip of T1 are 15 mm higher.
@@ -385,6 +390,7 @@ M30
 """The program below from its second cut on: down along the tool axis from above everything."""
 
 
+@pytest.mark.slow
 def test_a_program_from_a_line_is_what_one_would_write_by_hand(tmp_path):
     rise = (30.0 - 20.0) / 1.0
     texts = {"whole": G_CODE, "hand": BY_HAND.format(10 + 0.1 * rise, 30)}

@@ -98,6 +98,7 @@ def test_what_cannot_be_read_is_reported(tmp_path, capsys):
     assert "G4" in reported
 
 
+@pytest.mark.slow
 def test_the_pose_of_tool_changes_does_not_move_with_the_part(machine):
     """The best place is that of a machine that changes tools where they are: all cuts count, and nothing else."""
     change = Event(60, EventKind.TOOL_CHANGE, 2)

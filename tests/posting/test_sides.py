@@ -92,6 +92,7 @@ def test_a_side_that_there_is_not_is_refused(tmp_path, side):
         posted(tmp_path, BOTH, side=side)
 
 
+@pytest.mark.slow
 def test_a_program_without_half_turns_has_one_side(tmp_path):
     text = f"{HEAD}{UPPER}{TAIL}"
     whole, side = posted(tmp_path / "whole", text), posted(tmp_path / "side", text, side=1)

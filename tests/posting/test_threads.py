@@ -364,6 +364,7 @@ def siemens(folder, sdac="3", size="", lead="1.25", **options):
     return posted(folder, SIEMENS.format(sdac=sdac, size=size, lead=lead), name="part.mpf", **options)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("size", "lead"), [("", "1.25"), ("8", ""), ("8", "1.25")])
 def test_cycle84_taps_with_a_speed_each_way(tmp_path, size, lead):
     result = siemens(tmp_path, size=size, lead=lead)
@@ -377,6 +378,7 @@ def test_cycle84_taps_with_a_speed_each_way(tmp_path, size, lead):
     assert codes == ["S500 M3", *["M29", "DWELL500", "M28"] * 2, "S500 M3", "M5"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("sdac", "after"), [("4", ["S500 M4", "M5"]), ("5", ["M5"]), ("", ["S500 M3", "M5"])])
 def test_the_spindle_turns_as_sdac_says(tmp_path, sdac, after):
     lines = siemens(tmp_path, sdac=sdac, lead="-1").program.read_text().splitlines()

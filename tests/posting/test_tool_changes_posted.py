@@ -123,6 +123,7 @@ def three_tools():
     return program(position, axis, kind=kind, events=tuple(events), tools=TOOLS, feed=100.0)
 
 
+@pytest.mark.slow
 def test_the_simulated_controller_stands_at_the_pose_whenever_a_tool_is_asked_for(machine, tmp_path):
     codes = machine.controller["codes"] | {"tool_change": CODE}
     settings = pmac.PmacSettings.of(machine.controller | {"codes": codes})
@@ -148,6 +149,7 @@ def test_the_simulated_controller_stands_at_the_pose_whenever_a_tool_is_asked_fo
     np.testing.assert_allclose(lengths, np.tile(at_the_pose(machine), (4, 1)), atol=count)
 
 
+@pytest.mark.slow
 def test_from_a_file_by_the_command_line_and_verified_again(tmp_path, capsys):
     made = tool_change_file(tmp_path)
     assert main(["machine", "check", str(made)]) == 0

@@ -63,6 +63,7 @@ def test_renumbering_twice_is_renumbering_once(text, first, step):
     assert renumbered(renumbered(text), first, step) == renumbered(text, first, step)
 
 
+@pytest.mark.slow
 @settings(deadline=None)  # the first example builds the parser
 @given(_LINES)
 def test_renumbering_changes_nothing_of_the_program(text):

@@ -156,6 +156,7 @@ _VALUE = st.recursive(
 )
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(st.sampled_from("ABCDEFGHIJKLMPQRSTUVWXYZ"), st.sampled_from(["", " "]), _VALUE), max_size=5))
 def test_any_block_of_words_is_coloured_as_it_is_read(words):
     line = "".join(letter + blank + value + blank for letter, blank, value in words)

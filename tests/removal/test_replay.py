@@ -39,6 +39,7 @@ def at_once(seconds):
     return fresh.stock
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kept", [100_000, 60])
 def test_back_and_forth_is_the_same_as_straight_there(played, monkeypatch, kept):
     monkeypatch.setattr(replay, "_MOST_KEPT", kept)

@@ -115,6 +115,7 @@ def test_a_slot_of_a_tilted_ball_is_a_tilted_half_round_below_the_top(degrees):
     assert found == pytest.approx(30 * area_below_top(corners[:, [0, 2]]), rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_finer_grid_is_nearer_to_the_truth():
     exact = 40 * (math.pi * 25 / 2 + 10 * 3)
     errors = [abs(taken(step, line([-40, 0, -8], [40, 0, -8]), Z, BALL) - exact) for step in (2.0, 0.7)]
@@ -173,6 +174,7 @@ def test_the_surface_is_closed_faces_outwards_and_holds_the_volume():
     assert volume(triangles) == pytest.approx(stock.volume, rel=0.01)
 
 
+@pytest.mark.slow
 def test_points_and_normals_of_the_surface_are_those_of_the_ball_that_dipped_in():
     stock, centre = after(0.5, [0.3, 0.2, -8.0], Z, BALL), np.array([0.3, 0.2, -3.0])
     found = list(brick_surfaces(stock, np.arange(stock.grid.count)))

@@ -26,6 +26,7 @@ NO_MATHEMATICS = "$x^_$ \\frac{ 日本"
 """What matplotlib would take for mathematics, and what its font does not have."""
 
 
+@pytest.mark.slow
 def test_a_picture_shows_names_as_they_are(tmp_path):
     made = cone()
     named = dataclasses.replace(

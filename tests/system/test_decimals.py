@@ -58,6 +58,7 @@ def test_numbers_of_any_size(seed):
     compare(" ".join(texts).encode())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_digits_points_and_signs_in_any_order(seed):
     chance = random.Random(seed)

@@ -120,6 +120,7 @@ def test_a_bit_that_flips_is_seen_or_means_nothing(file):
     assert 0 < unseen < len(whole)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(20))
 def test_bytes_by_chance_never_raise_anything_else(file, seed):
     chance, whole = random.Random(seed), file.read_bytes()
@@ -243,6 +244,7 @@ SMALL = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("content", SMALL.values(), ids=SMALL)
 def test_a_small_file_is_refused_after_little_of_it(file, content):
     """What unpacks to much, or names itself again and again, costs no more than its bytes."""

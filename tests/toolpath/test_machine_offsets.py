@@ -25,6 +25,7 @@ def posted(made, machine, shift=(0, 0, 0), lengths=None):
     return trajectory
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(40))
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_the_trajectory_is_that_of_another_posting(seed, machine):

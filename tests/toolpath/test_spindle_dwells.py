@@ -85,6 +85,7 @@ def test_one_time_serves_both_ways():
     assert waits(Event(0, SPINDLE, 12000.0), Event(1, SPINDLE, 6000.0), machine=both)[0][-1] == (DWELL, 1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(60))
 def test_the_spindle_is_at_its_speed_at_each_move_and_at_rest_at_each_change(seed):
     """A spindle that is followed from event to event: its speed changes by so much a second, and moves take no time."""

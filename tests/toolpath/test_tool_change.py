@@ -73,6 +73,7 @@ def test_the_way_crosses_above_the_safe_height_and_goes_along_the_axis_below(see
     assert (trajectory.feed[rows] == MACHINE.rapid_speed).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(40))
 def test_what_was_programmed_is_as_it_is_without_tool_changes(seed):
     """Each cut begins where the program says and not where another length puts the tip; ends of all rows are kept."""

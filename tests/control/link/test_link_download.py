@@ -198,6 +198,7 @@ def test_a_link_of_noise_alone_ends(kind, program, reference):
         assert tried(Wire(controller(), kind, fault=Noise(seed, 0.2)), program, reference).what != "loaded"
 
 
+@pytest.mark.slow
 def test_faults_by_chance(program, reference):
     ends = Counter(by_chance(seed, program, reference)[1].what for seed in range(FIRST_SEED, FIRST_SEED + SEEDS))
     assert ends["loaded"] > SEEDS // 4 and ends["cleared"] > SEEDS // 10

@@ -103,6 +103,7 @@ def test_a_program_runs_is_held_goes_on_and_is_aborted(wire, loaded):
     assert read_status(loaded, SETTINGS).standing
 
 
+@pytest.mark.slow
 def test_a_program_runs_to_its_end(wire, loaded):
     operate.start_program(loaded, SETTINGS, SLOW, FIRST)
     wire.sleep(10.0)

@@ -23,6 +23,7 @@ def wire(request):
     return Wire(controller(), request.param)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("handshake", range(4))
 @pytest.mark.parametrize("sums", range(2))
 @pytest.mark.parametrize("errors", range(4))

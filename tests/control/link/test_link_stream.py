@@ -67,6 +67,7 @@ class _Watched(bytearray):
         return self
 
 
+@pytest.mark.slow
 @KINDS
 @pytest.mark.parametrize("at", (5000, 8000, 11_000))
 def test_a_link_that_is_cut_and_comes_back(kind, at):
@@ -267,6 +268,7 @@ def test_who_connects_meanwhile_takes_no_line_from_a_running_program(kind, open_
     assert other.sent
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "order",
     [
@@ -288,6 +290,7 @@ def test_who_loads_or_starts_is_refused_meanwhile(order):
     assert tried(wire, progress=progress) == "streamed 0" and reported
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(100, 104))
 def test_faults_by_chance(seed):
     _, what = by_chance(seed)

@@ -111,6 +111,7 @@ def test_an_owner_that_died_is_passed_over_when_nothing_is_seen_of_it(kind, capl
         assert "its ownership is overridden" in caplog.text and "it was cleared" in caplog.text
 
 
+@pytest.mark.slow
 @KINDS
 def test_an_owner_that_counts_or_loads_or_moves_is_not_passed_over(kind):
     with two(kind, moves=True) as (wire, one, other):
@@ -222,6 +223,7 @@ sys.stdin.read()
 """
 
 
+@pytest.mark.slow
 def test_a_client_that_was_killed_locks_nobody_out():
     with served(controller(), speed=10.0) as name:
         script = _CLIENT.format(paths=[path for path in sys.path if path])

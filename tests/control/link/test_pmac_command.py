@@ -92,6 +92,7 @@ def test_bytes_that_do_not_belong_are_named_before_anything_is_sent(simulator, j
     assert "listed back as sent" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_program_too_large_is_streamed(simulator, machine, tmp_path, capsys, monkeypatch):
     made, port = simulator
     settings, _ = settings_of(machine)

@@ -140,6 +140,7 @@ def test_err004_is_noise_for_queries_and_for_lines_of_a_program_too():
         read_status(session, SETTINGS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("deaf_to", "last"),
     [(("hold",), b"&1A"), (("hold", "abort"), b"\x01"), (("hold", "abort", "all"), b"\x0b")],

@@ -72,6 +72,7 @@ def lying(made, choice, share):
     return reported
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("action", ACTIONS)
 def test_every_action_ends_in_words(action, machine, capsys, monkeypatch):
     choice = random.Random(action)

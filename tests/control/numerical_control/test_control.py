@@ -68,6 +68,7 @@ def test_a_jog_leads_where_it_says(station, jog, tip, axis, spin):
     assert state.status.fault_texts() == () and b"B999R" in station.sent() and b"PROG 10" not in station.sent()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("strut", "by"), [(1, 5.0), (4, -8.0)])
 def test_a_jog_of_one_strut_leaves_the_others(station, strut, by):
     before = station.control.poll().status.commanded
@@ -86,6 +87,7 @@ def test_a_jog_of_one_strut_leaves_the_others(station, strut, by):
     assert np.allclose(there, state.status.commanded, atol=MICRON)
 
 
+@pytest.mark.slow
 def test_jogs_follow_each_other(station):
     for shift in ((5, 0, 0), (0, 5, 0), (-5, -5, 0)):
         plan, _ = station.control.plan_jog(CartesianJog(shift), FEED)

@@ -51,6 +51,7 @@ def tip(reported):
     return [float(number) for number in re.search(r"tip X(\S+) Y(\S+) Z(\S+) mm", reported).groups()]
 
 
+@pytest.mark.slow
 def test_jogs_and_lines(simulator, capsys):
     made, port = simulator
     assert pmac("jog", port, "--x", 3, "--z", "-2", "--feed", 3000) == 0

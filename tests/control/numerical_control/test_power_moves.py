@@ -67,6 +67,7 @@ def starts(station):
     return sum(line == "&1B999R" for line in station.wire.said)
 
 
+@pytest.mark.slow
 def test_nothing_moves_in_the_rehearsal_which_is_done_once(station):
     before = station.motors.commanded.copy()
     found = station.control.longest_silence_s()
@@ -81,6 +82,7 @@ def test_nothing_moves_in_the_rehearsal_which_is_done_once(station):
     assert station.control.longest_silence_s() < found and starts(station) == 4
 
 
+@pytest.mark.slow
 def test_at_a_lower_override_no_shorter_time_is_found(station):
     full = station.control.longest_silence_s()
     other = power_station()
@@ -88,6 +90,7 @@ def test_at_a_lower_override_no_shorter_time_is_found(station):
     assert full <= other.control.longest_silence_s() <= 1.5 * full
 
 
+@pytest.mark.slow
 def test_a_controller_whose_hold_never_ends_is_refused(station, monkeypatch):
     monkeypatch.setattr(rehearsal, "_LONGEST_S", 4.0)
     assert refused_line(station.wire.machine, ["Coord[1].FeedHoldSlew=0.00001"]) is None

@@ -145,6 +145,7 @@ def test_a_contact_on_the_way_stops_the_probe_there(station):
     assert 299.0 - probe.settings.overtravel < state.pose.tip[2] < 299.0
 
 
+@pytest.mark.slow
 def test_an_input_that_hangs_is_refused_where_the_probe_began(station):
     seen = []
     probe = probe_at(station, plane(0.0))

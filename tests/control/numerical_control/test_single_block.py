@@ -137,6 +137,7 @@ def test_a_stopped_spindle_turns_again_where_a_block_is_begun(station, posted):
     assert variables.read("P", 7001) == 1
 
 
+@pytest.mark.slow
 def test_31_lines_that_blend_are_31_blocks(station, tmp_path):
     lines = [f"G1 X{x % 7} Y{x / 10:g} Z300 F3000" for x in range(1, 32)]
     post(tmp_path, "G21 G90 G64 P0.5\n" + "\n".join(lines) + "\nM30\n")
@@ -208,6 +209,7 @@ M30
     assert [(each.code, each.found) for each in found] == [("K152", "M64")]
 
 
+@pytest.mark.slow
 def test_a_block_that_is_held_goes_on_and_the_next_one_waits(station, posted):
     control = station.control
     control.open_blocks(blocks_in(posted))

@@ -116,6 +116,7 @@ def test_a_path_out_of_reach_is_refused():
     assert {fault.code for fault in refused.value.diagnostics} & {"K101", "K102", "K103"}
 
 
+@pytest.mark.slow
 def test_points_as_lines_read_back():
     (piece, *_) = pieces_of(trajectory_of(HOOK))
     places = list(Layout().points())[: len(piece.motion.struts) - 1]

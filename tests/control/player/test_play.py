@@ -23,6 +23,7 @@ from pkm_post.geometry import norm
 from pkm_post.model import Event, EventKind
 
 
+@pytest.mark.slow
 @BOTH
 def test_a_program_is_played_without_rests(machine):
     playing = Playing.of(machine=machine)
@@ -71,6 +72,7 @@ def test_a_resume_of_what_is_not_held_is_refused_and_the_play_goes_on(machine, c
     assert [record.message for record in caplog.records if "no program is held" in record.message]
 
 
+@pytest.mark.slow
 @BOTH
 def test_a_planner_that_is_too_late_ends_in_a_stop_on_the_path(machine):
     calls = itertools.count()
@@ -106,6 +108,7 @@ def test_a_list_too_short_for_a_piece_and_its_stop_is_refused():
     assert asked == [250, 90, 40]
 
 
+@pytest.mark.slow
 def test_an_end_takes_the_stop_of_a_piece_near_by():
     given = []
     orders = {20: [lambda _: given.append(len(playing.lengths)), Order("end")]}
@@ -146,6 +149,7 @@ def test_a_link_that_is_cut_and_comes_back(at, machine):
     assert done.finished and playing.arrived() < 1e-3
 
 
+@pytest.mark.slow
 def test_a_link_that_is_cut_for_good_ends_in_a_stop_on_the_path():
     playing = Playing.of(cut_at=22_000, mends=False)
     with pytest.raises(LinkLostError):
@@ -195,6 +199,7 @@ def test_an_override_below_is_only_slower():
     assert done.finished and done.log.holds and done.log.override == 100.0 and playing.arrived() < 1e-3
 
 
+@pytest.mark.slow
 @BOTH
 def test_single_block_rests_at_the_end_of_each_line(machine):
     playing = Playing.of(machine=machine)
@@ -217,6 +222,7 @@ def test_events_between_moves_and_stops_that_wait():
     assert {state.phase for state in playing.states if "M" in state.phase} == {"waits: M0", "waits: M1"}
 
 
+@pytest.mark.slow
 def test_an_m_code_of_the_machine_is_carried_out(monkeypatch):
     monkeypatch.setattr("playing.SETTINGS", replace(SETTINGS, codes=SETTINGS.codes | {"M21": "M21"}))
     playing = Playing.of(trajectory_of(events=(Event(2, EventKind.FUNCTION, 21.0),)))
@@ -385,6 +391,7 @@ def test_a_start_while_codes_run_is_not_for_the_stop_behind_them():
     assert playing.play().finished and asked
 
 
+@pytest.mark.slow
 def test_optional_stops_are_switched_while_it_plays():
     events = (Event(1, EventKind.STOP, 1), Event(2, EventKind.STOP, 1))
 
@@ -440,6 +447,7 @@ def test_a_retract_goes_up_along_the_tool_axis_and_back_before_the_play_goes_on(
     assert max(reached) < 1e-3, reached
 
 
+@pytest.mark.slow
 def test_a_retract_out_of_reach_is_not_made():
     playing = Playing.of()
     playing.answer = up_then_start(400.0)

@@ -91,6 +91,7 @@ def test_ends_of_sections_do_not_use_up_the_lead(monkeypatch):
     assert done.stops == 0 and least_ahead(playing) >= LONGEST_MS / 1000
 
 
+@pytest.mark.slow
 def test_a_list_without_room_for_the_lead_is_kept_full():
     x = np.linspace(0, 60, 200)
     wave = trajectory_of(np.column_stack([x, np.sin(x / 6), 80 + np.cos(x / 5)]), feed=30.0)

@@ -60,6 +60,7 @@ def test_a_program_is_played_with_overrides_and_a_hold(monkeypatch):
     assert playing.wire.now < LONGEST_S and not playing.wire.controller.runs_program()
 
 
+@pytest.mark.slow
 def test_codes_between_moves_are_carried_out(monkeypatch):
     events = (Event(0, EventKind.SPINDLE, 3000.0), Event(1, EventKind.COOLANT, 1.0))
     playing = power_playing(monkeypatch, trajectory_of(events=events))
@@ -69,6 +70,7 @@ def test_codes_between_moves_are_carried_out(monkeypatch):
     assert any("M3" in line for line in playing.wire.said) and any(line == "M8" for line in playing.wire.said)
 
 
+@pytest.mark.slow
 def test_a_planner_that_is_too_late_ends_in_a_stop_on_the_path(monkeypatch):
     late = iter([0.0] * 4 + [1.0] * 2)
     playing = power_playing(monkeypatch, trajectory_of())

@@ -95,6 +95,7 @@ def test_a_hold_before_anything_runs_keeps_it_from_starting(connection):
     assert not play.done.result(LONGEST_S).finished
 
 
+@pytest.mark.slow
 def test_an_abort_ends_it_and_the_worker_goes_on(connection):
     play = playing(connection)
     until(lambda: phase(play) == "runs")
@@ -131,6 +132,7 @@ def test_a_link_that_is_lost_while_it_plays_is_a_state_of_the_worker(connection,
     assert play.done.result(LONGEST_S).finished
 
 
+@pytest.mark.slow
 def test_what_waits_behind_it_is_cancelled_by_a_stop_and_the_end_of_the_worker_ends_it(connection):
     play = playing(connection)
     behind = connection.worker.submit(lambda control: control.poll())

@@ -52,6 +52,7 @@ def followed(posted):
     return since, np.array(places)
 
 
+@pytest.mark.slow
 def test_the_simulated_machine_keeps_to_the_programmed_path(posted, followed):
     machine, made = posted
     since, places = followed

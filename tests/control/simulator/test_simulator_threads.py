@@ -19,6 +19,7 @@ START = 62.0
 SPINDLE = LETTERS.index("Z")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("override", [100, 40])
 def test_the_spindle_keeps_the_lead_at_every_moment_and_at_any_override(override):
     machine, faults = machine_of(spindle_axis_text().encode(), "machine.toml")

@@ -106,6 +106,7 @@ def test_each_kind_of_collision_is_refused(tmp_path, capsys, flag, mesh, change,
     assert code == 1 and not files and reported in errors, errors
 
 
+@pytest.mark.slow
 def test_a_cutter_that_gouges_is_posted_with_a_warning(tmp_path, capsys):
     code, files, reported = posted(
         tmp_path, capsys, "--part", stored(tmp_path, "p.stl", box([-40, -40, 0], [40, 40, 11]))

@@ -24,6 +24,7 @@ def path(count, laps=3.0):
     return tip - (tool_length - 120.0)[:, None] * axis, axis, 0.3 * np.sin(2 * t), tool_length
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 2, 3, 127, 128, 129, 5000])
 def test_the_poses_are_those_of_the_path(count):
     machine = dataclasses.replace(screwed(example()), length_offset=np.linspace(-1, 1, 6))

@@ -132,6 +132,7 @@ def test_what_has_no_bound_says_so(machine):
     assert all(np.isinf(getattr(bound, field.name)).all() for field in dataclasses.fields(bound))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("long", [0.02, 0.1, 0.3, 0.6])
 @pytest.mark.parametrize("machine", [example(), screwed(example())], ids=["keyed", "screwed"])
 def test_the_drift_at_three_shares_stands_for_the_whole_interval(machine, long):

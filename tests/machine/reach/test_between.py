@@ -128,6 +128,7 @@ def test_a_singular_pose_is_not_jumped_over():
         assert (finding.at_least > 0) != bad
 
 
+@pytest.mark.slow
 def test_margins_of_many_rows_are_those_of_the_rows_where_little_is_left():
     # In large steps over the rows, or one by one: where less than the comfort is left, the same.
     machine = bodied()

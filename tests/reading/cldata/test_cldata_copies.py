@@ -117,6 +117,7 @@ def test_increments_and_events_are_copied():
     assert [event.row for event in found.events if event.value == 500] == [2, 4]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "code"),
     [

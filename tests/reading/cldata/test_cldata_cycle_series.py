@@ -187,6 +187,7 @@ def tips(program):
     return program.position[np.concatenate([[True], moved])]
 
 
+@pytest.mark.slow
 def test_upright_series_are_those_of_canned_cycles():
     """RTRCTO,AUTO is G98 and no RTRCTO G99; tests/reading/gcode compares series of G-code with rs274."""
     random = np.random.default_rng(98)

@@ -95,6 +95,7 @@ def test_a_missing_lark_is_named(monkeypatch):
     monkeypatch.undo()
 
 
+@pytest.mark.slow
 def test_any_bytes_give_a_program_or_diagnostics():
     random = np.random.default_rng(20)
     seed = b"UNITS/MM\nRAPID\nGOTO/1,2,3,0,0,1\nFEDRAT/5,MMPM\nCIRCLE/1,2,3,0,0,1\n$$-> CSYS/1 $\nCYCLE/DRILL,(TLON=')"

@@ -65,6 +65,7 @@ def without_comment(line):
     return line, False
 
 
+@pytest.mark.slow
 def test_quotes_and_comments_agree_with_reading_by_character():
     random = np.random.default_rng(12)
     quoted = compared = 0

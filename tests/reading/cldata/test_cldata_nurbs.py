@@ -73,6 +73,7 @@ def off_curve(curve, places):
     return np.linalg.norm(places[:, None] - feet, axis=2).min(axis=1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("seed", "degree", "count"), [(1, 3, 4), (2, 3, 9), (3, 2, 6), (4, 5, 12), (5, 1, 5), (6, 3, 30)]
 )
@@ -95,6 +96,7 @@ def test_the_bound_of_the_chords_is_kept_on_a_parabola():
     assert 0.8 * CHORD_TOLERANCE < sag <= CHORD_TOLERANCE
 
 
+@pytest.mark.slow
 def test_axes_follow_the_second_curve():
     curve = Curve(7, 3, 8, five_axis=True)
     found = program(f"{start_of(curve)}{curve.statements([[*curve(at), 0, 0, 1] for at in curve.at])}FINI\n")

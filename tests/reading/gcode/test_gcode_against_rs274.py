@@ -39,6 +39,7 @@ def test_same_moves(case):
     assert difference(case["moves"], program) == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", BLOCKS, ids=lambda row: row["block"])
 def test_takes_and_refuses_the_same_blocks(row):
     program, _ = ours(after_a_move(row["block"]))

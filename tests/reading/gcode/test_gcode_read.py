@@ -39,6 +39,7 @@ def test_a_loop_without_end_stops_at_its_limit():
     assert [code[:2] for code in codes(diagnostics)] == ["G3"]
 
 
+@pytest.mark.slow
 def test_any_text_gives_a_program_or_errors():
     chance = random.Random(7)
     words = [
@@ -83,6 +84,7 @@ def test_any_text_gives_a_program_or_errors():
         assert program is not None or diagnostics, text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("axis_words", "words", "most"), [("none", "X{} Y{} Z1", 80), ("vector", "G1 X{} Y{} Z1 I0.1 J0.2 K{}", 200)]
 )

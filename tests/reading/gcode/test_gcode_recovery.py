@@ -68,6 +68,7 @@ def test_equal_faults_are_one_with_their_number_and_lines():
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("faulty", ["G1 X1..5", "G1 X[1", "G1 X1\xe4"])
 def test_equal_syntax_faults_are_one_however_many(faulty):
     _, found = read(START + f"{faulty}\n" * 3950 + "Y\nM2\n", "part.ngc")

@@ -119,6 +119,7 @@ def test_same_program(text):
     words("XY").map(lambda text: f"G51.1 {text}"),
     st.just("G3 X1 I2"),
 ), min_size=1, max_size=30))  # fmt: skip
+@pytest.mark.slow
 def test_same_program_with_tool_axes(parts):
     text = "\n".join(["T1 M6", "G43.5 H1", "G0 X1 Y2 Z3", "G1 F100", *parts, ""])
     same(text.replace("G3 X1 I2", "G91 G3 X2 I1 J0\nG90"), "vector")

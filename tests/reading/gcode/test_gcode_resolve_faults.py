@@ -31,6 +31,7 @@ def test_there_are_programs_for_every_code():
     assert codes == {code for code in RULES if code.startswith("G4")} | {"G317"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.stem)
 def test_reports_what_its_first_line_says(path):
     text = path.read_text(encoding="utf-8")

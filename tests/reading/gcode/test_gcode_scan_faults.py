@@ -57,6 +57,7 @@ def test_diagnostics_tell_what_was_found_and_expected(line, found):
     assert fault.found == found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "line, code",
     [

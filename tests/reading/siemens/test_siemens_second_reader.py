@@ -4,6 +4,7 @@
 import random
 
 import numpy as np
+import pytest
 from second_reader import Second
 from series import cases
 
@@ -159,6 +160,7 @@ def columns_of(rows):
     }
 
 
+@pytest.mark.slow
 def test_random_programs_are_read_alike(monkeypatch):
     """On a control that goes by the distances alone after a new frame (setting data 42440)."""
     monkeypatch.setattr("pkm_post.reading.siemens.motions._SHIFTED", np.inf)

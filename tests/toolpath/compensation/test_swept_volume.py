@@ -71,6 +71,7 @@ def test_flat_end_that_turns_on_the_spot_cuts_with_bottom_and_side():
     assert found.left == pytest.approx(np.maximum(bottom, side), abs=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gap", [0.1, -0.1], ids=["left", "gouge"])
 @pytest.mark.parametrize("degrees", [30.0, 5.0, 2.0])
 def test_line_that_meets_a_flank_at_a_slant_is_followed_to_it(degrees, gap):

@@ -47,6 +47,7 @@ def test_passes_on_a_plate_are_evenly_apart_and_reach_its_borders():
         assert sorted(poses.point[rows[[0, -1]], 0]) == pytest.approx([0.0, 40.0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lines", [PassLines.ALONG_U, PassLines.ALONG_V])
 def test_neighbours_on_a_torus_are_nowhere_farther_apart_than_the_stepover(lines):
     step = 2.0

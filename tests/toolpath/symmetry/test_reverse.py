@@ -303,6 +303,7 @@ def random_job(rng):
     return made_of(rows)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(40))
 def test_laws_hold_for_random_jobs(seed):
     before = random_job(np.random.default_rng(seed))

@@ -41,6 +41,7 @@ def posted(machine, request, tmp_path_factory):
     return trajectory_file.read(folder / "job.pkmt")[0], folder / "job-linuxcnc.ngc"
 
 
+@pytest.mark.slow
 def test_it_says_the_same_poses_and_events(posted):
     trajectory, file = posted
     program, faults = read_part_program(file, ReadingOptions(axis_words="RPY"))

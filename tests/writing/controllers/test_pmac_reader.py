@@ -178,6 +178,7 @@ def test_a_speed_at_the_very_end_is_read_as_it_is(job):
     assert read.speed[-1].tolist() == [-7.5, 0, 0, 0, 0, 0]
 
 
+@pytest.mark.slow
 def test_a_program_cut_off_anywhere_is_a_fault(job):
     text = _program(job)
     for end in range(len(text) - 1):

@@ -35,6 +35,7 @@ def of_kind(machine, kind, **changes):
     return dataclasses.replace(machine, controller=machine.controller | {"kind": kind} | changes)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", CONTROLLERS)
 def test_a_job_is_posted_and_verified_for_every_kind(machine, tmp_path, kind):
     other, controller = of_kind(machine, kind), CONTROLLERS[kind]
@@ -46,6 +47,7 @@ def test_a_job_is_posted_and_verified_for_every_kind(machine, tmp_path, kind):
     agree(report, posted.report)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", CONTROLLERS)
 def test_codes_as_synchronous_assignments_are_certified(machine, tmp_path, kind):
     codes = machine.controller["codes"] | {
@@ -65,6 +67,7 @@ def in_parts(machine, tmp_path_factory):
     return small, post(job(), small, tmp_path_factory.mktemp("parts") / "job.pmc")
 
 
+@pytest.mark.slow
 def test_a_program_larger_than_the_memory_is_certified_in_parts(machine, in_parts, tmp_path):
     _, posted = in_parts
     whole = post(job(), machine, tmp_path / "job.pmc")
@@ -146,6 +149,7 @@ def test_a_name_that_is_not_known_is_refused_before_anything_is_done():
         Options(also=("csv", "excel"))
 
 
+@pytest.mark.slow
 def test_the_same_job_gives_the_same_tables(machine, tmp_path):
     for folder in ("one", "two"):
         post(job(), machine, tmp_path / folder / "job.pmc", Options(also=tuple(TABLES)))

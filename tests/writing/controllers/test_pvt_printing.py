@@ -22,6 +22,7 @@ def ties(decimals):
     return np.concatenate([halves, np.nextafter(halves, np.inf), np.nextafter(halves, -np.inf)])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("decimals", range(1, 10))
 @pytest.mark.parametrize("largest", [0.0, 1e-12, 0.4, 1.0, 9.99999, 31.0, 1200.0, 4294.0, 4295.0, 1e5, 1e9, 1e16, 1e25])
 def test_numbers_are_printed_as_python_prints_them_rounded(decimals, largest):

@@ -26,6 +26,7 @@ def test_both_know_the_same_codes():
     assert set(codes.EVENT_CODES) == set(syntax.EFFECTS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", CONTROLLERS)
 @pytest.mark.parametrize("pair", PAIRS, ids="-".join)
 def test_two_meanings_swapped_in_the_writer_are_found(monkeypatch, job, kind, pair):

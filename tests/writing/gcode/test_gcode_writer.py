@@ -124,6 +124,7 @@ def test_text_of_a_small_job():
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("form", TILTING)
 def test_a_random_job_is_read_back_as_it_was(form, seed):

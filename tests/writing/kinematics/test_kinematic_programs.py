@@ -123,6 +123,7 @@ def test_forward_program_finds_random_poses_within_reach(machine, axes):
     assert steps.max() <= MOST_STEPS - 2
 
 
+@pytest.mark.slow
 def test_beyond_reach_a_pose_that_is_found_has_the_counts(machine):
     """There another pose may have the same strut lengths; what has others is never found."""
     grid = made.grid(machine, OFFSET)

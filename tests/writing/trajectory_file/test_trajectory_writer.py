@@ -23,6 +23,7 @@ def read_back(trajectory, path):
     return result
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(40))
 def test_what_is_written_is_read_back(tmp_path, seed):
     count, events = ((1, 0), (2, 1), (20, 6), (1000, 50))[seed % 4]
