@@ -121,7 +121,9 @@ class ReachObject(PropertyProxy):
         _store_path(obj, found)
 
     def onChanged(self, obj: Any, name: str) -> None:
-        """Colour by another check, without running the checks."""
+        """Colour by another check, without running the checks; undo and redo bring the results of another state."""
+        if name == "Violations":
+            self.study = None
         if name != "ColourBy" or obj.ColourBy not in (WORST, *getattr(obj, "Checks", ())):
             return
         if self.study is not None:

@@ -91,8 +91,14 @@ class SimulationObject(PropertyProxy):
         self.clear_results(obj)
         self.plan = None
         if obj.Job is not None:
-            self.plan = simulation_of(placed_job(obj.Job, obj.Machine))
-            _set_results(obj, self.plan)
+            plan = simulation_of(placed_job(obj.Job, obj.Machine))
+            _set_results(obj, plan)
+            self.plan = plan
+
+    def onChanged(self, _obj: Any, name: str) -> None:
+        """Drop the plan where undo or redo brings the results of another state."""
+        if name == "Problems":
+            self.plan = None
 
 
 def create_simulation(job: Any, machine: Any = None, label: str = "") -> Any:

@@ -120,6 +120,24 @@ def test_one_undo_takes_it_back(job):
     assert document.getObject("Reach") is None
 
 
+def test_undo_leaves_no_findings_of_the_undone_state(job, found):
+    document, operation = job.Document, job.Operations.Group[0]
+    document.UndoMode = 1
+    assert found.Proxy.study is not None
+    before = list(found.Violations), list(found.Points), list(found.Margins), str(found.ColourBy)
+    document.openTransaction("Edit")
+    operation.Gcode = [*operation.Gcode, "G1 X900 Y4 Z30 I0 J0 K1 F20"]
+    found.ColourBy = found.Checks[0]
+    document.recompute()
+    document.commitTransaction()
+    assert len(found.Violations) == len(found.Proxy.study.findings) > len(before[0])
+    document.undo()
+    assert (list(found.Violations), list(found.Points), list(found.Margins), str(found.ColourBy)) == before
+    assert found.Proxy.study is None
+    document.recompute()
+    assert found.Proxy.study is not None and list(found.Violations) == before[0]
+
+
 def test_thinning_keeps_the_worst_and_both_ends():
     margin = np.random.default_rng(7).normal(size=5000)
     rows = thinned(margin, 100)

@@ -9,6 +9,7 @@ from pkm_post.freecad_app.document import is_operation, is_simulation
 from pkm_post.freecad_app.machine_object import create_machine
 from pkm_post.freecad_app.simulation import simulate_job
 from pkm_post.freecad_app.simulation_object import create_simulation, plan_of
+from pkm_post.model import Refused
 
 MICROSECOND = 1e-6
 NANOMETRE = 1e-6
@@ -140,3 +141,22 @@ def test_it_is_reported_from_other_objects(job, made):
     assert is_simulation(made)
     assert not is_operation(made)
     assert not any(is_simulation(item) for item in job.Document.Objects if item != made)
+
+
+def test_undo_and_redo_leave_no_motion_of_another_state(job, made):
+    document, operation = job.Document, job.Operations.Group[0]
+    document.UndoMode = 1
+    shown = [made.Duration.Value]
+    document.openTransaction("Edit")
+    operation.Gcode = [*ARC, "G1 X40 F5"]
+    document.recompute()
+    document.commitTransaction()
+    shown.append(made.Duration.Value)
+    assert plan_of(made).duration == pytest.approx(shown[1], abs=MICROSECOND) != pytest.approx(shown[0], abs=1.0)
+    for step, duration in ((document.undo, shown[0]), (document.redo, shown[1])):
+        step()
+        assert made.Proxy.plan is None
+        with pytest.raises(Refused, match="J133"):  # CAM's operations wait for a recompute
+            plan_of(made)
+        document.recompute()
+        assert (made.Duration.Value, plan_of(made).duration) == pytest.approx((duration, duration), abs=MICROSECOND)
