@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 
 from FreeCAD import Units
 
@@ -36,11 +35,6 @@ def volume_text(cubic_mm: float) -> str:
 def speed_text(mm_per_second: float) -> str:
     """A feed or a speed."""
     return _text(mm_per_second, Units.Velocity)
-
-
-def point_text(mm: Iterable[float]) -> str:
-    """Coordinates of a point."""
-    return "  ".join(f"{name} {length_text(value)}" for name, value in zip("XYZ", mm, strict=True))
 
 
 def time_text(seconds: float) -> str:

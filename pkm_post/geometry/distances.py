@@ -48,11 +48,6 @@ def _share(dividend: Array, divisor: Array) -> Array:
     return np.asarray(np.minimum(np.maximum(_quotient(dividend, divisor), 0.0), 1.0))
 
 
-def point_to_box(point: Array, lowest: Array, highest: Array) -> Array:
-    """Distances of points (..., 3) from boxes between the corners ``lowest`` and ``highest`` (..., 3)."""
-    return norm(point - np.clip(point, lowest, highest))
-
-
 def point_to_cylinder(point: Array, radius: Array | float, low: Array | float, high: Array | float) -> Array:
     """Distances of points (..., 3) from cylinders about the z axis, from z = ``low`` to ``high``."""
     outward = np.hypot(point[..., 0], point[..., 1]) - radius

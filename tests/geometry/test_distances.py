@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from pkm_post.geometry.distances import (
-    point_to_box,
     point_to_cylinder,
     point_to_segment,
     segment_to_box,
@@ -81,7 +80,8 @@ def test_boxes_and_cylinders_against_points_of_the_segment():
     rng = np.random.default_rng(3)
     start, end = segments(rng)
     low, high = np.array([-30.0, -20, -10]), np.array([25.0, 35, 15])
-    grid = point_to_box(points_on(start, end), low, high).min(axis=1)
+    points = points_on(start, end)
+    grid = np.linalg.norm(points - np.clip(points, low, high), axis=-1).min(axis=1)
     found = segment_to_box(start, end, low, high)
     assert np.all(found <= grid + MICRON) and np.all(found >= grid - step_of(start, end))
     assert (found == 0).sum() > 10 and (found > 10).sum() > 10

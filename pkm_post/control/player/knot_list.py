@@ -17,13 +17,11 @@ Input: points in mm, mm/s and whole ms. Output: lines for the controller, and po
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from pkm_post.control.link.program import PmacProgram
-from pkm_post.control.link.status import AnySettings, Array
+from pkm_post.control.link.status import AnySettings
 from pkm_post.model import StrutMotion
 from pkm_post.writing import PowerPmacSettings
 
@@ -144,16 +142,3 @@ def read_assignments(lines: Iterable[str]) -> dict[int, str]:
                 raise ValueError(f"line: expected assignments to P-variables, got {one!r}")
             found[int(match[1])] = match[2]
     return found
-
-
-def read_points(values: Mapping[int, str], place: int) -> Iterator[tuple[int, Array, Array]]:
-    """The points from a first variable to the end of the list: interval, lengths (6,) and speeds (6,).
-
-    Args:
-        values: of all variables of the points.
-        place: first variable of the first point.
-    """
-    while place:
-        numbers = np.array([float(values[place + n]) for n in range(POINT_VARIABLES)])
-        yield int(numbers[1]), numbers[2:8], numbers[8:14]
-        place = int(numbers[0])

@@ -68,9 +68,9 @@ def fedrat(state: ReaderState, row: int, statement: Statement) -> None:
     words = [item for item in items if isinstance(item, str)]
     units = [word for word in words if word in FEED_WORDS]
     modes = {word for word in words if word in _FEED_MODES}
-    stray = bool(modes) and (bool(numbers) or len(modes) > 1 or units != ["INVERS"])
-    stray = stray or not _numbered(statement, "LENGTH")
-    if len(numbers) > 1 or len(units) > 1 or stray or not set(words) <= FEED_WORDS | _FEED_MODES:
+    several, known = len(numbers) > 1 or len(units) > 1, set(words) <= FEED_WORDS | _FEED_MODES
+    stray_mode = bool(modes) and (bool(numbers) or len(modes) > 1 or units != ["INVERS"])
+    if several or stray_mode or not known or not _numbered(statement, "LENGTH"):
         state.report_items(row, statement, f"one number and one of {_list(FEED_WORDS)}")
     elif numbers and not numbers[0] > 0:
         state.report("L403", row, f"feed {numbers[0]:g}")
@@ -111,13 +111,7 @@ def spindl(state: ReaderState, row: int, statement: Statement) -> None:
     items = _without_pairs(statement, _SPINDLE_PAIRS)
     numbers = [item for item in items if isinstance(item, float)]
     words = {item for item in items if isinstance(item, str)}
-    unclear = "LOCK" in words and bool(words & {"ON", "OFF"})  # of the spindle, or of its override
-    stops = bool(words & _STOPPED) and bool("ON" in words or (numbers and "ORIENT" not in words))
-    unclear = unclear or stops or len(words & {*_SENSES}) > 1 or len(words & {"RPM", *_SURFACE_SPEEDS}) > 1
-    known = words <= _SPINDLE_WORDS | {*_SENSES, *_SURFACE_SPEEDS}
-    lacking = not numbers and bool(words & {"RPM", *_SURFACE_SPEEDS})
-    lacking = lacking or not _numbered(statement, "MAXRPM", "RADIUS")
-    if len(numbers) > 1 or not known or not statement.items or unclear or lacking:
+    if _is_spindle_unclear(statement, numbers, words):
         state.report_items(row, statement, "one number, RPM, SFM or SMM, CLW or CCLW")
         return
     state.spindle_limit = statement.number_after("MAXRPM") or state.spindle_limit
@@ -129,6 +123,17 @@ def spindl(state: ReaderState, row: int, statement: Statement) -> None:
         if not (_new_speed(state, row, numbers[0], statement) if numbers else _last_speed(state, row, statement)):
             return
     _spindle_event(state, row)
+
+
+def _is_spindle_unclear(statement: Statement, numbers: list[float], words: set[str]) -> bool:
+    """Whether items of SPINDL are unknown, missing, or contradict each other."""
+    units = words & {"RPM", *_SURFACE_SPEEDS}
+    of_two_things = "LOCK" in words and words & {"ON", "OFF"}  # the spindle, or its override
+    stops_and_turns = words & _STOPPED and ("ON" in words or (numbers and "ORIENT" not in words))
+    several = len(numbers) > 1 or len(units) > 1 or len(words & {*_SENSES}) > 1
+    lacking = not statement.items or (units and not numbers) or not _numbered(statement, "MAXRPM", "RADIUS")
+    unknown = not words <= _SPINDLE_WORDS | {*_SENSES, *_SURFACE_SPEEDS}
+    return any((of_two_things, stops_and_turns, several, lacking, unknown))
 
 
 def _new_speed(state: ReaderState, row: int, value: float, statement: Statement) -> bool:
@@ -235,17 +240,11 @@ def stop(state: ReaderState, row: int, statement: Statement) -> None:
 
 def _without_pairs(statement: Statement, names: frozenset[str]) -> list[object]:
     """The items without the named words and their numbers."""
-    items: list[object] = []
-    after = False
-    for item in statement.items:
-        if item in names:
-            after = True
-        elif not (after and isinstance(item, float)):
-            items.append(item)
-            after = False
-        else:
-            after = False
-    return items
+    return [
+        item
+        for before, item in zip((None, *statement.items), statement.items, strict=False)
+        if item not in names and not (before in names and isinstance(item, float))
+    ]
 
 
 def _numbered(statement: Statement, *names: str) -> bool:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -54,8 +55,10 @@ def build_program(
     rows = _rows(state, points, arcs, holes)
     _convert_inverse_time(state, points, rows)
     point = rows.point
-    sides = [(change.row, change.offset, change.plane, change.smaller_tool) for change in offsets]
-    side_offset = _column(sides, points.row, 1, 0.0)
+    turned_on = partial(_column, [change.row for change in offsets], points.row)
+    side_offset = turned_on([change.offset for change in offsets], 0.0)
+    starts = state.operation_starts
+    operation = _column([row for row, _ in starts], points.row, [number for _, number in starts], 0)
     _report_points_aside(state, points, holes.point, side_offset != 0)
     lines = state.statements.lines.number[state.statements.index[points.row]]
     return Program(
@@ -66,15 +69,15 @@ def build_program(
         arc_centre=rows.centre,
         arc_axis=rows.axis,
         exact_path=rows.in_cycle,  # no corner of a cycle is rounded, as in G-code
-        operation=_column(state.operation_starts, points.row, 1, 0)[point].astype(np.int32),
+        operation=operation[point].astype(np.int32),
         line=lines[point],
         events=_events(state, points, rows.start, holes),
         operations=tuple(state.operations),
         tools=dict(sorted(state.tools.items())),
         source=source,
         side_offset=side_offset[point],
-        smaller_tool=_column(sides, points.row, 3, 0)[point].astype(np.bool_),
-        plane=_column(sides, points.row, 2, 2)[point].astype(np.uint8),
+        smaller_tool=turned_on([change.smaller_tool for change in offsets], 0)[point].astype(np.bool_),
+        plane=turned_on([change.plane for change in offsets], 2)[point].astype(np.uint8),
         normal=points.normal[point],
         contact=points.contact[point],
         reading=tuple(reading),
@@ -95,15 +98,19 @@ def _report_points_aside(state: ReaderState, points: Points, hole: Array, offset
         ("L412", "a hole at a contact point", hole[points.contact[hole]]),
         ("L401", "a contact point under CUTCOM", np.flatnonzero(points.contact & offset)),
     ):
-        more = f", and {len(which) - 1} more" if len(which) > 1 else ""
-        if len(which):
-            state.report(code, int(points.row[which[0]]), f"{found}{more}")
+        _report_first(state, code, points.row[which], found)
 
 
-def _column(changes: Sequence[tuple[float, ...]], row: Array, item: int, first: float) -> Array:
-    """The active value at each of (P,) rows."""
-    values: Array = np.array([first, *(change[item] for change in changes)])
-    column: Array = values[active_index(row, [int(change[0]) for change in changes]) + 1]
+def _report_first(state: ReaderState, code: str, row: Array, found: str) -> None:
+    """Report the first of (M,) statements with the same fault, and how many there are."""
+    if len(row):
+        more = f", and {len(row) - 1} more" if len(row) > 1 else ""
+        state.report(code, int(row[0]), f"{found}{more}")
+
+
+def _column(changed: list[int], row: Array, values: Sequence[float], first: float) -> Array:
+    """The active value at each of (P,) rows, of values that change at some rows."""
+    column: Array = np.array([first, *values])[active_index(row, changed) + 1]
     return column
 
 
@@ -177,13 +184,7 @@ def _convert_inverse_time(state: ReaderState, points: Points, rows: _Rows) -> No
     """Convert inverse time feeds to mm/s; check that every cutting move has a feed."""
     cutting = rows.kind != Kind.RAPID
     if rows.inverse.any():
-        before = np.vstack([rows.position[:1], rows.position[:-1]])
-        length = move_lengths(before, rows.position, rows.kind == Kind.ARC, rows.centre, rows.axis)
-        # The time is that of a statement: the turns of a helix, or the chords of a curve, share it.
-        statement = np.unique(points.row[rows.point], return_inverse=True)[1]
-        turned = np.degrees(angle_between(np.vstack([rows.tool_axis[:1], rows.tool_axis[:-1]]), rows.tool_axis))
-        length, turned = (np.bincount(statement, each)[statement] for each in (length, turned))
-        length = np.where(length > 0, length, turned)  # a turn in place has its speed in degrees
+        length = _statement_lengths(points, rows)
         inverse = rows.inverse & cutting
         contact = points.contact[rows.point]
         beside = np.flatnonzero(inverse & (contact | np.append(False, contact[:-1])))
@@ -195,16 +196,26 @@ def _convert_inverse_time(state: ReaderState, points: Points, rows: _Rows) -> No
     _report_missing_feeds(state, points.row[rows.point[cutting & np.isnan(rows.feed)]])
 
 
+def _statement_lengths(points: Points, rows: _Rows) -> Array:
+    """Length of the statement of each row, (R,) mm; of a turn in place its angle, in degrees.
+
+    The time of an inverse time feed is that of a statement: the turns of a helix, or the chords of a curve, share it.
+    """
+    before = np.vstack([rows.position[:1], rows.position[:-1]])
+    length = move_lengths(before, rows.position, rows.kind == Kind.ARC, rows.centre, rows.axis)
+    turned = np.degrees(angle_between(np.vstack([rows.tool_axis[:1], rows.tool_axis[:-1]]), rows.tool_axis))
+    statement = np.unique(points.row[rows.point], return_inverse=True)[1]
+    length, turned = (np.bincount(statement, each)[statement] for each in (length, turned))
+    return np.where(length > 0, length, turned)
+
+
 def _report_missing_feeds(state: ReaderState, row: Array) -> None:
     """Report the statements of cutting moves without a feed, (M,), by cause."""
     per_turn = np.array([False, *(feed.per_turn for _, feed in state.feeds)])
     by_turn = per_turn[active_index(row, [at for at, _ in state.feeds]) + 1]
     causes = (("L407", "the move", ~by_turn), ("L403", "a feed per turn of a spindle without a speed", by_turn))
     for code, found, mine in causes:
-        missing = row[mine]
-        if len(missing):
-            more = f", and {len(missing) - 1} more" if len(missing) > 1 else ""
-            state.report(code, int(missing[0]), f"{found}{more}")
+        _report_first(state, code, row[mine], found)
 
 
 def _events(state: ReaderState, points: Points, start: Array, holes: HoleMoves) -> tuple[Event, ...]:

@@ -53,10 +53,6 @@ class Variables:
         """End a subprogram."""
         self._levels.pop()
 
-    def is_defined(self, name: str) -> bool:
-        """Whether DEF or PROC has defined a variable here or in a calling program."""
-        return self._find(name) is not None
-
     def define(self, name: str, kind: str, size: Index = (), start: Value | None = None) -> None:
         """Define a variable.
 

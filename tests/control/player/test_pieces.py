@@ -10,11 +10,11 @@ from pkm_post.certificate import certify, reconstruct
 from pkm_post.control.player import sections
 from pkm_post.control.player.certificate_log import CertificateLog
 from pkm_post.control.player.knot_list import (
+    POINT_VARIABLES,
     Layout,
     assignment_lines,
     point_assignments,
     read_assignments,
-    read_points,
 )
 from pkm_post.control.player.pieces import PiecePlanner
 from pkm_post.control.player.sections import parts_of
@@ -23,6 +23,14 @@ from pkm_post.machine import forward_along_path, platform_rotation
 from pkm_post.model import Refused
 from pkm_post.planning.motion import tool_path
 from pkm_post.toolpath.place import place
+
+
+def read_points(values, place):
+    """Interval, six lengths and six speeds of each point, from its first variable on, to the end of the list."""
+    while place:
+        numbers = np.array([float(values[place + n]) for n in range(POINT_VARIABLES)])
+        yield int(numbers[1]), numbers[2:8], numbers[8:14]
+        place = int(numbers[0])
 
 
 def pieces_of(trajectory, override=lambda: 1.0, piece_ms=250, machine=JUMPING):
