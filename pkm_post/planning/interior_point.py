@@ -201,41 +201,55 @@ def _downhill(weight: Array, unknowns: Array) -> Array:
     return np.asarray(0.5 * weight * unknowns**-1.5)
 
 
+@dataclass(frozen=True)
+class _Equations:
+    """The linear equations of a step, factored.
+
+    Attributes:
+        linear: the linearised limits.
+        downhill: (N,) negative gradient of the time.
+        scale: (N,) scale of each unknown, which makes the diagonal 1.
+        factor: of the scaled matrix.
+    """
+
+    linear: list[_Linear]
+    downhill: Array
+    scale: Array
+    factor: BandedFactor
+
+    @classmethod
+    def of(cls, weight: Array, linear: list[_Linear], unknowns: Array) -> _Equations:
+        size = len(unknowns)
+        band = _band(linear, size)
+        band[0] += 0.75 * weight * unknowns**-2.5
+        scale = 1 / np.sqrt(band[0])
+        for d in range(3):
+            band[d, : size - d] *= scale[d:] * scale[: size - d]
+        band[0] += _STIFFENING
+        return cls(linear, _downhill(weight, unknowns), scale, BandedFactor(band))
+
+    def solve(self, pushes: list[Array]) -> tuple[Array, list[Array]]:
+        """Changes of the unknowns and of the slacks for right-hand sides of the limits, (E,)."""
+        right = self.downhill + _gathered(self.linear, pushes, len(self.scale))
+        change = self.scale * self.factor.solve(self.scale * right)
+        padded = _padded(change)
+        return change, [one.moved(padded) for one in self.linear]
+
+
 def _stepped(
     weight: Array, linear: list[_Linear], unknowns: Array, mean_gap: float, count: int
 ) -> tuple[Array, list[_SlacksAndMultipliers]]:
     """Take one predictor-corrector step."""
-    size = len(unknowns)
-    band = _band(linear, size)
-    band[0] += 0.75 * weight * unknowns**-2.5
-    scale = 1 / np.sqrt(band[0])
-    for d in range(3):
-        band[d, : size - d] *= scale[d:] * scale[: size - d]
-    band[0] += _STIFFENING
-    factor = BandedFactor(band)
-    downhill = _downhill(weight, unknowns)
-
-    def step(pushes: list[Array]) -> tuple[Array, list[Array]]:
-        """Changes of the unknowns and of the slacks for right-hand sides of the limits, (E,)."""
-        right = downhill + _gathered(linear, pushes, size)
-        change = scale * factor.solve(scale * right)
-        padded = _padded(change)
-        return change, [one.moved(padded) for one in linear]
-
+    equations = _Equations.of(weight, linear, unknowns)
     still = [one.state.multiplier * (one.state.slack - one.room) / one.state.slack for one in linear]
-    _, slacks = step(still)
-    multipliers = [
-        -one.state.multiplier * (1 + moved / one.state.slack) for one, moved in zip(linear, slacks, strict=True)
-    ]
+    _, slacks = equations.solve(still)
+    multipliers = _multipliers(linear, slacks)
     centring = _centring(linear, slacks, multipliers, mean_gap, count)
     targets = [
         (centring * mean_gap - a * b) / one.state.slack for one, a, b in zip(linear, slacks, multipliers, strict=True)
     ]
-    change, slacks = step([a + b for a, b in zip(still, targets, strict=True)])
-    multipliers = [
-        target - one.state.multiplier * (1 + moved / one.state.slack)
-        for one, target, moved in zip(linear, targets, slacks, strict=True)
-    ]
+    change, slacks = equations.solve([a + b for a, b in zip(still, targets, strict=True)])
+    multipliers = [target + own for target, own in zip(targets, _multipliers(linear, slacks), strict=True)]
     primal, dual = (_TO_BOUNDARY * share for share in _shares(linear, slacks, multipliers))
     primal = min(primal, _TO_BOUNDARY * _reach(unknowns, change))
     states = [
@@ -243,6 +257,11 @@ def _stepped(
         for one, a, b in zip(linear, slacks, multipliers, strict=True)
     ]
     return unknowns + primal * change, states
+
+
+def _multipliers(linear: list[_Linear], slacks: list[Array]) -> list[Array]:
+    """Changes of the multipliers with changes of the slacks, (E,) each, towards a gap of zero."""
+    return [-one.state.multiplier * (1 + moved / one.state.slack) for one, moved in zip(linear, slacks, strict=True)]
 
 
 def _centring(

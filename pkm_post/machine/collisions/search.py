@@ -98,21 +98,24 @@ class Search:
         self._note_shanks(part)
         for used in self._with_size(part):
             pieces = cutter_pieces(used.tool, used.edge_length, ALLOWANCE + self.off_tip)
-            if not pieces:  # no point of the cutter is that deep in it
-                continue
-            self._rapid(
-                part, used, tool_body(Phrase("{} in a rapid move", used.name), self.driven.poses, used.rapid, pieces)
-            )
-            # Few of many poses are so near that the many pieces of a slanted cutter matter.
-            around = [ToolCylinder(0.0, used.edge_length, max(piece.radius + piece.rounding for piece in pieces))]
-            mover = tool_body(used.name, self.driven.poses, _sampled(used.cutting), around)
-            cells = contacts_at_ends(self.driven.poses, mover, part.mesh, _TOUCH).cell
-            mover = tool_body(used.name, self.driven.poses, cells, pieces)
-            met = contacts_at_ends(self.driven.poses, mover, part.mesh, _TOUCH)
-            self.found += contact_faults(self.driven, "K132", mover, part, met, ALLOWANCE)
+            if pieces:  # else no point of the cutter is that deep in it
+                self._rapid(part, used, pieces)
+                self._cutting(part, used, pieces)
         self.extents.cutters(part, ALLOWANCE)
 
-    def _rapid(self, part: Obstacle, used: ToolUse, mover: MovingBody) -> None:
+    def _cutting(self, part: Obstacle, used: ToolUse, pieces: Sequence[ToolCylinder]) -> None:
+        """Check the pieces of a cutter against the workpiece at poses of its cutting moves."""
+        # Few of many poses are so near that the many pieces of a slanted cutter matter.
+        around = [ToolCylinder(0.0, used.edge_length, max(piece.radius + piece.rounding for piece in pieces))]
+        mover = tool_body(used.name, self.driven.poses, _sampled(used.cutting), around)
+        cells = contacts_at_ends(self.driven.poses, mover, part.mesh, _TOUCH).cell
+        mover = tool_body(used.name, self.driven.poses, cells, pieces)
+        met = contacts_at_ends(self.driven.poses, mover, part.mesh, _TOUCH)
+        self.found += contact_faults(self.driven, "K132", mover, part, met, ALLOWANCE)
+
+    def _rapid(self, part: Obstacle, used: ToolUse, pieces: Sequence[ToolCylinder]) -> None:
+        """Check the pieces of a cutter against the workpiece in rapid moves, except where material was cut before."""
+        mover = tool_body(Phrase("{} in a rapid move", used.name), self.driven.poses, used.rapid, pieces)
         met = contacts(self.driven.poses, mover, part.mesh, _TOUCH, self.driven.operation, _ALL)
         uncut = not_cut_before(self.driven, self.used, met)
         if len(uncut) < len(met):

@@ -159,14 +159,7 @@ def poses_along(trajectory: Trajectory) -> ToolPoses:
 def pose_path_of(trajectory: Trajectory) -> tuple[PosePath, Array, Array]:
     """The pose path of a trajectory, the segment of each of its rows (N,), and the time at feed of each cell (N,)."""
     segments, tool_length = Segments.of(trajectory), trajectory.tool_length()
-    turn = np.maximum(segments.turn(), np.abs(segments.spin_rate))
-    widest = np.maximum(segments.extent / _LONGEST_CELL, segments.extent * turn / _WIDEST_CELL)
-    cells = np.maximum(1, np.ceil(widest)).astype(np.int64)
-    width = segments.extent / cells
-    segment = np.concatenate([[0], np.repeat(np.arange(len(cells)), cells)])
-    number = np.arange(len(segment)) - 1 - (np.cumsum(cells) - cells)[segment]
-    extent = np.concatenate([[0.0], width[segment[1:]]])
-    start = np.concatenate([[0.0], number[1:] * extent[1:]])
+    segment, start, extent = _cells(segments)
 
     def inside(cell: Array, share: Array) -> ToolPoses:
         at, u = segment[cell], start[cell] + share * extent[cell]
@@ -190,6 +183,18 @@ def pose_path_of(trajectory: Trajectory) -> tuple[PosePath, Array, Array]:
         inside=inside,
     )
     return path, segment, extent / trajectory.feed[segment]
+
+
+def _cells(segments: Segments) -> tuple[Array, Array, Array]:
+    """Cells of all segments, after one of no extent at the start of the path: segment, start and extent, (N,) each."""
+    turn = np.maximum(segments.turn(), np.abs(segments.spin_rate))
+    widest = np.maximum(segments.extent / _LONGEST_CELL, segments.extent * turn / _WIDEST_CELL)
+    cells = np.maximum(1, np.ceil(widest)).astype(np.int64)
+    width = segments.extent / cells
+    segment = np.concatenate([[0], np.repeat(np.arange(len(cells)), cells)])
+    number = np.arange(len(segment)) - 1 - (np.cumsum(cells) - cells)[segment]
+    extent = np.concatenate([[0.0], width[segment[1:]]])
+    return segment, np.concatenate([[0.0], number[1:] * extent[1:]]), extent
 
 
 def _motion_of_tip(segments: Segments) -> tuple[Array, Array]:
