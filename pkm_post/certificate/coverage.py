@@ -146,6 +146,7 @@ _LIMITS = (
 _SETUP = (
     (Phrase("geometry of the machine"), "taken from the machine file"),
     (Phrase("work offset and gauge lengths"), "taken from the job"),
+    (Phrase("meaning of the part program"), "reading, compensation and copies made the trajectory it is compared with"),
     (Phrase("controller set-up, codes and override"), "the set-up file states what the program relies on"),
     (Phrase("stiffness, heat and cutting forces"), "no model of them is computed"),
 )

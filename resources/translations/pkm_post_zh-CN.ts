@@ -4619,6 +4619,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>FreeCAD 只能读取 Unicode 文件名的文件</translation>
     </message>
     <message>
+        <source>meaning of the part program</source>
+        <translation>零件程序的含义</translation>
+    </message>
+    <message>
         <source>number or diameter of its tool is 0</source>
         <translation>其刀具编号或直径为 0</translation>
     </message>

@@ -165,6 +165,11 @@ def test_the_spindle_is_covered_where_every_cut_has_its_waits(events, why):
         assert (extent is Extent.PROVEN) is (why == "") and why in detail, detail
 
 
+def test_the_way_from_the_part_program_to_the_trajectory_is_never_called_covered():
+    """A reader or a compensation that makes another trajectory gives a program that holds, by this trajectory."""
+    assert extents(all_stated(), Topic.SETUP)["meaning of the part program"] is Extent.NOT_COVERED
+
+
 def test_jerk_is_covered_where_a_limit_is_stated():
     before, after = (extents(machine, Topic.LIMITS) for machine in (machines.without_jerk(example()), example()))
     changed = {subject for subject in before if before[subject] is not after[subject]}

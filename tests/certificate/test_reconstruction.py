@@ -10,7 +10,8 @@ from posted_jobs import NARROW, UNEQUAL, WIDE, offset, preset
 from programs import ON_PALLET, cone, program, random_job, square_with_arc, steep_helices
 
 from pkm_post.certificate import certify, reconstruct
-from pkm_post.machine import reach_faults, strut_lengths
+from pkm_post.certificate.played_path import _spin
+from pkm_post.machine import platform_rotation, reach_faults, strut_lengths
 from pkm_post.model import Event, EventKind, StrutMotion
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import errors
@@ -118,6 +119,14 @@ def test_poses_are_checked_so_close_that_the_tool_keeps_to_the_straight_path_bet
         length = np.maximum((chord**2).sum(axis=1), 1e-30)
         share = np.clip((away * chord).sum(axis=2) / length, 0.0, 1.0)
         assert np.linalg.norm(away - share[..., None] * chord, axis=2).min(axis=1).max() < 0.01
+
+
+@pytest.mark.parametrize("turns", [-2, -1, 0, 1, 3])
+def test_the_spin_is_the_one_near_the_start_and_has_no_jumps(turns):
+    """Matrices do not show whole turns: the home of a machine may have any number, and a path may pass half a turn."""
+    spin = np.linspace(2.5, 4.5, 30) + 2 * np.pi * turns
+    axis = np.tile([0.1, -0.2, np.sqrt(0.95)], (30, 1))
+    assert np.abs(_spin(platform_rotation(axis, spin), spin[0] + 0.3) - spin).max() < 1e-9
 
 
 def test_a_smooth_curve_through_a_changing_spin_holds(machine):
