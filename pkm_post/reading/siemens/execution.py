@@ -153,7 +153,7 @@ def _motion(machine: SiemensMachine, block: Block) -> None:
 
 def _dwell_block(machine: SiemensMachine, block: Block) -> None:
     """G4 F in seconds, or G4 S in turns of the spindle, in a block of its own [SiemensNC, G4]."""
-    beside = [name for name in block.words if name in PLACES]
+    beside = [name for name in block.words if name in BUFFERED and name != "F"]
     if beside:
         raise BlockFault("G407", f"{beside[0]} beside G4", block.columns.get(beside[0], 0))
     if "F" in block.words:
@@ -168,6 +168,12 @@ def _in_machine(machine: SiemensMachine, block: Block) -> None:
     """SUPA, G53 and G153: words are machine coordinates, only in this block."""
     words = {name: block.number(name) for name in block.words if name in PLACES}
     zero, state = machine.options.machine_zero, machine.state
+    unused = [name for name in block.words if name in BUFFERED and name not in (*PLACES, "F")]
+    unused = [
+        name for name in unused if block.number(name) or state.is_tilted()
+    ]  # zero leaves an upright tool as it is
+    if unused:
+        raise BlockFault("G404", f"{unused[0]} beside SUPA, G53 or G153", block.columns.get(unused[0], 0))
     if words and zero is None:
         raise BlockFault("G609", "SUPA, G53 or G153")
     for code in block.g:

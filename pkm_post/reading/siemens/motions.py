@@ -25,6 +25,15 @@ MOST_TURNS = 1000
 """TURN goes up to 999 [SiemensNC, TURN]."""
 
 
+_ON_CIRCLE = (CLOCKWISE, COUNTERCLOCKWISE)
+_WORDS_OF_ARCS = {
+    **dict.fromkeys((*arcs.CENTRE, "CR", _OPENING_ANGLE), _ON_CIRCLE),
+    **dict.fromkeys(arcs.POINT, (BY_POINT,)),
+    _TURNS: (*_ON_CIRCLE, BY_POINT),
+}
+"""The motion codes that use a word of arcs."""
+
+
 @dataclass
 class Motions:
     """Columns of n motions.
@@ -102,6 +111,7 @@ def motions_of(columns: Columns, motion: Array, state: State, faults: LineDiagno
     Raises:
         BlockFault: a word is invalid; the state is unchanged.
     """
+    _report_unused(columns, motion, faults)
     lengths = {name: columns.words[name] * state.scale for name in LENGTHS if name in columns.words}
     end, known, known_at_end = _ends(columns, lengths, state)
     count = len(columns)
@@ -123,6 +133,15 @@ def motions_of(columns: Columns, motion: Array, state: State, faults: LineDiagno
     given = [name in lengths and not np.isnan(lengths[name]).all() for name in AXES]
     state.placed = np.where(given, state.position, state.placed)
     return moves
+
+
+def _report_unused(columns: Columns, motion: Array, faults: LineDiagnostics) -> None:
+    """Report words of arcs in blocks of another motion, such as a line with CR=, whose G2 may be missing."""
+    for name, users in _WORDS_OF_ARCS.items():
+        if name in columns.words:
+            unused = ~np.isnan(columns.words[name]) & ~np.isin(motion, users)
+            for row in columns.row[unused].tolist():
+                faults.add(row, "G404", name)
 
 
 def _ends(columns: Columns, lengths: dict[str, Array], state: State) -> tuple[Array, Array, Array]:

@@ -48,6 +48,14 @@ FAULTS = {
     "DRESS(1)": ("G603", 1, "DRESS"),
     # what blocks mean
     "G1 X1 E3": ("G404", 7, "E"),
+    "G1 X1 CR=5": ("G404", 7, "CR"),
+    "G0 X1 I2": ("G404", 7, "I"),
+    "G1 X1 AR=30": ("G404", 7, "AR"),
+    "G2 X2 Y0 I1 J0 K1=3": ("G404", 16, "K1"),
+    "CT X9 Y9 TURN=1": ("G404", 10, "TURN"),
+    "CIP X6 Y8 I1 I1=7 J1=7": ("G404", 11, "I"),
+    "G53 G0 Z40 A1": ("G404", 12, "A beside SUPA, G53 or G153"),
+    "G4 F1 CR=2": ("G407", 7, "CR beside G4"),
     "G123": ("G401", 1, "G123"),
     "M77": ("G401", 1, "M77"),
     "G96 S100": ("G602", 1, "G96: constant cutting speed"),
@@ -216,3 +224,11 @@ def test_any_text_is_read_or_refused(text):
     program, diagnostics = read(text, "part.mpf", ReadOptions(default_tool=TOOL))
     assert program is None
     assert any(each.severity is Severity.ERROR for each in diagnostics)
+
+
+def test_rotary_words_of_zero_beside_supa_leave_an_upright_tool():
+    program, diagnostics = found(f"{HEAD}SUPA G0 Z40 A0 C0\nM30\n", machine_zero=(0, 0, 0), axis_words="AC")
+    assert program is not None and not diagnostics
+    text = f"{HEAD}TRAORI\nG1 X1 A30 C0\nSUPA G0 Z40 A0 C0\nM30\n"
+    program, diagnostics = found(text, machine_zero=(0, 0, 0), axis_words="AC")
+    assert program is None and [each[:2] for each in diagnostics] == [("G404", 5)]
