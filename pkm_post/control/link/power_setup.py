@@ -15,7 +15,7 @@ import re
 from collections.abc import Iterator
 from decimal import Decimal
 
-from pkm_post.control.link.queries import query_line, read_number
+from pkm_post.control.link.queries import is_definition, query_line, read_number
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import MOTORS
 from pkm_post.writing import PowerPmacSettings
@@ -51,7 +51,7 @@ def _axis_faults(session: Session, settings: PowerPmacSettings) -> Iterator[str]
         got = found and (Decimal(found["scale"] or 1), found["letter"], Decimal(found["offset"] or 0))
         own = (str(settings.coordinate_system), str(motor))
         is_own = found and all(shown in (None, mine) for shown, mine in zip(found.group(1, 2), own, strict=True))
-        if got != wanted or not is_own:
+        if not is_definition(got, wanted) or not is_own:
             stated = f"{wanted[0].normalize():f}{letter}{wanted[2].normalize():+f}"
             yield f"#{motor}->: expected {stated}, the controller has {answer or 'nothing'}"
 

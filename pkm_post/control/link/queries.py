@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from decimal import Decimal
 
 from pkm_post.control.link.errors import LinkLostError, PmacError
 from pkm_post.control.link.session import Session
@@ -39,6 +40,20 @@ def parse_bits(text: str, digits: int) -> int:
     if len(text) != digits or not _HEXADECIMAL.fullmatch(text):  # int() takes signs and underscores
         raise ValueError(f"expected {digits} hexadecimal digits, got {text!r}")
     return int(text, 16)
+
+
+Definition = tuple[Decimal, str, Decimal]
+"""Scale, axis and offset of a motor, in counts."""
+_KEPT = Decimal("1e-9")
+"""Share of a number up to which a controller rounds it: 36 bits on a Turbo PMAC, shown with eleven digits."""
+
+
+def is_definition(got: Definition | None, wanted: Definition) -> bool:
+    """Whether a controller's axis definition is the wanted one, but for the digits that it does not keep."""
+    if got is None or got[1] != wanted[1]:
+        return False
+    pairs = (got[0], wanted[0]), (got[2], wanted[2])
+    return all(abs(one - other) <= _KEPT * abs(other) for one, other in pairs)
 
 
 def query_line(session: Session, query: str) -> str:

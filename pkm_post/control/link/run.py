@@ -24,7 +24,7 @@ from pkm_post.control.link.owner_record import RESUMED_BY_ALL, let_go
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.power_setup import setup_faults
 from pkm_post.control.link.program import PmacProgram
-from pkm_post.control.link.queries import query_line, read_number
+from pkm_post.control.link.queries import is_definition, query_line, read_number
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import MOTORS, AnySettings, Array, Status, read_status, settled_status
 from pkm_post.control.link.tool_pose import start_faults
@@ -123,7 +123,7 @@ def _axis_faults(session: Session, settings: PmacSettings) -> Iterator[str]:
         answer = query_line(session, f"&{settings.coordinate_system}#{motor}->").replace(" ", "")
         found = _DEFINITION.fullmatch(answer.removeprefix(f"#{motor}->").upper())
         got = found and (Decimal(found[1] or 1), found[2], Decimal(found[3] or 0))
-        if got != wanted:
+        if not is_definition(got, wanted):
             stated = f"{wanted[0].normalize():f}{wanted[1]}{wanted[2].normalize():+f}"
             yield f"#{motor}->: expected {stated}, the controller has {answer or 'nothing'}"
 

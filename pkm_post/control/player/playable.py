@@ -13,7 +13,7 @@ from pkm_post.control.player.stop_events import TOLERANCES
 from pkm_post.machine import find_collisions
 from pkm_post.model import Diagnostic, Machine, Place, Setup, Tolerances, Trajectory, errors, threads
 from pkm_post.toolpath import MachineOffsets, StartLine, not_repeated, row_of_line, with_machine_offsets
-from pkm_post.writing import trajectory_file
+from pkm_post.writing import manifest, trajectory_file
 
 Findings = tuple[Diagnostic, ...]
 
@@ -34,6 +34,7 @@ def read_playable(
     another, place = machine_fault(trajectory, machine, str(file)), Place(str(file))
     if another is not None:
         return None, None, (*faults, another)
+    faults += manifest.check(file)[1]
     faults += tuple(Diagnostic("T107", at, found) for at, found in values_beyond_machine(trajectory, machine))
     if trajectory.tolerances is None:
         faults += (Diagnostic("T105", place, "none"),)

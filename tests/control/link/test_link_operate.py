@@ -64,6 +64,22 @@ def test_another_axis_of_the_spindle_is_refused(line, said):
     assert said in str(refused.value)
 
 
+@pytest.mark.parametrize("counts", [8192.0, 1638.4, 1234.56789, 20480 / 3])
+@pytest.mark.parametrize("digits", [0, 4, 6])
+def test_the_set_up_of_a_calibrated_machine_is_the_one_that_was_loaded(counts, digits):
+    """Its offsets have more digits than the 36 bits of a Turbo PMAC; another count is another set-up."""
+    zero = tuple(round(500.123456789 + motor, digits) for motor in range(6))
+    settings, made = replace(SETTINGS, counts_per_mm=counts, zero_length=zero), controller()
+    made.load(setup_text(settings, "calibrated", STROKE).splitlines())
+    wire = Wire(made)
+    with wire.session() as session:
+        check_setup(session, settings, STROKE)
+        for off in (0.1, -0.1):
+            assert not wire.line.refusal(f"&1#3->{counts:.10f}C-{counts * zero[2] + off:.6f}")
+            with pytest.raises(NotReadyError, match="#3->: expected .*C-"):
+                check_setup(session, settings, STROKE)
+
+
 @pytest.mark.parametrize(
     ("line", "said"),
     [

@@ -3,6 +3,7 @@
 
 import copy
 import io
+import shutil
 import threading
 from dataclasses import replace
 
@@ -167,6 +168,20 @@ def test_what_cannot_be_played_is_refused(posted, tmp_path):
     assert not faults
     _, _, faults = read_playable(posted, replace(MACHINE, fingerprint="0" * 64))
     assert [each.code for each in faults] == ["T104"]
+
+
+def test_a_trajectory_of_another_posting_than_the_manifest_is_not_played(posted, tmp_path, capsys):
+    """Its collisions were never looked for: those of the posting are of another program."""
+    for file in posted.parent.glob("part*"):
+        shutil.copy(file, tmp_path)
+    (tmp_path / "other.ngc").write_text(SOURCE.replace("Y10", "Y15"))
+    post_file(tmp_path / "other.ngc", NAME, tmp_path, tool_lengths={0: TOOL})
+    alone = shutil.copy(tmp_path / "other.pkmt", tmp_path / "alone.pkmt")
+    shutil.copy(alone, tmp_path / "part.pkmt")
+    trajectory, _, faults = read_playable(tmp_path / "part.pkmt", MACHINE)
+    assert trajectory is None and [(each.code, each.found) for each in faults] == [("F106", "part.pkmt has changed")]
+    trajectory, _, faults = read_playable(tmp_path / "alone.pkmt", MACHINE)
+    assert trajectory is not None and [each.code for each in faults] == ["F107"]
 
 
 def test_orders_of_an_operator():
