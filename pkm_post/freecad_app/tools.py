@@ -169,15 +169,24 @@ def _conical(bit: Any) -> Sizes:
     return _flat(bit) | {"bottom_angle": math.pi / 2 - half}
 
 
+_EDGE_HEIGHTS = {"slittingsaw": "BladeThickness", "tap": "CuttingEdgeLength"}
+"""The property that states where the cutting edges end, by shape, if it has another name."""
+
+_CONES = {"vbit": _CONE, "tap": "TipAngle"}
+"""The angle of the cone that this height does not include, by shape."""
+
+
 def read_shank(bit: Any) -> Shank | None:
     """The shank of a tool bit; None if it does not state where its cutting edges end, or how thick it is.
 
-    The ``CuttingEdgeHeight`` of a V-bit is that of the cylinder above its cone. The cone of one with a flat tip has no
-    end in a ``Tool``: its shank begins where the cone does end, and is as wide.
+    The height of the edges of V-bits and taps is that of the cylinder above their cone. The cone of a V-bit with a flat
+    tip has no end in a ``Tool``: its shank begins where the cone does end, and is as wide.
     """
-    height, diameter = millimetres(bit, "CuttingEdgeHeight"), millimetres(bit, "ShankDiameter")
-    if _plain_shape(bit) == "vbit":
-        widest, tip, half = millimetres(bit, "Diameter"), millimetres(bit, "TipDiameter"), _half_angle(bit, _CONE)
+    shape, diameter = _plain_shape(bit), millimetres(bit, "ShankDiameter")
+    height = millimetres(bit, _EDGE_HEIGHTS.get(shape, "CuttingEdgeHeight"))
+    if shape in _CONES:
+        widest, tip = millimetres(bit, "Diameter"), millimetres(bit, "TipDiameter")
+        half = _half_angle(bit, _CONES[shape])
         if not (widest > tip and 0 < half < math.pi / 2):
             return None
         cone = (widest - tip) / 2 / math.tan(half)

@@ -172,9 +172,22 @@ def test_the_shank_of_a_v_bit_is_above_its_cone(job, angle, tip, height):
             assert solid <= shank.diameter / 2 + 2e-3
 
 
+@pytest.mark.parametrize(("shape", "edges"), [("slittingsaw", "BladeThickness"), ("tap", "CuttingEdgeLength")])
+def test_the_edges_of_a_saw_and_a_tap_end_where_their_solids_get_thin(job, shape, edges):
+    if shape == "tap" and int(App.Version()[1]) == 0:
+        pytest.skip("FreeCAD 1.0 has no taps")
+    bit = stock_bit(job.Document, f"{shape}.fcstd")
+    tool, (shank,) = tool_of(job, bit), setup_of(job).shanks.values()
+    cone = tool.diameter / 2 * math.tan(tool.bottom_angle)
+    assert shank.start == pytest.approx(cone + getattr(bit, edges).Value)
+    assert _radius_of(bit, shank.start - 0.1) == pytest.approx(tool.diameter / 2, abs=2e-3)
+    for z in np.linspace(shank.start + 0.1, bit.Length.Value - 0.1, 20):
+        assert _radius_of(bit, z) <= shank.diameter / 2 + 2e-3 < tool.diameter / 2
+
+
 def _radius_of(bit, z):
     """The radius of the solid of a bit at a height, by halving."""
-    low, high = 0.0, 50.0
+    low, high = 0.0, 80.0
     for _ in range(30):
         middle = (low + high) / 2
         inside = bit.Shape.isInside(App.Vector(middle, 1e-4, z), 1e-7, False)
