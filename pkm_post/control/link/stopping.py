@@ -178,16 +178,16 @@ def _is_continued(session: Session, settings: AnySettings, status: Status, ends:
     """Whether another client's stream or play starts its next motion: between them the machine is at rest anyway.
 
     Between two motions a play sees neither a hold nor an abort, and plans, or waits for people, as long as needed; so
-    the record of its owner tells it as well.
+    the stop is also written to the record of its owner.
     """
     other = None if status.held else _other_owner(session)
     if other is None:
         return False
-    until, is_told = session.now() + NEXT_SEGMENT_S, other.action != "play"
+    until, is_written = session.now() + NEXT_SEGMENT_S, other.action != "play"
     order = exchange_owner(other.owner, 0) if ends else exchange_hold(other, True)
     while session.now() < until:
-        if not is_told and _tell_play(session, order):
-            until, is_told = session.now() + NEXT_SEGMENT_S, True  # until it sees that
+        if not is_written and _write_to_record(session, order):
+            until, is_written = session.now() + NEXT_SEGMENT_S, True  # until it sees that
             if not ends:
                 _log.warning("the play of another client is held where it rests: resume lets it go on")
         seen = _read(session, settings)
@@ -212,7 +212,7 @@ def _other_owner(session: Session) -> Owner | None:
     return record if record.owner and record.action in ("stream", "play") else None
 
 
-def _tell_play(session: Session, order: str) -> bool:
+def _write_to_record(session: Session, order: str) -> bool:
     """Change the record of a play, unless it loads: the assignment might become a line of its program."""
     try:
         if session.has_handshake and free_memory(session) < 0:
@@ -221,7 +221,7 @@ def _tell_play(session: Session, order: str) -> bool:
     except (CancelledError, NoAccessError):
         raise
     except PmacError as fault:
-        _log.warning("the play of another client is not told of the stop: %s", fault)
+        _log.warning("the stop of another client's play could not be written to its record: %s", fault)
         return False
     return True
 
