@@ -60,9 +60,9 @@ def check(folder: Path) -> None:
     assert (folder / "Init.py").is_file() and (folder / "package.xml").is_file()
     assert len(files) <= _FILES and size <= _BYTES, (len(files), size)
     commands = (folder / "pkm_post/freecad_gui/commands.py").read_text(encoding="utf-8")
-    pages = {"workbench.md", "diagnostics.md", *re.findall(r'"([\w-]+\.md)"', commands)}
+    pages = {"workbench.md", *re.findall(r'"([\w-]+\.md)"', commands)}
     missing = sorted(page for page in pages if not (folder / "docs" / page).is_file())
-    assert len(pages) > 5 and not missing, f"F1 and fault codes open pages that are not there: {missing}"
+    assert len(pages) > 5 and not missing, f"F1 opens pages that are not there: {missing}"
     assert not [path for path in files if {"tests", "benchmarks", ".ci"} & set(path.relative_to(folder).parts)]
     macros = [path.name for path in Path(App.getUserMacroDir(True)).iterdir() if path.is_file()]
     assert macros == [], f"the Addon Manager copied macros: {macros}"
