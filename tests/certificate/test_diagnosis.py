@@ -66,6 +66,7 @@ def test_a_job_that_decimals_spoil_is_posted_with_those_advised(name, seed, tole
         assert faults_of(name, seed, tolerances, enough) == ()
 
 
+@pytest.mark.slow
 def test_the_series_has_jobs_that_are_refused_and_jobs_that_are_not():
     refused = [bool(faults_of(*job)) for job in SERIES]
     assert 5 < sum(refused) < len(refused) - 5

@@ -55,6 +55,7 @@ def test_no_instant_is_above_the_figures(name, seed, tolerances, decimals):
         assert reported.value <= max(1.006 * value, 0.5 * reported.limit)  # and little above what there is
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "seed", "tolerances", "decimals"), CASES)
 def test_jobs_are_posted_within_the_limits(name, seed, tolerances, decimals):
     *_, certificate, faults = posted(name, seed, tolerances, decimals)
@@ -88,6 +89,7 @@ def test_a_circle_has_the_acceleration_of_a_circle():
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [2033, 2241, 2287, 2371, 2395])
 def test_struts_keep_their_acceleration_where_a_blend_bends_the_most(seed):
     """A quarter of the way through half a blend, which is a cell of the plan: struts had 2 to 6 % more there."""

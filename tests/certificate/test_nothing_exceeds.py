@@ -197,6 +197,7 @@ def by_newton(machine, motion, struts, rows, tip, axis, spin):
     return (columns.T.reshape(3, len(SHARES), -1) for columns in (pose.tip, pose.axis, twist[:, :3]))
 
 
+@pytest.mark.slow
 def test_most_intervals_have_a_course():
     courses = [course_of(job)[-1] for job in JOBS if planned(job) is not None]
     assert np.isfinite(np.concatenate([course.missed[0] for course in courses])).mean() > 0.9

@@ -129,6 +129,7 @@ def test_the_spin_is_the_one_near_the_start_and_has_no_jumps(turns):
     assert np.abs(_spin(platform_rotation(axis, spin), spin[0] + 0.3) - spin).max() < 1e-9
 
 
+@pytest.mark.slow
 def test_a_smooth_curve_through_a_changing_spin_holds(machine):
     """The curve in place of short lines is off by up to the axis tolerance in spin as well."""
     asked = Tolerances(0.2, np.radians(2.0))

@@ -67,6 +67,7 @@ def under_way(motion, time):
     return np.flatnonzero((begins <= time + MOMENT) & (time <= ends + MOMENT))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("job", JOBS)
 def test_the_line_reported_is_that_of_the_program_at_the_time_reported(job):
     _, trajectory, motion, _, certificate = certified_or_skipped(job)

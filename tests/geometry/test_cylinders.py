@@ -46,6 +46,7 @@ def test_boxes_are_never_nearer_than_the_bound_and_the_bound_is_close():
     assert np.all((true - bound)[apart] < 10.0) and np.mean((true - step - bound)[apart] > 0.1) < 0.05
 
 
+@pytest.mark.slow
 def test_triangles_are_never_nearer_than_the_bound_and_the_bound_is_close():
     rng, count = np.random.default_rng(2), 2000
     some = cylinders(rng, count)
@@ -117,6 +118,7 @@ def scene(seed, count=1500):
     return rng, some, corners
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_the_distance_is_that_of_the_point_found_and_no_point_of_the_triangle_is_nearer(seed):
     rng, some, corners = scene(seed)

@@ -91,6 +91,7 @@ def test_nothing_is_known_where_bounds_are_missing():
         assert np.isnan(of(waves(), **limits)[2].square).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", JOBS)
 def test_the_motion_is_the_same_with_exact_demands_everywhere(name, monkeypatch):
     path, machine, _ = of(JOBS[name]())

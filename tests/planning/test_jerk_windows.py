@@ -82,6 +82,7 @@ def test_the_motion_in_many_windows_is_little_slower_than_in_one(job):
     assert (profile.square[~profile.rest] > 0).all()
 
 
+@pytest.mark.slow
 @JOBS
 def test_windows_follow_one_another_and_their_motions_meet(job):
     profile, used = in_many(job)

@@ -61,10 +61,12 @@ def test_no_second_has_more_blocks_than_the_controller_takes(seed, rate):
         np.testing.assert_array_equal(motion.time_ms, free(seed).time_ms)
 
 
+@pytest.mark.slow
 def test_the_jobs_have_seconds_with_more_blocks_than_that():
     assert max(blocks_of_busiest_second(free(seed).time_ms) for seed in SEEDS) > 50
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("shortest", [50, 100])
 def test_plans_are_as_slow_as_long_intervals_require(seed, shortest):

@@ -98,6 +98,7 @@ def test_plans_take_little_longer_than_the_whole_limits_need(name):
     assert needed < feed_plan.schedule.rests_ms[-1] * MS < PATHS[name][1] * needed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PATHS)
 def test_no_cubic_exceeds_the_limits_wherever_it_begins(name):
     struts, tip = played(planned_path(name))

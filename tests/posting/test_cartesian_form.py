@@ -167,6 +167,7 @@ def test_the_corners_are_what_the_exported_kinematics_do(posted):
         np.testing.assert_allclose(found, lengths, rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_strut_that_is_shortest_between_the_corners_is_within_its_stroke(posted):
     """Random machines and poses; the lengths at points of the box, against a stroke that the corners just keep."""
     machine, chance, shorter = posted[0], np.random.default_rng(3), 0
@@ -190,6 +191,7 @@ def test_a_strut_that_is_shortest_between_the_corners_is_within_its_stroke(poste
     assert shorter > 3
 
 
+@pytest.mark.slow
 def test_a_stroke_that_the_corners_keep_and_a_point_between_them_may_not_is_refused(posted, tmp_path):
     machine, folder, form = posted
     allowance = Allowance(0.0, 20.0)
@@ -207,6 +209,7 @@ def test_a_stroke_that_the_corners_keep_and_a_point_between_them_may_not_is_refu
                 cartesian_program(*files)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("lowest", "highest", "allowed", "refused"),
     [([-50, -50, 0], [50, 50, 265], 2.9, 3.1), ([36, -0.5, 0], [37, 0.5, 290], 8.9, 10.0)],

@@ -99,6 +99,7 @@ def basis(points, share):
     return sum(weight * point for weight, point in zip(weights, p, strict=True)) / 6
 
 
+@pytest.mark.slow
 def test_with_segments_the_struts_are_b_splines_through_the_exported_inverse_program(posted):
     """The text, cubics of its axes at the ends of segments, the exported program there, and basis functions."""
     machine, folder, form = posted
@@ -271,6 +272,7 @@ def test_segments_are_no_points_of_the_program_for_the_limits_of_the_controller(
 JERKS = ("V112", "V115")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("job", ["with a stop", *range(1, 5)])
 def test_segments_of_a_millisecond_have_the_jerk_of_the_program_whatever_they_do_to_its_steps(job, posted, tmp_path):
     """As shipped, and not with limits that it exceeds: the spline over segments of 1 ms is what the cubics are."""

@@ -154,6 +154,7 @@ def test_other_faults_are_not_searched_for(tmp_path, capsys):
     assert "J113" in said and "place:" not in said
 
 
+@pytest.mark.slow
 def test_options_of_a_place_keep_other_fixtures_beside_the_first():
     _, found, _ = far()
     beside = np.eye(4)

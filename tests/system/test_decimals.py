@@ -48,6 +48,7 @@ def test_a_number_at_every_place_of_a_text(number):
         compare(text)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_numbers_of_any_size(seed):
     chance = random.Random(seed)

@@ -212,6 +212,7 @@ def test_a_program_that_is_watched_is_held_at_an_override_beyond_the_plan(wire, 
     assert wire.controller.systems[0].holding and read_status(loaded, SETTINGS).override == 0.0
 
 
+@pytest.mark.slow
 def test_a_program_is_watched_to_its_end_through_a_hold(wire, loaded):
     operate.start_program(loaded, SETTINGS, SLOW, FIRST)
     stopping.hold(loaded, SETTINGS)
@@ -292,6 +293,7 @@ def test_a_start_that_got_lost_is_not_repeated(wire, loaded):
         assert isinstance(lost.value, OutcomeUnknownError)
 
 
+@pytest.mark.slow
 def test_the_struts_move_as_the_program_says(wire):
     """Six struts go out by different lengths and back, in step: what the controller reports lies on that line."""
     reach = np.array([1.0, 2.0, -3.0, 4.0, -5.0, 6.0])

@@ -157,6 +157,7 @@ def test_interrupted_it_is_held_and_aborted(kind):
     assert b"&1H" in wire.sent and b"&1A" in wire.sent
 
 
+@pytest.mark.slow
 @KINDS
 @pytest.mark.parametrize("running", [1, len(RESTS) - 1])
 def test_sped_up_by_another_client_it_is_held_and_aborted(kind, running):

@@ -86,6 +86,7 @@ def test_a_download_that_takes_long_asks_nothing_while_its_program_is_open(wire,
     assert verify_listing(session, PROGRAM).same
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cut_at", range(0, 1600, 37))
 def test_a_link_that_is_cut_at_any_byte(wire, cut_at):
     with wire.session() as session:

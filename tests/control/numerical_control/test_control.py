@@ -185,6 +185,7 @@ def test_a_line_of_a_dwell_alone_takes_its_time(station):
     assert station.wire.now - began >= 2.0
 
 
+@pytest.mark.slow
 def test_a_long_dwell_is_waited_for(station):
     plan, _ = station.control.plan_line("G91 G1 X1 F600 G4 P40")
     assert 40.0 < plan.seconds < 41.0

@@ -68,6 +68,7 @@ def test_jogs_and_lines(simulator, capsys):
     assert "spin" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_codes_that_another_client_aborts_have_not_been_carried_out(simulator, capsys, monkeypatch):
     """They do not move the tool, so the place where it rests does not tell."""
     _, port = simulator
@@ -171,6 +172,7 @@ def test_line_by_line(simulator, capsys, monkeypatch, tmp_path):
     assert "C205" in capsys.readouterr().err and not made.runs_program()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="has no pseudo terminals")
 def test_enter_pressed_twice_starts_one_line(simulator, capsys, monkeypatch, tmp_path):
     _, port = simulator
@@ -213,6 +215,7 @@ def test_behind_a_stop(simulator, capsys, tmp_path):
     assert np.allclose(commanded, motion.length[-1], atol=1e-4)
 
 
+@pytest.mark.slow
 def test_a_program_is_watched_to_its_end_to_a_stop_and_for_its_override(simulator, tmp_path, capsys):
     made, port = simulator
     file = tmp_path / "job.pmc"

@@ -125,6 +125,7 @@ def test_each_start_runs_one_line_and_rests_at_its_end(posted, kind):
         control.plan_step()
 
 
+@pytest.mark.slow
 def test_a_stopped_spindle_turns_again_where_a_block_is_begun(station, posted):
     control, blocks, variables = station.control, blocks_in(posted), station.wire.controller.variables
     control.open_blocks(blocks)

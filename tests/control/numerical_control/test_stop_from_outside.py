@@ -89,6 +89,7 @@ def test_a_signal_holds_a_move_by_hand(made, action, number):
         assert made.runs_program() and not is_moving(made)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 @pytest.mark.parametrize("ends", ["ctrl-c", "fault"])
 def test_a_further_signal_does_not_end_the_hold(number, ends):

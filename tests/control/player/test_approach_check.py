@@ -59,6 +59,7 @@ T_SLOT = trajectory_of(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("row", "shift"), [(3, (40, 0, 60)), (3, (0, 0, 20)), (3, (0, 0, 65)), (2, (-30, 0, 0)), (2, (-5, 0, 0))]
 )

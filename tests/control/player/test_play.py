@@ -60,6 +60,7 @@ def test_overrides_up_to_150_a_hold_and_an_override_of_zero(machine):
     assert max(state.reached for state in playing.states if state.line > 1) > 1.2
 
 
+@pytest.mark.slow
 @BOTH
 def test_a_resume_of_what_is_not_held_is_refused_and_the_play_goes_on(machine, caplog):
     """While it runs, at M0, and twice after a hold."""
@@ -164,6 +165,7 @@ def fails(playing):
     playing.wire.controller.variables.write("I", 311, 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("happens", "said"),
     [
@@ -178,6 +180,7 @@ def test_a_motor_that_fails_on_the_way_is_named(happens, said):
     assert playing.wire.controller.systems[0].running is False
 
 
+@pytest.mark.slow
 @BOTH
 def test_an_override_above_the_certificate_that_another_client_sets_is_held(machine):
     at = {12: [lambda player: playing.wire.controller.systems[0].set_override(150.0)]}
@@ -192,6 +195,7 @@ def test_an_override_above_the_certificate_that_another_client_sets_is_held(mach
     assert off.max() < TOLERANCES.tip and playing.arrived() > 1.0
 
 
+@pytest.mark.slow
 def test_an_override_below_is_only_slower():
     playing = Playing.of(at={12: [lambda player: playing.wire.controller.systems[0].set_override(60.0)]})
     done = playing.play()
@@ -242,6 +246,7 @@ def test_an_m_code_before_the_first_line_is_repeated_where_that_is_wanted(repeat
     assert playing.wire.controller.variables.read("P", 7004) == (21 if repeats else 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("asked", [1e-300, 1e-11, 0.009])
 def test_an_override_that_cannot_be_planned_is_the_lowest_one(asked):
     playing = Playing.of(at={30: [Order("override", asked)], 60: [Order("override", 1.0)]})
@@ -264,6 +269,7 @@ def during_a_move_by_hand(playing, act):
     playing.wire.sleep = sleep
 
 
+@pytest.mark.slow
 def test_a_code_that_waits_for_a_person_takes_as_long_as_it_takes(monkeypatch):
     """A tool changed by hand; the struts stand, and the link lives: no limit of time applies."""
     monkeypatch.setattr(stop_events, "_LONGEST_S", 1.0)
@@ -310,6 +316,7 @@ def held_by_another_client(playing, seconds):
     return hold, times
 
 
+@pytest.mark.slow
 @BOTH
 @pytest.mark.parametrize("where", ["planning", "M0"])
 @pytest.mark.parametrize("resumed", ["here", "there"])
@@ -344,6 +351,7 @@ def test_a_hold_of_another_client_between_two_motions_lasts_until_a_resume(where
 DWELL = (Event(1, EventKind.DWELL, 4.0),)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("at_once", [False, True])
 def test_an_abort_from_elsewhere_while_codes_run_ends_the_play(at_once):
     playing = Playing.of(trajectory_of(events=DWELL))
@@ -353,6 +361,7 @@ def test_an_abort_from_elsewhere_while_codes_run_ends_the_play(at_once):
     assert playing.arrived() > 10.0
 
 
+@pytest.mark.slow
 @BOTH
 @pytest.mark.parametrize(("events", "row"), [(DWELL, 0), ((), 2)], ids=["codes", "approach"])
 def test_a_hold_while_codes_or_an_approach_run_is_immediate_and_lasts_until_the_resume(events, row, machine, caplog):
@@ -383,6 +392,7 @@ def test_an_end_while_a_hold_stands_in_codes_ends_the_play():
     assert playing.wire.controller.systems[0].holding
 
 
+@pytest.mark.slow
 def test_a_start_while_codes_run_is_not_for_the_stop_behind_them():
     playing = Playing.of(trajectory_of(events=(*DWELL, Event(1, EventKind.STOP, 0.0))))
     asked = []

@@ -103,6 +103,7 @@ def test_a_clamp_on_the_way_to_a_line(posted, tmp_path, capsys, starts_where_it_
     assert "K133" in capsys.readouterr().err and made.systems[0].path.abrupt_stops == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("top", "length", "code"), [(164.0, 120.0, 0), (164.0, 100.0, 1), (140.0, 100.0, 0)])
 def test_a_shorter_tool_whose_holder_meets_the_part_is_not_played(
     posted, tmp_path, capsys, starts_where_it_waits, top, length, code

@@ -71,6 +71,7 @@ def test_an_override_shows_and_rests_are_not_needed_for_it():
     assert all(speeds[:-1])
 
 
+@pytest.mark.slow
 def test_single_block_rests_at_ends_of_lines():
     found = pieces_of(trajectory_of(HOOK), [1.0], single_block=True)
     shares = [piece.motion.share[-1] for piece in found if not speed_of(piece)]

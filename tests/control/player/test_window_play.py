@@ -109,6 +109,7 @@ def test_an_abort_ends_it_and_the_worker_goes_on(connection):
     assert not connection.worker.state.status.running and connection.worker.state.status.standing
 
 
+@pytest.mark.slow
 def test_a_link_that_is_lost_while_it_plays_is_a_state_of_the_worker(connection, monkeypatch):
     """The last position is not shown as the present one, and the operator is told what to do."""
     is_cut = []

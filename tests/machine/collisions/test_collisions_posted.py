@@ -127,6 +127,7 @@ FACED = SLOT.replace("G0 Z60\nM5", "G0 Z20\nG0 X{0} Y0\nG0 Z{1}\nG0 Z60\nM5")
 """The top of the part is finished, then the cutter goes down to a height, in rapid motion."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("place", "height", "code"), [(0, 9.8, 0), (0, 7.0, 1), (0, -5.0, 1), (33, 7.0, 1), (50, 7.0, 0)]
 )
@@ -169,6 +170,7 @@ FINI
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", ["--part", "--fixture"])
 @pytest.mark.parametrize(
     ("angles", "beside", "top", "clear"),
@@ -189,6 +191,7 @@ def test_a_rapid_move_of_a_slanted_cutter_meets_a_post(tmp_path, capsys, what, a
         assert (found, bool(re.search("K131|K133", reported))) == (code, bool(code)), reported
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("gap", "degrees", "code"), [(0.5, "0.001", 0), (0.5, "1", 1), (2.5, "1", 0)])
 def test_a_fixture_clears_the_cutter_of_any_axis_within_its_tolerance(tmp_path, capsys, gap, degrees, code):
     clamp = stored(tmp_path, "clamp.stl", box([20, 15 + gap, 0], [40, 30, 70]))
@@ -196,6 +199,7 @@ def test_a_fixture_clears_the_cutter_of_any_axis_within_its_tolerance(tmp_path, 
     assert (found, "error K133" in reported) == (code, bool(code)), reported
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("gap", "hit"), [(-0.3, True), (0.1, True), (0.4, True), (0.6, False)])
 def test_a_shank_clears_a_fixture_by_the_tolerance_of_the_tool_tip(gap, hit):
     trajectory, faults = place(program([[-30, 0, 0], [30, 0, 0]]), example(), ON_PALLET)
@@ -262,6 +266,7 @@ def test_a_point_that_is_thinner_than_the_allowance_is_checked_without_a_cutter(
     assert not find_collisions(trajectory, example(), setup, Tolerances(0.001, 1e-5)).faults
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("half", [10, 30, 45, 70])
 @pytest.mark.parametrize(("aside", "found"), [(0.0, set()), (4.0, {"K136"})])
 def test_a_rapid_move_in_the_groove_of_a_pointed_cutter_meets_nothing(half, aside, found):

@@ -199,6 +199,7 @@ def inside(pieces, radius, level):
     return met
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("bottom", "side", "corner"),
     [

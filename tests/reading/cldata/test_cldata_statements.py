@@ -36,6 +36,7 @@ def leaves(tree):
     return [float(token) for token in tree.scan_values(lambda token: getattr(token, "type", "") == "NUMBER")]
 
 
+@pytest.mark.slow
 @settings(deadline=None, derandomize=True)
 @given(st.lists(statements(), min_size=1, max_size=8))
 def test_scan_agrees_with_the_grammar(written):

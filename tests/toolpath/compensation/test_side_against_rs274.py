@@ -71,6 +71,7 @@ def test_what_rs274_refuses_is_refused():
         assert {fault.code for fault in faults} == {"N202"}
 
 
+@pytest.mark.slow
 def test_what_is_refused_beyond_rs274_cuts_into_the_part():
     """rs274 looks at neighbours alone. Its own path, measured by closed forms, is too near there."""
     beyond = 0

@@ -7,6 +7,7 @@ from hypothesis import given, settings, strategies
 from pkm_post.writing.controllers.pvt.decimals import plain
 
 
+@pytest.mark.slow
 @settings(derandomize=True)
 @given(strategies.floats(allow_nan=False, allow_infinity=False))
 def test_a_plain_decimal_reads_back_as_the_same_number(value):
