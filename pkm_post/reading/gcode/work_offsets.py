@@ -1,26 +1,24 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Work offsets: the offsets of a program, and the codes that change them: G10, G43, G51.1, G52, G54 to G59.3, G68, G92.
+"""Work offsets: the codes that change the offsets of a program: G10, G43, G51.1, G52, G54 to G59.3, G68, G92.
 
-Input: a block with the tool position, in program coordinates and mm. Output: the active frame. From the program
-outwards: mirror (G51.1), rotation (G68), local offset (G52, G92), angle and origin of the work offset (G54 to G59.3),
-and along Z the excess of the active length offset over the tool's own gauge length: program positions are tool tips.
-The order within a block is that of RS274NGC: length offset, work offset, then non-modal codes.
+Input: a block with the tool position, in program coordinates and mm. Output: the active frame. The order within a block
+is that of RS274NGC: length offset, work offset, then non-modal codes.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
 
 import numpy as np
 
 from pkm_post.model import Array, Tool
 from pkm_post.reading.gcode.blocks import Blocks
-from pkm_post.reading.gcode.codes import FURTHER_OFFSET, NONE, OFFSETS_OF_G10, WORK_OFFSETS, Group, Word, word_of
+from pkm_post.reading.gcode.codes import NONE, OFFSETS_OF_G10, WORK_OFFSETS, Group, Word, word_of
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
-from pkm_post.reading.gcode.frames import PLANES, ProgramFrame, rotation
+from pkm_post.reading.gcode.frames import PLANES, rotation
 from pkm_post.reading.gcode.modal import Modal, PositionWords
+from pkm_post.reading.gcode.offsets import Offsets, work_offset_code
 from pkm_post.reading.gcode.options import ReadOptions
 from pkm_post.reading.gcode.tools import tool_in_use
 
@@ -31,108 +29,13 @@ TIP_CONTROL = (434, 435)
 """Codes that make X Y Z tool tip coordinates while the tool axis tilts."""
 
 TILTED_PLANE = 682
+"""Its Z is the tool axis from G53.1 on."""
+
 EULER, ABOUT_AXES = (170, 190, 170), (190, 180, 170)
 """Planes of the rotations I, J and K of G68.2: about Z, X and Z, and with P1 about X, Y and Z."""
-"""Its Z is the tool axis from G53.1 on."""
 
 IN_ORDER = (Group.LENGTH, Group.SYSTEM, Group.ROTATION, Group.MIRROR)
 """Groups whose codes all change the frame, in execution order."""
-
-
-@dataclass
-class _Offsets:
-    """All offsets that determine the frame; mutable.
-
-    Attributes:
-        system: code of the active work offset.
-        origins: (3,) origin of each known work offset, by code.
-        angles: its angle about Z, by code; G10 sets it without turning the tool [LinuxCNC, rs274].
-        placed: the angle of the options likewise, which turns part and tool.
-        local: (3,) offset of G52 and G92.
-        kept: (3,) offset that G92.3 restores after G92.2, or that of G92, where G52 adds to it.
-        mirrored: (3,) mirrored coordinates; ``mirror_at`` holds the mirror positions.
-        rotation: (3, 3) turn and (3,) shift of G68 or G68.2.
-        tilted: whether it is that of a tilted plane, G68.2.
-        length: (3,) active length offset; None while the machine handles tool lengths (G49).
-        own_length: gauge length of the active tool.
-    """
-
-    system: int = WORK_OFFSETS[0]
-    origins: dict[int, Array] = field(default_factory=dict)
-    angles: dict[int, float] = field(default_factory=dict)
-    placed: dict[int, float] = field(default_factory=dict)
-    local: Array = field(default_factory=lambda: np.zeros(3))
-    kept: Array = field(default_factory=lambda: np.zeros(3))
-    mirrored: Array = field(default_factory=lambda: np.zeros(3, dtype=np.bool_))
-    mirror_at: Array = field(default_factory=lambda: np.zeros(3))
-    rotation: tuple[Array, Array] | None = None
-    tilted: bool = False
-    length: Array | None = None
-    own_length: float = 0.0
-
-    @classmethod
-    def of(cls, options: ReadOptions) -> _Offsets:
-        """Create the offsets from the options."""
-        offsets = cls()
-        offsets.take(options.work_offsets)
-        if options.work_offset:
-            offsets.system = _code_of(options.work_offset)
-            offsets.origins[offsets.system] = np.zeros(3)
-        return offsets
-
-    def take(self, poses: Mapping[str, tuple[float, float, float, float]]) -> None:
-        """Take work offsets by name, origin in mm and rotation about Z in degrees."""
-        for name, (x, y, z, degrees) in poses.items():
-            code = _code_of(name)
-            self.origins[code] = np.array([x, y, z])
-            self.angles[code] = self.placed[code] = float(np.radians(degrees))
-
-    def inner(self, point: Array) -> Array:
-        """Apply mirror and rotation to a (3,) point of the program."""
-        turn, shift = self._inner()
-        return turn @ point + shift
-
-    def _inner(self) -> tuple[Array, Array]:
-        turn = np.diag(np.where(self.mirrored, -1.0, 1.0))
-        shift = np.where(self.mirrored, 2 * self.mirror_at, 0.0)
-        if self.rotation is not None:
-            about, by = self.rotation
-            turn, shift = about @ turn, about @ shift + by
-        return turn, shift
-
-    def work_offset_turn(self, system: int) -> Array:
-        """Rotation matrix of a work offset, (3, 3)."""
-        return rotation(170, self.angles.get(system, 0.0))
-
-    def frame(self, system: int | None = None) -> ProgramFrame:
-        """The active frame, or the frame with another work offset."""
-        system = self.system if system is None else system
-        turn, shift = self._inner()
-        about = self.work_offset_turn(system)
-        longer = np.zeros(3) if self.length is None else self.length - np.array([0.0, 0.0, self.own_length])
-        origin = self.origins.get(system, np.zeros(3))
-        to_plane = self.rotation[0] if self.rotation is not None and self.tilted else None
-        tool = rotation(170, self.placed.get(system, 0.0)) if to_plane is None else about @ to_plane
-        shift = about @ (shift + self.local) + origin + longer
-        return ProgramFrame(about @ turn, shift, tool, self.tilted, not (self.tilted or np.allclose(turn, np.eye(3))))
-
-    def set_local_here(self, words: Array, position: Array) -> None:
-        """G92: set the coordinates of the current (3,) position to the (3,) words, NaN where absent."""
-        coordinates = np.where(np.isnan(words), position, words)
-        self.local = self.local + self.inner(position) - self.inner(coordinates)
-
-    def set_origin_here(self, system: int, words: Array, place: Array) -> None:
-        """G10 L20: set a work offset so that the (3,) ``place`` in {C} has the coordinates of the words."""
-        position = self.frame(system).to_program(place)
-        coordinates = np.where(np.isnan(words), position, words)
-        moved = self.work_offset_turn(system) @ (self.inner(position) - self.inner(coordinates))
-        self.origins[system] = self.origins.get(system, np.zeros(3)) + moved
-
-
-def _code_of(name: str) -> int:
-    """The code of a work offset, such as 540 for G54; also of G54.1P7."""
-    number, _, further = name.removeprefix("G").partition("P")
-    return FURTHER_OFFSET - int(further) if further else round(10 * float(number))
 
 
 def _length_of(tool: Tool | None) -> float:
@@ -154,7 +57,7 @@ class OffsetCodes:
     ) -> None:
         self._blocks, self._modal, self._words = blocks, modal, words
         self._tools, self._options, self._faults = tools, options, faults
-        self.offsets = _Offsets.of(options)
+        self.offsets = Offsets.of(options)
         self.offsets.own_length = _length_of(tool_in_use(NONE, options))
         self.length_offsets: set[int] = set()
 
@@ -245,7 +148,7 @@ class OffsetCodes:
     def _take_those_of_the_machine(self) -> None:
         """On a second work offset, take those of the machine file, if the first one is the {C} they refer to."""
         offsets, machine = self.offsets, self._options.machine_offsets
-        chosen = {_code_of(name) for name, pose in machine.items() if not any(pose)}
+        chosen = {work_offset_code(name) for name, pose in machine.items() if not any(pose)}
         if offsets.system in chosen and not self._options.work_offsets and {*offsets.origins} <= {offsets.system}:
             offsets.take(machine)
 
