@@ -2,8 +2,9 @@
 """What the scenes share: steps in a FreeCAD with a window, and what they found as JSON.
 
 A scene is a script that FreeCAD runs in its window: functions marked as steps, and a call of ``main``. An exception in
-a step is its result, and the others still run. The environment names the folder for what is written (PKM_FOLDER), since
-FreeCAD would open files that its command line names. The last thing a scene reports is the text of the Report view.
+a step is its result, and ends the scene: what follows might wait for ever. The environment names the folder for what is
+written (PKM_FOLDER), since FreeCAD would open files that its command line names. The last thing a scene reports is the
+text of the Report view.
 """
 
 import json
@@ -38,9 +39,10 @@ def select(item, *names):
 
 
 def press(command, item=None):
-    """Run a command of the workbench as its button does, with this object selected."""
+    """Run a command as its button does, with this object selected, as soon as its button is not grey."""
     if item is not None:
         select(item)
+    until(FreeCADGui.Command.get(command).isActive)
     FreeCADGui.runCommand(command, 0)
     settle()
 
@@ -82,8 +84,13 @@ def click(button):
 
 
 def widget(kind, name):
-    """The widget with this name that can be seen."""
-    (found,) = [each for each in FreeCADGui.getMainWindow().findChildren(kind, name) if each.isVisible()]
+    """The widget with this name, as soon as it can be seen."""
+
+    def visible():
+        return [each for each in FreeCADGui.getMainWindow().findChildren(kind, name) if each.isVisible()]
+
+    until(visible)
+    (found,) = visible()
     return found
 
 
@@ -191,6 +198,7 @@ def _run(are_drawn):
             results[function.__name__] = function()
         except Exception:
             results[function.__name__] = {"exception": traceback.format_exc()}
+            break
         (FOLDER / "so_far.txt").write_text("\n".join(results), encoding="utf-8")  # what a scene that hangs has done
     results["report view"] = _report_view()
     (FOLDER / "result.json").write_text(json.dumps(results, indent=1), encoding="utf-8")
