@@ -50,13 +50,12 @@ demo: export PKM_MODULES = numpy matplotlib
 demo: ## post-process the tapered column; its files and pictures are in out/ then (OUT=directory)
 	@$(FREECAD) examples/tapered_column/demo.py --out "$(OUT)"
 
-test: export PKM_MODULES = numpy lark serial paramiko pytest hypothesis matplotlib
+test slow: export PKM_MODULES = numpy lark serial paramiko pytest hypothesis matplotlib
 test: ## run the tests but slow ones inside FreeCAD, then `make oldest` (ARGS="-k feed -x": these, slow or not; OLDEST=no)
 	@$(FREECAD) tools/run_tests.py $(if $(ARGS),$(ARGS),-m "not slow")
 	@$(if $(ARGS),,$(if $(filter yes,$(OLDEST)),$(if $(shell $(FIND_OLDEST)),$(MAKE) --no-print-directory oldest,\
 		echo "Not run: make oldest, since NumPy 1.26 has no wheel for Pythons beyond 3.12, and there is no other.")))
 
-slow: export PKM_MODULES = numpy lark serial paramiko pytest hypothesis matplotlib
 slow: ## run the slow tests inside FreeCAD: long series, damage of every kind, programs played to their end
 	@$(FREECAD) tools/run_tests.py -m slow
 

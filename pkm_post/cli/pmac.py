@@ -20,7 +20,7 @@ from pkm_post.cli import pmac_manual, pmac_measure, pmac_play, pmac_simulate
 from pkm_post.cli.inputs import NO_AXIS_WORDS, axis_words
 from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, ROTARY_WORDS
 from pkm_post.cli.pmac_stop import JobTarget, ProgramTarget, Target
-from pkm_post.options import LONGEST_TOOL, above_zero, between, count, positive, tool_length, whole
+from pkm_post.options import LONGEST_TOOL, OVERRIDE_PERCENT, above_zero, between, count, positive, tool_length, whole
 
 if TYPE_CHECKING:
     from pkm_post.control.link import Port, Session
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
 _HIGHEST_PROGRAM = 999
 """Numbers from 1000 are the subprograms of the codes."""
-_percent = between(0.01, 100)
 _jog_mm = between(-LONGEST_TOOL, LONGEST_TOOL)
 _turn = between(-360, 360)
 
@@ -120,7 +119,8 @@ def _add_number(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_override(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("percent", type=_percent, metavar="PERCENT", help="a number from 0.01 to 100")
+    help_text = "a number from {:g} to {:g}".format(*OVERRIDE_PERCENT)
+    parser.add_argument("percent", type=between(*OVERRIDE_PERCENT), metavar="PERCENT", help=help_text)
 
 
 def _trigger(text: str) -> str:

@@ -28,7 +28,8 @@ _UPRIGHT_SHAPES = ("endmill", "ballend", "bullnose")
 _ANY_LENGTH = 1.0
 """mm: the gauge length does not matter for a cutter."""
 
-_CONE = "CuttingEdgeAngle"
+_EDGE_ANGLE = "CuttingEdgeAngle"
+"""The property with the whole angle of a cone, or of a dovetail to its bottom."""
 
 Sizes = dict[str, float]
 
@@ -163,7 +164,7 @@ def _pointed(bit: Any) -> Sizes:
 
 def _conical(bit: Any) -> Sizes:
     """A cone is the tool's side if it ends in a flat of its own diameter, and its bottom if it ends in a point."""
-    tip, half = millimetres(bit, "TipDiameter"), _half_angle(bit, _CONE)
+    tip, half = millimetres(bit, "TipDiameter"), _half_angle(bit, _EDGE_ANGLE)
     if tip > 0.0:
         return {"diameter": tip, "corner_radius": 0.0, "side_angle": half}
     return _flat(bit) | {"bottom_angle": math.pi / 2 - half}
@@ -172,7 +173,7 @@ def _conical(bit: Any) -> Sizes:
 _EDGE_HEIGHTS = {"slittingsaw": "BladeThickness", "tap": "CuttingEdgeLength"}
 """The property that states where the cutting edges end, by shape, if it has another name."""
 
-_CONES = {"vbit": _CONE, "tap": "TipAngle"}
+_TIP_ANGLES = {"vbit": _EDGE_ANGLE, "tap": "TipAngle"}
 """The angle of the cone that this height does not include, by shape."""
 
 
@@ -184,9 +185,9 @@ def read_shank(bit: Any) -> Shank | None:
     """
     shape, diameter = _plain_shape(bit), millimetres(bit, "ShankDiameter")
     height = millimetres(bit, _EDGE_HEIGHTS.get(shape, "CuttingEdgeHeight"))
-    if shape in _CONES:
+    if shape in _TIP_ANGLES:
         widest, tip = millimetres(bit, "Diameter"), millimetres(bit, "TipDiameter")
-        half = _half_angle(bit, _CONES[shape])
+        half = _half_angle(bit, _TIP_ANGLES[shape])
         if not (widest > tip and 0 < half < math.pi / 2):
             return None
         cone = (widest - tip) / 2 / math.tan(half)
@@ -196,7 +197,7 @@ def read_shank(bit: Any) -> Shank | None:
 
 def _dovetail(bit: Any) -> Sizes:
     """Its angle is measured to the bottom."""
-    return _flat(bit) | {"side_angle": 2 * _half_angle(bit, _CONE) - math.pi / 2}
+    return _flat(bit) | {"side_angle": 2 * _half_angle(bit, _EDGE_ANGLE) - math.pi / 2}
 
 
 _SHAPES: dict[str, Callable[[Any], Sizes]] = {

@@ -11,6 +11,7 @@ from pkm_post.options.argument_table import FIXTURE_OF_THE_JOB
 from pkm_post.options.argument_types import (
     FARTHEST_OFFSET,
     LONGEST_TOOL,
+    OVERRIDE_PERCENT,
     above_zero,
     between,
     count,
@@ -78,6 +79,7 @@ __all__ = [
     "LONGEST_TOOL",
     "MANUAL_MOVE_PROGRAM",
     "MOST_FEED",
+    "OVERRIDE_PERCENT",
     "PLAYER_PROGRAM",
     "NO_MESH",
     "NO_VALUES",

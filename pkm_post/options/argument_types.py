@@ -58,6 +58,8 @@ LONGEST_TOOL, FARTHEST_OFFSET = 10_000, 1_000_000
 """mm; a larger number is a typing error, and would exhaust the digits of the arithmetic."""
 tool_length = above_zero(LONGEST_TOOL)
 """Gauge length or diameter of a tool, mm."""
+OVERRIDE_PERCENT = 0.01, 100.0
+"""Lowest and highest override: less is sent as 0, which is a stop, and programs are certified up to 100 %."""
 offset = between(-FARTHEST_OFFSET, FARTHEST_OFFSET)
 """A coordinate of a work offset, mm."""
 

@@ -185,13 +185,12 @@ def _csv(text: str, _: Path, unit: str) -> Iterator[_ToolEntry]:
         cells = {name: str(row.get(names[name]) or "").strip() for name in _COLUMNS if name in names}
         if not any(cells.values()):
             continue
-        lengths = [
+        diameter, corner, length = (
             _number(cells[name], line) * scale if cells.get(name) else None
             for name in ("diameter", "corner_radius", "length")
-        ]
-        yield _ToolEntry(
-            line, _tool_number(cells["number"], line), cells.get("name", ""), lengths[0], lengths[1], lengths[2]
         )
+        number, name = _tool_number(cells["number"], line), cells.get("name", "")
+        yield _ToolEntry(line, number, name, diameter, corner, length)
 
 
 _OF_FREECAD = {"nm": 1e-6, "µm": 1e-3, "mm": 1.0, "cm": 10.0, "m": 1000.0, "thou": 0.0254, "in": 25.4, '"': 25.4,
@@ -213,9 +212,13 @@ def _freecad(text: str, file: Path, unit: str) -> Iterator[_ToolEntry]:
         number, path = entry.get("nr"), str(entry.get("path", ""))
         bit = _bit_file(file, path)
         content = _json(_content(bit), bit)
-        name, parameters = str(content.get("name", "")), content.get("parameter")
-        sizes = _sizes(content, parameters if isinstance(parameters, dict) else {}, bit)
-        yield _ToolEntry(0, _tool_number(str(number), 0), name, sizes[0], sizes[1], None, sizes[2])
+        stated = content.get("parameter")
+        parameters = stated if isinstance(stated, dict) else {}
+        shape = str(content.get("shape-type") or Path(str(content.get("shape", ""))).stem).lower()
+        diameter, corner = _sizes(parameters, shape, bit)
+        shank = _shank(parameters, shape, bit)
+        name = str(content.get("name", ""))
+        yield _ToolEntry(0, _tool_number(str(number), 0), name, diameter, corner, shank=shank)
 
 
 def _json(text: str, file: Path) -> dict[str, Any]:
@@ -241,22 +244,23 @@ _EDGES_ABOVE_CONE = ("v-bit", "v_bit", "vbit")
 """Shapes whose CuttingEdgeHeight does not begin at the tip."""
 
 
-def _sizes(
-    content: dict[str, Any], parameters: dict[str, Any], bit: Path
-) -> tuple[float | None, float | None, Shank | None]:
-    """Diameter and corner radius in mm, and the shank; None if not stated or if the shape has another bottom.
+def _sizes(parameters: dict[str, Any], shape: str, bit: Path) -> tuple[float | None, float | None]:
+    """Diameter and corner radius in mm, None if not stated or if the shape has another bottom.
 
     FreeCAD 1.0 stores the radius of the flat of a bull nose, newer versions that of its corner.
     """
     diameter, corner, flat = (_quantity(parameters, name, bit) for name in ("Diameter", "CornerRadius", "FlatRadius"))
-    start, across = (_quantity(parameters, name, bit) or 0.0 for name in ("CuttingEdgeHeight", "ShankDiameter"))
-    shape = str(content.get("shape-type") or Path(str(content.get("shape", ""))).stem).lower()
-    shank = Shank(start, across) if min(start, across) > 0 and shape not in _EDGES_ABOVE_CONE else None
     if diameter is None:
-        return None, None, shank
+        return None, None
     if shape == "bullnose":
-        return diameter, corner if corner is not None or flat is None else diameter / 2 - flat, shank
-    return diameter, {"endmill": 0.0, "ballend": diameter / 2}.get(shape), shank
+        return diameter, corner if corner is not None or flat is None else diameter / 2 - flat
+    return diameter, {"endmill": 0.0, "ballend": diameter / 2}.get(shape)
+
+
+def _shank(parameters: dict[str, Any], shape: str, bit: Path) -> Shank | None:
+    """The shank; None if the length of the cutting edges from the tip, or its diameter, is not stated."""
+    start, across = (_quantity(parameters, name, bit) or 0.0 for name in ("CuttingEdgeHeight", "ShankDiameter"))
+    return Shank(start, across) if min(start, across) > 0 and shape not in _EDGES_ABOVE_CONE else None
 
 
 def _quantity(parameters: dict[str, Any], name: str, bit: Path) -> float | None:

@@ -29,17 +29,14 @@ from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import MOTORS, AnySettings, Array, Status, read_status, settled_status
 from pkm_post.control.link.tool_pose import start_faults
 from pkm_post.model import Machine
-from pkm_post.options import START_TOLERANCE_MM
+from pkm_post.options import OVERRIDE_PERCENT, START_TOLERANCE_MM
 from pkm_post.writing import PmacSettings, PowerPmacSettings
 
 _UNSIGNED = r"(?:\d+(?:\.\d*)?|\.\d+)"
 """Digits belong to one part of it only: a long answer of nothing else is refused in time in proportion to it."""
 _DEFINITION = re.compile(rf"([-+]?{_UNSIGNED})?([A-Z])([-+]{_UNSIGNED})?")
 _ROTARY = "ABC"
-LOWEST_OVERRIDE = 0.01
-"""%: the last decimal sent; anything less would arrive as 0, which is a stop."""
-HIGHEST_OVERRIDE = 100.0
-"""%: programs are planned to the limits of the machine, and certified, up to this override."""
+LOWEST_OVERRIDE, HIGHEST_OVERRIDE = OVERRIDE_PERCENT
 
 
 def check_setup(session: Session, settings: AnySettings, stroke: tuple[float, float]) -> None:

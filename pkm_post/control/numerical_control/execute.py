@@ -100,16 +100,15 @@ def wait_for_rest(
     Raises:
         PmacError: timeout, or an override above that of the plan; then the machine is held.
     """
-    until = before = session.now()
-    until += seconds
+    left, before = seconds, session.now()
     while True:
         status = read_status(session, settings)
         check_override(session, settings, status)
         if status.standing and (status.held or not status.running):
             return status
-        until += session.now() - before if status.standing else 0.0
-        before = session.now()
-        if before > until:
+        now = session.now()
+        left, before = left - (0.0 if status.standing else now - before), now
+        if left < 0:
             raise PmacError(
                 f"the machine does not come to rest within {seconds:g} s; HOLD IT, OR USE THE EMERGENCY STOP"
             )

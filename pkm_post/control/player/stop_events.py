@@ -25,7 +25,7 @@ from pkm_post.toolpath import ToolPose
 TOLERANCES = Tolerances(1e-3, np.radians(1e-3))
 _POLL_S = 0.05
 _LONGEST_S = 30.0
-"""Longest time in which the struts may move while codes run: by a millionth of a millimetre."""
+"""Longest time of the motion beside codes, a millionth of a millimetre; the codes themselves may take any time."""
 
 
 def pose_before(trajectory: Trajectory, row: int) -> tuple[ToolPose, float]:

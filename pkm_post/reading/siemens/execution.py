@@ -168,10 +168,8 @@ def _in_machine(machine: SiemensMachine, block: Block) -> None:
     """SUPA, G53 and G153: words are machine coordinates, only in this block."""
     words = {name: block.number(name) for name in block.words if name in PLACES}
     zero, state = machine.options.machine_zero, machine.state
-    unused = [name for name in block.words if name in BUFFERED and name not in (*PLACES, "F")]
-    unused = [
-        name for name in unused if block.number(name) or state.is_tilted()
-    ]  # zero leaves an upright tool as it is
+    unread = [name for name in block.words if name in BUFFERED and name not in (*PLACES, "F")]
+    unused = [name for name in unread if block.number(name) or state.is_tilted()]  # zero leaves an upright tool upright
     if unused:
         raise BlockFault("G404", f"{unused[0]} beside SUPA, G53 or G153", block.columns.get(unused[0], 0))
     if words and zero is None:
