@@ -143,6 +143,8 @@ def _motion(machine: SiemensMachine, block: Block) -> None:
         return
     feed = machine.state.feed
     if "FB" in block.words:
+        if "F" in block.words:
+            raise BlockFault("G403", "F with FB", block.columns["F"])
         block.words["F"] = block.number("FB")
     _add_motion(machine, block)
     if codes.EXACT_STOP_ONCE in block.g or "FB" in block.words:

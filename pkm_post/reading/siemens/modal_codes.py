@@ -155,8 +155,7 @@ def g_code(machine: SiemensMachine, block: Block, code: int) -> None:
     elif code in (90, 91):
         state.relative = code == 91  # noqa: PLR2004 - G91
     elif code in codes.UNITS:
-        lengths, feeds = codes.UNITS[code]
-        state.scale, state.feed_scale = lengths, feeds or state.feed_scale
+        state.set_unit(*codes.UNITS[code])
     elif code in codes.FEED_MODES:
         if code != state.feed_mode:
             state.feed_mode, state.feed = code, np.nan

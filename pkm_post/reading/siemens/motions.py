@@ -12,6 +12,7 @@ import numpy as np
 
 from pkm_post.geometry import arc_length, arc_points, arc_sweep, cross, dot, norm
 from pkm_post.model import Array
+from pkm_post.reading.gcode.frames import PLANES
 from pkm_post.reading.gcode.modal import track_coordinate
 from pkm_post.reading.siemens import arcs
 from pkm_post.reading.siemens.buffer import Columns
@@ -29,7 +30,7 @@ _ON_CIRCLE = (CLOCKWISE, COUNTERCLOCKWISE)
 _WORDS_OF_ARCS = {
     **dict.fromkeys((*arcs.CENTRE, "CR", _OPENING_ANGLE), _ON_CIRCLE),
     **dict.fromkeys(arcs.POINT, (BY_POINT,)),
-    _TURNS: (*_ON_CIRCLE, BY_POINT),
+    _TURNS: _ON_CIRCLE,
 }
 """The motion codes that use a word of arcs."""
 
@@ -202,13 +203,17 @@ class _Arcs:
             return
         if len(self.columns) > 1:
             raise BlockFault("G601", "AR= with others")  # its end is the start of the next one: executed one by one
-        centre = np.array([self.lengths[name][0] if name in self.lengths else np.nan for name in arcs.CENTRE])
-        points = arcs.by_opening_angle(
-            moves.start[0], moves.end[0], centre, float(angle[0]), self.state.plane, int(moves.motion[0])
+        plane, start = PLANES[self.state.plane][:2], moves.start[0]
+        word = {name: self.lengths[name][0] if name in self.lengths else np.nan for name in (*AXES, *arcs.CENTRE)}
+        given = [not np.isnan([word[names[k]] for k in plane]).all() for names in (AXES, arcs.CENTRE)]
+        if all(given):
+            raise BlockFault("G409", "AR= with an end point and a centre")
+        to_offset = np.where([self.columns.relative(name, True)[0] for name in arcs.CENTRE], 0.0, -start)
+        centre = np.array([word[name] for name in arcs.CENTRE]) + to_offset
+        moves.end[0], middle = arcs.by_opening_angle(
+            start, moves.end[0], centre, float(angle[0]), self.state.plane, int(moves.motion[0])
         )
-        moves.end[0] = points[0]
-        offset = points[1] - moves.start[0]
-        self.lengths |= {name: np.array([value or np.nan]) for name, value in zip(arcs.CENTRE, offset, strict=True)}
+        self.lengths |= {arcs.CENTRE[k]: np.array([middle[k] - start[k] - to_offset[k]]) for k in plane}
 
     def _in_plane(self, rows: Array) -> None:
         """G2 and G3."""

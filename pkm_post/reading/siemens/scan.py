@@ -34,7 +34,8 @@ _PIECE = 256 * 1024
 _COMMENT = re.compile(rb"\"[^\"\n]*\"|;[^\n]*")
 _ABSOLUTE = re.compile(rb"(?<=[XYZABC])=[ \t]*(?:AC|DC)\(([-+]?[0-9.]+)\)", re.IGNORECASE)
 """AC() and DC() of a number, which are redundant where all words are absolute."""
-_INCREMENTS = re.compile(rb"G0*91(?![0-9])", re.IGNORECASE)
+_INCREMENTS = re.compile(rb"G[ \t]*(?:0*91(?![0-9])|=)", re.IGNORECASE)
+"""G91, or a computed G code, which may be G91."""
 _PLAIN = re.compile(rb"(?:N\x01)?((?:G0*[0-3]|(?:[XYZABCIJKF]=?|(?:[ABC]3|CR)=)\x01)*)")
 _WORD = re.compile(rb"G0*([0-3])|([A-Z][A-Z0-9]*)=?\x01")
 

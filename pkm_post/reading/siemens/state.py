@@ -115,6 +115,12 @@ class State:
         if mixed.any():
             self.known = np.where(mixed, self.known[mixed].all(), self.known)
 
+    def set_unit(self, length: float, feed: float | None) -> None:
+        """Change the mm per unit of lengths, and of feeds unless None; the feed in force stays as fast as it is."""
+        self.scale = length
+        if feed is not None:
+            self.feed, self.feed_scale = self.feed * self.feed_scale / feed, feed
+
     def restore(self, before: State) -> None:
         """Restore a copy made earlier."""
         self.__dict__.update(before.__dict__)

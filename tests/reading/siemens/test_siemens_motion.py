@@ -72,6 +72,14 @@ MOTIONS = {
     "circle by centre": ("G1 X10\nG2 X20 Y10 I10 J0\nG3 X10 Y0 I=AC(20) J=AC(0)", "L 10 0 10, A 20 10 10, A 10 0 10"),
     "circle by radius": ("G2 X10 Y10 CR=10\nG3 X0 Y0 CR=-10", "A 10 10 10, A 0 0 10"),
     "circle by angle": ("G3 X10 Y10 AR=90\nG3 I0 J10 AR=180", "A 10 10 10, A 10 30 10"),
+    "circle by angle and coordinates of its centre": (
+        "G1 X5 Y4\nG3 I=AC(10) J=AC(4) AR=90\nG3 I0 J=AC(4) AR=180",
+        "L 5 4 10, A 10 -1 10, A 10 9 10",
+    ),
+    "coordinates among increments": (
+        "G 91 G1 X5\nX=AC(7)\nG=90 X1\nG=91 X1\nX=AC(9)",
+        "L 5 0 10, L 7 0 10, L 1 0 10, L 2 0 10, L 9 0 10",
+    ),
     "turns": ("G3 X0 Y0 Z7 I10 J0 TURN=2", "A 0 0 9, A 0 0 8, A 0 0 7"),
     # 802D sl, 06/2006, p. 157: the circle of that example has its centre in (40, 32.5)
     "CIP": ("G1 X30 Y40\nCIP X50 Y40 I1=40 J1=45", "L 30 40 10, A 50 40 10"),
@@ -188,6 +196,13 @@ def test_distances_after_a_new_frame_are_refused_where_setting_data_decide(frame
 def test_the_feed_of_g70_stays_in_mm():
     """[NC] G70 changes lengths alone, G700 feeds as well."""
     assert np.allclose(taken(HEAD + "G70 G1 X1 F600\nG700 X2 F1").feed[1:], [10, 25.4 / 60])
+
+
+def test_a_feed_goes_on_in_another_unit():
+    """Basic Functions 828D, 09/2011, 6FC5397-0BP40-2BA0, p. 341: it remains active after G700 and G710."""
+    assert np.allclose(taken(HEAD + "G1 X1\nG700 X2\nG710 X3 F60\nG70 X4").feed[1:], [10, 10, 1, 1])
+    head = "G700 G90 G94 G54\nG0 X0 Y0 Z1\n"
+    assert np.allclose(taken(head + "G1 X1\nX2 F1", feed=2.0).feed[1:], [2, 25.4 / 60])
 
 
 def test_events():
