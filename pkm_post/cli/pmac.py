@@ -47,13 +47,13 @@ def _add_home(parser: argparse.ArgumentParser) -> None:
 
 def _add_jog(parser: argparse.ArgumentParser) -> None:
     for name in ("x", "y", "z"):
-        parser.add_argument(f"--{name}", type=_jog_mm, default=0.0, metavar="MM", help=f"the tip along {name.upper()}")
+        parser.add_argument(f"--{name}", type=_jog_mm, metavar="MM", help=f"the tip along {name.upper()}")
     for name in ("x", "y"):
         help_text = f"the tool axis about {name.upper()}, the tip stands"
-        parser.add_argument(f"--tilt-{name}", type=_turn, default=0.0, metavar="DEG", help=help_text)
-    parser.add_argument("--spin", type=_turn, default=0.0, metavar="DEG", help="the platform about the tool axis")
+        parser.add_argument(f"--tilt-{name}", type=_turn, metavar="DEG", help=help_text)
+    parser.add_argument("--spin", type=_turn, metavar="DEG", help="the platform about the tool axis")
     parser.add_argument("--strut", type=int, choices=range(1, 7), help="one strut instead of the tool")
-    parser.add_argument("--by", type=_jog_mm, default=0.0, metavar="MM", help="how much longer that strut becomes")
+    parser.add_argument("--by", type=_jog_mm, metavar="MM", help="how much longer that strut becomes")
     help_text = "of the tip; of a turn in place in degrees per minute (%(default)s)"
     parser.add_argument("--feed", type=positive, default=300.0, metavar="MM/MIN", help=help_text)
     _add_by_hand(parser)

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from pkm_post.control.link import Session, Status
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
-    from pkm_post.control.link import Session
 
 _IDENTITY = ("TYPE", "VER", "CID", "SIZE", "I42", "I68")
 _IDENTITY_OF_POWER_PMAC = ("CID", "Sys.MaxCoords")
@@ -29,8 +28,10 @@ _QUESTION = (
     r"#\d+[?PVF]|&\d+(?:\?\??|PR|%)|\?{1,3}|[PVF%]|PR|SIZE|TYPE|VER(?:SION)?|CID|[IPQ]\d+(?:\.\.\d+)?|(?:&\d+)?#\d+->"
 )
 _STOP = r"(?:&\d+)?[HA]|#\d+K|P8187\.\.8191=0"
+_LISTING = r"LIST (?:PC|PE|(?:PROG|PLC) ?\d+(?:,\d*){0,2})"
+"""Nothing may follow: a controller also executes the second command of ``LIST PC #1J+``."""
 _NEEDS_NO_OWNERSHIP = re.compile(
-    rf"(?:{_QUESTION}|{_STOP})(?: (?:{_QUESTION}|{_STOP}))*|LIST .*|[\w.]+\[[\w.\[\]]+", re.IGNORECASE
+    rf"(?:{_QUESTION}|{_STOP})(?: (?:{_QUESTION}|{_STOP}))*|{_LISTING}|[\w.]+\[[\w.\[\]]+", re.IGNORECASE
 )
 """Terminal lines that only query, stop, or clear the variables of the machine's owner."""
 

@@ -14,19 +14,18 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.pmac_stop import held_at_the_end
+from pkm_post.cli.processes import diagnostic_text
 from pkm_post.cli.terminal import drop_typed_ahead, print_diagnostics
 from pkm_post.options import START_TOLERANCE_MM
 
 if TYPE_CHECKING:
     from pkm_post.cli.pmac_stop import JobTarget, Target
-    from pkm_post.control.link import Session
-    from pkm_post.control.numerical_control import Jog
-
-    Action = Callable[[Session, Any, argparse.Namespace], int]
     from pkm_post.control.link import Array, Session, Status
-    from pkm_post.control.numerical_control import MovePlan, NumericalControl
+    from pkm_post.control.numerical_control import Jog, MovePlan, NumericalControl
     from pkm_post.control.player import PlayContext
     from pkm_post.model import Diagnostic, Trajectory
+
+    Action = Callable[[Session, Any, argparse.Namespace], int]
 
 _SLOWEST_OVERRIDE = 0.05
 """Override for the timeout of a move, which an operator may set meanwhile."""
@@ -152,9 +151,23 @@ def home(session: Session, target: Target, namespace: argparse.Namespace) -> int
 
 def jog(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Jog the tool or one strut."""
+    if fault := _jog_fault(namespace):
+        print_diagnostics([diagnostic_text("U103", "pmac jog", fault)])
+        return 2
     control = control_of(session, target, namespace)
     plan, diagnostics = control.plan_jog(_jog_of(namespace), namespace.feed / 60)
     return execute_plan(session, target, namespace, control, plan, diagnostics)
+
+
+_OF_TOOL = ("x", "y", "z", "tilt_x", "tilt_y", "spin")
+
+
+def _jog_fault(namespace: argparse.Namespace) -> str:
+    """Why the arguments do not name one jog; empty if they do."""
+    foreign = [f"--{name.replace('_', '-')}" for name in _OF_TOOL if getattr(namespace, name) is not None]
+    if namespace.strut is not None and foreign:
+        return f"expected either --strut or {', '.join(foreign)}"
+    return "expected --strut and --by together" if (namespace.strut is None) != (namespace.by is None) else ""
 
 
 def _jog_of(namespace: argparse.Namespace) -> Jog:
@@ -162,8 +175,9 @@ def _jog_of(namespace: argparse.Namespace) -> Jog:
 
     if namespace.strut is not None:
         return StrutJog(namespace.strut, namespace.by)
-    tilt = math.radians(namespace.tilt_x), math.radians(namespace.tilt_y)
-    return CartesianJog((namespace.x, namespace.y, namespace.z), tilt, math.radians(namespace.spin))
+    x, y, z, *turns = (getattr(namespace, name) or 0.0 for name in _OF_TOOL)
+    tilt_x, tilt_y, spin = map(math.radians, turns)
+    return CartesianJog((x, y, z), (tilt_x, tilt_y), spin)
 
 
 def mdi(session: Session, target: Target, namespace: argparse.Namespace) -> int:

@@ -168,9 +168,9 @@ def test_one_client_has_the_machine_and_the_others_watch_and_stop(simulator, job
             if order[0] not in ("jog", "mdi"):  # they see first that the machine moves, and plan nothing
                 owner = "process 4711 of anna, jog, since"
                 assert f"{name}: error C210: another client controls the machine: {owner}" in reported
-        monkeypatch.setattr("sys.stdin", io.StringIO("#1P\nP5=1\n&1H\n"))
+        monkeypatch.setattr("sys.stdin", io.StringIO("#1P\nP5=1\nLIST PC P5=1\nLIST PROG 999\n&1H\n"))
         assert pmac("terminal", port, machine=None) == 1
-        assert "error C210" in capsys.readouterr().out and made.variables.read("P", 5) == 0
+        assert capsys.readouterr().out.count("error C210") == 2 and made.variables.read("P", 5) == 0
         assert pmac("status", port) == 0 and pmac("probe", port) == 0
         assert "a program is held" in capsys.readouterr().out
         assert pmac("hold", port) == 0 and pmac("abort", port) == 0

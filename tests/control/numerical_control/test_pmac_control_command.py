@@ -92,6 +92,14 @@ def test_nothing_is_sent_that_is_refused_or_only_checked(simulator, capsys):
     assert "K102" in capsys.readouterr().err
     assert pmac("mdi", port, "G1 X10") == 1
     assert "G408" in capsys.readouterr().err
+    for words, found in (
+        (("--strut", 2, "--by", 1, "--z", 5, "--tilt-x", 1), "either --strut or --z, --tilt-x"),
+        (("--x", 1, "--by", 5), "--strut and --by together"),
+        (("--strut", 2), "--strut and --by together"),
+    ):
+        assert pmac("jog", port, *words) == 2
+        reported = capsys.readouterr().err
+        assert "pmac jog: error U103" in reported and f"expected {found}" in reported
     assert pmac("jog", port, "--tilt-x", 3, "--check") == 0
     assert "3.000 deg from upright" in capsys.readouterr().out
     assert pmac("jog", port, "--x", 1, "--number", SETTINGS.program) == 1
