@@ -51,23 +51,16 @@ def main(arguments: Sequence[str]) -> int:
         namespace = _parser(arguments[:1]).parse_args(arguments)
         code: int = namespace.run(namespace, arguments)
         sys.stdout.flush()
-    except OSError:
-        fault = _output_fault()
-        if fault is None:
-            raise
-        if not isinstance(fault, BrokenPipeError):
-            print(diagnostic_text("F101", "standard output", str(fault)), file=sys.stderr)
-        return 1
     except KeyboardInterrupt:
         return INTERRUPTED
     except ThreadCountError as fault:
         print(diagnostic_text("F115", THREADS, str(fault)), file=sys.stderr)
         return 1
     except MEMORY_FAULTS as fault:
-        diagnostic = memory_diagnostic(fault, "pkm_post") or _not_installed(fault)
-        if diagnostic is None:
+        message = memory_diagnostic(fault, "pkm_post") or _not_installed(fault) or _output_fault(fault)
+        if message is None:
             raise
-        print(diagnostic, file=sys.stderr)
+        print(message, end="\n" if message else "", file=sys.stderr)
         return 1
     return code
 
@@ -92,13 +85,16 @@ def _prepare_streams() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
-def _output_fault() -> OSError | None:
-    """Why nothing can be printed: the pipe was closed, as by ``| head``, or the disk is full; the rest is discarded."""
+def _output_fault(fault: BaseException) -> str | None:
+    """Why nothing can be printed: the disk is full; empty if the pipe was closed, as by ``| head``; None if it can."""
+    if not isinstance(fault, OSError):
+        return None
     try:
         print(flush=True)
-    except OSError as fault:
+    except OSError as unprinted:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes once more at exit
-        return fault
+        closed = isinstance(unprinted, BrokenPipeError)
+        return "" if closed else diagnostic_text("F101", "standard output", str(unprinted))
     return None
 
 

@@ -11,11 +11,14 @@ import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.inputs import add_reading, one_of, print_misplaced, read_machine, reading_from
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import add_machine, add_part_program, between, whole
+
+if TYPE_CHECKING:
+    from pkm_post.model import Finding
 
 
 def add_commands(commands: Any) -> None:
@@ -101,7 +104,7 @@ def _verify(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     if machine is None:
         return 1
     try:
-        _, report, warnings = verify(namespace.program, namespace.against, machine)
+        certificate, report, warnings = verify(namespace.program, namespace.against, machine)
     except Refused as refused:
         print_diagnostics([refused])
         return 1
@@ -109,15 +112,14 @@ def _verify(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     if namespace.json:
         print(json.dumps(report, indent=2))
     else:
-        for finding in report["certificate"]["findings"]:
-            bound = ", at least" if finding["is_least"] else " of"
-            print(f"{finding['what']}: {finding['value']:g}{bound} {finding['limit']:g} {finding['unit']}".rstrip())
+        print(*map(_finding_line, certificate.findings), sep="\n")
         print(*report["certificate"]["meaning"], f"{namespace.program}: the certificate holds", sep="\n")
     return 0
 
 
-def _finding_line(what: str, value: float, limit: float, unit: str) -> str:
-    return f"{what}: {value:g} of {limit:g} {unit}".rstrip()
+def _finding_line(finding: Finding) -> str:
+    bound = ", at least" if finding.is_least else " of"
+    return f"{finding.name}: {finding.value:g}{bound} {finding.limit:g} {finding.unit}".rstrip()
 
 
 _PLAYED = {
@@ -140,8 +142,7 @@ def _cartesian(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
     except Refused as refused:
         print_diagnostics([refused])
         return 1
-    for finding in made.certificate.findings:
-        print(_finding_line(finding.name, finding.value, finding.limit, finding.unit))
+    print(*map(_finding_line, made.certificate.findings), sep="\n")
     print(f"struts at most {made.off:.2e} mm from those of {namespace.program} at its points")
     print(_PLAYED[machine.controller["kind"]].format(namespace.segment_time))
     print(*made.files, sep="\n")

@@ -11,6 +11,7 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -168,10 +169,15 @@ def _make_importable() -> None:
 
 def _wheel(package: str, wheels: Path) -> Path:
     """The newest pure-Python wheel of a package; only such wheels are installed without pip."""
-    found = sorted(file for file in wheels.glob("*-none-any.whl") if file.name.lower().startswith(f"{package}-"))
+    found = [file for file in wheels.glob("*-none-any.whl") if file.name.lower().startswith(f"{package}-")]
     if not found:
         raise NotInstalledError(f"{wheels} has no {package}-*-none-any.whl, and there is no pip for other wheels")
-    return found[-1]
+    return max(found, key=_version)
+
+
+def _version(wheel: Path) -> list[int]:
+    """The numbers of a wheel's version, for comparison: 1.10 is above 1.9."""
+    return [int(digits) for digits in re.findall(r"\d+", wheel.name.split("-")[1])]
 
 
 def _unpack(wheel: Path, folder: Path) -> None:

@@ -265,3 +265,5 @@ def test_command_prints_the_certificate_and_the_file(posted, tmp_path, capsys):
     assert main(["cartesian", *arguments, "--out", str(out)]) == 0
     printed = capsys.readouterr().out.splitlines()
     assert printed[-1] == str(out) and any(line.startswith("deviation of the tool tip: ") for line in printed)
+    shortest = [line for line in printed if line.startswith("shortest ")]
+    assert len(shortest) == 2 and all(", at least " in line and " of " not in line for line in shortest)

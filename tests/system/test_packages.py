@@ -50,9 +50,9 @@ def test_a_folder_without_the_wheel_is_named(folder, tmp_path, pip, capsys):
 
 def test_without_pip_the_newest_wheel_is_taken_and_nothing_leaves_the_folder(folder, tmp_path, monkeypatch):
     monkeypatch.setattr(packages, "_has_pip", lambda: False)
-    wheels = wheel(wheel(tmp_path / "wheels", "1.0"), "1.1")
+    wheels = wheel(wheel(wheel(tmp_path / "wheels", "1.9"), "1.10"), "1.1")
     packages.install([NAME], wheels)
-    assert importlib.import_module(NAME).VERSION == "1.1"
+    assert importlib.import_module(NAME).VERSION == "1.10"
     with pytest.raises(packages.NotInstalledError, match="no module"):
         packages.install([NAME], wheel(tmp_path / "bad", module=f"../{NAME}.py"))
     assert not (folder.parent / f"{NAME}.py").exists()
