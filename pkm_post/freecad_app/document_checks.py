@@ -6,14 +6,19 @@ error and replaces unreadable paths with empty ones. The file is therefore check
 job of an open document is read: until it is saved, the file is still the one that was opened. Operations that FreeCAD
 could not read or compute are only marked.
 
+The lines of a Custom operation are read by FreeCAD, which makes ``G1 X15`` of ``G1 X1,5``, turns a move with a comment
+behind it into a comment, and leaves lines out: they are compared with its path.
+
 Dress-ups, arrays and copies derive from an operation, linked by their ``Base``. Those of FreeCAD rebuild moves from X Y
 Z, and arrays rotate only these: I J K words below them are dropped or left unchanged.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from functools import lru_cache
+from itertools import zip_longest
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -30,6 +35,12 @@ _STANDS = 1e-6
 """mm"""
 _NOT_READ, _NOT_COMPUTED = "Restore", "Touched"
 """Entries of ``State``. The first remains until the document is closed, whatever is computed."""
+_STORED = 1e-6
+"""FreeCAD stores six decimals."""
+_COMMENT = re.compile(r"\([^()]*\)")
+_WORD = re.compile(r"\s*([A-Z])\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))", re.ASCII | re.IGNORECASE)
+_Words = list[tuple[str, float]]
+"""Letters and numbers."""
 
 
 def read_content(file: FilePath) -> DocumentContent:
@@ -105,11 +116,11 @@ def state_faults(operation: Any, source: str) -> list[Diagnostic]:
         source: name of the document.
     """
     place = Place(source, operation.Label)
-    for code, check in _FAULTS:
-        found = check(operation)
-        if found:
-            return [Diagnostic(code, place, found)]
     try:
+        for code, check in _FAULTS:
+            found = check(operation)
+            if found:
+                return [Diagnostic(code, place, found)]
         return [Diagnostic("J108", place, dressup.Label) for dressup in incompatible_dressups(operation)]
     except UnicodeDecodeError as fault:
         return [undecodable_command(fault, source, operation.Label)]
@@ -188,12 +199,67 @@ def has_inactive_base(operation: Any) -> bool:
     )
 
 
+def _misread(operation: Any) -> str:
+    """The first line of a Custom operation, or of one below, that its path does not hold as typed."""
+    found = ""
+    if hasattr(operation, "Gcode") and operation.Active:
+        lines = _typed_lines(operation)
+        found = Phrase("{} cannot be read", operation.GcodeFile) if lines is None else _first_other(lines, operation)
+    return found or next(filter(None, map(_misread, base_operations(operation))), "")
+
+
+def _typed_lines(operation: Any) -> list[str] | None:
+    """The lines of a Custom operation; None if they are in a file that is not there."""
+    if getattr(operation, "Source", "Text") == "Text" or not operation.GcodeFile:
+        return list(operation.Gcode)
+    file = FilePath(operation.Document.FileName).parent / operation.GcodeFile
+    try:
+        return file.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return None
+
+
+def _first_other(lines: list[str], operation: Any) -> str:
+    """The first line that is not the next command of the path; comments and lines without words do not matter."""
+    typed = [(number, line) for number, line in enumerate(lines, 1) if line and not _COMMENT.fullmatch(line)]
+    read = [each for each in operation.Path.Commands if each.Name and not each.Name.startswith("(")]
+    if [line for _, line in typed] == [command.toGCode() for command in read]:
+        return ""
+    meant = [(number, line, words) for number, line in typed if (words := _typed_words(line)) != []]
+    for (number, line, words), command in zip_longest(meant, read[: len(meant)]):
+        if words is None or command is None or not _says(command, words):
+            has = Phrase("nothing") if command is None else command.toGCode()
+            return Phrase("line {}, {!r}, where its path has {}", number, line, has)
+    more = read[len(meant) :]
+    return Phrase("behind the last line its path has {}", more[0].toGCode()) if more else ""
+
+
+def _says(command: Any, words: _Words) -> bool:
+    """Whether a command has a code and these words, each once."""
+    stored = command.Parameters
+    return (
+        words[:1] == _typed_words(command.Name)
+        and len(words) == 1 + len(stored)
+        and all(abs(stored.get(letter, np.nan) - number) <= _STORED for letter, number in words[1:])
+    )
+
+
+def _typed_words(line: str) -> _Words | None:
+    """The words of a line, without its comments; None if it has anything else."""
+    for _ in range(line.count("(")):
+        line = _COMMENT.sub(" ", line)
+    line = line.partition(";")[0].strip("()% \t\r\n")
+    words = _WORD.findall(line)
+    return [(letter.upper(), float(number)) for letter, number in words] if not _WORD.sub("", line).strip() else None
+
+
 _FAULTS: tuple[tuple[str, Callable[[Any], str]], ...] = (
     ("J136", _has_no_path),
     ("J134", _not_read),
     ("J116", _not_valid),
     ("J133", _not_computed),
     ("J132", _empty),
+    ("J146", _misread),
 )
 """Finding by code, empty if there is none, in this order: each test relies on the previous ones."""
 

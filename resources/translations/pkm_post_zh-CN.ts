@@ -3015,6 +3015,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>在刀具控制器中设置转速，在操作中设置 CoolantMode，或在该处重复此代码</translation>
     </message>
     <message>
+        <source>FreeCAD reads a line of a Custom operation as something else, or leaves it out</source>
+        <translation>FreeCAD 把自定义操作的某一行读成了别的内容，或略去了它</translation>
+    </message>
+    <message>
+        <source>write one code and its words, with decimal points, and a comment in ( ) on a line of its own; recompute</source>
+        <translation>每行写一个代码及其字，小数用小数点，( ) 中的注释单独成行；然后重新计算</translation>
+    </message>
+    <message>
         <source>add it to the machine file, or pass --work-offset, or --origin for a further fixture of a CAM job</source>
         <translation>将其加入机床文件，或给出 --work-offset；CAM 作业的其他工件坐标系用 --origin 给出</translation>
     </message>
@@ -4547,12 +4555,28 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>{} 有错误</translation>
     </message>
     <message>
+        <source>behind the last line its path has {}</source>
+        <translation>最后一行之后，其路径还有 {}</translation>
+    </message>
+    <message>
         <source>its job has no model</source>
         <translation>其作业没有模型</translation>
     </message>
     <message>
         <source>its tool controller has no tool</source>
         <translation>其刀具控制器没有刀具</translation>
+    </message>
+    <message>
+        <source>{} cannot be read</source>
+        <translation>无法读取 {}</translation>
+    </message>
+    <message>
+        <source>line {}, {!r}, where its path has {}</source>
+        <translation>第 {} 行 {!r}，而其路径中是 {}</translation>
+    </message>
+    <message>
+        <source>nothing</source>
+        <translation>无</translation>
     </message>
     <message>
         <source>a recompute is under way</source>

@@ -195,6 +195,47 @@ def test_no_warning_where_cams_own_posts_switch_it_too(job):
     assert switched_back(job) == []
 
 
+TYPED = ["(a move (to the left))", "", "G0 X0 Y0 Z5", "g01 x1.5Y-.5 F+5 ;", "G1 X 3. Z2", "G4P.5"]
+
+
+@pytest.mark.parametrize("line", ["G1 X1,5", "G1 X5 (left)", "; G1 X5", "/G1 X5", "G1 X5 X6", "G1 X[2+3]", "G1 X5 Y"])
+@pytest.mark.parametrize("source", ["Text", "File"])
+def test_typed_lines_that_freecad_reads_otherwise_are_refused(job, tmp_path, line, source):
+    """FreeCAD takes them for X15, a comment, a move, a move, X6 and X23, and 1.1 leaves the last one out."""
+    cut = add_operation(job, TYPED, "Cut")
+    cut.Source, cut.GcodeFile = source, str(tmp_path / "typed.nc")
+    written = (tmp_path / "typed.nc").write_text
+    written("%\n" + "\n".join(TYPED))
+    cut.touch()
+    job.Document.recompute()
+    assert program_of(job).position[-1].tolist() == [3, -0.5, 2]
+    written("\n".join([*TYPED, line]))
+    cut.Gcode = [*TYPED, line]
+    job.Document.recompute()
+    program, (fault,) = read_job(job)
+    assert program is None
+    if cut.isValid():
+        told = "behind the last line its path has G1 X5.000000" if line.startswith(";") else f"line 7, {line!r}"
+        assert fault.code == "J146" and told in fault.found
+    else:  # FreeCAD 1.0 leaves only lines of files out
+        assert (fault.code, line, source) == ("J116", "G1 X5 Y", "Text")
+
+
+def test_a_custom_operation_is_compared_with_its_file_as_it_is(job, tmp_path):
+    """Below a copy, too; a file that is gone leaves FreeCAD 1.1 with a path of comments."""
+    file = tmp_path / "typed.nc"
+    file.write_text("\n".join(TYPED))
+    cut = add_operation(job, [], "Cut")
+    cut.Source, cut.GcodeFile = "File", str(file)
+    create_mirror(cut, (1, 0, 0))
+    job.Document.recompute()
+    assert program_of(job) is not None
+    file.write_text("\n".join([*TYPED[:-1], "G4 P2"]))
+    assert {fault.code for fault in read_job(job)[1]} == {"J146"}
+    file.unlink()
+    assert [fault.found for fault in read_job(job)[1]] == [f"{file} cannot be read"] * 2
+
+
 def test_stop_between_operations(job):
     add_operation(job, label="First")
     second = add_operation(job, label="Second")

@@ -116,4 +116,8 @@ CAM_JOB_RULES: dict[str, Rule] = {
         "what an operation switched is switched back at the next one",
         "set the speed in a tool controller and CoolantMode in the operation, or repeat the code there",
     ),
+    "J146": error(
+        "FreeCAD reads a line of a Custom operation as something else, or leaves it out",
+        "write one code and its words, with decimal points, and a comment in ( ) on a line of its own; recompute",
+    ),
 }
