@@ -23,6 +23,8 @@ from pathlib import Path as FilePath
 from typing import Any
 
 import numpy as np
+import Part
+from Path.Base.Util import toolControllerForOp
 
 from pkm_post.freecad_app.commands.words import CommandWords, undecodable_command
 from pkm_post.freecad_app.document import document_name, job_of, members
@@ -37,6 +39,8 @@ _NOT_READ, _NOT_COMPUTED = "Restore", "Touched"
 """Entries of ``State``. The first remains until the document is closed, whatever is computed."""
 _STORED = 1e-6
 """FreeCAD stores six decimals."""
+_ON_SURFACE = 1e-3
+"""mm"""
 _COMMENT = re.compile(r"\([^()]*\)")
 _WORD = re.compile(r"\s*([A-Z])\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))", re.ASCII | re.IGNORECASE)
 _Words = list[tuple[str, float]]
@@ -155,8 +159,10 @@ def _not_read(operation: Any) -> str:
 def _not_valid(operation: Any) -> str:
     if not operation.isValid():
         return str(operation.getStatusString())
-    if is_pkm_object(operation) and operation.Base is None:
+    if not getattr(operation, "Base", True) and (is_pkm_object(operation) or hasattr(operation, "JitterPercent")):
         return "its base operation no longer exists"
+    if len(set(map(toolControllerForOp, base_operations(operation)))) > 1:
+        return Phrase("its operations have different tool controllers")
     return _kept_by_cam(operation) or failed_input(operation)
 
 
@@ -200,12 +206,11 @@ def has_inactive_base(operation: Any) -> bool:
 
 
 def _misread(operation: Any) -> str:
-    """The first line of a Custom operation, or of one below, that its path does not hold as typed."""
-    found = ""
-    if hasattr(operation, "Gcode") and operation.Active:
-        lines = _typed_lines(operation)
-        found = Phrase("{} cannot be read", operation.GcodeFile) if lines is None else _first_other(lines, operation)
-    return found or next(filter(None, map(_misread, base_operations(operation))), "")
+    """The first line of a Custom operation that its path does not hold as typed."""
+    if not hasattr(operation, "Gcode") or not operation.Active:
+        return ""
+    lines = _typed_lines(operation)
+    return Phrase("{} cannot be read", operation.GcodeFile) if lines is None else _first_other(lines, operation)
 
 
 def _typed_lines(operation: Any) -> list[str] | None:
@@ -253,13 +258,44 @@ def _typed_words(line: str) -> _Words | None:
     return [(letter.upper(), float(number)) for letter, number in words] if not _WORD.sub("", line).strip() else None
 
 
+def _other_heights(operation: Any) -> str:
+    """Why a Z correction of CAM lacks the heights of its file: it keeps those before, or has none and corrects nothing.
+
+    CAM rounds them to 0.01 mm, and lays a surface through them.
+    """
+    if not hasattr(operation, "interpSurface") or has_inactive_base(operation):
+        return ""
+    if operation.interpSurface.isNull():
+        return Phrase("it has no probed heights")
+    if not operation.probefile:
+        return ""
+    try:
+        probed = np.loadtxt(operation.probefile, usecols=(0, 1, 2), ndmin=2).tolist()
+    except (OSError, ValueError):
+        return Phrase("{} cannot be read", operation.probefile)
+    points = (Part.Vertex(*(round(value, 2) for value in point)) for point in probed)
+    other = any(operation.interpSurface.distToShape(point)[0] > _ON_SURFACE for point in points)
+    other_heights = Phrase("its heights are not those of {}: clear the name, then choose it again", operation.probefile)
+    return other_heights if other else ""
+
+
+def _anywhere(check: Callable[[Any], str]) -> Callable[[Any], str]:
+    """A check of an operation and of all below it: dress-ups may keep their path where one below has none."""
+
+    def found(operation: Any) -> str:
+        return check(operation) or next(filter(None, map(found, base_operations(operation))), "")
+
+    return found
+
+
 _FAULTS: tuple[tuple[str, Callable[[Any], str]], ...] = (
     ("J136", _has_no_path),
     ("J134", _not_read),
     ("J116", _not_valid),
     ("J133", _not_computed),
-    ("J132", _empty),
-    ("J146", _misread),
+    ("J132", _anywhere(_empty)),
+    ("J116", _anywhere(_other_heights)),
+    ("J146", _anywhere(_misread)),
 )
 """Finding by code, empty if there is none, in this order: each test relies on the previous ones."""
 

@@ -4547,8 +4547,16 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>共 {} 个点，这是第一个</translation>
     </message>
     <message>
+        <source>its heights are not those of {}: clear the name, then choose it again</source>
+        <translation>其高度不是 {} 中的高度：请清除文件名，再重新选择</translation>
+    </message>
+    <message>
         <source>HorizFeed of {} is 0</source>
         <translation>{} 的 HorizFeed 为 0</translation>
+    </message>
+    <message>
+        <source>its operations have different tool controllers</source>
+        <translation>其各操作的刀具控制器不同</translation>
     </message>
     <message>
         <source>{} has an error</source>
@@ -4557,6 +4565,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>behind the last line its path has {}</source>
         <translation>最后一行之后，其路径还有 {}</translation>
+    </message>
+    <message>
+        <source>it has no probed heights</source>
+        <translation>它没有测得的高度</translation>
     </message>
     <message>
         <source>its job has no model</source>

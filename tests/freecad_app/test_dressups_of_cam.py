@@ -6,8 +6,9 @@ import importlib
 import FreeCAD as App
 import numpy as np
 import Part
+import Path
 import pytest
-from cam_jobs import moves
+from cam_jobs import add_tool_controller, moves
 from part_jobs import job_on
 
 from pkm_post.freecad_app.job import read_job
@@ -111,3 +112,76 @@ def test_what_stands_on_an_operation_is_read_command_by_command(job, below, make
     known = np.isfinite(ends).all(axis=1)
     assert len(ends) > 10 and (program.kind[rows] != Kind.RAPID).any()
     np.testing.assert_allclose(program.position[rows][-known.sum() :], ends[known], atol=1e-6)
+
+
+def faults_of(job):
+    job.Document.recompute()
+    return {fault.code for fault in read_job(job)[1]}
+
+
+def z_correction(base, job):
+    made = job.Document.addObject("Path::FeaturePython", "DressupZCorrect")
+    made.Proxy = importlib.import_module("Path.Dressup.Gui.ZCorrect").ObjectDressup(made)
+    made.Base = base
+    job.Proxy.addOperation(made, base, True)
+    return made
+
+
+@pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning", "ignore:Exception ignored")  # CAM leaves it open
+def test_a_z_correction_needs_the_heights_of_its_file(job, tmp_path):
+    """CAM reads the file when the property is set, and corrects nothing without it."""
+    made, probed = z_correction(profile(job), job), tmp_path / "probed.txt"
+    assert faults_of(job) == {"J116"}
+
+    def probe(height):
+        points = [(x, y, height + 0.0123 * x + 0.001 * y * y) for x in range(-20, 71, 10) for y in range(-20, 61, 10)]
+        probed.write_text("\n".join(f"{x} {y} {z}" for x, y, z in points))
+
+    probe(0.0)
+    made.probefile = str(probed)
+    assert faults_of(job) == set()
+    probe(0.02)
+    assert faults_of(job) == {"J116"}
+    made.probefile = ""
+    made.probefile = str(probed)
+    assert faults_of(job) == set()
+    probed.unlink()
+    assert faults_of(job) == {"J116"}
+    made.Base.Active = False
+    assert faults_of(job) == {"J103"}
+
+
+def test_an_array_without_a_base_is_refused(job):
+    """FreeCAD 1.0 keeps its path."""
+    base = profile(job)
+    array_of(base, job)
+    assert faults_of(job) == set()
+    job.Document.removeObject(base.Name)
+    assert "J116" in faults_of(job)
+
+
+def test_an_array_of_operations_with_two_tools_is_refused(job):
+    """FreeCAD 1.0 cuts all of it with the first one, 1.1 clears its path."""
+    first, second = profile(job), pocket(job)
+    array_of(first, job).Base = [first, second]
+    assert faults_of(job) == set()
+    other = add_tool_controller(job, 7)
+    other.Tool, other.HorizFeed, other.VertFeed = job.Tools.Group[0].Tool, "9 mm/s", "9 mm/s"
+    second.ToolController = other
+    assert "J116" in faults_of(job)
+
+
+def test_a_dress_up_above_an_operation_without_a_path_is_refused(job):
+    """FreeCAD 1.1 clears the path of an array that it cannot make, and Dogbone above it keeps its own."""
+    base = profile(job)
+    below = array_of(base, job)
+    made = job.Document.addObject("Path::FeaturePython", "DressupDogbone")
+    made.Proxy = importlib.import_module("Path.Dressup.Gui.Dogbone").ObjectDressup(made, below)
+    made.Base = below
+    job.Proxy.addOperation(made, below, True)
+    assert faults_of(job) == set() and made.Path.Size > 10
+    below.Proxy = None
+    below.Path = Path.Path()
+    assert faults_of(job) == {"J132"} and made.Path.Size > 10
+    below.Active = False
+    assert faults_of(job) == set()
