@@ -52,7 +52,7 @@ class TextFile:
             return whole.encode("utf-8")
 
 
-_BLOCK = re.compile(r"^([ \t]*(?:/[ \t]*(?:[1-9](?![\d.])[ \t]*)?)?)(N[ \t]*\d+(?:\.\d*)?[ \t]*)?(.*)$", re.M | re.I)
+_BLOCK = re.compile(r"^([ \t]*(?:/[ \t]*(?:[1-9](?![\d.])[ \t]*)?)*)(N[ \t]*\d+(?:\.\d*)?[ \t]*)?(.*)$", re.M | re.I)
 _COMMENT = re.compile(r"\([^()\n]*\)|;.*")
 
 

@@ -48,6 +48,7 @@ def test_blocks_are_numbered_and_nothing_else():
 
 def test_the_number_of_a_switch_stays_behind_its_slash():
     assert renumbered("/2 G1 X1\n / 3N7X3\n/9\n/G1\n") == "/2 N10 G1 X1\n / 3N20 X3\n/9\n/N30 G1\n"
+    assert renumbered("/1/3 N5 G1 X1\n/1 /3 G0\n") == "/1/3 N10 G1 X1\n/1 /3 N20 G0\n"
 
 
 _LINES = st.lists(

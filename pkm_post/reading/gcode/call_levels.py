@@ -15,7 +15,8 @@ from pkm_post.model import Array
 from pkm_post.reading.gcode.macro_calls import Call
 from pkm_post.reading.gcode.parameters import ExecutionFault
 
-_SEQUENCE_NUMBER = re.compile(rb"^[ \t]*/?[ \t]*N[ \t]*0*(\d+)", re.MULTILINE | re.IGNORECASE)
+_SEQUENCE_NUMBER = re.compile(rb"^[ \t]*(?:/[ \t]*(?:\d[ \t]*)?)*N[ \t]*0*(\d+)", re.MULTILINE | re.IGNORECASE)
+"""N at the beginning of a block, behind switches of block delete such as ``/`` and ``/2``."""
 
 
 def rows_of_sequence_numbers(text: bytes, line: Array) -> dict[str, list[int]]:

@@ -14,6 +14,7 @@ import numpy as np
 from pkm_post.model import Array, distinct, map_rows
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.codes import (
+    ARCS,
     NONE,
     SPINDLE_SYNCHRONISED,
     TO_REFERENCE,
@@ -252,7 +253,7 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     )
     both = (modal.takes_axes != NONE) & (explicit != NONE) & (explicit != 800)
     if modal.flavour.moves_beside_reference:
-        both &= ~(np.isin(modal.takes_axes, TO_REFERENCE) & np.isin(explicit, (0, 10)))
+        both &= ~(np.isin(modal.takes_axes, TO_REFERENCE) & np.isin(explicit, (0, 10, *ARCS)))
     faults.add_where(
         "G407", both, lambda row: (word_of(modal.takes_axes[row]), " and ", word_of(explicit[row]), " in one block")
     )

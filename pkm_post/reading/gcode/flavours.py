@@ -43,7 +43,7 @@ class Flavour:
         feeds_to_r: cycles that retract at feed to R, then at rapid; others continue at feed.
         stores_cycle: whether a cycle repeated 0 times only stores its words.
         pecks_by_i: whether I, J and K of G73 and G83 are the first peck, the reduction, and the smallest.
-        moves_beside_reference: whether G0 or G1 may share a block with G28 and G30, which take the axis words.
+        moves_beside_reference: whether G0 to G3 may share a block with G28 and G30, which take the axis words.
         may_drill_along_z: whether some controls drill along Z in G18 and G19 as well.
         g53_is_rapid: whether G53 moves at rapid whatever the active motion.
         offsets_add_up: whether G10 L2 adds to an offset under G91; then L20 sets those of G54.1, and no P is in force.

@@ -17,7 +17,7 @@ from pkm_post.model import Array
 from pkm_post.reading.gcode.adapt import adapted
 from pkm_post.reading.gcode.blocks import Blocks
 from pkm_post.reading.gcode.checks import check
-from pkm_post.reading.gcode.codes import FURTHER_OFFSET, Group
+from pkm_post.reading.gcode.codes import FURTHER_OFFSET, NONE, Group
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics
 from pkm_post.reading.gcode.events import dwell_words
 from pkm_post.reading.gcode.flavours import FLAVOURS, RS274, with_functions, with_threads
@@ -26,6 +26,7 @@ from pkm_post.reading.gcode.options import UNITS, ReadOptions, axis_names
 from pkm_post.reading.gcode.parameters import ExecutionFault
 from pkm_post.reading.gcode.position_tracker import PositionTracker
 from pkm_post.reading.gcode.resolve import block_states
+from pkm_post.reading.gcode.scaling import SCALING
 
 _GROUPS = {
     4001: Group.MOTION,
@@ -47,6 +48,25 @@ _NO_OFFSETS = {Group.LENGTH: 490, Group.SIDE: 400}
 
 
 @dataclass(frozen=True)
+class _State:
+    """The machine after some blocks.
+
+    Attributes:
+        position: (3,) coordinates of the tool in the program, mm.
+        known: (3,) which of them are known; none under G68, G68.2, G51 and G51.1, where controls may count others.
+        work: (3,) the place in {C}, mm.
+        has_work: whether it is known.
+        modal: codes of the blocks.
+    """
+
+    position: Array
+    known: Array
+    work: Array
+    has_work: bool
+    modal: Modal
+
+
+@dataclass(frozen=True)
 class ExecutedBlocks:
     """The blocks executed so far, and their read options."""
 
@@ -59,10 +79,10 @@ class ExecutedBlocks:
         Raises:
             ExecutionFault: the coordinate is unknown.
         """
-        position, known, modal, _ = self._state_for(number)
-        if not known[axis] or (number in range(_OFFSET_INCLUDED, 5100) and self._has_offsets(modal)):
+        state = self._state_for(number)
+        if not state.known[axis] or (number in range(_OFFSET_INCLUDED, 5100) and self._has_offsets(state.modal)):
             raise ExecutionFault("G303", f"#{number}: the place of the tool")
-        return float(position[axis]) / self._unit(modal)
+        return float(state.position[axis]) / self._unit(state.modal)
 
     def machine_coordinate(self, axis: int, number: int) -> float:
         """A coordinate of the tool from the zero of the machine.
@@ -70,11 +90,10 @@ class ExecutedBlocks:
         Raises:
             ExecutionFault: the coordinate is unknown.
         """
-        _, known, modal, work = self._state_for(number)
-        zero = self.options.machine_zero
-        if zero is None or not known.all() or self._has_offsets(modal):
+        state, zero = self._state_for(number), self.options.machine_zero
+        if zero is None or not state.has_work or self._has_offsets(state.modal):
             raise ExecutionFault("G303", f"#{number}: the place of the tool on the machine")
-        return float(work[axis] - zero[axis]) / self._unit(modal)
+        return float(state.work[axis] - zero[axis]) / self._unit(state.modal)
 
     def code(self, number: int) -> float:
         """The code of a group, or the last word of a letter.
@@ -82,7 +101,7 @@ class ExecutedBlocks:
         Raises:
             ExecutionFault: there is none.
         """
-        modal = self._state_for(number)[2]
+        modal = self._state_for(number).modal
         if number in _GROUPS:
             code = int(_last(modal.active[_GROUPS[number]]))
             if code > FURTHER_OFFSET:
@@ -99,14 +118,13 @@ class ExecutedBlocks:
     def _has_offsets(self, modal: Modal) -> bool:
         return any(_last(modal.active[group]) != code for group, code in _NO_OFFSETS.items())
 
-    def _state_for(self, number: int) -> tuple[Array, Array, Modal, Array]:
+    def _state_for(self, number: int) -> _State:
         if not len(self.blocks):
             raise ExecutionFault("G303", f"#{number}, before the first block")
         return self._state
 
     @cached_property
-    def _state(self) -> tuple[Array, Array, Modal, Array]:
-        """Coordinates of the tool, a mask of the known ones, the codes, and the position in {C}."""
+    def _state(self) -> _State:
         options = self.options
         flavour = with_functions(FLAVOURS[options.flavour or RS274.name], options.functions)
         flavour = with_threads(flavour, options.spindle_axis)
@@ -115,13 +133,21 @@ class ExecutedBlocks:
         modal = modal_state(blocks, UNITS[options.unit], axis_names(options.axis_words), flavour)
         check(blocks, modal, options, faults)
         if faults.has_errors():
-            return np.zeros(3), np.zeros(3, np.bool_), modal, np.zeros(3)
+            return _State(np.zeros(3), np.zeros(3, np.bool_), np.zeros(3), False, modal)
         states = block_states(blocks, modal, options, faults)
         dwells = dwell_words(blocks, modal, options)
         tracker = PositionTracker(blocks, modal, states.tools, states.spindle, dwells, states.lost, options, faults)
         tracker.motions()
-        known = tracker.known & (not faults.has_errors())
-        return tracker.position, known, modal, tracker.frame.to_work(tracker.position)
+        frame, scalings = tracker.frame, modal.programmed[Group.SCALING]
+        is_scaled = bool((scalings[scalings != NONE][-1:] == SCALING).any())
+        is_placed = not (is_scaled or frame.is_tilted or faults.has_errors())
+        return _State(
+            position=tracker.position,
+            known=tracker.known & (is_placed and not frame.is_turned),
+            work=frame.to_work(tracker.position),
+            has_work=is_placed and bool(tracker.known.all()),
+            modal=modal,
+        )
 
 
 def _last(column: Array) -> Array:

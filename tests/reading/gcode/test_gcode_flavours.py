@@ -220,6 +220,11 @@ def test_places_of_the_machine(block, places):
     assert codes(f"{block}\n", flavour="fanuc") in (["G413"], ["G412"])
 
 
+def test_the_reference_point_after_cycles_that_followed_an_arc():
+    program, _ = taken("G0 X0 Y0 Z10\nG2 X4 Y0 R2 F100\nG80 G28 Z60\n", flavour="fanuc", machine_zero=ZERO)
+    assert moves(program)[-2:] == [(R, 4, 0, 60), (R, 4, 0, 300)]
+
+
 def test_g53_takes_the_motion_in_force_in_rs274():
     program, _ = taken("G1 G53 Z-10\n", flavour="rs274", machine_zero=ZERO)
     assert moves(program) == [(L, 0, 0, 290)]

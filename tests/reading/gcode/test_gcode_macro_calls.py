@@ -125,6 +125,11 @@ def test_holes_on_a_circle():
 
 def test_the_place_on_the_machine():
     assert heights("X3.\nZ#5021\nM30\n", machine_zero=(1.0, 0.0, 0.0)) == [10.0, 2.0]
+    turned = "G68 X0. Y0. R90.\nX3. Y0.\n#1=#5022\nG69\nX0. Y0. Z#1\nM30\n"
+    assert heights(turned, machine_zero=(0.0, 1.0, 0.0)) == [10.0, 2.0]
+    scaled = HEAD + "G51 X0. Y0. Z0. P2.\nX3.\nZ#5021\nM30\n"
+    _, faults = read(scaled, "part.nc", ReadOptions(default_tool=ANY, flavour="fanuc", machine_zero=(0.0, 0.0, 0.0)))
+    assert [fault.code for fault in faults if fault.code != "G214"] == ["G303"]
 
 
 def test_linuxcnc_reads_the_place_of_the_tool():
@@ -157,6 +162,10 @@ def test_linuxcnc_reads_the_place_of_the_tool():
         ("G65 P9 A[ROUND[1.2]]\nM30\nO9\nM99\n", [("G305", 1)]),
         ("G43 H1\nZ#5043\nM30\n", [("G303", 2)]),
         ("Z#5021\nM30\n", [("G303", 1)]),
+        # the coordinates of the program, or those of the turned, mirrored or scaled tool
+        ("G68 X0. Y0. R90.\nX1. Y0.\nZ#5001\nM30\n", [("G303", 3)]),
+        ("G51.1 X0. Y0.\nG50.1 X0.\nX1. Y0.\nZ#5041\nM30\n", [("G303", 4)]),
+        ("G51 X0. Y0. Z0. P2.\nX1.\nZ#5041\nM30\n", [("G303", 3)]),
         ("IF [#1 EQ #0] THEN #3000=1 (NO DEPTH)\nM30\n", [("G319", 1)]),
         ("M99 P5\n", [("G320", 1)]),
         ("N5 M99 P5\n", [("G313", 1)]),

@@ -29,6 +29,7 @@ def xs(text):
         ("#1=1\nN10 G1 X#1\n#1=#1+1\nIF [#1 LE 3] GOTO 10\nX9.\n", [1, 2, 3, 9]),
         ("GOTO 20\nG1 X1.\nN20\nG1 X2.\n", [2]),
         ("GOTO20\nG1 X1.\nN0020 G1 X2.\n", [2]),
+        ("GOTO 20\nG1 X1.\n/2 N20 X2.\nGOTO 30\n/1/3N0030 X3.\n", [2, 3]),
         ("#3=20\n(N20)\n/ N30 G1 X1.\nIF [#3 EQ 20] GOTO 40\nX2.\nN40 X3.\n", [1, 3]),
         ("#1=1+2*3-4/2\nG1 X#1\n#1=-#1\nX#1\n#2=2**3 #4=#1\nX#2 Y#4\n", [5, -5, 8]),
         ("M98 P7\nM30\nO7\nIF [1] GOTO 5\nG1 X1.\nN5 G1 X2.\nM99\n", [2]),
