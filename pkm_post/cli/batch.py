@@ -12,7 +12,9 @@ import argparse
 import csv
 import hashlib
 import io
+import json
 import os
+import re
 import shlex
 import subprocess
 import tomllib
@@ -55,13 +57,22 @@ class BatchJob:
     job: str
     stems: tuple[str, ...]
 
+    def named(self) -> tuple[Path, ...]:
+        """What its arguments may name: each word, and what follows its equals sign."""
+        return tuple(Path(each) for word in self.words for each in (word, word.partition("=")[2]) if each)
+
     def fingerprint(self) -> str:
-        """SHA-256 of all inputs: version, arguments, the file, and files named in arguments."""
+        """SHA-256 of all inputs but subprograms: version, arguments, the file, and files named in arguments."""
         digest = hashlib.sha256("\0".join([pkm_post.__version__, self.file, self.job, *self.words]).encode())
-        for path in (self.path, *(Path(word.partition("=")[2] or word) for word in self.words)):
-            if path.is_file():
-                digest.update(path.read_bytes())
+        for path in filter(os.path.isfile, (self.path, *self.named())):
+            digest.update(path.read_bytes())
         return digest.hexdigest()
+
+    def has_subprogram(self, name: str, digest: str) -> bool:
+        """Whether the file of a subprogram, where reading looks for it, still has this SHA-256."""
+        folders = (*filter(os.path.isdir, self.named()), self.path.parent)
+        found = next((folder / name for folder in folders if os.path.isfile(folder / name)), None)
+        return found is not None and hashlib.sha256(found.read_bytes()).hexdigest() == digest
 
 
 @dataclass(frozen=True)
@@ -126,7 +137,8 @@ def run_batch(
     """
     file = Path(batch_file)
     jobs, table = read_list(file), table_of(file)
-    rows = {job: row for job in jobs if (row := _row_before(job, _table_before(table))) is not None}
+    before = _table_before(table)
+    rows = {job: row for job in jobs if (row := _row_before(job, before)) is not None}
     waiting: dict[Future[BatchRow], BatchJob] = {
         executor.submit(post_one, job, thread_share(at_a_time)): job for job in jobs if job not in rows
     }
@@ -193,6 +205,7 @@ def post_one(job: BatchJob, variables: dict[str, str]) -> BatchRow:
         job: the job to post.
         variables: environment variables that share the threads.
     """
+    fingerprint = job.fingerprint()  # a file may change while it is posted
     words = ["post", str(job.path), "--out", str(job.out), *(["--job", job.job] if job.job else []), *job.words]
     command = (command_inside if is_inside() or needs_freecad([job.path]) else command_outside)(words)
     ran = subprocess.run(
@@ -207,22 +220,36 @@ def post_one(job: BatchJob, variables: dict[str, str]) -> BatchRow:
     )
     code, fault = outcome(command, ran.returncode)
     written = [Path(line) for line in ran.stdout.splitlines() if line.endswith(result_files.PROGRAM)]
-    programs = [path.name for path in written if not path.stem.endswith("-setup")]
+    setups = {stem + ending for stem in job.stems for ending in result_files.SETUPS.values()}
+    programs = [path.name for path in written if path.name not in setups]
     messages = "\n".join(filter(None, [*ran.stderr.splitlines(), fault]))
     state = REFUSED if code else POSTED
-    return BatchRow(job.file, job.job, state, " ".join(programs), job.fingerprint(), messages)
+    return BatchRow(job.file, job.job, state, " ".join(programs), fingerprint, messages)
 
 
 def _row_before(job: BatchJob, rows: list[BatchRow]) -> BatchRow | None:
     """The row of an earlier run, if inputs and results are unchanged."""
-    from pkm_post.model import errors
-    from pkm_post.writing import manifest
-
     found = next((row for row in rows if (row.file, row.job, row.state) == (job.file, job.job, POSTED)), None)
     if found is None or found.fingerprint != job.fingerprint():
         return None
-    checked = [manifest.check(job.out / (stem + result_files.PROGRAM)) for stem in job.stems]
-    return found if all(listed is not None and not errors(faults) for listed, faults in checked) else None
+    return found if all(_is_unchanged(job, stem) for stem in job.stems) else None
+
+
+_SUBPROGRAM = re.compile(r".+ is the file (.+), SHA-256 ([0-9a-f]{64})")
+"""Note of a report about a subprogram in another file."""
+
+
+def _is_unchanged(job: BatchJob, stem: str) -> bool:
+    """Whether results are as they were posted, and the subprograms as they were read."""
+    from pkm_post.model import errors
+    from pkm_post.writing import manifest
+
+    listed, faults = manifest.check(job.out / (stem + result_files.PROGRAM))
+    report = stem + result_files.REPORT
+    if listed is None or errors(faults) or listed.fingerprint_of(report) is None:
+        return False
+    notes = json.loads((job.out / report).read_text(encoding="utf-8"))["program"]["reading"]
+    return all(job.has_subprogram(*note.groups()) for note in map(_SUBPROGRAM.fullmatch, notes) if note)
 
 
 def table_of(file: Path) -> Path:

@@ -2,6 +2,7 @@
 """A list of files is posted by any executor to the same bytes, and goes on where it was interrupted."""
 
 import csv
+import subprocess
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -97,6 +98,36 @@ def test_it_goes_on_where_it_was_interrupted(jobs, tmp_path, posted_files, capsy
     assert main(["batch", str(jobs)]) == 0
     assert posted_files == []
     assert "posted: a.ngc" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_a_changed_subprogram_is_posted_again_and_a_program_named_setup_is_in_the_table(tmp_path, posted_files):
+    """The subprogram is beside the program, then in a folder that is searched first."""
+    subprogram, folder = "O1234\nG1 X{x}. Y5. Z20. F600\nG0 Z30.\nM99\n", tmp_path / "sub"
+    folder.mkdir()
+    (tmp_path / "a-setup.ngc").write_text("G21 G90\nT1 M6\nS8000 M3\nG0 X0. Y0. Z30.\nM98 P1234\nM5\nM30\n")
+    words = f"--tool-length 1=120 --work-offset=0,0,250 --flavour fanuc --subprograms={folder.as_posix()}"
+    (tmp_path / "jobs.toml").write_text(f"arguments = '{words}'\n[[jobs]]\nfile = 'a-setup.ngc'\n")
+    posted = []
+    for path, x in ((tmp_path, 5), (tmp_path, 9), (folder, 7)):
+        (path / "O1234.ngc").write_text(subprogram.format(x=x))
+        for _ in range(2):
+            posted_files.clear()
+            (row,) = run_batch(tmp_path / "jobs.toml", AtOnce())
+            assert (row.state, row.programs) == ("posted", "a-setup.pmc")
+            posted.append((len(posted_files), (tmp_path / "a-setup.pmc").read_text()))
+    assert [times for times, _ in posted] == [1, 0, 1, 0, 1, 0]
+    assert len({text for _, text in posted}) == 3
+
+
+def test_a_file_that_changes_while_it_is_posted_is_posted_again(jobs, tmp_path, monkeypatch):
+    def change(command, **options):
+        (tmp_path / "a.ngc").write_text(G_CODE.format(x=9))
+        return subprocess.CompletedProcess(command, 0, "", "")
+
+    monkeypatch.setattr(subprocess, "run", change)
+    job, _ = batch_command.read_list(jobs)
+    assert batch_command.post_one(job, {}).fingerprint != job.fingerprint()
 
 
 @pytest.mark.slow
