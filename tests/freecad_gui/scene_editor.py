@@ -350,6 +350,48 @@ def _drop(widget, data):
 
 
 @step
+def editor_keeps_reading_options_with_their_text():
+    editor, (obj,) = _editor(), FreeCAD.ActiveDocument.Objects
+    body, before, dialogs = editor.widget, editor.widget.file, QtWidgets.QFileDialog
+    other, renamed, ask = before.with_name("other.ngc"), before.with_name("renamed.ngc"), dialogs.getSaveFileName
+    obj.BlockDelete, obj.Origins = True, ["G55=100,0,0"]
+    editor.open_file(before)
+    reported = [[body.reading.chosen().block_delete, list(body.reading.chosen().work_offsets)]]
+    other.write_text(PROGRAM.replace("G21 ", ""), encoding="ascii")
+    editor.open_file(other)
+    reported.append([body.reading.chosen().block_delete, list(body.reading.chosen().work_offsets)])
+    body.reading.unit.setCurrentIndex(body.reading.unit.findData("inch"))
+    dialogs.getSaveFileName = staticmethod(lambda *_: (str(renamed), ""))
+    try:
+        editor.save_as()
+    finally:
+        dialogs.getSaveFileName = ask
+    findings, size = _findings(editor), body.size.text()
+    reported.append([body.file == renamed, body.reading.chosen().unit])
+    obj.BlockDelete, obj.Origins = False, []
+    editor.open_file(before)
+    return {"reported": reported, "findings": findings, "size": size}
+
+
+@step
+def editor_shows_its_context_menu():
+    text, place, shown, timer = _editor().widget.text, QtCore.QPoint(5, 5), [], QtCore.QTimer()
+
+    def look():
+        menu = QtWidgets.QApplication.activePopupWidget()
+        if menu is not None:
+            shown.extend(action.objectName() for action in menu.actions())
+            menu.close()
+
+    timer.timeout.connect(look)
+    timer.start(50)
+    event = QtGui.QContextMenuEvent(QtGui.QContextMenuEvent.Reason.Mouse, place, text.mapToGlobal(place))
+    QtWidgets.QApplication.sendEvent(text.viewport(), event)  # until the menu is closed
+    timer.stop()
+    return {"shown": shown}
+
+
+@step
 def editor_decodes_and_posts():
     editor, program, document = _editor(), FreeCAD.ActiveDocument, new_document("gui")
     operations = document.getObject("Job").Operations

@@ -90,6 +90,20 @@ def test_editor_opens_a_part_program_that_is_dropped_among_other_files(session):
     assert {"Ctrl+O", "Ctrl+S", "Ctrl+F", "F3", "Shift+F3"} <= set(found["keys"])
 
 
+def test_editor_keeps_reading_options_with_their_text(session):
+    found = session["editor_keeps_reading_options_with_their_text"]
+    of_the_object, of_another_file, of_the_text_renamed = found["reported"]
+    assert of_the_object == [True, ["G55"]]
+    assert of_another_file == [False, []]  # nothing unseen
+    assert of_the_text_renamed == [True, "inch"]
+    # inch: as in mm above, times 25.4
+    assert (found["findings"], found["size"]) == ([], "5 blocks, 1 arcs, 1943 mm")
+
+
+def test_editor_shows_its_context_menu(session):
+    assert {"edit-undo", "edit-redo", "edit-copy"} <= set(session["editor_shows_its_context_menu"]["shown"])
+
+
 def test_editor_decodes_into_a_job_and_posts(session):
     found = session["editor_decodes_and_posts"]
     assert found["decoded"] == ["program", 1, 0]

@@ -73,7 +73,7 @@ class ProgramEditor(QtWidgets.QDockWidget):
             QtWidgets.QMessageBox.warning(self, translate("PKM_Editor", "Open"), str(fault))
             return False
         self.widget.text.edits.load(self._content.text)
-        self.widget.set_file(file.absolute())
+        self.widget.open_file(file.absolute())
         self._name_window()
         return True
 

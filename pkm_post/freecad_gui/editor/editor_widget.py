@@ -8,7 +8,6 @@ the cursor on the path of its program object.
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import FreeCAD
@@ -89,21 +88,20 @@ class EditorWidget(QtWidgets.QWidget):
         head = self.text.toPlainText()[:_HEAD].encode("utf-8", "surrogatepass")
         return shown_language(self.name(), head, self.reading.chosen().flavour)
 
-    def set_file(self, file: Path | None) -> None:
-        """Attach the text to this file."""
-        self.file = file
-        obj = program_link.object_of(file)
-        # Options of other CL data do not apply to this file; G-code files mostly share theirs.
-        kept = replace(
-            self.reading.chosen(),
-            unit=None,
-            contour_data=None,
-            cl_dialect=None,
-            cycle_values=(),
-            cycle_kinds={},
-            allow_open_end=False,
-        )
+    def open_file(self, file: Path) -> None:
+        """Attach newly loaded text to its file, and read it as its object does.
+
+        Without an object, only what the fields show of G-code stays from the text before: its other options would act
+        unseen, such as origins and block delete.
+        """
+        obj, before = program_link.object_of(file), self.reading.chosen()
+        kept = ReadingOptions(before.axis_words, flavour=before.flavour, dwell_unit=before.dwell_unit)
         self.reading.show_reading(kept if obj is None else reading_of(obj))
+        self.set_file(file)
+
+    def set_file(self, file: Path) -> None:
+        """Attach the text to another file; its reading options stay."""
+        self.file = file
         self.text.set_language(self._shown_language())
         self.reading.offer_for(self.language())
         self.checker.request()
