@@ -141,7 +141,8 @@ class TextView(QtWidgets.QPlainTextEdit):
             if own is not None:
                 action.triggered.disconnect()
                 action.triggered.connect(lambda checked=False, own=own: own())
-        menu.exec(event.globalPos())
+        show = getattr(menu, "exec", None) or menu.exec_  # Qt 6, Qt 5
+        show(event.globalPos())
         menu.deleteLater()
 
     def resizeEvent(self, event: QtGui.QResizeEvent) -> None:
