@@ -270,6 +270,8 @@ class _ProgramBuilder:
     def _append_event(self, event: Event) -> None:
         self._events.append(event)
         self._state[event.kind] = event.value
+        if event.kind is EventKind.TOOL_CHANGE:  # which leaves the spindle stopped
+            self._state[EventKind.SPINDLE] = 0.0
 
     def _append(self, program: Program) -> list[Diagnostic]:
         """Append rows and events; an M6 among them may call a tool that the job does not have."""

@@ -356,6 +356,14 @@ def test_m6_for_a_tool_the_job_does_not_have(job):
     assert faults_of(job) == [("J113", "Cut", 0)]
 
 
+def test_the_spindle_starts_again_after_a_typed_tool_change(job):
+    first, second = add_operation(job, [*ARC, "M6 T2"], "First"), add_operation(job, ARC, "Second")
+    other = second.ToolController = add_tool_controller(job, 2)
+    other.SpindleSpeed = first.ToolController.SpindleSpeed
+    changed = [(TOOL, 1.0), (SPINDLE, 9000.0), (TOOL, 2.0), (SPINDLE, 9000.0), (SPINDLE, 0.0)]
+    assert [(kind, value) for _, kind, value in events(program_of(job))] == changed
+
+
 def test_two_tools_of_one_number(job):
     add_operation(job, label="First")
     other = add_tool_controller(job, 1)
