@@ -6,7 +6,8 @@ all copies of one operation in a job. Units: mm, rad; properties in mm and degre
 
 Copies mill climb or conventional depending on the side of the material, and on the sense of the
 spindle. An operation's properties state both: CAM defines climb milling for a spindle that turns clockwise (M3), the
-material is then to the right of the path. Sides are +1 (right), -1 (left) or 0 (unknown).
+material is then to the right of the path; Surface Finish follows its spindle. Sides are +1 (right), -1 (left) or 0
+(unknown).
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from Path.Base.Util import toolControllerForOp
 from PathScripts import PathUtils
 
 from pkm_post.freecad_app.document import members
+from pkm_post.freecad_app.document_checks import is_pkm_object
 from pkm_post.freecad_app.document_object import program_of
 from pkm_post.freecad_app.tools import SPINDLE_SENSES
 from pkm_post.geometry import Array
@@ -65,7 +67,8 @@ def material_side_of(obj: Any) -> int:
         return base_material_side(obj) * obj.Proxy.side_factor(obj)
     if hasattr(obj, "CutMode"):
         orders = [getattr(obj, name) for name in _ORDERS if hasattr(obj, name)]
-        return _CUT_MODES.get(obj.CutMode, 0) if all(order in _ONE_WAY for order in orders) else 0
+        side = _CUT_MODES.get(obj.CutMode, 0) if all(order in _ONE_WAY for order in orders) else 0
+        return -side if is_pkm_object(obj) and spindle_sense_of(obj) < 0 else side
     if hasattr(obj, "Side") and hasattr(obj, "Direction"):
         return _PROFILE.get((str(obj.Side), str(obj.Direction)), 0)
     base = getattr(obj, "Base", None)

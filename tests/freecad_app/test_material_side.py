@@ -5,6 +5,8 @@ import numpy as np
 import Path.Op.PocketShape
 import Path.Op.Profile
 import pytest
+from cam_jobs import turn
+from surface_finishes import coarse, valid
 
 from pkm_post.freecad_app.document_object import program_of
 from pkm_post.freecad_app.symmetry import create_mirror
@@ -60,3 +62,24 @@ def test_a_mirrored_profile_goes_round_as_it_has_to(job, keep):
     assert copy.isValid(), copy.getStatusString()
     assert (copy.CutOfBase, copy.CutOfCopies) == ("Climb", "Climb" if keep else "Conventional")
     assert winding(copy, middle=[-10, 10, 0]) == (CLOCKWISE if keep else COUNTERCLOCKWISE)
+
+
+@pytest.mark.parametrize("direction", ["Forward", "Reverse"])
+@pytest.mark.parametrize("mode", ["Climb", "Conventional"])
+def test_surface_finish_has_the_material_where_its_own_spindle_cuts_so(job, mode, direction):
+    controller = job.Tools.Group[0]
+    controller.HorizFeed = controller.VertFeed = "600 mm/min"
+    turn(controller, direction)
+    operation = valid(coarse(job, lambda face: face.BoundBox.ZMin > 19.9, Order="One way", CutMode=mode))
+    copy = create_mirror(operation, (1, 0, 0))
+    job.Document.recompute()
+    assert copy.CutOfBase == mode
+    assert copy.CutOfCopies == {"Climb": "Conventional", "Conventional": "Climb"}[mode]
+    start, end = cut_chords(program_of(operation))
+    assert material_side_of(operation) == material_to_the_right(start, end)
+
+
+def material_to_the_right(start, end):
+    """+1 where the passes still to come are to the right of the first pass, -1 to the left."""
+    along, to_the_last = end[0] - start[0], end[-1] - start[0]
+    return np.sign(along[1] * to_the_last[0] - along[0] * to_the_last[1])
