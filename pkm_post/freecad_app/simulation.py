@@ -166,9 +166,10 @@ class Simulation:
         return self.trajectory.tools[int(self.trajectory.tool[self.block_at(seconds)])]
 
     def operation_begins(self, number: int) -> tuple[int, float]:
-        """The first segment of an operation, and its start time."""
-        row = int(np.argmax(self.trajectory.operation == number))
-        return row, float(self.motion.joint_time[row - 1]) if row else 0.0
+        """The first segment of an operation, and its start time; those of the next one if it has no moves."""
+        rows = np.flatnonzero(self.trajectory.operation >= number)
+        row = int(rows[0]) if len(rows) else len(self.trajectory) - 1
+        return row, self._block_begins(row)
 
     def next_block(self, seconds: float) -> float:
         """End time of the block after a time."""
@@ -183,9 +184,13 @@ class Simulation:
     def line_begins(self, operation: int, line: int) -> float:
         """Start time of an operation's first block at or after a line; the operation's end if there is none, s."""
         rows = np.flatnonzero(self.trajectory.operation == operation)
-        lines = self.trajectory.line[rows]
-        behind = rows[lines >= line]
-        row = int(behind[0]) if len(behind) else int(rows[-1]) + 1
+        if not len(rows):
+            return self.operation_begins(operation)[1]
+        behind = rows[self.trajectory.line[rows] >= line]
+        return self._block_begins(int(behind[0]) if len(behind) else int(rows[-1]) + 1)
+
+    def _block_begins(self, row: int) -> float:
+        """Start time of a segment, s."""
         return float(self.motion.joint_time[row - 1]) if row else 0.0
 
     def feed_at(self, seconds: float) -> float:

@@ -14,6 +14,7 @@ from typing import Any
 import FreeCAD as App
 import numpy as np
 
+from pkm_post.freecad_app.document_checks import failed_input
 from pkm_post.freecad_app.document_object import PropertyProxy, Row, without_traceback
 from pkm_post.freecad_app.frames import apply, vectors_of
 from pkm_post.freecad_app.job_setup import placed_job
@@ -117,7 +118,7 @@ def create_simulation(job: Any, machine: Any = None, label: str = "") -> Any:
 
 
 def plan_of(obj: Any) -> Simulation:
-    """The motion of a simulation object, planned again if it dates from an earlier session.
+    """The motion of a simulation object, planned again if there is no present one.
 
     Raises:
         ValueError: the object has no job.
@@ -125,10 +126,15 @@ def plan_of(obj: Any) -> Simulation:
     """
     if obj.Job is None:
         raise ValueError(f"{obj.Label}: expected a job, got none")
-    if obj.Proxy.plan is None:
-        obj.Proxy.plan = simulation_of(placed_job(obj.Job, obj.Machine))
-    plan: Simulation = obj.Proxy.plan
+    plan = present_plan(obj)
+    if plan is None:
+        plan = obj.Proxy.plan = simulation_of(placed_job(obj.Job, obj.Machine))
     return plan
+
+
+def present_plan(obj: Any) -> Simulation | None:
+    """The plan of the last recompute; None without one, or if an input has an error, since FreeCAD then keeps it."""
+    return None if failed_input(obj) else obj.Proxy.plan
 
 
 def _set_results(obj: Any, plan: Simulation) -> None:

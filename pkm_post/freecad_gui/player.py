@@ -18,7 +18,7 @@ from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_app.core_texts import exception_text, shown
 from pkm_post.freecad_app.simulation import Problem, Simulation
-from pkm_post.freecad_app.simulation_object import plan_of
+from pkm_post.freecad_app.simulation_object import plan_of, present_plan
 from pkm_post.freecad_app.user_units import in_user_units
 from pkm_post.freecad_gui.animation import Animation, ask_for_animation, ask_for_pictures
 from pkm_post.freecad_gui.job_choices import show_place
@@ -129,7 +129,7 @@ class PlayerDock(QtWidgets.QDockWidget):
 
     def _follow(self) -> None:
         """The document was recomputed: play the object's current plan, or close if there is none."""
-        plan = self.subject.Proxy.plan
+        plan = present_plan(self.subject)
         if plan is None:
             self.close()
         elif plan is not self.simulation:
@@ -202,7 +202,8 @@ class PlayerDock(QtWidgets.QDockWidget):
         self.pause()
         row, begins = self.simulation.operation_begins(number)
         self.leave_for(begins)
-        self._show(self.simulation.trajectory.place(row))
+        name, place = self.simulation.trajectory.operations[number], self.simulation.trajectory.place(row)
+        self._show(place if place.operation == name else Place("", name))  # it may have no moves
 
     def _show(self, place: Place) -> None:
         show_place(self.subject.Job, place.operation, place.line)

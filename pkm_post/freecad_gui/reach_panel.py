@@ -15,6 +15,7 @@ import numpy as np
 from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app.core_texts import cure_text, fault_text, shown, stored_fault
+from pkm_post.freecad_app.document_checks import failed_input
 from pkm_post.freecad_app.job_setup import set_place
 from pkm_post.freecad_app.job_study import JobStudy
 from pkm_post.freecad_app.reach_object import POINTS_ONLY, WORST, check_names, violations_of
@@ -142,6 +143,9 @@ class ReachPanel:
 
 
 def _verdict(obj: Any) -> tuple[str, bool | None]:
+    failed = failed_input(obj)
+    if failed:  # FreeCAD keeps the results from before
+        return shown(failed), False
     if not obj.Checks:
         return (obj.getStatusString(), False) if not obj.isValid() else (translate("PKM_Reach", "Not checked"), None)
     return followed(bool(obj.Reachable))

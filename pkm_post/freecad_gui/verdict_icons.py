@@ -101,8 +101,7 @@ def verdict_of(item: Any) -> bool | None:
     if item is None or not hasattr(item, "State") or _waits(item):
         return None
     if _knows(item):
-        holds, computed = _SAYS[next(name for name in _SAYS if hasattr(item, name))]
-        return bool(getattr(item, holds)) if getattr(item, computed) and item.isValid() else None
+        return _verdict_in(item)
     job = job_of(item) if is_job(item) or is_operation(item) else None
     known = [] if job is None else [each for each in job.InList if _knows(each) and each.Job == job]
     post = None if job is None else _POSTS.get((job.Document.Name, job.Name))
@@ -115,6 +114,15 @@ def verdict_of(item: Any) -> bool | None:
         return None
     named = post.faulty if post is not None else ()
     return not (any(_is_faulty(item, job, each) for each in known) or _is_named(item, job, named))
+
+
+def _verdict_in(item: Any) -> bool | None:
+    """The verdict that a Reach or a Simulation holds; None if its last computation or one of its inputs failed."""
+    from pkm_post.freecad_app.document_checks import failed_input  # numpy is loaded by now, but not when FreeCAD starts
+
+    holds, computed = _SAYS[next(name for name in _SAYS if hasattr(item, name))]
+    known = getattr(item, computed) and item.isValid() and not failed_input(item)
+    return bool(getattr(item, holds)) if known else None
 
 
 def _waits(item: Any) -> bool:

@@ -124,6 +124,19 @@ def test_operations_begin_where_the_one_before_ends(simulation):
     assert dwelling.tolist() == [0.0, 0.0]
 
 
+def test_an_operation_without_moves_is_where_the_next_one_begins(job):
+    add_operation(job, ["G4 P1"], "Dwell")
+    add_operation(job, ARC, "Next")
+    add_operation(job, ["M9"], "Last")
+    found = simulate_job(job)
+    dwell, following, last = (found.trajectory.operations.index(name) for name in ("Dwell", "Next", "Last"))
+    assert found.operation_begins(dwell) == found.operation_begins(following)
+    begins = found.operation_begins(following)[1]
+    assert [found.line_begins(dwell, line) for line in (0, 3)] == [begins, begins]
+    row, begins = found.operation_begins(last)
+    assert (row, found.line_begins(last, 0)) == (len(found.trajectory) - 1, begins)
+
+
 def test_at_a_tool_change_the_platform_stands_and_the_tip_jumps(job):
     operation = add_operation(job, ["G0 X0 Y0 Z30", "G1 X10 F20"], "Other tool")
     operation.ToolController = add_tool_controller(job, 2)  # gauge length 102, that of the first is 120

@@ -8,7 +8,7 @@ from cam_jobs import ARC, BELOW, FIVE_AXIS, ON_EXAMPLE, add_operation, job_in_re
 from pkm_post.freecad_app.document import is_operation, is_simulation
 from pkm_post.freecad_app.machine_object import create_machine
 from pkm_post.freecad_app.simulation import simulate_job
-from pkm_post.freecad_app.simulation_object import create_simulation, plan_of
+from pkm_post.freecad_app.simulation_object import create_simulation, plan_of, present_plan
 from pkm_post.model import Refused
 
 MICROSECOND = 1e-6
@@ -100,6 +100,18 @@ def test_a_machine_object_says_what_it_runs_on(job, made):
     job.Document.recompute()
     assert made.LongestStrut.Value != before
     assert plan_of(made).trajectory.machine_from_work[2, 3] == 260.0
+
+
+def test_a_machine_with_an_error_leaves_no_old_motion(job, made):
+    machine = made.Machine = create_machine(job.Document, job=job)
+    job.Document.recompute()
+    assert present_plan(made) is plan_of(made)
+    machine.MachineFile = "no_such_machine"
+    job.Document.recompute()
+    assert made.isValid()  # FreeCAD leaves it as it was
+    assert present_plan(made) is None
+    with pytest.raises(Refused, match="M101"):
+        plan_of(made)
 
 
 def test_a_job_that_cannot_be_read_or_is_gone_leaves_no_old_result(job, made):

@@ -271,6 +271,17 @@ def icons_of_dressups_and_copies_say_it_too():
     document.recompute()
     until(lambda: _signs(labels, "dressups")["turned"] == "bad")
     found["out of reach"] = _signs(labels, "dressups")
+    turned.Copies = 0  # an error, after which FreeCAD leaves Reach as it was
+    document.recompute()
+    settle()
+    found["with an error"] = _signs(labels, "dressups")
+    reach = document.getObject("Reach")
+    reach.ViewObject.Proxy.doubleClicked(reach.ViewObject)
+    settle()
+    (table,) = FreeCADGui.getMainWindow().findChildren(QtWidgets.QTableWidget, "PkmReachTable")
+    found["panel"], found["turned"] = _verdict(table.parentWidget()), turned.Label
+    FreeCADGui.getDocument("dressups").resetEdit()
+    settle()
     FreeCAD.closeDocument("dressups")
     return found
 

@@ -74,6 +74,8 @@ def test_icons_of_dressups_and_copies_say_it_too(session):
     copies = ("compensated", "mirrored", "turned")
     assert found["all well"] == {"base": ""} | dict.fromkeys(copies, "good")
     assert found["out of reach"] == {"base": ""} | dict.fromkeys(copies, "bad")
+    assert set(found["with an error"].values()) == {""}
+    assert found["panel"] == [f"{found['turned']} has an error", False]
     assert session.drew("verdict_dressups.png")
 
 
