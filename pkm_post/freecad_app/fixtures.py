@@ -124,7 +124,7 @@ def _coincident(places: Mapping[str, Array], place: Place) -> list[Diagnostic]:
         Diagnostic("J111", place, Phrase("{} and {}", name, other))
         for row, (name, pose) in enumerate(known)
         for other, other_pose in known[:row]
-        if np.allclose(pose, other_pose, atol=_SAME_PLACE)
+        if np.allclose(pose, other_pose, rtol=0.0, atol=_SAME_PLACE)
     ]
 
 

@@ -124,7 +124,7 @@ def _machine_differences(
         machines = Override(flag_of("machine"), settings.machine, machine_object.MachineFile)
         yield Diagnostic("J125", place, str(machines))
     offset, _ = work_offset(machine, settings.options)
-    if offset is not None and not np.allclose(offset, options.work_offset, atol=_SAME_PLACE):
+    if offset is not None and not np.allclose(offset, options.work_offset, rtol=0.0, atol=_SAME_PLACE):
         values = (
             format_value("work_offset", argument_values(each)["work_offset"]) for each in (settings.options, options)
         )

@@ -142,6 +142,12 @@ def test_two_fixtures_in_one_place_are_refused(job):
     assert refused(job) == ["J111"]
 
 
+def test_fixtures_a_few_microns_apart_are_two_places(job):
+    origins = "--origin=G55=200,0,0 --origin=G56=200.0015,0,0"  # mm
+    job.Fixtures, job.PostProcessorArgs = ["G54", "G55", "G56"], job.PostProcessorArgs.replace(ORIGIN, origins)
+    assert "J111" not in [each.code for each in prepared(job).found]
+
+
 @pytest.mark.parametrize(("order", "files"), [("Fixture", 2), ("Tool", 1), ("Operation", 3)])
 def test_split_output_is_not_followed_in_silence(job, order, files):
     for label in ("Second", "Third"):
