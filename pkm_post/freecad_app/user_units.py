@@ -19,7 +19,7 @@ _BY_LENGTH = {"mm/s^2": "{}/s^2", "mm/s^3": "{}/s^3"}
 """Units that most schemas of FreeCAD lack; derived from that of lengths."""
 _TYPICAL = "100 mm"
 """A length with the general unit of lengths; FreeCAD has others for small ones."""
-_FOUR_DIGITS, _LARGE = 1e4, 1e7
+_FOUR_DIGITS, _LARGE = 9999.5, 1e7
 
 
 def in_user_units(values: Sequence[float | None], unit: str) -> tuple[tuple[str, ...], str]:
