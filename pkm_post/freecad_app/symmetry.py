@@ -178,7 +178,7 @@ class RotatedOperation(_SymmetricOperation):
 
     def matrices(self, obj: Any) -> list[Array]:
         """The rotations about the axis."""
-        if obj.Copies < 1:
+        if not obj.Angles and obj.Copies < 1:
             raise ValueError(f"Copies: expected 1 or more, got {obj.Copies}")
         angles = list(obj.Angles) or [number * obj.Angle.Value for number in range(1, obj.Copies + 1)]
         return [rotation(obj.Point, obj.Axis, math.radians(angle)) for angle in angles]

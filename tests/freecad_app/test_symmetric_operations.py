@@ -95,6 +95,8 @@ def test_a_number_of_copies_below_one_is_reported_at_the_object(base):
     assert not copy.isValid()
     assert "Copies: expected 1 or more" in copy.getStatusString()
     assert not copy.Path.Commands
+    copy.Angles = [90.0]  # instead of the number
+    recomputed(copy)
 
 
 def test_points_of_an_arc(job):
