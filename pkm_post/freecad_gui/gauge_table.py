@@ -14,6 +14,7 @@ from typing import Any
 import FreeCAD
 from PySide import QtCore, QtWidgets
 
+from pkm_post.freecad_app.core_texts import fault_text
 from pkm_post.freecad_app.gauge_lengths import ToolRow, format_length, parse_length, tool_rows
 from pkm_post.freecad_gui.observers import ChangeWatch
 from pkm_post.freecad_gui.post_fields import tab_through
@@ -140,9 +141,9 @@ class GaugeTable(QtWidgets.QGroupBox):
     def _fault(self, row: ToolRow) -> str:
         mm = self.fields[row.name].length()
         if mm is None:
-            return str(row.missing_length(self._typed(row)))
+            return fault_text(row.missing_length(self._typed(row)))
         if not mm and row.in_use and row.number not in self._by_argument:
-            return str(row.missing_length())
+            return fault_text(row.missing_length())
         return ""
 
     def _goes_before(self, row: ToolRow) -> str:
@@ -165,9 +166,6 @@ class GaugeTable(QtWidgets.QGroupBox):
         if faults:
             raise Refused(faults)
         return {row.name: mm for row, mm in lengths.items() if mm is not None and mm != row.length}
-
-
-translate = FreeCAD.Qt.translate
 
 
 def decimal_point() -> str:

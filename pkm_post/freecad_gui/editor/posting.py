@@ -15,7 +15,7 @@ import FreeCAD
 from PySide import QtCore, QtWidgets
 
 from pkm_post.freecad_app.arguments import parse_arguments
-from pkm_post.freecad_app.core_texts import exception_text
+from pkm_post.freecad_app.core_texts import exception_text, fault_text
 from pkm_post.freecad_app.progress import Stopped
 from pkm_post.freecad_gui.background import BackgroundCall
 from pkm_post.freecad_gui.post_fields import PostChoices
@@ -111,9 +111,9 @@ class Posting(QtCore.QObject):
             text = translate("PKM_Editor", "Stopped. Nothing was written.")
             QtWidgets.QMessageBox.information(self._window, self._title, text)
         else:
-            written = "\n".join(str(path) for path in (*posted.files, *posted.diagnostics))
             text = translate("PKM_Editor", "Certified and written:")
-            QtWidgets.QMessageBox.information(self._window, self._title, f"{text}\n{written}")
+            lines = (text, *map(str, posted.files), *map(fault_text, posted.diagnostics))
+            QtWidgets.QMessageBox.information(self._window, self._title, "\n".join(lines))
         finally:
             task.deleteLater()
             self.ended.emit()
