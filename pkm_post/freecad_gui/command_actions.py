@@ -163,6 +163,3 @@ def _when_computed(document: FreeCAD.Document, task: Callable[[], Any]) -> None:
             task()
 
     QtCore.QTimer.singleShot(0, try_it)
-
-
-translate = FreeCAD.Qt.translate
