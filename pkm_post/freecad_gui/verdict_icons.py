@@ -103,7 +103,7 @@ def verdict_of(item: Any) -> bool | None:
     if _knows(item):
         return _verdict_in(item)
     job = job_of(item) if is_job(item) or is_operation(item) else None
-    known = [] if job is None else [each for each in job.InList if _knows(each) and each.Job == job]
+    known = [] if job is None else [each for each in job.InList if _knows(each) and each.Job == job and each.Active]
     post = None if job is None else _POSTS.get((job.Document.Name, job.Name))
     said = [verdict_of(each) for each in known] + ([] if post is None or post.holds is None else [post.holds])
     if None in said or not said:
@@ -117,11 +117,11 @@ def verdict_of(item: Any) -> bool | None:
 
 
 def _verdict_in(item: Any) -> bool | None:
-    """The verdict that a Reach or a Simulation holds; None if its last computation or one of its inputs failed."""
+    """The verdict that a Reach or a Simulation holds; None if it is switched off, or it or an input failed."""
     from pkm_post.freecad_app.document_checks import failed_input  # numpy is loaded by now, but not when FreeCAD starts
 
     holds, computed = _SAYS[next(name for name in _SAYS if hasattr(item, name))]
-    known = getattr(item, computed) and item.isValid() and not failed_input(item)
+    known = getattr(item, computed) and item.Active and item.isValid() and not failed_input(item)
     return bool(getattr(item, holds)) if known else None
 
 

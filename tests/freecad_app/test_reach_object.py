@@ -8,6 +8,7 @@ from cam_jobs import BELOW, ON_EXAMPLE, add_operation, job_in_reach, reopened
 from pkm_post.freecad_app.job_setup import study_job
 from pkm_post.freecad_app.machine_object import create_machine
 from pkm_post.freecad_app.reach_object import create_reach, machine_for, thinned
+from pkm_post.freecad_gui.verdict_icons import verdict_of
 
 NANOMETRE = 1e-6
 
@@ -34,6 +35,15 @@ def test_findings_are_those_of_the_study(job, found):
     assert list(found.LeastMargins) == pytest.approx([check["margin"] for check in checks], abs=NANOMETRE)
     assert list(found.WorstLines) == [check["worst"]["line"] for check in checks]
     assert set(found.WorstOperations) == {"Cut"}
+
+
+def test_reach_that_is_switched_off_says_nothing_about_a_changed_job(job, found):
+    assert [verdict_of(item) for item in (found, job, job.Operations.Group[0])] == [True] * 3
+    found.Active = False
+    job.Operations.Group[0].Gcode = ["G0 X0 Y0 Z30", "G1 X900 F5"]
+    job.Document.recompute()
+    assert found.Reachable  # of the job before
+    assert [verdict_of(item) for item in (found, job, job.Operations.Group[0])] == [None] * 3
 
 
 def test_the_way_ends_where_the_operation_ends_and_worst_points_lie_on_it(found):
