@@ -33,8 +33,8 @@ _WELL = 0.6
 _FOR_FEED = 0.95
 """Deviation by tolerance up to which a joint may be passed at another time for its feed."""
 _NEWTON_STEPS = 8
-_TRIED, _TRIED_IN_ONE = 24, 2
-"""Times tried on one side of a joint, and their number per sampled instant: they reach three intervals."""
+_TRIED, _TRIED_INSTANTS = 24, 12
+"""Times tried on one side of a joint, closer together near it, and the sampled instants that they cover."""
 _SPEEDS = 8
 """Parts of an interval at whose ends its speed is compared with a feed ..."""
 _TOO_FAST = 1.005
@@ -196,7 +196,8 @@ class _Search:
 
     def _around(self, rows: Array, time: Array, side: Array | float) -> Array:
         """Times from joints onwards to a side, -1 or 1, up to their neighbours, (_TRIED + 1, M)."""
-        instant = self._instant_of(time[rows]) + side * np.linspace(0.0, _TRIED / _TRIED_IN_ONE, _TRIED + 1)[:, None]
+        away = _TRIED_INSTANTS * np.linspace(0.0, 1.0, _TRIED + 1)[:, None] ** 2
+        instant = self._instant_of(time[rows]) + side * away
         return np.clip(self._time_at(*self._place(instant / _LOOKS)), *_neighbours(rows, time))
 
     def at_feed(self, rows: Array, time: Array) -> Array:

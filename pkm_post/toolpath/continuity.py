@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Continuity: where a path has a corner, and where it continues smoothly into the next segment.
+"""Continuity: where a path has a corner, where it turns back, and where it continues smoothly.
 
-Input: columns of N segments, as in ``model.Trajectory``, with tip and tool axis at their starts. Output: a mark for
-each segment about its end. Tip and tool axis both count for smoothness, the tip alone for corners.
+Input: columns of N segments, as in ``model.Trajectory``, with tip and tool axis at their starts. Output: marks for the
+end of each segment.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,47 +20,56 @@ _NO_CORNER = 1e-6
 """rad, and rad/mm of the tool axis: smaller changes count as none."""
 _TANGENT = np.radians(0.1)
 """rad: rounding of tangents by the decimals of a program; an exact path does not stop for it."""
+_BACK = np.radians(10.0)
+"""rad: a tip that goes back by less off its path turns back: there the speed is next to zero however it is rounded, and
+within the tolerance nothing in the program says on which side of the joint the tool is."""
+_SHORTEST_STROKE = 0.1
+"""mm: where the tip goes back on a shorter move, it may be noise of the points, which smooth curves average."""
 _AT_ONCE = 1 << 14
 """Joints in one pass: the working arrays take more memory than the result."""
 _AT_JOINTS = ("kind", "tip", "axis", "arc_centre", "arc_axis", "sweep", "length", "angle")
 """Columns that determine whether the path continues smoothly."""
 
 
-def corners(columns: dict[str, Any], tip_before: Array) -> Array:
-    """Segments with a corner of the tip path at their end, (N,); never the last.
+class Joints(NamedTuple):
+    """What the path does at the end of each of N segments, (N,) each; never set for the last.
 
-    A turn in place has a corner at both ends. The tool axis does not count.
-
-    Args:
-        columns: kind, tip, arc_centre, arc_axis, sweep of N segments.
-        tip_before: (N, 3) tips at their starts.
+    Attributes:
+        corner: the tip changes its direction. A turn in place has a corner at both ends; the tool axis does not count.
+        reversal: the tip goes back along its path, and the tool axis does not turn.
+        smooth: the tip keeps its direction, and the axis its rate by path length.
     """
-    at_start, at_end = _tangents(columns, tip_before)
-    return np.append(norm(at_start[1:] - at_end[:-1]) > _TANGENT, False)
+
+    corner: Array
+    reversal: Array
+    smooth: Array
 
 
-def smooth(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Array:
-    """Segments after which the tip keeps its direction, and the axis its rate by path length, (N,).
+def joints(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Joints:
+    """The joints of N segments.
 
     Args:
         columns: kind, tip, axis, arc_centre, arc_axis, sweep, length and angle of N segments.
         tip_before: (N, 3) tips at their starts.
         axis_before: (N, 3) unit tool axes at their starts.
     """
-    goes_on = np.zeros(len(tip_before), dtype=np.bool_)
-    for joints in pieces(len(goes_on) - 1, _AT_ONCE):
-        rows = slice(joints.start, joints.stop + 1)
+    found = Joints(*np.zeros((3, len(tip_before)), dtype=np.bool_))
+    for rows_of_joints in pieces(len(tip_before) - 1, _AT_ONCE):
+        rows = slice(rows_of_joints.start, rows_of_joints.stop + 1)
         part = {name: columns[name][rows] for name in _AT_JOINTS}
-        goes_on[joints] = _goes_on(part, tip_before[rows], axis_before[rows])
-    return goes_on
+        for column, some in zip(found, _joints(part, tip_before[rows], axis_before[rows]), strict=True):
+            column[rows_of_joints] = some
+    return found
 
 
-def _goes_on(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Array:
-    """Whether N segments continue smoothly at the joints between them, (N - 1,)."""
+def _joints(columns: dict[str, Any], tip_before: Array, axis_before: Array) -> Joints:
+    """The joints between N segments, (N - 1,)."""
     at_start, at_end = _tangents(columns, tip_before)
-    corner = norm(at_start[1:] - at_end[:-1]) + _jump_of_rate(columns, axis_before)
-    moves = columns["length"] > NO_MOVE
-    return np.asarray((corner < _NO_CORNER) & moves[1:] & moves[:-1])
+    change, length, turns = norm(at_start[1:] - at_end[:-1]), columns["length"], columns["angle"] > NO_MOVE
+    shorter = np.minimum(length[1:], length[:-1])
+    goes_back = (norm(at_start[1:] + at_end[:-1]) < _BACK) & (shorter > _SHORTEST_STROKE)
+    goes_on = (change + _jump_of_rate(columns, axis_before) < _NO_CORNER) & (shorter > NO_MOVE)
+    return Joints(change > _TANGENT, goes_back & ~turns[1:] & ~turns[:-1], goes_on)
 
 
 def _jump_of_rate(columns: dict[str, Any], axis_before: Array) -> Array:

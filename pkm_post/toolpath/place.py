@@ -34,7 +34,7 @@ from pkm_post.model import (
     gauge_lengths,
     threads,
 )
-from pkm_post.toolpath.continuity import NO_MOVE, corners, smooth
+from pkm_post.toolpath.continuity import NO_MOVE, joints
 from pkm_post.toolpath.sides import HALF_TURN
 from pkm_post.toolpath.spindle_dwells import with_spindle_waits
 from pkm_post.toolpath.symmetry.transform import mirrors, transform
@@ -235,15 +235,15 @@ def _columns(placed: Program, way: dict[str, Any], keep: Array, events: tuple[Ev
     columns = {name: column[rows] for name, column in way.items()}
     tip_before, axis_before = columns.pop("tip_before"), columns.pop("axis_before")
     del columns["longer"]
-    stops = placed.exact_stop[keep] | _stops(events, int(keep.sum()))
-    stops |= _exact_corners(placed.exact_path[keep], columns, tip_before)
+    at_ends = joints(columns, tip_before, axis_before)
     checkpoint()
-    goes_on = smooth(columns, tip_before, axis_before)
-    checkpoint()
+    exact_path = placed.exact_path[keep]
+    stops = placed.exact_stop[keep] | _stops(events, int(keep.sum())) | at_ends.reversal
+    stops |= at_ends.corner & (exact_path | np.append(exact_path[1:], False))
     return columns | {
         "exact_stop": stops,
         "tip_tolerance": placed.tip_tolerance[keep],
-        "smooth": ~stops & goes_on,
+        "smooth": ~stops & at_ends.smooth,
     }
 
 
@@ -260,10 +260,3 @@ def _stops(events: tuple[Event, ...], segments: int) -> Array:
         stops[thread.first : thread.end] = True
     stops[-1:] = True
     return stops
-
-
-def _exact_corners(exact_path: Array, columns: dict[str, Any], tip_before: Array) -> Array:
-    """Segments that end with an exact stop because the corner there must not be rounded, (N,)."""
-    if not exact_path.any():
-        return exact_path
-    return corners(columns, tip_before) & (exact_path | np.append(exact_path[1:], False))

@@ -93,6 +93,17 @@ def test_wide_corners_between_two_feeds_are_passed_where_the_slower_one_holds(ma
     test_random_jobs_hold_when_their_plan_does(machine, WIDE, seed)
 
 
+@pytest.mark.parametrize(
+    ("stroke", "feed", "tip"), [(1, 5.0, 0.05), (2, 10.0, 0.01), (10, 10.0, 0.001), (20, 5.0, 0.05)]
+)
+def test_programs_that_go_there_and_back_hold(machine, stroke, feed, tip):
+    """From rest to rest such plans are symmetrical: a rounded corner had a knot without speed, a rest too many."""
+    ends, dwells = [[0, 0, 65], [0, 0, 60], [stroke, 0, 60], [0, 0, 60]], (Event(2, EventKind.DWELL, 0.1),)
+    trajectory, asked = placed(program(ends, feed=feed, events=dwells), machine), Tolerances(tip, TOLERANCES.axis)
+    motion, _ = planned(trajectory, machine, asked)
+    assert not refusals(printed(motion, machine), trajectory, machine, asked)
+
+
 def test_joints_are_passed_when_the_plan_passes_them(machine):
     trajectory = placed(cone(120), machine)
     motion, _ = planned(trajectory, machine, TOLERANCES)

@@ -146,7 +146,7 @@ def test_an_exact_path_rests_at_corners_and_goes_on_where_it_is_tangent():
     exact, _ = place(dataclasses.replace(given, exact_path=np.ones(len(given), bool)), example(), ON_PALLET)
     # From the smooth joints of the test above; the last of all rests anyway, and the tool axis stands.
     assert exact.exact_stop.tolist() == [not smooth for smooth in plain.smooth]
-    assert plain.exact_stop.sum() == 1
+    assert plain.exact_stop.tolist() == 5 * [False] + 2 * [True]  # the tool goes out of the part the way it went in
 
 
 def test_an_exact_row_has_exact_corners_at_both_ends():
@@ -180,3 +180,40 @@ def test_tolerances_of_the_program_are_kept():
     trajectory, _ = place(given, example(), ON_PALLET)
     assert trajectory.tip_tolerance.tolist() == [0, 0.05, 0.2]
     assert trajectory.tip_tolerances(0.001).tolist() == [0.001, 0.05, 0.2]
+
+
+@pytest.mark.parametrize(
+    ("there", "back", "rests"),
+    [
+        ([10, 0, 0], [-10, 0, 0], True),
+        ([0, 0, -3], [0, 0, 40], True),
+        ([10, 0, 0], [-10, 10 * np.tan(np.radians(9)), 0], True),
+        ([10, 0, 0], [-10, 10 * np.tan(np.radians(11)), 0], False),
+        ([10, 0, 0], [0, 10, 0], False),
+        ([10, 0, 0], [10, 0, 0], False),
+        ([10, 0, 0], [-0.11, 0, 0], True),
+        ([0.09, 0, 0], [-10, 0, 0], False),  # noise of the points, perhaps
+    ],
+)
+def test_the_motion_rests_where_the_tip_turns_back(there, back, rests):
+    trajectory, _ = place(program(np.cumsum([[0, 0, 60], there, back], axis=0)), example(), ON_PALLET)
+    assert trajectory.exact_stop.tolist() == [False, rests, True]
+
+
+def test_a_tool_axis_that_turns_does_not_rest_where_the_tip_turns_back():
+    axis = np.array([[0, 0, 1], [0, 0, 1], [0, np.sin(0.1), np.cos(0.1)]])
+    trajectory, _ = place(program([[0, 0, 60], [10, 0, 60], [0, 0, 60]], axis), example(), ON_PALLET)
+    assert not trajectory.exact_stop[1]
+
+
+def test_an_arc_that_goes_back_over_another_rests():
+    none, ends = np.full(3, np.nan), [[10, 0, 60], [-10, 0, 60], [10, 0, 60]]
+    for turn, rests in (([0, 0, -1], True), ([0, 0, 1], False)):
+        both = program(
+            ends,
+            kind=[Kind.RAPID, Kind.ARC, Kind.ARC],
+            centre=np.array([none, [0, 0, 60], [0, 0, 60]]),
+            turn=np.array([none, [0, 0, 1], turn]),
+        )
+        trajectory, _ = place(both, example(), ON_PALLET)
+        assert trajectory.exact_stop[1] == rests
