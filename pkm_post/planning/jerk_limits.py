@@ -139,18 +139,18 @@ def _searched(path: ToolPath, marks: Stations, machine: Machine, window: Window)
         halvings = iterate.halvings()
         if not halvings.any():
             break
-        iterate = iterate.without_fast_plateaus(iterate.pace()).halved(halvings, path, marks, machine)
+        iterate = iterate.without_fast_plateaus(iterate.speed_ratio()).halved(halvings, path, marks, machine)
     quarters = iterate.quarters(path, marks, machine)
     iterate = iterate.searched(_FINE)
-    pace = iterate.pace_with(*quarters)
+    ratio = iterate.speed_ratio_with(*quarters)
     for _ in range(_ROUNDS):
-        if pace.max() <= 1 + TOO_FAST and not iterate.needlessly_slow(pace):
+        if ratio.max() <= 1 + TOO_FAST and not iterate.needlessly_slow(ratio):
             break
-        slowed = iterate.at_pace(pace)
-        iterate = slowed.searched_about(slowed.changed_from(iterate), _FINE)
-        pace = iterate.pace_with(*quarters)
+        slower = iterate.slowed(ratio)
+        iterate = slower.searched_about(slower.changed_from(iterate), _FINE)
+        ratio = iterate.speed_ratio_with(*quarters)
     profile = JerkLimitedProfile(iterate.spline.s, iterate.spline.rest, *iterate.at_places())
-    return _counted(profile, np.maximum(pace, 1.0), window)
+    return _counted(profile, np.maximum(ratio, 1.0), window)
 
 
 def _counted(profile: JerkLimitedProfile, too_fast: Array, window: Window) -> _Found:

@@ -169,7 +169,7 @@ class Iterate:
         """Speed squared and acceleration, (M,) each."""
         return self.spline.at_places(self.unknowns)
 
-    def pace(self) -> Array:
+    def speed_ratio(self) -> Array:
         """Speed on each cell relative to the highest that its limits allow, (M - 1,); 1 if fixed."""
         faster = self.demands.in_middle(*self.at_places())
         for one, use in zip(self.limits, self.uses, strict=True):
@@ -189,17 +189,17 @@ class Iterate:
         cell, number = expand_counts(2 * inside)
         return cell, Demands.at(path, machine, marks, s[cell] + (0.25 + 0.5 * number) * np.diff(s)[cell])
 
-    def pace_with(self, cell: Array, demands: Demands) -> Array:
-        """Pace of the cells, (M - 1,), including demands at K more places inside them."""
-        pace = self.pace()
+    def speed_ratio_with(self, cell: Array, demands: Demands) -> Array:
+        """The same, including demands at K more places inside cells."""
+        ratio = self.speed_ratio()
         motion = within_cells(self.spline.s, *self.at_places(), cell, demands.s)
-        np.maximum.at(pace, cell, demands.faster(*motion))
-        return pace
+        np.maximum.at(ratio, cell, demands.faster(*motion))
+        return ratio
 
-    def needlessly_slow(self, pace: Array) -> bool:
+    def needlessly_slow(self, ratio: Array) -> bool:
         """Whether lowered limits leave slack that costs too much of the time from rest to rest."""
         duration = durations(np.diff(self.spline.s), *self.at_places())
-        lost = np.where(self.slower > 1, duration * (1 - np.minimum(pace, 1.0)), 0.0)
+        lost = np.where(self.slower > 1, duration * (1 - np.minimum(ratio, 1.0)), 0.0)
         run = np.cumsum(self.spline.rest)[:-1] - 1
         return bool((np.bincount(run, lost) > TOO_SLOW * np.bincount(run, duration)).any())
 
@@ -231,23 +231,23 @@ class Iterate:
     def _free(self) -> Array:
         return self.unknowns[np.isnan(self.held[self.spline.left])]
 
-    def without_fast_plateaus(self, pace: Array) -> Iterate:
+    def without_fast_plateaus(self, ratio: Array) -> Iterate:
         """Copy without plateaus next to cells that are too fast."""
-        given_up = _widened(pace > 1 + TOO_FAST, _BESIDE) & ~np.isfinite(self.room)
+        given_up = _widened(ratio > 1 + TOO_FAST, _BESIDE) & ~np.isfinite(self.room)
         held = long_held(np.where(given_up, np.nan, self.held))
         same = np.array_equal(held, self.held, equal_nan=True)
         return self._sharing(replace(self, held=held), *(["whole_limits"] if same else []))
 
-    def at_pace(self, pace: Array) -> Iterate:
+    def slowed(self, ratio: Array) -> Iterate:
         """Copy with lower limits, and without plateaus, where the motion is too fast.
 
         Limits lowered too far, where the motion now leaves slack, are raised again.
         """
-        iterate = self.without_fast_plateaus(pace)
+        iterate = self.without_fast_plateaus(ratio)
         on_plateau = ~np.isnan(iterate.held) & ~np.isfinite(self.room)
-        pace = np.where(_widened(on_plateau, _BESIDE), np.minimum(pace, 1.0), pace)
+        ratio = np.where(_widened(on_plateau, _BESIDE), np.minimum(ratio, 1.0), ratio)
         most = sliding_window_view(np.pad(self.room, _BESIDE_FIXED, mode="edge"), 2 * _BESIDE_FIXED + 1).min(axis=1)
-        slower = np.clip(self.slower * pace, 1.0, most)  # a fixed neighbour cannot follow lower limits
+        slower = np.clip(self.slower * ratio, 1.0, most)  # a fixed neighbour cannot follow lower limits
         return iterate._sharing(replace(iterate, slower=slower), "whole_limits")
 
     def changed_from(self, before: Iterate) -> Array:

@@ -240,9 +240,9 @@ def half_widths(
         tip: tolerance of the tip, mm; a number, or (N,).
         axis: tolerance of the tool axis, rad.
     """
-    # Solves corner * d + bow * d^2 = tolerance; this form of the root is also exact for bow = 0.
-    corner, bow = OFFSET * np.maximum(tip_change, _NEGLIGIBLE), _BLEND_DEVIATION * curvature_change
-    by_tip = 2 * tip / (corner + np.sqrt(corner**2 + 4 * bow * tip))
+    # Solves corner * d + bend * d^2 = tolerance; this form of the root is also exact for bend = 0.
+    corner, bend = OFFSET * np.maximum(tip_change, _NEGLIGIBLE), _BLEND_DEVIATION * curvature_change
+    by_tip = 2 * tip / (corner + np.sqrt(corner**2 + 4 * bend * tip))
     by_axis = axis / (OFFSET * np.maximum(axis_change, _NEGLIGIBLE))
     by_bend = _BEND / np.maximum(curvature, _NEGLIGIBLE)
     return np.minimum.reduce([by_tip, by_axis, by_bend, _SHARE * neighbour])

@@ -86,7 +86,7 @@ def _parents(nodes: Chords) -> Chords:
     right = nodes.rows(np.minimum(np.arange(len(left)) * 2 + 1, len(nodes) - 1))
     start, end = left.start, right.end
     corners = np.stack([left.start, left.end, right.start, right.end])
-    bow = np.max(point_to_segment(corners, start, end), axis=0) if len(nodes) else left.deviation
+    sagitta = np.max(point_to_segment(corners, start, end), axis=0) if len(nodes) else left.deviation
     return Chords(
         start=start,
         end=end,
@@ -95,7 +95,7 @@ def _parents(nodes: Chords) -> Chords:
         clearance=np.maximum(left.clearance, right.clearance),
         first=np.minimum(left.first, right.first),
         last=np.maximum(left.last, right.last),
-        deviation=bow + np.maximum(left.deviation, right.deviation),
+        deviation=sagitta + np.maximum(left.deviation, right.deviation),
     )
 
 
