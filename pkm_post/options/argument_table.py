@@ -101,7 +101,7 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
     "--tool-table": {
         "metavar": "FILE[,UNIT]",
         "help": "tools of a part program that are not given one by one: a tool table of LinuxCNC (.tbl) or a .csv, with"
-        " mm or inch behind a comma, or a tool library of FreeCAD (.fctl)",
+        " mm or inch behind a comma, or a tool library of FreeCAD (.fctl, .json)",
     },
     "--actual-tool": {
         "metavar": "NUMBER=D[,R]",

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Tool table: cutters and gauge lengths of a magazine, from a file of the shop.
 
-Input: a tool table of LinuxCNC (.tbl), a table with headings (.csv), or a tool library of FreeCAD (.fctl with its
-.fctb). Output: cutters and gauge lengths by number, mm, or the faults of the file. The first two do not state their
-unit, so it is given with the file name. FreeCAD stores no gauge lengths. [LinuxCNC, tool table]
+Input: a tool table of LinuxCNC (.tbl), a table with headings (.csv), a tool library of FreeCAD (.fctl with its .fctb),
+or a table of older versions or of CAMotics (.json). Output: cutters and gauge lengths by number, mm, or the faults of
+the file. The first two do not state their unit, so it is given with the file name. FreeCAD's libraries have no gauge
+lengths. [LinuxCNC, tool table]
 """
 
 from __future__ import annotations
@@ -221,13 +222,41 @@ def _freecad(text: str, file: Path, unit: str) -> Iterator[_ToolEntry]:
         yield _ToolEntry(0, _tool_number(str(number), 0), name, diameter, corner, shank=shank)
 
 
+_CORNERS: dict[str, Callable[[float, float], float]] = {
+    "EndMill": lambda _, corner: corner,
+    "BallEndMill": lambda d, _: d / 2,
+}
+"""Corner radius by type of an older tool, from its diameter and cornerRadius."""
+
+
+def _json_table(text: str, file: Path, unit: str) -> Iterator[_ToolEntry]:
+    """A table of FreeCAD before its .fctl, whose lengthOffset is Z of LinuxCNC [FreeCAD 0.18], or one of CAMotics."""
+    if unit:
+        raise _TableError(f"a .json states its units: leave out {unit}")
+    content = _json(text, file)
+    tools = content.get("Tools") if "TableName" in content else content
+    for key, tool in tools.items() if isinstance(tools, dict) else ():
+        is_old = "TableName" in content
+        if not isinstance(tool, dict) or not (is_old or tool.get("units") == "metric"):
+            raise _TableError(f"tool {key!r:.20}, expected one of FreeCAD's older tables, or one of CAMotics in mm")
+        diameter, length, corner = (
+            _number(str(tool.get(name, 0)), 0) for name in ("diameter", "lengthOffset", "cornerRadius")
+        )
+        corner_of = _CORNERS.get(str(tool.get("tooltype")))
+        name = str(tool.get("name" if is_old else "description", ""))
+        rounded = corner_of(diameter, corner) if corner_of else None
+        yield _ToolEntry(0, _tool_number(key, 0), name, diameter or None, rounded, length or None)
+
+
 def _json(text: str, file: Path) -> dict[str, Any]:
     try:
         content = json.loads(text)
     except (ValueError, RecursionError) as fault:
         raise _TableError(f"{file.name} is no JSON: {fault}") from None
+    if isinstance(content, list) and len(content) == 1:
+        content = content[0]  # FreeCAD wrote a list of all its tables
     if not isinstance(content, dict):
-        raise _TableError(f"{file.name} is no library of FreeCAD")
+        raise _TableError(f"{file.name} is no library of FreeCAD, nor one table")
     return content
 
 
@@ -280,5 +309,6 @@ _READERS: dict[str, Callable[[str, Path, str], Iterator[_ToolEntry]]] = {
     ".tbl": _linuxcnc,
     ".csv": _csv,
     ".fctl": _freecad,
+    ".json": _json_table,
 }
 """Readers by suffix."""

@@ -172,7 +172,9 @@ def _faults(program: Program, machine: Machine, way: dict[str, Any], keep: Array
     for event in program.events:
         speed = abs(event.value) if event.kind is EventKind.SPINDLE else 0.0
         if speed and not machine.spindle_least_speed <= speed <= machine.spindle_speed:
-            text = f"{speed:g} rpm, the machine allows {machine.spindle_least_speed:g} to {machine.spindle_speed:g}"
+            text = (
+                f"{speed:.9g} rpm, the machine allows {machine.spindle_least_speed:.9g} to {machine.spindle_speed:.9g}"
+            )
             yield Diagnostic("K107", program.place(min(event.row, len(program) - 1)), text)
     yield from _of_tools(program, machine, way["tool"])
     yield from thread_faults(program, machine, way["tip_before"], way["axis_before"])

@@ -3687,8 +3687,8 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>刀具表无效</translation>
     </message>
     <message>
-        <source>write it as docs/g-code.md describes it: LinuxCNC&apos;s .tbl or .csv with the unit, as in --tool-table tools.tbl,mm, or FreeCAD&apos;s .fctl</source>
-        <translation>按 docs/g-code.md 所述书写：LinuxCNC 的 .tbl 或带单位的 .csv，例如 --tool-table tools.tbl,mm，或 FreeCAD 的 .fctl</translation>
+        <source>write it as docs/g-code.md describes it: LinuxCNC&apos;s .tbl or .csv with the unit, as in --tool-table tools.tbl,mm, or FreeCAD&apos;s .fctl or .json</source>
+        <translation>按 docs/g-code.md 所述书写：LinuxCNC 的 .tbl 或带单位的 .csv，例如 --tool-table tools.tbl,mm，或 FreeCAD 的 .fctl 或 .json</translation>
     </message>
     <message>
         <source>check it; times of CL data are in s, and with REV in turns of the spindle</source>

@@ -116,7 +116,44 @@ def test_the_shank_is_that_of_the_table_unless_the_tool_is_another(tmp_path):
         assert prepared_file(part, arguments=table).options.setup.shanks == {}
 
 
+def old_tool(kind, **sizes):
+    """A tool as the tool manager of FreeCAD 0.18 exports it (PathToolLibraryManager.py, Tool.templateAttrs)."""
+    flat = {"cornerRadius": 0.0, "cuttingEdgeAngle": 180.0, "cuttingEdgeHeight": 20.0, "flatRadius": 0.0}
+    return flat | {"name": kind, "tooltype": kind, "material": "Carbide", "version": 1, "lengthOffset": 0.0} | sizes
+
+
+def test_an_older_table_of_freecad(tmp_path):
+    tools = {
+        "1": old_tool("EndMill", diameter=6.0, cornerRadius=1.0, lengthOffset=50.5),
+        "2": old_tool("BallEndMill", diameter=5.0),
+        "3": old_tool("Drill", diameter=3.2),
+        "12": old_tool("EndMill", diameter=0.0, lengthOffset=40.0),
+    }
+    text = json.dumps([{"TableName": "Tool Table-1", "Version": 1, "Tools": tools}])
+    found, faults = table(tmp_path, "tools.json", text, "")
+    assert not faults
+    sizes = {number: (each.diameter, each.corner_radius, each.corner_known) for number, each in found.tools.items()}
+    assert sizes == {1: (6, 1, True), 2: (5, 2.5, True), 3: (3.2, 0, False)}
+    assert (found.lengths, found.shanks) == ({1: 50.5, 12: 40.0}, {})
+
+
+def test_a_table_of_camotics(tmp_path):
+    """As FreeCAD 1.0 and 1.1 export it; Cylindrical may be any shape there, and the length is that of the bit."""
+    tool = {"units": "metric", "shape": "Cylindrical", "length": 50.0, "diameter": 3.125, "description": "saw"}
+    found, faults = table(tmp_path, "tools.json", json.dumps({"7": tool}), "")
+    assert not faults
+    assert [(each.name, each.diameter, each.corner_known) for each in found.tools.values()] == [("saw", 3.125, False)]
+    assert found.lengths == {}
+    assert table(tmp_path, "tools.json", json.dumps({"7": tool | {"units": "imperial"}}), "")[0] is None
+
+
 FAULTS = {
+    ("tools.json", ",mm", "{}"): (0, "a .json states its units: leave out mm"),
+    ("tools.json", "", "{}"): (0, "no tools"),
+    ("tools.json", "", "[{}, {}]"): (0, "tools.json is no library of FreeCAD, nor one table"),
+    ("tools.json", "", '{"1": 5}'): (0, "tool '1', expected one of FreeCAD's older tables"),
+    ("tools.json", "", '{"TableName": "", "Tools": {"a": {}}}'): (0, "'a' instead of the number of a tool"),
+    ("tools.json", "", '{"TableName": "", "Tools": {"1": {"diameter": null}}}'): (0, "'None' instead of a number"),
     ("tools.tbl", "", "T1 P1 Z5\n"): (0, "a tool table of LinuxCNC does not state its unit"),
     ("tools.csv", "", "number,length\n1,5\n"): (0, "a table does not state its unit"),
     ("tools.tbl", ",mm", "T1 P1 Z5\nT1 P2 Z6\n"): (2, "tool 1 for the second time"),
@@ -133,7 +170,7 @@ FAULTS = {
     ("tools.fctl", ",mm", "{}"): (0, "a library of FreeCAD states its units: leave out mm"),
     ("tools.fctl", "", "{"): (0, "tools.fctl is no JSON"),
     ("tools.fctl", "", '{"tools": 3}'): (0, "no list of tools"),
-    ("tools.fctb", "", "{}"): (0, ".fctb, expected one of .tbl, .csv, .fctl"),
+    ("tools.fctb", "", "{}"): (0, ".fctb, expected one of .tbl, .csv, .fctl, .json"),
 }
 
 

@@ -67,6 +67,13 @@ def test_a_spindle_speed_below_the_lowest_is_refused():
         assert [fault.code for fault in place(made, slow, ON_PALLET)[1]] == codes
 
 
+def test_a_spindle_speed_is_reported_with_all_its_digits():
+    """24000.001 was refused as 24000, of which 24000 are allowed."""
+    made = program([[0, 0, 60], [1, 0, 60]], events=(Event(1, EventKind.SPINDLE, 24000.001),))
+    (fault,) = place(made, example(), ON_PALLET)[1]
+    assert (fault.code, fault.found[:32]) == ("K107", "24000.001 rpm, the machine allow")
+
+
 def test_feeds_are_limited_with_a_warning():
     made = program([[0, 0, 60], [10, 0, 60], [20, 0, 60]], feed=np.array([np.nan, 30.0, 900.0]))
     trajectory, faults = place(made, example(), ON_PALLET)

@@ -92,7 +92,7 @@ CLDATA_RULES: dict[str, Rule] = {
     "L447": error(
         "the tool table is not valid",
         "write it as docs/g-code.md describes it: LinuxCNC's .tbl or .csv with the unit, as in --tool-table"
-        " tools.tbl,mm, or FreeCAD's .fctl",
+        " tools.tbl,mm, or FreeCAD's .fctl or .json",
     ),
     "L446": error("the curve cannot be followed", "let the CAM system write the motion in plain points and arcs"),
 }

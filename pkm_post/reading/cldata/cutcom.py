@@ -43,7 +43,8 @@ def cutcom(state: ReaderState, row: int, statement: Statement) -> None:
     sides = [_SIDES[word] for word in words if word in _SIDES]
     planes = {_PLANES[word] for word in words if word in _PLANES}
     contradict = len(sides) > 1 or len(planes) > 1 or ("OFF" in words and bool(sides or "ON" in words))
-    if not words or not set(words) <= _KNOWN or contradict:
+    no_register = any(number < 0 or number != round(number) for number in statement.numbers)
+    if not words or not set(words) <= _KNOWN or contradict or no_register:
         state.report("L401", row, f"CUTCOM/{statement.items_text()}")
     elif sides:
         _record(state, row, sides[0], next(iter(planes), None))

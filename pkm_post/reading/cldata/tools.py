@@ -7,6 +7,7 @@ tool is final at the first motion after both.
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -107,6 +108,10 @@ def load(state: ReaderState, row: int, statement: Statement) -> None:
     number = next(iter(items[1:] if statement.word == "LOAD" else items), None)
     if not isinstance(number, float) or number != int(number) or not 0 <= number < 2**31:
         state.report_items(row, statement, "the number of a tool")
+        return
+    after = [item for name, item in itertools.pairwise((*items, None)) if name == "LENGTH"]
+    if len(after) > 1 or not all(isinstance(item, float) for item in after):
+        state.report_items(row, statement, "LENGTH once, and a number after it")
         return
     length = statement.number_after("LENGTH") * state.scale
     if length < 0:

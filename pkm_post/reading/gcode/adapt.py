@@ -53,6 +53,7 @@ def adapted(blocks: Blocks, flavour: Flavour, left_out: Collection[str]) -> tupl
     g, m = np.zeros(len(blocks.g), np.bool_), np.zeros(len(blocks.m), np.bool_)
     if left_out:
         g, m = _left_out(blocks, flavour, left_out)
+    chosen = {*blocks.g_row[g].tolist(), *blocks.m_row[m].tolist()}
     requests = is_among(blocks.g, flavour.requests)
     notes = [
         *_notes(blocks, "G", g, lambda _: ", left out as chosen"),
@@ -61,7 +62,7 @@ def adapted(blocks: Blocks, flavour: Flavour, left_out: Collection[str]) -> tupl
     ]
     g |= requests | is_among(blocks.g, flavour.without_motion)
     m |= is_among(blocks.m, flavour.silent_m)
-    blocks = _without(blocks, g, m, flavour)
+    blocks = _without(blocks, g, m, flavour, chosen)
     blocks = without_idle_g80(_with_further_offsets(blocks))
     return _with_restored_motions(blocks) if flavour.g80_restores_motion else blocks, tuple(notes)
 
@@ -114,17 +115,19 @@ def _shown(file: SubprogramFile | None, line: int) -> str:
     return str(line) if file is None else f"{line} of {Path(file.path).name}"
 
 
-def _without(blocks: Blocks, g: Array, m: Array, flavour: Flavour) -> Blocks:
-    """Drop codes, and words of their blocks that no other code there uses."""
+def _without(blocks: Blocks, g: Array, m: Array, flavour: Flavour, chosen: Collection[int]) -> Blocks:
+    """Drop codes with their words; in chosen rows, those of skipped codes, all words that no other code there uses."""
     if not (g.any() or m.any()):
         return blocks
     rows = distinct(np.concatenate([blocks.g_row[g], blocks.m_row[m]])).tolist()
     kept = replace(
         blocks, g=blocks.g[~g], g_row=blocks.g_row[~g], m=blocks.m[~m], m_row=blocks.m_row[~m]
     )  # fmt: skip
+    own = {row: "".join(flavour.words_dropped.get(code, "") for code in blocks.g_of(row).tolist()) for row in rows}
     words = dict(kept.words)
     for letter in [letter for letter in words if letter not in _NEVER_DROPPED]:
-        theirs = [row for row in rows if not np.isnan(words[letter][row]) and letter not in _taken(kept, row, flavour)]
+        used = [row for row in rows if not np.isnan(words[letter][row]) and (row in chosen or letter in own[row])]
+        theirs = [row for row in used if letter not in _taken(kept, row, flavour)]
         if theirs:
             words[letter] = words[letter].copy()
             words[letter][theirs] = np.nan

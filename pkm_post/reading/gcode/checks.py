@@ -208,6 +208,8 @@ def _missing_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> No
     if _TIME in known[_DWELL].letters:
         timeless = _marked(blocks, blocks.g_row[blocks.g == _DWELL]) & ~blocks.has("P") & ~blocks.has(_TIME)
         faults.add_where("G405", timeless, lambda _: (word_of(_DWELL), f" without P or {_TIME}"))
+        two = _marked(blocks, blocks.g_row[blocks.g == _DWELL]) & blocks.has("P") & blocks.has(_TIME)
+        faults.add_where("G404", two, lambda _: (Word(_TIME), " beside ", Word("P")))
     spindle = modal.programmed[Group.SPINDLE]
     turning = map_rows(lambda codes: np.isin(codes, (3, 4)), spindle)
     faults.add_where("G405", turning & _before_first(blocks, "S"), lambda row: (Word("M", spindle[row]), " without S"))

@@ -62,6 +62,7 @@ class Flavour:
         without_motion: codes without effect here: they cancel modes that this reader never activates.
         requests: codes that request smoothing from the control, with its description.
         silent_m: M codes without effect here.
+        words_dropped: words of the codes without effect here; others beside them are faults.
         g_codes, m_codes: all supported codes.
         unsupported: known but refused codes, with the reason.
     """
@@ -96,6 +97,7 @@ class Flavour:
     without_motion: Mapping[int, str]
     requests: Mapping[int, str]
     silent_m: Mapping[int, str]
+    words_dropped: Mapping[int, str]
     g_codes: Mapping[int, Code]
     m_codes: Mapping[int, Code]
     unsupported: Mapping[str, str]
@@ -136,6 +138,7 @@ RS274 = Flavour(
     without_motion={},
     requests={},
     silent_m={},
+    words_dropped={},
     g_codes=G_CODES,
     m_codes=M_CODES,
     unsupported=UNSUPPORTED,
@@ -224,6 +227,7 @@ FANUC = replace(
     },
     requests={50: _SMOOTHING, 51: _SMOOTHING, 80: _SMOOTHING, 611: _SMOOTHING, 620: "slower corners", 1870: _SMOOTHING},
     silent_m={29: "rigid tapping: G74 and G84 are rigid, or refused"},
+    words_dropped={50: "P", 51: "QR", 80: "P", 260: "PQR", 1030: "P", 1870: "PE"},
     g_codes=_FANUC_CODES,
     unsupported=_FANUC_REFUSED,
 )

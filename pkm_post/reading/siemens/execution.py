@@ -158,6 +158,8 @@ def _dwell_block(machine: SiemensMachine, block: Block) -> None:
     beside = [name for name in block.words if name in BUFFERED and name != "F"]
     if beside:
         raise BlockFault("G407", f"{beside[0]} beside G4", block.columns.get(beside[0], 0))
+    if {"F", "S"} <= block.words.keys():
+        raise BlockFault("G404", "S beside F of G4", block.columns.get("S", 0))
     if "F" in block.words:
         machine.dwell(block.row, block.number("F"))
     elif "S" in block.words:

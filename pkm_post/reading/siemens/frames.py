@@ -142,7 +142,7 @@ def frame_of(name: str, words: Mapping[str, float], plane: int, before: Programm
         BlockFault: a word is unknown or invalid.
     """
     for word in words:
-        if word not in _AXES and word != "RPL":
+        if word not in _AXES and not (word == "RPL" and name.endswith("ROT")):
             raise BlockFault("G404", f"{word} beside {name}")
     if name in MAKERS:
         return MAKERS[name](words, plane)

@@ -422,7 +422,9 @@ def test_named_planes_turn_with_the_frame_and_are_seen_from_the_holder(frame, wo
     assert offset_in(frame, words, axis) == expected
 
 
-@pytest.mark.parametrize("words", ["OFF,LEFT", "LEFT,OFF", "ON,OFF", "LEFT,XYPLAN,YZPLAN", "LEFT,RIGHT"])
+@pytest.mark.parametrize(
+    "words", ["OFF,LEFT", "LEFT,OFF", "ON,OFF", "LEFT,XYPLAN,YZPLAN", "LEFT,RIGHT", "LEFT,2.5", "LEFT,-1"]
+)
 def test_words_that_contradict_each_other_are_refused(words):
     """OFF,LEFT was LEFT."""
     text = f"{HEADS['apt']}UNITS/MM\nFEDRAT/100\nGOTO/0,0,0\nCUTCOM/{words}\nGOTO/9,0,0\nCUTCOM/OFF\nGOTO/9,9,0\nFINI\n"

@@ -94,7 +94,8 @@ def lengths_and_codes(*changes, tools=None):
         ("LOADTL/1", 0), ("LOADTL/1,2", 0), ("LOADTL/1,ADJUST,5", 0), ("LOADTL/1,LENGTH,60,ADJUST,5", 60),
         ("LOADTL/1,OSETNO,3,LENGTH,60", 60), ("LOAD/TOOL,1", 0), ("LOAD/TOOL,1,ADJUST,3,LENGTH,60.5", 60.5),
         ("TOOLNO/1,MILL,10,0,LENGTH,60", 60), ("LOADTL/TOOL,1", None), ("LOADTL/1.5", None), ("LOADTL/T1", None),
-        ("LOAD/1", None), ("LOADTL/-1", None),
+        ("LOAD/1", None), ("LOADTL/-1", None), ("LOADTL/1,LENGTH", None), ("LOADTL/1,LENGTH,ADJUST,5", None),
+        ("LOADTL/1,LENGTH,60,LENGTH,90", None), ("LOADTL/1,ADJUST,1,SPINDL,1500,MILL", 0),
     ],
 )  # fmt: skip
 def test_forms_of_a_tool_change(statement, length):
