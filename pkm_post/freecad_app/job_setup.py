@@ -31,7 +31,7 @@ from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.job_study import JobStudy, study_of
 from pkm_post.freecad_app.machine_object import machine_of
 from pkm_post.freecad_app.mesh import mesh_of
-from pkm_post.freecad_app.tools import read_shank
+from pkm_post.freecad_app.tools import read_core, read_shank
 from pkm_post.geometry import Array
 from pkm_post.machine import CollisionMesh, find_machine, machine_named, placed_workpiece
 from pkm_post.model import Diagnostic, Machine, Mesh, Place, Refused, Setup, Tolerances, Trajectory, errors
@@ -133,10 +133,12 @@ def _machine_differences(
 
 def setup_of(job: Any, places: Mapping[str, Array] = ONE_PLACE) -> Setup:
     """The set-up of a recomputed job, with a part and a stock at each of several fixtures."""
-    known = ((int(each.ToolNumber), read_shank(each.Tool)) for each in members(job.Tools))
-    shanks = {number: shank for number, shank in known if shank is not None}
+    bits = [(int(each.ToolNumber), each.Tool) for each in members(job.Tools)]
+    shanks = {number: shank for number, bit in bits if (shank := read_shank(bit)) is not None}
+    cores = {number: core for number, bit in bits if (core := read_core(bit)) is not None}
     stock = _mesh([job.Stock] if job.Stock else [], StockType.FromStock(job.Stock) == StockType.FromBase)
-    return Setup(at_fixtures(_mesh(members(job.Model)), places), at_fixtures(stock, places), shanks=shanks)
+    part = at_fixtures(_mesh(members(job.Model)), places)
+    return Setup(part, at_fixtures(stock, places), shanks=shanks, cores=cores)
 
 
 def _mesh(items: Iterable[Any], assumed: bool = False) -> Mesh | None:

@@ -87,7 +87,10 @@ def cutter_path(simulation: Simulation, step: float) -> CutterPath:
     """The poses in which the tools of a simulation cut, in {C}."""
     trajectory, motion = simulation.trajectory, simulation.motion
     numbers = list(trajectory.tools)
-    shapes = tuple(cutting_part(trajectory.tools[number], simulation.setup.shanks.get(number)) for number in numbers)
+    setup = simulation.setup
+    shapes = tuple(
+        cutting_part(setup.core_of(trajectory.tools[number]), setup.shanks.get(number)) for number in numbers
+    )
     known = [shape for shape in shapes if shape is not None]
     seconds = motion.time_ms / 1000.0
     if known:

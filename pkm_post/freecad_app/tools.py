@@ -170,7 +170,7 @@ def _conical(bit: Any) -> Sizes:
     return _flat(bit) | {"bottom_angle": math.pi / 2 - half}
 
 
-_EDGE_HEIGHTS = {"slittingsaw": "BladeThickness", "tap": "CuttingEdgeLength"}
+_EDGE_HEIGHTS = {"slittingsaw": "BladeThickness", "tap": "CuttingEdgeLength", "threadmill": "NeckLength"}
 """The property that states where the cutting edges end, by shape, if it has another name."""
 
 _TIP_ANGLES = {"vbit": _EDGE_ANGLE, "tap": "TipAngle"}
@@ -180,8 +180,9 @@ _TIP_ANGLES = {"vbit": _EDGE_ANGLE, "tap": "TipAngle"}
 def read_shank(bit: Any) -> Shank | None:
     """The shank of a tool bit; None if it does not state where its cutting edges end, or how thick it is.
 
-    The height of the edges of V-bits and taps is that of the cylinder above their cone. The cone of a V-bit with a flat
-    tip has no end in a ``Tool``: its shank begins where the cone does end, and is as wide.
+    The taper of a ball nose ends at its TaperDiameter, wherever its edges do. The height of the edges of V-bits and
+    taps is that of the cylinder above their cone. The cone of a V-bit with a flat tip has no end in a ``Tool``: its
+    shank begins where the cone does end, and is as wide.
     """
     shape, diameter = _plain_shape(bit), millimetres(bit, "ShankDiameter")
     height = millimetres(bit, _EDGE_HEIGHTS.get(shape, "CuttingEdgeHeight"))
@@ -192,7 +193,28 @@ def read_shank(bit: Any) -> Shank | None:
             return None
         cone = (widest - tip) / 2 / math.tan(half)
         height, diameter = (cone, max(widest, diameter)) if tip > 0 else (cone + height, diameter)
+    if shape == "taperedballnose":
+        height = _end_of_taper(bit) or height
     return Shank(height, diameter) if height > 0 and diameter > 0 else None
+
+
+def _end_of_taper(bit: Any) -> float:
+    """Height at which the side of a tapered ball has the TaperDiameter; 0 if it does not widen to that."""
+    ball, half = millimetres(bit, "Diameter") / 2, _half_angle(bit, "TaperAngle")
+    widened = millimetres(bit, "TaperDiameter") / 2 - ball / math.cos(half)
+    return ball + widened / math.tan(half) if half > 0 and widened > 0 else 0.0
+
+
+_CORES = {"radius": "TipDiameter", "threadmill": "NeckDiameter"}
+"""The property with the diameter of a cylinder inside, by shape, of those that are hollow above or below the tip."""
+_THINNEST = 0.1
+"""mm: a core, where the tip of a tool is a point."""
+
+
+def read_core(bit: Any) -> float | None:
+    """Diameter of the cylinder inside the cutting part of a tool bit whose outline no ``Tool`` has; None for others."""
+    shape = _plain_shape(bit)
+    return max(millimetres(bit, _CORES[shape]), _THINNEST) if shape in _CORES else None
 
 
 def _dovetail(bit: Any) -> Sizes:

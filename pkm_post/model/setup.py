@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -125,6 +125,8 @@ class Setup:
         fixtures: clamps, vice and other fixed solids.
         shanks: by tool number, where known.
         unknown_corners: numbers of tools with unknown corner radius.
+        cores: by tool number, diameter in mm of a cylinder inside the cutting part, of tools such as thread mills whose
+            outline no ``Tool`` has: the tool is then one around it.
     """
 
     part: Mesh | None = None
@@ -132,11 +134,17 @@ class Setup:
     fixtures: tuple[Mesh, ...] = ()
     shanks: Mapping[int, Shank] = field(default_factory=dict)
     unknown_corners: frozenset[int] = frozenset()
+    cores: Mapping[int, float] = field(default_factory=dict)
 
     @property
     def is_empty(self) -> bool:
         """Whether there are no solids to collide with."""
         return self.part is None and self.stock is None and not self.fixtures
+
+    def core_of(self, tool: Tool) -> Tool:
+        """The cylinder that a tool certainly fills where ``cores`` has it; else the tool itself."""
+        core = self.cores.get(tool.number)
+        return tool if core is None else replace(tool, diameter=min(core, tool.diameter), corner_radius=0.0)
 
 
 EMPTY_SETUP = Setup()

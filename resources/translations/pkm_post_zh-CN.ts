@@ -2911,11 +2911,11 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>攻丝需要与主轴同步的进给,此处不支持</translation>
     </message>
     <message>
-        <source>controls forbid this while a rotation is in force, or differ in where it leads</source>
+        <source>controls forbid this while a rotation or mirror image is in force, or differ in where it leads</source>
         <translation>旋转有效时，数控系统禁止此指令，或对其到达的位置解释不同</translation>
     </message>
     <message>
-        <source>write G69 before it, and G68 again after it</source>
+        <source>write G69 or G50.1 before it, and G68 or G51.1 again after it</source>
         <translation>在其之前写 G69，之后再写 G68</translation>
     </message>
     <message>

@@ -185,6 +185,50 @@ def test_the_edges_of_a_saw_and_a_tap_end_where_their_solids_get_thin(job, shape
         assert _radius_of(bit, z) <= shank.diameter / 2 + 2e-3 < tool.diameter / 2
 
 
+TAPERS = [(3, 10, 5, 20, 8), (3, 10, 5, 12, 8), (3, 20, 5, 9, 8), (1, 6, 4, 20, 6), (2, 40, 8, 12, 10)]
+"""Diameters, whole angles, diameters at the top of the taper, heights of the edges, and shanks."""
+
+
+@pytest.mark.parametrize("sizes", TAPERS)
+def test_the_shank_of_a_tapered_ball_begins_where_its_solid_gets_wide(job, sizes):
+    """It began at CuttingEdgeHeight, which its solid does not follow: 7 mm of shank were thinner than they are."""
+    if int(App.Version()[1]) == 0:
+        pytest.skip("FreeCAD 1.0 has no tapered ball")
+    names = ("Diameter", "TaperAngle", "TaperDiameter", "CuttingEdgeHeight", "ShankDiameter")
+    bit = stock_bit(job.Document, "taperedballnose.fcstd", Length=70, **dict(zip(names, sizes, strict=True)))
+    tool, (shank,) = tool_of(job, bit), setup_of(job).shanks.values()
+    edges = cutter_profile(tool, shank.start)
+    for z in np.linspace(0.1, shank.start - 0.03, 20):
+        # Some angles of its sketch are off by a thousandth
+        assert np.interp(z, edges.height, edges.radius) == pytest.approx(_radius_of(bit, z), abs=5e-3)
+    for z in np.linspace(shank.start + 0.03, 60, 10):
+        assert shank.diameter / 2 == pytest.approx(_radius_of(bit, z), abs=2e-3)
+
+
+def test_a_thread_mill_has_a_core_up_to_its_shank(job):
+    sizes = {"Diameter": 5, "NeckDiameter": 3, "NeckLength": 20, "ShankDiameter": 6, "Crest": 0.1, "Length": 50}
+    bit = stock_bit(job.Document, "thread-mill.fcstd", **sizes)
+    tool, setup = tool_of(job, bit), setup_of(job)
+    (shank,), core = setup.shanks.values(), setup.core_of(tool)
+    assert (tool.diameter, core.diameter, core.corner_radius, shank.diameter) == (5, 3, 0, 6)
+    for z in np.linspace(0.02, shank.start - 0.05, 40):
+        assert core.diameter / 2 - 2e-3 <= _radius_of(bit, z) <= tool.diameter / 2
+    assert _radius_of(bit, shank.start + 0.1) == pytest.approx(shank.diameter / 2, abs=2e-3)
+
+
+def test_a_radius_mill_has_a_core_as_thick_as_its_tip(job):
+    if int(App.Version()[1]) == 0:
+        pytest.skip("FreeCAD 1.0 has no radius mill")
+    sizes = {"Diameter": 15, "TipDiameter": 5, "CuttingRadius": 3, "CuttingEdgeHeight": 14, "ShankDiameter": 8}
+    bit = stock_bit(job.Document, "radius.fcstd", **sizes)
+    tool, setup = tool_of(job, bit), setup_of(job)
+    (shank,), core = setup.shanks.values(), setup.core_of(tool)
+    assert (tool.diameter, core.diameter, shank.start, shank.diameter) == (15, 5, 14, 8)
+    for z in np.linspace(0.1, shank.start - 0.05, 40):
+        assert core.diameter / 2 - 2e-3 <= _radius_of(bit, z) <= tool.diameter / 2 + 2e-3
+    assert _radius_of(bit, 0.5) < 3  # hollow: a cylinder of its diameter would cut what it leaves
+
+
 def _radius_of(bit, z):
     """The radius of the solid of a bit at a height, by halving."""
     low, high = 0.0, 80.0

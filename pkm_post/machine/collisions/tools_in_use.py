@@ -75,6 +75,8 @@ def tools_in_use(driven: TrajectoryPath, setup: Setup) -> tuple[ToolUse, ...]:
 
 def _sizes(tool: Tool, setup: Setup) -> tuple[Tool, Tool]:
     """The smallest and the largest possible size of a tool."""
+    if tool.number in setup.cores:
+        return setup.core_of(tool), tool
     if tool.corner_known and tool.number not in setup.unknown_corners:
         return tool, tool
     return replace(tool, corner_radius=largest_corner_radius(tool.diameter, tool.bottom_angle, tool.side_angle)), tool

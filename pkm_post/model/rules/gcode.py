@@ -181,8 +181,8 @@ GCODE_RULES: dict[str, Rule] = {
         "write it in a block of its own",
     ),
     "G438": error(
-        "controls forbid this while a rotation is in force, or differ in where it leads",
-        "write G69 before it, and G68 again after it",
+        "controls forbid this while a rotation or mirror image is in force, or differ in where it leads",
+        "write G69 or G50.1 before it, and G68 or G51.1 again after it",
     ),
     "G439": error("the axis words have no motion that they can go by", "let G0 or G1 be the motion of the block"),
     "G440": error("controls differ in whether this goes by distances under G91", "write G90 before it"),

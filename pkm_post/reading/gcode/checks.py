@@ -36,6 +36,7 @@ _NOT_NEGATIVE = "DFHLQST"
 _DWELL, _TIME = 40, "X"
 """G4, and its word in seconds, which some flavours have beside P."""
 _TURN, _END_OF_TURN = 680, 690
+_MIRROR, _END_OF_MIRROR = 511, 501
 _TO_THE_MACHINE = (280, 300, 530)
 """Codes that go to places of the machine, by the axes that they name."""
 _LIMIT = 1e9
@@ -62,6 +63,7 @@ def check(blocks: Blocks, modal: Modal, options: ReadOptions, faults: BlockDiagn
     _functions(modal, faults)
     _axis_words(blocks, modal, faults)
     _within_turns(blocks, modal, faults)
+    _within_mirrors(blocks, modal, faults)
 
 
 def _codes(blocks: Blocks, flavour: Flavour) -> tuple[_Codes, _Codes]:
@@ -297,3 +299,32 @@ def _within_turns(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> Non
         wrong = inside & _marked(blocks, blocks.g_row[blocks.g == code])
         wrong &= in_plane if code in _TO_THE_MACHINE else another if code in PLANES else True
         faults.add_where("G438", wrong, lambda _, code=code: (word_of(code), " within ", word_of(_TURN)))  # type: ignore[misc]
+
+
+def _within_mirrors(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
+    """Report what controls forbid, or differ in, within a mirror image; along other axes it is one and the same.
+
+    A mirror image in one axis changes the sense of a rotation in it [SiemensISO, G51.1]; no manual says where its
+    centre is.
+    """
+    mirrored = _mirrored_axes(blocks) if modal.flavour.outside_turns else np.zeros((0, 3), dtype=np.bool_)
+    if not mirrored.any():
+        return
+    named = np.column_stack([blocks.has(letter) for letter in "XYZ"])
+    for code in (_TURN, *modal.flavour.outside_turns):
+        if code in PLANES or code in (_MIRROR, _END_OF_MIRROR):
+            continue
+        wrong = mirrored.any(axis=1) & _marked(blocks, blocks.g_row[blocks.g == code])
+        wrong &= (named & mirrored).any(axis=1) if code in _TO_THE_MACHINE else True
+        faults.add_where("G438", wrong, lambda _, code=code: (word_of(code), " within ", word_of(_MIRROR)))  # type: ignore[misc]
+
+
+def _mirrored_axes(blocks: Blocks) -> Array:
+    """Mask of the axes mirrored before each block, (N, 3)."""
+    mirrored = np.zeros((len(blocks), 3), dtype=np.bool_)
+    for index in np.flatnonzero(np.isin(blocks.g, (_MIRROR, _END_OF_MIRROR))).tolist():
+        row = int(blocks.g_row[index])
+        words = np.array([bool(blocks.has(letter)[row]) for letter in "XYZ"])
+        begins = blocks.g[index] == _MIRROR
+        mirrored[row + 1 :, words if begins or words.any() else ~words] = begins
+    return mirrored

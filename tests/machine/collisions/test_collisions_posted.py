@@ -12,7 +12,7 @@ from programs import BALL, ON_PALLET, program
 
 from pkm_post.cli import main
 from pkm_post.machine import find_collisions
-from pkm_post.model import Kind, Mesh, Setup, Shank, Tolerances, Tool
+from pkm_post.model import Event, EventKind, Kind, Mesh, Setup, Shank, Tolerances, Tool
 from pkm_post.toolpath.place import place
 
 SLOT = """\
@@ -280,3 +280,17 @@ def test_a_rapid_move_in_the_groove_of_a_pointed_cutter_meets_nothing(half, asid
     stock = Mesh("stock.stl", box([-15, -7, 5], [15, 7, 13]))
     collisions = find_collisions(trajectory, example(), Setup(stock=stock, shanks={1: Shank(30.0, 16.0)}), NARROW)
     assert {fault.code for fault in collisions.faults} == found
+
+
+@pytest.mark.parametrize(("cores", "codes"), [({}, []), ({1: 3.0}, ["K137"])])
+def test_a_tool_cuts_for_certain_only_with_its_core(cores, codes):
+    """The next tool is in its slot, 2 mm aside: a neck of 3 mm may have left stock where a cylinder of 10 mm cuts."""
+    tools = {number: Tool(number, "", size, 0.0, 120.0) for number, size in ((1, 10.0), (2, 4.0))}
+    way = [[-20, 0, 20], [-20, 0, -3], [20, 0, -3], [20, 0, 20], [20, 2, 20], [20, 2, -3], [-20, 2, -3], [-20, 2, 20]]
+    kinds = [Kind.RAPID, Kind.LINE, Kind.LINE, *[Kind.RAPID] * 5]
+    changes = tuple(Event(row, EventKind.TOOL_CHANGE, number) for row, number in ((0, 1), (4, 2)))
+    trajectory, faults = place(program(way, kind=kinds, tools=tools, events=changes), example(), ON_PALLET)
+    assert not faults
+    shanks = {1: Shank(10.0, 3.0), 2: Shank(10.0, 4.0)}
+    setup = Setup(stock=Mesh("stock", box([-25, -20, -8], [25, 20, 0])), shanks=shanks, cores=cores)
+    assert [fault.code for fault in find_collisions(trajectory, example(), setup, NARROW).faults] == codes

@@ -400,3 +400,17 @@ def test_words_that_would_have_no_effect_are_faults(text, fault):
     zero = (0.0, 0.0, 0.0)
     assert codes(text, flavour="fanuc", machine_zero=zero) == [fault]
     assert codes("G1 X1. F60. M8 M7\nG53 Z40.\nM30\n", flavour="fanuc", machine_zero=zero) == []
+
+
+@pytest.mark.parametrize("code", ["G68 X0 Y0 R30.", "G52 Y1.", "G55", "G92 Y1.", "G91 G28 X0", "G53 X0"])
+def test_what_controls_forbid_within_a_mirror_image_is_refused(code):
+    """A rotation in a mirror image along one axis turns the other way round: SINUMERIK, ISO Milling, G51.1."""
+    zero = {"flavour": "fanuc", "machine_zero": (0.0, 0.0, 100.0)}
+    text = f"G51.1 X5.\n{code}\nG69 G90\nG50.1 X0\nG1 X1. Y1. Z1.\nM30\n"
+    assert codes(text, **zero)[:1] == ["G438"]
+    assert "G438" not in codes(text.replace("X5.\n", "X5.\nG50.1 X0\n"), **zero)
+
+
+def test_along_other_axes_a_mirror_image_changes_nothing_of_a_place_of_the_machine():
+    text = "G51.1 X5.\nG91 G28 Z0\nG90 G53 Y0\nG50.1 X0\nG1 X1. Y1. Z1.\nM30\n"
+    assert codes(text, flavour="fanuc", machine_zero=(0.0, 0.0, 100.0)) == []
