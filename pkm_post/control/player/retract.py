@@ -65,10 +65,8 @@ class Retract:
             _log.warning("%s", Phrase("no retract: {}", each))
         if not found:
             self._from = self._from or here
-            above = Phrase(
-                "the tool is {} above its path; it goes back before the play goes on", Amount(distance, "mm")
-            )
-            _log.info("%s", above)
+            way = Amount(distance + float((here.tip - self._from.tip) @ here.axis), "mm")
+            _log.info("%s", Phrase("the tool is {} above its path; it goes back before the play goes on", way))
 
     def back(self, tool_length: float) -> None:
         """Return to the path, if the tool is off it.

@@ -2,6 +2,7 @@
 """Trajectories played on the simulated controller; whatever happens, the tool stays on the path."""
 
 import itertools
+import logging
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -455,6 +456,18 @@ def test_a_retract_goes_up_along_the_tool_axis_and_back_before_the_play_goes_on(
     assert distance(tips, np.vstack([way, made.tip[-1]])).max() < TOLERANCES.tip
     reached = [norm(tips - rest - 15 * up).min() for rest, up in zip(rests, axes, strict=True)]
     assert max(reached) < 1e-3, reached
+
+
+@pytest.mark.slow
+def test_a_second_retract_adds_to_the_first(caplog):
+    playing = Playing.of()
+    orders = iter((Order("retract", 15.0), Order("retract", 10.0)))
+    playing.answer = lambda player: player.order(next(orders, Order("start")))
+    with caplog.at_level(logging.INFO, "pkm_post.control.player"):
+        assert playing.play(single_block=True).finished
+    said = [record.getMessage().partition(" above its path")[0] for record in caplog.records]
+    assert [text for text in said if text.startswith("the tool is ")] == ["the tool is 15 mm", "the tool is 25 mm"]
+    assert playing.arrived() < 1e-3
 
 
 @pytest.mark.slow
