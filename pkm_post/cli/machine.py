@@ -6,12 +6,12 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.processes import diagnostic_text
 from pkm_post.cli.terminal import print_diagnostics
+from pkm_post.options import LONGEST_TOOL, validated, whole
 
 if TYPE_CHECKING:
     from pkm_post.model import Diagnostic, Machine
@@ -32,7 +32,7 @@ def add_commands(commands: Any) -> None:
     calibrating.add_argument("--out", required=True, type=Path, metavar="NEW.toml", help="the machine file to write")
     calibrating.add_argument(
         "--runs",
-        type=partial(_whole_number, 2, 1_000_000),
+        type=whole(2, 1_000_000),
         metavar="N",
         help="repeat it with noise N times, to see how far the tool tip may be off",
     )
@@ -49,7 +49,7 @@ def add_commands(commands: Any) -> None:
     exporting.add_argument("--out", required=True, type=Path, metavar="DIR", help="folder of the files")
     exporting.add_argument(
         "--segment-time",
-        type=partial(_whole_number, 1, 255),
+        type=whole(1, 255),
         metavar="MS",
         help=f"time of a segment of a PMAC's coarse interpolation, 1 to 255 (default: {_SEGMENT_TIME})",
     )
@@ -69,23 +69,8 @@ _TARGETS = ("turbo-pmac", "power-pmac", _PROJECT, "linuxcnc")
 _SEGMENT_TIME = 10
 
 
-def _whole_number(least: int, most: int, text: str) -> int:
-    if not (text.isascii() and text.isdigit() and least <= int(text) <= most):
-        raise argparse.ArgumentTypeError(f"expected a whole number from {least} to {most}, got {text!r}")
-    return int(text)
-
-
-def _length(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0.0 <= value <= _LONGEST:
-        raise argparse.ArgumentTypeError(f"expected a length of 0 to {_LONGEST:g} mm, got {text!r}")
-    return value
-
-
-_LONGEST = 10000.0
+_length = validated(float, lambda mm: 0 <= mm <= LONGEST_TOOL, f"a length of 0 to {LONGEST_TOOL} mm")
+_LARGEST_NOISE = 10.0
 
 
 def _noise(text: str) -> tuple[float, ...]:
@@ -99,9 +84,6 @@ def _noise(text: str) -> tuple[float, ...]:
             f"expected MM,DEG,MM, three numbers from 0 to {_LARGEST_NOISE:g}, got {text!r}"
         )
     return values
-
-
-_LARGEST_NOISE = 10.0
 
 
 def _list(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:

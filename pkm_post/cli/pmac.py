@@ -20,22 +20,84 @@ from pkm_post.cli import pmac_manual, pmac_measure, pmac_play, pmac_simulate
 from pkm_post.cli.inputs import NO_AXIS_WORDS, axis_words
 from pkm_post.cli.pmac_actions import ACTIONS, NOT_OF_POWER_PMAC, ROTARY_WORDS
 from pkm_post.cli.pmac_stop import JobTarget, ProgramTarget, Target
-from pkm_post.options import LONGEST_TOOL, OVERRIDE_PERCENT, above_zero, between, count, positive, tool_length, whole
+from pkm_post.cli.terminal import print_diagnostics
+from pkm_post.options import (
+    APPROACH_MM_S,
+    LONGEST_TOOL,
+    MANUAL_MOVE_PROGRAM,
+    OVERRIDE_PERCENT,
+    PARITIES,
+    START_TOLERANCE_MM,
+    above_zero,
+    between,
+    count,
+    positive,
+    tool_length,
+    whole,
+)
 
 if TYPE_CHECKING:
     from pkm_post.control.link import Port, Session
     from pkm_post.model import Diagnostic
 
+Value = TypeVar("Value")
+_STOPS = ("hold", "abort")
+"""Stops connect by themselves, and reconnect as needed."""
+
+
+def add_commands(commands: Any) -> None:
+    """Add the command ``pmac`` with its actions to a parser, and ``play``, which is one of them."""
+    pmac = commands.add_parser("pmac", help="talk to a Turbo PMAC or a Power PMAC, or simulate one")
+    actions = pmac.add_subparsers(required=True, metavar="ACTION")
+    for name in _ACTIONS:
+        _add_action(actions, name)
+    pmac_simulate.add_action(actions)
+    _add_action(commands, "play")
+
+
+_ACTIONS = ACTIONS | pmac_manual.ACTIONS | pmac_measure.ACTIONS | pmac_play.ACTIONS
+
+
+def _add_action(actions: Any, name: str) -> None:
+    action, text, needs = _ACTIONS[name]
+    parser = actions.add_parser(name, help=text)
+    _add_port(parser)
+    parser.add_argument("--machine", required="machine" in needs, metavar="NAME_OR_FILE", help="the machine")
+    if "program" in needs:
+        parser.add_argument("program", type=Path, metavar="PROGRAM.pmc")
+        help_text = "take the program though nothing shows that it is certified for this machine; that is logged"
+        parser.add_argument("--uncertified", action="store_true", help=help_text)
+    if name in _ARGUMENTS:
+        _ARGUMENTS[name](parser)
+    parser.set_defaults(run=_run, action=action, name=name, needs=needs)
+
+
+def _add_port(parser: argparse.ArgumentParser) -> None:
+    forms = "serial:DEVICE, tcp:HOST[:PORT] or, for a Power PMAC, ssh:USER@HOST[:PORT]"
+    parser.add_argument("--port", required=True, type=_port, metavar="PORT", help=forms)
+    parser.add_argument("--baud", type=count, default=38400, help="of a serial line (%(default)s)")
+    parser.add_argument("--parity", choices=PARITIES, default="none", help="of a serial line (%(default)s)")
+    parser.add_argument("--rtscts", action="store_true", help="the serial line has RTS and CTS")
+    known = "host keys that are trusted over ssh (~/.ssh/known_hosts)"
+    parser.add_argument("--known-hosts", type=Path, metavar="FILE", help=known)
+    parser.add_argument(
+        "--patience", type=above_zero(3600), default=2.0, metavar="S", help="longest silence (%(default)s)"
+    )
+
+
+def _port(text: str) -> Port:
+    from pkm_post.control.link import port_named
+
+    try:
+        return port_named(text)
+    except ValueError as fault:
+        raise argparse.ArgumentTypeError(str(fault)) from None
+
+
 _HIGHEST_PROGRAM = 999
 """Numbers from 1000 are the subprograms of the codes."""
 _jog_mm = between(-LONGEST_TOOL, LONGEST_TOOL)
 _turn = between(-360, 360)
-
-
-def add_own(parser: argparse.ArgumentParser, name: str) -> None:
-    """Add the arguments of an action."""
-    if name in _OWN:
-        _OWN[name](parser)
 
 
 def _add_home(parser: argparse.ArgumentParser) -> None:
@@ -68,8 +130,6 @@ def _add_mdi(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_approach(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.options import APPROACH_MM_S
-
     help_text = "of the tip; of a turn in place in degrees per minute (%(default)s)"
     parser.add_argument("--feed", type=positive, default=60 * APPROACH_MM_S, metavar="MM/MIN", help=help_text)
     pmac_play.add_solids(parser)
@@ -85,22 +145,49 @@ def _add_by_hand(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_step(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.options import START_TOLERANCE_MM
-
     parser.add_argument("--block", type=count, default=1, metavar="N", help="begin at this block (%(default)s)")
-    near = "how far each strut and the tip may be from where the first block begins (%(default)s)"
-    parser.add_argument("--near", type=positive, default=START_TOLERANCE_MM, metavar="MM", help=near)
+    _add_near(parser, "each strut and the tip may be from where the first block begins")
     parser.set_defaults(tool_length=None, check=False)
     _add_number(parser)
 
 
-def _add_continue(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.options import START_TOLERANCE_MM
+def _add_run(parser: argparse.ArgumentParser) -> None:
+    _add_near(parser, "each strut and the tip may be from the first point")
+    _add_no_watch(parser)
 
+
+def _add_stream(parser: argparse.ArgumentParser) -> None:
+    rotary = "size of the rotary buffer, as it was defined (%(default)s)"
+    parser.add_argument("--rotary", type=count, default=ROTARY_WORDS, metavar="WORDS", help=rotary)
+    _add_near(parser, "each strut and the tip may be from the first point")
+
+
+def _add_continue(parser: argparse.ArgumentParser) -> None:
     help_text = "which stop of the program it stands at, from 1"
     parser.add_argument("--stop", type=count, required=True, metavar="N", help=help_text)
-    near = "how far each strut may be from where it stopped (%(default)s)"
-    parser.add_argument("--near", type=positive, default=START_TOLERANCE_MM, metavar="MM", help=near)
+    _add_near(parser, "each strut may be from where it stopped")
+    _add_no_watch(parser)
+
+
+def _add_near(parser: argparse.ArgumentParser, what: str) -> None:
+    help_text = f"how far {what} (%(default)s)"
+    parser.add_argument("--near", type=positive, default=START_TOLERANCE_MM, metavar="MM", help=help_text)
+
+
+def _add_no_watch(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--no-watch", action="store_true", help="leave it to the controller once it runs")
+
+
+def _add_abort(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--at-once", action="store_true", help="without a hold before: the struts leave the path")
+
+
+def _add_monitor(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--tool-length", type=tool_length, metavar="MM", help="gauge length (that of the rest pose)")
+    parser.add_argument(
+        "--rate", type=between(0.001, 1000), default=10.0, metavar="HZ", help="readings per second (%(default)s)"
+    )
+    parser.add_argument("--seconds", type=positive, metavar="S", help="how long (until Ctrl-C)")
 
 
 def _add_measure(parser: argparse.ArgumentParser) -> None:
@@ -110,8 +197,6 @@ def _add_measure(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_number(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.options import MANUAL_MOVE_PROGRAM
-
     help_text = "number of the program in the controller that is used for it (%(default)s)"
     parser.add_argument(
         "--number", type=whole(1, _HIGHEST_PROGRAM), default=MANUAL_MOVE_PROGRAM, metavar="PROG", help=help_text
@@ -133,7 +218,11 @@ def _trigger(text: str) -> str:
     return text
 
 
-_OWN: dict[str, Callable[[argparse.ArgumentParser], None]] = {
+_ARGUMENTS: dict[str, Callable[[argparse.ArgumentParser], None]] = {
+    "run": _add_run,
+    "stream": _add_stream,
+    "abort": _add_abort,
+    "monitor": _add_monitor,
     "home": _add_home,
     "jog": _add_jog,
     "mdi": _add_mdi,
@@ -144,86 +233,7 @@ _OWN: dict[str, Callable[[argparse.ArgumentParser], None]] = {
     "play": pmac_play.add_arguments,
     "measure": _add_measure,
 }
-
-
-Value = TypeVar("Value")
-
-_STOPS = ("hold", "abort")
-"""Stops connect by themselves, and reconnect as needed."""
-
-
-def add_commands(commands: Any) -> None:
-    """Add the command ``pmac`` with its actions to a parser, and ``play``, which is one of them."""
-    pmac = commands.add_parser("pmac", help="talk to a Turbo PMAC or a Power PMAC, or simulate one")
-    actions = pmac.add_subparsers(required=True, metavar="ACTION")
-    for name in _ACTIONS:
-        _add_action(actions, name)
-    pmac_simulate.add_action(actions)
-    _add_action(commands, "play")
-
-
-_ACTIONS = ACTIONS | pmac_manual.ACTIONS | pmac_measure.ACTIONS | pmac_play.ACTIONS
-
-
-def _add_action(actions: Any, name: str) -> None:
-    action, text, needs = _ACTIONS[name]
-    parser = actions.add_parser(name, help=text)
-    _add_port(parser)
-    parser.add_argument("--machine", required="machine" in needs, metavar="NAME_OR_FILE", help="the machine")
-    if "program" in needs:
-        parser.add_argument("program", type=Path, metavar="PROGRAM.pmc")
-        help_text = "take the program though nothing shows that it is certified for this machine; that is logged"
-        parser.add_argument("--uncertified", action="store_true", help=help_text)
-    _add_own(parser, name)
-    add_own(parser, name)
-    parser.set_defaults(run=_run, action=action, name=name, needs=needs)
-
-
-def _add_port(parser: argparse.ArgumentParser) -> None:
-    from pkm_post.options import PARITIES
-
-    forms = "serial:DEVICE, tcp:HOST[:PORT] or, for a Power PMAC, ssh:USER@HOST[:PORT]"
-    parser.add_argument("--port", required=True, type=_port, metavar="PORT", help=forms)
-    parser.add_argument("--baud", type=count, default=38400, help="of a serial line (%(default)s)")
-    parser.add_argument("--parity", choices=PARITIES, default="none", help="of a serial line (%(default)s)")
-    parser.add_argument("--rtscts", action="store_true", help="the serial line has RTS and CTS")
-    known = "host keys that are trusted over ssh (~/.ssh/known_hosts)"
-    parser.add_argument("--known-hosts", type=Path, metavar="FILE", help=known)
-    parser.add_argument(
-        "--patience", type=above_zero(3600), default=2.0, metavar="S", help="longest silence (%(default)s)"
-    )
-
-
-def _add_own(parser: argparse.ArgumentParser, name: str) -> None:
-    if name == "stream":
-        rotary = "size of the rotary buffer, as it was defined (%(default)s)"
-        parser.add_argument("--rotary", type=count, default=ROTARY_WORDS, metavar="WORDS", help=rotary)
-    if name in ("run", "stream"):
-        from pkm_post.options import START_TOLERANCE_MM
-
-        near = "how far each strut and the tip may be from the first point (%(default)s)"
-        parser.add_argument("--near", type=positive, default=START_TOLERANCE_MM, metavar="MM", help=near)
-    if name in ("run", "continue"):
-        parser.add_argument("--no-watch", action="store_true", help="leave it to the controller once it runs")
-    elif name == "abort":
-        parser.add_argument("--at-once", action="store_true", help="without a hold before: the struts leave the path")
-    elif name == "monitor":
-        parser.add_argument(
-            "--tool-length", type=tool_length, metavar="MM", help="gauge length (that of the rest pose)"
-        )
-        parser.add_argument(
-            "--rate", type=between(0.001, 1000), default=10.0, metavar="HZ", help="readings per second (%(default)s)"
-        )
-        parser.add_argument("--seconds", type=positive, metavar="S", help="how long (until Ctrl-C)")
-
-
-def _port(text: str) -> Port:
-    from pkm_post.control.link import port_named
-
-    try:
-        return port_named(text)
-    except ValueError as fault:
-        raise argparse.ArgumentTypeError(str(fault)) from None
+"""Functions that add the arguments of an action, where it has some of its own."""
 
 
 def _run(namespace: argparse.Namespace, arguments: Sequence[str]) -> int:
@@ -295,6 +305,5 @@ def _target(namespace: argparse.Namespace) -> Target | None:
 
 def _printed(value: Value | None, faults: Sequence[Diagnostic]) -> Value | None:
     """Print the faults and return the value."""
-    for fault in faults:
-        print(fault, file=sys.stderr)
+    print_diagnostics(faults)
     return value

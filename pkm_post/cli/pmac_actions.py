@@ -14,10 +14,19 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.pmac_manual import watched
-from pkm_post.cli.pmac_stop import JobTarget, ProgramTarget, Target, abort, held_at_the_end, hold, signals_interrupt
+from pkm_post.cli.pmac_stop import (
+    JobTarget,
+    ProgramTarget,
+    Target,
+    abort,
+    held_at_the_end,
+    hold,
+    print_state,
+    signals_interrupt,
+)
 
 if TYPE_CHECKING:
-    from pkm_post.control.link import Session, Status
+    from pkm_post.control.link import Session
 
     Action = Callable[[Session, Any, argparse.Namespace], int]
 
@@ -99,21 +108,14 @@ def resume(session: Session, target: Target, namespace: argparse.Namespace) -> i
     """Resume after a hold."""
     from pkm_post.control.link import resume_program, watch_resumed
 
-    return _print_state(watch_resumed(session, target.settings, resume_program(session, target.settings)))
+    return print_state(watch_resumed(session, target.settings, resume_program(session, target.settings)))
 
 
 def status(session: Session, target: Target, namespace: argparse.Namespace) -> int:
     """Print the state once."""
     from pkm_post.control.link import read_status
 
-    return _print_state(read_status(session, target.settings))
-
-
-def _print_state(status: Status) -> int:
-    from pkm_post.control.link import state_text
-
-    print(state_text(status))
-    return 0
+    return print_state(read_status(session, target.settings))
 
 
 def monitor(session: Session, target: Target, namespace: argparse.Namespace) -> int:
@@ -184,7 +186,7 @@ def stream(session: Session, target: JobTarget, namespace: argparse.Namespace) -
 
 def _show_stream_progress(done: int, sent: int, lines: int) -> None:
     end = "\n" if done == lines else ""
-    print(f"\r{done} of {lines} lines let go, {sent} sent", end=end, file=sys.stderr, flush=True)
+    print(f"\r{done} of {lines} lines released, {sent} sent", end=end, file=sys.stderr, flush=True)
 
 
 def _no_stream_progress(done: int, sent: int, lines: int) -> None:

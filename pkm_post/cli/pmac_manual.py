@@ -201,7 +201,7 @@ def approach(session: Session, target: JobTarget, namespace: argparse.Namespace)
         return 0
     known, diagnostics = _surroundings(session, target, namespace)
     if errors(diagnostics):
-        print(*diagnostics, sep="\n", file=sys.stderr)
+        print_diagnostics(diagnostics)
         return 1
     free = -math.inf
     if known is not None:

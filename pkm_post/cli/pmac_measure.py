@@ -6,7 +6,6 @@ from __future__ import annotations
 import argparse
 import logging
 import math
-import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -79,7 +78,8 @@ def measure(session: Session, target: Target, namespace: argparse.Namespace) -> 
         print_diagnostics([diagnostic_text("U103", "pmac measure", lacks)])
         return 2
     if work is None:
-        return _print_faults(faults)
+        print_diagnostics(faults)
+        return 1
     logging.getLogger().setLevel(logging.WARNING)  # each of the many moves would log its download
     control = control_of(session, target, namespace)
     settings = ProbeSettings(namespace.input, namespace.ball, namespace.overtravel, namespace.resolution)
@@ -92,7 +92,8 @@ def measure(session: Session, target: Target, namespace: argparse.Namespace) -> 
         with held_at_the_end(session, target.settings):
             found = _measured(probe, work, namespace)
     except Refused as refused:
-        return _print_faults(refused.diagnostics)
+        print_diagnostics(refused.diagnostics)
+        return 1
     _print_feature(found, work, namespace)
     return 0
 
@@ -141,12 +142,6 @@ def _print_feature(found: Feature, work: Array, namespace: argparse.Namespace) -
 
 def _axes(point: Array) -> str:
     return " ".join(f"{letter}{value:.4f}" for letter, value in zip("XYZ", point, strict=True) if not math.isnan(value))
-
-
-def _print_faults(faults: tuple[Any, ...]) -> int:
-    for fault in faults:
-        print(fault, file=sys.stderr)
-    return 1
 
 
 ACTIONS: dict[str, tuple[Action, str, tuple[str, ...]]] = {

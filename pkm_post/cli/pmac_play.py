@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pkm_post.cli.pmac_stop import held_at_the_end
+from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import LONGEST_TOOL, between, count, numbered, positive, shift, tool_length, whole
 
 if TYPE_CHECKING:
@@ -96,13 +97,13 @@ def play(session: Session, target: Target, namespace: argparse.Namespace) -> int
 
     offsets = MachineOffsets(namespace.shift, dict(namespace.tool_length))
     trajectory, tolerances, diagnostics = read_playable(namespace.trajectory, target.machine, offsets)
-    _print_faults(diagnostics)
+    print_diagnostics(diagnostics)
     if trajectory is None or tolerances is None:
         return 1
     skipped = None
     if namespace.skipped is not None:
         skipped, _, diagnostics = read_playable(namespace.skipped, target.machine, offsets)
-        _print_faults(diagnostics)
+        print_diagnostics(diagnostics)
     choices = _choices(trajectory, namespace)
     if choices is None or (skipped is None and namespace.skipped is not None):
         return 1
@@ -110,7 +111,7 @@ def play(session: Session, target: Target, namespace: argparse.Namespace) -> int
     met = [
         collisions_at_offsets(made, target.machine, offsets, choices.setup) for made in (trajectory, skipped) if made
     ]
-    _print_faults(diagnostics := tuple(each for found in met for each in found))
+    print_diagnostics(diagnostics := tuple(each for found in met for each in found))
     if errors(diagnostics):
         return 1
     shown = _Shown(session.now)
@@ -120,7 +121,7 @@ def play(session: Session, target: Target, namespace: argparse.Namespace) -> int
         with held_at_the_end(session, target.settings):
             return _print_result(player.play())
     except Refused as refused:
-        _print_faults(refused.diagnostics)
+        print_diagnostics(refused.diagnostics)
         return 1
 
 
@@ -136,9 +137,9 @@ def _choices(trajectory: Trajectory, namespace: argparse.Namespace) -> PlayOptio
     if namespace.from_line is not None:
         at = namespace.from_line, namespace.operation, namespace.trajectory, namespace.repeat_codes
         row, diagnostics = first_row(trajectory, *at)
-        _print_faults(diagnostics)
+        print_diagnostics(diagnostics)
     setup, diagnostics = setup_of(namespace)
-    _print_faults(diagnostics)
+    print_diagnostics(diagnostics)
     if row is None or errors(diagnostics):
         return None
     return PlayOptions(
@@ -154,11 +155,6 @@ def _choices(trajectory: Trajectory, namespace: argparse.Namespace) -> PlayOptio
         program=namespace.number,
         setup=setup,
     )
-
-
-def _print_faults(diagnostics: tuple[Any, ...]) -> None:
-    for diagnostic in diagnostics:
-        print(diagnostic, file=sys.stderr)
 
 
 def _print_result(done: PlayResult) -> int:

@@ -17,7 +17,7 @@ from pkm_post.options import between, whole, whole_from
 if TYPE_CHECKING:
     from pkm_post.control.numerical_control import Body
     from pkm_post.control.simulator import Controller, PowerPmac, Server
-    from pkm_post.model import Diagnostic, Machine
+    from pkm_post.model import Machine
 
 LOWEST_SPEED, HIGHEST_SPEED = 0.01, 100.0
 HIGHEST_PORT = 65_535
@@ -125,16 +125,11 @@ def _be_of_machine(controller: Controller, namespace: argparse.Namespace) -> boo
     if namespace.machine is None:
         return True
     machine, faults = machine_named(namespace.machine)
-    _print_all(faults)
+    print_diagnostics(faults)
     if machine is None:
         return False
     controller.load(function_programs((*machine.functions, *machine.thread_codes)))
     return namespace.probed is None or _connect_probe(controller, machine, namespace)
-
-
-def _print_all(faults: Sequence[Diagnostic]) -> None:
-    for fault in faults:
-        print(fault, file=sys.stderr)
 
 
 def _connect_probe(controller: Controller, machine: Machine, namespace: argparse.Namespace) -> bool:
@@ -145,7 +140,7 @@ def _connect_probe(controller: Controller, machine: Machine, namespace: argparse
 
     kind: Any = pmac if namespace.ssh is None else power_pmac
     settings, faults = kind.settings_of(machine)
-    _print_all(faults)
+    print_diagnostics(faults)
     if settings is None:
         return False
     length = machine.rest_tool_length if namespace.tool_length is None else namespace.tool_length
@@ -193,8 +188,7 @@ def _set_up(machine: Controller | PowerPmac, file: Path) -> bool:
 
     content, faults = read_text(file)
     faults = (*faults, *errors(manifest.check(file)[1]))
-    for fault in faults:
-        print(fault, file=sys.stderr)
+    print_diagnostics(faults)
     if content is None or faults:
         return False
     lines = content.splitlines()

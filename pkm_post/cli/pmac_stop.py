@@ -70,7 +70,7 @@ def hold(session: Session, target: Target, namespace: argparse.Namespace) -> int
 
     with advised():
         status = hold(session, target.settings)
-    return _print(session, status)
+    return print_state(status)
 
 
 def abort(session: Session, target: Target, namespace: argparse.Namespace) -> int:
@@ -79,10 +79,11 @@ def abort(session: Session, target: Target, namespace: argparse.Namespace) -> in
 
     with advised():
         status = abort(session, target.settings, namespace.at_once)
-    return _print(session, status)
+    return print_state(status)
 
 
-def _print(session: Session, status: Status) -> int:
+def print_state(status: Status) -> int:
+    """Print a state; return exit code 0."""
     from pkm_post.control.link import state_text
 
     print(state_text(status))

@@ -155,7 +155,7 @@ def _fill(session: Session, program: PmacProgram, progress: Progress, is_cancell
         if there.same and is_closed:
             return attempt
         _log.warning("the listing differs, or the buffer is still open: %s", there.difference)
-        held = there.lines if there.nothing_else and memory.goes_on else 0
+        held = there.lines if there.nothing_else and memory.can_append else 0
     raise PmacError(f"sent {ATTEMPTS} times and still not there; {there.difference}")
 
 

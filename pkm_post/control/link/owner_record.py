@@ -92,7 +92,7 @@ def exchange_hold(record: Owner, is_held: bool) -> str:
     return _exchange(OPERATION, index + _HELD * (not is_held), index + _HELD * is_held)
 
 
-def let_go(session: Session) -> bool:
+def release_hold(session: Session) -> bool:
     """Let an operation go on that is held between two motions; return whether one was."""
     record = read_record(session)
     if record.is_held:

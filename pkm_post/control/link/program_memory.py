@@ -44,7 +44,7 @@ class ProgramMemory:
     has_size: bool
 
     @property
-    def goes_on(self) -> bool:
+    def can_append(self) -> bool:
         """Whether lines can be appended to a reopened program."""
         return bool(self.emptying)
 

@@ -20,7 +20,7 @@ import numpy as np
 from pkm_post.control.link import stopping
 from pkm_post.control.link.download import verify_listing
 from pkm_post.control.link.errors import NotReadyError, OutcomeUnknownError, OverrideError, PmacError
-from pkm_post.control.link.owner_record import RESUMED_BY_ALL, let_go
+from pkm_post.control.link.owner_record import RESUMED_BY_ALL, release_hold
 from pkm_post.control.link.ownership import owned
 from pkm_post.control.link.power_setup import setup_faults
 from pkm_post.control.link.program import PmacProgram
@@ -212,8 +212,8 @@ def resume_program(session: Session, settings: AnySettings) -> Status:
 def _resume(session: Session, settings: AnySettings) -> Status:
     status = read_status(session, settings)
     reasons = list(status.fault_texts())
-    is_let_go = not reasons and let_go(session)
-    if not (status.held or is_let_go):
+    is_released = not reasons and release_hold(session)
+    if not (status.held or is_released):
         reasons.append("no program is held; after a stop (M0, M1) continue it, otherwise start it from its beginning")
     if reasons:
         raise NotReadyError(reasons)

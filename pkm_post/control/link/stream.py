@@ -43,6 +43,7 @@ _WATCH_S = 0.2
 """Interval at which the override is read while lines are sent."""
 _QUIET_POLLS = 20
 """Consecutive readings of the machine at rest in the wrong place before the stream fails."""
+_log = logging.getLogger(__name__)
 
 Progress = Callable[[int, int, int], None]
 """Called with the numbers of program lines released, loaded, and in total."""
@@ -71,7 +72,7 @@ class RotaryStream:
         self._session, self._settings, self._start_tolerance = session, settings, start_tolerance
         self._ends = list(accumulate(len(segment.lines) for segment in segments))
         self._buffer = RotaryBuffer(session, settings, [line for each in segments for line in each.lines], words)
-        self._let_go = 0  # lines
+        self._released = 0  # lines
         self._watched_at = session.now()
 
     def open(self) -> None:
@@ -163,7 +164,7 @@ class RotaryStream:
             self._session.sleep(_POLL_S)
 
     def _is_done(self) -> bool:
-        left = self._buffer.loaded - self._let_go
+        left = self._buffer.loaded - self._released
         return left <= self._buffer.lines_ahead() <= left + self._buffer.uncertain
 
     def _check_done(self) -> None:
@@ -178,7 +179,7 @@ class RotaryStream:
             PmacError: the controller's count is inconsistent.
         """
         self._check(self._wait(check))
-        self._buffer.recount(self._let_go)
+        self._buffer.recount(self._released)
         self.resumptions += 1
 
     def _release(self, segment: Segment, end: int) -> None:
@@ -186,22 +187,22 @@ class RotaryStream:
         self._check_done()
         for attempt in range(ATTEMPTS):
             self._check(read_status(self._session, self._settings))
-            rest, line, before = self.rest, self.line, self._let_go
+            rest, line, before = self.rest, self.line, self._released
             # From now on the machine may move this far, whatever the answer.
-            self.rest, self.line, self._let_go = segment.rest, segment.last, end
+            self.rest, self.line, self._released = segment.rest, segment.last, end
             try:
                 self._session.command(f"&{self._settings.coordinate_system}R")
                 return
             except (LinkLostError, RefusedError) as fault:
-                if isinstance(fault, LinkLostError) and self._goes(before):
+                if isinstance(fault, LinkLostError) and self._has_begun(before):
                     self.resumptions += 1
                     return
-                self.rest, self.line, self._let_go = rest, line, before
+                self.rest, self.line, self._released = rest, line, before
                 if isinstance(fault, RefusedError) or attempt == ATTEMPTS - 1:
                     raise
         raise AssertionError("unreachable")
 
-    def _goes(self, before: int) -> bool:
+    def _has_begun(self, before: int) -> bool:
         """Whether lines after the first ``before`` have begun."""
         return (
             read_status(self._session, self._settings).running
@@ -210,9 +211,6 @@ class RotaryStream:
 
     def _check(self, status: Status) -> None:
         check_start(status, self.rest, self._start_tolerance)
-
-
-_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)

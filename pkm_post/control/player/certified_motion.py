@@ -34,7 +34,7 @@ class MotionState:
         state: place, speed and override on its path.
         length: (6,) strut lengths, as sent, mm.
         speed: (6,) strut speeds, as sent, mm/s.
-        beside: the last interval of the motion that ends there, for a motion that continues.
+        adjacent: the last interval of the motion that ends there, for a motion that continues.
     """
 
     section: int

@@ -12,7 +12,7 @@ import queue
 
 from pkm_post.control.link import run, stopping
 from pkm_post.control.link.errors import NotReadyError
-from pkm_post.control.link.owner_record import let_go, read_record
+from pkm_post.control.link.owner_record import read_record, release_hold
 from pkm_post.control.link.session import Session
 from pkm_post.control.link.status import AnySettings
 from pkm_post.control.player.orders import Order, PlayOptions
@@ -94,7 +94,7 @@ class OperatorInput:
                 if self.holds_move:  # no state of the play is shown meanwhile
                     _log.warning("held: resume goes on, end ends the play")
             elif order.kind == "resume" and self.is_held_back:
-                let_go(session)
+                release_hold(session)
                 self.is_held_back = self.is_held_elsewhere = False
             elif order.kind == "resume":
                 self._resume(session, settings)
