@@ -161,9 +161,11 @@ def _not_valid(operation: Any) -> str:
         return str(operation.getStatusString())
     if not getattr(operation, "Base", True) and (is_pkm_object(operation) or hasattr(operation, "JitterPercent")):
         return "its base operation no longer exists"
-    if len(set(map(toolControllerForOp, base_operations(operation)))) > 1:
+    found = _kept_by_cam(operation) or failed_input(operation)
+    # behind those: CAM looks for a controller without an end where operations are made from each other in a circle
+    if not found and len(set(map(toolControllerForOp, base_operations(operation)))) > 1:
         return Phrase("its operations have different tool controllers")
-    return _kept_by_cam(operation) or failed_input(operation)
+    return found
 
 
 def failed_input(item: Any) -> str:
