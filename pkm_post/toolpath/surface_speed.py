@@ -2,8 +2,8 @@
 """Surface speed: a spindle speed for each cut that gives the cutting edge the required speed.
 
 Takes a program; returns it with new spindle speeds, and with new feeds if the chip load is to be kept. A cut is the
-motion between two rapid moves. The speed changes before it, where the machine rests with the tool clear of the
-workpiece, never within: that would leave a mark. Speeds in mm/s; spindle speeds in revolutions per minute, as in
+motion of one tool between two rapid moves. The speed changes before it, where the machine rests with the tool clear of
+the workpiece, never within: that would leave a mark. Speeds in mm/s; spindle speeds in revolutions per minute, as in
 events.
 """
 
@@ -65,8 +65,9 @@ def with_surface_speed(
         diameter[rows] = _contact_diameter(program, cutter, rows)
     cut = program.kind != Kind.RAPID
     turning = cut & ~np.isnan(diameter) & (np.nan_to_num(spindle) != 0)
-    number = np.cumsum(np.diff(cut.astype(np.int8), prepend=0) == 1) - 1
-    count = np.bincount(number[turning], minlength=int(number.max(initial=-1)) + 1)
+    changes = [event.row for event in program.events if event.kind is EventKind.TOOL_CHANGE]
+    number = np.cumsum(cut & (np.append(True, ~cut[:-1]) | np.isin(np.arange(len(cut)), changes)))
+    count = np.bincount(number[turning], minlength=int(number[-1]) + 1)
     mean = np.bincount(number[turning], diameter[turning], len(count)) / np.maximum(count, 1)
     by_cut = np.clip(np.rint(60 * surface_speed.speed / (math.pi * np.where(count > 0, mean, np.inf))), *limits)
     revolutions = np.where(turning, by_cut[number] * np.sign(np.nan_to_num(spindle)), np.nan)
@@ -102,7 +103,8 @@ def _with_speeds(program: Program, revolutions: Array, before: Array, surface_sp
     changed = ~np.isnan(revolutions)
     begins = set(np.flatnonzero(changed & np.append(True, program.kind[:-1] == Kind.RAPID)).tolist())
     # A spindle start stays in place; its speed is that of the next cut.
-    events = [_switched_on(event, revolutions) for event in program.events]
+    rows = np.flatnonzero(changed)
+    events = [_switched_on(event, revolutions, rows) for event in program.events]
     state = {event.row: event.value for event in events if event.kind is EventKind.SPINDLE}
     value = np.nan
     for row in sorted({*begins, *state}):
@@ -117,9 +119,9 @@ def _with_speeds(program: Program, revolutions: Array, before: Array, surface_sp
     return replace(program, feed=feed, events=tuple(sorted(events, key=lambda event: event.row)))
 
 
-def _switched_on(event: Event, revolutions: Array) -> Event:
-    following = revolutions[event.row :]
-    first = following[~np.isnan(following)][:1]
-    if event.kind is not EventKind.SPINDLE or event.value == 0 or not len(first):
+def _switched_on(event: Event, revolutions: Array, rows: Array) -> Event:
+    """A spindle start with the speed of the first of the rows from it on; other events are unchanged."""
+    if event.kind is not EventKind.SPINDLE or event.value == 0:
         return event
-    return replace(event, value=float(math.copysign(first[0], event.value)))
+    following = rows[np.searchsorted(rows, event.row) :][:1]
+    return replace(event, value=math.copysign(revolutions[following[0]], event.value)) if len(following) else event

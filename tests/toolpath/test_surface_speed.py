@@ -111,3 +111,21 @@ def test_a_tool_of_unknown_diameter_is_refused():
     made, reported = with_surface_speed(two_cuts(tool=dataclasses.replace(BALL, diameter=0.0)), SurfaceSpeed(1.0), WIDE)
     assert made is None
     assert [fault.code for fault in reported] == ["N109"]
+
+
+def test_two_tools_in_one_motion_have_a_speed_each():
+    # 1 m/s on 12 and 6 mm: 60000 / (pi 12) = 1592 and 60000 / (pi 6) = 3183 per minute.
+    tools = {1: BALL, 2: dataclasses.replace(BALL, number=2, diameter=6.0, corner_radius=3.0)}
+    kinds = EventKind.TOOL_CHANGE, EventKind.SPINDLE
+    events = tuple(Event(row, kinds[kind], value) for row, kind, value in [(0, 0, 1), (0, 1, 9), (2, 0, 2), (2, 1, 9)])
+    before = program([[0, 0, 30], [0, 0, 0], [10, 0, 0], [30, 0, 0]], events=events, tools=tools)
+    made, reported = with_surface_speed(before, SurfaceSpeed(1000.0), WIDE)
+    assert not reported
+    assert speeds(made) == [(0, 1592), (2, 3183)]
+
+
+def test_a_program_without_cuts_stays():
+    before = dataclasses.replace(two_cuts(), kind=np.full(8, R))
+    made, reported = with_surface_speed(before, SurfaceSpeed(1000.0), WIDE)
+    assert not reported
+    assert made.events == before.events
