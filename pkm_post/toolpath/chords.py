@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from pkm_post.geometry import along, arc_points, arc_sweep, dot, norm, towards
-from pkm_post.model import Array, Event, Kind, Program
+from pkm_post.model import Array, Kind, Program
 
 CHORD_ERROR = 1e-3
 """Chordal deviation from the replaced arc, mm."""
@@ -20,6 +20,7 @@ _COPIED = (
     "feed",
     "operation",
     "line",
+    "normal",
     "side_offset",
     "smaller_tool",
     "plane",
@@ -46,6 +47,7 @@ def with_chords(program: Program, rows: Array) -> Program:
     position[inner], axis[inner] = _on_arcs(program, source[inner], part[inner])
     columns = {name: getattr(program, name)[source] for name in _COPIED}
     blank = np.where(cut[:, None], np.nan, 1.0)
+    first = np.append(begin, len(source))
     return replace(
         program,
         **columns,
@@ -54,11 +56,8 @@ def with_chords(program: Program, rows: Array) -> Program:
         tool_axis=axis,
         arc_centre=program.arc_centre[source] * blank,
         arc_axis=program.arc_axis[source] * blank,
-        normal=program.normal[source],
         exact_stop=program.exact_stop[source] & ~inner,
-        events=tuple(
-            Event(int(np.append(begin, len(source))[event.row]), event.kind, event.value) for event in program.events
-        ),
+        events=tuple(replace(event, row=int(first[event.row])) for event in program.events),
     )
 
 

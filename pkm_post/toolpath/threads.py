@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from pkm_post.geometry import Array, norm
+from pkm_post.geometry import Array, dot, norm
 from pkm_post.model import Amount, Diagnostic, Kind, Machine, Phrase, Program, threads
 
 _SPEED_SHARE = 0.95
@@ -49,13 +49,14 @@ def thread_faults(program: Program, machine: Machine, tip_before: Array, axis_be
     for thread in found:
         rows = slice(thread.first, thread.end)
         way, axis = program.position[rows] - tip_before[rows], axis_before[rows]
-        aside = norm(way - np.einsum("nc,nc->n", way, axis)[:, None] * axis)
+        along = dot(way, axis)
+        aside = norm(way - along[:, None] * axis)
         turned = norm(program.tool_axis[rows] - axis)
         wrong = (program.kind[rows] != Kind.LINE) | (aside > _ASIDE) | (turned > _ASIDE)
         if wrong.any():
             row = thread.first + int(np.argmax(wrong))
             yield Diagnostic("K155", program.place(row), f"{aside[row - thread.first]:.3g} mm aside")
-        elif np.einsum("nc,nc->n", way, axis)[:1] > 0:
+        elif along[:1] > 0:
             yield Diagnostic("K155", program.place(thread.first), Phrase("it begins towards the spindle"))
         if (program.feed[rows] > limits[rows]).any():
             feeds = f"F{60 * program.feed[rows].max():g} mm/min, limited to {60 * limits[thread.first]:g}"
