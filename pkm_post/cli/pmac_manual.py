@@ -195,6 +195,7 @@ def approach(session: Session, target: JobTarget, namespace: argparse.Namespace)
     from pkm_post.control.numerical_control import target_deviation
     from pkm_post.control.player import approach_faults
     from pkm_post.model import errors
+    from pkm_post.toolpath import highest_tip
 
     if target_deviation(read_status(session, target.settings), target.job.first) <= _THERE_MM:
         print("the tool is at the start of the program")
@@ -206,7 +207,7 @@ def approach(session: Session, target: JobTarget, namespace: argparse.Namespace)
     free = -math.inf
     if known is not None:
         namespace.tool_length = float(known.trajectory.tool_length()[0])
-        free = float(known.trajectory.tip[:, 2].max())
+        free = highest_tip(known.trajectory)
 
     def check(path: Trajectory) -> tuple[Diagnostic, ...]:
         return () if known is None else approach_faults(known, 0, path)

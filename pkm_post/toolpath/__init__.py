@@ -7,7 +7,7 @@ from pkm_post import at_first_use
 from pkm_post.toolpath.compressor.compress import compress
 from pkm_post.toolpath.compressor.splines import Splines, direction
 from pkm_post.toolpath.place import place
-from pkm_post.toolpath.segments import Segments
+from pkm_post.toolpath.segments import Segments, highest_tip
 from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
 
 if TYPE_CHECKING:
@@ -125,6 +125,7 @@ __all__ = [
     "rotation",
     "clearance_path",
     "sector",
+    "highest_tip",
     "stock_left",
     "tip_from_contact",
     "tool_axes",

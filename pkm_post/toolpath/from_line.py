@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from itertools import takewhile
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,7 @@ from pkm_post.model import (
     Trajectory,
     threads,
 )
+from pkm_post.toolpath.segments import highest_tip
 from pkm_post.toolpath.spindle_dwells import seconds_from_rest
 from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
 
@@ -73,10 +75,16 @@ class _Approach:
 
 
 def row_of_line(trajectory: Trajectory, start: StartLine) -> int | None:
-    """The first row of a line, or of the first line after it; None if the source has no such line."""
+    """The first row of a line or, if that does not move, of any later line; None if the source has no such line.
+
+    Rows of a subprogram at the end of the source have later lines, although they may precede those of the line.
+    """
     named = np.array([not start.operation or name == start.operation for name in trajectory.operations])
     rows = np.flatnonzero(named[trajectory.operation] & (trajectory.line >= start.line))
-    return int(rows[0]) if len(rows) else None
+    if not len(rows):
+        return None
+    of_operation = rows[trajectory.operation[rows] == trajectory.operation[rows[0]]]
+    return int([*of_operation[trajectory.line[of_operation] == start.line], rows[0]][0])
 
 
 def modal_events(trajectory: Trajectory, row: int, machine: Machine, repeat_codes: bool = False) -> tuple[Event, ...]:
@@ -157,7 +165,7 @@ def _approach(trajectory: Trajectory, row: int, machine: Machine) -> _Approach |
     end = ToolPose(tips, axes, float(trajectory.spin_before()[row]))
     first, tool, pose = int(trajectory.tool[0]), int(trajectory.tool[row]), machine.tool_change
     lengths = [trajectory.tools[number].length for number in (first, tool)]
-    height = float(max(trajectory.tip[:, 2].max(), tips[2], -np.inf if pose is None else pose.safe_height))
+    height = max(highest_tip(trajectory), tips[2], -np.inf if pose is None else pose.safe_height)
     if not end.rises_to(height):
         return None
     there = list[ToolPose]()
@@ -240,7 +248,7 @@ def _events(trajectory: Trajectory, row: int, approach: _Approach, modal: tuple[
 
 def _wait_after(events: list[Event], spindle: Event, machine: Machine) -> list[Event]:
     """A dwell in which the spindle reaches its speed from rest: that of the program may begin at another speed."""
-    after = events[events.index(spindle) + 1 :][:1]
+    after = takewhile(lambda each: each.kind is not EventKind.SPINDLE, reversed(events))
     own = [each.value for each in after if each.kind is EventKind.DWELL and each.row == spindle.row]
     seconds = max([*own, seconds_from_rest(machine, spindle.value)])
     return [Event(spindle.row, EventKind.DWELL, seconds)] if seconds else []

@@ -10,7 +10,7 @@ from programs import ON_PALLET, cone, program
 
 from pkm_post.geometry import angle_between, norm
 from pkm_post.model import TRAJECTORY_COLUMNS, Event, EventKind, Kind, Tool, ToolChange
-from pkm_post.toolpath import StartLine, place, started_at_line
+from pkm_post.toolpath import StartLine, place, row_of_line, started_at_line
 
 MACHINE = replace(example(), tool_change=None)
 POSE = ToolChange(np.array([0.0, 0.0, 600.0]), np.array([0.0, 0.0, 1.0]), 0.0, 320.0)
@@ -63,6 +63,24 @@ def test_what_follows_is_the_program_from_that_line_on(made):
         np.testing.assert_array_equal(found.start_tip, whole.start_tip)
 
 
+def test_it_crosses_above_an_arc_that_is_higher_than_its_ends():
+    position = [[-20, 0, 41], [-20, 0, 40], [20, 0, 40], [20, 10, 40], [-20, 10, 40]]
+    kind = [Kind.RAPID, Kind.LINE, Kind.ARC, Kind.LINE, Kind.ARC]
+    centre, turn = np.full((5, 3), np.nan), np.full((5, 3), np.nan)
+    centre[[2, 4]], turn[[2, 4]] = [[0, 0, 10], [0, 10, 10]], [[0, 1, 0], [0, -1, 0]]
+    whole = placed(program(position, kind=kind, centre=centre, turn=turn))
+    found = begun(whole, 5)
+    top = whole.machine_from_work[2, 3] + 10 + np.hypot(20, 30)
+    assert found.tip[found.operation == 1][:-1, 2].max() >= top - 1e-9 > whole.tip[:, 2].max()
+
+
+def test_a_line_after_the_call_of_a_subprogram_at_the_end_of_the_source():
+    whole = placed(replace(program(STEPS), line=np.array([2, 12, 13, 6, 7])))  # called in line 4
+    assert [row_of_line(whole, StartLine(line)) for line in (4, 6, 7, 12, 14)] == [1, 3, 4, 1, None]
+    two = replace(whole, operations=("A", "B"), operation=np.array([0, 0, 1, 1, 1]), line=np.array([1, 9, 1, 5, 9]))
+    assert [row_of_line(two, StartLine(5, name)) for name in ("", "A", "B")] == [1, 1, 3]
+
+
 def test_it_comes_down_along_the_axis_from_above_the_whole_program_and_cuts_with_the_feed_of_the_line():
     whole = placed(cone(40))
     found = begun(whole, int(whole.line[20]))
@@ -113,6 +131,7 @@ def test_spindle_and_coolant_are_on_above_the_line_and_stops_before_it_are_behin
         ([], 4.0 * 3000 / 24_000),
         ([Event(1, EventKind.DWELL, 0.1)], 4.0 * 3000 / 24_000),  # from 2000 rpm, which it had before
         ([Event(1, EventKind.DWELL, 5.0)], 5.0),
+        ([Event(1, EventKind.COOLANT, 1.0), Event(1, EventKind.DWELL, 5.0)], 5.0),  # S3000 M3, M8, G4 P5
     ],
 )
 def test_the_spindle_is_waited_for_from_rest(own, wanted):
@@ -121,7 +140,7 @@ def test_the_spindle_is_waited_for_from_rest(own, wanted):
     events = (Event(0, EventKind.SPINDLE, 2000.0), Event(0, EventKind.DWELL, 0.4), Event(1, EventKind.SPINDLE, 3000.0))
     whole = replace(whole, events=(*events, *own))
     found, _ = started_at_line(whole, StartLine(int(whole.line[2])), machine)
-    assert [(each.kind, each.value) for each in found.events] == [
+    assert [(each.kind, each.value) for each in found.events if each.kind is not EventKind.COOLANT] == [
         (EventKind.SPINDLE, 3000.0),
         (EventKind.DWELL, wanted),
     ]

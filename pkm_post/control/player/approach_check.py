@@ -23,7 +23,7 @@ from pkm_post.geometry import Array, angle_between, norm
 from pkm_post.machine import find_collisions, strut_lengths
 from pkm_post.model import TRAJECTORY_COLUMNS, Diagnostic, Kind, Mesh, Setup, Tool, Trajectory
 from pkm_post.options import START_TOLERANCE_MM
-from pkm_post.toolpath import ToolPose, clearance_path, pose_columns
+from pkm_post.toolpath import ToolPose, clearance_path, highest_tip, pose_columns
 
 _APPROACH, _BETWEEN = "approach", "between"
 _STRAIGHT_MM = 1e-6
@@ -137,7 +137,7 @@ def _extents(made: Trajectory) -> dict[str, Any]:
 def _height(task: PlayContext, approach: Trajectory) -> float:
     """Z in {M} above all known obstacles."""
     tops = [_top(mesh, task.trajectory) for mesh in _meshes(task.setup)]
-    return max(float(approach.tip[:, 2].max()), float(task.trajectory.tip[:, 2].max()), *tops)
+    return max(float(approach.tip[:, 2].max()), highest_tip(task.trajectory), *tops)
 
 
 def _meshes(setup: Setup) -> list[Mesh]:

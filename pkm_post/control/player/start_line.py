@@ -27,7 +27,7 @@ from pkm_post.control.player.approach_check import approach_faults
 from pkm_post.control.player.stop_events import TOLERANCES, PlayContext, pose_before, run_events
 from pkm_post.model import Event, Refused, Trajectory, errors
 from pkm_post.options import APPROACH_MM_S
-from pkm_post.toolpath import modal_events
+from pkm_post.toolpath import highest_tip, modal_events
 
 _log = logging.getLogger(__name__)
 
@@ -75,7 +75,7 @@ def approach_to_row(task: PlayContext, row: int, events: tuple[Event, ...], feed
     here = pose_from_home(machine, settled_status(task.session, settings).commanded, length)
     if here is None:
         raise NotReadyError(["no pose of the platform reachable in small steps from home has these strut lengths"])
-    free = float(task.trajectory.tip[:, 2].max())
+    free = highest_tip(task.trajectory)
     approach, diagnostics = approach_trajectory(machine, here, start, length, feed, free)
     if approach is None:
         if [each.code for each in diagnostics] == [_THERE]:
