@@ -23,6 +23,7 @@ import numpy as np
 from pkm_post.geometry import Array, angle_between, norm
 from pkm_post.model import (
     APPROACH,
+    IN_SUBPROGRAM_FILE,
     TRAJECTORY_COLUMNS,
     Diagnostic,
     Event,
@@ -48,7 +49,7 @@ class StartLine:
 
     Attributes:
         line: line of the source, or number of the command in its operation.
-        operation: name of the operation; empty for the first one with such a line.
+        operation: name of the operation; empty for the first one in the main file with such a line.
         repeat_codes: whether machine-specific M codes before it are repeated.
     """
 
@@ -75,16 +76,22 @@ class _Approach:
 
 
 def row_of_line(trajectory: Trajectory, start: StartLine) -> int | None:
-    """The first row of a line or, if that does not move, of any later line; None if the source has no such line.
+    """The first row of a line or, if that does not move, of what follows it; None if the source has no such line.
 
-    Rows of a subprogram at the end of the source have later lines, although they may precede those of the line.
+    A line without an operation is one of the main file. Rows of a subprogram may come before those of the line: at the
+    end of the file they have later lines, and in a file of their own any.
     """
-    named = np.array([not start.operation or name == start.operation for name in trajectory.operations])
-    rows = np.flatnonzero(named[trajectory.operation] & (trajectory.line >= start.line))
+    in_files = np.array([name.startswith(IN_SUBPROGRAM_FILE) for name in trajectory.operations])
+    named = np.array([name == start.operation for name in trajectory.operations]) if start.operation else ~in_files
+    operation, line = trajectory.operation, trajectory.line
+    rows = np.flatnonzero(named[operation] & (line >= start.line))
     if not len(rows):
         return None
-    of_operation = rows[trajectory.operation[rows] == trajectory.operation[rows[0]]]
-    return int([*of_operation[trajectory.line[of_operation] == start.line], rows[0]][0])
+    stated = rows[(line[rows] == start.line) & (operation[rows] == operation[rows[0]])]
+    if len(stated):
+        return int(stated[0])
+    before = np.flatnonzero((named | ~in_files)[operation[: rows[0]]])
+    return int(before[-1]) + 1 if len(before) else 0
 
 
 def modal_events(trajectory: Trajectory, row: int, machine: Machine, repeat_codes: bool = False) -> tuple[Event, ...]:

@@ -81,6 +81,16 @@ def test_a_line_after_the_call_of_a_subprogram_at_the_end_of_the_source():
     assert [row_of_line(two, StartLine(5, name)) for name in ("", "A", "B")] == [1, 1, 3]
 
 
+def test_a_line_of_the_main_file_after_the_call_of_a_subprogram_in_a_file_of_its_own():
+    called = "subprogram 1234.ngc"  # in line 5
+    whole = replace(
+        placed(program(STEPS)), operations=("", called), operation=np.array([0, 1, 1, 0, 0]),
+        line=np.array([2, 7, 9, 6, 7]),
+    )  # fmt: skip
+    assert [row_of_line(whole, StartLine(line)) for line in (2, 5, 6, 7, 8)] == [0, 1, 3, 4, None]
+    assert [row_of_line(whole, StartLine(line, called)) for line in (7, 8, 9)] == [1, 2, 2]
+
+
 def test_it_comes_down_along_the_axis_from_above_the_whole_program_and_cuts_with_the_feed_of_the_line():
     whole = placed(cone(40))
     found = begun(whole, int(whole.line[20]))
