@@ -167,3 +167,10 @@ class Program:
     def place(self, row: int) -> Place:
         """Position of row ``row`` in the source."""
         return Place(self.source, self.operations[self.operation[row]], int(self.line[row]))
+
+    def in_force(self, kind: EventKind, before: float = np.nan) -> Array:
+        """The value of the last event of a kind up to each row, (N,); ``before`` where there is none."""
+        events = [event for event in self.events if event.kind is kind]
+        return np.repeat(
+            [before, *(event.value for event in events)], np.diff([0, *(event.row for event in events), len(self)])
+        )

@@ -157,12 +157,8 @@ def _highest_feeds(placed: Program, machine: Machine) -> Array:
 
 def _tool_by_row(program: Program) -> Array:
     """The number of the tool in use on each row, (N,); before the first change the first tool counts as loaded."""
-    changes = [event for event in program.events if event.kind is EventKind.TOOL_CHANGE]
-    first = int(changes[0].value) if changes else min(program.tools)
-    tool = np.full(len(program), first, dtype=np.int32)
-    for change in changes:
-        tool[change.row :] = int(change.value)
-    return tool
+    changes = (event.value for event in program.events if event.kind is EventKind.TOOL_CHANGE)
+    return program.in_force(EventKind.TOOL_CHANGE, next(changes, min(program.tools))).astype(np.int32)
 
 
 def _faults(program: Program, machine: Machine, way: dict[str, Any], keep: Array) -> Iterator[Diagnostic]:

@@ -55,7 +55,7 @@ def with_surface_speed(
     faults = without_threads(program, "with a surface speed")
     if faults:
         return None, faults
-    tool, spindle = _in_force(program, EventKind.TOOL_CHANGE), _in_force(program, EventKind.SPINDLE)
+    tool, spindle = program.in_force(EventKind.TOOL_CHANGE), program.in_force(EventKind.SPINDLE)
     diameter = np.full(len(program), np.nan)
     for number in np.unique(tool[~np.isnan(tool)]).astype(int).tolist():
         rows = tool == number
@@ -88,14 +88,6 @@ def _contact_diameter(program: Program, cutter: Cutter, rows: Array) -> Array:
     touched = 2 * (cutter.radial_offset + cutter.corner_radius * sine)
     nominal = 2 * cutter.radius
     return np.where(np.isnan(touched), nominal, np.maximum(touched, _LEAST_SHARE * nominal))
-
-
-def _in_force(program: Program, kind: EventKind) -> Array:
-    """The active value of a kind of event on each row, (N,); NaN before the first."""
-    events = [event for event in program.events if event.kind is kind]
-    values = np.array([np.nan, *(event.value for event in events)])
-    in_force: Array = values[np.searchsorted([event.row for event in events], np.arange(len(program)), side="right")]
-    return in_force
 
 
 def _with_speeds(program: Program, revolutions: Array, before: Array, surface_speed: SurfaceSpeed) -> Program:

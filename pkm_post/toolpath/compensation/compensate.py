@@ -169,10 +169,8 @@ def _rows_of(program: Program, tool: int | None) -> Flags:
     """The rows cut with the tool; all rows for None. Before its first change a program has tool 0, or the first one."""
     changes = [event for event in program.events if event.kind is EventKind.TOOL_CHANGE]
     first = 0.0 if 0 in program.tools or not changes else changes[0].value
-    numbers = np.array([first, *(event.value for event in changes)])
-    number = numbers[np.searchsorted([event.row for event in changes], np.arange(len(program)), side="right")]
     if tool is not None:
-        return np.asarray(number == tool)
+        return np.asarray(program.in_force(EventKind.TOOL_CHANGE, first) == tool)
     if len(np.unique([event.value for event in changes])) > 1:
         raise ValueError("compensate_tips: expected the number of a tool for a program that changes it, got None")
     return np.ones(len(program), dtype=np.bool_)

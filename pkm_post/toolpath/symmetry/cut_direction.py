@@ -79,11 +79,7 @@ def spindle_sense(program: Program, before: int = 0) -> Array:
         program: with its spindle events.
         before: the sense before the first of them.
     """
-    sense = np.full(len(program), before, dtype=np.int8)
-    for event in program.events:
-        if event.kind is EventKind.SPINDLE:
-            sense[event.row :] = np.sign(event.value)
-    return sense
+    return np.sign(program.in_force(EventKind.SPINDLE, before)).astype(np.int8)
 
 
 def cut_directions(program: Program, given_side: int = 0, spindle_before: int = 0) -> Array:

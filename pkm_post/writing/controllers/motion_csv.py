@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from itertools import groupby
 
 import numpy as np
 
@@ -50,9 +51,9 @@ def texts(motion: StrutMotion, heading: Sequence[str]) -> tuple[str, ...]:
         chunk = slice(start, start + _ROWS_PER_CHUNK)
         columns = np.column_stack([motion.time_ms[chunk], motion.length[chunk] + 0.0, motion.speed[chunk] + 0.0])
         lines += ((row * len(columns)) % tuple(columns.ravel().tolist())).splitlines(keepends=True)
-    for knot in sorted({event.row for event in motion.events}):
-        happening = [f"{event.kind.name.lower()}={event.value!r}" for event in motion.events if event.row == knot]
-        lines[knot] = lines[knot][:-1] + ";".join(happening) + "\n"
+    for knot, events in groupby(motion.events, lambda event: event.row):
+        cell = ";".join(f"{event.kind.name.lower()}={event.value!r}" for event in events)
+        lines[knot] = f"{lines[knot][:-1]}{cell}\n"
     return ("".join([_HEADER, *lines]),)
 
 
