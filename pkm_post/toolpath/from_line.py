@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from itertools import takewhile
 from typing import Any
 
 import numpy as np
@@ -255,7 +254,16 @@ def _events(trajectory: Trajectory, row: int, approach: _Approach, modal: tuple[
 
 def _wait_after(events: list[Event], spindle: Event, machine: Machine) -> list[Event]:
     """A dwell in which the spindle reaches its speed from rest: that of the program may begin at another speed."""
-    after = takewhile(lambda each: each.kind is not EventKind.SPINDLE, reversed(events))
-    own = [each.value for each in after if each.kind is EventKind.DWELL and each.row == spindle.row]
-    seconds = max([*own, seconds_from_rest(machine, spindle.value)])
+    seconds = max(stated_wait(events), seconds_from_rest(machine, spindle.value))
     return [Event(spindle.row, EventKind.DWELL, seconds)] if seconds else []
+
+
+def stated_wait(events: list[Event]) -> float:
+    """The longest dwell after the last spindle event, at the same row, s; 0 for none."""
+    after, row = 0.0, -1
+    for event in events:
+        if event.kind is EventKind.SPINDLE:
+            after, row = 0.0, event.row
+        elif event.kind is EventKind.DWELL and event.row == row:
+            after = max(after, event.value)
+    return after

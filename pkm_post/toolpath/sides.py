@@ -80,13 +80,17 @@ def _events(program: Program, begin: int, end: int) -> tuple[Event, ...]:
 
     Events between the last row of a side and the first of the next prepare the next one.
     """
-    from pkm_post.toolpath.from_line import events_in_force
+    from pkm_post.toolpath.from_line import events_in_force, stated_wait
 
-    before = events_in_force(each for each in program.events if each.row < begin and each.kind in _MODAL)
+    earlier = [each for each in program.events if each.row < begin]
+    before = events_in_force(each for each in earlier if each.kind in _MODAL)
     is_last = end == len(program)
     last = len(program) if is_last else end - 1
     own = [each for each in program.events if begin <= each.row - _ends_thread(each) <= last]
-    started = (replace(each, row=begin) for each in sorted(before, key=lambda each: _MODAL.index(each.kind)))
+    started = [replace(each, row=begin) for each in sorted(before, key=lambda each: _MODAL.index(each.kind))]
+    wait = stated_wait(earlier)
+    if wait and any(each.kind is EventKind.SPINDLE and each.value for each in started):
+        started.append(Event(begin, EventKind.DWELL, wait))
     found = [*started, *own]
     if not is_last:
         state = {each.kind: each.value for each in found}

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pkm_post.model import EventKind, Refused
+from pkm_post.model import Event, EventKind, Refused
 from pkm_post.options import Options, options_from, parse_text
 from pkm_post.posting import post_file
 from pkm_post.reading import AS_WRITTEN
@@ -84,6 +84,19 @@ def test_flood_and_mist_that_are_both_on_are_so_on_both_sides():
         assert side is not None
         switched = [(each.row, each.value) for each in side.events if each.kind is EventKind.COOLANT]
         assert switched == [(0, 2), (0, 1), (len(side), 0)]
+
+
+def test_the_wait_of_the_program_for_its_spindle_is_in_both_sides():
+    program, faults = read_content(BOTH.encode(), "part.cls", AS_WRITTEN)
+    assert not faults and program is not None
+    modal = [each for each in program.events if each.row == 0]
+    program = replace(program, events=(*modal, Event(0, EventKind.DWELL, 2.0), *program.events[len(modal) :]))
+    for number in (1, 2):
+        side, _ = with_side(program, number)
+        assert side is not None
+        kinds = [each.kind for each in side.events]
+        assert kinds.index(EventKind.DWELL) > kinds.index(EventKind.SPINDLE)
+        assert [(each.row, each.value) for each in side.events if each.kind is EventKind.DWELL] == [(0, 2.0)]
 
 
 @pytest.mark.parametrize("side", [3, 100])
