@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -95,7 +95,7 @@ def stock_faults(
     for one in intruders:
         first, moved = _first_met(driven, one, grid, work_from_machine, less)
         apart = max(apart, moved)
-        number = _some(np.flatnonzero(np.isfinite(first)))
+        number = _some(_not_surely_cut(grid, first, cuts))
         points, met = grid.points(number), first[number]
         may, sure = np.full(len(met), unknown), np.full(len(met), np.inf)
         for cutter, swept in cuts:
@@ -106,6 +106,20 @@ def stock_faults(
         for code, hit in hits:
             found += _operation_faults(driven, one.name, code, stock, points[hit], met[hit])
     return grid, apart, less, found
+
+
+def _not_surely_cut(grid: StockGrid, first: Array, cuts: Sequence[tuple[ToolUse, SweptPoses]]) -> Array:
+    """Points met, without those in a cutter before; where they are few, all: each is searched for closely."""
+    met = np.isfinite(first)
+    if np.count_nonzero(met) > _MOST_MET:
+        seen, cut = replace(grid, filled=met.reshape(grid.filled.shape)), np.full(first.size, np.inf)
+        for cutter, swept in cuts:
+            profile = cutter.profile()
+            # Fewer poses leave more points: none is taken for cut that is not.
+            stride = max(math.ceil(len(swept.at) * _points_in(profile, grid) / _MOST_PAIRS), 1)
+            cut = np.minimum(cut, first_met(seen, swept.every(stride), profile, 0.0))
+        met &= ~(cut <= first)
+    return np.flatnonzero(met)
 
 
 def points_met(driven: TrajectoryPath, part: Mesh, intruder: Intruder, less: float) -> tuple[StockGrid, Contacts]:
@@ -144,16 +158,20 @@ def _first_met(
 ) -> tuple[Array, float]:
     """First positions at which stock points are inside an intruder by more than ``less``, (points,), and ``moved``."""
     first, apart = np.full(grid.filled.size, np.inf), 0.0
-    box = [len(axis) * grid.step for axis in grid.axes]
     for profile, every in intruder.shapes:
-        wide, length = 2 * float(profile.radius.max()), float(profile.height[-1] - profile.height[0])
-        pairs = min(wide, box[0]) * min(wide, box[1]) * min(length, max(box)) / grid.step**3
         cells = _near(driven.poses, every, work_from_machine, profile, grid)
-        most = _MOST_PAIRS / max(pairs, 1.0)
+        most = _MOST_PAIRS / _points_in(profile, grid)
         swept = SweptPoses.of(driven.poses, cells, work_from_machine, profile.farthest, grid.step, most)
         first = np.minimum(first, first_met(grid, swept, profile, -less))
         apart = max(apart, swept.moved)
     return first, apart
+
+
+def _points_in(profile: RevolvedProfile, grid: StockGrid) -> float:
+    """Approximate number of grid points in the box around an upright solid of revolution, at least 1."""
+    box = [len(axis) * grid.step for axis in grid.axes]
+    wide, length = 2 * float(profile.radius.max()), float(profile.height[-1] - profile.height[0])
+    return max(min(wide, box[0]) * min(wide, box[1]) * min(length, max(box)) / grid.step**3, 1.0)
 
 
 def _near(path: PosePath, cells: Array, work_from_machine: Array, profile: RevolvedProfile, grid: StockGrid) -> Array:

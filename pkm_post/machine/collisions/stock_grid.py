@@ -9,7 +9,7 @@ Positions on a path combine cell and share in one number. Units: mm.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -115,6 +115,11 @@ class SweptPoses:
             axis @ turned,
             float((come[kept + 1] - come[begin]).max(initial=0.0)),
         )
+
+    def every(self, stride: int) -> SweptPoses:
+        """Every so many of the poses, with the bounds of all of them."""
+        rows = slice(None, None, stride)
+        return replace(self, at=self.at[rows], before=self.before[rows], tip=self.tip[rows], axis=self.axis[rows])
 
 
 def first_met(grid: StockGrid, swept: SweptPoses, profile: RevolvedProfile, more: float) -> Array:

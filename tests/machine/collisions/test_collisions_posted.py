@@ -258,6 +258,26 @@ def test_a_long_program_is_looked_at_in_steps_as_short_as_a_short_one():
     assert float(deeper) < 0.3 and float(apart) < 2.0, row.detail
 
 
+@pytest.mark.parametrize("wide", [0.0, 1.0, 1.5])
+def test_a_ridge_left_in_a_pocket_is_met_by_rapid_moves_all_over_its_floor(wide):
+    """They meet 24,000 points of the stock, all cut before but the few of the ridge, which is 2.5 mm high."""
+    rows = []
+    for y in range(-40, 41, 8):
+        ridge = [[10, y, 10], [10, y, 13], [20 + wide, y, 13], [20 + wide, y, 10]] if y == 0 else []
+        for cut in ([[40, y, 15]], [*ridge, [40, y, 10]]):
+            rows += [[-40, y, 40, Kind.RAPID], *([*at, Kind.LINE] for at in ([-40, y, cut[-1][2]], *cut, [40, y, 40]))]
+    for y in range(-40, 41, 8):
+        back = [[-39.9, y, 40, Kind.RAPID], [-39.9, y, 10.1, Kind.LINE], [39.9, y, 10.1, Kind.RAPID]]
+        rows += [*back, [39.9, y, 40, Kind.LINE]]
+    *tips, kinds = zip(*rows, strict=True)
+    tool = Tool(1, "mill", 10.0, 0.0, 120.0)
+    trajectory, faults = place(program(np.transpose(tips), kind=kinds, tools={1: tool}), example(), ON_PALLET)
+    assert not faults
+    stock = Mesh("stock.stl", box([-50, -50, 0], [50, 50, 20]))
+    found = find_collisions(trajectory, example(), Setup(stock=stock), NARROW).faults
+    assert [fault.code for fault in found] == ["K137"]
+
+
 def test_a_point_that_is_thinner_than_the_allowance_is_checked_without_a_cutter():
     tool = Tool(1, "point", 1.0, 0.0, 120.0, bottom_angle=np.radians(75))
     trajectory, faults = place(program([[-30, 0, 0], [30, 0, 0]], tools={1: tool}), example(), ON_PALLET)
