@@ -12,7 +12,7 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.machine import ZERO_TORSION, SpinPolicy
-from pkm_post.model import EMPTY_SETUP, Setup, Tolerances, Tool
+from pkm_post.model import EMPTY_SETUP, Setup, Tolerances, Tool, read_only
 from pkm_post.system import result_files
 from pkm_post.toolpath import OPTIONAL_STOPS, Copies, OffsetOptions
 
@@ -110,8 +110,10 @@ class Options:
         if self.side is not None and (not isinstance(self.side, int) or self.side < 1):
             raise ValueError(f"side: expected a whole number from 1, got {self.side!r}")
         self._require_parts()
-        if not isinstance(self.work_offset, str) and not _is_pose(self.work_offset):
-            raise ValueError(f"work_offset: expected a name or a (4, 4) pose, in mm, got {self.work_offset!r:.60}")
+        if not isinstance(self.work_offset, str):
+            if not _is_pose(self.work_offset):
+                raise ValueError(f"work_offset: expected a name or a (4, 4) pose, in mm, got {self.work_offset!r:.60}")
+            object.__setattr__(self, "work_offset", read_only(np.array(self.work_offset, dtype=np.float64)))
 
     def _require_parts(self) -> None:
         """Check the values whose classes are imported where they are used."""

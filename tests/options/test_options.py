@@ -56,6 +56,15 @@ def test_work_offset_as_a_pose():
     np.testing.assert_allclose(options_from(parsed("--work-offset", "1,2,3")).work_offset[:3, 3], [1, 2, 3])
 
 
+def test_a_pose_of_a_macro_may_be_lists_and_does_not_change_later():
+    pose = np.diag([1.0, 1.0, 1.0, 1.0])
+    pose[:3, 3] = 1, 2, 3
+    chosen = [Options(work_offset=pose), Options(work_offset=pose.tolist()), Options(work_offset=pose.astype(int))]
+    pose[0, 3] = 7
+    for each in chosen:
+        assert argument_values(each)["work_offset"] == (1, 2, 3, 0) and not each.work_offset.flags.writeable
+
+
 def test_what_a_part_program_does_not_say():
     words = ["--unit", "inch", "--contour-data=centre", "--wear=3=-0.05", "--wear=3=0.1", "--tool=3=8"]
     reading = part_program_from(parsed(*words), "vector")
