@@ -10,8 +10,8 @@ PMAC User's Manual, p. 692].
 
 Shifting the work frame by d is equivalent to shifting the base joints by -d, a longer tool to a longer spindle nose: so
 each corner is a machine. The vector of a strut is affine in these four values, so its length is convex: longest at a
-corner, but it may be shortest between them, by at most half the sum of the squared ranges through the length. Corners
-keep that distance from the shortest length. Fixtures stay with the base: at each corner a box holds all their places.
+corner, but it may be shortest between them, by at most half the sum of the squared ranges through the distance of its
+joints. Corners keep that distance from the shortest length. Fixtures stay with the base: at each corner a box holds all their places.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from pkm_post.writing import PmacSettings, PowerPmacSettings
 
 _SAME_MM, _SAME_DEG = 0.0005, 0.00001
 """Tolerance of the variables without an allowance: half a micrometre, and 10 um at a distance of 57 m."""
-
-
+_NO_STRUT = 1e-3
+"""mm: joints this near leave no stroke at the corners of an allowance."""
 ALLOWED_DECIMALS = 3
 """Decimals of an allowance in mm; a guard has no more."""
 
@@ -62,7 +62,8 @@ class Allowance:
     def corners(self, machine: Machine) -> Iterator[tuple[str, Machine]]:
         """Yield each corner of the allowance as text, with the equivalent machine, whose struts stay longer."""
         low, high = machine.strut_stroke
-        stroke = low + (3 * self.origin**2 + self.tool_length**2) / (2 * low), high
+        nearest = max(low + float(machine.length_offset.min()), _NO_STRUT)
+        stroke = low + (3 * self.origin**2 + self.tool_length**2) / (2 * nearest), high
         fixtures = tuple(
             replace(box, lowest=box.lowest - self.origin, highest=box.highest + self.origin) for box in machine.fixtures
         )

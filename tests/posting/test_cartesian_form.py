@@ -191,6 +191,21 @@ def test_a_strut_that_is_shortest_between_the_corners_is_within_its_stroke(poste
     assert shorter > 3
 
 
+@pytest.mark.parametrize("offset", [-300.0, 500.0])
+def test_the_stroke_of_the_corners_does_not_depend_on_where_the_controller_counts_from(posted, offset):
+    machine = posted[0]
+    counted = dataclasses.replace(
+        machine,
+        length_offset=machine.length_offset + offset,
+        strut_stroke=tuple(length - offset for length in machine.strut_stroke),
+    )
+    strokes = [
+        [corner.strut_stroke[0] - some.strut_stroke[0] for _, corner in ALLOWANCE.corners(some)]
+        for some in (machine, counted)
+    ]
+    assert strokes[0] == pytest.approx(strokes[1], rel=1e-9)
+
+
 @pytest.mark.slow
 def test_a_stroke_that_the_corners_keep_and_a_point_between_them_may_not_is_refused(posted, tmp_path):
     machine, folder, form = posted
