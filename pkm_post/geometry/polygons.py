@@ -127,7 +127,7 @@ def points_within(points: Array, segments: Array, margins: Array) -> tuple[Flags
     Returns:
         Inside (N,) and in doubt (N,).
     """
-    grid_points_inside, doubt = np.zeros(len(points), dtype=np.bool_), np.zeros(len(points), dtype=np.bool_)
+    inside, doubt = np.zeros((2, len(points)), dtype=np.bool_)
     order = np.argsort(points[:, 1], kind="stable")
     low = np.minimum(segments[:, 1], segments[:, 3]) - margins
     high = np.maximum(segments[:, 1], segments[:, 3]) + margins
@@ -135,9 +135,9 @@ def points_within(points: Array, segments: Array, margins: Array) -> tuple[Flags
         rows = order[start : start + _TOGETHER]
         level = points[rows, 1]
         some = np.flatnonzero((high >= level[0]) & (low <= level[-1]))
-        grid_points_inside[rows] = _crossings_of_rays(points[rows], segments[some]) % 2 == 1
+        inside[rows] = _crossings_of_rays(points[rows], segments[some]) % 2 == 1
         doubt[rows] = (_distances(points[rows], segments[some]) <= margins[some]).any(axis=1)
-    return grid_points_inside, doubt
+    return inside, doubt
 
 
 def _crossings_of_rays(points: Array, segments: Array) -> Array:
