@@ -11,7 +11,8 @@ PMAC User's Manual, p. 692].
 Shifting the work frame by d is equivalent to shifting the base joints by -d, a longer tool to a longer spindle nose: so
 each corner is a machine. The vector of a strut is affine in these four values, so its length is convex: longest at a
 corner, but it may be shortest between them, by at most half the sum of the squared ranges through the distance of its
-joints. Corners keep that distance from the shortest length. Fixtures stay with the base: at each corner a box holds all their places.
+joints. Corners keep that distance from the shortest length. Fixtures stay with the base: at each corner a box holds all
+their places.
 """
 
 from __future__ import annotations
