@@ -23,13 +23,14 @@ _NO_DIRECTION = 1e-6
 """Below this sine the tool axis is normal to the plane, which leaves the spin undefined."""
 
 
-def spin_in_plane(axis: Array, heading: float, of_y: bool = False) -> Array:
+def spin_in_plane(axis: Array, heading: float, of_y: bool = False, near: float = 0.0) -> Array:
     """Spins that keep an axis of the platform parallel to a vertical plane, (N,) rad, without jumps by full turns.
 
     Args:
         axis: (N, 3) unit tool axes in {M}, in order along the path.
         heading: direction of the x axis of the platform when the tool is upright, rad from x towards y.
         of_y: whether the y axis of the platform stays parallel to the plane instead of the x axis.
+        near: the first spin is within half a turn of it, rad.
 
     Returns:
         The spins; NaN where the tool axis is normal to the plane, which leaves the spin undefined.
@@ -40,7 +41,7 @@ def spin_in_plane(axis: Array, heading: float, of_y: bool = False) -> Array:
     spin = torsion(axis, x)
     spin[norm(kept) < _NO_DIRECTION] = np.nan
     known = np.flatnonzero(~np.isnan(spin))
-    spin[known] = np.unwrap(spin[known])
+    spin[known] = np.unwrap(np.append(near, spin[known]))[1:]
     return spin
 
 
@@ -89,7 +90,8 @@ def _by_policy(
         return optimise_spin(untwisted, machine, policy, executor), ()
     if policy.rule is SpinRule.ZERO:
         return replace(trajectory, spin=np.zeros(len(trajectory))), ()
-    spin = spin_in_plane(trajectory.axis, policy.heading, of_y=policy.rule is SpinRule.Y_IN_PLANE)
+    of_y = policy.rule is SpinRule.Y_IN_PLANE
+    spin = spin_in_plane(trajectory.axis, policy.heading, of_y, near=trajectory.start_spin)
     open_rows = np.flatnonzero(np.isnan(spin))
     if len(open_rows):
         found = f"spin {policy.rule.value}, {len(open_rows)} of {len(spin)} moves"

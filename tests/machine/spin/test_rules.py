@@ -46,6 +46,16 @@ def test_no_jump_by_a_full_turn():
         assert np.abs(np.diff(spin_in_plane(axis, heading))).max() < np.radians(3.0)
 
 
+@pytest.mark.parametrize(
+    ("near", "heading", "spin"), [(0, 190, -170), (175, 190, 190), (180, 180.5, 180.5), (-350, 0, -360)]
+)
+def test_the_first_spin_is_the_nearest_to_the_one_before(near, heading, spin):
+    upright = np.array([[0.0, 0.0, 1.0]] * 3)
+    for of_y in (False, True):
+        found = spin_in_plane(upright, np.radians(heading), of_y, np.radians(near))
+        assert np.degrees(found) == pytest.approx([spin] * 3)
+
+
 def test_an_axis_across_the_plane_leaves_the_spin_open():
     axis = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
     assert np.isnan(spin_in_plane(axis, 0.0)).tolist() == [False, True]
