@@ -152,7 +152,7 @@ def _power_lines(system: int, setting: Setting) -> Iterator[str]:
         yield from (f"if ({condition}) {{", f"{_REASON}={reason}", "return", "}")
 
 
-_TOOL = re.compile(r"Q50<(\d+\.\d{4}) (?:OR|\|\|) Q50>(\d+\.\d{4})")
+_TOOL = re.compile(r"Q50<(-?\d+\.\d{4}) (?:OR|\|\|) Q50>(\d+\.\d{4})")
 _ORIGIN = re.compile(r"abs\(Q51\)>(\d+\.\d{4})", re.IGNORECASE)
 _SEGMENT = re.compile(r"SegMoveTime!=(\d+)")
 

@@ -16,7 +16,7 @@ from pkm_post.control.simulator import Controller
 from pkm_post.machine import machine_named, strut_lengths
 from pkm_post.model import Box, Event, EventKind, Refused
 from pkm_post.options import Options
-from pkm_post.posting import Allowance, cartesian_program, post
+from pkm_post.posting import Allowance, cartesian_program, post, verify
 from pkm_post.posting.verify import read_motion
 from pkm_post.writing import manifest
 
@@ -189,6 +189,16 @@ def test_a_strut_that_is_shortest_between_the_corners_is_within_its_stroke(poste
         assert (between >= kept - margin * some.strut_stroke[0] / between.min()).all()
         shorter += (between < kept - 1e-3).any()
     assert shorter > 3
+
+
+def test_a_range_beyond_the_gauge_length_is_verified_as_it_is_written(tmp_path):
+    files = tmp_path / "job.pmc", tmp_path / "job.pkmt", machine_named("example_6tps")[0], tmp_path / "tip.pmc"
+    tools = {1: dataclasses.replace(programs.BALL, length=20.0)}
+    high = programs.program([[0, 0, 160], [0, 0, 150]], tools=tools)
+    post(high, files[2], files[0], Options(work_offset=programs.ON_PALLET))
+    cartesian_program(*files, Allowance(30.0, 0.0))
+    assert "Q50<-10.0000" in files[3].read_text()
+    assert verify(files[3], files[1], files[2]).certificate.holds
 
 
 @pytest.mark.parametrize("offset", [-300.0, 500.0])
