@@ -101,6 +101,7 @@ class Options:
             value = getattr(self, name)
             if not isinstance(value, int | float | np.number) or not least <= value <= most:
                 raise ValueError(f"{name}: expected {least:g} to {most:.4g} {unit}, got {value!r}")
+            object.__setattr__(self, name, float(value))  # a NumPy number has no place in a report
         for name, known in _NAMES.items():
             if getattr(self, name) not in known:
                 raise ValueError(f"{name}: expected one of {', '.join(map(str, known))}, got {getattr(self, name)!r}")

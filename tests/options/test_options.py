@@ -2,6 +2,7 @@
 """The arguments of every way into PKM Post become options in mm and rad."""
 
 import argparse
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -63,6 +64,11 @@ def test_a_pose_of_a_macro_may_be_lists_and_does_not_change_later():
     pose[0, 3] = 7
     for each in chosen:
         assert argument_values(each)["work_offset"] == (1, 2, 3, 0) and not each.work_offset.flags.writeable
+
+
+def test_numbers_of_numpy_are_those_of_a_report():
+    chosen = Options(tip_tolerance=np.float32(0.25), axis_tolerance=np.float16(0.5))
+    assert json.dumps([chosen.tip_tolerance, chosen.axis_tolerance]) == "[0.25, 0.5]"
 
 
 def test_what_a_part_program_does_not_say():
