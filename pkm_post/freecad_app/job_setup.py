@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from Path.Base.Util import toolControllerForOp
 from Path.Main.Stock import StockType
 
 from pkm_post.freecad_app.arguments import POST_PROCESSORS, replace_arguments
@@ -26,7 +27,7 @@ from pkm_post.freecad_app.document_checks import require_computed
 from pkm_post.freecad_app.document_object import print_diagnostics
 from pkm_post.freecad_app.fixtures import ONE_PLACE, at_fixtures, fixture_places
 from pkm_post.freecad_app.frames import matrix_of, placement_of
-from pkm_post.freecad_app.job import read_job
+from pkm_post.freecad_app.job import is_active, read_job
 from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.job_study import JobStudy, study_of
 from pkm_post.freecad_app.machine_object import machine_of
@@ -133,12 +134,19 @@ def _machine_differences(
 
 def setup_of(job: Any, places: Mapping[str, Array] = ONE_PLACE) -> Setup:
     """The set-up of a recomputed job, with a part and a stock at each of several fixtures."""
-    bits = [(int(each.ToolNumber), each.Tool) for each in members(job.Tools)]
+    bits = _bits(job).items()
     shanks = {number: shank for number, bit in bits if (shank := read_shank(bit)) is not None}
     cores = {number: core for number, bit in bits if (core := read_core(bit)) is not None}
     stock = _mesh([job.Stock] if job.Stock else [], StockType.FromStock(job.Stock) == StockType.FromBase)
     part = at_fixtures(_mesh(members(job.Model)), places)
     return Setup(part, at_fixtures(stock, places), shanks=shanks, cores=cores)
+
+
+def _bits(job: Any) -> dict[int, Any]:
+    """The tool bits by number. Of several with one number, that of active operations counts."""
+    used = [toolControllerForOp(each) for each in members(job.Operations) if is_active(each)]
+    in_use_last = sorted(members(job.Tools), key=used.__contains__)
+    return {int(each.ToolNumber): each.Tool for each in in_use_last}
 
 
 def _mesh(items: Iterable[Any], assumed: bool = False) -> Mesh | None:

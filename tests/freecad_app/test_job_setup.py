@@ -6,7 +6,7 @@ import numpy as np
 import Part
 import Path.Main.Job
 import pytest
-from cam_jobs import ON_EXAMPLE, add_operation, new_job
+from cam_jobs import ON_EXAMPLE, add_operation, add_tool_controller, new_job
 from part_jobs import job_on
 
 from pkm_post.freecad_app.job_setup import setup_of, study_job
@@ -86,6 +86,21 @@ def test_a_shank_thicker_than_the_cutter_is_refused_where_it_goes_into_the_part(
         post_job(job, out=tmp_path)
     assert "K130" in {fault.code for fault in refused.value.diagnostics}
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("thin", [3.0, 0.0])
+def test_the_shank_is_that_of_the_tool_in_use(document, thin):
+    """Another controller may have its number; 0 for a tool bit that does not state a shank."""
+    job = new_job(document)
+    operation = add_operation(job, PASS)
+    used, other = job.Tools.Group[0], add_tool_controller(job, 1)
+    bits = [document.copyObject(used.Tool) for _ in range(2)]
+    for bit, diameter in zip(bits, (80.0, thin), strict=True):
+        bit.ShankDiameter = diameter
+    used.Tool, other.Tool = bits
+    assert setup_of(job).shanks[1].diameter == 80.0
+    operation.ToolController = other
+    assert [shank.diameter for shank in setup_of(job).shanks.values()] == [thin] * bool(thin)
 
 
 @pytest.mark.parametrize("tip", [0.0, 1.0])
