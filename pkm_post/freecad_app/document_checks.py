@@ -178,7 +178,9 @@ def failed_input(item: Any) -> str:
 
 
 def _kept_by_cam(operation: Any) -> str:
-    """Why CAM left an operation, or one below it, as it was, and in order [Path/Op/Base.py, execute]."""
+    """Why CAM left an operation, or one below it, as it was or unfinished, and in order [Path/Op/Base.py, execute]."""
+    if getattr(operation, "StopProcessing", False) and operation.Active:  # of Adaptive, until it is computed again
+        return Phrase("its computation was stopped")
     job, controller = job_of(operation), getattr(operation, "ToolController", None)
     if hasattr(operation, "OpToolDiameter") and operation.Active:
         if job is not None and not members(job.Model):

@@ -4563,6 +4563,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>{} 有错误</translation>
     </message>
     <message>
+        <source>its computation was stopped</source>
+        <translation>其计算被停止</translation>
+    </message>
+    <message>
         <source>behind the last line its path has {}</source>
         <translation>最后一行之后，其路径还有 {}</translation>
     </message>

@@ -6,6 +6,7 @@ import numpy as np
 import Part
 import Path
 import Path.Main.Job
+import Path.Op.Adaptive
 import Path.Op.Probe
 import pytest
 from cam_jobs import ARC, FIVE_AXIS, add_operation, add_tool_controller, moves, turn
@@ -193,6 +194,25 @@ def test_no_warning_where_cams_own_posts_switch_it_too(job):
     add_operation(job, FIVE_AXIS, "Fourth").ToolController = add_tool_controller(job, 7)
     job.Document.recompute()
     assert switched_back(job) == []
+
+
+def test_an_adaptive_operation_that_was_stopped_is_refused(document, monkeypatch):
+    """CAM makes a path of what it has when the user presses Stop, and calls it up to date."""
+    block = Part.makeBox(40, 30, 20).cut(Part.makeBox(20, 14, 10, App.Vector(10, 8, 10)))
+    job = job_on(document, block, "endmill.fcstd", Diameter=6)
+    generate = Path.Op.Adaptive.GenerateGCode
+
+    def stopped(op, obj, *results):
+        obj.StopProcessing = True
+        return generate(op, obj, *results)
+
+    monkeypatch.setattr(Path.Op.Adaptive, "GenerateGCode", stopped)
+    adaptive = operation_on(job, "Adaptive", lambda box: box.ZLength < 0.01 and abs(box.ZMax - 10) < 0.01)
+    assert adaptive.Path.Size > 10
+    assert [(fault.code, fault.found) for fault in read_job(job)[1]] == [("J116", "its computation was stopped")]
+    monkeypatch.undo()
+    adaptive.touch()
+    assert faults_of(job) == []
 
 
 TYPED = ["(a move (to the left))", "", "G0 X0 Y0 Z5", "g01 x1.5Y-.5 F+5 ;", "G1 X 3. Z2", "G4P.5"]
