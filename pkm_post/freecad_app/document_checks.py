@@ -18,16 +18,18 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from functools import lru_cache
-from itertools import zip_longest
+from itertools import chain, zip_longest
 from pathlib import Path as FilePath
 from typing import Any
 
+import FreeCAD as App
 import numpy as np
 import Part
 from Path.Base.Util import toolControllerForOp
 
 from pkm_post.freecad_app.commands.words import CommandWords, undecodable_command
 from pkm_post.freecad_app.document import document_name, job_of, members
+from pkm_post.freecad_app.frames import rows_of
 from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Kind, Phrase, Place, Program, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
@@ -39,8 +41,6 @@ _NOT_READ, _NOT_COMPUTED = "Restore", "Touched"
 """Entries of ``State``. The first remains until the document is closed, whatever is computed."""
 _STORED = 1e-6
 """FreeCAD stores six decimals."""
-_ON_SURFACE = 1e-3
-"""mm"""
 _COMMENT = re.compile(r"\([^()]*\)")
 _WORD = re.compile(r"\s*([A-Z])\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))", re.ASCII | re.IGNORECASE)
 _Words = list[tuple[str, float]]
@@ -265,7 +265,7 @@ def _typed_words(line: str) -> _Words | None:
 def _other_heights(operation: Any) -> str:
     """Why a Z correction of CAM lacks the heights of its file: it keeps those before, or has none and corrects nothing.
 
-    CAM rounds them to 0.01 mm, and lays a surface through them.
+    The surface of the file is made anew, as CAM does: to measure that of the operation takes minutes.
     """
     if not hasattr(operation, "interpSurface") or has_inactive_base(operation):
         return ""
@@ -274,13 +274,24 @@ def _other_heights(operation: Any) -> str:
     if not operation.probefile:
         return ""
     try:
-        probed = np.loadtxt(operation.probefile, usecols=(0, 1, 2), ndmin=2).tolist()
-    except (OSError, ValueError):
+        surface = _probed_surface(FilePath(operation.probefile))
+    except (OSError, ValueError, IndexError, TypeError, Part.OCCError):
         return Phrase("{} cannot be read", operation.probefile)
-    points = (Part.Vertex(*(round(value, 2) for value in point)) for point in probed)
-    other = any(operation.interpSurface.distToShape(point)[0] > _ON_SURFACE for point in points)
-    other_heights = Phrase("its heights are not those of {}: clear the name, then choose it again", operation.probefile)
-    return other_heights if other else ""
+    surfaces = operation.interpSurface.Faces[0].Surface, surface
+    made, probed = (rows_of(list(chain.from_iterable(each.getPoles()))) for each in surfaces)
+    if made.shape == probed.shape and np.allclose(made, probed, rtol=0.0, atol=_STORED):
+        return ""
+    return Phrase("its heights are not those of {}: clear the name, then choose it again", operation.probefile)
+
+
+def _probed_surface(file: FilePath) -> Any:
+    """The surface that CAM lays through the points of a file, each X Y Z in mm [Path/Dressup/Gui/ZCorrect.py]."""
+    words = (line.split()[:3] for line in file.read_text(encoding="utf-8").splitlines() if line)
+    points = sorted([round(float(word), 2) for word in each] for each in words)
+    rows = sorted({y for _, y, _ in points})
+    surface = Part.BSplineSurface()
+    surface.interpolate([[App.Vector(*each) for each in points if each[1] == y] for y in rows])
+    return surface
 
 
 def _anywhere(check: Callable[[Any], str]) -> Callable[[Any], str]:

@@ -145,6 +145,8 @@ def test_a_z_correction_needs_the_heights_of_its_file(job, tmp_path):
     made.probefile = ""
     made.probefile = str(probed)
     assert faults_of(job) == set()
+    probed.write_text("1 2\n")
+    assert faults_of(job) == {"J116"}
     probed.unlink()
     assert faults_of(job) == {"J116"}
     made.Base.Active = False
