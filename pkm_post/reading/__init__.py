@@ -54,7 +54,6 @@ __all__ = [
     "LONG_DWELL",
     "MESH_READERS",
     "SPINDLE_SYNCHRONISED",
-    "without_idle_starts",
     "STEP_SUFFIXES",
     "SUFFIXES",
     "UNITS",
@@ -83,4 +82,5 @@ __all__ = [
     "tip_paths_of_line",
     "underlined",
     "with_tool_table",
+    "without_idle_starts",
 ]

@@ -17,6 +17,7 @@ _LONGEST_LINE = 200
 """Maximum number of characters shown of a line."""
 _DIGITS = 8
 """Width of the line numbers."""
+_SEVERITIES = {Severity.ERROR: "error", Severity.WARNING: "warning"}
 
 
 def listing_lines(result: CheckedFile) -> Iterator[str]:
@@ -67,8 +68,5 @@ def _printable(line: str) -> str:
 
 def _counts(diagnostics: Sequence[Diagnostic]) -> str:
     """The counts of errors and warnings."""
-    found = [sum(each.severity is severity for each in diagnostics) for severity in (Severity.ERROR, Severity.WARNING)]
-    return ", ".join(f"{count} {name}{'' if count == 1 else 's'}" for count, name in zip(found, _NAMES, strict=True))
-
-
-_NAMES = ("error", "warning")
+    counts = {name: sum(each.severity is severity for each in diagnostics) for severity, name in _SEVERITIES.items()}
+    return ", ".join(f"{count} {name}{'' if count == 1 else 's'}" for name, count in counts.items())

@@ -11,6 +11,8 @@ import numpy as np
 
 from pkm_post.model import Array, Event, EventKind
 
+_OF_THE_SPINDLE = (EventKind.SPINDLE, EventKind.SPINDLE_AXIS, EventKind.TOOL_CHANGE)
+
 
 def without_idle_starts(events: tuple[Event, ...], cuts: Array) -> tuple[Event, ...]:
     """Drop spindle starts between one thread and the next.
@@ -29,6 +31,3 @@ def without_idle_starts(events: tuple[Event, ...], cuts: Array) -> tuple[Event, 
         if is_between and starts and between[0] == between[1]:
             idle.add(start)
     return tuple(event for number, event in enumerate(events) if number not in idle)
-
-
-_OF_THE_SPINDLE = (EventKind.SPINDLE, EventKind.SPINDLE_AXIS, EventKind.TOOL_CHANGE)

@@ -45,10 +45,10 @@ def with_copies(statements: Statements, faults: StatementDiagnostics) -> Stateme
         statements: of the file.
         faults: collects COPY statements that are not understood; these are dropped.
     """
-    copies = _rows(statements, "COPY")
+    copies = statements.rows_of("COPY")
     if not copies:
         return statements
-    begins, parts, done = _rows(statements, "INDEX"), list[_Part](), 0
+    begins, parts, done = statements.rows_of("INDEX"), list[_Part](), 0
     for row in copies:
         parts.append(np.arange(done, row))
         done = row + 1
@@ -59,13 +59,6 @@ def with_copies(statements: Statements, faults: StatementDiagnostics) -> Stateme
 
 _Part = Array | tuple[int, Array]
 """Rows of the file, or a matrix (4, 4) with the row of its statement."""
-
-
-def _rows(statements: Statements, word: str) -> list[int]:
-    """The statements with a major word."""
-    templates = [index for index, template in enumerate(statements.templates) if template.word == word]
-    rows: list[int] = np.flatnonzero(np.isin(statements.template, templates)).tolist()
-    return rows
 
 
 def _copies_at(
@@ -138,7 +131,7 @@ def _changed_within(statements: Statements, begin: int, end: int) -> str:
     """The word of a unit or frame that changes behind the first motion of a path, whose copies it would change."""
     motion = next((row for row in range(begin + 1, end) if statements.word(row) in _MOTIONS), end)
     for group, is_last in _PLACED_BY:
-        rows = [row for word in group for row in _rows(statements, word) if row < end]
+        rows = [row for word in group for row in statements.rows_of(word) if row < end]
         rows = [row for row in rows if ("LAST" in statements.statement(row).items) is is_last]
         before, within = [row for row in rows if row < begin], [row for row in rows if row > begin]
         if group is _UNITS and not before:  # what precedes the first one is in its unit as well

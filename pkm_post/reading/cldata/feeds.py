@@ -69,8 +69,8 @@ def fedrat(state: ReaderState, row: int, statement: Statement) -> None:
     units = [word for word in words if word in FEED_WORDS]
     modes = {word for word in words if word in _FEED_MODES}
     several, known = len(numbers) > 1 or len(units) > 1, set(words) <= FEED_WORDS | _FEED_MODES
-    stray_mode = bool(modes) and (bool(numbers) or len(modes) > 1 or units != ["INVERS"])
-    if several or stray_mode or not known or not _numbered(statement, "LENGTH"):
+    misplaced_mode = bool(modes) and (bool(numbers) or len(modes) > 1 or units != ["INVERS"])
+    if several or misplaced_mode or not known or not _numbered(statement, "LENGTH"):
         state.report_items(row, statement, f"one number and one of {_list(FEED_WORDS)}")
     elif numbers and not numbers[0] > 0:
         state.report("L403", row, f"feed {numbers[0]:g}")

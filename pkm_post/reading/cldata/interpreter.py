@@ -140,10 +140,10 @@ _ALONE: dict[str, frozenset[str]] = {
 }  # fmt: skip
 """Words with at most one item, and the words that it may be."""
 
-_PACE = frozenset({"FEDRAT", "SPINDL", "CUTTER", "TLDATA"})
-"""Words that may change the feed, or the spindle speed, which a speed of the surface takes from the cutter."""
+_CHANGES_CYCLES = frozenset({"FEDRAT", "SPINDL", "CUTTER", "TLDATA"})
+"""Words that may change the feed or the spindle speed of a cycle: a surface speed follows the cutter."""
 
-_BEGUN = (EventKind.TOOL_CHANGE, EventKind.SPINDLE, EventKind.COOLANT)
+_STARTED_BY = (EventKind.TOOL_CHANGE, EventKind.SPINDLE, EventKind.COOLANT)
 
 IGNORED = frozenset({
     "PARTNO", "PPRINT", "TPRINT", "LETTER", "DISPLY", "REMARK", "MACHIN", "PPWORD", "PAINT", "END-OF-PATH", "SETUP",
@@ -183,7 +183,7 @@ def interpret(state: ReaderState, bulk: Array) -> Array:
         handler = _handler(state, word)
         if handler is not None:
             _handle(state, row, handler)
-            if word in _PACE:
+            if word in _CHANGES_CYCLES:
                 cycle_goes_on(state, row)
         elif word in UNSUPPORTED or _known_parts(word):
             state.report("L401", row, word)
@@ -280,7 +280,7 @@ def _report_motion_after_program(state: ReaderState, goto: Array) -> None:
     """
     end = state.end_of_program
     rows = [*(np.flatnonzero(goto[end + 1 :]) + end + 1)[:1].tolist(), *(row for row, _ in state.points if row > end)]
-    begun = [row for row, kind, value in state.events if row > end and value and kind in _BEGUN]
+    begun = [row for row, kind, value in state.events if row > end and value and kind in _STARTED_BY]
     if end >= 0 and (rows or begun):
         word, line = state.statements.word(end), state.statements.place(end)[0]
         first = min((*rows, *begun))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""NURBS motion of Creo: curves of MOVNRB statements, in place of the points that pace them.
+"""NURBS motion of Creo: curves of MOVNRB statements, in place of the points on them.
 
 Input: MOVNRB statements and the points of the file. Output: the points, with chords of the curves in place of those
 between MOVNRB/NEXT and OFF. Creo writes both, the curve and its points; a feed between two points applies on the curve
@@ -60,7 +60,7 @@ def movnrb(state: ReaderState, row: int, statement: Statement) -> None:
 
 
 def with_curves(state: ReaderState, points: Points) -> Points:
-    """The points, with chords of the curves in place of those that pace them; report curves that do not fit them."""
+    """The points, with chords of the curves in place of those on them; report curves that do not fit them."""
     kept, added = np.ones(len(points.row), dtype=np.bool_), list[Points]()
     for motion in state.nurbs:
         mine = np.flatnonzero((points.row > motion.points[0]) & (points.row < motion.points[1]))

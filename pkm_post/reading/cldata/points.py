@@ -192,9 +192,8 @@ def bulk_rows(statements: Statements, options: ReadOptions, dialect: Dialect) ->
 
 def lines_of_numbers(statements: Statements) -> Array:
     """Mask of rows with numbers only, (N,)."""
-    rows: Array = np.array([template.word == "" for template in statements.templates], dtype=np.bool_)[
-        statements.template
-    ]
+    without_word = np.array([template.word == "" for template in statements.templates], dtype=np.bool_)
+    rows: Array = without_word[statements.template]
     return rows
 
 

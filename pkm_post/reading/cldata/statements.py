@@ -156,6 +156,12 @@ class Statements:
         """The major word of one statement, empty if absent."""
         return self.templates[self.template[row]].word
 
+    def rows_of(self, word: str) -> list[int]:
+        """The statements with a major word."""
+        templates = [index for index, template in enumerate(self.templates) if template.word == word]
+        rows: list[int] = np.flatnonzero(np.isin(self.template, templates)).tolist()
+        return rows
+
     def place(self, row: int) -> tuple[int, int]:
         """Line and column of the first word of a statement."""
         text = self.lines.text[self.index[row]]

@@ -48,7 +48,7 @@ def length_unit(statements: Statements, text: str) -> LengthUnit:
         statements: of the file; those after FINI are ignored.
         text: the same with its comments.
     """
-    end = next(iter(_rows(statements, "FINI")), len(statements))
+    end = next(iter(statements.rows_of("FINI")), len(statements))
     feeds = _first_words(statements, _WITH_FEEDS, _FEED_UNITS, end)
     stated = _first_words(statements, ("UNITS", "UNIT"), _UNIT_WORDS, end)
     if stated:
@@ -63,13 +63,6 @@ def length_unit(statements: Statements, text: str) -> LengthUnit:
         return LengthUnit(*next(iter(votes.items())))
     words = " and ".join(votes.values()) or "no feed in MMPM or IPM"
     return LengthUnit("", f"there is no UNITS, and {words}")
-
-
-def _rows(statements: Statements, word: str) -> list[int]:
-    """The statements with a major word."""
-    templates = [index for index, template in enumerate(statements.templates) if template.word == word]
-    rows: list[int] = np.flatnonzero(np.isin(statements.template, templates)).tolist()
-    return rows
 
 
 def _first_words(

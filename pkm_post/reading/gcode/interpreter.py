@@ -180,7 +180,7 @@ class Interpreter(FlowControl):
         return Block(blocks.words_of(row), blocks.g_of(row).tolist(), blocks.m_of(row).tolist())
 
     def _finish(self, row: int, block: Block) -> int:
-        """Output a computed row and apply the jumps control of its M codes; return the next row."""
+        """Output a computed row and execute its M codes; return the next row."""
         if not block.m:
             self._executed.add(row, block)
             return self._after_move(row, block)

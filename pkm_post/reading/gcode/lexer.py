@@ -216,7 +216,7 @@ class Patterns(dict[bytes, int]):
         return number
 
     def table(self) -> PatternTable:
-        """PatternTable of all patterns so far."""
+        """The layouts of all patterns so far."""
         if len(self._table_of.filled) < len(self._blocks):
             self._table_of = _table_of(self._blocks)
         return self._table_of

@@ -62,16 +62,9 @@ class Source:
         return self._with(label, paths[0])
 
     def _with(self, label: str, path: Path) -> tuple[Source, tuple[Diagnostic, ...]]:
-        try:
-            with path.open("rb") as stream:
-                content = stream.read(_BYTES + 1)
-        except OSError as fault:
-            return self, (Diagnostic("F103", Place(str(path)), str(fault)),)
-        if len(content) > _BYTES:
-            return self, (Diagnostic("F103", Place(str(path)), f"more than {_BYTES} bytes"),)
-        encoding = unread_encoding(content)
-        if encoding:
-            return self, (Diagnostic("F121", Place(str(path)), encoding),)
+        content = content_of(path)
+        if isinstance(content, Diagnostic):
+            return self, (content,)
         blocks, faults = scan_recovering(content, str(path))
         if errors(faults):
             return self, faults
@@ -83,19 +76,32 @@ class Source:
         return Source(_joined(self.blocks, blocks, file), whole, (*self.notes, note), warnings), ()
 
 
+def content_of(path: Path) -> bytes | Diagnostic:
+    """The content of the file of a subprogram, or the fault of reading it."""
+    try:
+        with path.open("rb") as stream:
+            content = stream.read(_BYTES + 1)
+    except OSError as fault:
+        return Diagnostic("F103", Place(str(path)), str(fault))
+    if len(content) > _BYTES:
+        return Diagnostic("F103", Place(str(path)), f"more than {_BYTES} bytes")
+    encoding = unread_encoding(content)
+    return Diagnostic("F121", Place(str(path)), encoding) if encoding else content
+
+
 def _files_of(labels: Iterable[str], folders: Sequence[Path]) -> tuple[str, list[Path]]:
     """The first label with files in a folder, and these files."""
     for label in labels:
         number = f"[O:]?0*{int(label)}" if label.isdigit() else re.escape(label)
         name = re.compile(f"{number}(?:{_SUFFIXES})?", re.IGNORECASE)
         for folder in folders:
-            paths = [path for path in _listed(folder) if name.fullmatch(path.name) and path.is_file()]
+            paths = [path for path in listed(folder) if name.fullmatch(path.name) and path.is_file()]
             if paths:
                 return label, paths
     return "", []
 
 
-def _listed(folder: Path) -> list[Path]:
+def listed(folder: Path) -> list[Path]:
     """The entries of a folder; none if it cannot be read: then the call has no subprogram."""
     try:
         return sorted(folder.iterdir())

@@ -53,13 +53,13 @@ def drill(machine: SiemensMachine, row: int, call: Call) -> None:
         raise BlockFault("G441", f"{call.name} with inverse time feed (G93)", call.column)
     strokes, modes = CYCLES[call.name]
     in_turns = _checked_modes(machine, call, modes)
-    before = machine.scratch()
+    before = machine.begin_cycle()
     hole = _hole(call, modes)
     one = Drill(machine, row, call)
     one.to(RAPID, hole.start)
     strokes(one, hole, in_turns)
     one.to(RAPID, hole.retract)
-    machine.restore(before)
+    machine.end_cycle(before)
 
 
 def _checked_modes(machine: SiemensMachine, call: Call, first: int) -> bool:
@@ -186,13 +186,13 @@ def holes(machine: SiemensMachine, row: int, call: Call) -> None:
     if machine.modal_call is None:
         raise BlockFault("G418", f"{call.name} without MCALL of a drilling cycle before it", call.column)
     first, second, _ = PLANES[machine.state.plane]
-    before = machine.scratch()
+    before = machine.begin_cycle()
     here = machine.state.position[[first, second]] / machine.state.scale
     for place in _row(call, here) if call.name == PATTERNS[0] else _circle(call):
         machine.move(row, RAPID, {NAMES[first]: float(place[0]), NAMES[second]: float(place[1])})
         machine.path.flush()
         drill(machine, row, machine.modal_call)
-    machine.restore(before)
+    machine.end_cycle(before)
 
 
 def _count(call: Call, index: int) -> int:

@@ -64,12 +64,12 @@ class SiemensMachine:
             raise BlockFault("G606", f"a dwell of {turns:g} turns while the spindle stands still")
         return turns * 60 / abs(self.state.spindle())
 
-    def scratch(self) -> tuple[int, float]:
+    def begin_cycle(self) -> tuple[int, float]:
         """Begin a cycle, whose corners are not rounded; return motion code and feed, to restore after it."""
         self.state.exact_path = True
         return self.state.motion, self.state.feed
 
-    def restore(self, before: tuple[int, float]) -> None:
+    def end_cycle(self, before: tuple[int, float]) -> None:
         """Flush the moves of a cycle, and restore motion code and feed."""
         self.path.flush()
         self.state.motion, self.state.feed = before

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Sections: the motions of a program in {C}, in pieces of one modal state, and the events between them.
 
-Input: motions with known end points, and events. Output: the columns and events of a ``ProgramRows``.
+Input: motions with known end points, and events. Output: the columns and events of a ``Program``.
 """
 
 from __future__ import annotations

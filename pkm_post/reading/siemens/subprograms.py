@@ -15,11 +15,9 @@ from pathlib import Path
 from pkm_post.model import Diagnostic, Place
 from pkm_post.reading.gcode.blocks import SubprogramFile
 from pkm_post.reading.gcode.scan import with_line_feeds
-from pkm_post.reading.language import unread_encoding
+from pkm_post.reading.gcode.subprograms import content_of, listed
 
 SUFFIXES = (".spf", ".mpf")
-_BYTES = 256 * 1024 * 1024
-"""Size of the largest file to read."""
 
 
 class MissingProgram(Exception):  # noqa: N818 - its file is found, and the program restarts
@@ -54,16 +52,9 @@ class Source:
         if len(paths) > 1:
             found = f"{name}: {' and '.join(path.name for path in paths)} in {paths[0].parent}"
             return self, (Diagnostic("G318", place, found),)
-        try:
-            with paths[0].open("rb") as stream:
-                content = stream.read(_BYTES + 1)
-        except OSError as fault:
-            return self, (Diagnostic("F103", Place(str(paths[0])), str(fault)),)
-        if len(content) > _BYTES:
-            return self, (Diagnostic("F103", Place(str(paths[0])), f"more than {_BYTES} bytes"),)
-        encoding = unread_encoding(content)
-        if encoding:
-            return self, (Diagnostic("F121", Place(str(paths[0])), encoding),)
+        content = content_of(paths[0])
+        if isinstance(content, Diagnostic):
+            return self, (content,)
         lines = self.text.count(b"\n")
         file = SubprogramFile(name, str(paths[0]), lines, lines + 1)
         note = f"{name} is the file {paths[0].name}, SHA-256 {hashlib.sha256(content).hexdigest()}"
@@ -77,16 +68,8 @@ def files_by_name(folders: Iterable[Path]) -> dict[str, list[Path]]:
     found: dict[str, list[Path]] = {}
     for folder in folders:
         here: dict[str, list[Path]] = {}
-        for path in _listed(folder):
+        for path in listed(folder):
             if path.suffix.lower() in SUFFIXES and path.is_file():
                 here.setdefault(path.stem.upper(), []).append(path)
         found = here | found
     return found
-
-
-def _listed(folder: Path) -> list[Path]:
-    """The entries of a folder; none if it cannot be read: then the call has no subprogram."""
-    try:
-        return sorted(folder.iterdir())
-    except OSError:
-        return []
