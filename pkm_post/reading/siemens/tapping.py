@@ -60,7 +60,7 @@ def tap(one: Drill, hole: Hole, in_turns: bool) -> None:
     lead = _lead(call, state.scale)
     machine.path.add_event(EventKind.SPINDLE_AXIS, round(lead, _DECIMALS))
     mode, state.feed_mode = state.feed_mode, _PER_MINUTE
-    per_turn = abs(lead) / state.scale
+    per_turn = abs(lead) / state.feed_scale
     one.to(LINE, hole.bottom, per_turn * down)
     one.dwell(call.number(5, 0.0), in_turns)
     one.to(LINE, hole.start, per_turn * up)

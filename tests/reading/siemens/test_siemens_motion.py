@@ -205,6 +205,13 @@ def test_a_feed_goes_on_in_another_unit():
     assert np.allclose(taken(head + "G1 X1\nX2 F1", feed=2.0).feed[1:], [2, 25.4 / 60])
 
 
+@pytest.mark.parametrize("unit", ["G71", "G70", "G700", "G700 F1\nG71"])
+def test_a_thread_has_the_speed_of_its_call_in_any_unit(unit):
+    """[C] CYCLE84: SST and SST1 are speeds of the spindle; the lead is 1 mm."""
+    text = f"{unit}\nG90 G54 S100 M3\nG0 X0 Y0 Z10\nCYCLE84(10,0,2,-2,,,3,,1,0,120,240,,1)"
+    assert np.allclose(taken(text, spindle_axis=True).feed[[2, 3]], [2.0, 4.0])
+
+
 def test_events():
     text = 'T="MILL 8" D1\nM6\nS500 M3 M8\nG0 X1\nG4 F2\nG4 S10\nM1\nG1 X2\nM30'
     events = [(event.row, event.kind, event.value) for event in taken(HEAD + text).events]
