@@ -172,7 +172,7 @@ def _in_machine(machine: SiemensMachine, block: Block) -> None:
     """SUPA, G53 and G153: words are machine coordinates, only in this block."""
     words = {name: block.number(name) for name in block.words if name in PLACES}
     zero, state = machine.options.machine_zero, machine.state
-    unread = [name for name in block.words if name in BUFFERED and name not in (*PLACES, "F")]
+    unread = [name for name in block.words if name in (*BUFFERED, "FB") and name not in (*PLACES, "F")]
     unused = [name for name in unread if block.number(name) or state.is_tilted()]  # zero leaves an upright tool upright
     if unused:
         raise BlockFault("G404", f"{unused[0]} beside SUPA, G53 or G153", block.columns.get(unused[0], 0))
@@ -196,7 +196,7 @@ def _in_machine(machine: SiemensMachine, block: Block) -> None:
         target[k] = value * state.scale + (target[k] if relative else zero[k])
         known[k] |= not relative
     if known.all():
-        machine.path.straight(block.row, state.frame.to_program(target))
+        machine.path.straight(block.row, state.frame.to_program(target), stops=codes.EXACT_STOP_ONCE in block.g)
     state.position, state.known = state.frame.to_program(target), known
 
 

@@ -198,13 +198,13 @@ class Path:
         state.has_moved |= bool(moves.known.any())
         self._add(moves, axes, speed, stops)
 
-    def straight(self, row: int, point: Array) -> None:
+    def straight(self, row: int, point: Array, stops: bool) -> None:
         """A straight move of the tip to a (3,) point of the program, whether or not X Y Z are those of the tip."""
         self.flush()
         motion = np.array([self.state.motion], np.int8)
         words = {name: point[k : k + 1] / self.state.scale for k, name in enumerate(AXES)}
         modes = {name: np.array([ABSOLUTE]) for name in AXES}
-        self._move(_Blocks(Columns(np.array([row]), motion, words, modes), motion, np.array([self.state.feed])), False)
+        self._move(_Blocks(Columns(np.array([row]), motion, words, modes), motion, np.array([self.state.feed])), stops)
 
     def _add(self, moves: Motions, axes: Array, speed: Array, stops: bool) -> None:
         """Add the motions with a known end point to the sections."""

@@ -59,6 +59,7 @@ FAULTS = {
     "G1 X1 F100 FB=50": ("G403", 7, "F with FB"),
     "CIP X6 Y8 I1 I1=7 J1=7": ("G404", 11, "I"),
     "G53 G0 Z40 A1": ("G404", 12, "A beside SUPA, G53 or G153"),
+    "G53 G1 Z40 FB=50": ("G404", 12, "FB beside SUPA, G53 or G153"),
     "G4 F1 CR=2": ("G407", 7, "CR beside G4"),
     "G123": ("G401", 1, "G123"),
     "M77": ("G401", 1, "M77"),

@@ -265,6 +265,8 @@ def test_exact_stops():
         True,
         False,
     ]
+    in_machine = taken(HEAD + "G9 G1 SUPA X1\nX2\nSUPA X3", machine_zero=(0.0, 0.0, 0.0))
+    assert in_machine.exact_stop[1:].tolist() == [True, False, False]
 
 
 def test_cutter_compensation_and_mirrored_arcs():
