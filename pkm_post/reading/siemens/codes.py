@@ -34,6 +34,12 @@ SMOOTHING = (642, 643, 645)
 CONTINUOUS = (64, 641, *SMOOTHING, 644)
 EXACT_STOP, EXACT_STOP_ONCE = 60, 9
 
+G_GROUPS = tuple(
+    map(frozenset, (range(4), PLANES, (90, 91), FEED_MODES, SIDES, UNITS, WORK_OFFSETS, (EXACT_STOP, *CONTINUOUS)))
+)
+M_GROUPS = (frozenset({3, 4, 5}), frozenset({7, 9}), frozenset({8, 9}))
+"""Codes of which a block may have one [SiemensNC, G groups]."""
+
 _CORNERS = "the outer corners of compensated contours are planned here"
 _APPROACH = "the approach to a compensated contour is planned here"
 _DYNAMICS = "dynamics; here the machine file decides"

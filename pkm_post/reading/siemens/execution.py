@@ -110,7 +110,17 @@ def _call_modal(machine: SiemensMachine, row: int, has_place: bool) -> None:
         drill(machine, row, machine.modal_call)
 
 
+def _check_groups(block: Block) -> None:
+    """Refuse two codes that exclude each other."""
+    for letter, given, groups in (("G", block.g, codes.G_GROUPS), ("M", block.m, codes.M_GROUPS)):
+        for group in groups:
+            here = [f"{letter}{code}" for code in dict.fromkeys(given) if code in group]
+            if len(here) > 1:
+                raise BlockFault("G403", " ".join(here), block.columns[here[1]])
+
+
 def _general(machine: SiemensMachine, block: Block) -> None:
+    _check_groups(block)
     is_compensated = bool(machine.state.side)
     once = {_SUPA for code in block.g if code in codes.SUPPRESSED}
     for call in block.names:
