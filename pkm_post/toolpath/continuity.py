@@ -21,8 +21,8 @@ _NO_CORNER = 1e-6
 _TANGENT = np.radians(0.1)
 """rad: rounding of tangents by the decimals of a program; an exact path does not stop for it."""
 _BACK = np.radians(10.0)
-"""rad: a tip that goes back by less off its path turns back: there the speed is next to zero however it is rounded, and
-within the tolerance nothing in the program says on which side of the joint the tool is."""
+"""rad: a tip that leaves closer to the direction it came from turns back. Its speed is next to zero there however the
+corner is rounded, and within the tolerance no pose says on which side of the joint the tool is."""
 _SHORTEST_STROKE = 0.1
 """mm: where the tip goes back on a shorter move, it may be noise of the points, which smooth curves average."""
 _AT_ONCE = 1 << 14
