@@ -182,7 +182,9 @@ def test_options_are_checked_as_on_the_command_line(choice, error):
     [
         ({"machine_zero": (math.nan, 0.0, 0.0)}, ValueError),
         ({"machine_zero": (0.0, 0.0)}, ValueError),
+        ({"machine_zero": 5.0}, ValueError),
         ({"work_offsets": {"G54": (0.0, 0.0, 0.0)}}, ValueError),
+        ({"machine_offsets": {"G54": ("0", "b", "0", "0")}}, ValueError),
         ({"work_offsets": {"G54": (0.0, 0.0, math.inf, 0.0)}}, ValueError),
         ({"left_out": "M21"}, TypeError),
         ({"subprograms": "folder"}, TypeError),
@@ -191,6 +193,26 @@ def test_options_are_checked_as_on_the_command_line(choice, error):
 def test_facts_about_a_part_program_are_checked(choice, error):
     with pytest.raises(error, match=f"^{next(iter(choice))}: .*expected "):
         pkm.ReadingOptions(**choice)
+
+
+def test_arrays_and_paths_are_as_good_as_tuples_and_texts(tmp_path):
+    part, table, sub = tmp_path / "part.ngc", tmp_path / "tools.csv", tmp_path / "sub"
+    part.write_text("G21\nT1 M6\nG55 G0 X1 Y2 Z-3\nM98 P7\nG28 Z-2\nM2\n", encoding="ascii")
+    table.write_text("number,diameter\n1,5\n", encoding="ascii")
+    sub.mkdir()
+    (sub / "7.ngc").write_text("O7\nG0 X4\nM99\n", encoding="ascii")
+    zero, offset = [0.0, 0.0, 0.0], [10.0, 0.0, 0.0, 0.0]
+    plain = pkm.ReadingOptions(
+        machine_zero=tuple(zero), work_offsets={"G55": tuple(offset)}, subprograms=(str(sub),), unit="mm"
+    )
+    arrays = pkm.ReadingOptions(
+        machine_zero=np.array(zero), work_offsets={"G55": np.array(offset)}, subprograms=(sub,), unit="mm"
+    )
+    assert arrays == plain
+    plain, arrays = replace(plain, tool_table=f"{table},mm"), replace(arrays, tool_table=Path(f"{table},mm"))
+    one, other = (pkm.read(part, tool_lengths={1: 120.0}, reading=each) for each in (plain, arrays))
+    assert one.position.tolist() == other.position.tolist() == [[11, 2, -3], [14, 2, -3], [14, 2, -2], [14, 2, 0]]
+    assert other.tools[1].diameter == 5.0
 
 
 def test_what_does_not_apply_to_the_source_is_refused(folder):

@@ -18,6 +18,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -71,7 +72,7 @@ class ReadingOptions:
         allow_open_end: whether a file may lack an end statement, such as M2 or FINI.
 
     Raises:
-        TypeError: a text stands for a tuple of texts.
+        TypeError: a text stands for a tuple of texts, or a path is none.
         ValueError: a position or an offset is not of three or four finite numbers.
     """
 
@@ -105,16 +106,26 @@ class ReadingOptions:
         for name in ("cycle_values", "left_out", "goto_values", "subprograms"):
             if isinstance(getattr(self, name), str):
                 raise TypeError(f"{name}: expected a tuple of texts, got {getattr(self, name)!r}")
+        plain: dict[str, Any] = {"subprograms": tuple(map(os.fspath, self.subprograms))}
+        if self.tool_table is not None:
+            plain["tool_table"] = os.fspath(self.tool_table)
         if self.machine_zero is not None:
-            _require_finite("machine_zero", self.machine_zero, 3)
+            plain["machine_zero"] = _finite("machine_zero", self.machine_zero, 3)
         for name in ("work_offsets", "machine_offsets"):
-            for offset, numbers in getattr(self, name).items():
-                _require_finite(f"{name}: {offset}", numbers, 4)
+            offsets = getattr(self, name).items()
+            plain[name] = {offset: _finite(f"{name}: {offset}", numbers, 4) for offset, numbers in offsets}
+        for name, value in plain.items():
+            object.__setattr__(self, name, value)  # macros give arrays and paths
 
 
-def _require_finite(name: str, numbers: Sequence[float], count: int) -> None:
-    if len(numbers) != count or not all(map(math.isfinite, numbers)):
+def _finite(name: str, numbers: Sequence[float], count: int) -> tuple[float, ...]:
+    try:
+        plain = tuple(map(float, numbers))
+    except (TypeError, ValueError):  # no sequence, or one of texts
+        plain = ()
+    if len(plain) != count or not all(map(math.isfinite, plain)):
         raise ValueError(f"{name}: expected {count} finite numbers, got {numbers!r}")
+    return plain
 
 
 AS_WRITTEN = ReadingOptions()

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Calibrate a file: write a machine file with identified joints and length offsets, and a report on them.
 
-The new file is the old text with three entries replaced; it is parsed again before it is written. Lengths in mm.
+The new file is the old text with three entries replaced, and the path of a tool table where the folder is another; it
+is parsed again before it is written. Lengths in mm.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pkm_post.geometry import norm
+from pkm_post.geometry import Array, norm
 from pkm_post.machine.calibration.identification import (
     PARAMETERS,
     Calibration,
@@ -165,7 +166,7 @@ def calibrate_file(
     diagnostics = _diagnostics(found, str(measurements))
     if errors(diagnostics):
         return None, diagnostics
-    text, faults = _calibrated_text(path, found, len(measured), measurements.name, str(out))
+    text, faults = _calibrated_text(path, found, len(measured), measurements.name, out)
     diagnostics += faults
     if text is None:
         return None, diagnostics
@@ -220,14 +221,16 @@ def _diagnostics(found: Calibration, file: str) -> tuple[Diagnostic, ...]:
 
 
 def _calibrated_text(
-    path: Path, found: Calibration, poses: int, source: str, out: str
+    path: Path, found: Calibration, poses: int, source: str, out: Path
 ) -> tuple[str | None, tuple[Diagnostic, ...]]:
     """Text of the new file, after parsing it again."""
-    entries = {
+    entries: dict[str, Array | str] = {
         "base.joints": found.machine.base_joints,
         "platform.joints": found.machine.platform_joints,
         "struts.length_offset": found.machine.length_offset,
     }
+    if found.machine.tool_table is not None and out.parent.resolve() != path.parent.resolve():
+        entries["part_programs.tool_table"] = str(Path(found.machine.tool_table).resolve())
     try:
         text = with_entries(path.read_bytes().decode("utf-8"), entries)
     except CannotRewriteError as fault:
@@ -236,7 +239,7 @@ def _calibrated_text(
         f"# Calibrated with {source}: {poses} poses, rank {found.rank} of {found.deviation.size}, lengths off by"
         f" {found.before:.4f} mm before and {found.after:.4f} mm after.\n{text}"
     )
-    written, faults = machine_of(text.encode("utf-8"), out)
+    written, faults = machine_of(text.encode("utf-8"), str(out))
     if written is None:
         return None, faults
     if np.abs(parameters_of(written) - parameters_of(found.machine)).max() > _WRITTEN:

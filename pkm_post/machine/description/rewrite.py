@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine file rewriting: replace the numbers of a few entries and keep all other text unchanged.
+"""Machine file rewriting: replace the values of a few entries and keep all other text unchanged.
 
-Input: the text of a valid file, and arrays in mm by entry name. Output: the text with these arrays in the units of the
-file. Comments inside a replaced list are lost.
+Input: the text of a valid file, and arrays in mm or texts by entry name. Output: the text with these arrays in the
+units of the file. Comments inside a replaced list are lost.
 """
 
 from __future__ import annotations
 
+import json
 import tomllib
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -27,21 +29,22 @@ _INDENT = "    "
 _DIMENSIONS = {field.entry: field.dimension for field in FIELDS}
 
 
-def with_entries(text: str, entries: dict[str, Array]) -> str:
+def with_entries(text: str, entries: Mapping[str, Array | str]) -> str:
     """Return the text with new values for some entries.
 
     Args:
         text: a machine file, TOML.
-        entries: new numbers of each entry, in mm, as rows or in one row.
+        entries: new numbers of each entry, in mm, as rows or in one row; or its new text.
 
     Raises:
         CannotRewriteError: an entry does not start a line, or is absent and its section has no header to
             insert it below.
     """
     units = stated_units(tomllib.loads(text))
-    for entry, numbers in entries.items():
+    for entry, new in entries.items():
         scale = factor(_DIMENSIONS[entry], units)
-        text = _with_entry(text, tuple(entry.split(".")), _toml(np.asarray(numbers) / scale, scale))
+        value = json.dumps(new, ensure_ascii=False) if isinstance(new, str) else _toml(np.asarray(new) / scale, scale)
+        text = _with_entry(text, tuple(entry.split(".")), value)
     return text
 
 

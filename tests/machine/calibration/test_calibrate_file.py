@@ -61,6 +61,20 @@ def test_the_measurements_and_the_machine_file_are_not_replaced(tmp_path):
         assert out.read_bytes() == before
 
 
+@pytest.mark.parametrize("folder", ["", "new"])
+def test_the_tool_table_beside_the_machine_file_is_still_found(tmp_path, folder):
+    nominal, table = tmp_path / "nominal.toml", tmp_path / "tools [1].tbl"
+    entry = '\n[part_programs]\ntool_table = "tools [1].tbl,mm"  # of the shop\n'
+    nominal.write_text(find_machine("nategh_agheli_nominal").read_text(encoding="utf-8") + entry, encoding="utf-8")
+    out = tmp_path / folder / "mine.toml"
+    _, reported = calibrate_file(str(nominal), measurements(tmp_path, preset("nategh_agheli_calibrated")), out)
+    assert reported == ()
+    assert read_machine(out)[0].tool_table == f"{table},mm"
+    assert ("of the shop" in out.read_text(encoding="utf-8")) and (entry in out.read_text(encoding="utf-8")) != bool(
+        folder
+    )
+
+
 def test_an_inch_file_stays_an_inch_file(tmp_path):
     nominal = preset("linuxcnc_genhexkins")
     rng = np.random.default_rng(2)
