@@ -6,30 +6,23 @@ error and replaces unreadable paths with empty ones. The file is therefore check
 job of an open document is read: until it is saved, the file is still the one that was opened. Operations that FreeCAD
 could not read or compute are only marked.
 
-The lines of a Custom operation are read by FreeCAD, which makes ``G1 X15`` of ``G1 X1,5``, turns a move with a comment
-behind it into a comment, and leaves lines out: they are compared with its path.
-
 Dress-ups, arrays and copies derive from an operation, linked by their ``Base``. Those of FreeCAD rebuild moves from X Y
 Z, and arrays rotate only these: I J K words below them are dropped or left unchanged.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from functools import lru_cache
-from itertools import chain, zip_longest
 from pathlib import Path as FilePath
 from typing import Any
 
-import FreeCAD as App
 import numpy as np
-import Part
 from Path.Base.Util import toolControllerForOp
 
 from pkm_post.freecad_app.commands.words import CommandWords, undecodable_command
 from pkm_post.freecad_app.document import document_name, job_of, members
-from pkm_post.freecad_app.frames import rows_of
+from pkm_post.freecad_app.operation_inputs import misread_line, other_heights
 from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Kind, Phrase, Place, Program, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
@@ -39,12 +32,6 @@ _STANDS = 1e-6
 """mm"""
 _NOT_READ, _NOT_COMPUTED = "Restore", "Touched"
 """Entries of ``State``. The first remains until the document is closed, whatever is computed."""
-_STORED = 1e-6
-"""FreeCAD stores six decimals."""
-_COMMENT = re.compile(r"\([^()]*\)")
-_WORD = re.compile(r"\s*([A-Z])\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))", re.ASCII | re.IGNORECASE)
-_Words = list[tuple[str, float]]
-"""Letters and numbers."""
 
 
 def read_content(file: FilePath) -> DocumentContent:
@@ -209,89 +196,8 @@ def has_inactive_base(operation: Any) -> bool:
     )
 
 
-def _misread(operation: Any) -> str:
-    """The first line of a Custom operation that its path does not hold as typed."""
-    if not hasattr(operation, "Gcode") or not operation.Active:
-        return ""
-    lines = _typed_lines(operation)
-    return Phrase("{} cannot be read", operation.GcodeFile) if lines is None else _first_other(lines, operation)
-
-
-def _typed_lines(operation: Any) -> list[str] | None:
-    """The lines of a Custom operation; None if they are in a file that is not there."""
-    if getattr(operation, "Source", "Text") == "Text" or not operation.GcodeFile:
-        return list(operation.Gcode)
-    file = FilePath(operation.Document.FileName).parent / operation.GcodeFile
-    try:
-        return file.read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
-        return None
-
-
-def _first_other(lines: list[str], operation: Any) -> str:
-    """The first line that is not the next command of the path; comments and lines without words do not matter."""
-    typed = [(number, line) for number, line in enumerate(lines, 1) if line and not _COMMENT.fullmatch(line)]
-    read = [each for each in operation.Path.Commands if each.Name and not each.Name.startswith("(")]
-    if [line for _, line in typed] == [command.toGCode() for command in read]:
-        return ""
-    meant = [(number, line, words) for number, line in typed if (words := _typed_words(line)) != []]
-    for (number, line, words), command in zip_longest(meant, read[: len(meant)]):
-        if words is None or command is None or not _says(command, words):
-            has = Phrase("nothing") if command is None else command.toGCode()
-            return Phrase("line {}, {!r}, where its path has {}", number, line, has)
-    more = read[len(meant) :]
-    return Phrase("behind the last line its path has {}", more[0].toGCode()) if more else ""
-
-
-def _says(command: Any, words: _Words) -> bool:
-    """Whether a command has a code and these words, each once."""
-    stored = command.Parameters
-    return (
-        words[:1] == _typed_words(command.Name)
-        and len(words) == 1 + len(stored)
-        and all(abs(stored.get(letter, np.nan) - number) <= _STORED for letter, number in words[1:])
-    )
-
-
-def _typed_words(line: str) -> _Words | None:
-    """The words of a line, without its comments; None if it has anything else."""
-    for _ in range(line.count("(")):
-        line = _COMMENT.sub(" ", line)
-    line = line.partition(";")[0].strip("()% \t\r\n")
-    words = _WORD.findall(line)
-    return [(letter.upper(), float(number)) for letter, number in words] if not _WORD.sub("", line).strip() else None
-
-
 def _other_heights(operation: Any) -> str:
-    """Why a Z correction of CAM lacks the heights of its file: it keeps those before, or has none and corrects nothing.
-
-    The surface of the file is made anew, as CAM does: to measure that of the operation takes minutes.
-    """
-    if not hasattr(operation, "interpSurface") or has_inactive_base(operation):
-        return ""
-    if operation.interpSurface.isNull():
-        return Phrase("it has no probed heights")
-    if not operation.probefile:
-        return ""
-    try:
-        surface = _probed_surface(FilePath(operation.probefile))
-    except (OSError, ValueError, IndexError, TypeError, Part.OCCError):
-        return Phrase("{} cannot be read", operation.probefile)
-    surfaces = operation.interpSurface.Faces[0].Surface, surface
-    made, probed = (rows_of(list(chain.from_iterable(each.getPoles()))) for each in surfaces)
-    if made.shape == probed.shape and np.allclose(made, probed, rtol=0.0, atol=_STORED):
-        return ""
-    return Phrase("its heights are not those of {}: clear the name, then choose it again", operation.probefile)
-
-
-def _probed_surface(file: FilePath) -> Any:
-    """The surface that CAM lays through the points of a file, each X Y Z in mm [Path/Dressup/Gui/ZCorrect.py]."""
-    words = (line.split()[:3] for line in file.read_text(encoding="utf-8").splitlines() if line)
-    points = sorted([round(float(word), 2) for word in each] for each in words)
-    rows = sorted({y for _, y, _ in points})
-    surface = Part.BSplineSurface()
-    surface.interpolate([[App.Vector(*each) for each in points if each[1] == y] for y in rows])
-    return surface
+    return "" if has_inactive_base(operation) else other_heights(operation)
 
 
 def _anywhere(check: Callable[[Any], str]) -> Callable[[Any], str]:
@@ -310,7 +216,7 @@ _FAULTS: tuple[tuple[str, Callable[[Any], str]], ...] = (
     ("J133", _not_computed),
     ("J132", _anywhere(_empty)),
     ("J116", _anywhere(_other_heights)),
-    ("J146", _anywhere(_misread)),
+    ("J146", _anywhere(misread_line)),
 )
 """Finding by code, empty if there is none, in this order: each test relies on the previous ones."""
 
