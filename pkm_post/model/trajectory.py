@@ -24,7 +24,7 @@ MAX_SPIN = 1e6
 MIN_TOLERANCE = 1e-9
 """mm and rad: a tolerance below a thousandth of a nanometre is a typing error that no plan could meet."""
 APPROACH = "approach"
-"""Name of the operation of the way to a line in which a program begins: the last operation, with the first rows."""
+"""Name of the operation of the way to the first point; to a line, it is the last operation, with the first rows."""
 
 TRAJECTORY_COLUMNS: dict[str, RowType] = MOTION_COLUMNS | {
     "tip": (np.float64, (3,)),
@@ -125,7 +125,9 @@ class Trajectory:
         The end of that way has the feed of the line, since it may touch what the rows before would have cut.
         """
         last = len(self.operations) - 1
-        is_begun = last > 0 and len(self) > 0 and self.operation[0] == last and self.operations[last] == APPROACH
+        is_begun = (
+            len(self) > 0 and self.operation[0] == last != self.operation[-1] and self.operations[last] == APPROACH
+        )
         return (self.kind != Kind.RAPID) & (self.operation != (last if is_begun else -1))
 
     def tool_length(self) -> Array:

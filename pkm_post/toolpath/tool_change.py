@@ -14,6 +14,7 @@ arrives along its axis. Units: mm.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import groupby
@@ -22,6 +23,7 @@ import numpy as np
 
 from pkm_post.geometry import Array
 from pkm_post.model import (
+    APPROACH,
     MOTION_COLUMNS,
     OPTIONAL_COLUMNS,
     Diagnostic,
@@ -39,6 +41,9 @@ FLATTEST = 0.1
 """Smallest z of a tool axis for a retract along it: 84 degrees from upright, where the path is ten times the height."""
 _NO_MOVE = 1e-8
 """mm, rad, and difference of unit axes."""
+_CHANGE = "tool change T"
+"""Name of the operation of a route to a tool change and back; the number of the tool follows."""
+_ADDED = re.compile(rf"{APPROACH}|{_CHANGE}[0-9]+")
 Findings = tuple[Diagnostic, ...]
 _Tools = tuple[int, Tool, Tool]
 """A row with a tool change before it, the old tool and the new tool."""
@@ -115,6 +120,11 @@ class _Detour:
         return (*self.there, *self.back)
 
 
+def is_detour(operation: str) -> bool:
+    """Whether an operation has the name of a route to a tool change and back, or of an approach."""
+    return _ADDED.fullmatch(operation) is not None
+
+
 def with_tool_changes(program: Program, machine: Machine) -> tuple[Program, Findings]:
     """The program with the routes of its tool changes, and their diagnostics.
 
@@ -128,7 +138,8 @@ def with_tool_changes(program: Program, machine: Machine) -> tuple[Program, Find
     changes = tuple(_tools_at_changes(program))
     rows = [row for row, _, _ in changes]
     begins = [0] if program.kind[0] == Kind.RAPID and 0 not in rows else []
-    faults = [*_low_tips(program, pose, changes), *_flat_axes(program, machine, pose, [*begins, *rows])]
+    faults = [*_taken_names(program), *_low_tips(program, pose, changes)]
+    faults += _flat_axes(program, machine, pose, [*begins, *rows])
     if faults:
         return program, tuple(faults)
     detours = [_approach(program, machine, pose) for _ in begins]
@@ -167,7 +178,7 @@ def _goes_on(program: Program, machine: Machine, row: int) -> ToolPose | None:
 def _approach(program: Program, machine: Machine, pose: ToolChange) -> _Detour:
     """The route from home to the first point; the first row is its last move."""
     return _Detour(
-        0, _APPROACH, (), clearance_path(_pose_before(program, machine, 0), _end_of(program, 0), pose.safe_height)[:-1]
+        0, APPROACH, (), clearance_path(_pose_before(program, machine, 0), _end_of(program, 0), pose.safe_height)[:-1]
     )
 
 
@@ -179,6 +190,14 @@ def _change(program: Program, machine: Machine, pose: ToolChange, row: int, befo
         way_back = way_back[:-1]  # the row itself moves there
     way_there = clearance_path(_pose_before(program, machine, row), there, pose.safe_height)
     return _Detour(row, f"{_CHANGE}{after.number}", way_there, way_back)
+
+
+def _taken_names(program: Program) -> Iterator[Diagnostic]:
+    """Operations of the program that would be taken for a route: it stays at the machine when the part moves."""
+    for number, name in enumerate(program.operations):
+        of_name = program.operation == number
+        if is_detour(name) and of_name.any():
+            yield Diagnostic("K149", program.place(int(np.argmax(of_name))), name)
 
 
 def _low_tips(program: Program, pose: ToolChange, changes: tuple[_Tools, ...]) -> Iterator[Diagnostic]:
@@ -198,15 +217,6 @@ def _flat_axes(program: Program, machine: Machine, pose: ToolChange, rows: list[
                 tilt, most = (float(np.degrees(np.arccos(rise))) for rise in (end.axis[2], FLATTEST))
                 text = f"{tilt:.3f} degrees from upright, at most {most:.1f}"
                 yield Diagnostic("K142", _place(program, row), text)
-
-
-_APPROACH, _CHANGE = "approach", "tool change T"
-"""Names of the operations that are added; the number of the tool follows the latter."""
-
-
-def is_detour(operation: str) -> bool:
-    """Whether an operation has this name: a route to a tool change and back, or an approach."""
-    return operation == _APPROACH or operation.startswith(_CHANGE)
 
 
 def _place(program: Program, row: int) -> Place:

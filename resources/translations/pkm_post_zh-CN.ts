@@ -3323,6 +3323,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>程序应以到零件上方的快速移动（G0、RAPID）开始</translation>
     </message>
     <message>
+        <source>an operation has the name of moves that are added for tool changes</source>
+        <translation>操作的名称与为换刀添加的移动的名称相同</translation>
+    </message>
+    <message>
+        <source>give the operation another name</source>
+        <translation>为该操作另取名称</translation>
+    </message>
+    <message>
         <source>the program has no line to begin at</source>
         <translation>程序没有可以开始的行</translation>
     </message>

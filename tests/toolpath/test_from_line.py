@@ -113,6 +113,8 @@ def test_the_way_to_the_line_is_no_cut_of_the_program():
     np.testing.assert_array_equal(whole.cutting(), whole.kind != Kind.RAPID)
     named = replace(whole, operations=tuple("approach" for _ in whole.operations))
     np.testing.assert_array_equal(named.cutting(), whole.cutting())  # an operation of that name is none
+    behind = replace(whole, operations=("without moves", "approach"), operation=np.ones(len(whole), int))
+    np.testing.assert_array_equal(behind.cutting(), whole.cutting())
 
 
 @pytest.mark.parametrize(

@@ -193,6 +193,24 @@ def test_what_stands_against_a_tool_change(code, changed, machine):
     assert {fault.code for fault in faults} == {code}
 
 
+@pytest.mark.parametrize("name", ["approach", "tool change T1", "tool change T22"])
+def test_an_operation_of_the_program_with_the_name_of_a_route_is_refused(name):
+    """With offsets changed at the machine, its moves at the safe height would have stayed there, as a route does."""
+    made = dataclasses.replace(
+        program([[0, 0, 60], [10, 0, 60]], tools=TOOLS), operations=("A", name), operation=[0, 1]
+    )
+    trajectory, faults = place(made, MACHINE, ON_PALLET)
+    assert trajectory is None and [str(fault.place) for fault in faults] == [f"{made.source}: {name}: line 2"]
+    assert [fault.code for fault in faults] == ["K149"]
+    assert place(made, example(), ON_PALLET)[1] == ()
+
+
+@pytest.mark.parametrize("name", ["Approach", "approach 2", "tool change", "tool change Top", "12"])
+def test_names_that_resemble_those_of_routes_are_taken(name):
+    made = dataclasses.replace(program([[0, 0, 60], [10, 0, 60]], events=()), operations=(name,))
+    assert placed(made).operations == (name, "approach")
+
+
 def test_a_tool_of_unknown_diameter_is_reported_where_the_largest_one_is_stated():
     made = program([[0, 0, 60], [10, 0, 60]], tools={1: dataclasses.replace(BALL, diameter=0.0)})
     limited = dataclasses.replace(example(), largest_tool_diameter=12.0)

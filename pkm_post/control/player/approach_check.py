@@ -21,11 +21,10 @@ from pkm_post.control.player.sections import rows_of
 from pkm_post.control.player.stop_events import TOLERANCES, PlayContext
 from pkm_post.geometry import Array, angle_between, norm
 from pkm_post.machine import find_collisions, strut_lengths
-from pkm_post.model import TRAJECTORY_COLUMNS, Diagnostic, Kind, Mesh, Setup, Tool, Trajectory
+from pkm_post.model import APPROACH, TRAJECTORY_COLUMNS, Diagnostic, Kind, Mesh, Setup, Tool, Trajectory
 from pkm_post.options import START_TOLERANCE_MM
 from pkm_post.toolpath import ToolPose, clearance_path, highest_tip, pose_columns
 
-_APPROACH, _BETWEEN = "approach", "between"
 _STRAIGHT_MM = 1e-6
 
 
@@ -46,7 +45,7 @@ def approach_faults(task: PlayContext, row: int, approach: Trajectory) -> tuple[
         for setup, upwards in ((solids, Kind.RAPID), (stock, Kind.LINE))
         if not setup.is_empty
     ]
-    return tuple(each for faults in found for each in faults if each.place.operation == _APPROACH)
+    return tuple(each for faults in found for each in faults if each.place.operation == APPROACH)
 
 
 def check_start(task: PlayContext, first: Array, tool_length: float | None) -> None:
@@ -96,7 +95,7 @@ def _with_rows_before(task: PlayContext, row: int, approach: Trajectory, upwards
         program,
         **columns,
         events=(),
-        operations=(*program.operations, _APPROACH, _BETWEEN),
+        operations=(*("" for _ in program.operations), APPROACH, ""),  # the program may have an approach
         tools=program.tools | {without: Tool(without, "none", 0.0, 0.0, program.tools[int(program.tool[row])].length)},
         start_tip=start.tip,
         start_axis=start.axis,

@@ -154,6 +154,9 @@ MACHINING_RULES: dict[str, Rule] = {
         "a copy of the program would be reached by a feed move",
         "begin the program with a rapid move (G0, RAPID) above the part",
     ),
+    "K149": error(
+        "an operation has the name of moves that are added for tool changes", "give the operation another name"
+    ),
     # K15: a program that begins at a line
     "K150": error(
         "the program has no line to begin at",

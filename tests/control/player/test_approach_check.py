@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The approach to a row against a stock that the rows before have cut, and against clamps."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from meshes import box
@@ -50,6 +52,13 @@ def test_a_clamp_on_the_way_across(top, found):
     clamp = Mesh("clamp.stl", box([5, 40, 0], [20, 60, top]))
     assert codes(trajectory_of(), 2, Setup(fixtures=(clamp,)), (-12.0, 90.0, 0.0)) >= found
     assert bool(codes(trajectory_of(), 2, Setup(fixtures=(clamp,)), (-12.0, 90.0, 0.0))) == bool(found)
+
+
+def test_what_the_program_hits_before_the_line_is_no_fault_of_the_approach_even_if_it_has_one_of_its_own():
+    clamp, way = Mesh("clamp.stl", box([5, -5, 60], [10, 5, 95])), trajectory_of()
+    named = replace(way, operations=("approach",) * len(way.operations))
+    assert codes(way, 2, Setup(fixtures=(clamp,)), (-12.0, 90.0, 0.0)) == set()
+    assert codes(named, 2, Setup(fixtures=(clamp,)), (-12.0, 90.0, 0.0)) == set()
 
 
 SLOT = np.concatenate([box([0, -20, 60], [40, -4, 95]), box([0, 4, 60], [40, 20, 95])])
