@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tell what this FreeCAD is: its version, its Python's, and which of PKM_MODULES it cannot import.
+"""Print what this FreeCAD is: its version, its Python's, and which of PKM_MODULES it cannot import.
 
 Run by tools/freecad as ``freecadcmd freecad_probe.py``. It has to run in FreeCAD versions that are too
 old for the add-on as well, and in their Python, to let the user know that they are too old.

@@ -105,7 +105,7 @@ def watched(session: Session, target: JobTarget, namespace: argparse.Namespace, 
     Args:
         session: an open session.
         target: with the program.
-        namespace: tells whether the program is left to itself.
+        namespace: states whether the program is left to itself.
         status: after its start.
     """
     from pkm_post.control.link import state_text, watch_program

@@ -183,7 +183,7 @@ def ssh_package() -> ModuleType:
     """Import paramiko.
 
     Raises:
-        ImportError: it is not installed; the text tells how to install it.
+        ImportError: it is not installed; the text says how to install it.
     """
     try:
         import paramiko

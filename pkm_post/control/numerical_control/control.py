@@ -206,7 +206,7 @@ class NumericalControl:
         return status
 
     def has_ended(self, plan: MovePlan) -> bool:
-        """Whether an executed plan at rest has run to its end; of a jog its target lengths tell that."""
+        """Whether an executed plan at rest has run to its end; of a jog, its target lengths show it."""
         return plan.is_jog or execute.has_ended(self._session, plan.job)
 
     @property

@@ -3,7 +3,7 @@
 
 A piece is written after the current end, read back and compared, and only then linked by one assignment. Until then the
 list leads into the stop of the previous piece; if the assignment comes too late, the controller may already have taken
-that stop. The variable of the current point tells which.
+that stop. The variable of the current point shows which.
 
 Every step may be repeated: after a lost link the same values are written to the same variables.
 """
