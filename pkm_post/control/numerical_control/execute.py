@@ -81,7 +81,7 @@ def execute_marked(
 
 
 def has_ended(session: Session, job: PmacJob) -> bool:
-    """Whether a marked job has run to its end; nothing else in the state of a controller distinguishes that from an abort."""
+    """Whether a marked job has run to its end; no other state of a controller differs after an abort."""
     return read_number(session, f"P{job.program.number}") == 1
 
 
