@@ -14,7 +14,7 @@ import io
 import os
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import pkm_post
 from pkm_post import at_first_use
@@ -34,7 +34,7 @@ _COMMANDS = {
     "post": ("post",),
     "reach": ("reach", "reach-map"),
     "stiffness": ("stiffness",),
-    "programs": ("check", "convert", "verify"),
+    "programs": ("check", "convert", "verify", "cartesian"),
     "machine": ("machine",),
     "pmac": ("pmac", "play"),
     "batch": ("batch",),
@@ -98,8 +98,21 @@ def _output_fault(fault: BaseException) -> str | None:
     return None
 
 
+class _Commands(argparse._SubParsersAction):  # type: ignore[type-arg]
+    """Commands whose line in the list of all is the beginning of their own help as well."""
+
+    def add_parser(self, name: str, **keywords: Any) -> Any:
+        """Add the parser of a command."""
+        text = keywords["help"]
+        return super().add_parser(name, **{"description": f"{text[0].upper()}{text[1:]}."} | keywords)
+
+
 class CommandParser(UsageParser):
     """A parser that prints the diagnostic of a fault and exits."""
+
+    def __init__(self, **keywords: Any) -> None:
+        super().__init__(**keywords)
+        self.register("action", "parsers", _Commands)
 
     def refuse(self, code: str, found: str) -> NoReturn:
         """Exit with code 2."""

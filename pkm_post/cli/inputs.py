@@ -33,6 +33,14 @@ NO_AXIS_WORDS = "none"
 """The default: the tool axis is vertical."""
 _FOR_SOME_FILES = {"axis_words": NO_AXIS_WORDS, "dwell_unit": None, "job": None}
 """Arguments that apply to some files only and are not among ``options``, with their defaults."""
+MACHINE = "machine that comes with PKM Post, or path of a machine file"
+"""Help of NAME_OR_FILE."""
+
+
+def add_files(parser: argparse.ArgumentParser) -> None:
+    """Add the files of a command that reads documents and part programs."""
+    help_text = "FreeCAD document with CAM jobs, G-code or CL data"
+    parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help=help_text)
 
 
 def add_reading(parser: argparse.ArgumentParser) -> None:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pkm_post.cli.inputs import MACHINE
 from pkm_post.cli.processes import diagnostic_text
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import LONGEST_TOOL, validated, whole
@@ -24,10 +25,10 @@ def add_commands(commands: Any) -> None:
     listing = actions.add_parser("list", help="name the machines that come with PKM Post")
     listing.set_defaults(run=_list)
     checking = actions.add_parser("check", help="say whether a machine file is complete and makes sense")
-    checking.add_argument("file", metavar="NAME_OR_FILE")
+    checking.add_argument("file", metavar="NAME_OR_FILE", help=MACHINE)
     checking.set_defaults(run=_check)
     calibrating = actions.add_parser("calibrate", help="find the joints of a machine from measured poses")
-    calibrating.add_argument("file", metavar="NAME_OR_FILE")
+    calibrating.add_argument("file", metavar="NAME_OR_FILE", help=MACHINE)
     calibrating.add_argument("measurements", type=Path, metavar="MEASUREMENTS.csv", help="see docs/machine-file.md")
     calibrating.add_argument("--out", required=True, type=Path, metavar="NEW.toml", help="the machine file to write")
     calibrating.add_argument(
@@ -40,11 +41,11 @@ def add_commands(commands: Any) -> None:
         "--noise",
         type=_noise,
         metavar="MM,DEG,MM",
-        help="standard deviations of measured tip, axis and length (default: of the lengths, by what is left of them)",
+        help="standard deviations of measured tip, axis and length (default: of the lengths alone, by their residuals)",
     )
     calibrating.set_defaults(run=_calibrate)
     exporting = actions.add_parser("export", help="write the kinematics of a machine for its controller")
-    exporting.add_argument("file", metavar="NAME_OR_FILE")
+    exporting.add_argument("file", metavar="NAME_OR_FILE", help=MACHINE)
     exporting.add_argument("--to", required=True, choices=_TARGETS, help="the controller that computes the kinematics")
     exporting.add_argument("--out", required=True, type=Path, metavar="DIR", help="folder of the files")
     exporting.add_argument(

@@ -64,7 +64,7 @@ def _add_action(actions: Any, name: str) -> None:
     _add_port(parser)
     parser.add_argument("--machine", required="machine" in needs, metavar="NAME_OR_FILE", help="the machine")
     if "program" in needs:
-        parser.add_argument("program", type=Path, metavar="PROGRAM.pmc")
+        parser.add_argument("program", type=Path, metavar="PROGRAM.pmc", help="the program, as posted")
         help_text = "take the program though nothing shows that it is certified for this machine; that is logged"
         parser.add_argument("--uncertified", action="store_true", help=help_text)
     if name in _ARGUMENTS:

@@ -44,7 +44,11 @@ def add_action(actions: Any) -> None:
     )
     simulate.add_argument("--setup", type=Path, metavar="FILE", help="lines of a set-up file to carry out first")
     simulate.add_argument(
-        "--speed", type=between(LOWEST_SPEED, HIGHEST_SPEED), default=1.0, help="simulated seconds in a second (1)"
+        "--speed",
+        type=between(LOWEST_SPEED, HIGHEST_SPEED),
+        default=1.0,
+        metavar="N",
+        help="simulated seconds in a second (1)",
     )
     simulate.add_argument("--memory", type=_words, metavar="WORDS", help="memory for programs, in 48-bit words")
     _add_probe(simulate)

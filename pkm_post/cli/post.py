@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.inputs import add_reading, misplaced, programs_of, reading_from, require_document
+from pkm_post.cli.inputs import add_files, add_reading, misplaced, programs_of, reading_from, require_document
 from pkm_post.cli.processes import (
     command_inside,
     command_outside,
@@ -52,7 +52,7 @@ def add_commands(commands: Any) -> None:
     """Add the command to a parser."""
     text = "turn FreeCAD documents with CAM jobs, G-code and CL data into certified motion programs"
     post = commands.add_parser("post", help=text)
-    post.add_argument("files", nargs="+", type=Path, metavar="FILE")
+    add_files(post)
     post.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="folder for the results (default: here)")
     post.add_argument("--job", metavar="NAME", help="post this job of the document only, by name or label")
     post.add_argument(

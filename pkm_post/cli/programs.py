@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def add_commands(commands: Any) -> None:
     """Add the commands to a parser."""
     checking = commands.add_parser("check", help="say what is wrong with part programs, and what they hold")
-    checking.add_argument("files", nargs="+", type=Path, metavar="FILE")
+    checking.add_argument("files", nargs="+", type=Path, metavar="FILE", help="G-code or CL data")
     form = checking.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="write JSON instead of text")
     form.add_argument("--listing", action="store_true", help="write every line, with what was found beneath it")
@@ -33,7 +33,7 @@ def add_commands(commands: Any) -> None:
     checking.set_defaults(run=_check)
 
     converting = commands.add_parser("convert", help="write a part program in another form of G-code")
-    converting.add_argument("file", type=Path, metavar="FILE")
+    converting.add_argument("file", type=Path, metavar="FILE", help="G-code or CL data")
     forms = "gcode:vector, gcode:AC, gcode:BC, gcode:linuxcnc or gcode:3axis"
     converting.add_argument("--to", required=True, type=_target, metavar="FORM", help=forms)
     converting.add_argument("--out", required=True, type=Path, metavar="FILE", help="the file to write")
@@ -43,14 +43,15 @@ def add_commands(commands: Any) -> None:
     converting.set_defaults(run=_convert)
 
     verifying = commands.add_parser("verify", help="say whether a motion program still does what was posted")
-    verifying.add_argument("program", type=Path, metavar="PROGRAM.pmc")
+    help_text = "the program, or the first of its parts"
+    verifying.add_argument("program", type=Path, metavar="PROGRAM.pmc", help=help_text)
     verifying.add_argument("--against", type=Path, required=True, metavar="FILE.pkmt", help="its trajectory file")
     verifying.add_argument("--json", action="store_true", help="write the whole report as JSON")
     add_machine(verifying)
     verifying.set_defaults(run=_verify)
 
     turning = commands.add_parser("cartesian", help="write a posted program in X Y Z A B C, for kinematics in a PMAC")
-    turning.add_argument("program", type=Path, metavar="PROGRAM.pmc")
+    turning.add_argument("program", type=Path, metavar="PROGRAM.pmc", help=help_text)
     turning.add_argument("--against", type=Path, required=True, metavar="FILE.pkmt", help="its trajectory file")
     turning.add_argument("--out", type=Path, required=True, metavar="FILE", help="the file to write")
     for name, what in (("tool", "the gauge length in Q50"), ("origin", "each of Q51 to Q53")):

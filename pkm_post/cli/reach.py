@@ -15,7 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from pkm_post.cli.inputs import add_reading, print_misplaced, programs_of, read_machine
+from pkm_post.cli.inputs import MACHINE, add_files, add_reading, print_misplaced, programs_of, read_machine
 from pkm_post.cli.processes import diagnostic_text, needs_freecad, run_inside
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import (
@@ -37,7 +37,7 @@ _MAX_POINTS = 1_000_000
 def add_commands(commands: Any) -> None:
     """Add the commands to a parser."""
     reaching = commands.add_parser("reach", help="say whether a machine can follow FreeCAD documents and part programs")
-    reaching.add_argument("files", nargs="+", type=Path, metavar="FILE")
+    add_files(reaching)
     reaching.add_argument("--job", metavar="NAME", help="this job of the document only, by name or label")
     reaching.add_argument(
         "--place",
@@ -54,7 +54,7 @@ def add_commands(commands: Any) -> None:
     reaching.set_defaults(run=_reach)
 
     mapping = commands.add_parser("reach-map", help="how far the tool may lean at each place of the work volume")
-    mapping.add_argument("machine", metavar="NAME_OR_FILE")
+    mapping.add_argument("machine", metavar="NAME_OR_FILE", help=MACHINE)
     mapping.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="folder for the CSV and the picture")
     mapping.add_argument(
         "--length", type=tool_length, default=120.0, metavar="MM", help="gauge length (default: %(default)s)"

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pkm_post.cli.inputs import add_reading, print_misplaced, programs_of
+from pkm_post.cli.inputs import add_files, add_reading, print_misplaced, programs_of
 from pkm_post.cli.processes import needs_freecad, run_inside
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.options import add_options, solid_files, validated
@@ -24,7 +24,7 @@ _step = validated(any_number, lambda mm: 1.0 <= mm <= 1000.0, "a distance from 1
 def add_commands(commands: Any) -> None:
     """Add the command to a parser."""
     parser = commands.add_parser("stiffness", help="how stiff the tool is held along programs and over the table")
-    parser.add_argument("files", nargs="+", type=Path, metavar="FILE")
+    add_files(parser)
     parser.add_argument("--job", metavar="NAME", help="this job of the document only, by name or label")
     parser.add_argument(
         "--step", type=_step, default=25.0, metavar="MM", help="distance of places on the table (default: %(default)s)"

@@ -52,7 +52,7 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
         "type": work_offset,
         "default": FIXTURE_OF_THE_JOB,
         "help": "work offset of the machine file, or X,Y,Z[,DEG] in mm with a turn about z, as in "
-        "--work-offset=-10,0,150,90 (default: the fixture of the CAM job)",
+        "--work-offset=-10,0,150,90 (default: the fixture of the CAM job, for a part program G54)",
     },
     "--tip-tolerance": {
         "metavar": "MM",

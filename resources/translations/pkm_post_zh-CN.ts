@@ -2127,7 +2127,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>不支持该代码</translation>
     </message>
     <message>
-        <source>replace it by supported codes, or, if it does not move the tool, leave it out with --leave-out or with part_programs.leave_out of the machine file; M codes that the controller is to get belong into controller.codes.functions there</source>
+        <source>replace it by supported codes, or, if it does not move the tool, leave it out with --leave-out or with part_programs.leave_out of the machine file; M codes that the controller is to get belong in controller.codes.functions there</source>
         <translation>用支持的代码代替；如果它不移动刀具，可用 --leave-out 或机床文件的 part_programs.leave_out 略去；应传给控制器的 M 代码写入机床文件的 controller.codes.functions</translation>
     </message>
     <message>
@@ -4303,7 +4303,7 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>主轴在螺纹中的加速度超过机床允许值</translation>
     </message>
     <message>
-        <source>the spindle turns on at the end of the program</source>
+        <source>the spindle still turns at the end of the program</source>
         <translation>程序结束时主轴仍在转动</translation>
     </message>
     <message>

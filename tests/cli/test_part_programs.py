@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from programs import cone, program, random_job, square_with_arc
 
-from pkm_post.cli import main
+from pkm_post.cli import _parser, main
 from pkm_post.model import Kind, Tool
 from pkm_post.model.diagnostics import errors
 from pkm_post.reading.check import check_file, size_of
@@ -209,6 +209,32 @@ def test_help_names_every_form(capsys):
         main(["convert", "--help"])
     reported = capsys.readouterr().out
     assert all(target in reported for target in TARGETS)
+
+
+def commands_of(parser, names=()):
+    """The words of each command with its parser, those of its actions behind it."""
+    for action in parser._subparsers._group_actions if parser._subparsers else ():
+        for name, below in action.choices.items():
+            yield (*names, name), below
+            yield from commands_of(below, (*names, name))
+
+
+def test_the_help_of_each_command_says_what_it_does_and_what_its_arguments_are():
+    commands = dict(commands_of(_parser()))
+    assert {("cartesian",), ("machine", "check"), ("pmac", "jog")} <= set(commands) and len(commands) > 30
+    listed = " ".join(_parser().format_help().split())
+    for names, parser in commands.items():
+        assert parser.description and parser.description.endswith("."), names
+        if len(names) == 1 and names != ("install",):
+            assert f"{parser.description[0].lower()}{parser.description[1:-1]}" in listed
+        positional = [action for action in parser._get_positional_actions() if not action.choices]
+        assert all(action.help for action in positional), names
+
+
+def test_a_command_is_found_without_the_modules_of_the_others():
+    for name in {names[0] for names, _ in commands_of(_parser())} - {"pmac", "play"}:
+        alone = {names[0] for names, _ in commands_of(_parser([name]))}
+        assert name in alone and "pmac" not in alone
 
 
 @pytest.mark.parametrize("option", ["--out", "--part", "--subprograms", "--tool-table"])

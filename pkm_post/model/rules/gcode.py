@@ -81,7 +81,7 @@ GCODE_RULES: dict[str, Rule] = {
     "G401": error(
         "the code is not supported",
         "replace it by supported codes, or, if it does not move the tool, leave it out with --leave-out or with"
-        " part_programs.leave_out of the machine file; M codes that the controller is to get belong into"
+        " part_programs.leave_out of the machine file; M codes that the controller is to get belong in"
         " controller.codes.functions there",
     ),
     "G402": error(

@@ -172,7 +172,7 @@ RESULT_RULES: dict[str, Rule] = {
     ),
     # V13: how a program ends
     "V130": warning(
-        "the spindle turns on at the end of the program", "let the program stop it, by M5, M2 or SPINDL/OFF"
+        "the spindle still turns at the end of the program", "let the program stop it, by M5, M2 or SPINDL/OFF"
     ),
     "V131": warning(
         "the program ends with the tool low",
