@@ -115,12 +115,22 @@ class TrajectoryRuler:
             angle = by_axis[curved] * dot(towards(start[curved], axis[curved]), _over_square(turn[curved]))
             of_arc = self._share_of_arc(tip[curved], axis[curved], segment[curved])
             share[curved] = by_tip[curved] * of_arc + angle
-        ways = np.hypot(
-            self._trajectory.length[segment] / self.tip_tolerance[segment],
-            self._trajectory.angle[segment] / self.axis_tolerance,
-        )
+        length, tiny = self._trajectory.length[segment], self._bend[segment] * self.tip_tolerance[segment] >= 1.0
+        # from the centre of an arc within the tolerance every share fits, apart from its rise
+        length = np.where(tiny, np.abs(self._rise(segment)), length)
+        ways = np.hypot(length / self.tip_tolerance[segment], self._trajectory.angle[segment] / self.axis_tolerance)
         slack = np.divide(1.0, ways, out=np.full(len(ways), np.inf), where=ways > 0)
         return np.clip(share, 0.0, 1.0), slack
+
+    def fits_end(self, tip: Array, axis: Array, segment: Array, end: Array) -> Array:
+        """Whether poses are within the tolerances of the end of their segment, or, without ``end``, of its start."""
+        last = end[:, None]
+        off_tip = norm(tip - np.where(last, self._trajectory.tip[segment], self._tip_before[segment]))
+        off_axis = angle_between(axis, np.where(last, self._trajectory.axis[segment], self._axis_before[segment]))
+        return np.asarray((off_tip <= self.tip_tolerance[segment]) & (off_axis <= self.axis_tolerance))
+
+    def _rise(self, segment: Array) -> Array:
+        return dot(self._trajectory.tip[segment] - self._tip_before[segment], self._trajectory.arc_axis[segment])
 
     def _weights(self, segments: Array) -> tuple[Array, ...]:
         """Weights of the nearest shares for the tip alone and for the axis alone.
@@ -143,20 +153,28 @@ class TrajectoryRuler:
         angle = np.arctan2(dot(cross(start, here), turn), dot(start, here))
         share = (np.mod(angle + open_half, 2 * np.pi) - open_half) / sweep
         gap = (2 * np.pi - sweep) * norm(start)
+        by_angle, share = share, self._along_helix(share, tip, segment)
         closed = np.flatnonzero(gap <= _NEARLY_CLOSED * self.tip_tolerance[segment])
-        share[closed] = self._in_closed_turn(share[closed], tip[closed], axis[closed], segment[closed])
-        rise = dot(trajectory.tip[segment] - self._tip_before[segment], turn)
+        if len(closed):
+            share[closed] = self._in_closed_turn(by_angle[closed], tip[closed], axis[closed], segment[closed])
+        return share
+
+    def _along_helix(self, share: Array, tip: Array, segment: Array) -> Array:
+        """Shares after one step of Newton's method: the nearest point of a helix is not at the same angle."""
+        trajectory, share = self._trajectory, share.copy()
+        rise = self._rise(segment)
         rising = np.flatnonzero(rise)
-        way = (sweep[:, None] * cross(turn, here) + rise[:, None] * turn)[rising]
-        # the nearest point of a helix is not at the same angle: one step of Newton's method along it
-        off = tip[rising] - self._on_arc(segment[rising], share[rising])
+        of, turn = segment[rising], trajectory.arc_axis[segment[rising]]
+        here = across(tip[rising] - trajectory.arc_centre[of], turn)
+        way = trajectory.sweep[of][:, None] * cross(turn, here) + rise[rising][:, None] * turn
+        off = tip[rising] - self._on_arc(of, share[rising])
         share[rising] += dot(off, way) / dot(way, way)
         return share
 
     def _in_closed_turn(self, share: Array, tip: Array, axis: Array, segment: Array) -> Array:
         """Shares of closed turns: of candidates a full turn apart, the one that fits the pose best."""
         turn = 2 * np.pi / self._trajectory.sweep[segment]
-        shares = share + turn * [[0.0], [1.0], [-1.0]]
+        shares = np.stack([self._along_helix(one, tip, segment) for one in share + turn * [[0.0], [1.0], [-1.0]]])
         found = np.clip(shares, 0.0, 1.0)
         off_tip = np.stack([norm(tip - self._on_arc(segment, one)) for one in found])
         start, axis_turn = self._axis_before[segment], self._axis_turn[segment]
@@ -167,7 +185,7 @@ class TrajectoryRuler:
     def _on_arc(self, segment: Array, share: Array) -> Array:
         trajectory, start = self._trajectory, self._tip_before[segment]
         turn, centre, end = trajectory.arc_axis[segment], trajectory.arc_centre[segment], trajectory.tip[segment]
-        rise = dot(end - start, turn)
+        rise = self._rise(segment)
         point = arc_points(start, centre, turn, share * trajectory.sweep[segment], share * rise)
         outward, end_radius = across(point - centre, turn), norm(across(end - centre, turn))
         growth = share * (end_radius / norm(outward) - 1)

@@ -154,7 +154,11 @@ class _Search:
 
     def _closely(self, rows: Array, instant: Array) -> Array:
         """The same, refined from the nearest instants by Newton's method, with steps no longer than one instant."""
-        interval, share = self._place(instant / _LOOKS)
+        return self._best_fit(rows, instant / _LOOKS)
+
+    def _best_fit(self, rows: Array, at: Array) -> Array:
+        """The same from any instants, in intervals."""
+        interval, share = self._place(at)
         time = self._time_at(interval, share)
         for _ in range(_NEWTON_STEPS):
             late = self._late(rows, interval, share, self._path.at(interval, share[None])[:, 0])
@@ -180,7 +184,9 @@ class _Search:
     def balanced(self, rows: Array, time: Array) -> Array:
         """Times of joints that fit badly, moved to the best of those around them.
 
-        Newton's method takes tip and axis together; the certificate measures each by its own tolerance.
+        Newton's method takes tip and axis together; the certificate measures each by its own tolerance. And it does not
+        leave a rest, which may be the instant nearest to a joint shortly before or after it: from the best time around
+        it is tried again.
 
         Args:
             rows: (M,) segments that have a successor.
@@ -192,6 +198,10 @@ class _Search:
             tried = np.vstack([self._around(rows[bad], time, side) for side in (-1.0, 1.0)])
             best = np.argmin([self._fit(rows[bad], one) for one in tried], axis=0)
             found[bad] = tried[best, np.arange(len(bad))]
+            again, fit = self._best_fit(rows[bad], self._instant_of(found[bad]) / _LOOKS)
+            begin, end = _neighbours(rows[bad], time)
+            better = (begin <= again) & (again <= end) & (fit < self._fit(rows[bad], found[bad]))
+            found[bad] = np.where(better, again, found[bad])
         return found
 
     def _around(self, rows: Array, time: Array, side: Array | float) -> Array:

@@ -150,7 +150,11 @@ def _along(path: PlayedPath, rows: Array, ruler: TrajectoryRuler, passed: Array)
     begin, end = path.time[rows], path.time[rows + 1]
     time = (begin + (end - begin) * shares).T.ravel()
     segment = np.minimum(np.searchsorted(passed, time), len(passed) - 1)
-    share, slack = ruler.share_of(place[:3].T, (place[3:6] / norm(place[3:6].T)).T, segment)
+    tip, axis = place[:3].T, (place[3:6] / norm(place[3:6].T)).T
+    share, slack = ruler.share_of(tip, axis, segment)
+    # a pose may fit both ends of a turn that is closed: that counts which belongs to the time
+    later = time > (passed[segment] + np.append(0.0, passed)[segment]) / 2
+    share = np.where(ruler.fits_end(tip, axis, segment, later), later, share)
     return np.stack([time, segment + share, slack])
 
 

@@ -105,6 +105,24 @@ def test_the_nearest_point_of_a_helix_is_not_the_one_at_the_same_angle(rise):
     np.testing.assert_allclose(found[0], shift * way / np.hypot(way, rise), rtol=1e-3)
 
 
+@pytest.mark.parametrize(("share", "ahead"), [(0.002, 0.005), (0.998, -0.005), (0.5, 0.005)])
+def test_near_the_ends_of_a_steep_full_turn_the_nearest_point_is_found(share, ahead):
+    """At the same angle the helix may be farther from the pose than its end, and next to the pose nearer."""
+    radius, rise = 0.05, -3.0
+    start, centre, blank = np.array([0.0, 0, 40]), np.array([radius, 0, 40]), np.full(3, np.nan)
+    position, kind = [start, start + [0, 0, rise]], [Kind.RAPID, Kind.ARC]
+    made = program(position, kind=kind, centre=np.stack([blank, centre]), turn=np.stack([blank, [0, 0, 1.0]]))
+    trajectory, _ = place(made, example(), ON_PALLET)
+    last = np.array([len(trajectory) - 1])
+    way = np.append(np.linspace(0, 1, 100_001), share)
+    x, y = -radius * np.cos(2 * np.pi * way), -radius * np.sin(2 * np.pi * way)
+    helix = trajectory.tip_before()[last] + np.column_stack([x + radius, y, rise * way])
+    tangent = np.array([y[-1], -x[-1], 0]) / -radius
+    pose = helix[-1] + ahead * tangent
+    found = TrajectoryRuler(trajectory, TOLERANCES).deviation_from(pose[None], trajectory.axis[last], last)
+    assert found[0][0] == pytest.approx(norm(pose - helix).min(), rel=0.02)
+
+
 def test_no_other_segment_is_measured_from_than_the_one_that_is_named():
     # A level side after a plunge: measured from the plunge, a pose on it is as far off as it is from their corner.
     trajectory, poses = poses_on(square_with_arc())

@@ -6,13 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from machines import without_jerk
 from posted_jobs import NARROW, UNEQUAL, WIDE, offset, preset
 from programs import ON_PALLET, cone, program, random_job, square_with_arc, steep_helices
 
 from pkm_post.certificate import certify, reconstruct
 from pkm_post.certificate.played_path import _spin
 from pkm_post.machine import platform_rotation, reach_faults, strut_lengths
-from pkm_post.model import Event, EventKind, StrutMotion
+from pkm_post.model import Event, EventKind, Kind, StrutMotion
 from pkm_post.model.certificate import Tolerances
 from pkm_post.model.diagnostics import errors
 from pkm_post.planning import interpolate, plan_feed, strut_motion
@@ -102,6 +103,28 @@ def test_programs_that_go_there_and_back_hold(machine, stroke, feed, tip):
     trajectory, asked = placed(program(ends, feed=feed, events=dwells), machine), Tolerances(tip, TOLERANCES.axis)
     motion, _ = planned(trajectory, machine, asked)
     assert not refusals(printed(motion, machine), trajectory, machine, asked)
+
+
+def test_a_joint_soon_after_a_rest_is_found(machine):
+    """The instant nearest to it may be the rest, which Newton's method does not leave."""
+    kinds, ends = [Kind.RAPID, Kind.LINE, Kind.RAPID, Kind.RAPID], [[0, 0, 61], [0, 0, 59.5], [0, 0, 59.7], [0, 0, 80]]
+    asked, jumping = Tolerances(0.01, TOLERANCES.axis), without_jerk(machine)
+    trajectory = placed(program(ends, kind=np.array(kinds), feed=10.0), jumping)
+    motion, _ = planned(trajectory, jumping, asked)
+    assert not refusals(printed(motion, jumping), trajectory, jumping, asked)
+
+
+@pytest.mark.parametrize(("radius", "rise", "tip"), [(0.1, -0.01, 0.2), (0.01, 0.0, 0.01)])
+def test_full_turns_that_are_hardly_larger_than_the_tolerance_are_followed(machine, radius, rise, tip):
+    """A pose near the joint of two turns may fit the end of both: the tool has not gone back by a turn."""
+    ends = [[-0.35, -10, 60], [0, 0, 60], *([0, 0, 60 + turn * rise] for turn in (1, 2, 3)), [8, 2, 60 + 3 * rise]]
+    kinds = [Kind.RAPID, Kind.LINE, Kind.ARC, Kind.ARC, Kind.ARC, Kind.LINE]
+    centre, turn = np.full((2, 6, 3), np.nan)
+    centre[2:5], turn[2:5] = np.array(ends)[1:4] - [radius, 0, 0], [0, 0, 1]
+    asked, gentle = Tolerances(tip, TOLERANCES.axis), replace(machine, strut_jerk=4e4, tip_jerk=4e4)
+    trajectory = placed(program(ends, kind=np.array(kinds), feed=20.0, centre=centre, turn=turn), gentle)
+    motion, _ = planned(trajectory, gentle, asked)
+    assert not refusals(printed(motion, gentle), trajectory, gentle, asked)
 
 
 def test_joints_are_passed_when_the_plan_passes_them(machine):
