@@ -66,8 +66,11 @@ def settle():
         QtWidgets.QApplication.processEvents()
 
 
-def until(condition, seconds=300):
-    """Let the window work until something is so; that it does not come to be so is an exception."""
+def until(condition, seconds=900):
+    """Let the window work until something is so; that it does not come to be so is an exception.
+
+    The limit is for what hangs: on a busy machine a play may take minutes.
+    """
     end = time.monotonic() + seconds
     while not condition():
         if time.monotonic() > end:

@@ -215,6 +215,7 @@ def a_line_that_is_not_there_is_refused_and_an_abort_ends_a_play():
     until(face.jog.buttons["X", 1].isEnabled)
     found["running"] = [newest().status.running, face.jog.buttons["X", 1].isEnabled()]
     found["left"] = sum(abs(newest().pose.tip - [0, 0, 300]))
+    page().override.setValue(100)
     return found
 
 
