@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
-from pkm_post.model import Array, Diagnostic, EventKind, Phrase, Place, Program, threads
+from pkm_post.model import Array, Diagnostic, EventKind, Phrase, Place, Program, Tool, threads
 from pkm_post.toolpath import CHORD_ERROR, with_chords
 from pkm_post.writing.gcode.arcs import WrittenArcs, written_arcs
 from pkm_post.writing.gcode.tool_axes import (
@@ -48,13 +48,7 @@ def heading(program: Program, dialect: GcodeDialect, inch: bool) -> str:
     tools = [program.tools[number] for number in sorted(program.tools)]
     lines = [
         _comment(f"from {program.source}"),
-        *(
-            _comment(
-                f"tool {tool.number}: {tool.name}, diameter {_short(tool.diameter)}, "
-                f"corner radius {_short(tool.corner_radius)}, length {_short(tool.length)} mm"
-            )
-            for tool in tools
-        ),
+        *(_comment(", ".join(_known_of(tool))) for tool in tools),
     ]
     length_code = NOTATIONS[dialect].length_code
     starts_with_tool = any(event.row == 0 and event.kind is EventKind.TOOL_CHANGE for event in program.events)
@@ -63,10 +57,21 @@ def heading(program: Program, dialect: GcodeDialect, inch: bool) -> str:
     return "".join(lines) + _MODES.format(unit="G20" if inch else "G21")
 
 
+def _known_of(tool: Tool) -> Iterator[str]:
+    """Yield what is known of a tool: 0 stands for a diameter or a length that nobody has stated."""
+    yield f"tool {tool.number}" + (f": {tool.name}" if tool.name else "")
+    if tool.diameter > 0:
+        yield f"diameter {_short(tool.diameter)} mm"
+        if tool.corner_known:
+            yield f"corner radius {_short(tool.corner_radius)} mm"
+    if tool.length > 0:
+        yield f"length {_short(tool.length)} mm"
+
+
 def lines_between_blocks(program: Program, dialect: GcodeDialect) -> dict[int, str]:
     """Whole lines by the row that follows them; the row count as key places lines after the last row."""
     lines: dict[int, str] = {}
-    for row in _first_rows(program):
+    for row in _first_rows(program) if any(program.operations) else ():
         lines[row] = _comment(f"operation: {program.operations[program.operation[row]]}")
     say = _EVENTS | {EventKind.TOOL_CHANGE: _tool_change(dialect)}
     for event in program.events:

@@ -124,6 +124,22 @@ def test_text_of_a_small_job():
     ]
 
 
+@pytest.mark.parametrize(
+    ("tool", "comment"),
+    [
+        (Tool(1, "", 0.0, 0.0, 0.0), "(tool 1)"),
+        (Tool(1, "", 0.0, 0.0, 120.0), "(tool 1, length 120 mm)"),
+        (Tool(1, "Drill", 6.8, 0.0, 0.0, corner_known=False), "(tool 1: Drill, diameter 6.8 mm)"),
+        (Tool(1, "Ball", 10.0, 5.0, 120.5), "(tool 1: Ball, diameter 10 mm, corner radius 5 mm, length 120.5 mm)"),
+    ],
+)
+def test_what_is_not_known_of_a_tool_or_an_operation_is_not_written_as_0_or_as_nothing(tool, comment):
+    given = replace(square_with_arc(), tools={1: tool}, operations=("",))
+    lines = write(given, GcodeDialect.PLAIN)[0].splitlines()
+    assert lines[1] == comment
+    assert not [line for line in lines if "operation" in line]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("form", TILTING)
