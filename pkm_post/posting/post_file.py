@@ -162,7 +162,8 @@ def prepared_file(
     asked = replace(_with_typed_options(reading, chosen), lengths=lengths)
     asked = asked if model is None else with_machine(asked, model, choices)
     asked, of_table = with_tool_table(asked, language_of(file))
-    choices = replace(choices, setup=replace(choices.setup, shanks={**asked.shanks, **choices.setup.shanks}))
+    shanks, cores = {**asked.shanks, **choices.setup.shanks}, {**asked.cores, **choices.setup.cores}
+    choices = replace(choices, setup=replace(choices.setup, shanks=shanks, cores=cores))
     program, diagnostics = (None, of_table) if of_table else read_part_program(Path(file), asked)
     faults = [fault for fault in diagnostics if fault.code != _ASKED_FOR]
     strangers = inapplicable_options(given, {input_kind(Path(file))})

@@ -68,7 +68,7 @@ class ReadingOptions:
         subprograms: folders searched for subprogram files of G-code before that of the program.
         tool_table: path of a tool table, optionally with a comma and its unit, as in ``read_tool_table``; ``tools`` and
             ``lengths`` take precedence. None for none.
-        shanks: those of the tools of the table, by number.
+        shanks, cores: those of the tools of the table, by number, as in ``Setup``.
         allow_open_end: whether a file may lack an end statement, such as M2 or FINI.
 
     Raises:
@@ -101,6 +101,7 @@ class ReadingOptions:
     subprograms: tuple[str, ...] = ()
     tool_table: str | None = None
     shanks: Mapping[int, Shank] = field(default_factory=dict)
+    cores: Mapping[int, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name in ("cycle_values", "left_out", "goto_values", "subprograms"):
@@ -200,7 +201,8 @@ def with_tool_table(reading: ReadingOptions, language: Language) -> tuple[Readin
     cutters = table.tools if language is Language.GCODE else {}
     tools, lengths = cutters | dict(reading.tools), table.lengths | dict(reading.lengths)
     shanks = {number: shank for number, shank in table.shanks.items() if number not in reading.tools}
-    return replace(reading, tools=tools, lengths=lengths, shanks=shanks, tool_table=None), ()
+    cores = {number: core for number, core in table.cores.items() if number in tools and number not in reading.tools}
+    return replace(reading, tools=tools, lengths=lengths, shanks=shanks, cores=cores, tool_table=None), ()
 
 
 FLAVOUR_NAMES = (*gcode.FLAVOUR_NAMES, SIEMENS)

@@ -34,11 +34,13 @@ class ToolTable:
         tools: cutters by number; only those with a stated diameter.
         lengths: gauge lengths by number, mm; only stated ones.
         shanks: by number; only those whose cutting edge height and diameter are stated.
+        cores: diameters by number, mm, of cylinders inside cutters whose outline no ``Tool`` here has, as in ``Setup``.
     """
 
     tools: dict[int, Tool] = field(default_factory=dict)
     lengths: dict[int, float] = field(default_factory=dict)
     shanks: dict[int, Shank] = field(default_factory=dict)
+    cores: dict[int, float] = field(default_factory=dict)
 
 
 class _TableError(ValueError):
@@ -51,7 +53,7 @@ class _TableError(ValueError):
 
 @dataclass(frozen=True)
 class _ToolEntry:
-    """A tool as stated in its file; lengths in mm, None if not stated."""
+    """A tool as stated in its file; lengths in mm, None if not stated, and the rise of its bottom in rad."""
 
     line: int
     number: int
@@ -60,6 +62,8 @@ class _ToolEntry:
     corner: float | None = None
     length: float | None = None
     shank: Shank | None = None
+    core: float | None = None
+    bottom: float = 0.0
 
 
 def read_tool_table(named: str) -> tuple[ToolTable | None, tuple[Diagnostic, ...]]:
@@ -107,6 +111,8 @@ def _table_of(rows: Iterator[_ToolEntry]) -> ToolTable:
             table.lengths[row.number] = _within(row, "length", row.length)
         if row.shank is not None:
             table.shanks[row.number] = row.shank
+        if row.core is not None:
+            table.cores[row.number] = row.core
     if not seen:
         raise _TableError("no tools")
     return table
@@ -116,7 +122,7 @@ def _cutter(row: _ToolEntry, diameter: float) -> Tool:
     corner = 0.0 if row.corner is None else row.corner
     if not 0 <= corner <= _within(row, "diameter", diameter) / 2:
         raise _TableError(f"corner radius {corner:g} mm of tool {row.number}, diameter {diameter:g} mm", row.line)
-    return Tool(row.number, row.name, diameter, corner, 0.0, corner_known=row.corner is not None)
+    return Tool(row.number, row.name, diameter, corner, 0.0, row.bottom, corner_known=row.corner is not None)
 
 
 def _within(row: _ToolEntry, name: str, value: float) -> float:
@@ -215,11 +221,13 @@ def _freecad(text: str, file: Path, unit: str) -> Iterator[_ToolEntry]:
         content = _json(_content(bit), bit)
         stated = content.get("parameter")
         parameters = stated if isinstance(stated, dict) else {}
-        shape = str(content.get("shape-type") or Path(str(content.get("shape", ""))).stem).lower()
+        shape = re.sub("[-_]", "", str(content.get("shape-type") or Path(str(content.get("shape", ""))).stem).lower())
         diameter, corner = _sizes(parameters, shape, bit)
-        shank = _shank(parameters, shape, bit)
-        name = str(content.get("name", ""))
-        yield _ToolEntry(0, _tool_number(str(number), 0), name, diameter, corner, shank=shank)
+        half, core = _half_angle(parameters, shape, bit), _core(parameters, shape, bit)
+        outline = (None, math.pi / 2 - half) if half else (core, 0.0)
+        shank, name = _shank(parameters, shape, bit), str(content.get("name", ""))
+        sizes = (diameter, 0.0 if half else corner, None, shank, *outline)
+        yield _ToolEntry(0, _tool_number(str(number), 0), name, *sizes)
 
 
 _CORNERS: dict[str, Callable[[float, float], float]] = {
@@ -269,8 +277,16 @@ def _bit_file(library: Path, path: str) -> Path:
     return found
 
 
-_EDGES_ABOVE_CONE = ("v-bit", "v_bit", "vbit")
-"""Shapes whose CuttingEdgeHeight does not begin at the tip."""
+_TIP_ANGLES = {"drill": "TipAngle", "tap": "TipAngle", "vbit": "CuttingEdgeAngle", "chamfer": "CuttingEdgeAngle"}
+"""The angle of the cone at the tip, by shape."""
+_ANGLE = re.compile(r"(\d+(?:[.,]\d*)?) ?(?:°|deg)")
+_CORES = {"vbit": "TipDiameter", "chamfer": "TipDiameter", "radius": "TipDiameter", "threadmill": "NeckDiameter",
+          "dovetail": "NeckDiameter", "drill": "", "tap": ""}  # fmt: skip
+"""The property with the diameter of a cylinder inside, by shape, of those that leave some of their own cylinder."""
+_THINNEST = 0.1
+"""mm: a core, where the tip of a tool is a point."""
+_EDGE_HEIGHTS = {"slittingsaw": "BladeThickness", "tap": "CuttingEdgeLength", "threadmill": "NeckLength"}
+"""The property that states where the cutting edges end, by shape, if it has another name."""
 
 
 def _sizes(parameters: dict[str, Any], shape: str, bit: Path) -> tuple[float | None, float | None]:
@@ -286,10 +302,30 @@ def _sizes(parameters: dict[str, Any], shape: str, bit: Path) -> tuple[float | N
     return diameter, {"endmill": 0.0, "ballend": diameter / 2}.get(shape)
 
 
+def _half_angle(parameters: dict[str, Any], shape: str, bit: Path, pointed: bool = True) -> float:
+    """Half the angle of the cone at the tip, rad; 0 if it has none, or no point."""
+    angle = _ANGLE.fullmatch(str(parameters.get(_TIP_ANGLES.get(shape, ""), "")).strip())
+    half = math.radians(float(angle[1].replace(",", "."))) / 2 if angle else 0.0
+    has_point = not pointed or not _quantity(parameters, "TipDiameter", bit)
+    return half if has_point and 0 < half < math.pi / 2 else 0.0
+
+
+def _core(parameters: dict[str, Any], shape: str, bit: Path) -> float | None:
+    return max(_quantity(parameters, _CORES[shape], bit) or 0.0, _THINNEST) if shape in _CORES else None
+
+
 def _shank(parameters: dict[str, Any], shape: str, bit: Path) -> Shank | None:
-    """The shank; None if the length of the cutting edges from the tip, or its diameter, is not stated."""
-    start, across = (_quantity(parameters, name, bit) or 0.0 for name in ("CuttingEdgeHeight", "ShankDiameter"))
-    return Shank(start, across) if min(start, across) > 0 and shape not in _EDGES_ABOVE_CONE else None
+    """The shank; None if the height of the cutting edges, or its diameter, is not stated.
+
+    Those of V-bits and taps are that of the cylinder above their cone; one with a flat tip ends with its cone.
+    """
+    names = (_EDGE_HEIGHTS.get(shape, "CuttingEdgeHeight"), "ShankDiameter", "Diameter", "TipDiameter")
+    height, across, widest, tip = (_quantity(parameters, name, bit) or 0.0 for name in names)
+    if shape in ("vbit", "tap"):
+        half = _half_angle(parameters, shape, bit, pointed=False)
+        cone = (widest - tip) / 2 / math.tan(half) if widest > tip and half else math.nan
+        height, across = (cone, max(widest, across)) if tip else (cone + height, across)
+    return Shank(height, across) if min(height, across) > 0 else None
 
 
 def _quantity(parameters: dict[str, Any], name: str, bit: Path) -> float | None:

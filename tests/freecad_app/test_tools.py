@@ -14,6 +14,8 @@ from pkm_post.freecad_app.job import read_job
 from pkm_post.freecad_app.job_setup import setup_of
 from pkm_post.freecad_app.tools import read_tools, set_gauge_length
 from pkm_post.machine.collisions.moving_bodies import cutter_profile
+from pkm_post.machine.collisions.tools_in_use import sizes_between
+from pkm_post.model import Setup
 from pkm_post.reading.tool_table import read_tool_table
 from pkm_post.toolpath.compensation.cutter import Cutter, CutterProfile
 
@@ -266,3 +268,36 @@ def test_a_library_that_freecad_writes_in_any_unit_system_has_the_sizes_of_a_job
     off = pytest.approx([cutter.diameter, shank.start, shank.diameter], abs=rounding.get(system, 0.0051))
     found = table.shanks[1]
     assert [table.tools[1].diameter, found.start, found.diameter] == off
+
+
+LIBRARY_SHAPES = {
+    "drill": {"Diameter": 5, "TipAngle": 118},
+    "tap": {"Diameter": 8, "TipAngle": 90, "CuttingEdgeLength": 20, "ShankDiameter": 4},
+    "v-bit": {"Diameter": 10, "CuttingEdgeAngle": 60, "TipDiameter": 1, "CuttingEdgeHeight": 2, "ShankDiameter": 4},
+    "thread-mill": {"Diameter": 5, "NeckDiameter": 3, "NeckLength": 20, "ShankDiameter": 4},
+    "radius": {"Diameter": 15, "TipDiameter": 5, "CuttingRadius": 3, "CuttingEdgeHeight": 14, "ShankDiameter": 4},
+    "slittingsaw": {"Diameter": 60, "BladeThickness": 3, "ShankDiameter": 10},
+    "dovetail": {"Diameter": 20, "CuttingEdgeAngle": 60, "CuttingEdgeHeight": 9, "NeckDiameter": 8, "ShankDiameter": 8},
+}
+
+
+@pytest.mark.parametrize("name", LIBRARY_SHAPES)
+def test_a_library_has_the_shanks_of_a_job_and_cutters_that_their_solids_contain(job, tmp_path, name):
+    """Drills, V-bits, thread mills and mills of radii were balls of their diameter, and most had no shank."""
+    if int(App.Version()[1]) == 0 and name in ("tap", "radius"):
+        pytest.skip("FreeCAD 1.0 has no such bits")
+    bit = stock_bit(job.Document, f"{name}.fcstd", **LIBRARY_SHAPES[name])
+    (tmp_path / "end.fctb").write_text(written_by_freecad(bit), encoding="utf-8")
+    (tmp_path / "shop.fctl").write_text(json.dumps({"tools": [{"nr": 1, "path": "end.fctb"}]}), encoding="utf-8")
+    table, faults = read_tool_table(str(tmp_path / "shop.fctl"))
+    assert not faults
+    tool, setup, found = tool_of(job, bit), setup_of(job), table.tools[1]
+    assert {number: (each.start, each.diameter) for number, each in table.shanks.items()} == {
+        number: pytest.approx((each.start, each.diameter)) for number, each in setup.shanks.items()
+    }
+    top = setup.shanks[1].start if setup.shanks else 20.0
+    of_table = Setup(cores=table.cores, unknown_corners=frozenset() if found.corner_known else {1})
+    edges = cutter_profile(sizes_between(found, of_table)[0], top)
+    for z in np.linspace(0.05, top - 0.05, 30):
+        assert np.interp(z, edges.height, edges.radius) <= _radius_of(bit, z) + 2e-3
+    assert found.bottom_angle == pytest.approx(tool.bottom_angle)

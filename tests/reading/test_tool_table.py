@@ -2,6 +2,7 @@
 """Tool tables: LinuxCNC's, with headings, and FreeCAD's libraries; what they give, and what of them is refused."""
 
 import json
+import math
 
 import pytest
 
@@ -73,14 +74,16 @@ def test_a_library_of_freecad(tmp_path):
     assert found.lengths == {}
     sizes = [(tool.diameter, tool.corner_radius, tool.corner_known) for tool in found.tools.values()]
     assert found.shanks == {1: Shank(30.0, 3.0)}
-    assert sizes == [(5, 0, True), (6.35, 3.175, True), (10, 2, True), (10, 1, True), (10, 0, False), (5, 0, False)]
+    assert sizes == [(5, 0, True), (6.35, 3.175, True), (10, 2, True), (10, 1, True), (10, 0, False), (5, 0, True)]
+    assert found.tools[6].bottom_angle == pytest.approx(math.radians(90 - 119 / 2))
+    assert found.cores == {5: 1.0}
     (tmp_path / "Bit" / "end.fctb").unlink()
     assert "'end.fctb'" in read_tool_table(str(library))[1][0].found
 
 
-def library_of(folder, **parameters):
-    """A library of one end mill, T1."""
-    (folder / "end.fctb").write_text(json.dumps(bit("endmill", **parameters)), encoding="utf-8")
+def library_of(folder, shape="endmill", **parameters):
+    """A library of one bit, T1."""
+    (folder / "end.fctb").write_text(json.dumps(bit(shape, **parameters)), encoding="utf-8")
     library = folder / "shop.fctl"
     library.write_text(json.dumps({"tools": [{"nr": 1, "path": "end.fctb"}]}), encoding="utf-8")
     return library
@@ -114,6 +117,30 @@ def test_the_shank_is_that_of_the_table_unless_the_tool_is_another(tmp_path):
     for name in ("CuttingEdgeHeight", "ShankDiameter"):
         library_of(tmp_path, **(stated | {name: "0.00 mm"}))
         assert prepared_file(part, arguments=table).options.setup.shanks == {}
+
+
+@pytest.mark.parametrize(
+    ("shape", "sizes", "core"),
+    [
+        ("thread-mill", {"NeckDiameter": "3 mm", "NeckLength": "20 mm"}, 3.0),
+        ("radius", {"TipDiameter": "2 mm", "CuttingEdgeHeight": "14 mm"}, 2.0),
+        ("v-bit", {"CuttingEdgeAngle": "90.00 \u00b0", "TipDiameter": "0.50 mm", "CuttingEdgeHeight": "1 mm"}, 0.5),
+        ("v-bit", {"CuttingEdgeAngle": "90.00 \u00b0", "TipDiameter": "0.00 mm", "CuttingEdgeHeight": "1 mm"}, None),
+        ("drill", {"TipAngle": "118,00 \u00b0"}, None),
+        ("drill", {}, 0.1),
+    ],
+)
+def test_tools_cut_for_certain_what_their_outline_contains(tmp_path, shape, sizes, core):
+    """Of another outline than that of end mills, they counted as balls of their diameter."""
+    part = tmp_path / "part.ngc"
+    part.write_text("G21\nT1 M6\nS1000 M3\nG0 X0 Y0 Z30\nG1 X10 F300\nM5\nM2\n", encoding="ascii")
+    library = library_of(tmp_path, shape, Diameter="5 mm", ShankDiameter="4 mm", **sizes)
+    prepared = prepared_file(part, arguments=f"--tool-table {library} --tool-length 1=60")
+    (tool,), setup = prepared.program.tools.values(), prepared.options.setup
+    assert setup.cores == ({} if core is None else {1: core})
+    assert (tool.diameter, tool.bottom_angle > 0) == (5.0, core is None)
+    other = prepared_file(part, arguments=f"--tool-table {library} --tool-length 1=60 --tool 1=6,0")
+    assert (other.options.setup.cores, other.program.tools[1].bottom_angle) == ({}, 0.0)
 
 
 def old_tool(kind, **sizes):

@@ -68,12 +68,17 @@ def tools_in_use(driven: TrajectoryPath, setup: Setup) -> tuple[ToolUse, ...]:
     trajectory, cells = driven.trajectory, np.arange(1, len(driven.poses))
     number, rapid = trajectory.tool[driven.segment[1:]], trajectory.kind[driven.segment[1:]] == Kind.RAPID
     return tuple(
-        ToolUse(*_sizes(trajectory.tools[one], setup), setup.shanks.get(one), cells[mine & ~rapid], cells[mine & rapid])
+        ToolUse(
+            *sizes_between(trajectory.tools[one], setup),
+            setup.shanks.get(one),
+            cells[mine & ~rapid],
+            cells[mine & rapid],
+        )
         for one, mine in ((int(one), number == one) for one in np.unique(number))
     )
 
 
-def _sizes(tool: Tool, setup: Setup) -> tuple[Tool, Tool]:
+def sizes_between(tool: Tool, setup: Setup) -> tuple[Tool, Tool]:
     """The smallest and the largest possible size of a tool."""
     if tool.number in setup.cores:
         return setup.core_of(tool), tool
