@@ -8,6 +8,7 @@ Input: statements and comments. Output: records in the state, evaluated once all
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -44,6 +45,7 @@ def cutcom(state: ReaderState, row: int, statement: Statement) -> None:
     planes = {_PLANES[word] for word in words if word in _PLANES}
     contradict = len(sides) > 1 or len(planes) > 1 or ("OFF" in words and bool(sides or "ON" in words))
     no_register = any(number < 0 or number != round(number) for number in statement.numbers)
+    no_register |= any(isinstance(one, float) and isinstance(other, float) for one, other in pairwise(statement.items))
     if not words or not set(words) <= _KNOWN or contradict or no_register:
         state.report("L401", row, f"CUTCOM/{statement.items_text()}")
     elif sides:

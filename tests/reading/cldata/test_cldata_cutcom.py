@@ -423,7 +423,7 @@ def test_named_planes_turn_with_the_frame_and_are_seen_from_the_holder(frame, wo
 
 
 @pytest.mark.parametrize(
-    "words", ["OFF,LEFT", "LEFT,OFF", "ON,OFF", "LEFT,XYPLAN,YZPLAN", "LEFT,RIGHT", "LEFT,2.5", "LEFT,-1"]
+    "words", ["OFF,LEFT", "LEFT,OFF", "ON,OFF", "LEFT,XYPLAN,YZPLAN", "LEFT,RIGHT", "LEFT,2.5", "LEFT,-1", "LEFT,3,4"]
 )
 def test_words_that_contradict_each_other_are_refused(words):
     """OFF,LEFT was LEFT."""
