@@ -91,7 +91,7 @@ def _port(text: str) -> Port:
     try:
         return port_named(text)
     except ValueError as fault:
-        raise argparse.ArgumentTypeError(str(fault)) from None
+        raise argparse.ArgumentTypeError(str(fault).removeprefix("port: ")) from None
 
 
 _HIGHEST_PROGRAM = 999

@@ -18,7 +18,14 @@ if TYPE_CHECKING:
     from pkm_post.toolpath.compensation.offset_options import OffsetOptions
     from pkm_post.toolpath.compensation.swept_volume import SweptVolume, stock_left
     from pkm_post.toolpath.compressor.bounds import SplineBounds, tip_jerk_bound
-    from pkm_post.toolpath.from_line import StartLine, modal_events, not_repeated, row_of_line, started_at_line
+    from pkm_post.toolpath.from_line import (
+        StartLine,
+        lines_to_begin_at,
+        modal_events,
+        not_repeated,
+        row_of_line,
+        started_at_line,
+    )
     from pkm_post.toolpath.machine_offsets import MachineOffsets, with_machine_offsets
     from pkm_post.toolpath.optional_stops import OPTIONAL_STOPS, with_optional_stops
     from pkm_post.toolpath.sides import with_side
@@ -47,7 +54,7 @@ else:
             "compensation.offset_options": "OffsetOptions",
             "compensation.swept_volume": "SweptVolume stock_left",
             "compressor.bounds": "SplineBounds tip_jerk_bound",
-            "from_line": "StartLine started_at_line modal_events not_repeated row_of_line",
+            "from_line": "StartLine lines_to_begin_at started_at_line modal_events not_repeated row_of_line",
             "machine_offsets": "MachineOffsets with_machine_offsets",
             "optional_stops": "OPTIONAL_STOPS with_optional_stops",
             "sides": "with_side",
@@ -107,6 +114,7 @@ __all__ = [
     "modal_events",
     "not_repeated",
     "row_of_line",
+    "lines_to_begin_at",
     "Splines",
     "compensate",
     "compress",

@@ -134,6 +134,12 @@ def _replaces(event: Event, earlier: Event) -> bool:
     return not is_own or ends_all or event.value == earlier.value
 
 
+def lines_to_begin_at(trajectory: Trajectory) -> str:
+    """What a start line may name: operations, or in a program without any a line up to the last one that moves."""
+    named = ", ".join(filter(None, trajectory.operations))
+    return f"operations {named}" if named else f"the last line that moves is {max(trajectory.line)}"
+
+
 def started_at_line(trajectory: Trajectory, start: StartLine, machine: Machine) -> tuple[Trajectory | None, Findings]:
     """The trajectory from a line on, with the approach to it; or the reasons against it.
 
@@ -145,7 +151,7 @@ def started_at_line(trajectory: Trajectory, start: StartLine, machine: Machine) 
     row = row_of_line(trajectory, start)
     if row is None:
         place = Place(trajectory.source, start.operation, start.line)
-        return None, (Diagnostic("K150", place, f"operations {', '.join(trajectory.operations) or 'without a name'}"),)
+        return None, (Diagnostic("K150", place, lines_to_begin_at(trajectory)),)
     row = min([each.first for each in threads(trajectory.events) if each.first <= row < each.end], default=row)
     if row == 0:
         return trajectory, ()

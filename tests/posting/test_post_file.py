@@ -416,5 +416,7 @@ def test_a_line_that_is_not_there_is_refused(tmp_path):
     options = Options(work_offset=WORK_OFFSET, from_line=StartLine(40))
     with pytest.raises(Refused) as refused:
         posted(tmp_path, "part.ngc", G_CODE, options=options, reading=ReadingOptions("vector"))
-    assert [each.code for each in refused.value.diagnostics if each.code == "K150"]
+    (found,) = [each.found for each in refused.value.diagnostics if each.code == "K150"]
+    last = max(number for number, block in enumerate(G_CODE.splitlines(), 1) if "X" in block or "Z" in block)
+    assert found == f"the last line that moves is {last}"
     assert not list((tmp_path / "out").glob("*"))

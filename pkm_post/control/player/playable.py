@@ -12,7 +12,14 @@ from pkm_post.certificate import machine_fault, values_beyond_machine
 from pkm_post.control.player.stop_events import TOLERANCES
 from pkm_post.machine import find_collisions
 from pkm_post.model import Diagnostic, Machine, Place, Setup, Tolerances, Trajectory, errors, threads
-from pkm_post.toolpath import MachineOffsets, StartLine, not_repeated, row_of_line, with_machine_offsets
+from pkm_post.toolpath import (
+    MachineOffsets,
+    StartLine,
+    lines_to_begin_at,
+    not_repeated,
+    row_of_line,
+    with_machine_offsets,
+)
 from pkm_post.writing import manifest, trajectory_file
 
 Findings = tuple[Diagnostic, ...]
@@ -74,4 +81,4 @@ def first_row(
     if row is not None:
         return row, not_repeated(trajectory, row) if row and not repeat_codes else ()
     place = Place(str(file), operation, line)
-    return None, (Diagnostic("C207", place, f"operations {', '.join(trajectory.operations) or 'without a name'}"),)
+    return None, (Diagnostic("C207", place, lines_to_begin_at(trajectory)),)
