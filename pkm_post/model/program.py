@@ -174,3 +174,8 @@ class Program:
         return np.repeat(
             [before, *(event.value for event in events)], np.diff([0, *(event.row for event in events), len(self)])
         )
+
+    def tool_numbers(self) -> Array:
+        """Number of the tool in use on each row, (N,); before the first change the first tool counts as loaded."""
+        changes = (event.value for event in self.events if event.kind is EventKind.TOOL_CHANGE)
+        return self.in_force(EventKind.TOOL_CHANGE, next(changes, min(self.tools))).astype(np.int32)

@@ -103,7 +103,7 @@ def _trajectory(
 
 def _path_columns(placed: Program, machine: Machine) -> dict[str, Any]:
     """Path columns by row of the program: start, end and length of each row."""
-    tip, axis, tool = placed.position, placed.tool_axis, _tool_by_row(placed)
+    tip, axis, tool = placed.position, placed.tool_axis, placed.tool_numbers()
     axis_before = np.vstack([machine.home_axis, axis[:-1]])
     # At a tool change the platform is at rest: the tip of a longer tool starts lower.
     longer = np.diff(gauge_lengths(placed.tools, tool), prepend=placed.tools[int(tool[0])].length)
@@ -153,12 +153,6 @@ def _angles(before: Array, after: Array) -> Array:
 def _highest_feeds(placed: Program, machine: Machine) -> Array:
     highest = np.where(placed.kind == Kind.RAPID, machine.rapid_speed, machine.feed_speed)
     return np.minimum(highest, thread_feeds(placed, machine)) if placed.events else highest
-
-
-def _tool_by_row(program: Program) -> Array:
-    """The number of the tool in use on each row, (N,); before the first change the first tool counts as loaded."""
-    changes = (event.value for event in program.events if event.kind is EventKind.TOOL_CHANGE)
-    return program.in_force(EventKind.TOOL_CHANGE, next(changes, min(program.tools))).astype(np.int32)
 
 
 def _faults(program: Program, machine: Machine, way: dict[str, Any], keep: Array) -> Iterator[Diagnostic]:

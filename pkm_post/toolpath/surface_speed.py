@@ -55,9 +55,9 @@ def with_surface_speed(
     faults = without_threads(program, "with a surface speed")
     if faults:
         return None, faults
-    tool, spindle = program.in_force(EventKind.TOOL_CHANGE), program.in_force(EventKind.SPINDLE)
+    tool, spindle = program.tool_numbers(), program.in_force(EventKind.SPINDLE)
     diameter = np.full(len(program), np.nan)
-    for number in np.unique(tool[~np.isnan(tool)]).astype(int).tolist():
+    for number in np.unique(tool).tolist():
         rows = tool == number
         cutter, faults = _cutter(program, number, rows)
         if cutter is None:

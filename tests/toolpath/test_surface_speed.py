@@ -41,6 +41,16 @@ def test_without_normals_the_diameter_of_the_tool_counts():
     assert speeds(made) == [(0, 5305), (8, 0)]
 
 
+@pytest.mark.parametrize("change", [(), (Event(3, EventKind.TOOL_CHANGE, 1),)], ids=["none", "later"])
+def test_before_the_first_tool_change_the_first_tool_counts_as_loaded(change):
+    events = (Event(0, EventKind.SPINDLE, 5000), *change, Event(3, EventKind.SPINDLE, 4000))
+    made, reported = with_surface_speed(
+        dataclasses.replace(two_cuts(), events=events), SurfaceSpeed(200_000 / 60), WIDE
+    )
+    assert not reported
+    assert speeds(made) == [(0, 5305), (3, 5305)]
+
+
 def test_a_ball_touches_on_its_effective_diameter():
     # Ball of 12 mm: normals at 30 and 90 degrees from the axis touch on 12 sin 30 = 6 mm and on 12 mm.
     normals = [[0.5, 0.0, np.sqrt(0.75)], [1.0, 0.0, 0.0]]
