@@ -8,6 +8,7 @@ number, ``OutcomeUnknownError`` for a set that may or may not have been executed
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -293,7 +294,6 @@ def free_memory(session: Session) -> int:
         LinkLostError: the answer is invalid.
     """
     (answer,) = session.query("SIZE")[:1] or ("",)
-    try:
-        return int(answer)
-    except ValueError:
-        raise LinkLostError(f"SIZE: expected a number of words, got {answer!r}") from None
+    if not re.fullmatch(r"-?[0-9]+", answer.strip()):  # int() takes underscores
+        raise LinkLostError(f"SIZE: expected a number of words, got {answer!r}")
+    return int(answer)

@@ -13,6 +13,7 @@ from pkm_post.control.link.errors import LinkLostError, PmacError
 from pkm_post.control.link.owner_record import read_record
 from pkm_post.control.link.rotary_buffer import RotaryBuffer
 from pkm_post.control.link.run import check_setup
+from pkm_post.control.link.session import free_memory
 from pkm_post.control.link.status import PowerMotorBits, is_busy, read_status
 from pkm_post.control.simulator import Controller
 from pkm_post.machine import machine_named
@@ -178,3 +179,10 @@ def test_every_question_ends_in_a_fault_of_the_link_or_of_the_machine(what):
                 assert str(fault)
         session.query = honest
         ASKING[what](session)
+
+
+@pytest.mark.parametrize("answer", ["1_000", "", "+5", "12.5", "\u0663"])
+def test_a_size_of_the_free_memory_that_no_controller_writes_is_refused(answer):
+    with pytest.raises(LinkLostError, match="SIZE: expected a number of words"):
+        free_memory(SimpleNamespace(query=lambda text: [answer]))
+    assert free_memory(SimpleNamespace(query=lambda text: ["-1"])) == -1
