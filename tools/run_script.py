@@ -3,10 +3,9 @@
 
     freecadcmd run_script.py -- SCRIPT ARGS...
 
-By itself freecadcmd imports a script, so that its ``__main__`` part never runs; ends with exit code 0 when it
-raises; loses text that is still buffered when it exits; and mixes its progress marks into what the script prints.
-It takes options behind ``--pass`` for its own, and
-what stands behind ``--`` for files that it opens after the script, for which this one leaves it no time.
+By itself freecadcmd imports a script, so its ``__main__`` part never runs; ends with exit code 0 when it raises; loses
+text that is still buffered when it exits; and mixes its progress marks into what the script prints. It takes options
+behind ``--pass`` for its own, and arguments behind ``--`` for files to open after the script: this one ends before.
 """
 
 import atexit

@@ -69,6 +69,22 @@ def arc_turning_points(start: Array, end: Array, centre: Array, axis: Array, swe
     return np.asarray(start - radius + np.cos(turn) * radius + np.sin(turn) * side + turn * slope)
 
 
+def bounding_box(points: Array, *arcs: Array) -> tuple[Array, Array]:
+    """Least and greatest coordinates of points, (N, 3), and of arcs between them, (3,) each.
+
+    Args:
+        points: of at least one row.
+        arcs: the arguments of ``arc_turning_points``, of A arcs.
+    """
+    turns = arc_turning_points(*arcs)
+    # numpy takes ten times as long along the first axis
+    columns = [(points[:, axis], turns[..., axis]) for axis in range(3)]
+    lowest, highest = (
+        [getattr(turn, of)(initial=getattr(ends, of)()) for ends, turn in columns] for of in ("min", "max")
+    )
+    return np.array(lowest), np.array(highest)
+
+
 def arc_length(start: Array, end: Array, centre: Array, axis: Array) -> Array:
     """Lengths of arcs and helices, mm, with the mean of start and end radius."""
     radius = (norm(across(start - centre, axis)) + norm(across(end - centre, axis))) / 2

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 from pkm_post import at_first_use
 from pkm_post.reading import gcode
 from pkm_post.reading.gcode.codes import SPINDLE_SYNCHRONISED
-from pkm_post.reading.gcode.events import LONG_DWELL
 from pkm_post.reading.gcode.flavours import FLAVOURS
 from pkm_post.reading.gcode.options import AXIS_WORDS, DWELL_UNITS
 from pkm_post.reading.gcode.tool_axes import axis_of
@@ -19,7 +18,7 @@ from pkm_post.reading.part_program import (
     with_tool_table,
 )
 from pkm_post.reading.threads import without_idle_starts
-from pkm_post.reading.units import UNITS
+from pkm_post.reading.units import LONG_DWELL, UNITS
 
 if TYPE_CHECKING:
     from pkm_post.reading.check import check_file, checks_as_json, checks_as_text

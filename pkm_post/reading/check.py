@@ -12,9 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from pkm_post.geometry import arc_sweep, arc_turning_points, move_lengths
+from pkm_post.geometry import arc_sweep, bounding_box, move_lengths
 from pkm_post.model import Diagnostic, Kind, Program, errors
 from pkm_post.reading.part_program import AS_WRITTEN, ReadingOptions, name_of, read_part_program
 
@@ -82,13 +80,13 @@ def size_of(program: Program) -> Size:
     centre, axis = program.arc_centre[1:], program.arc_axis[1:]
     length = move_lengths(start, end, arc, centre, axis)
     arcs = start[arc], end[arc], centre[arc], axis[arc]
-    points = np.concatenate([program.position, *arc_turning_points(*arcs, arc_sweep(*arcs))])
+    lowest, highest = bounding_box(program.position, *arcs, arc_sweep(*arcs))
     return Size(
         blocks=len(program),
         arcs=int(arc.sum()),
         length=float(length.sum()),
-        lowest=tuple(points.min(axis=0).tolist()),
-        highest=tuple(points.max(axis=0).tolist()),
+        lowest=tuple(lowest.tolist()),
+        highest=tuple(highest.tolist()),
     )
 
 

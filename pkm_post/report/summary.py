@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 import pkm_post
-from pkm_post.geometry import Array, arc_turning_points, cubic_ranges, hermite_accelerations
+from pkm_post.geometry import Array, bounding_box, cubic_ranges, hermite_accelerations
 from pkm_post.model import (
     AT_FEED,
     Certificate,
@@ -266,12 +266,9 @@ def _tools(trajectory: Trajectory) -> list[Any]:
 
 def _box(trajectory: Trajectory) -> list[list[float]]:
     """Least and greatest coordinates of the tip, also between the ends of arcs."""
-    points, arc = [trajectory.tip], np.flatnonzero(trajectory.kind == Kind.ARC)
-    if len(arc):
-        columns = trajectory.tip_before(), trajectory.tip, trajectory.arc_centre, trajectory.arc_axis, trajectory.sweep
-        points += [*arc_turning_points(*(column[arc] for column in columns))]
-    # numpy takes ten times as long along the first axis
-    return [[_rounded(of([of(one.T[axis]) for one in points]), 3) for axis in range(3)] for of in (np.min, np.max)]
+    arc = np.flatnonzero(trajectory.kind == Kind.ARC)
+    columns = trajectory.tip_before(), trajectory.tip, trajectory.arc_centre, trajectory.arc_axis, trajectory.sweep
+    return [_rounded(corner, 3) for corner in bounding_box(trajectory.tip, *(column[arc] for column in columns))]
 
 
 def _strut_ranges(struts: StrutMotion) -> tuple[Array, Array]:

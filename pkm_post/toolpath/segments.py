@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.geometry import Array, across, along_rates, arc_turning_points, cross, dot, norm, towards
+from pkm_post.geometry import Array, across, along_rates, bounding_box, cross, dot, norm, towards
 from pkm_post.model import Kind, Trajectory, find_rows, is_uniform, map_row_pairs, map_rows, select_rows, uniform
 from pkm_post.toolpath.compressor.splines import Splines, direction
 
@@ -229,5 +229,4 @@ def highest_tip(trajectory: Trajectory) -> float:
     """Greatest z of the tip in {M}, mm, also between the ends of arcs."""
     arc = np.flatnonzero(trajectory.kind == Kind.ARC)
     columns = trajectory.tip_before(), trajectory.tip, trajectory.arc_centre, trajectory.arc_axis, trajectory.sweep
-    turning_points = arc_turning_points(*(column[arc] for column in columns))
-    return float(turning_points[..., 2].max(initial=trajectory.tip[:, 2].max()))
+    return float(bounding_box(trajectory.tip, *(column[arc] for column in columns))[1][2])

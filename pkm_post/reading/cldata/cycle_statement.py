@@ -30,9 +30,10 @@ from pkm_post.reading.cldata.cycle_notation import (
     notation_by_words,
     notation_of_dialect,
 )
-from pkm_post.reading.cldata.feeds import FEED_WORDS, LONG_DWELL, feed_of
+from pkm_post.reading.cldata.feeds import FEED_WORDS, feed_of
 from pkm_post.reading.cldata.state import ReaderState
 from pkm_post.reading.cldata.statements import Statement
+from pkm_post.reading.units import LONG_DWELL
 
 _MAX_PECKS = 10000
 _RETURNS = ("INIT", "CLEAR")

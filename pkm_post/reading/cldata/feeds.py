@@ -13,16 +13,13 @@ from dataclasses import replace
 from pkm_post.model import EventKind
 from pkm_post.reading.cldata.state import Feed, ReaderState, SurfaceSpeed
 from pkm_post.reading.cldata.statements import Statement
-from pkm_post.reading.units import UNITS
+from pkm_post.reading.units import LONG_DWELL, UNITS
 
 MM_PER_MINUTE: dict[str, float | None] = {"MMPM": 1.0, "IPM": 25.4, "FPM": 304.8, "PERMIN": None}
 """mm per length unit of a feed per minute; None is the program unit."""
 MM_PER_TURN: dict[str, float | None] = {"MMPR": 1.0, "IPR": 25.4, "FPR": 304.8, "PERREV": None}
 FEED_WORDS = frozenset({*MM_PER_MINUTE, *MM_PER_TURN, "INVERS"})
 _FEED_MODES = frozenset({"AUTO", "ON", "OFF"})
-
-LONG_DWELL = 60.0
-"""s: a longer dwell may be in another unit."""
 
 _SENSES = {"CLW": 1.0, "CCLW": -1.0}
 _SURFACE_SPEEDS = {"SMM": 1000.0, "SFM": 304.8}

@@ -19,6 +19,7 @@ from pkm_post.reading.gcode.codes import NONE, ORIENTED_STOP, Group, Word
 from pkm_post.reading.gcode.diagnostics import BlockDiagnostics, Found
 from pkm_post.reading.gcode.modal import Modal, changed
 from pkm_post.reading.gcode.options import DWELL_UNITS, ReadOptions
+from pkm_post.reading.units import LONG_DWELL
 
 _COOLANT = {7: 2.0, 8: 1.0, 9: 0.0}
 _DWELL = 40
@@ -87,8 +88,6 @@ def ordered_events(of_blocks: list[BlockEvent], of_cycles: list[CycleEvent], blo
     return tuple(Event(row, kind, value) for row, _, _, kind, value in ordered)
 
 
-LONG_DWELL = 60.0
-"""s: a longer dwell may be in milliseconds."""
 _POINTED = re.compile(r"P[ \t]*\d*\.", re.IGNORECASE)
 
 

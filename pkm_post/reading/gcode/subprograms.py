@@ -70,10 +70,15 @@ class Source:
             return self, faults
         text = with_line_feeds(self.text)
         file = SubprogramFile(label, str(path), len(self.blocks), text.count(b"\n") + 1)
-        note = f"{label} is the file {path.name}, SHA-256 {hashlib.sha256(content).hexdigest()}"
+        note = note_of_file(label, path, content)
         whole = b"".join([text, b"\n", with_line_feeds(content)])
         warnings = (*self.warnings, *faults)
         return Source(_joined(self.blocks, blocks, file), whole, (*self.notes, note), warnings), ()
+
+
+def note_of_file(name: str, path: Path, content: bytes) -> str:
+    """The note of a report about the file of a subprogram; a batch reads it back, as ``cli.batch``."""
+    return f"{name} is the file {path.name}, SHA-256 {hashlib.sha256(content).hexdigest()}"
 
 
 def content_of(path: Path) -> bytes | Diagnostic:

@@ -7,7 +7,6 @@ Input: moves and dwells of blocks and cycles. Output: motions and events in ``pa
 from __future__ import annotations
 
 from pkm_post.model import EventKind
-from pkm_post.reading.gcode.events import LONG_DWELL
 from pkm_post.reading.gcode.options import UNITS, ReadOptions
 from pkm_post.reading.siemens.blocks import Call, Notes
 from pkm_post.reading.siemens.buffer import ABSOLUTE
@@ -15,6 +14,7 @@ from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
 from pkm_post.reading.siemens.path import Path
 from pkm_post.reading.siemens.scan import ScannedLines
 from pkm_post.reading.siemens.tools import Tools
+from pkm_post.reading.units import LONG_DWELL
 
 
 class SiemensMachine:

@@ -7,7 +7,6 @@ Input: folders, and the name of a call. Output: the text of the program with tha
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +14,7 @@ from pathlib import Path
 from pkm_post.model import Diagnostic, Place
 from pkm_post.reading.gcode.blocks import SubprogramFile
 from pkm_post.reading.gcode.scan import with_line_feeds
-from pkm_post.reading.gcode.subprograms import content_of, listed
+from pkm_post.reading.gcode.subprograms import content_of, listed, note_of_file
 
 SUFFIXES = (".spf", ".mpf")
 
@@ -57,7 +56,7 @@ class Source:
             return self, (content,)
         lines = self.text.count(b"\n")
         file = SubprogramFile(name, str(paths[0]), lines, lines + 1)
-        note = f"{name} is the file {paths[0].name}, SHA-256 {hashlib.sha256(content).hexdigest()}"
+        note = note_of_file(name, paths[0], content)
         begins = with_line_feeds(content)
         header = b";" if begins.lstrip().startswith(b"%") else f"%_N_{name}_SPF".encode("latin-1")
         return Source(b"".join([self.text, header, b"\n", begins]), (*self.files, file), (*self.notes, note)), ()
