@@ -23,7 +23,7 @@ from pkm_post.reading.units import LONG_DWELL, UNITS
 if TYPE_CHECKING:
     from pkm_post.reading.check import check_file, checks_as_json, checks_as_text
     from pkm_post.reading.cldata.options import CONTOUR_DATA, DIALECTS
-    from pkm_post.reading.editing import TextFile, renumbered
+    from pkm_post.reading.editing import TextFile, jump_by_number, renumbered
     from pkm_post.reading.highlighting import Colour, coloured_spans, shown_language, underlined
     from pkm_post.reading.listing import listing_lines
     from pkm_post.reading.mesh_file import MESH_READERS, STEP_SUFFIXES, mesh_of_triangles, read_mesh
@@ -34,7 +34,7 @@ else:
         {
             "check": "check_file checks_as_json checks_as_text",
             "cldata.options": "CONTOUR_DATA DIALECTS",
-            "editing": "TextFile renumbered",
+            "editing": "TextFile jump_by_number renumbered",
             "highlighting": "Colour coloured_spans shown_language underlined",
             "listing": "listing_lines",
             "mesh_file": "MESH_READERS STEP_SUFFIXES mesh_of_triangles read_mesh",
@@ -70,6 +70,7 @@ __all__ = [
     "coloured_spans",
     "gcode",
     "is_part_program",
+    "jump_by_number",
     "language_of",
     "listing_lines",
     "mesh_of_triangles",

@@ -54,13 +54,33 @@ class TextFile:
 
 _BLOCK = re.compile(r"^([ \t]*(?:/[ \t]*(?:[1-9](?![\d.])[ \t]*)?)*)(N[ \t]*\d+(?:\.\d*)?[ \t]*)?(.*)$", re.M | re.I)
 _COMMENT = re.compile(r"\([^()\n]*\)|;.*")
+_OWN_NUMBER = re.compile(r"[%:]|O\s*\d+$", re.I)
+"""Ends of a file, main blocks of Siemens and numbers of programs: a line number before them changes their meaning."""
+_JUMP = re.compile(
+    r"GO[ \t]*TO[BFC]?(?:[ \t]+(?P<label>[A-Z_][A-Z_]\w*))?"
+    r"|M[ \t]*0*(?:97(?!\d)|98(?!\d)[^\n]*[QH]|99(?!\d)[^\n]*P)|\bREPEATB?\b[^\n]*\bN\d",
+    re.I,
+)
+
+
+def jump_by_number(text: str) -> int | None:
+    """The first line of G-code that jumps to a block by its number, which renumbering would change; None without one.
+
+    Jumps to labels do not count. Those to a computed target do.
+    """
+    code = _COMMENT.sub("", text)
+    for jump in _JUMP.finditer(code):
+        if not (jump["label"] and re.search(rf"\b{jump['label']}[ \t]*:", code, re.I)):
+            return code.count("\n", 0, jump.start()) + 1
+    return None
 
 
 def renumbered(text: str, first: int = 10, step: int = 10) -> str:
     """Renumber the blocks of G-code.
 
-    Lines without a block get no number: empty lines, comments, and the percent signs around a program. A block with
-    only a line number stays a block.
+    Lines without a block get no number: empty lines, comments, and the percent signs around a program. Nor do numbers
+    of programs, as in O1234, and main blocks of Siemens, as in :20. A block with only a line number stays a block.
+    The text should have no ``jump_by_number``.
 
     Args:
         text: G-code, with line feeds.
@@ -77,7 +97,7 @@ def renumbered(text: str, first: int = 10, step: int = 10) -> str:
     def with_number(block: re.Match[str]) -> str:
         lead, old, rest = block.groups()
         words = _COMMENT.sub("", rest).strip()
-        if words.startswith("%") or not (words or old):
+        if _OWN_NUMBER.match(words) or not (words or old):
             return block[0]
         return f"{lead}N{next(numbers)}{' ' * bool(rest)}{rest}"
 

@@ -111,6 +111,16 @@ def editor_replaces_renumbers_and_saves():
     backwards = bar.find_previous() and editor.widget.text.current_line()
     bar.replace_all()
     replaced = editor.widget.size.text()
+    whole = editor.widget.text.toPlainText()
+    editor.widget.text.setPlainText(whole + "M99 P10\n")
+    editor.widget.renumber()
+    refused = [
+        editor.widget.size.text(),
+        editor.widget.text.current_line(),
+        editor.widget.text.toPlainText() == whole + "M99 P10\n",
+    ]
+    editor.widget.text.selectAll()
+    editor.widget.text.insertPlainText(whole)
     editor.widget.renumber()
     title = editor.windowTitle()
     saved = editor.save()
@@ -121,6 +131,7 @@ def editor_replaces_renumbers_and_saves():
         "found": found,
         "backwards": backwards,
         "replaced": replaced,
+        "refused": refused,
         "title": title,
         "saved": saved,
         "text": text,

@@ -34,6 +34,7 @@ def test_editor_replaces_renumbers_and_saves(session):
     assert found["found"] == [6, 7, 6]
     assert found["backwards"] == 7
     assert (found["replaced"], found["title"], found["saved"]) == ("2 replaced", "program.ngc * - PKM Post", True)
+    assert found["refused"] == ["Not renumbered: line 10 jumps to a block by its number", 10, True]
     assert found["text"].startswith("N10 G21 G90 G17\nN20 T1 M6\n")
     assert found["ys"] == [0.0, 8.0]
 

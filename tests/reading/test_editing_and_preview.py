@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pkm_post.reading import gcode
-from pkm_post.reading.editing import TextFile, renumbered
+from pkm_post.reading.editing import TextFile, jump_by_number, renumbered
 from pkm_post.reading.highlighting import underlined
 from pkm_post.reading.language import Language
 from pkm_post.reading.part_program import ReadingOptions
@@ -49,6 +49,38 @@ def test_blocks_are_numbered_and_nothing_else():
 def test_the_number_of_a_switch_stays_behind_its_slash():
     assert renumbered("/2 G1 X1\n / 3N7X3\n/9\n/G1\n") == "/2 N10 G1 X1\n / 3N20 X3\n/9\n/N30 G1\n"
     assert renumbered("/1/3 N5 G1 X1\n/1 /3 G0\n") == "/1/3 N10 G1 X1\n/1 /3 N20 G0\n"
+
+
+def test_numbers_of_programs_and_main_blocks_get_no_other():
+    text = "%\nO1234 (part)\nG1 X1\n:20 G1 X2\no100 sub\nO2\n:0003\n"
+    assert renumbered(text) == "%\nO1234 (part)\nN10 G1 X1\n:20 G1 X2\nN20 o100 sub\nO2\n:0003\n"
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["GOTO 8", "IF [#1 EQ 1] GOTO8", "go to #1", "GOTO [#1*10]", "M99 P30", "N5 m099P#3", "M97 P100", "M98 P1000 Q20",
+     "GOTOF N40", "IF R1>2 GOTOB N40", "CASE R1 OF 1 GOTOF ENDE DEFAULT GOTOF N40", "GOTOF NOWHERE", "REPEAT ENDE N40"],
+)  # fmt: skip
+def test_jumps_by_number_are_found(line):
+    assert jump_by_number(f"G1 X1 (GOTO 8)\n\n{line}\nN8 X2\nN40 ENDE: X3\n") == 3
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "(M99 P30)",
+        "; GOTO 8",
+        "M99",
+        "M98 P1000",
+        "G4 P99",
+        "GOTOF ENDE",
+        "REPEAT ENDE P=3",
+        "M990 P1",
+        "G28 GOTOB ENDE",
+    ],
+)
+def test_other_lines_are_no_jumps_by_number(line):
+    assert jump_by_number(f"{line}\nN8 X2\nN40 ende: X3\n") is None
 
 
 _LINES = st.lists(

@@ -27,6 +27,7 @@ from pkm_post.reading import (
     Language,
     ReadingOptions,
     is_part_program,
+    jump_by_number,
     language_of,
     renumbered,
     shown_language,
@@ -39,7 +40,7 @@ _NEW = "new.ngc"
 """The name of a text without a file, which makes it G-code."""
 _HEAD = 65536
 """Number of leading characters from which to recognise the language."""
-_NUMBERED = re.compile(r"^[ \t]*/?[ \t]*N\d", re.M)
+_NUMBERED = re.compile(r"^[ \t]*(?:/[ \t]*(?:[1-9](?![\d.])[ \t]*)?)*N\d", re.M)
 """The start of a block that ``renumbered`` has numbered."""
 
 
@@ -115,6 +116,12 @@ class EditorWidget(QtWidgets.QWidget):
     def renumber(self) -> None:
         """Number all blocks; CL data has no line numbers."""
         if self.language() is not Language.GCODE:
+            return
+        line = jump_by_number(self.text.toPlainText())
+        if line is not None:
+            text = translate("PKM_Editor", "Not renumbered: line {} jumps to a block by its number")
+            self.size.setText(text.format(line))
+            self._jump(line, 1)
             return
         first = step = 10
 
