@@ -18,6 +18,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 import numpy as np
+import Path
 from Path.Base.Util import toolControllerForOp
 
 from pkm_post.freecad_app.commands.words import CommandWords, undecodable_command
@@ -180,6 +181,21 @@ def _kept_by_cam(operation: Any) -> str:
     return next(filter(None, map(_kept_by_cam, below)), "")
 
 
+def _label_in_path(operation: Any) -> str:
+    """What FreeCAD made of the label behind a bracket when it read the path of a file: a label is a comment there."""
+    if ")" not in operation.Label:
+        return ""
+    path = Path.Path()  # whose own reading of a text ends in a C++ exception
+    try:
+        path.setFromGCode(f"({operation.Label})")
+    except RuntimeError:  # Base.BadFormatError
+        return Phrase("nothing behind its label") if _NOT_READ in operation.State else ""
+    read = path.Commands
+    codes = [each.toGCode() for each in read if not each.Name.startswith("(")]
+    begins = [each.toGCode() for each in operation.Path.Commands[: len(read)]]
+    return ", ".join(codes) if codes and begins == [each.toGCode() for each in read] else ""
+
+
 def _not_computed(operation: Any) -> str:
     return "its state is Touched" if _NOT_COMPUTED in operation.State else ""
 
@@ -211,6 +227,7 @@ def _anywhere(check: Callable[[Any], str]) -> Callable[[Any], str]:
 
 _FAULTS: tuple[tuple[str, Callable[[Any], str]], ...] = (
     ("J136", _has_no_path),
+    ("J148", _anywhere(_label_in_path)),
     ("J134", _not_read),
     ("J116", _not_valid),
     ("J133", _not_computed),

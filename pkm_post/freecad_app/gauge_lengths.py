@@ -23,7 +23,7 @@ from Path.Base.Util import toolControllerForOp
 from pkm_post.freecad_app.document import document_name, members
 from pkm_post.freecad_app.job import is_active
 from pkm_post.freecad_app.tools import bit_length, gauge_length, set_gauge_length
-from pkm_post.model import Diagnostic, Place
+from pkm_post.model import Diagnostic, Phrase, Place
 
 _DIGITS = 9
 """Significant digits shown: nanometres of a metre."""
@@ -56,7 +56,8 @@ class ToolRow:
 
     def missing_length(self, found: str = "") -> Diagnostic:
         """The diagnostic of posting for a tool without a gauge length; ``found`` is the input given instead."""
-        return Diagnostic("J113", self.place, f"T{self.number}{found and ', '}{found}")
+        tool = f"T{self.number}"
+        return Diagnostic("J113", self.place, Phrase("{}, {}", tool, found) if found else tool)
 
 
 def tool_rows(job: Any) -> tuple[ToolRow, ...]:

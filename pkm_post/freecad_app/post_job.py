@@ -150,15 +150,15 @@ def find_job(document: Any, name: str | None = None) -> Any:
     """Find the CAM job with a name or label; without a name, the only job.
 
     Raises:
-        Refused: no job matches, or more than one, J102.
+        Refused: no job matches, J102, or more than one, J147.
     """
     jobs = find_jobs(document)
     matching = [job for job in jobs if name in (None, job.Name, job.Label)]
-    if len(matching) != 1:
-        known = ", ".join(job.Label for job in jobs)
-        found = f"{name or 'no name'} given, the document has {known}"
-        raise Refused([Diagnostic("J102", Place(document_name(document)), found)])
-    return matching[0]
+    if len(matching) == 1:
+        return matching[0]
+    known = ", ".join(f"{job.Label} ({job.Name})" for job in matching or jobs)
+    found = Phrase("{} given, the document has {}", name or Phrase("no name"), known)
+    raise Refused([Diagnostic("J147" if matching else "J102", Place(document_name(document)), found)])
 
 
 def post_to(

@@ -217,9 +217,11 @@ def _converted(name: str, text: str) -> tuple[Any, str]:
 
 def _wrong(obj: Any) -> Findings:
     """Faults of properties with invalid text."""
-    found = (
+    found = [
         f"{name}: {wrong}" for name in _TYPED for text in _texts(obj, name) if (wrong := _converted(name, text)[1])
-    )
+    ]
+    if len(obj.MachineZero) not in (0, len("XYZ")):
+        found.append(Phrase("MachineZero: expected X, Y and Z or nothing, got {}", list(obj.MachineZero)))
     return tuple(Diagnostic("J121", Place(str(obj.File), obj.Label), text) for text in found)
 
 

@@ -86,11 +86,11 @@ class SimulationObject(PropertyProxy):
 
     @without_traceback
     def execute(self, obj: Any) -> None:
-        """Plan the motion of the job, if enabled."""
+        """Plan the motion of the job, if enabled; otherwise the figures stay, but the job may have another motion."""
+        self.plan = None
         if not obj.Active:
             return
         self.clear_results(obj)
-        self.plan = None
         if obj.Job is not None:
             plan = simulation_of(placed_job(obj.Job, obj.Machine))
             _set_results(obj, plan)

@@ -18,7 +18,7 @@ from pkm_post.freecad_app.core_texts import fault_text
 from pkm_post.freecad_app.gauge_lengths import ToolRow, format_length, parse_length, tool_rows
 from pkm_post.freecad_gui.observers import ChangeWatch
 from pkm_post.freecad_gui.post_fields import tab_through
-from pkm_post.model import Refused
+from pkm_post.model import Phrase, Refused
 
 translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -153,7 +153,7 @@ class GaugeTable(QtWidgets.QGroupBox):
         return text.format(row.number, format_length(self._by_argument[row.number], decimal_point()))
 
     def _typed(self, row: ToolRow) -> str:
-        return f"{self.fields[row.name].text()!r} is no length above zero"
+        return Phrase("{!r} is not a length above zero", self.fields[row.name].text())
 
     def lengths(self) -> dict[str, float]:
         """The edited gauge lengths, in mm by the names of the tool controllers; 0 for a cleared one.

@@ -17,9 +17,9 @@ translate = FreeCAD.Qt.translate
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
 _SIDES = {
-    "Not stated": QT_TRANSLATE_NOOP("SymmetryPanel", "As the original tells"),
-    "Left": QT_TRANSLATE_NOOP("SymmetryPanel", "Left of the original's way"),
-    "Right": QT_TRANSLATE_NOOP("SymmetryPanel", "Right of the original's way"),
+    "Not stated": QT_TRANSLATE_NOOP("SymmetryPanel", "As stated by the original"),
+    "Left": QT_TRANSLATE_NOOP("SymmetryPanel", "Left of the original's path"),
+    "Right": QT_TRANSLATE_NOOP("SymmetryPanel", "Right of the original's path"),
 }
 """Displayed names of the choices of MaterialSide."""
 

@@ -3023,6 +3023,22 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>每行写一个代码及其字，小数用小数点，( ) 中的注释单独成行；然后重新计算</translation>
     </message>
     <message>
+        <source>several CAM jobs may be meant</source>
+        <translation>可能指多个 CAM 作业</translation>
+    </message>
+    <message>
+        <source>name one with --job by a label or name that no other job has; change a label in FreeCAD if there is none</source>
+        <translation>用 --job 以其他作业没有的标签或名称指定一个；若没有这样的，请在 FreeCAD 中更改标签</translation>
+    </message>
+    <message>
+        <source>FreeCAD reads the label of an operation as commands when it opens the document</source>
+        <translation>FreeCAD 打开文档时把操作的标签读成命令</translation>
+    </message>
+    <message>
+        <source>rename it without ( and ), mark it to be recomputed, recompute and save; then open the document again</source>
+        <translation>改成不含 ( 和 ) 的名称，标记为需要重新计算，重新计算并保存；然后重新打开文档</translation>
+    </message>
+    <message>
         <source>add it to the machine file, or pass --work-offset, or --origin for a further fixture of a CAM job</source>
         <translation>将其加入机床文件，或给出 --work-offset；CAM 作业的其他工件坐标系用 --origin 给出</translation>
     </message>
@@ -4779,6 +4795,30 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>{}（快速移动中）</translation>
     </message>
     <message>
+        <source>nothing behind its label</source>
+        <translation>其标签之后没有内容</translation>
+    </message>
+    <message>
+        <source>{}, {}</source>
+        <translation>{}，{}</translation>
+    </message>
+    <message>
+        <source>{} given, the document has {}</source>
+        <translation>给出了 {}，文档中有 {}</translation>
+    </message>
+    <message>
+        <source>no name</source>
+        <translation>未给名称</translation>
+    </message>
+    <message>
+        <source>MachineZero: expected X, Y and Z or nothing, got {}</source>
+        <translation>MachineZero：应为 X、Y 和 Z 或留空，实际为 {}</translation>
+    </message>
+    <message>
+        <source>{!r} is not a length above zero</source>
+        <translation>{!r} 不是大于零的长度</translation>
+    </message>
+    <message>
         <source>{} triangles</source>
         <translation>{} 个三角形</translation>
     </message>
@@ -5215,6 +5255,10 @@ What helps: {cure}.</source>
     <message>
         <source>Take a program that neither M2, M30 or % nor FINI or END-OF-PATH ends</source>
         <translation>接受没有以 M2、M30、% 或 FINI、END-OF-PATH 结束的程序</translation>
+    </message>
+    <message>
+        <source>Not renumbered: line {} jumps to a block by its number</source>
+        <translation>未重新编号：第 {} 行按编号跳转到程序段</translation>
     </message>
     <message>
         <source>{} replaced</source>
@@ -6426,18 +6470,6 @@ What helps: {cure}.</source>
 <context>
     <name>SymmetryPanel</name>
     <message>
-        <source>As the original tells</source>
-        <translation>按原操作</translation>
-    </message>
-    <message>
-        <source>Left of the original&apos;s way</source>
-        <translation>原操作走刀方向的左侧</translation>
-    </message>
-    <message>
-        <source>Right of the original&apos;s way</source>
-        <translation>原操作走刀方向的右侧</translation>
-    </message>
-    <message>
         <source>Plane</source>
         <translation>平面</translation>
     </message>
@@ -6600,6 +6632,18 @@ What helps: {cure}.</source>
     <message>
         <source>Edit</source>
         <translation>编辑</translation>
+    </message>
+    <message>
+        <source>As stated by the original</source>
+        <translation>按原操作的设定</translation>
+    </message>
+    <message>
+        <source>Left of the original&apos;s path</source>
+        <translation>原路径左侧</translation>
+    </message>
+    <message>
+        <source>Right of the original&apos;s path</source>
+        <translation>原路径右侧</translation>
     </message>
 </context>
 <context>

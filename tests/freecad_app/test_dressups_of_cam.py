@@ -187,3 +187,34 @@ def test_a_dress_up_above_an_operation_without_a_path_is_refused(job):
     assert faults_of(job) == {"J132"} and made.Path.Size > 10
     below.Active = False
     assert faults_of(job) == set()
+
+
+@pytest.mark.parametrize(
+    ("label", "found"),
+    [
+        ("Side (1) rough", "nothing behind its label"),
+        ("a)M8m98", "M8"),
+        ("Bore (H7)M8x1", "M8 (1.000000"),
+        ("Pocket (rough) B2", None),
+    ],
+)
+def test_a_label_that_freecad_reads_as_commands_is_refused_until_it_is_renamed(job, tmp_path, label, found):
+    """It writes the label as a comment of the path, which ends at the first bracket when it is read."""
+    profile(job).Label = label
+    job.Operations.Group[0].touch()
+    operation = reopened(job, tmp_path)
+    faults = read_job(operation.Document.Job)[1]
+    expected = [("J148", found)] if found else []
+    assert [(each.code, each.found) for each in faults] == expected
+    operation.Label = "Side"
+    operation.touch()
+    assert not read_job(reopened(operation.Document.Job, tmp_path).Document.Job)[1]
+
+
+def reopened(job, folder):
+    """The operation of a job, saved as it is now computed, in its document that was opened again."""
+    document = job.Document
+    document.recompute()
+    document.saveAs(str(folder / "part.FCStd"))
+    App.closeDocument(document.Name)
+    return App.openDocument(str(folder / "part.FCStd")).Job.Operations.Group[0]

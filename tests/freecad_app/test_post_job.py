@@ -183,7 +183,12 @@ def test_job_by_name_or_label(ready):
     other = new_job(ready.Document)
     other.Label = "Other"
     assert [find_job(ready.Document, name) for name in (ready.Name, "Other", other.Name)] == [ready, other, other]
-    assert refusal(find_job, ready.Document) == ["J102"]
+    assert refusal(find_job, ready.Document) == ["J147"]
+    other.Label = ready.Name
+    assert find_job(ready.Document, other.Name) is other
+    with pytest.raises(Refused, match=r"J147.*: Job given, the document has Own \(Job\), Job \(Job001\); name one"):
+        ready.Label, other.Label = "Own", ready.Name
+        find_job(ready.Document, ready.Name)
 
 
 def test_link_to_a_job_is_no_second_job(ready, tmp_path):

@@ -207,6 +207,14 @@ def test_kinds_of_cycles_are_said_by_a_property(document, tmp_path):
     assert "J121" in [code_of(text) for text in obj.Found]
 
 
+def test_a_machine_zero_with_less_than_three_numbers_is_refused(document, tmp_path):
+    obj = create_program(document, written(tmp_path, "part.ngc", GCODE))
+    for numbers, codes in (([5.0], ["J121"]), ([5.0, 6.0], ["J121"]), ([5.0, 6.0, 7.0], [])):
+        obj.MachineZero = numbers
+        document.recompute()
+        assert [code_of(text) for text in obj.Found] == codes
+
+
 def test_tools_come_from_a_table_that_a_property_names(document, tmp_path):
     text = GCODE.replace("G1 X10 Y4 F900", "G41 D1 G1 X10 Y4 F900").replace("G2 X20 Y4 I5 J0\nG0", "G1 X20\nG40 G0 X30")
     obj = create_program(document, written(tmp_path, "part.ngc", text))

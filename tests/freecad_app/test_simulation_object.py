@@ -114,6 +114,16 @@ def test_a_machine_with_an_error_leaves_no_old_motion(job, made):
         plan_of(made)
 
 
+def test_the_motion_of_a_job_that_changed_while_it_was_inactive_is_planned_anew(job, made):
+    made.Active = False
+    before, length = plan_of(made), made.LongestStrut
+    job.PostProcessorArgs = ON_EXAMPLE.format("0,0,260")
+    job.Document.recompute()
+    assert made.LongestStrut == length
+    assert present_plan(made) is None
+    assert plan_of(made).trajectory.machine_from_work[2, 3] == 260.0 != before.trajectory.machine_from_work[2, 3]
+
+
 def test_a_job_that_cannot_be_read_or_is_gone_leaves_no_old_result(job, made):
     job.PostProcessorArgs = "--machine no_such_machine"
     job.Document.recompute()

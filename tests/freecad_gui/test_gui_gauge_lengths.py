@@ -53,7 +53,7 @@ def test_number_alone_has_the_unit_of_the_window(session):
 def test_what_is_no_length_is_reported_and_left_to_be_corrected(session, text):
     found = session["what_is_no_length_is_reported_and_not_kept"][text]
     assert found["text"] == text
-    assert f"T1, {text!r} is no length above zero" in found["notes"]
+    assert f"T1, {text!r} is not a length above zero" in found["notes"]
     assert found["reported"] == found["applied"] == [found["notes"]]
 
 

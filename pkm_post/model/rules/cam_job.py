@@ -120,4 +120,12 @@ CAM_JOB_RULES: dict[str, Rule] = {
         "FreeCAD reads a line of a Custom operation as something else, or leaves it out",
         "write one code and its words, with decimal points, and a comment in ( ) on a line of its own; recompute",
     ),
+    "J147": error(
+        "several CAM jobs may be meant",
+        "name one with --job by a label or name that no other job has; change a label in FreeCAD if there is none",
+    ),
+    "J148": error(
+        "FreeCAD reads the label of an operation as commands when it opens the document",
+        "rename it without ( and ), mark it to be recomputed, recompute and save; then open the document again",
+    ),
 }
