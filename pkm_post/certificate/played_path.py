@@ -15,7 +15,8 @@ depend on it. The programmed spin is that of the best-fitting programmed pose. T
 * the change of spin when that pose moves within the tolerances;
 * the axis tolerance between two rests where the spin changes: a smooth curve may be off by so much in spin as well;
 * the rounding of a joint, over less than half of the shorter of its two segments: with the change D of the spin's
-  rate by path length, half width d and the distance x from the joint D 2 d (v^3 - v^4 / 2), v = (d - x) / 2 d.
+  rate by path length, half width d and the distance x from the joint D 2 d (v^3 - v^4 / 2), v = (d - x) / 2 d;
+  between two knots the largest of that in their interval, and at a joint between them over d of all of its way.
 """
 
 from __future__ import annotations
@@ -205,7 +206,7 @@ def _off(path: PlayedPath, rows: Array, allowed: _Allowed, passed: Array) -> Arr
     first = np.tile(np.searchsorted(passed, begin, side="right"), len(_SPIN_SHARES))
     segment = np.clip(np.maximum(np.searchsorted(passed, time), first), 0, len(passed) - 1)
     axis = (place[3:6] / norm(place[3:6].T)).T
-    outside = allowed.outside(place[:3].T, axis, place[6], segment)
+    outside = allowed.outside(place[:3].T, axis, place[6], segment, len(_SPIN_SHARES))
     return np.asarray(outside.reshape(len(_SPIN_SHARES), -1).max(axis=0))
 
 
@@ -227,15 +228,25 @@ class _Allowed:
         stretch = np.cumsum(np.append(0, rests))
         self._of_curve = np.where(np.bincount(stretch, self._turn != 0)[stretch] > 0, ruler.axis_tolerance, 0.0)
 
-    def outside(self, tip: Array, axis: Array, spin: Array, segment: Array) -> Array:
-        """Excess of spins over the allowed range at their poses, (M,) rad."""
+    def outside(self, tip: Array, axis: Array, spin: Array, segment: Array, instants: int = 1) -> Array:
+        """Excess of spins over the allowed range at their poses, (M,) rad.
+
+        With several instants of each interval, all firsts before all seconds, those between its knots may be off by
+        the rounding anywhere in it, and by that of a joint over the whole of it: one cubic leads through it, and plans
+        place knots by tip and axis.
+        """
         share, slack = self._ruler.share_of(tip, axis, segment)
         turn = self._turn[segment]
         still = np.isinf(slack)  # a pure turn about the tool axis allows any spin in between
         ahead = np.clip((spin - self._before[segment]) / np.where(turn == 0, 1.0, turn), 0.0, 1.0)
         expected = self._before[segment] + turn * np.where(still, ahead, share)
         distance = share * self._extent[segment], (1 - share) * self._extent[segment]
-        rounding = sum(self._rounding(segment + side, distance[side]) for side in (0, 1))
+        rounding = self._rounding(segment, distance[0]) + self._rounding(segment + 1, distance[1])
+        by_instant, of = rounding.reshape(instants, -1), segment.reshape(instants, -1)
+        ends = tip.reshape(instants, -1, 3)[[0, -1]]
+        width = np.maximum(self._width[of], norm(ends[1] - ends[0]))  # a cubic may round over all of its way
+        at_joint = np.where(of > of[0], self._change[of] * width * 3 / 16, 0.0)
+        by_instant[1:-1] = np.maximum(by_instant, at_joint).max(axis=0)
         most = np.abs(turn) * np.where(still, 0.0, slack) + rounding + self._of_curve[segment]
         return np.maximum(np.abs(spin - expected) - most, 0.0)
 

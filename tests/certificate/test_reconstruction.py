@@ -114,6 +114,16 @@ def test_a_joint_soon_after_a_rest_is_found(machine):
     assert not refusals(printed(motion, jumping), trajectory, jumping, asked)
 
 
+def test_a_spin_that_ends_to_change_in_a_straight_move_holds(machine):
+    """One cubic of tip and axis may lead through its whole rounded joint, where it does not follow the spin."""
+    asked, jumping = Tolerances(0.01, TOLERANCES.axis), without_jerk(machine)
+    trajectory = placed(program([[0, 0, 120], [0, 0, 105]], kind=np.array([Kind.RAPID] * 2)), jumping)
+    spin = np.radians(30) * np.ones(len(trajectory))
+    trajectory = dataclasses.replace(trajectory, spin=spin)
+    motion, _ = planned(trajectory, jumping, asked)
+    assert not refusals(printed(motion, jumping), trajectory, jumping, asked)
+
+
 @pytest.mark.parametrize(("radius", "rise", "tip"), [(0.1, -0.01, 0.2), (0.01, 0.0, 0.01)])
 def test_full_turns_that_are_hardly_larger_than_the_tolerance_are_followed(machine, radius, rise, tip):
     """A pose near the joint of two turns may fit the end of both: the tool has not gone back by a turn."""
