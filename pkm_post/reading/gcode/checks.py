@@ -299,6 +299,9 @@ def _within_turns(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> Non
         wrong = inside & _marked(blocks, blocks.g_row[blocks.g == code])
         wrong &= in_plane if code in _TO_THE_MACHINE else another if code in PLANES else True
         faults.add_where("G438", wrong, lambda _, code=code: (word_of(code), " within ", word_of(_TURN)))  # type: ignore[misc]
+    # R is then an angle, or is added to the one before: parameter 5400#0 of Fanuc's controls
+    again = inside & (turns == _TURN) & (modal.active[Group.DISTANCE] == 910) & bool(modal.flavour.outside_turns)
+    faults.add_where("G438", again, lambda _: (word_of(_TURN), " within ", word_of(_TURN)))
 
 
 def _within_mirrors(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:

@@ -106,7 +106,7 @@ def test_local_coordinates_and_those_of_g92(codes, fanucs, linuxcncs):
             "G91 G28 X0 Y0 Z0",
             "G30 Y0",
         ),
-        *("G53 X0", "G53 G0 Y1. Z5.", "G10 L2 P1 X5."),
+        *("G53 X0", "G53 G0 Y1. Z5.", "G10 L2 P1 X5.", "G91 G68 X0 Y0 R15."),
     ],
 )
 def test_codes_within_a_rotation_are_refused_by_name(block):
@@ -116,7 +116,8 @@ def test_codes_within_a_rotation_are_refused_by_name(block):
     assert [(fault.code, fault.place.line, fault.found) for fault in faults] == [("G438", 4, f"{code} within G68")]
 
 
-@pytest.mark.parametrize("block", ["G17", "G28 Z0", "G91 G28 Z0", "G53 Z5.", "G69 G54", "G69\nG55", "G69\nG28 X0"])
+@pytest.mark.parametrize("block", ["G17", "G28 Z0", "G91 G28 Z0", "G53 Z5.", "G69 G54", "G69\nG55", "G69\nG28 X0",
+                                   "G68 X0 Y0 R15.", "G69\nG91 G68 X0 Y0 R15.\nG90"])  # fmt: skip
 def test_what_no_rotation_turns_and_what_comes_after_it_is_read(block):
     text = f"G0 X1. Y2. Z30.\nG68 X0. Y0. R30.\nX3. Y4.\n{block}\nG69\nM30\n"
     assert "G438" not in codes(text, flavour="fanuc", machine_zero=(0.0, 0.0, 100.0))
