@@ -232,8 +232,8 @@ class _Allowed:
         """Excess of spins over the allowed range at their poses, (M,) rad.
 
         With several instants of each interval, all firsts before all seconds, those between its knots may be off by
-        the rounding anywhere in it, and by that of a joint over the whole of it: one cubic leads through it, and plans
-        place knots by tip and axis.
+        the rounding anywhere in it, and by that of its joints over the whole of it: one cubic leads through it, and
+        plans place knots by tip and axis.
         """
         share, slack = self._ruler.share_of(tip, axis, segment)
         turn = self._turn[segment]
@@ -241,12 +241,14 @@ class _Allowed:
         ahead = np.clip((spin - self._before[segment]) / np.where(turn == 0, 1.0, turn), 0.0, 1.0)
         expected = self._before[segment] + turn * np.where(still, ahead, share)
         distance = share * self._extent[segment], (1 - share) * self._extent[segment]
-        rounding = self._rounding(segment, distance[0]) + self._rounding(segment + 1, distance[1])
+        before, after = self._rounding(segment, distance[0]), self._rounding(segment + 1, distance[1])
+        rounding = before + after
         by_instant, of = rounding.reshape(instants, -1), segment.reshape(instants, -1)
         ends = tip.reshape(instants, -1, 3)[[0, -1]]
-        width = np.maximum(self._width[of], norm(ends[1] - ends[0]))  # a cubic may round over all of its way
-        at_joint = np.where(of > of[0], self._change[of] * width * 3 / 16, 0.0)
-        by_instant[1:-1] = np.maximum(by_instant, at_joint).max(axis=0)
+        way = norm(ends[1] - ends[0])  # a cubic may round over all of it
+        at = before.reshape(of.shape) + (of > of[0]), after.reshape(of.shape)
+        wide = (self._change[of + side] * np.maximum(self._width[of + side], way) * (at[side] > 0) for side in (0, 1))
+        by_instant[1:-1] = np.maximum(by_instant, 3 / 16 * sum(wide)).max(axis=0)
         most = np.abs(turn) * np.where(still, 0.0, slack) + rounding + self._of_curve[segment]
         return np.maximum(np.abs(spin - expected) - most, 0.0)
 
