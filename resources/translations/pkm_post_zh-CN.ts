@@ -3719,6 +3719,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>请检查；CL 数据中的时间以秒为单位，带 REV 时以主轴转数为单位</translation>
     </message>
     <message>
+        <source>a cut comes before the first tool change</source>
+        <translation>切削移动出现在第一次换刀之前</translation>
+    </message>
+    <message>
+        <source>write LOADTL before it</source>
+        <translation>请在其之前写出 LOADTL</translation>
+    </message>
+    <message>
         <source>the machine file cannot be read</source>
         <translation>机床文件不能读取</translation>
     </message>

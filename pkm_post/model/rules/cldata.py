@@ -89,6 +89,7 @@ CLDATA_RULES: dict[str, Rule] = {
         "a dwell lasts longer than a minute",
         "check it; times of CL data are in s, and with REV in turns of the spindle",
     ),
+    "L449": error("a cut comes before the first tool change", "write LOADTL before it"),
     "L447": error(
         "the tool table is not valid",
         "write it as docs/g-code.md describes it: LinuxCNC's .tbl or .csv with the unit, as in --tool-table"

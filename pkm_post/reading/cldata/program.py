@@ -60,6 +60,7 @@ def build_program(
     starts = state.operation_starts
     operation = _column([row for row, _ in starts], points.row, [number for _, number in starts], 0)
     _report_points_aside(state, points, holes.point, side_offset != 0)
+    _report_cut_before_change(state, points.row[point[rows.kind != Kind.RAPID]])
     lines = state.statements.lines.number[state.statements.index[points.row]]
     return Program(
         kind=rows.kind,
@@ -99,6 +100,20 @@ def _report_points_aside(state: ReaderState, points: Points, hole: Array, offset
         ("L401", "a contact point under CUTCOM", np.flatnonzero(points.contact & offset)),
     ):
         _report_first(state, code, points.row[which], found)
+
+
+def _report_cut_before_change(state: ReaderState, cut: Array) -> None:
+    """Report a cut of a cutter that no tool change loads, where one loads another later.
+
+    Before the first change its tool counts as loaded, with its length; a cutter without a change is tool 0.
+
+    Args:
+        state: collects the faults.
+        cut: statements of cutting moves.
+    """
+    change = next(((row, number) for row, kind, number in state.events if kind is EventKind.TOOL_CHANGE), None)
+    if change is not None and change[1] and len(cut) and cut[0] < change[0]:
+        state.report("L449", int(cut[0]), f"then tool {change[1]:.0f} is loaded")
 
 
 def _report_first(state: ReaderState, code: str, row: Array, found: str) -> None:
