@@ -220,9 +220,17 @@ def _anywhere(check: Callable[[Any], str]) -> Callable[[Any], str]:
     """A check of an operation and of all below it: dress-ups may keep their path where one below has none."""
 
     def found(operation: Any) -> str:
-        return check(operation) or next(filter(None, map(found, base_operations(operation))), "")
+        return next(filter(None, map(check, _with_bases(operation))), "")
 
     return found
+
+
+def _with_bases(operation: Any) -> list[Any]:
+    """An operation and all below it, each once: they may be made from each other in a circle."""
+    every = [operation]
+    for each in every:
+        every += [below for below in base_operations(each) if below not in every]
+    return every
 
 
 _FAULTS: tuple[tuple[str, Callable[[Any], str]], ...] = (

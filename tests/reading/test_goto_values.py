@@ -137,8 +137,10 @@ def test_contact_points_are_refused_where_the_tip_would_be_another(statements, f
     assert (program, fault.code, fault.place.line, str(fault.found)) == (None, *found)
 
 
-def test_contact_points_before_the_first_tool_change_become_tips_too():
-    head = f"UNITS/MM\nFEDRAT/60\nCUTTER/20,4\nGOTO/0,0,50\n{CONTACT}LOADTL/1,LENGTH,60\nCUTTER/8,1\n"
+def test_contact_points_become_the_tips_of_the_tool_in_use():
+    head = (
+        f"UNITS/MM\nFEDRAT/60\nCUTTER/20,4\nLOADTL/2,LENGTH,60\nGOTO/0,0,50\n{CONTACT}LOADTL/1,LENGTH,60\nCUTTER/8,1\n"
+    )
     program, _ = read_content(f"{head}{CONTACT}FINI\n".encode(), "a.apt", ReadingOptions(goto_values=CONTACTS))
     tips, _ = compensate(program, OffsetOptions(), {})
     assert tips.position[1:] == pytest.approx(np.array([[6 + 4 * 0.6, 0, -4 * 0.2], [3 + 0.6, 0, -0.2]]))

@@ -231,7 +231,7 @@ def test_check_and_convert_take_the_corner_as_well(tmp_path, monkeypatch, comman
     (tmp_path / "part.ngc").write_text(LN)
     assert main([*command, "part.ngc", "--axis-words=vector", "--tool=1=10,5"]) == 0
     if command[0] == "convert":
-        assert "diameter 10, corner radius 5," in (tmp_path / "made.ngc").read_text()
+        assert "(tool 1, diameter 10 mm, corner radius 5 mm)" in (tmp_path / "made.ngc").read_text()
 
 
 def test_a_cutter_of_cl_data_keeps_its_name_and_length(tmp_path):
