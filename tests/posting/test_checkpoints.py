@@ -37,6 +37,7 @@ OTHERS = (
     (compress, "_ROWS_AT_ONCE"),
     (bounds, "_PIECES_AT_ONCE"),
     (path_bounds, "_AT_ONCE"),
+    (path_bounds, "_MOST_GROUPS"),
     (tool_path, "_JOINTS_AT_ONCE"),
     (interpolation, "_POINTS_AT_ONCE"),
     (playback, "_TO_FIND_THE_WORST"),
