@@ -37,7 +37,6 @@ OTHERS = (
     (compress, "_ROWS_AT_ONCE"),
     (bounds, "_PIECES_AT_ONCE"),
     (path_bounds, "_AT_ONCE"),
-    (path_bounds, "_MOST_GROUPS"),
     (tool_path, "_JOINTS_AT_ONCE"),
     (interpolation, "_POINTS_AT_ONCE"),
     (playback, "_TO_FIND_THE_WORST"),
@@ -119,6 +118,7 @@ def count(monkeypatch, tmp_path):
         monkeypatch.setattr(module, name, 16 * PIECE)
     for module, name, size in (
         (dynamics, "_INSTANTS_AT_ONCE", 257),
+        (path_bounds, "_GROUPS_AT_ONCE", PIECE // 8),  # each stands for 8 mm of the path
         (playback, "_AT_ONCE", 257),
         (playback, "_INSTANTS", playback._INSTANTS[:5]),
     ):

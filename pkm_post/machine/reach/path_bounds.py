@@ -24,7 +24,7 @@ from pkm_post.machine.kinematics.inverse import lever_arms
 from pkm_post.machine.kinematics.placed_machine import PlacedMachine
 from pkm_post.machine.reach.findings import CheckedLimit, ReachFinding
 from pkm_post.machine.reach.pose_path import PosePath, rotation_bound
-from pkm_post.model import Machine, checkpoint, distinct
+from pkm_post.model import Machine, checkpoint, distinct, pieces
 from pkm_post.system import in_workers
 
 _AT_ONCE = 2048
@@ -204,6 +204,8 @@ _INTERVAL_TRAVEL = 8.0
 """mm that tip and platform joints travel on a stretch; one cell if that is longer."""
 _MOST_GROUPS = 1024
 """Most groups: beyond this some margin is small, and surveying along the path is as fast."""
+_GROUPS_AT_ONCE = 256
+"""Groups whose margins are computed in one pass."""
 _NEARER = 0.8
 """Share of the least joint distance on the path that the groups must keep."""
 _NO_STRUT = 1.0
@@ -290,12 +292,19 @@ class _Groups:
 
     def bounds(self, machine: Machine, path: PosePath, check: Check, at: Array, shortest: float) -> tuple[Array, Array]:
         """Margins at the anchors of some groups, and the lower bound of each group in margin or distance."""
+        margin, distance = np.hstack(
+            [self._at_anchors(machine, path, check, at[rows]) for rows in pieces(len(at), _GROUPS_AT_ONCE)]
+        )
+        travel, turn = self.travel[at], self.turn[at]
+        apart = distance - (travel + turn * self.arm)
+        return margin, np.minimum(margin - (check.by_travel * travel + check.by_turn * turn), apart - shortest)
+
+    def _at_anchors(self, machine: Machine, path: PosePath, check: Check, at: Array) -> Array:
+        """Margins at the anchors of some groups, and the least distances of a strut's joints, (2, M)."""
         placed = PlacedMachine.of(machine, path.rows(self.anchor[at]))
         margin = check.margins(placed).min(axis=1)
         checkpoint()
-        travel, turn = self.travel[at], self.turn[at]
-        apart = placed.distance.min(axis=1) - (travel + turn * self.arm)
-        return margin, np.minimum(margin - (check.by_travel * travel + check.by_turn * turn), apart - shortest)
+        return np.stack([margin, placed.distance.min(axis=1)])
 
 
 def _partitions(machine: Machine, path: PosePath, stretches: _PathIntervals) -> Iterator[_Groups]:
