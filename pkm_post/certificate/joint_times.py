@@ -153,12 +153,8 @@ class _Search:
         return self._closely(rows, instants[nearest, np.arange(len(rows))])
 
     def _closely(self, rows: Array, instant: Array) -> Array:
-        """The same, refined from the nearest instants by Newton's method, with steps no longer than one instant."""
-        return self._best_fit(rows, instant / _LOOKS)
-
-    def _best_fit(self, rows: Array, at: Array) -> Array:
-        """The same from any instants, in intervals."""
-        interval, share = self._place(at)
+        """The same, refined from instants nearby by Newton's method, with steps no longer than one instant."""
+        interval, share = self._place(instant / _LOOKS)
         time = self._time_at(interval, share)
         for _ in range(_NEWTON_STEPS):
             late = self._late(rows, interval, share, self._path.at(interval, share[None])[:, 0])
@@ -198,7 +194,7 @@ class _Search:
             tried = np.vstack([self._around(rows[bad], time, side) for side in (-1.0, 1.0)])
             best = np.argmin([self._fit(rows[bad], one) for one in tried], axis=0)
             found[bad] = tried[best, np.arange(len(bad))]
-            again, fit = self._best_fit(rows[bad], self._instant_of(found[bad]) / _LOOKS)
+            again, fit = self._closely(rows[bad], self._instant_of(found[bad]))
             begin, end = _neighbours(rows[bad], time)
             better = (begin <= again) & (again <= end) & (fit < self._fit(rows[bad], found[bad]))
             found[bad] = np.where(better, again, found[bad])

@@ -246,8 +246,8 @@ class _Allowed:
         by_instant, of = rounding.reshape(instants, -1), segment.reshape(instants, -1)
         ends = tip.reshape(instants, -1, 3)[[0, -1]]
         way = norm(ends[1] - ends[0])  # a cubic may round over all of it
-        at = before.reshape(of.shape) + (of > of[0]), after.reshape(of.shape)
-        wide = (self._change[of + side] * np.maximum(self._width[of + side], way) * (at[side] > 0) for side in (0, 1))
+        rounds = (before.reshape(of.shape) > 0) | (of > of[0]), after.reshape(of.shape) > 0
+        wide = (rounds[side] * self._change[of + side] * np.maximum(self._width[of + side], way) for side in (0, 1))
         by_instant[1:-1] = np.maximum(by_instant, 3 / 16 * sum(wide)).max(axis=0)
         most = np.abs(turn) * np.where(still, 0.0, slack) + rounding + self._of_curve[segment]
         return np.maximum(np.abs(spin - expected) - most, 0.0)

@@ -14,7 +14,6 @@ import hashlib
 import io
 import json
 import os
-import re
 import shlex
 import subprocess
 import tomllib
@@ -235,13 +234,10 @@ def _row_before(job: BatchJob, rows: list[BatchRow]) -> BatchRow | None:
     return found if all(_is_unchanged(job, stem) for stem in job.stems) else None
 
 
-_SUBPROGRAM = re.compile(r".+ is the file (.+), SHA-256 ([0-9a-f]{64})")
-"""Note of a report about a subprogram in another file."""
-
-
 def _is_unchanged(job: BatchJob, stem: str) -> bool:
     """Whether results are as they were posted, and the subprograms as they were read."""
     from pkm_post.model import errors
+    from pkm_post.reading import files_in_notes
     from pkm_post.writing import manifest
 
     listed, faults = manifest.check(job.out / (stem + result_files.PROGRAM))
@@ -249,7 +245,7 @@ def _is_unchanged(job: BatchJob, stem: str) -> bool:
     if listed is None or errors(faults) or listed.fingerprint_of(report) is None:
         return False
     notes = json.loads((job.out / report).read_text(encoding="utf-8"))["program"]["reading"]
-    return all(job.has_subprogram(*note.groups()) for note in map(_SUBPROGRAM.fullmatch, notes) if note)
+    return all(job.has_subprogram(name, digest) for name, digest in files_in_notes(notes))
 
 
 def table_of(file: Path) -> Path:

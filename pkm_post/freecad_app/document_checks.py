@@ -23,7 +23,7 @@ from Path.Base.Util import toolControllerForOp
 
 from pkm_post.freecad_app.commands.words import CommandWords, undecodable_command
 from pkm_post.freecad_app.document import document_name, job_of, members
-from pkm_post.freecad_app.operation_inputs import misread_line, other_heights
+from pkm_post.freecad_app.operation_inputs import misread_line, outdated_heights
 from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Kind, Phrase, Place, Program, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
@@ -212,8 +212,8 @@ def has_inactive_base(operation: Any) -> bool:
     )
 
 
-def _other_heights(operation: Any) -> str:
-    return "" if has_inactive_base(operation) else other_heights(operation)
+def _outdated_heights(operation: Any) -> str:
+    return "" if has_inactive_base(operation) else outdated_heights(operation)
 
 
 def _anywhere(check: Callable[[Any], str]) -> Callable[[Any], str]:
@@ -240,7 +240,7 @@ _FAULTS: tuple[tuple[str, Callable[[Any], str]], ...] = (
     ("J116", _not_valid),
     ("J133", _not_computed),
     ("J132", _anywhere(_empty)),
-    ("J116", _anywhere(_other_heights)),
+    ("J116", _anywhere(_outdated_heights)),
     ("J146", _anywhere(misread_line)),
 )
 """Finding by code, empty if there is none, in this order: each test relies on the previous ones."""

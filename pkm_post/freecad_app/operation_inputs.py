@@ -81,7 +81,7 @@ def _words(line: str) -> _Words | None:
     return [(letter.upper(), float(number)) for letter, number in words] if not _WORD.sub("", line).strip() else None
 
 
-def other_heights(operation: Any) -> str:
+def outdated_heights(operation: Any) -> str:
     """Why the heights of a Z correction are not those of its file: CAM keeps earlier ones, or corrects nothing.
 
     The surface of the file is made again, as CAM does: measuring that of the operation takes minutes.

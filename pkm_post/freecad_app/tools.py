@@ -18,6 +18,7 @@ import FreeCAD as App
 from PathScripts import PathUtils
 
 from pkm_post.model import Diagnostic, Phrase, Place, Shank, Tool, corner_reach
+from pkm_post.reading import EDGE_HEIGHTS, THINNEST, shank_of
 from pkm_post.toolpath import Cutter
 
 GAUGE_LENGTH = "GaugeLength"
@@ -170,9 +171,6 @@ def _conical(bit: Any) -> Sizes:
     return _flat(bit) | {"bottom_angle": math.pi / 2 - half}
 
 
-_EDGE_HEIGHTS = {"slittingsaw": "BladeThickness", "tap": "CuttingEdgeLength", "threadmill": "NeckLength"}
-"""The property that states where the cutting edges end, by shape, if it has another name."""
-
 _TIP_ANGLES = {"vbit": _EDGE_ANGLE, "tap": "TipAngle"}
 """The angle of the cone that this height does not include, by shape."""
 
@@ -180,22 +178,14 @@ _TIP_ANGLES = {"vbit": _EDGE_ANGLE, "tap": "TipAngle"}
 def read_shank(bit: Any) -> Shank | None:
     """The shank of a tool bit; None if it does not state where its cutting edges end, or how thick it is.
 
-    The taper of a ball nose ends at its TaperDiameter, wherever its edges do. The height of the edges of V-bits and
-    taps is that of the cylinder above their cone. The cone of a V-bit with a flat tip has no end in a ``Tool``: its
-    shank begins where the cone does end, and is as wide.
+    The taper of a ball nose ends at its TaperDiameter, wherever its edges do.
     """
-    shape, diameter = _plain_shape(bit), millimetres(bit, "ShankDiameter")
-    height = millimetres(bit, _EDGE_HEIGHTS.get(shape, "CuttingEdgeHeight"))
-    if shape in _TIP_ANGLES:
-        widest, tip = millimetres(bit, "Diameter"), millimetres(bit, "TipDiameter")
-        half = _half_angle(bit, _TIP_ANGLES[shape])
-        if not (widest > tip and 0 < half < math.pi / 2):
-            return None
-        cone = (widest - tip) / 2 / math.tan(half)
-        height, diameter = (cone, max(widest, diameter)) if tip > 0 else (cone + height, diameter)
+    shape = _plain_shape(bit)
+    height = millimetres(bit, EDGE_HEIGHTS.get(shape, "CuttingEdgeHeight"))
     if shape == "taperedballnose":
         height = _end_of_taper(bit) or height
-    return Shank(height, diameter) if height > 0 and diameter > 0 else None
+    across, widest, tip = (millimetres(bit, name) for name in ("ShankDiameter", "Diameter", "TipDiameter"))
+    return shank_of(shape, height, across, widest, tip, _half_angle(bit, _TIP_ANGLES.get(shape, "")))
 
 
 def _end_of_taper(bit: Any) -> float:
@@ -207,14 +197,12 @@ def _end_of_taper(bit: Any) -> float:
 
 _CORES = {"radius": "TipDiameter", "threadmill": "NeckDiameter"}
 """The property with the diameter of a cylinder inside, by shape, of those that are hollow above or below the tip."""
-_THINNEST = 0.1
-"""mm: a core, where the tip of a tool is a point."""
 
 
 def read_core(bit: Any) -> float | None:
     """Diameter of the cylinder inside the cutting part of a tool bit whose outline no ``Tool`` has; None for others."""
     shape = _plain_shape(bit)
-    return max(millimetres(bit, _CORES[shape]), _THINNEST) if shape in _CORES else None
+    return max(millimetres(bit, _CORES[shape]), THINNEST) if shape in _CORES else None
 
 
 def _dovetail(bit: Any) -> Sizes:

@@ -79,9 +79,8 @@ def bounding_box(points: Array, *arcs: Array) -> tuple[Array, Array]:
     turns = arc_turning_points(*arcs)
     # numpy takes ten times as long along the first axis
     columns = [(points[:, axis], turns[..., axis]) for axis in range(3)]
-    lowest, highest = (
-        [getattr(turn, of)(initial=getattr(ends, of)()) for ends, turn in columns] for of in ("min", "max")
-    )
+    lowest = [turning.min(initial=ends.min()) for ends, turning in columns]
+    highest = [turning.max(initial=ends.max()) for ends, turning in columns]
     return np.array(lowest), np.array(highest)
 
 

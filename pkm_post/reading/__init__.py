@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from pkm_post.reading.check import check_file, checks_as_json, checks_as_text
     from pkm_post.reading.cldata.options import CONTOUR_DATA, DIALECTS
     from pkm_post.reading.editing import TextFile, jump_by_number, renumbered
+    from pkm_post.reading.freecad_tools import EDGE_HEIGHTS, THINNEST, shank_of
+    from pkm_post.reading.gcode.subprograms import files_in_notes
     from pkm_post.reading.highlighting import Colour, coloured_spans, shown_language, underlined
     from pkm_post.reading.listing import listing_lines
     from pkm_post.reading.mesh_file import MESH_READERS, STEP_SUFFIXES, mesh_of_triangles, read_mesh
@@ -35,6 +37,8 @@ else:
             "check": "check_file checks_as_json checks_as_text",
             "cldata.options": "CONTOUR_DATA DIALECTS",
             "editing": "TextFile jump_by_number renumbered",
+            "freecad_tools": "EDGE_HEIGHTS THINNEST shank_of",
+            "gcode.subprograms": "files_in_notes",
             "highlighting": "Colour coloured_spans shown_language underlined",
             "listing": "listing_lines",
             "mesh_file": "MESH_READERS STEP_SUFFIXES mesh_of_triangles read_mesh",
@@ -48,6 +52,7 @@ __all__ = [
     "CONTOUR_DATA",
     "DIALECTS",
     "DWELL_UNITS",
+    "EDGE_HEIGHTS",
     "FLAVOURS",
     "FLAVOUR_NAMES",
     "LONG_DWELL",
@@ -55,6 +60,7 @@ __all__ = [
     "SPINDLE_SYNCHRONISED",
     "STEP_SUFFIXES",
     "SUFFIXES",
+    "THINNEST",
     "UNITS",
     "VERSIONED",
     "CheckedText",
@@ -68,6 +74,7 @@ __all__ = [
     "checks_as_json",
     "checks_as_text",
     "coloured_spans",
+    "files_in_notes",
     "gcode",
     "is_part_program",
     "jump_by_number",
@@ -79,6 +86,7 @@ __all__ = [
     "read_part_program",
     "renumbered",
     "shown_language",
+    "shank_of",
     "tip_paths_of_line",
     "underlined",
     "with_tool_table",

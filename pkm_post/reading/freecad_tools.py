@@ -100,9 +100,9 @@ _ANGLE = re.compile(r"(\d+(?:[.,]\d*)?) ?(?:°|deg)")
 _CORES = {"vbit": "TipDiameter", "chamfer": "TipDiameter", "radius": "TipDiameter", "threadmill": "NeckDiameter",
           "dovetail": "NeckDiameter", "drill": "", "tap": ""}  # fmt: skip
 """The property with the diameter of a cylinder inside, by shape, of those that leave some of their own cylinder."""
-_THINNEST = 0.1
+THINNEST = 0.1
 """mm: a core, where the tip of a tool is a point."""
-_EDGE_HEIGHTS = {"slittingsaw": "BladeThickness", "tap": "CuttingEdgeLength", "threadmill": "NeckLength"}
+EDGE_HEIGHTS = {"slittingsaw": "BladeThickness", "tap": "CuttingEdgeLength", "threadmill": "NeckLength"}
 """The property that states where the cutting edges end, by shape, if it has another name."""
 
 
@@ -128,21 +128,35 @@ def _half_angle(parameters: dict[str, Any], shape: str, bit: Path, pointed: bool
 
 
 def _core(parameters: dict[str, Any], shape: str, bit: Path) -> float | None:
-    return max(_quantity(parameters, _CORES[shape], bit) or 0.0, _THINNEST) if shape in _CORES else None
+    return max(_quantity(parameters, _CORES[shape], bit) or 0.0, THINNEST) if shape in _CORES else None
 
 
 def _shank(parameters: dict[str, Any], shape: str, bit: Path) -> Shank | None:
-    """The shank; None if the height of the cutting edges, or its diameter, is not stated.
-
-    Those of V-bits and taps are that of the cylinder above their cone; one with a flat tip ends with its cone.
-    """
-    names = (_EDGE_HEIGHTS.get(shape, "CuttingEdgeHeight"), "ShankDiameter", "Diameter", "TipDiameter")
+    names = (EDGE_HEIGHTS.get(shape, "CuttingEdgeHeight"), "ShankDiameter", "Diameter", "TipDiameter")
     height, across, widest, tip = (_quantity(parameters, name, bit) or 0.0 for name in names)
+    return shank_of(shape, height, across, widest, tip, _half_angle(parameters, shape, bit, pointed=False))
+
+
+def shank_of(shape: str, height: float, across: float, widest: float, tip: float, half: float) -> Shank | None:
+    """The shank of a tool bit; None if the height of its edges, or its diameter, is not stated. Lengths in mm.
+
+    The height of the edges of V-bits and taps is that of the cylinder above their cone. The cone of a V-bit with a flat
+    tip has no end in a ``Tool``: its shank begins where the cone does end, and is as wide.
+
+    Args:
+        shape: in lower case, without hyphens.
+        height: of the cutting edges, the property of ``EDGE_HEIGHTS``; 0 if not stated.
+        across: diameter of the shank, 0 if not stated.
+        widest: diameter of the cutter.
+        tip: diameter of a flat tip, 0 for none.
+        half: half the angle of the cone at the tip, rad; 0 if not stated.
+    """
     if shape in ("vbit", "tap"):
-        half = _half_angle(parameters, shape, bit, pointed=False)
-        cone = (widest - tip) / 2 / math.tan(half) if widest > tip and half else math.nan
-        height, across = (cone, max(widest, across)) if tip else (cone + height, across)
-    return Shank(height, across) if min(height, across) > 0 else None
+        if not (widest > tip and 0 < half < math.pi / 2):
+            return None
+        cone = (widest - tip) / 2 / math.tan(half)
+        height, across = (cone, max(widest, across)) if tip > 0 else (cone + height, across)
+    return Shank(height, across) if height > 0 and across > 0 else None
 
 
 def _quantity(parameters: dict[str, Any], name: str, bit: Path) -> float | None:

@@ -77,8 +77,16 @@ class Source:
 
 
 def note_of_file(name: str, path: Path, content: bytes) -> str:
-    """The note of a report about the file of a subprogram; a batch reads it back, as ``cli.batch``."""
+    """The note of a report about the file of a subprogram."""
     return f"{name} is the file {path.name}, SHA-256 {hashlib.sha256(content).hexdigest()}"
+
+
+_NOTE = re.compile(r".+ is the file (.+), SHA-256 ([0-9a-f]{64})")
+
+
+def files_in_notes(notes: Iterable[str]) -> list[tuple[str, str]]:
+    """Names and SHA-256 of the files of subprograms, from all notes of a report."""
+    return [(note[1], note[2]) for note in map(_NOTE.fullmatch, notes) if note]
 
 
 def content_of(path: Path) -> bytes | Diagnostic:
