@@ -23,7 +23,7 @@ from Path.Base.Util import toolControllerForOp
 
 from pkm_post.freecad_app.commands.words import CommandWords, undecodable_command
 from pkm_post.freecad_app.document import document_name, job_of, members
-from pkm_post.freecad_app.operation_inputs import misread_line, outdated_heights
+from pkm_post.freecad_app.operation_inputs import left_out, misread_line, outdated_heights
 from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Kind, Phrase, Place, Program, Refused
 from pkm_post.system import DamagedDocument, DocumentContent, read_document
@@ -129,6 +129,13 @@ def feed_faults(operation: Any, controller: Any, program: Program, start: Array,
     if np.any((program.kind == Kind.ARC) | (program.kind == Kind.LINE) & (steps > _STANDS)):
         found = Phrase("HorizFeed of {} is 0", controller.Label)
         yield Diagnostic("J105", Place(source, operation.Label), found)
+
+
+def left_out_faults(operation: Any, source: str) -> Iterator[Diagnostic]:
+    """Yield J149 for an operation, and each below it, of which CAM leaves something out."""
+    for each in _with_bases(operation):
+        if found := left_out(each):
+            yield Diagnostic("J149", Place(source, each.Label), found)
 
 
 def _is_typed(operation: Any) -> bool:

@@ -3,7 +3,7 @@
 
 Input: an operation. Output: what differs, empty if nothing does. FreeCAD reads the lines of a Custom operation: of
 ``G1 X1,5`` it makes ``G1 X15``, a move with a comment behind it becomes a comment, and other lines are left out. A Z
-correction keeps the heights that it had when its file changes.
+correction keeps the heights that it had when its file changes. Holes and holding tags may be disabled or lost.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from typing import Any
 import FreeCAD as App
 import numpy as np
 import Part
+from Path.Base.Util import opProperty
+from PathScripts import PathUtils
 
 from pkm_post.freecad_app.frames import rows_of
 from pkm_post.model import Phrase
@@ -101,6 +103,30 @@ def outdated_heights(operation: Any) -> str:
     if made.shape == probed.shape and np.allclose(made, probed, rtol=0.0, atol=_STORED):
         return ""
     return Phrase("its heights are not those of {}: clear the name, then choose it again", operation.probefile)
+
+
+def left_out(operation: Any) -> str:
+    """The holes or holding tags of an operation that CAM leaves out, which it says in its Report view, or nowhere."""
+    if opProperty(operation, "Active") is False:
+        return ""
+    if hasattr(operation, "Positions") and hasattr(operation, "Disabled"):
+        return _missing_tags(operation)
+    proxy, lost = getattr(operation, "Proxy", None), []
+    if not hasattr(proxy, "isHoleEnabled"):
+        return ""
+    for base, face in ((base, face) for base, faces in operation.Base for face in faces):
+        if not proxy.isHoleEnabled(operation, base, face) or proxy.holePosition(operation, base, face) is None:
+            lost.append(f"{base.Label}.{face}")
+    return Phrase("holes {}", ", ".join(lost)) if lost else ""
+
+
+def _missing_tags(dressup: Any) -> str:
+    """The disabled tags; all of them where CAM could not make any and took the path below as it is."""
+    listed, below = len(dressup.Positions), PathUtils.getPathWithPlacement(dressup.Base)
+    is_plain = listed and dressup.Path.toGCode() == below.toGCode()
+    missing = range(listed) if is_plain else dressup.Disabled
+    numbers = ", ".join(str(index + 1) for index in missing)
+    return Phrase("holding tags {} of {}", numbers, listed) if numbers else ""
 
 
 def _probed_surface(file: FilePath) -> Any:

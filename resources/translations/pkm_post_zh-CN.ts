@@ -3039,6 +3039,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>改成不含 ( 和 ) 的名称，标记为需要重新计算，重新计算并保存；然后重新打开文档</translation>
     </message>
     <message>
+        <source>CAM leaves out holes or holding tags of an operation</source>
+        <translation>CAM 省略了操作的孔或支撑标签</translation>
+    </message>
+    <message>
+        <source>see CAM&apos;s message in the Report view; enable or move them, or delete those that are not meant</source>
+        <translation>查看报告视图中 CAM 的消息；启用或移动它们，或删除不需要的</translation>
+    </message>
+    <message>
         <source>add it to the machine file, or pass --work-offset, or --origin for a further fixture of a CAM job</source>
         <translation>将其加入机床文件，或给出 --work-offset；CAM 作业的其他工件坐标系用 --origin 给出</translation>
     </message>
@@ -4809,6 +4817,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>{}, {}</source>
         <translation>{}，{}</translation>
+    </message>
+    <message>
+        <source>holes {}</source>
+        <translation>孔 {}</translation>
+    </message>
+    <message>
+        <source>holding tags {} of {}</source>
+        <translation>支撑标签 {}（共 {} 个）</translation>
     </message>
     <message>
         <source>{} given, the document has {}</source>

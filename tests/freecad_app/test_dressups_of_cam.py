@@ -8,7 +8,7 @@ import numpy as np
 import Part
 import Path
 import pytest
-from cam_jobs import add_tool_controller, moves
+from cam_jobs import add_operation, add_tool_controller, moves
 from part_jobs import job_on
 
 from pkm_post.freecad_app.job import read_job
@@ -151,6 +151,25 @@ def test_a_z_correction_needs_the_heights_of_its_file(job, tmp_path):
     assert faults_of(job) == {"J116"}
     made.Base.Active = False
     assert faults_of(job) == {"J103"}
+
+
+def test_holding_tags_that_cam_leaves_out_are_named(job):
+    """CAM disables a tag that meets its neighbour and one off the path; where all fail it takes the path below."""
+    made = created("Path.Dressup.Tags")(profile(job), job)
+    made.Positions = [*made.Positions, made.Positions[0] + App.Vector(1, 0, 0), App.Vector(20, 15, 0)]
+    array_of(made, job)
+    assert faults_of(job) == {"J149"}
+    expected = [("J149", made.Label, f"holding tags {', '.join(str(each + 1) for each in made.Disabled)} of 6")]
+    assert len(made.Disabled) == 2 and [(f.code, f.place.operation, f.found) for f in read_job(job)[1]] == expected
+    made.Positions, made.Disabled = [each for n, each in enumerate(made.Positions) if n not in made.Disabled], []
+    assert faults_of(job) == set()
+    made.Proxy.createPath = None
+    made.touch()
+    assert faults_of(job) == {"J149"}
+    assert [fault.found for fault in read_job(job)[1]] == ["holding tags 1, 2, 3, 4 of 4"]
+    made.Base.Active = False
+    add_operation(job)
+    assert faults_of(job) == set()
 
 
 def test_an_array_without_a_base_is_refused(job):

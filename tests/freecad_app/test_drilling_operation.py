@@ -76,6 +76,18 @@ def test_every_hole_is_drilled_to_its_depth(job, code):
     assert dwells == [0.5] * (len(CENTRES) if code == "G82" else 0)
 
 
+def test_holes_that_cam_leaves_out_are_named(job):
+    """It skips a hole that is disabled, and after a message in the Report view a face that is no hole."""
+    operation = drilling(job)
+    ((model, faces),) = operation.Base
+    operation.Disabled = [f"{model.Name}.{faces[1]}", f"{model.Name}.Face99"]
+    operation.Base = [(model, [*faces, "Face1"])]
+    job.Document.recompute()
+    assert [name for name, _ in moves(operation)].count("G81") == len(CENTRES) - 1
+    found = [(each.code, each.place.operation, each.found) for each in read_job(job)[1]]
+    assert found == [("J149", operation.Label, f"holes {model.Label}.{faces[1]}, {model.Label}.Face1")]
+
+
 @pytest.mark.parametrize("keep_climb", [False, True])
 def test_a_mirrored_copy_drills_the_mirrored_holes(job, keep_climb):
     """Whatever is done about climb milling: no hole is drilled from below."""

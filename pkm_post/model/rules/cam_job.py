@@ -128,4 +128,8 @@ CAM_JOB_RULES: dict[str, Rule] = {
         "FreeCAD reads the label of an operation as commands when it opens the document",
         "rename it without ( and ), mark it to be recomputed, recompute and save; then open the document again",
     ),
+    "J149": warning(
+        "CAM leaves out holes or holding tags of an operation",
+        "see CAM's message in the Report view; enable or move them, or delete those that are not meant",
+    ),
 }
