@@ -197,6 +197,8 @@ def approach(session: Session, target: JobTarget, namespace: argparse.Namespace)
     from pkm_post.model import errors
     from pkm_post.toolpath import highest_tip
 
+    control = control_of(session, target, namespace)
+    control.standing_pose()  # homed and at rest: otherwise the lengths do not say where the tool is
     if target_deviation(read_status(session, target.settings), target.job.first) <= _THERE_MM:
         print("the tool is at the start of the program")
         return 0
@@ -212,7 +214,6 @@ def approach(session: Session, target: JobTarget, namespace: argparse.Namespace)
     def check(path: Trajectory) -> tuple[Diagnostic, ...]:
         return () if known is None else approach_faults(known, 0, path)
 
-    control = control_of(session, target, namespace)
     plan, found = control.plan_approach(target.job, namespace.feed / 60, free, check)
     return execute_plan(session, target, namespace, control, plan, diagnostics + found)
 

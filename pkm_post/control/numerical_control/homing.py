@@ -27,7 +27,7 @@ _FORMS = {
     "ENABLE PLC n": re.compile(r"ENA(?:BLE)? ?PLC ?\d{1,2}", re.IGNORECASE),
     "Pn=value or Mn=value": re.compile(r"[PM]\d{1,4}=-?\d+(?:\.\d+)?", re.IGNORECASE),
     "&nBnR": re.compile(r"&\d{1,2} ?B\d{1,5} ?R", re.IGNORECASE),
-    "#nHM": re.compile(r"#[1-6](?:HM|HOME)(?: #[1-6](?:HM|HOME))*", re.IGNORECASE),
+    "#nHM": re.compile(r"#[1-6](?:HM|HOME)(?: ?#[1-6](?:HM|HOME))*", re.IGNORECASE),
 }
 """Permitted triggers: a PLC program, a variable polled by one, a motion program, motors."""
 HOMING_S = 600.0

@@ -13,7 +13,8 @@ ALL_MOTORS = " ".join(f"#{motor}HM" for motor in range(1, 7))
 
 
 @pytest.mark.parametrize(
-    "trigger", ["ENABLE PLC 3", "enaplc12", "P101=1", "M40=-1.5", "&1B500R", "&2 B5 R", "#1HM", "#1HM #2HM", "#6home"]
+    "trigger",
+    ["ENABLE PLC 3", "enaplc12", "P101=1", "M40=-1.5", "&1B500R", "&2 B5 R", "#1HM", "#1HM #2HM", "#1HM#2HM", "#6home"],
 )
 def test_lines_that_may_start_it(trigger):
     assert check_trigger(trigger) is None

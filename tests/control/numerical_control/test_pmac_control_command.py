@@ -16,13 +16,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from rig import served
+from station import MACHINE as EXAMPLE
 from station import PER_BLOCK, SETTINGS, TOOL, job, set_up
 
 from pkm_post.cli import main, pmac_manual
 from pkm_post.cli.pmac_manual import print_emergency_steps
+from pkm_post.control.simulator import Controller
 from pkm_post.model import Event, EventKind
 from pkm_post.posting.post_file import post_file
-from pkm_post.writing.controllers.pmac import program_text
+from pkm_post.writing.controllers.pmac import program_text, setup_text
 
 MACHINE = "example_6tps"
 LONGEST_S = 240.0
@@ -105,6 +107,17 @@ def test_nothing_is_sent_that_is_refused_or_only_checked(simulator, capsys):
     assert pmac("jog", port, "--x", 1, "--number", SETTINGS.program) == 1
     assert "choose another --number" in capsys.readouterr().err
     assert 999 not in made.memory.programs
+
+
+def test_without_homes_no_tool_is_at_the_start_of_a_program(capsys, tmp_path):
+    """The law of moves by hand: all struts homed. The counters of this one happen to show the lengths of the start."""
+    made, file = Controller(), tmp_path / "job.pmc"
+    made.load(setup_text(SETTINGS, "test", EXAMPLE.strut_stroke).splitlines())
+    file.write_text(program_text(job(SETTINGS, ()).motion, SETTINGS, ["job"]))
+    with served(made, speed=FAST) as port:
+        assert pmac("approach", port, file) == 1
+    reported = capsys.readouterr()
+    assert "strut 6: not homed" in reported.err and "at the start" not in reported.out
 
 
 @pytest.mark.slow
