@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import pkm_post
 from pkm_post import at_first_use
-from pkm_post.cli.console import interrupt_on_break
 from pkm_post.cli.processes import INTERRUPTED, diagnostic_text
+from pkm_post.cli.terminal import interrupt_on_break
 from pkm_post.options import UsageParser
 from pkm_post.system import MEMORY_FAULTS, THREADS, ThreadCountError, memory_diagnostic
 

@@ -24,10 +24,9 @@ from pathlib import Path
 from typing import Any
 
 import pkm_post
-from pkm_post.cli.console import flags_with_us
 from pkm_post.cli.post import items_of
 from pkm_post.cli.processes import command_inside, command_outside, is_inside, needs_freecad, outcome
-from pkm_post.cli.terminal import ProgressLine, print_diagnostics
+from pkm_post.cli.terminal import ProgressLine, flags_with_us, print_diagnostics
 from pkm_post.options import count, result_conflicts
 from pkm_post.system import result_files, staged, thread_share, threads, write_fault
 

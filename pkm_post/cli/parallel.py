@@ -15,7 +15,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
-from pkm_post.cli import console
+from pkm_post.cli import terminal
 from pkm_post.cli.processes import INTERRUPTED, TIME_TO_END, outcome, start_fault
 from pkm_post.cli.terminal import ProgressLine
 from pkm_post.system import thread_share
@@ -57,7 +57,7 @@ class _Child:
             errors="replace",
             env=os.environ | self.variables | {"PYTHONIOENCODING": "utf-8"},  # independent of the locale
             start_new_session=_HAS_GROUPS,
-            creationflags=console.flags_by_us(),
+            creationflags=terminal.flags_by_us(),
         )
 
     def interrupt(self) -> None:
@@ -67,8 +67,8 @@ class _Child:
             return
         if _HAS_GROUPS:
             self._signal(signal.SIGINT)
-        elif console.BREAK is not None and console.has_console():
-            self.process.send_signal(console.BREAK)
+        elif terminal.BREAK is not None and terminal.has_console():
+            self.process.send_signal(terminal.BREAK)
         else:
             self.process.terminate()
 

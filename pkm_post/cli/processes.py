@@ -14,7 +14,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from pkm_post.cli import console
+from pkm_post.cli import terminal
 from pkm_post.cli.terminal import print_diagnostics
 from pkm_post.system import FREECADCMD, FreeCADCommand, freecad_command
 
@@ -80,7 +80,7 @@ def _run_with_us(command: Sequence[str]) -> int:
     """Run a command that also receives Ctrl-C; return its exit code. After Ctrl-C it gets time to clean up."""
     import subprocess
 
-    process = subprocess.Popen(command, creationflags=console.flags_with_us())
+    process = subprocess.Popen(command, creationflags=terminal.flags_with_us())
     try:
         return process.wait()
     except KeyboardInterrupt:

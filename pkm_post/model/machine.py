@@ -236,13 +236,13 @@ class Machine:
     def functions(self) -> tuple[int, ...]:
         """Numbers of the M codes of part programs that map to a code of the controller."""
         named = self.controller.get("codes", {})
-        return tuple(int(name[1:]) for name in named if name[0] == "M" and name[1:].isdigit())
+        return tuple(int(name[1:]) for name in named if name[0] == "M" and name[1:].isdecimal())
 
     @property
     def thread_codes(self) -> tuple[int, ...]:
         """Numbers of the M codes that switch the spindle to an axis, and back to speed control."""
         texts = [self.controller.get("codes", {}).get(name, "") for name in ("spindle_axis", "spindle_speed")]
-        return tuple(int(text[1:]) for text in texts if text[:1] == "M" and text[1:].isdigit())
+        return tuple(int(text[1:]) for text in texts if text[:1] == "M" and text[1:].isdecimal())
 
     def __post_init__(self) -> None:
         for name in ("base_cone", "platform_cone"):

@@ -5,7 +5,10 @@ Input: a path, its stations and a machine. Output: places with speeds squared an
 squared is a quadratic spline (``speed_spline``). The places are the stations of the path, extra ones towards rests and
 narrow cells, and those that a search adds. The path is cut into windows, each searched on its own (``jerk_windows``,
 ``jerk_search``). Any excess speed left after the last round of a search slows the whole run from rest to rest.
-docs/planning.md has the derivations. Units: mm, s.
+
+Most of a smooth path runs at its feed. Where the tool only translates, along a line or a curve, the bounds of its
+derivatives on a whole segment show it, and exact demands at every place there are needless. docs/planning.md has the
+derivations. Units: mm, s.
 """
 
 from __future__ import annotations
@@ -15,16 +18,52 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from pkm_post.geometry import Array
+from pkm_post.machine import strut_jerk_bound
 from pkm_post.model import Machine, checkpoint
-from pkm_post.planning.jerk_bounds import steady_at_feed
-from pkm_post.planning.jerk_demands import Demands, Steady
+from pkm_post.planning.jerk_demands import JERK_SHARE, Demands, Steady, planned
 from pkm_post.planning.jerk_search import TOO_FAST, Iterate, NotFoundError
 from pkm_post.planning.jerk_start import first_places, start, with_middles
 from pkm_post.planning.jerk_windows import Places, Window, windows
-from pkm_post.planning.rough_limits import DerivativeBounds
+from pkm_post.planning.rough_limits import DerivativeBounds, rough_quantities
+from pkm_post.planning.speed_limits import NO_LIMIT, feed_of_path_length, lowered
 from pkm_post.planning.speed_profile import Stations, inserted
 from pkm_post.planning.tool_path import ToolPath
 from pkm_post.system import columns_in_workers, in_workers
+from pkm_post.toolpath import tip_jerk_bound
+
+
+def steady_at_feed(path: ToolPath, machine: Machine, bounds: DerivativeBounds) -> Steady:
+    """Bounds that hold on the whole of each segment, (N,) each; those of speed are NaN where the feed may be too fast.
+
+    Args:
+        path: N segments.
+        machine: its limits.
+        bounds: of the derivatives of the path.
+    """
+    square = feed_of_path_length(path.feed, bounds.tip_1) ** 2
+    along, growth = np.full((2, len(square)), NO_LIMIT)
+    tip = _third_of_tip(path, bounds)
+    thirds = strut_jerk_bound(machine, bounds.tip_1, bounds.tip_2, tip), tip, np.zeros(len(tip))
+    for item, third in zip(planned(machine, rough_quantities(machine, path, bounds)), thirds, strict=True):
+        checkpoint()
+        jerk = JERK_SHARE * item.jerk
+        square = lowered(square, item.speed, item.first, 2)
+        square = lowered(square, item.acceleration, item.second, 1)
+        square = lowered(square, jerk, third[:, None], 2 / 3)
+        along = lowered(along, item.acceleration, item.first, 1)
+        growth = lowered(growth, jerk, item.first, 1)
+    square = np.where(square == path.feed**2, square, np.nan)
+    return Steady(square, along, growth, square)
+
+
+def _third_of_tip(path: ToolPath, bounds: DerivativeBounds) -> Array:
+    """Bound of the third derivative of the tip, (N,); infinite on arcs, beside blends, and where the tool turns."""
+    segments, third = path.segments, np.zeros(len(path.feed))
+    third[segments.splines.row] = tip_jerk_bound(segments.splines)
+    third[segments.arcs.row] = np.inf
+    blended = (path.blend[1:] > 0) | (path.blend[:-1] > 0)
+    return np.where(blended | (bounds.axis_1 > 0) | (bounds.spin_1 > 0), np.inf, third)
+
 
 _ROUNDS = 3
 """Most rounds of cell refinement, and of lowering limits where the motion is too fast between places."""

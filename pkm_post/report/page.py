@@ -21,8 +21,16 @@ from pkm_post.geometry import Array, hermite_columns, hermite_lengths, hermite_s
 from pkm_post.model import FeedStudy, Kind, Motion, StrutMotion, Trajectory, checkpoint, distinct
 from pkm_post.report.charts import Line, TimeBand, chart, legend
 from pkm_post.report.results import Results
-from pkm_post.report.tables import certificate_tables, origin, row_cells, setup_table, time_table, tool_table
-from pkm_post.report.units import Shown, shown
+from pkm_post.report.tables import (
+    Shown,
+    certificate_tables,
+    origin,
+    row_cells,
+    setup_table,
+    shown,
+    time_table,
+    tool_table,
+)
 
 _PATH_POINTS = 6000
 """Instants at which the path is drawn in 3D."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tables: the tables of the report page as HTML.
+"""Tables: the tables of the report page as HTML, with lengths and speeds in mm or inch.
 
 Input: parts of the content of the report, in mm, and the unit of lengths on the page. Output: text; a row with an
 instant can be clicked.
@@ -9,9 +9,52 @@ from __future__ import annotations
 
 import html
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from pkm_post.report.units import shown
+_MM_IN_INCH = 25.4
+_SMALL = 0.1
+"""mm: quantities with a limit up to this are shown in um."""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Display form of a unit.
+
+    Attributes:
+        unit: its text.
+        factor: of a value in the unit of the report.
+    """
+
+    unit: str
+    factor: float = 1.0
+
+    def text(self, value: float) -> str:
+        """A value with its unit."""
+        return f"{self.factor * value:.4g} {self.unit}".rstrip()
+
+
+INCH = {
+    "mm": Shown("in", 1 / _MM_IN_INCH),
+    "um": Shown("in", 1e-3 / _MM_IN_INCH),
+    "mm/s": Shown("in/min", 60 / _MM_IN_INCH),
+    "mm/s^2": Shown("in/s^2", 1 / _MM_IN_INCH),
+    "mm/s^3": Shown("in/s^3", 1 / _MM_IN_INCH),
+}
+"""Units with lengths, by those of the report."""
+
+
+def shown(unit: str, of_page: str, limit: float | None = None) -> Shown:
+    """Display form of a unit of the report on a page.
+
+    Args:
+        unit: such as mm or degrees.
+        of_page: mm or inch.
+        limit: of the quantity, in ``unit``; small lengths are in um.
+    """
+    if of_page == "inch":
+        return INCH.get(unit, Shown(unit))
+    return Shown("um", 1000.0) if unit == "mm" and limit is not None and 0.0 < limit <= _SMALL else Shown(unit)
 
 
 def certificate_tables(certificate: Mapping[str, Any], of_page: str) -> str:

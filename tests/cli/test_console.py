@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 from interpreter import PYTHON
 
-from pkm_post.cli import console, parallel
+from pkm_post.cli import parallel, terminal
 
 NO_WINDOW, NEW_GROUP, CTRL_BREAK = 0x08000000, 0x200, 1
 
@@ -19,9 +19,9 @@ NO_WINDOW, NEW_GROUP, CTRL_BREAK = 0x08000000, 0x200, 1
 @pytest.fixture
 def windows(monkeypatch):
     """The flags of Windows, and processes without groups and signals of POSIX."""
-    monkeypatch.setattr(console, "_NO_WINDOW", NO_WINDOW)
-    monkeypatch.setattr(console, "_NEW_GROUP", NEW_GROUP)
-    monkeypatch.setattr(console, "BREAK", CTRL_BREAK)
+    monkeypatch.setattr(terminal, "_NO_WINDOW", NO_WINDOW)
+    monkeypatch.setattr(terminal, "_NEW_GROUP", NEW_GROUP)
+    monkeypatch.setattr(terminal, "BREAK", CTRL_BREAK)
     monkeypatch.setattr(parallel, "_HAS_GROUPS", False)
 
 
@@ -43,13 +43,13 @@ class Running(SimpleNamespace):
 
 @pytest.mark.parametrize(("has", "with_us", "by_us"), [(True, 0, NEW_GROUP), (False, NO_WINDOW, NO_WINDOW)])
 def test_no_window_opens_and_ctrl_c_reaches_what_it_should(windows, monkeypatch, has, with_us, by_us):
-    monkeypatch.setattr(console, "has_console", lambda: has)
-    assert (console.flags_with_us(), console.flags_by_us()) == (with_us, by_us)
+    monkeypatch.setattr(terminal, "has_console", lambda: has)
+    assert (terminal.flags_with_us(), terminal.flags_by_us()) == (with_us, by_us)
 
 
 @pytest.mark.parametrize(("has", "done"), [(True, CTRL_BREAK), (False, "terminated")])
 def test_parallel_processes_get_a_break_in_place_of_ctrl_c(windows, monkeypatch, has, done):
-    monkeypatch.setattr(console, "has_console", lambda: has)
+    monkeypatch.setattr(terminal, "has_console", lambda: has)
     child = parallel._Child(["post"], {}, Running())
     child.interrupt()
     assert child.process.done == [done]
@@ -61,7 +61,7 @@ def test_a_break_is_a_keyboard_interrupt(monkeypatch):
         monkeypatch.setattr(signal, "SIGBREAK", signal.SIGUSR1, raising=False)
     before = signal.getsignal(signal.SIGBREAK)
     try:
-        console.interrupt_on_break()
+        terminal.interrupt_on_break()
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGBREAK)
     finally:

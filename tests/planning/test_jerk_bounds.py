@@ -11,8 +11,8 @@ from programs import ON_PALLET, program, random_job
 from pkm_post.geometry import norm
 from pkm_post.model.certificate import Tolerances
 from pkm_post.planning import jerk_limits
-from pkm_post.planning.jerk_bounds import steady_at_feed
 from pkm_post.planning.jerk_demands import Demands
+from pkm_post.planning.jerk_limits import steady_at_feed
 from pkm_post.planning.motion import tool_path
 from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.speed_profile import stations

@@ -184,7 +184,7 @@ class Word(NamedTuple):
     def __str__(self) -> str:
         if self.value is None:
             return self.name
-        return f"{self.name}{'=' if self.name[-1].isdigit() else ''}{self.value:g}"
+        return f"{self.name}{'=' if self.name[-1].isdecimal() else ''}{self.value:g}"
 
 
 def word_of(code: int, letter: str = "G") -> Word:

@@ -16,7 +16,7 @@ import numpy as np
 from pkm_post.model import Array, Diagnostic, Place
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
 from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Blocks, SkippedSwitches, bits_of
-from pkm_post.reading.gcode.call_levels import MissingProgram
+from pkm_post.reading.gcode.calls import MissingProgram
 from pkm_post.reading.gcode.flavours import RS274, Flavour
 from pkm_post.reading.gcode.interpreter import PROGRAM_END, Interpreter
 from pkm_post.reading.gcode.o_words import JumpTargets, link_o_words
@@ -105,7 +105,7 @@ def _add_files_by_number(blocks: Blocks, jumps: JumpTargets) -> None:
     ends = [*(file.row for file in blocks.files), len(blocks)]
     for file, end in zip(blocks.files, ends[1:], strict=True):
         has_number = any(file.row < row < end for row in jumps.programs.values())
-        if file.label.isdigit() and not has_number:
+        if file.label.isdecimal() and not has_number:
             jumps.programs.setdefault(file.label, file.row)
 
 

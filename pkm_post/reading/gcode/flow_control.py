@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 
-from pkm_post.reading.gcode.call_levels import Level
+from pkm_post.reading.gcode.calls import Level
 from pkm_post.reading.gcode.o_words import JumpTargets
 from pkm_post.reading.gcode.parameters import Parameters
 from pkm_post.reading.gcode.statements import OWord, Statement

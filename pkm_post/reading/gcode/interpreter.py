@@ -14,11 +14,10 @@ from dataclasses import replace
 from pkm_post.model import Array
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
 from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Block, Blocks
-from pkm_post.reading.gcode.call_levels import Level, MissingProgram, rows_of_sequence_numbers
+from pkm_post.reading.gcode.calls import Call, Level, MissingProgram, call_of, rows_of_sequence_numbers
 from pkm_post.reading.gcode.codes import STROKES, name_of
 from pkm_post.reading.gcode.flavours import Flavour
 from pkm_post.reading.gcode.flow_control import FlowControl
-from pkm_post.reading.gcode.macro_calls import Call, call_of
 from pkm_post.reading.gcode.macro_variables import MacroVariables
 from pkm_post.reading.gcode.o_words import JumpTargets
 from pkm_post.reading.gcode.options import ExecutionLimits
@@ -256,7 +255,7 @@ class Interpreter(FlowControl):
         if not isinstance(label, str):
             label = label_of_number(label.value(self._parameters), label.column)
         if label not in self._jumps.subs:
-            raise MissingProgram((label,), row, f"O{label if label.isdigit() else f'<{label}>'} call")
+            raise MissingProgram((label,), row, f"O{label if label.isdecimal() else f'<{label}>'} call")
         first_row = self._jumps.subs[label] + 1
         self._enter(Level(row + 1, first_row), [value.value(self._parameters) for value in word.values])
         return first_row

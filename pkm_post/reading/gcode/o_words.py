@@ -115,7 +115,7 @@ class _Linker:
             raise ExecutionFault(
                 "G312", f"O{_shown(label)} within O{_shown(self.open[-1].label)} {self.open[-1].keyword}"
             )
-        if not label.isdigit():
+        if not label.isdecimal():
             raise ExecutionFault("G311", f"O<{label}> without a keyword")
         _define(self.flow.programs, label, row)
 
@@ -232,4 +232,4 @@ def _define(rows: dict[str, int], label: str, row: int) -> None:
 
 
 def _shown(label: str) -> str:
-    return label if label.isdigit() else f"<{label}>"
+    return label if label.isdecimal() else f"<{label}>"

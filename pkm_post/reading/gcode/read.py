@@ -79,7 +79,7 @@ def _executed(
     """
     if source.blocks.is_plain:
         return source, source.blocks, ()
-    from pkm_post.reading.gcode.call_levels import MissingProgram
+    from pkm_post.reading.gcode.calls import MissingProgram
     from pkm_post.reading.gcode.execute import execute_as_far_as_possible
     from pkm_post.reading.gcode.system_variables import ExecutedBlocks
 

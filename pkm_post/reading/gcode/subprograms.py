@@ -24,7 +24,7 @@ from pkm_post.reading.gcode.scan import scan_recovering, with_line_feeds
 from pkm_post.reading.language import unread_encoding
 
 if TYPE_CHECKING:
-    from pkm_post.reading.gcode.call_levels import MissingProgram
+    from pkm_post.reading.gcode.calls import MissingProgram
 
 _SUFFIXES = r"\.(?:ngc|nc|cnc|tap|gcode|mpf|spf|sub|eia|iso|txt)"
 _BYTES = 256 * 1024 * 1024
@@ -105,7 +105,7 @@ def content_of(path: Path) -> bytes | Diagnostic:
 def _files_of(labels: Iterable[str], folders: Sequence[Path]) -> tuple[str, list[Path]]:
     """The first label with files in a folder, and these files."""
     for label in labels:
-        number = f"[O:]?0*{int(label)}" if label.isdigit() else re.escape(label)
+        number = f"[O:]?0*{int(label)}" if label.isdecimal() else re.escape(label)
         name = re.compile(f"{number}(?:{_SUFFIXES})?", re.IGNORECASE)
         for folder in folders:
             paths = [path for path in listed(folder) if name.fullmatch(path.name) and path.is_file()]

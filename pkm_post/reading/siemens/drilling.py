@@ -19,10 +19,9 @@ from pkm_post.reading.gcode.frames import PLANES
 from pkm_post.reading.siemens.blocks import Call
 from pkm_post.reading.siemens.diagnostics import BlockFault
 from pkm_post.reading.siemens.machine import SiemensMachine
-from pkm_post.reading.siemens.one_hole import NAMES, Drill, Hole
+from pkm_post.reading.siemens.one_hole import CYCLE as TAPPING
+from pkm_post.reading.siemens.one_hole import MODES, NAMES, Drill, Hole, check_tapping, tap
 from pkm_post.reading.siemens.state import LINE, RAPID
-from pkm_post.reading.siemens.tapping import CYCLE as TAPPING
-from pkm_post.reading.siemens.tapping import MODES, check_tapping, tap
 
 _ALONG = 1 - 1e-12
 _CHIP_RETRACT = 1.0

@@ -31,10 +31,10 @@ from pkm_post.reading.siemens.modal_codes import (
     tool_offset,
     words,
 )
+from pkm_post.reading.siemens.one_hole import check_tapping
 from pkm_post.reading.siemens.scan import LARGEST, PLAIN
 from pkm_post.reading.siemens.state import BY_POINT, LINE, NO_MOTION, RAPID, TANGENT
 from pkm_post.reading.siemens.swivel import resets, swivel
-from pkm_post.reading.siemens.tapping import check_tapping
 
 _MOTION_NAMES = {"CIP": BY_POINT, "CT": TANGENT}
 _MODES = {"AC": ABSOLUTE, "DC": ABSOLUTE, "ACP": ABSOLUTE, "ACN": ABSOLUTE, "IC": RELATIVE}

@@ -55,7 +55,7 @@ def _target(cursor: Cursor) -> str:
     if token.kind == "name":
         return token.text
     number = cursor.next()
-    if token.text in ("N", ":") and number.kind == "number" and number.text.isdigit():
+    if token.text in ("N", ":") and number.kind == "number" and number.text.isdecimal():
         return f"N{int(number.text)}"
     raise BlockFault("G601", f"'{token.text}' instead of a label or block number", token.column)
 

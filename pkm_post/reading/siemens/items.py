@@ -82,7 +82,7 @@ def address(cursor: Cursor, token: Token) -> Item:
     if number.kind == "number" and cursor.peek(1).text == "=":
         cursor.next()
         cursor.next()
-        if not number.text.isdigit():
+        if not number.text.isdecimal():
             raise BlockFault("G601", f"{letter}{number.text}=", token.column)
         if letter == "R":
             index = Expression((lambda stack, _: stack.append(float(number.text)),), number.column)

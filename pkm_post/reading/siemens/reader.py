@@ -20,12 +20,11 @@ from pkm_post.reading.gcode.scan import with_line_feeds
 from pkm_post.reading.gcode.subprograms import with_operations, with_places
 from pkm_post.reading.siemens.diagnostics import LineDiagnostics, with_column
 from pkm_post.reading.siemens.interpreter import Interpreter
-from pkm_post.reading.siemens.machine import SiemensMachine
+from pkm_post.reading.siemens.machine import SiemensMachine, Tools
 from pkm_post.reading.siemens.path import Path
 from pkm_post.reading.siemens.scan import ScannedLines, scan
 from pkm_post.reading.siemens.structure import structure_of
 from pkm_post.reading.siemens.subprograms import MissingProgram, Source, files_by_name
-from pkm_post.reading.siemens.tools import Tools
 from pkm_post.reading.threads import without_idle_starts
 
 _CONSEQUENCES = ("G301", "G407", "G408", "G416", "G420", "G424", "G430", "G436", "G439", "G604", "G605")

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pkm_post.reading.gcode.blocks import SkippedSwitches, bits_of
-from pkm_post.reading.gcode.call_levels import rows_of_sequence_numbers
+from pkm_post.reading.gcode.calls import rows_of_sequence_numbers
 from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
 from pkm_post.reading.siemens.flow import Flow
 from pkm_post.reading.siemens.scan import STATEMENT, ScannedLines

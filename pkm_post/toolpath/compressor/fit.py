@@ -14,9 +14,8 @@ import numpy as np
 
 from pkm_post.geometry import Array, length_of
 from pkm_post.model import distinct
-from pkm_post.toolpath.compressor.deviation import Allowed, by_allowed, deviation
 from pkm_post.toolpath.compressor.levels import Curves, fitted_curves
-from pkm_post.toolpath.compressor.polylines import PolylinePoints, Polylines
+from pkm_post.toolpath.compressor.polylines import Allowed, PolylinePoints, Polylines, by_allowed, deviation
 from pkm_post.toolpath.compressor.splines import Splines, quintic_powers
 from pkm_post.toolpath.compressor.uniform_splines import at_nodes
 

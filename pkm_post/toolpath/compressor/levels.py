@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.toolpath.compressor.deviation import Allowed, by_allowed, deviation
-from pkm_post.toolpath.compressor.polylines import PolylinePoints, Polylines
+from pkm_post.toolpath.compressor.polylines import Allowed, PolylinePoints, Polylines, by_allowed, deviation
 from pkm_post.toolpath.compressor.uniform_splines import (
     SUPPORT,
     Grids,

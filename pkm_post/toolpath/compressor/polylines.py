@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Polylines: the vertices of many runs in the same columns, by path length.
+"""Polylines: the vertices of many runs in the same columns, by path length, and their deviations from curves.
 
-Columns are (C, V): C coordinates of V vertices. Rows are the lines between two vertices of a run. Units: mm, rad.
+Columns are (C, V) or (C, N): coordinates of vertices or places, the tip, and tool axis and spin where these change.
+Rows are the lines between two vertices of a run. The reference of a place is the nearest one of the curve, to first
+order, by the tip. Units: mm, rad.
 """
 
 from __future__ import annotations
@@ -11,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, expand_counts
+from pkm_post.geometry import Array, expand_counts, length_of
+from pkm_post.toolpath.compressor.splines import AXIS, SPIN, TIP, dot_columns
 
 
 @dataclass(frozen=True)
@@ -103,3 +106,45 @@ class PolylinePoints:
             (begin[:, None] + way[:, None] * shares).ravel(),
             (point[:, :, None] + step[:, :, None] * shares).reshape(len(point), -1),
         )
+
+
+@dataclass(frozen=True)
+class Allowed:
+    """Allowed deviations of the curve, in columns of N rows or places.
+
+    Attributes:
+        tip: (N,) mm.
+        axis: (N,) rad, for tool axis and spin.
+    """
+
+    tip: Array
+    axis: Array
+
+    def __getitem__(self, rows: Array | slice) -> Allowed:
+        return Allowed(self.tip[rows], self.axis[rows])
+
+
+def deviation(point: Array, curve: Array, slope: Array) -> tuple[Array, Array]:
+    """Deviations of points from the nearest places of a curve, (C, N); and how far ahead these are, (N,).
+
+    Args:
+        point: (C, N) points of polylines.
+        curve: (C, N) places of the curve.
+        slope: (C, N) its derivative there.
+    """
+    off = point - curve
+    along, square = dot_columns(off[TIP], slope[TIP]), dot_columns(slope[TIP], slope[TIP])
+    ahead = np.divide(along, square, out=np.zeros_like(along), where=square > 0)  # 0 where the tip turns back
+    off -= ahead * slope
+    if len(off[AXIS]):
+        axis = curve[AXIS] / length_of(*curve[AXIS])
+        off[AXIS] -= dot_columns(off[AXIS], axis) * axis
+    return off, ahead
+
+
+def by_allowed(off: Array, allowed: Allowed) -> tuple[Array, Array]:
+    """Deviations of the tip, and of axis or spin, relative to those allowed, (N,) each."""
+    tip = length_of(*off[TIP]) / allowed.tip
+    if not len(off[AXIS]):
+        return tip, np.zeros_like(tip)
+    return tip, np.maximum(length_of(*off[AXIS]), np.abs(off[SPIN][0])) / allowed.axis

@@ -218,11 +218,12 @@ def direction(vector: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
     v, v1, v2 = vector
     m = length_of(*v)
     k = v / m
-    m1 = _dot(k, v1)
+    m1 = dot_columns(k, v1)
     k1 = (v1 - m1 * k) / m
-    m2 = _dot(k, v2) + _dot(k1, v1)
+    m2 = dot_columns(k, v2) + dot_columns(k1, v1)
     return k, k1, (v2 - 2 * m1 * k1 - m2 * k) / m
 
 
-def _dot(left: Array, right: Array) -> Array:
+def dot_columns(left: Array, right: Array) -> Array:
+    """Scalar products of vectors in columns, (3, N) each: (N,)."""
     return np.asarray(left[0] * right[0] + left[1] * right[1] + left[2] * right[2])

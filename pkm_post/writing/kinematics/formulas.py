@@ -14,7 +14,7 @@ the Jacobian by twist, times the twist of each axis.
 
 from __future__ import annotations
 
-from pkm_post.writing.kinematics.statements import Assign, Statement, assignments
+from pkm_post.writing.kinematics.dialects import Assign, Statement, assignments
 from pkm_post.writing.kinematics.variables import AXES, STRUTS
 
 _RADIAN = "0.0174532925199433"

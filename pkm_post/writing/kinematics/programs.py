@@ -10,7 +10,7 @@ with too much tilt or turn, it reports that there is no solution.
 from __future__ import annotations
 
 from pkm_post.writing.kinematics import formulas
-from pkm_post.writing.kinematics.statements import Assign, Comment, Fail, If, Statement, While, assignments
+from pkm_post.writing.kinematics.dialects import Assign, Comment, Fail, If, Statement, While, assignments
 from pkm_post.writing.kinematics.variables import AXES, STRUTS
 
 _START = """

@@ -21,7 +21,7 @@ from pkm_post.writing.controllers.power_pmac import PowerPmacSettings
 from pkm_post.writing.controllers.pvt.settings import settings_of
 from pkm_post.writing.kinematics import linuxcnc
 from pkm_post.writing.kinematics.controller_file import Export, counts, power_text, turbo_text
-from pkm_post.writing.kinematics.linuxcnc_stream import stream_hal
+from pkm_post.writing.kinematics.linuxcnc import stream_hal
 from pkm_post.writing.kinematics.sign_off import CheckPoses, linuxcnc_sheet, sign_off_sheet
 
 Files = Mapping[str, str]

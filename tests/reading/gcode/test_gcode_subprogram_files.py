@@ -50,6 +50,13 @@ def test_a_subprogram_in_another_encoding_is_refused_by_its_name(tmp_path, flavo
     assert [(each.code, each.place.file, each.found) for each in faults] == [("F121", str(file), "UTF-16")]
 
 
+def test_a_superscript_in_the_name_of_a_subprogram_is_no_digit(tmp_path):
+    (tmp_path / "main.ngc").write_bytes(f"{HEAD}o<\u00b2> call\nM2\n".encode("latin-1"))
+    program, faults = read_part_program(tmp_path / "main.ngc", AS_WRITTEN)
+    assert program is None
+    assert [(each.code, each.place.line, each.found) for each in faults] == [("G309", 4, "O<\u00b2> call")]
+
+
 def test_linuxcnc_calls_by_name_and_number_with_arguments(tmp_path):
     main = f"{HEAD}o<My Hole> call [3]\no100 call [4]\n#1=100\no#1 call [5]\nM2\n"
     written(

@@ -56,3 +56,9 @@ def test_options_name_a_tool_by_the_number_that_its_name_was_given():
     reading = ReadingOptions(lengths={1: 100.0, 2: 120.0})
     program, _ = read_content(text.encode(), "part.mpf", reading)
     assert {(tool.number, tool.name, tool.length) for tool in program.tools.values()} >= {(2, "BALL", 120.0)}
+
+
+def test_a_superscript_in_the_name_of_a_tool_is_no_digit():
+    text = f'G17 G90 G71\nT="\u00b2"\nM6\nG54 F600\nG0 X0 Y0 Z10\nG1 X5\n{END}'
+    program, _ = read_content(text.encode("latin-1"), "part.mpf", ReadingOptions())
+    assert [(tool.number, tool.name) for tool in program.tools.values()] == [(1, "\u00b2")]

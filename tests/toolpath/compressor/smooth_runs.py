@@ -4,8 +4,8 @@
 import numpy as np
 
 from pkm_post.geometry import length_of
-from pkm_post.toolpath.compressor.deviation import Allowed
 from pkm_post.toolpath.compressor.fit import fit
+from pkm_post.toolpath.compressor.polylines import Allowed
 
 
 def wavy(rows, chord=0.2, noise=0.0, seed=1):

@@ -15,8 +15,8 @@ from pkm_post.certificate.deviation import TrajectoryRuler
 from pkm_post.geometry import length_of, norm
 from pkm_post.model import Event, EventKind, Tolerances
 from pkm_post.toolpath import Segments, compress
-from pkm_post.toolpath.compressor import runs as criteria
-from pkm_post.toolpath.compressor.runs import runs
+from pkm_post.toolpath.compressor import compress as criteria
+from pkm_post.toolpath.compressor.compress import runs
 from pkm_post.toolpath.place import place
 
 TIP, AXIS = 0.006, 1e-4

@@ -7,7 +7,7 @@ from controller_settings import settings_for
 from hypothesis import given, strategies
 from hypothesis import settings as hypothesis_settings
 
-from pkm_post.writing.controllers.pmac.reader import _grammar as turbo
+from pkm_post.writing.controllers.pmac.program import _grammar as turbo
 from pkm_post.writing.controllers.power_pmac import _grammar as power
 from pkm_post.writing.controllers.pvt.moves import lines_of
 

@@ -11,7 +11,7 @@ import pytest
 from pkm_post.machine import strut_lengths
 from pkm_post.posting.machine_export import export_machine
 from pkm_post.writing.kinematics import Export
-from pkm_post.writing.kinematics.linuxcnc_stream import DEPTH, START_TOLERANCE, stream_hal
+from pkm_post.writing.kinematics.linuxcnc import DEPTH, START_TOLERANCE, stream_hal
 
 
 @pytest.fixture(scope="module")

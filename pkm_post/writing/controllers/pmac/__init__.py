@@ -8,10 +8,12 @@ from pkm_post.writing.controllers.pmac.program import (
     buffer_opening,
     program_parts,
     program_text,
+    read_part,
+    read_parts,
+    read_program,
     rotary_opening,
     rotary_text,
 )
-from pkm_post.writing.controllers.pmac.reader import read_part, read_parts, read_program
 from pkm_post.writing.controllers.pmac.settings import PmacSettings, settings_of, setup_text
 from pkm_post.writing.controllers.pvt.codes import event_faults
 from pkm_post.writing.controllers.pvt.parts import stated_part
