@@ -161,7 +161,7 @@ def read_list(file: Path) -> list[BatchJob]:
     from pkm_post.model import Diagnostic, Place, Refused
 
     try:
-        content = tomllib.loads(file.read_text(encoding="utf-8"))
+        content = tomllib.loads(file.read_text(encoding="utf-8-sig"))
         jobs = list(_jobs(content, file.parent))
     except (OSError, ValueError, TypeError) as fault:
         code = "F103" if isinstance(fault, OSError) else "F116"
@@ -256,7 +256,7 @@ def _table_before(table: Path) -> list[BatchRow]:
     try:
         with table.open(encoding="utf-8", newline="") as stream:
             return [BatchRow(**row) for row in csv.DictReader(stream)]
-    except (OSError, TypeError, ValueError):  # missing or not ours: post every job
+    except (OSError, TypeError, ValueError, csv.Error):  # missing or not ours: post every job
         return []
 
 

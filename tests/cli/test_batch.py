@@ -142,6 +142,20 @@ def test_a_refused_file_stops_no_other_and_is_in_the_table(jobs, tmp_path, monke
     assert main(["batch", str(jobs)]) == 1
 
 
+def test_a_list_may_begin_with_a_byte_order_mark(jobs):
+    jobs.write_bytes(b"\xef\xbb\xbf" + jobs.read_bytes())
+    assert [job.file for job in batch_command.read_list(jobs)] == ["a.ngc", "b.ngc"]
+
+
+def test_a_table_that_cannot_be_read_is_written_again(jobs, monkeypatch):
+    monkeypatch.setattr(subprocess, "run", lambda words, **_: subprocess.CompletedProcess(words, 1, "", "refused"))
+    table = batch_command.table_of(jobs)
+    table.write_text("file\n" + "x" * (csv.field_size_limit() + 1) + "\n")
+    rows = run_batch(jobs, AtOnce())
+    assert [row.file for row in rows] == ["a.ngc", "b.ngc"]
+    assert table.read_text().startswith("file,job,state")
+
+
 @pytest.mark.parametrize(
     ("text", "found"),
     [

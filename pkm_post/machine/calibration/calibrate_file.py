@@ -232,7 +232,7 @@ def _calibrated_text(
     if found.machine.tool_table is not None and out.parent.resolve() != path.parent.resolve():
         entries["part_programs.tool_table"] = str(Path(found.machine.tool_table).resolve())
     try:
-        text = with_entries(path.read_bytes().decode("utf-8"), entries)
+        text = with_entries(path.read_bytes().decode("utf-8-sig"), entries)
     except CannotRewriteError as fault:
         return None, (Diagnostic("M204", Place(str(path)), str(fault)),)
     text = (

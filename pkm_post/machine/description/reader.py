@@ -105,7 +105,7 @@ def machine_of(content: bytes, file: str) -> tuple[Machine | None, tuple[Diagnos
     if limit:
         return None, (limit,)
     try:
-        text = content.decode("utf-8")
+        text = content.decode("utf-8-sig")
     except ValueError as fault:
         return None, (Diagnostic("M101", Place(file), str(fault)),)
     limit = too_deep(text, file)

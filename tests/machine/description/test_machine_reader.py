@@ -314,3 +314,12 @@ def test_a_spindle_that_is_an_axis_is_stated_as_a_whole(before, after, found):
     assert text.count(before) == 1
     _, faults = machine_of(text.replace(before, after).encode(), "machine.toml")
     assert [(fault.code, fault.found.split(": ")[0]) for fault in faults] == found
+
+
+def test_a_byte_order_mark_says_nothing():
+    content = PRESET.read_bytes()
+    marked, faults = machine_of(b"\xef\xbb\xbf" + content, "machine.toml")
+    assert faults == ()
+    assert marked.fingerprint == hashlib.sha256(b"\xef\xbb\xbf" + content).hexdigest()
+    (fault,) = machine_of(b"\xef\xbb\xbfname = ?", "machine.toml")[1]
+    assert (fault.code, fault.place.line, fault.place.column) == ("M102", 1, 8)
