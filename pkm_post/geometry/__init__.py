@@ -51,6 +51,7 @@ from pkm_post.geometry.vectors import (
     norm,
     take_rows,
     unit,
+    unit_or_nan,
 )
 
 if TYPE_CHECKING:
@@ -134,5 +135,6 @@ __all__ = [
     "towards",
     "turn_by_tilt",
     "unit",
+    "unit_or_nan",
     "write_frames",
 ]

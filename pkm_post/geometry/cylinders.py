@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pkm_post.geometry.distances import nearest_to_cylinder, point_to_cylinder
-from pkm_post.geometry.vectors import Array, cross, dot, norm
+from pkm_post.geometry.vectors import Array, across, cross, dot, norm
 
 TRIANGLE_EDGES = np.array([[0, 1], [1, 2], [2, 0]])
 _SHORT = 1e-12
@@ -61,8 +61,8 @@ def separation(cylinders: Cylinders, corners: Array, faces: Array, edges: Array)
     """
     axes, from_middle = cylinders.axis[:, None, :], corners - cylinders.middle[:, None, :]
     centre = from_middle.mean(axis=1, keepdims=True)
-    across = centre - dot(centre, axes)[..., None] * axes
-    tried = np.concatenate([axes, faces, cross(axes, faces), _out_of(cylinders, from_middle), centre, across], axis=1)
+    aside = across(centre, axes)
+    tried = np.concatenate([axes, faces, cross(axes, faces), _out_of(cylinders, from_middle), centre, aside], axis=1)
     gap, direction = _widest_gap(cylinders, from_middle, tried)
     start, end = from_middle[:, edges[:, 0]], from_middle[:, edges[:, 1]]
     for _ in range(_ROUNDS):

@@ -17,7 +17,7 @@ import numpy as np
 
 from pkm_post.geometry.cells import grid_cells
 from pkm_post.geometry.nurbs import NurbsSurface
-from pkm_post.geometry.vectors import Array, dot, norm
+from pkm_post.geometry.vectors import Array, dot, norm, unit_or_nan
 
 Feet = tuple[Array, Array]
 _SAMPLES = 6000
@@ -31,6 +31,8 @@ _SMALL = 1e-5
 """Newton step in mm that is taken even if the distance grows: this close to the minimum, growth is rounding."""
 _ARRIVED = 1e-8
 """Newton step in mm that ends the iteration: the error left is of the order of its square."""
+_NO_DIRECTION = 1e-9
+"""mm: a shorter vector has no direction."""
 Closed = tuple[bool, bool]
 
 
@@ -42,14 +44,14 @@ def plane_feet(points: Array, origin: Array, axis: Array) -> Feet:
 
 def sphere_feet(points: Array, centre: Array, radius: float) -> Feet:
     """Feet on a sphere."""
-    normals = _direction(points - centre)
+    normals = unit_or_nan(points - centre, _NO_DIRECTION)
     return centre + radius * normals, normals
 
 
 def cylinder_feet(points: Array, centre: Array, axis: Array, radius: float) -> Feet:
     """Feet on the cylinder about the unit axis through the centre."""
     along, across = _parts(points - centre, axis)
-    normals = _direction(across)
+    normals = unit_or_nan(across, _NO_DIRECTION)
     return centre + along[:, None] * axis + radius * normals, normals
 
 
@@ -64,7 +66,7 @@ def cone_feet(points: Array, apex: Array, axis: Array, half_angle: float) -> Fee
     """
     along, across = _parts(points - apex, axis)
     side = np.where(along < 0, -1.0, 1.0)
-    outward = _direction(across)
+    outward = unit_or_nan(across, _NO_DIRECTION)
     sine, cosine = math.sin(half_angle), math.cos(half_angle)
     line = sine * outward + (cosine * side)[:, None] * axis
     normals = cosine * outward - (sine * side)[:, None] * axis
@@ -74,21 +76,14 @@ def cone_feet(points: Array, apex: Array, axis: Array, half_angle: float) -> Fee
 def torus_feet(points: Array, centre: Array, axis: Array, major: float, minor: float) -> Feet:
     """Feet on the torus about the unit axis: tube of radius minor around a circle of radius major."""
     _, across = _parts(points - centre, axis)
-    middle = centre + major * _direction(across)
-    normals = _direction(points - middle)
+    middle = centre + major * unit_or_nan(across, _NO_DIRECTION)
+    normals = unit_or_nan(points - middle, _NO_DIRECTION)
     return middle + minor * normals, normals
 
 
 def _parts(vectors: Array, axis: Array) -> tuple[Array, Array]:
     along = vectors @ axis
     return along, vectors - along[:, None] * axis
-
-
-def _direction(vectors: Array) -> Array:
-    """Unit vectors, NaN for those too short to have a direction."""
-    length = norm(vectors)
-    unit: Array = vectors / np.where(length > 1e-9, length, np.nan)[:, None]
-    return unit
 
 
 def nearest_on_nurbs(surface: NurbsSurface, points: Array, closed: Closed = (False, False)) -> tuple[Array, Array]:

@@ -53,6 +53,12 @@ def unit(vectors: Array) -> Array:
     return vectors / lengths[..., None]
 
 
+def unit_or_nan(vectors: Array, least: float = 0.0) -> Array:
+    """The (..., 3) vectors divided by their lengths; NaN where one is not longer than ``least``, or not finite."""
+    lengths = norm(vectors)
+    return np.asarray(vectors / np.where((lengths > least) & np.isfinite(lengths), lengths, np.nan)[..., None])
+
+
 def distinct(numbers: Array) -> tuple[Array, Array]:
     """The distinct numbers, ascending, and for each given number, (N,), its row among them.
 

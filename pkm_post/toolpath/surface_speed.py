@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.geometry import Array, dot, norm
+from pkm_post.geometry import Array, across, norm
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Place, Program
 from pkm_post.toolpath.compensation.cutter import Cutter, known_cutter
 from pkm_post.toolpath.threads import without_threads
@@ -84,7 +84,7 @@ def _cutter(program: Program, number: int, rows: Array) -> tuple[Cutter | None, 
 def _contact_diameter(program: Program, cutter: Cutter, rows: Array) -> Array:
     """The contact diameter of the cutter, (R,) mm."""
     normal, axis = program.normal[rows], program.tool_axis[rows]
-    sine = norm(normal - dot(normal, axis)[:, None] * axis)
+    sine = norm(across(normal, axis))
     touched = 2 * (cutter.radial_offset + cutter.corner_radius * sine)
     nominal = 2 * cutter.radius
     return np.where(np.isnan(touched), nominal, np.maximum(touched, _LEAST_SHARE * nominal))

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from pkm_post.geometry.cells import grid_cells
-from pkm_post.geometry.vectors import distinct, take_rows
+from pkm_post.geometry.vectors import distinct, take_rows, unit_or_nan
 
 
 def test_numbers_and_rows_give_what_was_given():
@@ -42,3 +42,11 @@ def test_every_row_is_in_one_cell_and_cells_are_small(about):
 def test_no_points_and_points_in_one_place():
     assert grid_cells(np.zeros((0, 3)), 10) == []
     assert [rows.tolist() for rows in grid_cells(np.ones((40, 3)), 10)] == [list(range(40))]
+
+
+def test_directions_of_vectors_without_one_are_nan():
+    vectors = np.array([[0, 3, 4], [0, 0, 0], [1e-10, 0, 0], [np.inf, 1, 0], [np.nan, 1, 0]])
+    known = [[0, 0.6, 0.8], [1, 0, 0]]
+    np.testing.assert_allclose(unit_or_nan(vectors)[[0, 2]], known)
+    assert np.isnan(unit_or_nan(vectors)[[1, 3, 4]]).all()
+    assert np.isnan(unit_or_nan(vectors, 1e-9)[1:]).all()

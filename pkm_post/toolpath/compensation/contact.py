@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pkm_post.geometry import dot, norm
+from pkm_post.geometry import across, dot, norm, unit_or_nan
 from pkm_post.model import Diagnostic, Place
 from pkm_post.toolpath.compensation.cutter import Cutter
 
@@ -223,21 +223,21 @@ def radial_directions(points: Array, n: Array, k: Array, radial_offset: float) -
     Returns:
         m (N, 3), and the rows (N,) where normal and axis are nearly, but not, parallel.
     """
-    across = n - dot(n, k)[:, None] * k
-    sine = norm(across)
+    sideways = across(n, k)
+    sine = norm(sideways)
     with np.errstate(invalid="ignore", divide="ignore"):
         parallel, near = sine < _PARALLEL, (sine >= _PARALLEL) & (sine < _NEARLY_PARALLEL)
-        m = across / np.where(parallel, np.nan, sine)[:, None]
+        m = sideways / np.where(parallel, np.nan, sine)[:, None]
     if near.any():
-        m[near] = _averaged(across, sine, m, k, radial_offset)[near]
+        m[near] = _averaged(sideways, sine, m, k, radial_offset)[near]
     if np.isnan(m).any():
         m = _filled(points, m, k)
     return m, near
 
 
-def _averaged(across: Array, sine: Array, m: Array, k: Array, radial_offset: float) -> Array:
+def _averaged(sideways: Array, sine: Array, m: Array, k: Array, radial_offset: float) -> Array:
     """Directions of the mean of neighbouring normals, where the gouge is small enough."""
-    mean = unit_across(_moving_sum(np.nan_to_num(across)), k)
+    mean = unit_across(_moving_sum(np.nan_to_num(sideways)), k)
     cost = abs(radial_offset) * sine * (1.0 - dot(mean, m))
     averaged: Array = np.where((cost <= _SMOOTHING_COST)[:, None], mean, m)
     return averaged
@@ -273,11 +273,4 @@ def _travel(points: Array) -> Array:
 def unit_across(vectors: Array, k: Array) -> Array:
     """Unit vectors (N, 3) of the components normal to k; NaN where the vectors are parallel to it."""
     direction = unit_or_nan(vectors)
-    return unit_or_nan(direction - dot(direction, k)[:, None] * k, _PARALLEL)
-
-
-def unit_or_nan(vectors: Array, least: float = 0.0) -> Array:
-    """The (N, 3) vectors scaled to unit length; NaN where one is not longer than ``least``, or not finite."""
-    length = norm(vectors)
-    unit: Array = vectors / np.where((length > least) & np.isfinite(length), length, np.nan)[:, None]
-    return unit
+    return unit_or_nan(across(direction, k), _PARALLEL)

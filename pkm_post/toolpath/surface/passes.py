@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pkm_post.geometry import Array, cross, dot, norm, unit
+from pkm_post.geometry import Array, across, cross, dot, norm, unit, unit_or_nan
 from pkm_post.model import Amount, Diagnostic, Phrase, Place
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.surface.contact_path import ContactPath, PassPattern, thinned, trimmed
@@ -21,7 +21,7 @@ from pkm_post.toolpath.surface.options import CutMode, PassLines, PassOrder, Sur
 from pkm_post.toolpath.surface.pass_lines import iso_lines, plane_sections, spiral
 from pkm_post.toolpath.surface.poses import PoseRefinement, Progress, SurfacePoses
 from pkm_post.toolpath.surface.stepover import levels_of_planes, passes_along_u
-from pkm_post.toolpath.surface.surface import Surface, unit_or_nan
+from pkm_post.toolpath.surface.surface import NO_LENGTH, Surface
 from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
 
 _LOOKS = 17
@@ -151,10 +151,10 @@ def climbs(surface: Surface, pattern: PassPattern, path: ContactPath, rule: Axis
         into_rising: 1 when passes follow each other with rising v or level, -1 when falling.
     """
     samples = surface.at(path.u, path.v)
-    feed = np.nan_to_num(unit_or_nan(pattern.direction(samples)) * path.sense[:, None])
+    feed = np.nan_to_num(unit_or_nan(pattern.direction(samples), NO_LENGTH) * path.sense[:, None])
     next_passes = samples.along_v if pattern.plane is None else np.broadcast_to(pattern.plane, feed.shape)
-    sideways = next_passes - dot(next_passes, feed)[:, None] * feed
-    s = into_rising * np.nan_to_num(unit_or_nan(sideways - dot(sideways, samples.normal)[:, None] * samples.normal))
+    sideways = across(next_passes, feed)
+    s = into_rising * np.nan_to_num(unit_or_nan(across(sideways, samples.normal), NO_LENGTH))
     side = cross(samples.normal, feed) * path.sense[:, None]
     k = np.nan_to_num(tool_axes(samples.normal, feed, rule, side)[0])
     return bool(np.mean(dot(s - samples.normal, cross(feed, k))) > 0.0)

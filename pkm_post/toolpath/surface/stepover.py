@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.geometry import Array, cross, dot, norm
+from pkm_post.geometry import Array, across, cross, dot, norm, unit_or_nan
 from pkm_post.toolpath.compensation.cutter import Cutter
 from pkm_post.toolpath.surface.contact_path import PassPattern
-from pkm_post.toolpath.surface.surface import ParameterRange, Surface, SurfaceGrid, normal_curvatures, unit_or_nan
+from pkm_post.toolpath.surface.surface import NO_LENGTH, ParameterRange, Surface, SurfaceGrid, normal_curvatures
 from pkm_post.toolpath.surface.tool_axis import AxisRule, tool_axes
 
 _FLAT_ON_IT = 1e-9
@@ -62,9 +62,9 @@ def passes_along_u(surface: Surface, stepover: Stepover, cutter: Cutter, rule: A
     widest = _widest(allowed, grid)
     if math.isnan(widest):
         return np.zeros(0), widest
-    feed = np.nan_to_num(unit_or_nan(grid.samples.along_u))
-    across = norm(grid.samples.along_v - dot(grid.samples.along_v, feed)[:, None] * feed)
-    need = np.max(grid.shaped(np.where(grid.inside, across / allowed, 0.0)), axis=0)
+    feed = np.nan_to_num(unit_or_nan(grid.samples.along_u, NO_LENGTH))
+    sideways = norm(across(grid.samples.along_v, feed))
+    need = np.max(grid.shaped(np.where(grid.inside, sideways / allowed, 0.0)), axis=0)
     first, last = (0.0 if length > _POINT else 0.5 for length in _lengths_on_borders(grid))
     need[[0, -1]] = np.where([first, last], need[[1, -2]], need[[0, -1]])  # a line has no direction at a pole
     return _shares(grid.v, need, first, last, surface.v.closed), widest
@@ -106,7 +106,7 @@ def pass_widths(
         return np.full(len(grid.inside), stepover.distance)
     assert stepover.scallop is not None
     samples = grid.samples
-    feed = unit_or_nan(pattern.direction(samples))
+    feed = unit_or_nan(pattern.direction(samples), NO_LENGTH)
     u, v = (each.ravel() for each in np.meshgrid(grid.u, grid.v, indexing="ij"))
     curvature = normal_curvatures(surface, u, v, samples, cross(samples.normal, feed))
     both = []
@@ -141,7 +141,7 @@ def pass_width(normal: Array, axis: Array, feed: Array, curvature: Array, cutter
     width = np.minimum(scallop_width(radius, curvature, height), widest)
     if e == 0.0:
         return width
-    sine = norm(axis - dot(axis, normal)[:, None] * normal)
+    sine = norm(across(axis, normal))
     bottom = np.minimum(height * dot(axis, normal) / np.maximum(sine, _FLAT_ON_IT), 2.0 * e)
     wider: Array = np.where((curvature >= 0.0) & (bottom > width), bottom, width)
     return wider
@@ -168,9 +168,9 @@ def effective_radius(normal: Array, axis: Array, feed: Array, cutter: Cutter) ->
     r, e = cutter.corner_radius, cutter.radial_offset
     if e == 0.0:
         return np.full(len(normal), r)
-    across = axis - dot(axis, normal)[:, None] * normal
-    sine = norm(across)
-    meridian = np.nan_to_num(unit_or_nan(across))
+    sideways = across(axis, normal)
+    sine = norm(sideways)
+    meridian = np.nan_to_num(unit_or_nan(sideways, NO_LENGTH))
     along_meridian = np.square(dot(meridian, feed))
     with np.errstate(divide="ignore"):
         wide = np.where(sine > _FLAT_ON_IT, e * along_meridian / np.maximum(sine, _FLAT_ON_IT), np.inf)
@@ -215,7 +215,7 @@ def cutter_gap(tip: Array, axis: Array, point: Array, normal: Array, cutter: Cut
         cutter: the corner of the cutter.
     """
     centre = tip + cutter.axial_offset * axis
-    reach = norm(normal - dot(normal, axis)[:, None] * axis)
+    reach = norm(across(normal, axis))
     distance: Array = dot(centre - point, normal) - cutter.radial_offset * reach - cutter.corner_radius
     return distance
 

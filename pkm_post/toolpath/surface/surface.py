@@ -13,9 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
-from pkm_post.geometry import Array, cross, dot, norm
+from pkm_post.geometry import Array, cross, dot
 
-_NO_LENGTH = 1e-9
+NO_LENGTH = 1e-9
 """mm below which a line of the surface is a pole."""
 
 _DIFFERENCE = 1e-4
@@ -180,13 +180,6 @@ class SurfaceGrid:
         return column.reshape(len(self.u), len(self.v), *column.shape[1:])
 
 
-def unit_or_nan(vectors: Array) -> Array:
-    """Vectors scaled to unit length; NaN where one is zero."""
-    length = norm(vectors)[:, None]
-    scaled: Array = vectors / np.where(length > _NO_LENGTH, length, np.nan)
-    return scaled
-
-
 def normal_curvatures(surface: Surface, u: Array, v: Array, samples: SurfaceSamples, direction: Array) -> Array:
     """Curvatures of the surface in tangent directions, (N,) in 1/mm, positive where it is convex.
 
@@ -221,7 +214,7 @@ def _components(samples: SurfaceSamples, direction: Array) -> tuple[Array, Array
     """Components a and b of direction = a Su + b Sv in the tangent plane; NaN at a pole."""
     across = cross(samples.along_u, samples.along_v)
     area = dot(across, across)
-    area = np.where(area > _NO_LENGTH**2, area, np.nan)
+    area = np.where(area > NO_LENGTH**2, area, np.nan)
     return (
         dot(cross(direction, samples.along_v), across) / area,
         dot(cross(samples.along_u, direction), across) / area,

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pkm_post.geometry import Array, along, angle_between, cross, dot, norm, towards, unit
+from pkm_post.geometry import Array, across, along, angle_between, cross, dot, norm, towards, unit, unit_or_nan
 from pkm_post.toolpath.surface.contact_path import ContactPath, PassPattern
-from pkm_post.toolpath.surface.surface import SurfaceSamples, unit_or_nan
+from pkm_post.toolpath.surface.surface import NO_LENGTH, SurfaceSamples
 
 
 @dataclass(frozen=True)
@@ -63,9 +63,9 @@ def tool_axes(normal: Array, feed: Array, rule: AxisRule, side: Array | None = N
     if rule.lead == 0.0 and rule.tilt == 0.0:
         wanted = normal
     else:
-        t = unit_or_nan(feed - dot(feed, normal)[:, None] * normal)
+        t = unit_or_nan(across(feed, normal), NO_LENGTH)
         sideways = math.cos(rule.tilt) * normal + math.sin(rule.tilt) * (cross(normal, t) if side is None else side)
-        wanted = unit_or_nan(math.sin(rule.lead) * t + math.cos(rule.lead) * sideways)
+        wanted = unit_or_nan(math.sin(rule.lead) * t + math.cos(rule.lead) * sideways, NO_LENGTH)
     return clamp_to_cone(wanted, np.asarray(rule.cone_axis, dtype=np.float64), rule.cone)
 
 
@@ -159,6 +159,6 @@ def feed_frame(pattern: PassPattern, path: ContactPath, samples: SurfaceSamples,
 
 def _across(vectors: Array, normal: Array) -> Array:
     """Unit vectors of the components across the normals."""
-    across = vectors - dot(vectors, normal)[:, None] * normal
-    unit: Array = across / np.maximum(norm(across)[:, None], 1e-300)
+    sideways = across(vectors, normal)
+    unit: Array = sideways / np.maximum(norm(sideways)[:, None], 1e-300)
     return unit

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pkm_post.geometry import Array, cross, dot, norm, unit
+from pkm_post.geometry import Array, across, cross, norm, unit
 from pkm_post.model import Program
 from pkm_post.toolpath.symmetry.passes import cut_chords, pass_rows
 
@@ -109,7 +109,7 @@ def _spans(program: Program, point: Array, axis: Array) -> tuple[Array, Array]:
     first = unit(cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
     second = cross(axis, first)
     ends = [each - point for each in cut_chords(program)]
-    radius = [norm(each - dot(each, axis)[:, None] * axis) for each in ends]
+    radius = [norm(across(each, axis)) for each in ends]
     angle = [np.arctan2(each @ second, each @ first) for each in ends]
     on_axis = [each < _ON_AXIS for each in radius]
     one, other = (np.where(on_axis[side], angle[1 - side], angle[side]) for side in (0, 1))

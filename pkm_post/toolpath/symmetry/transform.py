@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pkm_post.geometry import Array, norm, unit
+from pkm_post.geometry import Array, norm, unit, unit_or_nan
 from pkm_post.model import MOTION_COLUMNS, OPTIONAL_COLUMNS, Diagnostic, Phrase, Place, Program, map_rows
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, tupl
         position=map_rows(lambda points: _turned(points, turn) + shift, program.position),
         tool_axis=map_rows(lambda axes: unit(_turned(axes, turn)), program.tool_axis),
         arc_centre=map_rows(lambda points: _turned(points, turn) + shift, program.arc_centre),
-        arc_axis=map_rows(lambda axes: _unit_or_nan(_turned(axes, hand * turn)), program.arc_axis),
+        arc_axis=map_rows(lambda axes: unit_or_nan(_turned(axes, hand * turn)), program.arc_axis),
         side_offset=side_offset,
         plane=plane,
         normal=map_rows(lambda normals: _turned(normals, turn), program.normal),
@@ -108,11 +108,6 @@ def transform(program: Program, matrix: ArrayLike) -> tuple[Program | None, tupl
 def _turned(vectors: Array, turn: Array) -> Array:
     """(N, 3) vectors times a (3, 3) matrix, without the threads of a large matrix product."""
     return np.einsum("nj,ij->ni", vectors, turn)
-
-
-def _unit_or_nan(axes: Array) -> Array:
-    """(N, 3) unit axes; NaN on rows that are not arcs."""
-    return axes / norm(axes)[:, None]
 
 
 def _compensation(program: Program, turn: Array, hand: float) -> tuple[Array | None, Array]:

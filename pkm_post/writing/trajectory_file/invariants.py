@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from pkm_post.geometry import Array, cross, dot, norm
+from pkm_post.geometry import Array, cross, dot, norm, unit_or_nan
 from pkm_post.model import (
     MAX_SPIN,
     MIN_TOLERANCE,
@@ -323,13 +323,13 @@ def _joint_contradictions(trajectory: Trajectory) -> Iterator[str]:
 def _tangents(trajectory: Trajectory, rows: Array) -> tuple[Array, Array]:
     """Unit tangents of the tip's path at the start and the end of segments, (M, 3) each; NaN where it stands still."""
     start, end = _start_tips(trajectory, rows), trajectory.tip[rows]
-    at_start = _directions(end - start)
+    at_start = unit_or_nan(end - start, _NO_DIRECTION)
     at_end = at_start.copy()
     arc = np.flatnonzero(trajectory.kind[rows] == Kind.ARC)
     turn, centre = trajectory.arc_axis[rows[arc]], trajectory.arc_centre[rows[arc]]
     rise = (dot(end[arc] - start[arc], turn) / trajectory.sweep[rows[arc]])[:, None] * turn
     for tangent, tip in ((at_start, start), (at_end, end)):
-        tangent[arc] = _directions(cross(turn, tip[arc] - centre) + rise)
+        tangent[arc] = unit_or_nan(cross(turn, tip[arc] - centre) + rise, _NO_DIRECTION)
     return at_start, at_end
 
 
@@ -342,8 +342,3 @@ def _start_tips(trajectory: Trajectory, rows: Array) -> Array:
     tip = np.where(first[:, None], trajectory.start_tip, trajectory.tip[before])
     axis = np.where(first[:, None], trajectory.start_axis, trajectory.axis[before])
     return np.asarray(tip - longer[:, None] * axis)
-
-
-def _directions(vectors: Array) -> Array:
-    length = norm(vectors)
-    return vectors / np.where(length > _NO_DIRECTION, length, np.nan)[:, None]

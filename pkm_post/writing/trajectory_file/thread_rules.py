@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from pkm_post.geometry import Array, dot, norm
+from pkm_post.geometry import Array, across, norm
 from pkm_post.model import EventKind, Kind, Trajectory, threads
 
 MIN_LEAD = 1e-3
@@ -38,6 +38,6 @@ def _leaves_the_axis(trajectory: Trajectory, first: int, end: int) -> Array:
     """Whether segments are not feed moves along the tool axis, or do not end at rest, (end - first,)."""
     rows = slice(first, end)
     way, axis = trajectory.tip[rows] - trajectory.tip_before()[rows], trajectory.axis[rows]
-    aside = norm(way - dot(way, axis)[:, None] * axis)
+    aside = norm(across(way, axis))
     moves = (trajectory.kind[rows] == Kind.LINE) & (aside <= _ASIDE) & (trajectory.angle[rows] <= _ASIDE)
     return np.asarray(~(moves & trajectory.exact_stop[rows]))
