@@ -2063,10 +2063,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>程序不会结束</translation>
     </message>
     <message>
-        <source>correct its loops, or raise the limit</source>
-        <translation>改正其中的循环，或提高上限</translation>
-    </message>
-    <message>
         <source>subprograms call each other too deeply</source>
         <translation>子程序相互调用的层次过深</translation>
     </message>
@@ -2901,6 +2897,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>let no other post write into the folder at the same time, and nothing else remove its files, and post again</source>
         <translation>不要让其他后处理同时写入该文件夹，也不要让其他程序删除其中的文件，然后重新后处理</translation>
+    </message>
+    <message>
+        <source>correct its loops</source>
+        <translation>改正其中的循环</translation>
     </message>
     <message>
         <source>write each code in a block of its own, with its words; @ and ^ without X and Y</source>

@@ -58,8 +58,8 @@ GCODE_RULES: dict[str, Rule] = {
     "G310": error("a label is used twice", "give each its own label"),
     "G311": error("this is not a label", "write a whole number that is not negative, or a name in < >"),
     "G312": error("this is not allowed here", "call with call and end with endsub, or with M98 and M99"),
-    "G313": error("the program does not end", "correct its loops, or raise the limit"),
-    "G314": error("subprograms call each other too deeply", "correct the calls, or raise the limit"),
+    "G313": error("the program does not end", "correct its loops"),
+    "G314": error("subprograms call each other too deeply", "correct the calls"),
     "G315": error("a call has too many arguments", "pass at most 30"),
     "G316": error(
         "this is not a call of a subprogram",

@@ -11,10 +11,17 @@ from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import replace
 
-from pkm_post.model import Array
+from pkm_post.model import Array, checkpoint
 from pkm_post.reading.gcode.block_builders import ExecutedBlocksBuilder
 from pkm_post.reading.gcode.blocks import SUBPROGRAM_CODES, Block, Blocks
-from pkm_post.reading.gcode.calls import Call, Level, MissingProgram, call_of, rows_of_sequence_numbers
+from pkm_post.reading.gcode.calls import (
+    Call,
+    EndlessLoops,
+    Level,
+    MissingProgram,
+    call_of,
+    rows_of_sequence_numbers,
+)
 from pkm_post.reading.gcode.codes import STROKES, name_of
 from pkm_post.reading.gcode.flavours import Flavour
 from pkm_post.reading.gcode.flow_control import FlowControl
@@ -28,6 +35,7 @@ PROGRAM_END = (2, 30)
 _CALL, _ = SUBPROGRAM_CODES
 _END_OF_MODAL_CALL, _DWELL = 670, 40
 _MOVING = frozenset("XYZABCUVW")
+_STEPS_OF_A_CHECKPOINT = 1024
 _COUNTED = 10_000
 """From this value on, P of M98 is the number of passes followed by four digits of the program [Fanuc]."""
 
@@ -67,7 +75,7 @@ class Interpreter(FlowControl):
         self._rows_of_label: dict[str, list[int]] | None = None
         self.restarts = False
         """Whether M99 ended the main program."""
-        self._blocks_left, self._operations_left = limits.blocks, limits.operations
+        self._steps, self._blocks_left, self._operations_left = 0, limits.blocks, limits.operations
         self._cost = {row: statement.cost for row, statement in statements.items()}
         self._parameters = MacroVariables() if flavour.macros else Parameters()
         if where is not None:
@@ -75,6 +83,7 @@ class Interpreter(FlowControl):
         self._after_moves: Call | None = None
         """The macro to call after every move (G66)."""
         self._levels = [Level(return_row=len(blocks), first_row=0)]
+        self._loops = EndlessLoops()
 
     def run(self, special: list[int]) -> None:
         """Execute until the program ends.
@@ -92,11 +101,19 @@ class Interpreter(FlowControl):
                 self._copy(special[bisect_left(special, row)])
             else:
                 self._spend(1, cost_of(row, 1))
-                self.row = self._step(row)
+                following = self._step(row)
+                if following <= row:
+                    self._refuse_endless_loop(following)
+                self.row = following
         self._refuse_open_subprogram()
+
+    def _refuse_endless_loop(self, row: int) -> None:
+        if self._loops.has((row, self._parameters.memory(), self._levels, self._after_moves)):
+            raise ExecutionFault("G313", "it jumps back with the same variables again and again")
 
     def _so_far(self) -> Blocks:
         """The blocks executed so far; reading them costs as much as executing them again."""
+        self._loops.forget()
         self._spend(len(self._executed), 0)
         return self._executed.blocks()
 
@@ -111,6 +128,9 @@ class Interpreter(FlowControl):
         return int(sum(last - first for first, last in bounds))
 
     def _spend(self, blocks: int, operations: int) -> None:
+        self._steps += 1
+        if not self._steps % _STEPS_OF_A_CHECKPOINT:
+            checkpoint()
         self._blocks_left -= blocks
         self._operations_left -= operations
         if self._blocks_left < 0:

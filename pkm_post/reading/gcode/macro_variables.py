@@ -88,6 +88,10 @@ class MacroVariables(Parameters):
         """Call depth; 0 in the main program."""
         return len(self._calls)
 
+    def memory(self) -> tuple[object, ...]:
+        """All values, but those that only the position and the codes decide."""
+        return self._common, self._local, self._calls
+
     def value(self, name: Name) -> float:
         """The value of a variable, NaN for a vacant one.
 

@@ -116,6 +116,10 @@ class Parameters:
         """Call depth; 0 in the main program."""
         return len(self._levels) - 1
 
+    def memory(self) -> tuple[object, ...]:
+        """All values, but those that only the position and the codes decide."""
+        return self._numbered, self._global, self._levels
+
     def value(self, name: Name) -> float:
         """The value of a parameter.
 

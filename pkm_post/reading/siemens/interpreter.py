@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from pkm_post.model import checkpoint
+from pkm_post.reading.gcode.calls import EndlessLoops
 from pkm_post.reading.gcode.options import ExecutionLimits
 from pkm_post.reading.siemens.blocks import assign, block_of, computed
 from pkm_post.reading.siemens.diagnostics import BlockFault, LineDiagnostics
@@ -76,7 +77,7 @@ class Interpreter:
         self._special = sorted(structure.statements)
         self._variables = Variables()
         self._levels = [_Level(structure.main, 0, -1)]
-        self._left = limits.blocks
+        self._left, self._loops = limits.blocks, EndlessLoops()
         self.row = structure.main.first
         self.has_ended = False
         """Whether the main program reached M2, M30, M17 or RET."""
@@ -111,7 +112,11 @@ class Interpreter:
             self.row = following
             return
         self._spend(1)
-        self._step(self._statements[self.row])
+        row = self.row
+        self._step(self._statements[row])
+        if self.row <= row and self._loops.has((self.row, self._variables.memory(), self._levels)):
+            self.row = row
+            raise BlockFault("G313", "it jumps back with the same variables again and again")
 
     def _spend(self, blocks: int) -> None:
         self._left -= blocks

@@ -45,6 +45,10 @@ class Variables:
         self._r: dict[int, float] = {}
         self._levels: list[dict[str, _Variable]] = [{}]
 
+    def memory(self) -> tuple[object, ...]:
+        """All values."""
+        return self._r, self._levels
+
     def enter(self) -> None:
         """Begin a subprogram."""
         self._levels.append({})

@@ -6,10 +6,12 @@ import random
 import pytest
 from series import cases
 
+from pkm_post.model import errors
 from pkm_post.model.rules import RULES
 from pkm_post.reading.gcode.execute import execute
 from pkm_post.reading.gcode.o_words import link_o_words
-from pkm_post.reading.gcode.options import ExecutionLimits
+from pkm_post.reading.gcode.options import ExecutionLimits, ReadOptions
+from pkm_post.reading.gcode.read import read
 from pkm_post.reading.gcode.scan import scan_by_block
 from pkm_post.reading.gcode.statements import OWord
 
@@ -108,6 +110,27 @@ ENDLESS = [
     "o1 while [1]\no2 if [0]\no2 elseif [0]\no2 elseif [0]\no2 endif\no1 endwhile",
 ]
 
+UNCHANGED = [
+    ("o1 while [1]\no1 endwhile", 2),
+    ("o1 do\n#1=[1-#1]\nX#1\no1 while [1]", 4),
+    ("#<_n>=0\no1 while [1]\n#<_n>=0\no2 repeat [3]\n#<_n>=[#<_n>+1]\no2 endrepeat\no1 endwhile", 6),
+    ("o1 while [1]\nM98 P7\no1 endwhile\nM2\nO7\nM99", 3),
+    ("o1 sub\nX#1\no1 endsub\no2 while [1]\no1 call [1] [2]\no2 endwhile", 6),
+]
+COUNTED = [
+    "o1 repeat [2000]\nX1\no1 endrepeat\n",
+    "o1 while [#5000 lt 2000]\n#5000=[#5000+1]\nX1\no1 endwhile\n",
+    "#<_n>=0\no1 while [#<_n> lt 2000]\n#<_n>=[#<_n>+1]\nX1\no1 endwhile\n",
+    "#<a>=0\no1 while [#<a> lt 2000]\n#<a>=[#<a>+1]\nX1\no1 endwhile\n",
+    "M98 P7 L2000\nM2\nO7\nX1\nM99\n",
+]
+COUNTED_BY_MACROS = [
+    "#100=0\nN1 G1 X#100\n#100=#100+1\nIF [#100 LT 700] GOTO 1\nM30\n",
+    "#500=0\nN1 G1 X#500\n#500=#500+1\nIF [#500 LT 700] GOTO 1\nM30\n",
+    "G65 P9 A1.\nM30\nO9\nN1 G1 X#1\n#1=#1+1\nIF [#1 LT 700] GOTO 1\nM99\n",
+    "G65 P9 L700 A1.\nM30\nO9\nG1 X#1\n#1=#1+1\nM99\n",
+]
+
 
 def faults_of(text, **limits):
     blocks, faults = scan_by_block(text, "part.ngc")
@@ -134,13 +157,35 @@ def test_faults_of_structure_are_reported_at_once():
 
 @pytest.mark.parametrize("text", ENDLESS)
 def test_endless_programs_end(text):
-    (fault,) = faults_of(text, blocks=10_000)
-    assert (fault[0], fault[3]) == ("G313", "more than 10000 executed blocks")
+    (fault,) = faults_of(text, blocks=100)
+    assert (fault[0], fault[3]) == ("G313", "more than 100 executed blocks")
+
+
+@pytest.mark.parametrize(("text", "line"), UNCHANGED)
+def test_loops_that_change_nothing_are_found_without_the_limit(text, line):
+    assert faults_of(text) == [("G313", line, 0, "it jumps back with the same variables again and again")]
+
+
+@pytest.mark.parametrize("text", COUNTED)
+def test_loops_that_count_in_any_memory_end(text):
+    plain, faults = execute(scan_by_block(text, "part.ngc")[0])
+    assert faults == ()
+    assert (plain.word("X") == 1).sum() == 2000
+
+
+@pytest.mark.parametrize("text", COUNTED_BY_MACROS)
+def test_loops_that_count_in_variables_of_macros_end(text):
+    program, faults = read("G90 G21 G94 F60 G0 Y0 Z0\n" + text, "part.nc", ReadOptions(flavour="fanuc"))
+    assert errors(faults) == ()
+    assert len(program) in (699, 700)
 
 
 @pytest.mark.slow
-def test_endless_programs_end_by_the_default_limit():
-    assert faults_of("o1 while [1]\no1 endwhile")[0][0] == "G313"
+def test_loops_that_count_by_the_position_end():
+    text = "G90 G21 G94 F60\nG1 X0 Y0 Z0\nN1 G91 X1.\nIF [#5001 LT 300] GOTO 1\nM30\n"
+    program, faults = read(text, "part.nc", ReadOptions(flavour="fanuc"))
+    assert errors(faults) == ()
+    assert len(program) == 301
 
 
 def test_the_limit_of_blocks_is_exact():

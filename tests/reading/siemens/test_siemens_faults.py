@@ -172,6 +172,15 @@ def test_every_execution_ends():
     assert found(archive, limits)[1][0][0] == "G314"
 
 
+def test_loops_that_change_nothing_are_found_without_the_limit():
+    again = "it jumps back with the same variables again and again"
+    assert found("AA: G90 G0 X0 Y0 Z0\nGOTOB AA")[1] == [("G313", 2, 1, again)]
+    assert found(HEAD + "R1=1\nWHILE R1>0\nR1=3-R1\nENDWHILE")[1] == [("G313", 6, 1, again)]
+    program, diagnostics = found(HEAD + "DEF INT AA[2]\nWHILE AA[1]<700\nAA[1]=AA[1]+1\nG1 X=AA[1]\nENDWHILE\nM30")
+    assert diagnostics == []
+    assert len(program) == 701
+
+
 def test_a_program_needs_an_end():
     assert found(HEAD + "G1 X1", needs_end=True)[1] == [("G430", 3, 1, "no M2, M30, M17 or RET after it")]
     for end in ("M2", "M30", "M17", "RET", "N10 G0 X1 M30"):
