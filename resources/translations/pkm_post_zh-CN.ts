@@ -2067,10 +2067,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>子程序相互调用的层次过深</translation>
     </message>
     <message>
-        <source>correct the calls, or raise the limit</source>
-        <translation>改正调用，或提高上限</translation>
-    </message>
-    <message>
         <source>a call has too many arguments</source>
         <translation>调用的自变量太多</translation>
     </message>
@@ -2891,6 +2887,34 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>提供密钥（通过代理或在 ~/.ssh 中），或在 PKM_PMAC_PASSWORD 中提供密码</translation>
     </message>
     <message>
+        <source>the code is not supported in a line that is entered by hand</source>
+        <translation>手动输入的行不支持该代码</translation>
+    </message>
+    <message>
+        <source>use others; M codes that the controller is to get belong in controller.codes.functions of the machine file</source>
+        <translation>使用其他代码；要发送给控制器的 M 代码应写在机床文件的 controller.codes.functions 中</translation>
+    </message>
+    <message>
+        <source>a cutting move that is entered by hand has no feed</source>
+        <translation>手动输入的切削移动没有进给速度</translation>
+    </message>
+    <message>
+        <source>write F above zero in the line</source>
+        <translation>在该行中写入大于零的 F</translation>
+    </message>
+    <message>
+        <source>set it in the machine file: under work_offsets, or for the machine&apos;s zero in part_programs.machine_zero</source>
+        <translation>在机床文件中设定：写在 work_offsets 下，机床零点则写在 part_programs.machine_zero 中</translation>
+    </message>
+    <message>
+        <source>cutter compensation needs the diameter of the tool</source>
+        <translation>刀具半径补偿需要刀具直径</translation>
+    </message>
+    <message>
+        <source>write the diameter as D, after G41.1 or G42.1</source>
+        <translation>在 G41.1 或 G42.1 之后用 D 写出直径</translation>
+    </message>
+    <message>
         <source>give the file the ending of its kind</source>
         <translation>为文件取与其类型相符的扩展名</translation>
     </message>
@@ -2901,6 +2925,10 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>correct its loops</source>
         <translation>改正其中的循环</translation>
+    </message>
+    <message>
+        <source>correct the calls</source>
+        <translation>改正这些调用</translation>
     </message>
     <message>
         <source>write each code in a block of its own, with its words; @ and ^ without X and Y</source>

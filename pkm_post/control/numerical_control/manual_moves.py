@@ -229,10 +229,11 @@ def _straight(count: int, feed: float) -> dict[str, Any]:
     }
 
 
-_MDI = "MDI"
-_SAYS_THE_SPIN = "RPY"
+_MDI, _SAYS_THE_SPIN = "MDI", "RPY"
 _EMPTY_CODE, _NO_MOVES_CODE = "G420", "J103"
 """Codes that reading and placing report for a program without moves; their cures refer to files and CAM."""
+_BY_HAND = dict.fromkeys(("G213", "G309", "G401", "G402"), "C224") | {"G408": "C225", "G412": "C226", "G413": "C226"}
+"""Codes whose cures name options of part programs, and those for a line that is entered by hand."""
 _NAMELESS = "G54.1P301"
 """Frame of a work offset without a code, as no program can name it."""
 _STAY = "G90 G21 G94 G1 X{:.6f} Y{:.6f} Z{:.6f} F60"
@@ -334,12 +335,12 @@ def _read_options(
 
 def _read(line: str, pose: ToolPose, offset: Array, words: gcode.ReadOptions) -> tuple[Program | None, Findings]:
     """The line as a program in {C}."""
-    program, diagnostics = gcode.read(line, _MDI, words)
+    program, faults = gcode.read(line, _MDI, words)
+    diagnostics = tuple(replace(fault, code=_BY_HAND.get(fault.code, fault.code)) for fault in faults)
     if program is None:
         return None, diagnostics
     if np.isnan(program.side_offset).any():
-        found = "cutter compensation with a tool of unknown diameter"
-        return None, (*diagnostics, Diagnostic("G411", Place(_MDI, line=1), found))
+        return None, (*diagnostics, Diagnostic("C227", Place(_MDI, line=1), line.splitlines()[0].strip()))
     if any(event.kind is EventKind.TOOL_CHANGE for event in program.events):
         return None, (*diagnostics, Diagnostic("C203", Place(_MDI, line=1), line.splitlines()[0].strip()))
     tools = {number: replace(each, diameter=0.0) for number, each in program.tools.items()}

@@ -129,6 +129,18 @@ RESULT_RULES: dict[str, Rule] = {
         "the touch probe was touched on a way that should be free",
         "jog it free, and give --diameter, --depth and --clearance as the part has them",
     ),
+    "C224": error(
+        "the code is not supported in a line that is entered by hand",
+        "use others; M codes that the controller is to get belong in controller.codes.functions of the machine file",
+    ),
+    "C225": error("a cutting move that is entered by hand has no feed", "write F above zero in the line"),
+    "C226": error(
+        "the place of this coordinate system is unknown",
+        "set it in the machine file: under work_offsets, or for the machine's zero in part_programs.machine_zero",
+    ),
+    "C227": error(
+        "cutter compensation needs the diameter of the tool", "write the diameter as D, after G41.1 or G42.1"
+    ),
     # V1: the certificate
     "V101": error("the tool tip leaves the programmed path", "request a wider tolerance, or report this as a fault"),
     "V102": error("the tool axis leaves the programmed axis", "request a wider tolerance, or report this as a fault"),

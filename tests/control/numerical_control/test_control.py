@@ -136,16 +136,19 @@ def test_a_line_begins_where_the_tool_is_and_keeps_its_axis(station):
 @pytest.mark.parametrize(
     ("line", "code"),
     [
-        ("G1 X10", "G408"),
+        ("G1 X10", "C225"),
         ("T2 M6 G1 X10 F100", "C203"),
-        ("G41 D1 G1 X10 F100", "G411"),
+        ("G41 D1 G1 X10 F100", "C227"),
         ("G91 G1 X0 Y0 F100", "C201"),
         ("G17", "C201"),
         ("S1000", "C201"),
         ("M30", "C201"),
         ("", "C201"),
         ("T2 M6", "C203"),
-        ("G41 D1 M3 S500", "G411"),
+        ("G41 D1 M3 S500", "C227"),
+        ("M98 P5", "C224"),
+        ("G76 X1 F100", "C224"),
+        ("G28 Z0", "C226"),
         ("G1 Z-210 F600", "K102"),
         ("G0 X900", "K102"),
         ("HELLO", "G201"),
@@ -228,7 +231,7 @@ def test_a_line_goes_to_the_work_offset_that_it_names(station, chosen, line, tip
     pose = station.control.standing_pose()
     trajectory, reported = mdi_trajectory(line, machine, pose, 120.0, MdiSettings(chosen))
     if tip is None:
-        assert trajectory is None and [fault.code for fault in reported] == ["G412"]
+        assert trajectory is None and [fault.code for fault in reported] == ["C226"]
     else:
         assert reported == () and np.allclose(trajectory.tip[-1], tip, atol=MICRON)
 

@@ -85,7 +85,7 @@ def test_a_line_may_have_codes_of_the_machine():
     assert [(each.kind, each.value) for each in trajectory.events] == [(EventKind.FUNCTION, 21.0)] and not reported
     plan, reported = planned(trajectory, machine, settings, TOLERANCES)
     assert reported == () and "P7003=21" in plan.job.program.lines
-    for line, where, code in (("M21", MACHINE, "G401"), ("G0 X15 M21", machine, "G437")):
+    for line, where, code in (("M21", MACHINE, "C224"), ("G0 X15 M21", machine, "G437")):
         trajectory, reported = mdi_trajectory(line, where, HERE, TOOL)
         assert trajectory is None and [fault.code for fault in reported] == [code]
 
