@@ -32,7 +32,7 @@ from pkm_post.freecad_app.job_settings import JobSettings, settings_of
 from pkm_post.freecad_app.job_study import JobStudy, study_of
 from pkm_post.freecad_app.machine_object import machine_of
 from pkm_post.freecad_app.mesh import mesh_of
-from pkm_post.freecad_app.tools import read_core, read_shank
+from pkm_post.freecad_app.tools import bit_of
 from pkm_post.geometry import Array
 from pkm_post.machine import CollisionMesh, find_machine, machine_named, placed_workpiece
 from pkm_post.model import Diagnostic, Machine, Mesh, Place, Refused, Setup, Tolerances, Trajectory, errors
@@ -50,6 +50,7 @@ from pkm_post.posting import (
     work_offset,
     work_offset_text,
 )
+from pkm_post.reading import core_of, shank_of
 
 _SAME_PLACE = 1e-6
 """mm, and for directions: FreeCAD rounds stored placements."""
@@ -134,9 +135,9 @@ def _machine_differences(
 
 def setup_of(job: Any, places: Mapping[str, Array] = ONE_PLACE) -> Setup:
     """The set-up of a recomputed job, with a part and a stock at each of several fixtures."""
-    bits = _bits(job).items()
-    shanks = {number: shank for number, bit in bits if (shank := read_shank(bit)) is not None}
-    cores = {number: core for number, bit in bits if (core := read_core(bit)) is not None}
+    bits = [(number, bit_of(each)) for number, each in _bits(job).items()]
+    shanks = {number: shank for number, bit in bits if (shank := shank_of(bit)) is not None}
+    cores = {number: core for number, bit in bits if (core := core_of(bit)) is not None}
     stock = _mesh([job.Stock] if job.Stock else [], StockType.FromStock(job.Stock) == StockType.FromBase)
     part = at_fixtures(_mesh(members(job.Model)), places)
     return Setup(part, at_fixtures(stock, places), shanks=shanks, cores=cores)

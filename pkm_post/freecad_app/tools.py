@@ -10,15 +10,15 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from types import SimpleNamespace
 from typing import Any
 
 import FreeCAD as App
 from PathScripts import PathUtils
 
-from pkm_post.model import Diagnostic, Phrase, Place, Shank, Tool, corner_reach
-from pkm_post.reading import EDGE_HEIGHTS, THINNEST, shank_of
+from pkm_post.model import Diagnostic, Phrase, Place, Tool
+from pkm_post.reading import Bit, plain_shape, sizes_of
 from pkm_post.toolpath import Cutter
 
 GAUGE_LENGTH = "GaugeLength"
@@ -28,11 +28,6 @@ _UPRIGHT_SHAPES = ("endmill", "ballend", "bullnose")
 """Shapes with a flat bottom and an upright side. ``read_tools`` does not return the angle of a tapered one."""
 _ANY_LENGTH = 1.0
 """mm: the gauge length does not matter for a cutter."""
-
-_EDGE_ANGLE = "CuttingEdgeAngle"
-"""The property with the whole angle of a cone, or of a dovetail to its bottom."""
-
-Sizes = dict[str, float]
 
 
 def set_gauge_length(tool_controller: Any, mm: float) -> None:
@@ -109,17 +104,34 @@ def _description(tool: Tool) -> str:
 
 def _tool(controller: Any, number: int, length: float) -> Tool:
     bit = controller.Tool
-    sizes = _SHAPES.get(_plain_shape(bit), _flat)
-    return Tool(number, bit.Label, length=length, **sizes(bit))
+    sizes = sizes_of(bit_of(bit))
+    return Tool(
+        number,
+        bit.Label,
+        sizes.diameter or 0.0,
+        sizes.corner or 0.0,
+        length,
+        sizes.bottom,
+        sizes.side,
+        corner_known=sizes.corner is not None,
+    )
+
+
+def bit_of(bit: Any) -> Bit:
+    """A tool bit of a job, to read its sizes, shank and core."""
+
+    def half_angle(name: str) -> float | None:
+        return math.radians(millimetres(bit, name)) / 2 if hasattr(bit, name) else None
+
+    def length(name: str) -> float | None:
+        return millimetres(bit, name) if hasattr(bit, name) else None
+
+    return Bit(plain_shape(_shape(bit)), length, half_angle)
 
 
 def _shape(bit: Any) -> str:
     """The name of the shape of a tool bit, which FreeCAD 1.0 stores in another property."""
     return str(getattr(bit, "ShapeType", None) or getattr(bit, "ShapeName", ""))
-
-
-def _plain_shape(bit: Any) -> str:
-    return _shape(bit).lower().replace("_", "").replace("-", "")
 
 
 def has_upright_side(bit: Any) -> bool:
@@ -130,97 +142,6 @@ def has_upright_side(bit: Any) -> bool:
 def millimetres(thing: Any, name: str) -> float:
     """A length property, 0 if missing."""
     return float(getattr(getattr(thing, name, 0.0), "Value", 0.0))
-
-
-def _half_angle(bit: Any, name: str) -> float:
-    """Half of an angle property, in rad: from the axis to one side."""
-    return math.radians(millimetres(bit, name)) / 2
-
-
-def _flat(bit: Any) -> Sizes:
-    return {"diameter": millimetres(bit, "Diameter"), "corner_radius": 0.0}
-
-
-def _ball(bit: Any) -> Sizes:
-    return _flat(bit) | {"corner_radius": millimetres(bit, "Diameter") / 2}
-
-
-def _bull_nose(bit: Any) -> Sizes:
-    """FreeCAD 1.0 stores the radius of the flat, newer versions that of the corner."""
-    if hasattr(bit, "CornerRadius"):
-        return _flat(bit) | {"corner_radius": millimetres(bit, "CornerRadius")}
-    return _flat(bit) | {"corner_radius": millimetres(bit, "Diameter") / 2 - millimetres(bit, "FlatRadius")}
-
-
-def _tapered_ball(bit: Any) -> Sizes:
-    """The ball has the diameter of the bit; its tangent, the side, meets the plane of the tip at another diameter."""
-    ball, taper = _ball(bit), _half_angle(bit, "TaperAngle")
-    meeting = 2 * ball["corner_radius"] * corner_reach(0.0, taper)
-    return ball | {"diameter": meeting, "side_angle": taper}
-
-
-def _pointed(bit: Any) -> Sizes:
-    return _flat(bit) | {"bottom_angle": math.pi / 2 - _half_angle(bit, "TipAngle")}
-
-
-def _conical(bit: Any) -> Sizes:
-    """A cone is the tool's side if it ends in a flat of its own diameter, and its bottom if it ends in a point."""
-    tip, half = millimetres(bit, "TipDiameter"), _half_angle(bit, _EDGE_ANGLE)
-    if tip > 0.0:
-        return {"diameter": tip, "corner_radius": 0.0, "side_angle": half}
-    return _flat(bit) | {"bottom_angle": math.pi / 2 - half}
-
-
-_TIP_ANGLES = {"vbit": _EDGE_ANGLE, "tap": "TipAngle"}
-"""The angle of the cone that this height does not include, by shape."""
-
-
-def read_shank(bit: Any) -> Shank | None:
-    """The shank of a tool bit; None if it does not state where its cutting edges end, or how thick it is.
-
-    The taper of a ball nose ends at its TaperDiameter, wherever its edges do.
-    """
-    shape = _plain_shape(bit)
-    height = millimetres(bit, EDGE_HEIGHTS.get(shape, "CuttingEdgeHeight"))
-    if shape == "taperedballnose":
-        height = _end_of_taper(bit) or height
-    across, widest, tip = (millimetres(bit, name) for name in ("ShankDiameter", "Diameter", "TipDiameter"))
-    return shank_of(shape, height, across, widest, tip, _half_angle(bit, _TIP_ANGLES.get(shape, "")))
-
-
-def _end_of_taper(bit: Any) -> float:
-    """Height at which the side of a tapered ball has the TaperDiameter; 0 if it does not widen to that."""
-    ball, half = millimetres(bit, "Diameter") / 2, _half_angle(bit, "TaperAngle")
-    widened = millimetres(bit, "TaperDiameter") / 2 - ball / math.cos(half)
-    return ball + widened / math.tan(half) if half > 0 and widened > 0 else 0.0
-
-
-_CORES = {"radius": "TipDiameter", "threadmill": "NeckDiameter"}
-"""The property with the diameter of a cylinder inside, by shape, of those that are hollow above or below the tip."""
-
-
-def read_core(bit: Any) -> float | None:
-    """Diameter of the cylinder inside the cutting part of a tool bit whose outline no ``Tool`` has; None for others."""
-    shape = _plain_shape(bit)
-    return max(millimetres(bit, _CORES[shape]), THINNEST) if shape in _CORES else None
-
-
-def _dovetail(bit: Any) -> Sizes:
-    """Its angle is measured to the bottom."""
-    return _flat(bit) | {"side_angle": 2 * _half_angle(bit, _EDGE_ANGLE) - math.pi / 2}
-
-
-_SHAPES: dict[str, Callable[[Any], Sizes]] = {
-    "ballend": _ball,
-    "bullnose": _bull_nose,
-    "taperedballnose": _tapered_ball,
-    "drill": _pointed,
-    "tap": _pointed,
-    "vbit": _conical,
-    "chamfer": _conical,
-    "dovetail": _dovetail,
-}
-"""Sizes by shape; all others, such as end mills and reamers, count as flat at the bottom and upright at the side."""
 
 
 def read_cutter(controller: Any, place: Place) -> tuple[Cutter | None, tuple[Diagnostic, ...]]:

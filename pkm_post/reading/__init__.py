@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pkm_post.reading.check import check_file, checks_as_json, checks_as_text
     from pkm_post.reading.cldata.options import CONTOUR_DATA, DIALECTS
     from pkm_post.reading.editing import TextFile, jump_by_number, renumbered
-    from pkm_post.reading.freecad_tools import EDGE_HEIGHTS, THINNEST, shank_of
+    from pkm_post.reading.freecad_tools import Bit, core_of, plain_shape, shank_of, sizes_of
     from pkm_post.reading.gcode.subprograms import files_in_notes
     from pkm_post.reading.highlighting import Colour, coloured_spans, shown_language, underlined
     from pkm_post.reading.listing import listing_lines
@@ -37,7 +37,7 @@ else:
             "check": "check_file checks_as_json checks_as_text",
             "cldata.options": "CONTOUR_DATA DIALECTS",
             "editing": "TextFile jump_by_number renumbered",
-            "freecad_tools": "EDGE_HEIGHTS THINNEST shank_of",
+            "freecad_tools": "Bit core_of plain_shape shank_of sizes_of",
             "gcode.subprograms": "files_in_notes",
             "highlighting": "Colour coloured_spans shown_language underlined",
             "listing": "listing_lines",
@@ -52,7 +52,6 @@ __all__ = [
     "CONTOUR_DATA",
     "DIALECTS",
     "DWELL_UNITS",
-    "EDGE_HEIGHTS",
     "FLAVOURS",
     "FLAVOUR_NAMES",
     "LONG_DWELL",
@@ -60,9 +59,9 @@ __all__ = [
     "SPINDLE_SYNCHRONISED",
     "STEP_SUFFIXES",
     "SUFFIXES",
-    "THINNEST",
     "UNITS",
     "VERSIONED",
+    "Bit",
     "CheckedText",
     "Colour",
     "Language",
@@ -74,6 +73,7 @@ __all__ = [
     "checks_as_json",
     "checks_as_text",
     "coloured_spans",
+    "core_of",
     "files_in_notes",
     "gcode",
     "is_part_program",
@@ -81,12 +81,14 @@ __all__ = [
     "language_of",
     "listing_lines",
     "mesh_of_triangles",
+    "plain_shape",
     "program_stem",
     "read_mesh",
     "read_part_program",
     "renumbered",
-    "shown_language",
     "shank_of",
+    "shown_language",
+    "sizes_of",
     "tip_paths_of_line",
     "underlined",
     "with_tool_table",

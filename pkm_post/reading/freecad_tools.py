@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""FreeCAD's tools: the entries of its tool libraries, and of the .json tables of older versions and of CAMotics.
+"""FreeCAD's tools: its tool bits, in libraries and in jobs, and the .json tables of older versions and of CAMotics.
 
-Input: the text of a library (.fctl), whose bits have files of their own (.fctb), or of a table (.json). Output: its
-tools. Gauge lengths are in older tables alone.
+Input: the text of a library (.fctl), whose bits have files of their own (.fctb), or of a table (.json); or a bit, whose
+properties are looked up by name. Output: tools, shanks and cores. Gauge lengths are in older tables alone.
 """
 
 from __future__ import annotations
@@ -11,10 +11,12 @@ import json
 import math
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from pkm_post.model import Shank
+from pkm_post.model import Shank, corner_reach
 from pkm_post.reading.tool_entry import TableError, ToolEntry, number_of, text_of, tool_number
 
 _UNITS = {"nm": 1e-6, "µm": 1e-3, "mm": 1.0, "cm": 10.0, "m": 1000.0, "thou": 0.0254, "in": 25.4, '"': 25.4,
@@ -34,17 +36,12 @@ def library(text: str, file: Path, unit: str) -> Iterator[ToolEntry]:
         raise TableError("no list of tools")
     for entry in entries:
         number, path = entry.get("nr"), str(entry.get("path", ""))
-        bit = _bit_file(file, path)
-        content = _json(text_of(bit), bit)
-        stated = content.get("parameter")
-        parameters = stated if isinstance(stated, dict) else {}
-        shape = re.sub("[-_]", "", str(content.get("shape-type") or Path(str(content.get("shape", ""))).stem).lower())
-        diameter, corner = _sizes(parameters, shape, bit)
-        half, core = _half_angle(parameters, shape, bit), _core(parameters, shape, bit)
-        outline = (None, math.pi / 2 - half) if half else (core, 0.0)
-        shank, name = _shank(parameters, shape, bit), str(content.get("name", ""))
-        sizes = (diameter, 0.0 if half else corner, None, shank, *outline)
-        yield ToolEntry(0, tool_number(str(number), 0), name, *sizes)
+        file_of_bit = _bit_file(file, path)
+        content = _json(text_of(file_of_bit), file_of_bit)
+        bit, name = _bit_in(content, file_of_bit), str(content.get("name", ""))
+        sizes = sizes_of(bit) if bit.length("Diameter") is not None else Sizes(None)
+        outline = sizes.diameter, sizes.corner, None, shank_of(bit), core_of(bit), sizes.bottom, sizes.side
+        yield ToolEntry(0, tool_number(str(number), 0), name, *outline)
 
 
 _CORNERS: dict[str, Callable[[float, float], float]] = {
@@ -94,69 +91,166 @@ def _bit_file(library: Path, path: str) -> Path:
     return found
 
 
+@dataclass(frozen=True)
+class Bit:
+    """A tool bit.
+
+    Attributes:
+        shape: in lower case, without hyphens.
+        length: a length by its name, mm; None if not stated.
+        half: half of an angle by its name, rad; None if not stated.
+    """
+
+    shape: str
+    length: Callable[[str], float | None]
+    half: Callable[[str], float | None]
+
+    def size(self, name: str) -> float:
+        """A length, 0 if not stated."""
+        return self.length(name) or 0.0
+
+
+def plain_shape(name: str) -> str:
+    """The shape of a bit as in ``Bit``."""
+    return re.sub("[-_]", "", name.lower())
+
+
+def _bit_in(content: dict[str, Any], file: Path) -> Bit:
+    """The bit of a file."""
+    stated = content.get("parameter")
+    parameters = stated if isinstance(stated, dict) else {}
+    shape = plain_shape(str(content.get("shape-type") or Path(str(content.get("shape", ""))).stem))
+    return Bit(shape, partial(_quantity, parameters, bit=file), partial(_half_angle, parameters))
+
+
+_ANGLE = re.compile(r"(\d+(?:[.,]\d*)?) ?(?:°|deg)")
+
+
+def _half_angle(parameters: dict[str, Any], name: str) -> float | None:
+    angle = _ANGLE.fullmatch(str(parameters.get(name, "")).strip())
+    return math.radians(float(angle[1].replace(",", "."))) / 2 if angle else None
+
+
+class Sizes(NamedTuple):
+    """The outline of a cutter, as in ``Tool``; lengths in mm, angles in rad.
+
+    Attributes:
+        diameter: None if not stated.
+        corner: corner radius, None if unknown.
+        bottom: rise of the bottom.
+        side: angle of the side.
+    """
+
+    diameter: float | None
+    corner: float | None = None
+    bottom: float = 0.0
+    side: float = 0.0
+
+
+def _flat(_: Bit, diameter: float) -> Sizes:
+    return Sizes(diameter, 0.0)
+
+
+def _ball(_: Bit, diameter: float) -> Sizes:
+    return Sizes(diameter, diameter / 2)
+
+
+def _bull_nose(bit: Bit, diameter: float) -> Sizes:
+    """FreeCAD 1.0 stores the radius of the flat, newer versions that of the corner."""
+    corner, flat = bit.length("CornerRadius"), bit.length("FlatRadius")
+    return Sizes(diameter, corner if corner is not None or flat is None else diameter / 2 - flat)
+
+
+def _tapered_ball(bit: Bit, diameter: float) -> Sizes:
+    """The ball has the diameter of the bit; its tangent, the side, meets the plane of the tip at another diameter."""
+    taper = bit.half("TaperAngle")
+    if taper is None or taper >= math.pi / 2:
+        return Sizes(diameter)
+    return Sizes(diameter * corner_reach(0.0, taper), diameter / 2, side=taper)
+
+
+def _pointed(bit: Bit, diameter: float) -> Sizes:
+    half = bit.half(_TIP_ANGLES[bit.shape])
+    return Sizes(diameter, 0.0, math.pi / 2 - half) if half and half < math.pi / 2 else Sizes(diameter)
+
+
+def _conical(bit: Bit, diameter: float) -> Sizes:
+    """A cone is the tool's side if it ends in a flat of its own diameter, and its bottom if it ends in a point."""
+    tip, pointed = bit.size("TipDiameter"), _pointed(bit, diameter)
+    return Sizes(tip, 0.0, side=math.pi / 2 - pointed.bottom) if tip > 0 and pointed.bottom else pointed
+
+
+def _dovetail(bit: Bit, diameter: float) -> Sizes:
+    """Its angle is measured to the bottom."""
+    half = bit.half("CuttingEdgeAngle")
+    return Sizes(diameter, 0.0, side=2 * half - math.pi / 2) if half and half < math.pi / 2 else Sizes(diameter)
+
+
+_SHAPES: dict[str, Callable[[Bit, float], Sizes]] = {
+    "endmill": _flat,
+    "reamer": _flat,
+    "slittingsaw": _flat,
+    "ballend": _ball,
+    "bullnose": _bull_nose,
+    "taperedballnose": _tapered_ball,
+    "drill": _pointed,
+    "tap": _pointed,
+    "vbit": _conical,
+    "chamfer": _conical,
+    "dovetail": _dovetail,
+}
 _TIP_ANGLES = {"drill": "TipAngle", "tap": "TipAngle", "vbit": "CuttingEdgeAngle", "chamfer": "CuttingEdgeAngle"}
 """The angle of the cone at the tip, by shape."""
-_ANGLE = re.compile(r"(\d+(?:[.,]\d*)?) ?(?:°|deg)")
+
+
+def sizes_of(bit: Bit) -> Sizes:
+    """The outline of the cutter of a bit; that of unknown shapes has no corner."""
+    diameter = bit.size("Diameter")
+    return _SHAPES[bit.shape](bit, diameter) if bit.shape in _SHAPES else Sizes(diameter)
+
+
 _CORES = {"vbit": "TipDiameter", "chamfer": "TipDiameter", "radius": "TipDiameter", "threadmill": "NeckDiameter",
           "dovetail": "NeckDiameter", "drill": "", "tap": ""}  # fmt: skip
 """The property with the diameter of a cylinder inside, by shape, of those that leave some of their own cylinder."""
 THINNEST = 0.1
 """mm: a core, where the tip of a tool is a point."""
-EDGE_HEIGHTS = {"slittingsaw": "BladeThickness", "tap": "CuttingEdgeLength", "threadmill": "NeckLength"}
+
+
+def core_of(bit: Bit) -> float | None:
+    """Diameter in mm of the cylinder inside the cutter of a bit whose outline no ``Tool`` has; None for others."""
+    if bit.shape not in _CORES or sizes_of(bit).corner is not None:
+        return None
+    return max(bit.size(_CORES[bit.shape]), THINNEST)
+
+
+_EDGE_HEIGHTS = {"slittingsaw": "BladeThickness", "tap": "CuttingEdgeLength", "threadmill": "NeckLength"}
 """The property that states where the cutting edges end, by shape, if it has another name."""
 
 
-def _sizes(parameters: dict[str, Any], shape: str, bit: Path) -> tuple[float | None, float | None]:
-    """Diameter and corner radius in mm, None if not stated or if the shape has another bottom.
-
-    FreeCAD 1.0 stores the radius of the flat of a bull nose, newer versions that of its corner.
-    """
-    diameter, corner, flat = (_quantity(parameters, name, bit) for name in ("Diameter", "CornerRadius", "FlatRadius"))
-    if diameter is None:
-        return None, None
-    if shape == "bullnose":
-        return diameter, corner if corner is not None or flat is None else diameter / 2 - flat
-    return diameter, {"endmill": 0.0, "ballend": diameter / 2}.get(shape)
-
-
-def _half_angle(parameters: dict[str, Any], shape: str, bit: Path, pointed: bool = True) -> float:
-    """Half the angle of the cone at the tip, rad; 0 if it has none, or no point."""
-    angle = _ANGLE.fullmatch(str(parameters.get(_TIP_ANGLES.get(shape, ""), "")).strip())
-    half = math.radians(float(angle[1].replace(",", "."))) / 2 if angle else 0.0
-    has_point = not pointed or not _quantity(parameters, "TipDiameter", bit)
-    return half if has_point and 0 < half < math.pi / 2 else 0.0
-
-
-def _core(parameters: dict[str, Any], shape: str, bit: Path) -> float | None:
-    return max(_quantity(parameters, _CORES[shape], bit) or 0.0, THINNEST) if shape in _CORES else None
-
-
-def _shank(parameters: dict[str, Any], shape: str, bit: Path) -> Shank | None:
-    names = (EDGE_HEIGHTS.get(shape, "CuttingEdgeHeight"), "ShankDiameter", "Diameter", "TipDiameter")
-    height, across, widest, tip = (_quantity(parameters, name, bit) or 0.0 for name in names)
-    return shank_of(shape, height, across, widest, tip, _half_angle(parameters, shape, bit, pointed=False))
-
-
-def shank_of(shape: str, height: float, across: float, widest: float, tip: float, half: float) -> Shank | None:
-    """The shank of a tool bit; None if the height of its edges, or its diameter, is not stated. Lengths in mm.
+def shank_of(bit: Bit) -> Shank | None:
+    """The shank of a bit; None if the height of its edges, or its diameter, is not stated.
 
     The height of the edges of V-bits and taps is that of the cylinder above their cone. The cone of a V-bit with a flat
-    tip has no end in a ``Tool``: its shank begins where the cone does end, and is as wide.
-
-    Args:
-        shape: in lower case, without hyphens.
-        height: of the cutting edges, the property of ``EDGE_HEIGHTS``; 0 if not stated.
-        across: diameter of the shank, 0 if not stated.
-        widest: diameter of the cutter.
-        tip: diameter of a flat tip, 0 for none.
-        half: half the angle of the cone at the tip, rad; 0 if not stated.
+    tip has no end in a ``Tool``: its shank begins where the cone does end, and is as wide. The taper of a ball nose
+    ends at its TaperDiameter, wherever its edges do.
     """
-    if shape in ("vbit", "tap"):
+    height, across = bit.size(_EDGE_HEIGHTS.get(bit.shape, "CuttingEdgeHeight")), bit.size("ShankDiameter")
+    if bit.shape == "taperedballnose":
+        height = _end_of_taper(bit) or height
+    elif bit.shape in ("vbit", "tap"):
+        widest, tip, half = bit.size("Diameter"), bit.size("TipDiameter"), bit.half(_TIP_ANGLES[bit.shape]) or 0.0
         if not (widest > tip and 0 < half < math.pi / 2):
             return None
         cone = (widest - tip) / 2 / math.tan(half)
         height, across = (cone, max(widest, across)) if tip > 0 else (cone + height, across)
     return Shank(height, across) if height > 0 and across > 0 else None
+
+
+def _end_of_taper(bit: Bit) -> float:
+    """Height at which the side of a tapered ball has the TaperDiameter; 0 if it does not widen to that."""
+    ball, half = bit.size("Diameter") / 2, bit.half("TaperAngle") or 0.0
+    widened = bit.size("TaperDiameter") / 2 - ball / math.cos(half)
+    return ball + widened / math.tan(half) if half > 0 and widened > 0 else 0.0
 
 
 def _quantity(parameters: dict[str, Any], name: str, bit: Path) -> float | None:

@@ -27,7 +27,7 @@ class TableError(ValueError):
 
 @dataclass(frozen=True)
 class ToolEntry:
-    """A tool as stated in its file; lengths in mm, None if not stated, and the rise of its bottom in rad."""
+    """A tool as stated in its file; lengths in mm, None if not stated, angles in rad."""
 
     line: int
     number: int
@@ -38,6 +38,7 @@ class ToolEntry:
     shank: Shank | None = None
     core: float | None = None
     bottom: float = 0.0
+    side: float = 0.0
 
 
 def text_of(file: Path) -> str:

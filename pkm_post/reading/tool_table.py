@@ -16,10 +16,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pkm_post.model import Diagnostic, Place, Shank, Tool
+from pkm_post.model import Diagnostic, Place, Shank, Tool, largest_corner_radius
 from pkm_post.reading import freecad_tools
 from pkm_post.reading.tool_entry import TableError, ToolEntry, number_of, text_of, tool_number
 from pkm_post.reading.units import UNITS
+
+_ROUNDED = 1e-9
+"""mm"""
 
 
 @dataclass(frozen=True)
@@ -85,9 +88,10 @@ def _table_of(rows: Iterator[ToolEntry]) -> ToolTable:
 
 def _cutter(row: ToolEntry, diameter: float) -> Tool:
     corner = 0.0 if row.corner is None else row.corner
-    if not 0 <= corner <= _within(row, "diameter", diameter) / 2:
+    if not 0 <= corner <= largest_corner_radius(_within(row, "diameter", diameter), row.bottom, row.side) + _ROUNDED:
         raise TableError(f"corner radius {corner:g} mm of tool {row.number}, diameter {diameter:g} mm", row.line)
-    return Tool(row.number, row.name, diameter, corner, 0.0, row.bottom, corner_known=row.corner is not None)
+    angles = row.bottom, row.side
+    return Tool(row.number, row.name, diameter, corner, 0.0, *angles, corner_known=row.corner is not None)
 
 
 def _within(row: ToolEntry, name: str, value: float) -> float:

@@ -128,6 +128,17 @@ def test_tapered_ball(job):
     assert_profile(bit, tool, (0.1, 0.6, 1.0, 10.0))
 
 
+def test_a_bit_of_another_shape_has_a_corner_that_is_not_known(job):
+    """It counted as flat, and stock at its corner as removed."""
+    bit = job.Document.addObject("Part::FeaturePython", "Own")
+    bit.addProperty("App::PropertyString", "ShapeType")
+    bit.addProperty("App::PropertyLength", "Diameter")
+    bit.ShapeType, bit.Diameter = "Custom", 8
+    tool = tool_of(job, bit)
+    smallest, largest = sizes_between(tool, setup_of(job))
+    assert (tool.diameter, smallest.corner_radius, largest.corner_radius) == (8, 4, 0)
+
+
 def test_bull_nose_says_its_flat_or_its_corner(job):
     size = {"FlatRadius": 5} if int(App.Version()[1]) == 0 else {"CornerRadius": 3}
     bit = stock_bit(job.Document, "bullnose.fcstd", Diameter=16, **size)
@@ -277,14 +288,16 @@ LIBRARY_SHAPES = {
     "thread-mill": {"Diameter": 5, "NeckDiameter": 3, "NeckLength": 20, "ShankDiameter": 4},
     "radius": {"Diameter": 15, "TipDiameter": 5, "CuttingRadius": 3, "CuttingEdgeHeight": 14, "ShankDiameter": 4},
     "slittingsaw": {"Diameter": 60, "BladeThickness": 3, "ShankDiameter": 10},
-    "dovetail": {"Diameter": 20, "CuttingEdgeAngle": 60, "CuttingEdgeHeight": 9, "NeckDiameter": 8, "ShankDiameter": 8},
+    "dovetail": {"ShankDiameter": 10},
+    "chamfer": {"Diameter": 12, "CuttingEdgeAngle": 60, "TipDiameter": 5, "ShankDiameter": 6},
+    "taperedballnose": {"Diameter": 3, "TaperAngle": 10, "TaperDiameter": 5, "CuttingEdgeHeight": 20},
 }
 
 
 @pytest.mark.parametrize("name", LIBRARY_SHAPES)
-def test_a_library_has_the_shanks_of_a_job_and_cutters_that_their_solids_contain(job, tmp_path, name):
-    """Drills, V-bits, thread mills and mills of radii were balls of their diameter, and most had no shank."""
-    if int(App.Version()[1]) == 0 and name in ("tap", "radius"):
+def test_a_library_has_the_tools_of_a_job_and_cutters_that_their_solids_contain(job, tmp_path, name):
+    """Many were balls of their diameter without a shank; chamfer mills and tapered balls had upright sides."""
+    if int(App.Version()[1]) == 0 and name in ("tap", "radius", "taperedballnose"):
         pytest.skip("FreeCAD 1.0 has no such bits")
     bit = stock_bit(job.Document, f"{name}.fcstd", **LIBRARY_SHAPES[name])
     (tmp_path / "end.fctb").write_text(written_by_freecad(bit), encoding="utf-8")
@@ -295,9 +308,11 @@ def test_a_library_has_the_shanks_of_a_job_and_cutters_that_their_solids_contain
     assert {number: (each.start, each.diameter) for number, each in table.shanks.items()} == {
         number: pytest.approx((each.start, each.diameter)) for number, each in setup.shanks.items()
     }
+    assert table.cores == setup.cores
     top = setup.shanks[1].start if setup.shanks else 20.0
     of_table = Setup(cores=table.cores, unknown_corners=frozenset() if found.corner_known else {1})
     edges = cutter_profile(sizes_between(found, of_table)[0], top)
     for z in np.linspace(0.05, top - 0.05, 30):
         assert np.interp(z, edges.height, edges.radius) <= _radius_of(bit, z) + 2e-3
-    assert found.bottom_angle == pytest.approx(tool.bottom_angle)
+    sizes = [[each.diameter, each.corner_radius, each.bottom_angle, each.side_angle] for each in (found, tool)]
+    assert sizes[0] == pytest.approx(sizes[1]) and found.corner_known == tool.corner_known

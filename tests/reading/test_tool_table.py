@@ -4,6 +4,7 @@
 import json
 import math
 
+import numpy as np
 import pytest
 
 from pkm_post.machine import find_machine
@@ -120,17 +121,18 @@ def test_the_shank_is_that_of_the_table_unless_the_tool_is_another(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("shape", "sizes", "core"),
+    ("shape", "sizes", "core", "outline"),
     [
-        ("thread-mill", {"NeckDiameter": "3 mm", "NeckLength": "20 mm"}, 3.0),
-        ("radius", {"TipDiameter": "2 mm", "CuttingEdgeHeight": "14 mm"}, 2.0),
-        ("v-bit", {"CuttingEdgeAngle": "90.00 \u00b0", "TipDiameter": "0.50 mm", "CuttingEdgeHeight": "1 mm"}, 0.5),
-        ("v-bit", {"CuttingEdgeAngle": "90.00 \u00b0", "TipDiameter": "0.00 mm", "CuttingEdgeHeight": "1 mm"}, None),
-        ("drill", {"TipAngle": "118,00 \u00b0"}, None),
-        ("drill", {}, 0.1),
+        ("thread-mill", {"NeckDiameter": "3 mm", "NeckLength": "20 mm"}, 3.0, (5.0, 0, 0)),
+        ("radius", {"TipDiameter": "2 mm", "CuttingEdgeHeight": "14 mm"}, 2.0, (5.0, 0, 0)),
+        ("v-bit", {"CuttingEdgeAngle": "90.00 \u00b0", "TipDiameter": "0.50 mm"}, None, (0.5, 0, 45)),
+        ("v-bit", {"CuttingEdgeAngle": "90.00 \u00b0", "TipDiameter": "0.00 mm"}, None, (5.0, 45, 0)),
+        ("v-bit", {"TipDiameter": "0.50 mm"}, 0.5, (5.0, 0, 0)),
+        ("drill", {"TipAngle": "118,00 \u00b0"}, None, (5.0, 31, 0)),
+        ("drill", {}, 0.1, (5.0, 0, 0)),
     ],
 )
-def test_tools_cut_for_certain_what_their_outline_contains(tmp_path, shape, sizes, core):
+def test_tools_cut_for_certain_what_their_outline_contains(tmp_path, shape, sizes, core, outline):
     """Of another outline than that of end mills, they counted as balls of their diameter."""
     part = tmp_path / "part.ngc"
     part.write_text("G21\nT1 M6\nS1000 M3\nG0 X0 Y0 Z30\nG1 X10 F300\nM5\nM2\n", encoding="ascii")
@@ -138,9 +140,23 @@ def test_tools_cut_for_certain_what_their_outline_contains(tmp_path, shape, size
     prepared = prepared_file(part, arguments=f"--tool-table {library} --tool-length 1=60")
     (tool,), setup = prepared.program.tools.values(), prepared.options.setup
     assert setup.cores == ({} if core is None else {1: core})
-    assert (tool.diameter, tool.bottom_angle > 0) == (5.0, core is None)
+    angles = np.degrees([tool.bottom_angle, tool.side_angle])
+    assert [tool.diameter, *angles] == pytest.approx(outline)
     other = prepared_file(part, arguments=f"--tool-table {library} --tool-length 1=60 --tool 1=6,0")
     assert (other.options.setup.cores, other.program.tools[1].bottom_angle) == ({}, 0.0)
+
+
+@pytest.mark.parametrize("suffix", [".ngc", ".mpf"])
+def test_compensation_does_not_guess_the_diameter_of_a_tool_that_widens(tmp_path, suffix):
+    """FreeCAD writes 5 mm into the table of LinuxCNC, and at its tip the cutter has 0.5 mm."""
+    part = tmp_path / f"part{suffix}"
+    part.write_text("G17 G90\nT1 M6\nS1000 M3\nG0 X0 Y0 Z30\nG1 G41 X10 F300\nY20\nG40 X0\nM5\nM30\n", "ascii")
+    library = library_of(tmp_path, "v-bit", Diameter="5 mm", TipDiameter="0.5 mm", CuttingEdgeAngle="90 \u00b0")
+    options = f"--tool-table {library} --tool-length 1=60"
+    (fault,) = prepared_file(part, arguments=options).found
+    assert (fault.code, fault.place.line, fault.found) == ("G411", 5, "T1, whose side leans by 45 degrees")
+    prepared = prepared_file(part, arguments=f"{options} --tool 1=5")
+    assert not errors(prepared.found) and prepared.program.position[:, 0].min() < 10
 
 
 def old_tool(kind, **sizes):

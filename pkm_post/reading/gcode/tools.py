@@ -7,6 +7,8 @@ offsets to the left of the path in mm.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from pkm_post.model import Array, Tool
@@ -36,6 +38,11 @@ def modal_word(blocks: Blocks, letter: str, before: float) -> Array:
 def tool_in_use(number: int, options: ReadOptions) -> Tool | None:
     """The tool with a number; tool 0 before the first change."""
     return options.tool(0 if number == NONE else number)
+
+
+def leaning_side(tool: Tool) -> str:
+    """Why a tool has no one radius: LinuxCNC's table has the widest one, and at its tip it has another."""
+    return f"T{tool.number}, whose side leans by {math.degrees(tool.side_angle):g} degrees"
 
 
 def spindle_speeds(blocks: Blocks, modal: Modal) -> Array:
@@ -76,6 +83,8 @@ def _radius(
     if tool is None:
         faults.add("G411", row, "no tool in the spindle" if np.isnan(word) else Word("D", word))
         return 0.0
+    if tool.side_angle:
+        faults.add("G411", row, leaning_side(tool))
     return tool.diameter / 2
 
 

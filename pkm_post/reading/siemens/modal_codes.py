@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from pkm_post.model import EventKind
+from pkm_post.reading.gcode.tools import leaning_side
 from pkm_post.reading.siemens import codes
 from pkm_post.reading.siemens.blocks import Block, Call
 from pkm_post.reading.siemens.diagnostics import BlockFault
@@ -190,6 +191,8 @@ def _compensate(machine: SiemensMachine, block: Block, code: int) -> None:
     tool = machine.tools.tool(state.tool)
     if tool is None:
         raise BlockFault("G411", "no tool in the spindle")
+    if tool.side_angle:
+        raise BlockFault("G411", leaning_side(tool))
     machine.path.radius = tool.diameter / 2
 
 
