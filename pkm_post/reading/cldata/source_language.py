@@ -48,6 +48,8 @@ _TERMAC = re.compile(r"\s*TERMAC\s*", re.IGNORECASE)
 _PARAMETER = re.compile(r"\s*([A-Z]\w*)\s*(?:=\s*(.*?))?\s*", re.IGNORECASE | re.DOTALL)
 _OPERATION = re.compile(r"[*(]|[\d.][ \t]*[-+/]")
 _LEADING_ZEROS = re.compile(r"(?<![\w.])0+(?=\d)")
+_FOREIGN = re.compile(r"#|(?<!\w)(?:0[XOB]|\d\w*_)", re.IGNORECASE)
+"""Comments and numbers of Python alone, as 0x10 and 1_000, which its parser would take."""
 _NAME = re.compile(r"(?<![\w.])[A-Z]\w*", re.IGNORECASE)
 
 _OPERATORS: dict[type[ast.AST], Callable[..., float]] = {
@@ -121,6 +123,8 @@ class _Expander:
         for index in indices:
             if index < behind:
                 continue
+            if len(self.text) > MOST_LINES:
+                return
             line = self.lines.text[index]
             assignment, call = _ASSIGNMENT.fullmatch(line), _CALL.fullmatch(line)
             if _TEXT.match(line):
@@ -196,7 +200,11 @@ class _Expander:
             self._report("L402", index, f"CALL/{match[1]}, parameters {', '.join(wrong)} unknown or without a value")
             return
         before = self.values
-        self.values = {**before, **{name: self._value(text or "") for name, text in values.items()}}
+        try:
+            self.values = {**before, **{name: self._value(text or "") for name, text in values.items()}}
+        except _NoValueError as fault:
+            self._report("L402", index, f"CALL/{match[1]}, {fault}")
+            return
         self.depth += 1
         self.run(macro.body)
         self.depth -= 1
@@ -239,6 +247,8 @@ class _Expander:
         shown = text.strip()[:40]
         if len(text) > _LONGEST_EXPRESSION:
             raise _NoValueError(f"{shown}..., too long")
+        if _FOREIGN.search(text):
+            raise _NoValueError(f"{shown}, no expression of numbers and names")
         try:
             value = self._evaluated(
                 ast.parse(_LEADING_ZEROS.sub("", text.replace(JOINT, " ").strip()), mode="eval").body

@@ -83,12 +83,17 @@ def test_a_word_is_a_parameter_as_well():
         ("A=LOGF(2)\n", [("L402", 6)]),
         ("A=1 if 2 else 3\n", [("L402", 6)]),
         ("A=__import__('os')\n", [("L402", 6)]),
+        ("A=1_000\n", [("L402", 6)]),
+        ("A=0x10\n", [("L402", 6)]),
+        ("A=5 # 6\n", [("L402", 6)]),
         ("CLEAR=5\n", [("L402", 6)]),
         ("P=POINT/1,B*2,3\n", [("L402", 6)]),
         ("M=MACRO/X\nGOTO/X,0,0\n", [("L402", 6)]),
         ("M=MACRO/1\nTERMAC\n", [("L402", 6)]),
         ("CALL/M,X=1\n", [("L402", 6)]),
         ("M=MACRO/X\nGOTO/X,0,0\nTERMAC\nCALL/M\n", [("L402", 9)]),
+        ("M=MACRO/X\nGOTO/X,0,0\nTERMAC\nCALL/M,X=1/0\n", [("L402", 9)]),
+        ("M=MACRO/X\nGOTO/X,0,0\nTERMAC\nCALL/M,X=B+1\n", [("L402", 9)]),
         ("M=MACRO/X\nGOTO/X,0,0\nTERMAC\nCALL/M,X=1,Y=2\n", [("L402", 9)]),
         ("M=MACRO/X\nCALL/M,X=X\nTERMAC\nCALL/M,X=1\n", [("L402", 7)]),
         ("A=1\nTERMAC\n", [("L401", 7)]),
@@ -104,6 +109,8 @@ def test_calls_without_end_are_bounded(monkeypatch):
     monkeypatch.setattr(language, "MOST_LINES", 50)
     macros = "A=MACRO\nGOTO/1,2,3\nGOTO/1,2,4\nTERMAC\nB=MACRO\n" + "CALL/A\n" * 30 + "TERMAC\nCALL/B\n"
     assert faults(macros)[0][0] == "L403"
+    calls = "".join(f"M{each}=MACRO\n" + f"CALL/M{each - 1}\n" * 10 + "TERMAC\n" for each in range(1, 18))
+    assert faults(f"M0=MACRO\nTERMAC\n{calls}CALL/M17\n")[0][0] == "L403"  # no line is read of 10^17 calls
 
 
 def test_a_file_without_names_keeps_its_lines():
