@@ -32,6 +32,10 @@ _WELL = 0.6
 """Deviation by tolerance at which the search for a better time stops."""
 _FOR_FEED = 0.95
 """Deviation by tolerance up to which a joint may be passed at another time for its feed."""
+_SAVING = 8.0
+"""Tolerances of way beyond which a longer segment saves no more of it by rounded corners."""
+_UNSURE = 2.0
+"""Tolerances by which the estimated way to a joint may be off beside short segments."""
 _NEWTON_STEPS = 8
 _TRIED, _TRIED_INSTANTS = 24, 12
 """Times tried on one side of a joint, closer together near it, and the sampled instants that they cover."""
@@ -119,6 +123,9 @@ class _Search:
         self._joint = np.vstack([trajectory.tip.T, trajectory.axis.T, trajectory.spin])
         by_tip = 1 / trajectory.tip_tolerances(tolerances.tip)
         by_axis = np.full(len(trajectory), 1 / tolerances.axis)
+        way, off = np.diff(self._programmed, prepend=0.0), np.maximum(1 / by_tip, turn * tolerances.axis)
+        self._way = np.maximum(way / 2, _UNSURE * off)
+        self._corners = np.cumsum(np.minimum(way, _SAVING * off))  # a long line saves no more at its ends
         self._feed = trajectory.feed
         self._weight = np.vstack([by_tip, by_axis, _SPIN_COUNTS * by_axis])[[0, 0, 0, 1, 1, 1, 2]]
 
@@ -129,8 +136,10 @@ class _Search:
         at_known = np.interp(
             self._instant_of(instant), np.arange(len(self._sampled_path.length)), self._sampled_path.length
         )
-        programmed = np.append(0.0, self._programmed[known])
-        return np.asarray(np.interp(self._programmed[rows], programmed, np.append(0.0, at_known)))
+        saved = np.append(0.0, self._programmed[known] - at_known)
+        return np.asarray(
+            self._programmed[rows] - np.interp(self._corners[rows], np.append(0.0, self._corners[known]), saved)
+        )
 
     def time_of(self, length: Array) -> Array:
         """Time at which a distance from the start is reached, s."""
@@ -140,16 +149,19 @@ class _Search:
 
     def look(self, rows: Array, guess: Array, reach: int) -> Array:
         """Times at which joints are passed, s, searched near a guess; and the deviation then by tolerance, (2, M)."""
-        middle = np.searchsorted(self._sampled_path.length, guess)
         at_once = max(1, _AT_ONCE // (2 * reach + 1))
         parts = [slice(first, first + at_once) for first in range(0, len(rows), at_once)]
-        return np.hstack([self._look(rows[part], middle[part], reach) for part in parts])
+        return np.hstack([self._look(rows[part], guess[part], reach) for part in parts])
 
-    def _look(self, rows: Array, middle: Array, reach: int) -> Array:
+    def _look(self, rows: Array, guess: Array, reach: int) -> Array:
+        middle = np.searchsorted(self._sampled_path.length, guess)
         shift = np.arange(-reach, reach + 1)[:, None]
         instants = np.clip(middle + shift, 0, len(self._sampled_path.length) - 1)
         off = (self._sampled_path.place[:, instants] - self._joint[:, None, rows]) * self._weight[:, None, rows]
-        nearest = np.argmin(np.square(off).sum(axis=0), axis=0)
+        # the tool may pass the place again: after a closed arc, or where it turns back
+        away = self._sampled_path.length[instants] - guess
+        away /= np.where(away < 0, self._way[rows], self._way[np.minimum(rows + 1, len(self._way) - 1)])
+        nearest = np.argmin(np.square(off).sum(axis=0) + np.square(away), axis=0)
         return self._closely(rows, instants[nearest, np.arange(len(rows))])
 
     def _closely(self, rows: Array, instant: Array) -> Array:

@@ -137,6 +137,20 @@ def test_full_turns_that_are_hardly_larger_than_the_tolerance_are_followed(machi
     assert not refusals(printed(motion, gentle), trajectory, gentle, asked)
 
 
+@pytest.mark.slow
+def test_both_ends_of_a_small_circle_have_their_times(machine):
+    """They are one place, to which the tool also returns after it; all the way that corners save is saved near it."""
+    start, radius, tip = [129.0, 0, 60], 0.0026, 0.003
+    ends = [[0, 0, 60], start, start, [128.991, 0.001, 60], start]
+    kinds = [Kind.RAPID, Kind.LINE, Kind.ARC, Kind.LINE, Kind.LINE]
+    centre, turn = np.full((2, 5, 3), np.nan)
+    centre[2], turn[2] = np.array(start) - [0.8 * radius, 0.6 * radius, 0], [0, 0, -1]
+    trajectory = placed(program(ends, kind=np.array(kinds), feed=50.0, centre=centre, turn=turn), machine)
+    asked = Tolerances(tip, TOLERANCES.axis)
+    motion, _ = planned(trajectory, machine, asked)
+    assert not refusals(printed(motion, machine), trajectory, machine, asked)
+
+
 def test_joints_are_passed_when_the_plan_passes_them(machine):
     trajectory = placed(cone(120), machine)
     motion, _ = planned(trajectory, machine, TOLERANCES)
