@@ -18,7 +18,12 @@ TARGETS: dict[str, GcodeDialect] = {f"gcode:{form.value}": form for form in Gcod
 
 
 def convert(
-    file: Path, target: str, out: Path, reading: ReadingOptions = AS_WRITTEN, decimals: int = 4, inch: bool = False
+    file: Path,
+    target: str,
+    out: Path,
+    reading: ReadingOptions = AS_WRITTEN,
+    decimals: int | None = None,
+    inch: bool = False,
 ) -> tuple[Diagnostic, ...]:
     """Write a part program in another form.
 
@@ -27,7 +32,7 @@ def convert(
         target: a key of ``TARGETS``.
         out: the file to write.
         reading: settings that the part program does not contain.
-        decimals: of lengths.
+        decimals: of lengths; None for four in mm and six in inches.
         inch: whether to write inches.
 
     Returns:

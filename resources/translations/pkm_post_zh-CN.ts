@@ -2971,6 +2971,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>在其之前写 G94 和 F</translation>
     </message>
     <message>
+        <source>controls differ in which tool this loads, that of an earlier T or that of its block</source>
+        <translation>各控制器在此换上的刀具不同：先前 T 的刀具，或本程序段 T 的刀具</translation>
+    </message>
+    <message>
+        <source>write T in a block of its own: before M6 that of the tool to load, after it that of the next one</source>
+        <translation>将 T 单独写成一个程序段：M6 之前写要换上的刀具，之后写下一把刀具</translation>
+    </message>
+    <message>
         <source>the job has no active operation that moves the tool</source>
         <translation>作业中没有使刀具移动的启用的操作</translation>
     </message>

@@ -187,6 +187,10 @@ GCODE_RULES: dict[str, Rule] = {
     "G439": error("the axis words have no motion that they can go by", "let G0 or G1 be the motion of the block"),
     "G440": error("controls differ in whether this goes by distances under G91", "write G90 before it"),
     "G441": error("a cycle needs a feed, which inverse time does not give", "write G94 and F before it"),
+    "G442": error(
+        "controls differ in which tool this loads, that of an earlier T or that of its block",
+        "write T in a block of its own: before M6 that of the tool to load, after it that of the next one",
+    ),
     # G5: writing G-code
     "G501": error("the tool axis tilts, and this form of G-code cannot express it", "choose a form with five axes"),
     "G502": error("the tool axis points down, and this form of G-code cannot express it", "choose vectors or a head"),

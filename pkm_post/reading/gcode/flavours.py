@@ -48,6 +48,7 @@ class Flavour:
         g53_is_rapid: whether G53 moves at rapid whatever the active motion.
         offsets_add_up: whether G10 L2 adds to an offset under G91; then L20 sets those of G54.1, and no P is in force.
         one_local_offset: whether G52 and G92 set one offset, rather than two that add up.
+        may_select_next: whether T beside M6 may select the next tool, while that of an earlier T is loaded.
         stops_first: whether M5 acts before the move of its block, rather than whenever the machine's builder decided.
         needs_both_after_turns: whether controls differ in the first move after G68 that has one coordinate of its
             plane, and in one by distances after G69.
@@ -84,6 +85,7 @@ class Flavour:
     g53_is_rapid: bool
     offsets_add_up: bool
     one_local_offset: bool
+    may_select_next: bool
     stops_first: bool
     needs_both_after_turns: bool
     outside_turns: tuple[int, ...]
@@ -125,6 +127,7 @@ RS274 = Flavour(
     g53_is_rapid=False,
     offsets_add_up=False,
     one_local_offset=True,
+    may_select_next=False,
     stops_first=True,
     needs_both_after_turns=False,
     outside_turns=(),
@@ -203,6 +206,7 @@ FANUC = replace(
     g53_is_rapid=True,
     offsets_add_up=True,
     one_local_offset=False,
+    may_select_next=True,
     stops_first=False,
     needs_both_after_turns=True,
     outside_turns=(100, 170, 180, 190, 280, 300, 501, 511, 520, 530, 920, 921, *_ORIGINS),

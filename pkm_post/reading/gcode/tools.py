@@ -26,7 +26,19 @@ def tools_in_spindle(blocks: Blocks, modal: Modal, options: ReadOptions, faults:
     for row, called in zip(change.tolist(), number.tolist(), strict=True):
         if options.tool(called) is None:
             faults.add("G411", row, Word("T", called))
+    if modal.flavour.may_select_next:
+        _check_selected(blocks, change, faults)
     return forward_fill(change, number, NONE, len(blocks))
+
+
+def _check_selected(blocks: Blocks, change: Array, faults: BlockDiagnostics) -> None:
+    """Report M6 beside a T, after another T that no M6 has loaded: a parameter decides which tool it loads [Fanuc]."""
+    rows, number = np.flatnonzero(blocks.has("T")), blocks.word("T")
+    before = np.append(-1, rows)[np.searchsorted(rows, change)]
+    waiting = (before > np.append(-1, change[:-1])[: len(change)]) & (number[before] != number[change])
+    for row, other in zip(change[waiting].tolist(), number[before[waiting]], strict=True):
+        if not np.isnan(number[row]):
+            faults.add("G442", row, (Word("M", 6), " ", Word("T", number[row]), " after ", Word("T", other)))
 
 
 def modal_word(blocks: Blocks, letter: str, before: float) -> Array:

@@ -182,14 +182,14 @@ _INCH = 25.4
 
 
 def write(
-    program: Program, dialect: GcodeDialect, decimals: int = 4, axis_decimals: int = 6, inch: bool = False
+    program: Program, dialect: GcodeDialect, decimals: int | None = None, axis_decimals: int = 6, inch: bool = False
 ) -> tuple[str | None, tuple[Diagnostic, ...]]:
     """Write a program as G-code.
 
     Args:
         program: any; row 0 is written as a rapid move.
         dialect: tool axis notation.
-        decimals: of coordinates, centres and diameters.
+        decimals: of coordinates, centres and diameters; None for four in mm and six in inches.
         axis_decimals: of vectors, and of angles in degrees.
         inch: whether to write lengths in inches (G20).
 
@@ -210,6 +210,7 @@ def write(
         return None, (
             Diagnostic("N119", program.place(int(np.argmax(program.contact))), f"{program.contact.sum()} rows"),
         )
+    decimals = (6 if inch else 4) if decimals is None else decimals
     numbers = NumberFormat(decimals, axis_decimals, _INCH if inch else 1.0)
     standing = np.flatnonzero(cutting(program) & (feed_as_written(program, numbers) <= 0))
     if len(standing):

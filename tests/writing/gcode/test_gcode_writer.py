@@ -160,7 +160,7 @@ def test_arcs_and_events_are_read_back_as_they_were(form, seed):
 @pytest.mark.parametrize("form", GcodeDialect)
 def test_inches_are_read_back_as_millimetres(form):
     given = arcs_in_all_planes(np.random.default_rng(5))
-    assert_same(round_trip(given, form, inch=True, decimals=5), given, 25.4e-5, POLE, 25.4 * FEED_UNIT)
+    assert_same(round_trip(given, form, inch=True), given, 25.4e-6, POLE, 25.4 * FEED_UNIT)
 
 
 def test_a_long_program_is_read_back_as_it_was():
