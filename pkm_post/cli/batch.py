@@ -17,15 +17,15 @@ import os
 import shlex
 import subprocess
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor, as_completed
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
 import pkm_post
-from pkm_post.cli.post import items_of
-from pkm_post.cli.processes import command_inside, command_outside, is_inside, needs_freecad, outcome
+from pkm_post.cli.post import items_of, jobs_in
+from pkm_post.cli.processes import DOCUMENTS, command_inside, command_outside, is_inside, needs_freecad, outcome
 from pkm_post.cli.terminal import ProgressLine, flags_with_us, print_diagnostics
 from pkm_post.options import count, result_conflicts
 from pkm_post.system import result_files, staged, thread_share, threads, write_fault
@@ -56,14 +56,16 @@ class BatchJob:
     stems: tuple[str, ...]
 
     def named(self) -> tuple[Path, ...]:
-        """What its arguments may name: each word, and what follows its equals sign."""
-        return tuple(Path(each) for word in self.words for each in (word, word.partition("=")[2]) if each)
+        """What its arguments may name."""
+        return tuple(map(Path, _names(self.words)))
 
     def fingerprint(self) -> str:
-        """SHA-256 of all inputs but subprograms: version, arguments, the file, and files named in arguments."""
+        """SHA-256 of all inputs but subprograms: version, arguments, the file, and the files that these name."""
         digest = hashlib.sha256("\0".join([pkm_post.__version__, self.file, self.job, *self.words]).encode())
-        for path in filter(os.path.isfile, (self.path, *self.named())):
+        inputs = [path for path in (self.path, *self.named()) if os.path.isfile(path)]
+        for path in inputs:
             digest.update(path.read_bytes())
+            inputs += [each for each in _named_in(path) if os.path.isfile(each) and each not in inputs]
         return digest.hexdigest()
 
     def has_subprogram(self, name: str, digest: str) -> bool:
@@ -71,6 +73,47 @@ class BatchJob:
         folders = (*filter(os.path.isdir, self.named()), self.path.parent)
         found = next((folder / name for folder in folders if os.path.isfile(folder / name)), None)
         return found is not None and hashlib.sha256(found.read_bytes()).hexdigest() == digest
+
+
+def _names(words: Iterable[str]) -> Iterator[str]:
+    """What words may name: each of them, what follows its equals sign, and both without the unit behind a comma."""
+    for word in words:
+        for each in (word, word.partition("=")[2]):
+            yield from filter(None, dict.fromkeys((each, each.rpartition(",")[0])))
+
+
+def _named_in(file: Path) -> Iterator[Path]:
+    """What a file may name: the arguments of jobs, the tool table of a machine, and the bits of a tool library."""
+    texts = _READERS.get(file.suffix.lower())
+    try:
+        names = list(_names(texts(file))) if texts else []
+    except (OSError, ValueError):  # posting refuses it
+        return
+    for folder in (Path(), file.parent, file.parent / "Bit", file.parent.parent / "Bit"):
+        yield from (folder / name for name in names)
+
+
+def _texts(content: Any) -> Iterator[str]:
+    """All texts in nested tables and lists."""
+    if isinstance(content, str):
+        yield content
+    elif isinstance(content, dict | list):
+        for each in content.values() if isinstance(content, dict) else content:
+            yield from _texts(each)
+
+
+def _words_of_jobs(file: Path) -> Iterator[str]:
+    """The arguments of the jobs of a document."""
+    for job in jobs_in(file):
+        yield from shlex.split(job.arguments)
+
+
+_READERS: dict[str, Callable[[Path], Iterable[str]]] = {
+    **{suffix.lower(): _words_of_jobs for suffix in DOCUMENTS},
+    ".toml": lambda file: _texts(tomllib.loads(file.read_text(encoding="utf-8-sig"))),
+    ".fctl": lambda file: _texts(json.loads(file.read_bytes())),
+}
+"""The words of a file among which may be names of others, by suffix."""
 
 
 @dataclass(frozen=True)

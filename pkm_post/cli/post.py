@@ -118,14 +118,14 @@ def items_of(file: Path, job_name: str | None, also: tuple[str, ...]) -> list[Po
         from pkm_post.reading import program_stem
 
         return [PostItem(str(file), program_stem(file), also)]
-    jobs = _jobs_in(file)
+    jobs = jobs_in(file)
     if len(jobs) < 2:
         return [PostItem(str(file), job_stem(file.stem, "", 1))]
     named = [job.label for job in jobs if job_name in (None, job.name, job.label)]
     return [PostItem(f"{label} of {file}", job_stem(file.stem, label, len(jobs))) for label in named]
 
 
-def _jobs_in(document: Path) -> tuple[Job, ...]:
+def jobs_in(document: Path) -> tuple[Job, ...]:
     """CAM jobs of a document; none for an unreadable one, which is refused when posted."""
     from pkm_post.system import DamagedDocument, read_document
 

@@ -34,11 +34,13 @@ class Job:
         name: of the object.
         label: displayed name.
         operations: names of its operations, in order.
+        arguments: of its post-processor.
     """
 
     name: str
     label: str
     operations: tuple[str, ...]
+    arguments: str
 
 
 @dataclass(frozen=True)
@@ -101,6 +103,7 @@ class _Object:
     label: str
     proxy: tuple[str | None, str | None]
     operations: str
+    arguments: str
     group: tuple[str, ...]
     members: list[str]
 
@@ -159,6 +162,7 @@ def _object(element: ElementTree.Element) -> _Object:
         value("[@name='Label']/String") or name,
         next(((proxy.get("module"), proxy.get("class")) for proxy in proxies), (None, None)),
         value("[@name='Operations']/Link"),
+        value("[@name='PostProcessorArgs']/String"),
         tuple(link.get("value", "") for link in group),
         [each.get("file", "") for each in values if each.get("file")],
     )
@@ -184,4 +188,4 @@ def _jobs(objects: list[_Object]) -> Iterable[Job]:
             operations = by_name[each.operations].group if each.operations in by_name else ()
             for name in sorted(set(operations) - set(by_name)):
                 raise damaged_content(f"the operation {name} of {each.label} is missing")
-            yield Job(each.name, each.label, operations)
+            yield Job(each.name, each.label, operations, each.arguments)

@@ -3,6 +3,7 @@
 
 import csv
 import subprocess
+import zipfile
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -128,6 +129,37 @@ def test_a_file_that_changes_while_it_is_posted_is_posted_again(jobs, tmp_path, 
     monkeypatch.setattr(subprocess, "run", change)
     job, _ = batch_command.read_list(jobs)
     assert batch_command.post_one(job, {}).fingerprint != job.fingerprint()
+
+
+DOCUMENT = """<Document><Objects Count="1"><Object type="Path::FeaturePython" name="Job"/></Objects>
+<ObjectData Count="1"><Object name="Job"><Properties>
+<Property name="PostProcessorArgs"><String value="{}"/></Property>
+<Property name="Proxy"><Python module="Path.Main.Job" class="ObjectJob"/></Property>
+</Properties></Object></ObjectData></Document>"""
+
+
+@pytest.mark.parametrize("changed", ["shop.toml", "shop.fctl", "Bit/end.fctb", "part.stl"])
+@pytest.mark.parametrize("job", ["part.FCStd", "a.ngc"])
+def test_a_file_that_another_input_names_is_an_input(tmp_path, monkeypatch, job, changed):
+    """The job of a document names its machine file, that its tool table, and that its bits."""
+    words = "--machine shop.toml --part part.stl,mm"
+    with zipfile.ZipFile(tmp_path / "part.FCStd", "w") as archive:
+        archive.writestr("Document.xml", DOCUMENT.format(words))
+    write_programs(tmp_path)
+    (tmp_path / "Bit").mkdir()
+    (tmp_path / "shop.toml").write_text("[part_programs]\ntool_table = 'shop.fctl'\n")
+    (tmp_path / "shop.fctl").write_text('{"tools": [{"nr": 1, "path": "end.fctb"}]}')
+    for name in ("Bit/end.fctb", "part.stl"):
+        (tmp_path / name).write_text("{}")
+    (tmp_path / "jobs.toml").write_text(
+        f"arguments = '{'' if job == 'part.FCStd' else words}'\n[[jobs]]\nfile = '{job}'"
+    )
+    monkeypatch.chdir(tmp_path)
+    (one,) = batch_command.read_list(tmp_path / "jobs.toml")
+    before = one.fingerprint()
+    assert one.fingerprint() == before
+    (tmp_path / changed).write_text((tmp_path / changed).read_text() + " ")
+    assert one.fingerprint() != before
 
 
 @pytest.mark.slow
