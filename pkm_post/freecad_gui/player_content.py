@@ -14,9 +14,8 @@ from PySide import QtCore, QtWidgets
 from pkm_post.freecad_app.simulation import Simulation
 from pkm_post.freecad_gui.machine_scene import MachineScene
 from pkm_post.freecad_gui.player_controls import PlayerControls, PlayerLists
-from pkm_post.freecad_gui.player_listing import Listing
 from pkm_post.freecad_gui.player_material import MaterialPage
-from pkm_post.freecad_gui.player_readout import Readout, dro_values_at
+from pkm_post.freecad_gui.player_tabs import Listing, Readout, dro_values_at
 from pkm_post.freecad_gui.player_view import ViewPage
 from pkm_post.freecad_gui.strut_plot import StrutPlot
 from pkm_post.freecad_gui.timeline import Timeline

@@ -20,11 +20,11 @@ from pkm_post.freecad_app.job_setup import set_place
 from pkm_post.freecad_app.job_study import JobStudy
 from pkm_post.freecad_app.reach_object import POINTS_ONLY, WORST, check_names, violations_of
 from pkm_post.freecad_app.user_units import amount_text
+from pkm_post.freecad_gui.finding_view import ShownPose, look_at
 from pkm_post.freecad_gui.icons import ICONS
 from pkm_post.freecad_gui.job_choices import show_place
 from pkm_post.freecad_gui.place_row import PlaceRow
 from pkm_post.freecad_gui.preferences import EveryField
-from pkm_post.freecad_gui.shown_pose import ShownPose, look_at
 from pkm_post.freecad_gui.theme import theme
 from pkm_post.freecad_gui.verdict import FindingRows, Verdict, followed
 from pkm_post.model import Diagnostic, Severity

@@ -20,12 +20,12 @@ from pkm_post.freecad_gui.symmetry_fields import (
     angles_text,
     property_tip,
     quantity,
+    report_lines,
     show_value,
     text_of,
     value_of,
 )
 from pkm_post.freecad_gui.symmetry_placement import PLANE, SymmetryPlace
-from pkm_post.freecad_gui.symmetry_text import report_lines
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 

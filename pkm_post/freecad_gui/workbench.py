@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The PKM Post workbench, and its tool bar and menu in CAM."""
+"""The PKM Post workbench, its tool bar and menu in CAM, and a button for the example on FreeCAD's start page.
+
+FreeCAD has no interface for add-ons there. So the button goes into the named row of buttons for new documents whenever
+a start page comes to the front; if a future page has no such row, nothing is added.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +14,17 @@ from typing import Any, ClassVar
 
 import FreeCAD
 import FreeCADGui
+from PySide import QtCore, QtGui, QtWidgets
 
 from pkm_post.freecad_app.window import ESCAPE_WATCHES, REFUSALS, VERDICTS, VIEWS
 from pkm_post.freecad_gui.icons import ICONS
 
+translate = FreeCAD.Qt.translate
+
+_EXAMPLE = "PkmPostExample"
+_ROW = "CreateNewRow"
+_ICON = 48
+"""px."""
 _RESOURCES = Path(__file__).parents[2] / "resources"
 TRANSLATIONS = _RESOURCES / "translations"
 
@@ -77,7 +88,7 @@ class CamBar:
 
 def install() -> None:
     """Register translations, workbench, commands and preferences; called once from InitGui.py."""
-    from pkm_post.freecad_gui import preferences, start_page, verdict_icons
+    from pkm_post.freecad_gui import preferences, verdict_icons
     from pkm_post.freecad_gui.commands import register
 
     FreeCADGui.addLanguagePath(str(TRANSLATIONS))
@@ -91,8 +102,33 @@ def install() -> None:
     verdict_icons.install()
     FreeCADGui.addWorkbench(PkmPostWorkbench())
     FreeCADGui.getMainWindow().workbenchActivated.connect(CamBar.add)
-    start_page.install()
+    _watch_start_pages()
 
 
 def _attach(module: str, name: str, *arguments: Any) -> Any:
     return getattr(importlib.import_module(module), name)(*arguments)
+
+
+def _watch_start_pages() -> None:
+    """Add the button to the open start page, and to later ones."""
+    (area,) = FreeCADGui.getMainWindow().findChildren(QtWidgets.QMdiArea)
+    area.subWindowActivated.connect(lambda _window: QtCore.QTimer.singleShot(0, _add_example))
+    QtCore.QTimer.singleShot(0, _add_example)
+
+
+def _add_example() -> None:
+    """Add the button to each start page without it."""
+    for row in FreeCADGui.getMainWindow().findChildren(QtWidgets.QWidget, _ROW):
+        if row.layout() is not None and row.findChild(QtWidgets.QAbstractButton, _EXAMPLE) is None:
+            row.layout().addWidget(_button(row))
+
+
+def _button(row: Any) -> QtWidgets.QPushButton:
+    button = QtWidgets.QPushButton(row)
+    button.setObjectName(_EXAMPLE)
+    button.setIcon(QtGui.QIcon(str(ICONS / "example.svg")))
+    button.setIconSize(QtCore.QSize(_ICON, _ICON))
+    button.setText(translate("PKM_Example", "Hexapod example"))
+    button.setToolTip(translate("PKM_Example", "A blade with a job for a hexapod machine tool, of PKM Post"))
+    button.clicked.connect(lambda: FreeCADGui.runCommand("PKM_Example", 0))
+    return button

@@ -5,7 +5,7 @@ A window is the fastest motion from rest to rest that ``jerk_limits`` finds. One
 stopping distance behind it. The speed squared of both is a quadratic spline of the path length, so a transition blends
 their coefficients: speed and acceleration do not jump. The length of the transition is searched, with limits measured
 each half millisecond; if no length keeps them, the motion stays as it is and rests at its end. A stop scales the time
-of the motion (``time_scaled_law``), as fast as the limits allow.
+of the motion (``motion_law``), as fast as the limits allow.
 
 Windows use only a share of the acceleration and jerk limits, since stops and transitions need the rest.
 
@@ -22,13 +22,12 @@ import numpy as np
 from pkm_post.geometry import Array, norm
 from pkm_post.model import Machine, pieces
 from pkm_post.planning import jerk_limits
-from pkm_post.planning.motion_law import MotionLaw
+from pkm_post.planning.motion_law import MotionLaw, TimeScaledLaw
 from pkm_post.planning.refinement import SpanToRest
 from pkm_post.planning.rough_limits import DerivativeBounds
 from pkm_post.planning.speed_limits import limited_quantities
 from pkm_post.planning.speed_profile import stations
 from pkm_post.planning.speed_spline import durations, within_cells
-from pkm_post.planning.time_scaled_law import TimeScaledLaw
 from pkm_post.planning.tool_path import ToolPath
 
 

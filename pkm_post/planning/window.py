@@ -21,13 +21,12 @@ from pkm_post.geometry import Array
 from pkm_post.model import Kind, Motion
 from pkm_post.planning.knots import LONGEST_MS, even_marks
 from pkm_post.planning.motion import FeedPlan, interpolated_between
-from pkm_post.planning.motion_law import MotionLaw
+from pkm_post.planning.motion_law import MotionLaw, TimeScaledLaw
 from pkm_post.planning.refinement import SpanToRest, refined_profile
 from pkm_post.planning.rough_limits import DerivativeBounds, rough_limits
 from pkm_post.planning.schedule import Law, Schedule
 from pkm_post.planning.speed_limits import SAFE_SHARE
 from pkm_post.planning.speed_profile import Stations, cell_times
-from pkm_post.planning.time_scaled_law import TimeScaledLaw
 from pkm_post.planning.tool_path import ToolPath
 
 _SAME_SPEED = 5e-3

@@ -19,6 +19,12 @@ def saved(path, text):
     return path
 
 
+def test_a_caret_is_beneath_the_first_line_after_a_byte_order_mark(tmp_path, capsys):
+    file = saved(tmp_path / "part.ngc", "\ufeffG0 X?\nM2\n")
+    assert main(["check", str(file)]) == 1
+    assert capsys.readouterr().out.splitlines()[1:3] == ["    G0 X?", "        ^"]
+
+
 def test_faults_stand_beneath_their_columns(tmp_path, capsys):
     file = saved(tmp_path / "part.ngc", "\ufeffG0 X0 Y0 Z0\r\nG1\tX1..5 F100\r\nM2\r\n")
     assert main(["check", "--listing", str(file)]) == 1

@@ -38,7 +38,7 @@ def find_machine(name_or_path: str) -> Path | None:
         The path unchanged, whether or not the file exists; for a name the path of the preset or template,
         None if unknown.
     """
-    if "/" in name_or_path or "\\" in name_or_path or name_or_path.endswith(SUFFIX):
+    if "/" in name_or_path or "\\" in name_or_path or name_or_path.lower().endswith(SUFFIX):
         return Path(name_or_path)
     folder = next((folder for folder in (FOLDER, TEMPLATES) if name_or_path in _names(folder)), None)
     return folder and folder / f"{name_or_path}{SUFFIX}"

@@ -87,7 +87,7 @@ def test_filled_in_template_is_a_machine(name, tmp_path):
     assert (machine.base_joint_kind, machine.platform_joint_kind) == ("universal", "spherical")
 
 
-@pytest.mark.parametrize("path", ["here.toml", "machines/here", "C:\\machines\\here", "./example_6tps"])
+@pytest.mark.parametrize("path", ["here.toml", "HERE.TOML", "machines/here", "C:\\machines\\here", "./example_6tps"])
 def test_path_is_used_as_it_is(path):
     assert find_machine(path) == Path(path)
 
