@@ -35,6 +35,7 @@ def _point(text):
 
 CONVERTED = {
     "machine_zero": _point,
+    "block_delete": lambda text: text == "True",
     "feed": float,
     "functions": lambda text: tuple(map(int, text.split(","))),
     "left_out": lambda text: tuple(text.split(",")),

@@ -83,23 +83,25 @@ def _arguments(words: Sequence[tuple[str, float, int]]) -> list[float]:
     return values
 
 
-_SEQUENCE_NUMBER = re.compile(rb"^[ \t]*(?:/[ \t]*(?:\d[ \t]*)?)*N[ \t]*0*(\d+)", re.MULTILINE | re.IGNORECASE)
-"""N at the beginning of a block, behind switches of block delete such as ``/`` and ``/2``."""
+_SEQUENCE_NUMBER = re.compile(rb"^[ \t]*(?:/[ \t]*(?:\d[ \t]*)?)*([N:])[ \t]*0*(\d+)", re.MULTILINE | re.IGNORECASE)
+"""N, or : of Siemens, at the beginning of a block, behind switches of block delete such as ``/`` and ``/2``."""
 
 
-def rows_of_sequence_numbers(text: bytes, line: Array) -> dict[str, list[int]]:
+def rows_of_sequence_numbers(text: bytes, line: Array, kind: str = "N") -> dict[str, list[int]]:
     """Rows by sequence number, in order; of a number without a block the row after it.
 
     Args:
         text: of the program, lines ended by line feeds.
         line: (N,) line of each row.
+        kind: "N", or ":" of Siemens's main blocks.
     """
     rows: dict[str, list[int]] = {}
     start = number = 0
     for found in _SEQUENCE_NUMBER.finditer(text):
         number += text.count(b"\n", start, found.start())
         start = found.start()
-        rows.setdefault(found[1].decode(), []).append(int(np.searchsorted(line, number + 1)))
+        if found[1].decode().upper() == kind:
+            rows.setdefault(found[2].decode(), []).append(int(np.searchsorted(line, number + 1)))
     return rows
 
 

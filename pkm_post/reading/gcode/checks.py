@@ -257,7 +257,10 @@ def _axis_words(blocks: Blocks, modal: Modal, faults: BlockDiagnostics) -> None:
     )
     both = (modal.takes_axes != NONE) & (explicit != NONE) & (explicit != 800)
     if modal.flavour.moves_beside_reference:
-        both &= ~(np.isin(modal.takes_axes, TO_REFERENCE) & np.isin(explicit, (0, 10, *ARCS)))
+        of_group_1 = np.isin(explicit, (0, 10, *ARCS))
+        rows = np.flatnonzero(of_group_1)
+        before = forward_fill(rows + 1, explicit[rows], NONE, len(blocks) + 1)[:-1]
+        both &= ~(of_group_1 & (np.isin(modal.takes_axes, TO_REFERENCE) | (explicit == before)))
     faults.add_where(
         "G407", both, lambda row: (word_of(modal.takes_axes[row]), " and ", word_of(explicit[row]), " in one block")
     )

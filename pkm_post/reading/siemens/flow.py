@@ -50,13 +50,13 @@ JUMPS = ("GOTO", "GOTOF", "GOTOB", "GOTOC", "GOTOS")
 
 
 def _target(cursor: Cursor) -> str:
-    """A label, or a block number as N10."""
+    """A label, or a block number as N10 or :10."""
     token = cursor.next()
     if token.kind == "name":
         return token.text
     number = cursor.next()
     if token.text in ("N", ":") and number.kind == "number" and number.text.isdecimal():
-        return f"N{int(number.text)}"
+        return f"{token.text}{int(number.text)}"
     raise BlockFault("G601", f"'{token.text}' instead of a label or block number", token.column)
 
 

@@ -46,7 +46,7 @@ def statement_of(line: str) -> Statement:
     _block_number(cursor)
     skipped |= _skip_level(cursor)
     labels = []
-    while cursor.peek().kind == "name" and cursor.peek(1).text == ":":
+    while cursor.peek().kind == "name" and cursor.peek().text not in FLOW and cursor.peek(1).text == ":":
         labels.append(cursor.next().text)
         cursor.next()
     first = cursor.peek()

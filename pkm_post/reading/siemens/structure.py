@@ -52,17 +52,19 @@ class Structure:
     main: ProgramRows = field(default_factory=lambda: ProgramRows("", 0, 0))
     partners: dict[int, int] = field(default_factory=dict)
     labels: dict[str, list[int]] = field(default_factory=dict)
-    _numbers: dict[str, list[int]] | None = None
+    _numbers: dict[str, dict[str, list[int]]] = field(default_factory=dict)
+    """Rows by block number, of subblocks N10 and of main blocks :10."""
 
     def rows_of(self, target: str) -> list[int]:
         """The rows of a label or block number, in order."""
         if target in self.labels:
             return self.labels[target]
-        if not re.fullmatch(r"N\d+", target):
+        if not re.fullmatch(r"[N:]\d+", target):
             return []
-        if self._numbers is None:
-            self._numbers = rows_of_sequence_numbers(self.lines.text, np.arange(1, len(self.lines) + 1))
-        return self._numbers.get(target[1:], [])
+        kind, number = target[0], target[1:]
+        if kind not in self._numbers:
+            self._numbers[kind] = rows_of_sequence_numbers(self.lines.text, np.arange(1, len(self.lines) + 1), kind)
+        return self._numbers[kind].get(number, [])
 
     def program_of(self, row: int) -> ProgramRows:
         """The program of a row."""

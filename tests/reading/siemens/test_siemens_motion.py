@@ -52,6 +52,8 @@ MOTIONS = {
         "R1=0\nAGAIN: R1=R1+1\nG1 X=R1\nIF R1<2 GOTOB AGAIN\nGOTOF N90\nG1 X99\nN90 G1 Y1",
         "L 1 0 10, L 2 0 10, L 2 1 10",
     ),
+    # [SiemensNC, program jumps]: main blocks begin with a colon, and are destinations as the others are
+    "to a main block": ("GOTOF :90\nN90 G1 X1\n:090 G1 X2\nGOTOF N90\nG1 X3\n/N90 X4", "L 2 0 10, L 4 0 10"),
     "case": ("R1=2\nCASE R1 OF 1 GOTOF AA 2 GOTOF BB DEFAULT GOTOF AA\nAA: G1 X1\nBB: G1 X2", "L 2 0 10"),
     "loops": (
         "G1\nFOR R1=1 TO 3\nX=R1\nENDFOR\nWHILE R1>2\nR1=R1-1\nY=R1\nENDWHILE\nREPEAT\nR1=R1+1\nZ=R1\n"
