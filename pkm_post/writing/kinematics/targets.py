@@ -68,6 +68,7 @@ def operations(text: str) -> int:
 
 def _linuxcnc(machine: Machine, stem: str, export: Export, poses: CheckPoses) -> tuple[Files | None, Findings]:
     """The configuration for genhexkins, the gate for halstreamer's tables, and the sheet."""
+    stem = re.sub(r"[^\w.-]+", "_", stem)  # LinuxCNC takes what follows a blank in HALFILE for arguments
     files = {
         f"{stem}.ini": linuxcnc.ini_text(machine, stem, export.home_lengths, export.tool_length),
         f"{stem}-kinematics.hal": linuxcnc.kinematics_hal(machine),

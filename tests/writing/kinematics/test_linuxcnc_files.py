@@ -25,6 +25,14 @@ def exported(tmp_path_factory):
     return machine, folder
 
 
+def test_names_in_the_ini_are_those_of_the_files_and_have_no_blanks(tmp_path):
+    # LinuxCNC 2.9, script linuxcnc, 4.3.6: what follows a blank in HALFILE are arguments
+    files, _ = export_machine(made.screwed(), "my machine (2).toml", "linuxcnc", tmp_path, Export(10, 120.0))
+    named = re.findall(r"(?m)^(?:HALFILE|TOOL_TABLE) = (.*)$", files[0].read_text(encoding="utf-8"))
+    assert len(named) == 3 and {*named} <= {path.name for path in files}
+    assert not any(" " in path.name for path in files)
+
+
 def test_ini_has_the_limits_and_the_home_of_the_machine(exported):
     machine, folder = exported
     ini = configparser.ConfigParser(strict=False)
