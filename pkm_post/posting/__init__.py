@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from pkm_post import at_first_use
 from pkm_post.posting.machine_reading import with_machine
-from pkm_post.posting.placement import effective_setup, trajectory_of, work_offset
+from pkm_post.posting.placement import check_path_of, effective_setup, trajectory_of, work_offset
 from pkm_post.posting.post_file import Prepared, post_file, prepared_file
 from pkm_post.posting.run import Log, Posted, Progress, no_log, no_progress
 from pkm_post.posting.steps import SUFFIX, post, step_names, write_program
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from pkm_post.posting.cartesian_guard import Allowance
     from pkm_post.posting.machine_check import format_table, machine_faults, machine_summary
     from pkm_post.posting.machine_export import export_machine
-    from pkm_post.posting.path_check import check_path_of
     from pkm_post.posting.place_search import (
         PLACE_STEP,
         FoundPlace,
@@ -40,7 +39,6 @@ else:
             "cartesian_guard": "Allowance",
             "machine_check": "format_table machine_faults machine_summary",
             "machine_export": "export_machine",
-            "path_check": "check_path_of",
             "place_search": (
                 "PLACE_STEP FoundPlace find_place may_be_mended place_found place_offer place_options work_offset_text"
             ),

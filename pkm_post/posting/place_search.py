@@ -27,8 +27,7 @@ from pkm_post.machine import (
 )
 from pkm_post.model import RULES, Diagnostic, Machine, Program, Refused, Severity, checkpoints, errors
 from pkm_post.options import Options, flag_of
-from pkm_post.posting.path_check import check_path_of
-from pkm_post.posting.placement import effective_setup, trajectory_of
+from pkm_post.posting.placement import check_path_of, effective_setup, trajectory_of
 from pkm_post.posting.run import Progress, beat, no_progress
 
 _MORE_STARTS = 12

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Placement: a program as a trajectory on its machine, with its set-up of part, stock and fixtures.
+"""Placement: a program as a trajectory on its machine, with its set-up of part, stock and fixtures, and its checks.
 
 Input: a program in {C}, a machine and the options. Output: the compensated trajectory on the machine, in {M}, with its
-spin; and the effective set-up, where files named by the user override those of the job; or diagnostics.
+spin; the effective set-up, where files named by the user override those of the job; the margins and findings of the
+trajectory; or diagnostics.
 """
 
 from __future__ import annotations
@@ -13,9 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pkm_post.geometry import Array
-from pkm_post.machine import with_spin
-from pkm_post.model import Diagnostic, Machine, Mesh, Phrase, Place, Program, Setup, Trajectory
+from pkm_post.machine import ReachReport, check_reach, find_collisions, placed_workpiece, with_spin
+from pkm_post.model import Diagnostic, Machine, Mesh, Phrase, Place, Program, Setup, Tolerances, Trajectory
 from pkm_post.options import NO_MESH, Options
+from pkm_post.posting.run import CollisionSearch
 from pkm_post.toolpath import compensate, place, with_copies
 
 if TYPE_CHECKING:
@@ -102,3 +104,32 @@ def effective_setup(options: Options, program: Program | None) -> tuple[Setup, t
         unknown_corners=frozenset(tool.number for tool in tools if not tool.corner_known),
     )
     return setup, tuple(diagnostics)
+
+
+def check_path_of(
+    trajectory: Trajectory,
+    machine: Machine,
+    setup: Setup,
+    tolerances: Tolerances,
+    search: CollisionSearch = find_collisions,
+) -> tuple[ReachReport, Findings]:
+    """Run all checks of a trajectory on its machine.
+
+    Args:
+        trajectory: in {M}, at least one segment.
+        machine: its limits and bodies.
+        setup: part, stock and fixtures, and the shanks of the tools.
+        tolerances: allowed deviation of the tool from the trajectory.
+        search: ``find_collisions``, or a function that has its result.
+
+    Returns:
+        The margins along the path, and all findings: of reach, and of collisions without a margin.
+    """
+    checked = check_reach(trajectory, machine, placed_workpiece(setup, trajectory))
+    collisions = search(trajectory, machine, setup, tolerances)
+    others = (fault for fault in collisions.faults if fault.code not in _IN_REACH)
+    return checked, (*checked.faults(), *others)
+
+
+_IN_REACH = ("K117", "K121")
+"""Diagnostics that the margins of reach cover, too."""

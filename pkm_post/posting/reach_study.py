@@ -15,9 +15,8 @@ from pkm_post.geometry import Array
 from pkm_post.machine import ZERO_TORSION, ReachReport, SpinRule, least_normalised_margins
 from pkm_post.model import Diagnostic, Machine, Program, errors
 from pkm_post.options import Options
-from pkm_post.posting.path_check import check_path_of
 from pkm_post.posting.place_search import FoundPlace, find_place, work_offset_text
-from pkm_post.posting.placement import effective_setup, trajectory_of
+from pkm_post.posting.placement import check_path_of, effective_setup, trajectory_of
 
 _LABELS = ("stroke", "joints", "from singular")
 

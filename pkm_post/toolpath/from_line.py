@@ -35,7 +35,7 @@ from pkm_post.model import (
     threads,
 )
 from pkm_post.toolpath.segments import highest_tip
-from pkm_post.toolpath.spindle_dwells import seconds_from_rest
+from pkm_post.toolpath.spindle import seconds_from_rest
 from pkm_post.toolpath.tool_change import ToolPose, clearance_path, pose_columns
 
 _MODAL = (EventKind.SPINDLE, EventKind.COOLANT)

@@ -36,9 +36,8 @@ from pkm_post.model import (
 )
 from pkm_post.toolpath.continuity import NO_MOVE, joints
 from pkm_post.toolpath.sides import HALF_TURN
-from pkm_post.toolpath.spindle_dwells import with_spindle_waits
+from pkm_post.toolpath.spindle import thread_faults, thread_feeds, with_spindle_waits
 from pkm_post.toolpath.symmetry.transform import mirrors, transform
-from pkm_post.toolpath.threads import thread_faults, thread_feeds
 from pkm_post.toolpath.tool_change import with_tool_changes
 
 _BEYOND_REACH = 10

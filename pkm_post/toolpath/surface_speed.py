@@ -17,7 +17,7 @@ import numpy as np
 from pkm_post.geometry import Array, across, norm
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Place, Program
 from pkm_post.toolpath.compensation.cutter import Cutter, known_cutter
-from pkm_post.toolpath.threads import without_threads
+from pkm_post.toolpath.spindle import without_threads
 
 _LEAST_SHARE = 0.1
 """Share of the cutter diameter: near the tip of a ball the edge does not move at any spindle speed."""

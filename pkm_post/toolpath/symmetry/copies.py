@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 from pkm_post.geometry import Array
 from pkm_post.model import Diagnostic, Event, EventKind, Kind, Phrase, Program
+from pkm_post.toolpath.spindle import without_threads
 from pkm_post.toolpath.symmetry.transform import concatenate, mirror, mirrors, rotation, transform
-from pkm_post.toolpath.threads import without_threads
 
 MIRRORS = {"xy": (0.0, 0.0, 1.0), "xz": (0.0, 1.0, 0.0), "yz": (1.0, 0.0, 0.0)}
 """Normals of the mirror planes by their names."""

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Spindle dwells: the spindle reaches its speed before the motion continues.
+"""Spindle: dwells until it has its speed, and threads, in which it is an axis.
 
-Takes a program; returns it with a dwell after each change of the spindle speed, and with the spindle stopped before
-each tool change, which leaves it stopped [NGC 3.6.3]. The speed changes at a constant rate, as in drives set by their
-acceleration and deceleration times [VFD-B 01-09]. Where the machine file states no time, no dwell is added.
+A program gets a dwell after each change of the spindle speed, and the spindle is stopped before each tool change, which
+leaves it stopped [NGC 3.6.3]. The speed changes at a constant rate, as in drives set by their acceleration and
+deceleration times [VFD-B 01-09]. Where the machine file states no time, no dwell is added.
+
+A thread is made of feed moves along the tool axis, up to a highest feed. A mirror image would need another tap, and a
+thread cut backwards would end before it starts. Units: mm, mm/s, s.
 """
 
 from __future__ import annotations
@@ -14,7 +17,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pkm_post.model import Diagnostic, Event, EventKind, Machine, Phrase, Program, cuts_by_speed
+from pkm_post.geometry import Array, dot, norm
+from pkm_post.model import Amount, Diagnostic, Event, EventKind, Kind, Machine, Phrase, Program, cuts_by_speed, threads
 
 _PER_SECOND = 1000
 """Waits are whole milliseconds."""
@@ -108,3 +112,62 @@ def _cuts_at_rest(program: Program) -> Iterator[Diagnostic]:
             stopped_at, speed = None, event.value
         elif event.kind is EventKind.TOOL_CHANGE and speed:
             stopped_at = event.row
+
+
+_SPEED_SHARE = 0.95
+"""Planned share of the spindle's speed limit: the controller's cubics oscillate slightly about it."""
+_ASIDE = 1e-6
+"""mm, and of unit axes: rounding of work offsets."""
+
+
+def thread_feeds(program: Program, machine: Machine) -> Array:
+    """Highest feed on each row, (N,): infinite outside threads."""
+    feed = np.full(len(program), np.inf)
+    for thread in threads(program.events):
+        if machine.spindle_axis is not None:
+            feed[thread.first : thread.end] = _SPEED_SHARE * abs(thread.lead) * machine.spindle_axis.speed
+    return feed
+
+
+def thread_faults(program: Program, machine: Machine, tip_before: Array, axis_before: Array) -> Iterator[Diagnostic]:
+    """Faults of the threads of a program.
+
+    Args:
+        program: in {M}.
+        machine: with the axis of its spindle.
+        tip_before: (N, 3) tips at the starts of the rows.
+        axis_before: (N, 3) unit tool axes there.
+    """
+    found = threads(program.events)
+    if found and machine.spindle_axis is None:
+        yield Diagnostic(
+            "K154", program.place(found[0].first), Phrase("lead {}", Amount(abs(found[0].lead), "mm", "g"))
+        )
+        return
+    limits = thread_feeds(program, machine)
+    for thread in found:
+        rows = slice(thread.first, thread.end)
+        way, axis = program.position[rows] - tip_before[rows], axis_before[rows]
+        along = dot(way, axis)
+        aside = norm(way - along[:, None] * axis)
+        turned = norm(program.tool_axis[rows] - axis)
+        wrong = (program.kind[rows] != Kind.LINE) | (aside > _ASIDE) | (turned > _ASIDE)
+        if wrong.any():
+            row = thread.first + int(np.argmax(wrong))
+            yield Diagnostic("K155", program.place(row), f"{aside[row - thread.first]:.3g} mm aside")
+        elif along[:1] > 0:
+            yield Diagnostic("K155", program.place(thread.first), Phrase("it begins towards the spindle"))
+        if (program.feed[rows] > limits[rows]).any():
+            feeds = f"F{60 * program.feed[rows].max():g} mm/min, limited to {60 * limits[thread.first]:g}"
+            yield Diagnostic("K156", program.place(thread.first), feeds)
+
+
+def without_threads(program: Program, purpose: str) -> tuple[Diagnostic, ...]:
+    """K157 for a program with threads where they are not supported.
+
+    Args:
+        program: any.
+        purpose: its purpose, as text.
+    """
+    found = threads(program.events)
+    return (Diagnostic("K157", program.place(found[0].first), purpose),) if found else ()

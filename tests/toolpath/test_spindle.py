@@ -10,7 +10,7 @@ from programs import ON_PALLET, TOOLS, program, random_changes
 
 from pkm_post.model import Event, EventKind, Kind
 from pkm_post.toolpath.place import place
-from pkm_post.toolpath.spindle_dwells import with_spindle_waits
+from pkm_post.toolpath.spindle import with_spindle_waits
 
 # 24000 rpm in 4 s, to rest in 2 s: 6000 rpm faster is 1 s, 12000 slower is 1 s.
 MACHINE = dataclasses.replace(example(), spin_up_time=4.0, spin_down_time=2.0)
