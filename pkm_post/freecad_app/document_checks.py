@@ -188,19 +188,33 @@ def _kept_by_cam(operation: Any) -> str:
     return next(filter(None, map(_kept_by_cam, below)), "")
 
 
-def _label_in_path(operation: Any) -> str:
-    """What FreeCAD made of the label behind a bracket when it read the path of a file: a label is a comment there."""
-    if ")" not in operation.Label:
-        return ""
-    path = Path.Path()  # whose own reading of a text ends in a C++ exception
-    try:
-        path.setFromGCode(f"({operation.Label})")
+def _text_in_path(operation: Any) -> str:
+    """What FreeCAD made of label and comment behind a bracket when it read the path of a file: both are comments there.
+
+    A path with another label is of an operation renamed since: CAM begins with a rapid move to a height.
+    """
+    texts = [each for each in (operation.Label, getattr(operation, "Comment", "")) if each]
+    path, commands = Path.Path(), operation.Path.Commands
+    try:  # its own reading of a text ends in a C++ exception
+        path.setFromGCode("\n".join(f"({each})" for each in texts if ")" in "".join(texts)))
     except RuntimeError:  # Base.BadFormatError
         return Phrase("nothing behind its label") if _NOT_READ in operation.State else ""
     read = path.Commands
     codes = [each.toGCode() for each in read if not each.Name.startswith("(")]
-    begins = [each.toGCode() for each in operation.Path.Commands[: len(read)]]
-    return ", ".join(codes) if codes and begins == [each.toGCode() for each in read] else ""
+    begins = [each.toGCode() for each in commands[: len(read)]]
+    if codes and begins == [each.toGCode() for each in read]:
+        return ", ".join(codes)
+    if not commands or commands[0].Name == f"({texts[0]})" or not hasattr(operation, "SafeHeight"):
+        return ""
+    first = next((each for each in commands if not each.Name.startswith("(")), None)
+    return "" if first is None or _is_start(operation, first) else first.toGCode()
+
+
+def _is_start(operation: Any, command: Any) -> bool:
+    """Whether an operation of CAM may begin with a command."""
+    heights = (operation.ClearanceHeight.Value, operation.SafeHeight.Value)
+    height = command.Parameters.get("Z", heights[0])
+    return command.Name == "G90" or command.Name == "G0" and min(abs(height - each) for each in heights) < _STANDS
 
 
 def _not_computed(operation: Any) -> str:
@@ -242,7 +256,7 @@ def _with_bases(operation: Any) -> list[Any]:
 
 _FAULTS: tuple[tuple[str, Callable[[Any], str]], ...] = (
     ("J136", _has_no_path),
-    ("J148", _anywhere(_label_in_path)),
+    ("J148", _anywhere(_text_in_path)),
     ("J134", _not_read),
     ("J116", _not_valid),
     ("J133", _not_computed),

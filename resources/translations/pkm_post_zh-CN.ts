@@ -2771,6 +2771,14 @@ Is the way of all struts, of the platform and of the tool free?</source>
         <translation>将控制器的 SpindleDir 与刀具的 SpindleDirection 设为一致；主轴不转时将转速设为 0</translation>
     </message>
     <message>
+        <source>FreeCAD reads the label or comment of an operation as commands when it opens the document</source>
+        <translation>FreeCAD 打开文档时会把操作的标签或注释读成命令</translation>
+    </message>
+    <message>
+        <source>write it without ( and ), mark the operation to be recomputed, recompute and save; then open the document again</source>
+        <translation>写成不含 ( 和 ) 的文字，将操作标记为需要重新计算，重新计算并保存；然后重新打开文档</translation>
+    </message>
+    <message>
         <source>a strut would be too short</source>
         <translation>一条支链会过短</translation>
     </message>
@@ -3065,14 +3073,6 @@ Is the way of all struts, of the platform and of the tool free?</source>
     <message>
         <source>name one with --job by a label or name that no other job has; change a label in FreeCAD if there is none</source>
         <translation>用 --job 以其他作业没有的标签或名称指定一个；若没有这样的，请在 FreeCAD 中更改标签</translation>
-    </message>
-    <message>
-        <source>FreeCAD reads the label of an operation as commands when it opens the document</source>
-        <translation>FreeCAD 打开文档时把操作的标签读成命令</translation>
-    </message>
-    <message>
-        <source>rename it without ( and ), mark it to be recomputed, recompute and save; then open the document again</source>
-        <translation>改成不含 ( 和 ) 的名称，标记为需要重新计算，重新计算并保存；然后重新打开文档</translation>
     </message>
     <message>
         <source>CAM leaves out holes or holding tags of an operation</source>

@@ -226,6 +226,17 @@ def test_a_label_that_freecad_reads_as_commands_is_refused_until_it_is_renamed(j
     expected = [("J148", found)] if found else []
     assert [(each.code, each.found) for each in faults] == expected
     operation.Label = "Side"
+    renamed = {"J134"} if found == "nothing behind its label" else {code for code, _ in expected}
+    assert {each.code for each in read_job(operation.Document.Job)[1]} == renamed
+    operation.touch()
+    assert not read_job(reopened(operation.Document.Job, tmp_path).Document.Job)[1]
+
+
+def test_a_comment_that_freecad_reads_as_commands_is_refused(job, tmp_path):
+    profile(job).Comment = "finish (H7)M8m98"
+    operation = reopened(job, tmp_path)
+    assert [(each.code, each.found) for each in read_job(operation.Document.Job)[1]] == [("J148", "M8")]
+    operation.Comment = "finish H7"
     operation.touch()
     assert not read_job(reopened(operation.Document.Job, tmp_path).Document.Job)[1]
 

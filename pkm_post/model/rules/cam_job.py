@@ -125,8 +125,8 @@ CAM_JOB_RULES: dict[str, Rule] = {
         "name one with --job by a label or name that no other job has; change a label in FreeCAD if there is none",
     ),
     "J148": error(
-        "FreeCAD reads the label of an operation as commands when it opens the document",
-        "rename it without ( and ), mark it to be recomputed, recompute and save; then open the document again",
+        "FreeCAD reads the label or comment of an operation as commands when it opens the document",
+        "write it without ( and ), mark the operation to be recomputed, recompute and save; then open the document again",
     ),
     "J149": warning(
         "CAM leaves out holes or holding tags of an operation",
